@@ -342,6 +342,12 @@ impl Activity {
 
     /// Finishes a frame, on any display.
     fn after_frame(&mut self, report: &FrameReport) {
+        if let Some(viewer) = self.display.viewer_mut()
+            && self.configuration.keep(viewer)
+        {
+            let settings = self.configuration.resolve();
+            self.configuration.apply(settings, &mut self.display);
+        }
         self.note_scene();
         if report.telemetry_due {
             self.every_second();

@@ -20,6 +20,8 @@ pub struct Configuration {
     /// The settings that the sources gave last.
     settings: Settings,
     folders: Vec<PathBuf>,
+    /// The file of the menu's settings.
+    menu_file: Option<PathBuf>,
     /// The mistakes in the settings when they were last read.
     mistakes: Vec<String>,
     game_loop: Option<GameLoop>,
@@ -54,7 +56,12 @@ impl Configuration {
         if let Some(game_loop) = &game_loop {
             extras = game_loop.settings();
         }
+        // A scenario is a measurement, of which the user of the menu knows nothing.
+        let folder = app.internal_data_path().filter(|_| scenario.is_none());
+        let menu_file = folder.map(|folder| folder.join(settings::MENU_FILE_NAME));
+        let menu = menu_file.as_ref().and_then(|file| std::fs::read(file).ok());
         let sources = Sources {
+            menu: menu.map_or_else(Vec::new, |bytes| settings::restore(&bytes)),
             file: external.map(|folder| folder.join(settings::FILE_NAME)),
             extras,
             properties: settings::properties(system::property),
@@ -62,7 +69,7 @@ impl Configuration {
         };
         let is_unknown_scenario = scenario.is_some() && game_loop.is_none();
         let (settings, mistakes) = (Settings::default(), Vec::new());
-        Configuration { sources, settings, folders, mistakes, game_loop, is_unknown_scenario }
+        Configuration { sources, settings, folders, menu_file, mistakes, game_loop, is_unknown_scenario }
     }
 
     /// Goes to the next step of a game loop, and returns its settings; none after the last, and without a game loop.
@@ -92,6 +99,32 @@ impl Configuration {
         let ipd = viewer.chosen_ipd().filter(|ipd| Some(*ipd) != self.settings.ipd);
         let ipd = ipd.map(|ipd| ("ipd", ipd.to_string()));
         [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+
+    /// Keeps what the menu has changed for the next start; a run with a name leaves nothing behind. True if that was a reset.
+    pub fn keep(&mut self, viewer: &mut Viewer) -> bool {
+        let Some(kept) = viewer.take_kept() else { return false };
+        let is_reset = kept.is_empty();
+        if is_reset {
+            self.sources.menu.clear();
+        }
+        for (key, value) in kept {
+            self.sources.menu.retain(|(other, _)| other != key);
+            self.sources.menu.push((key.to_owned(), value));
+        }
+        let Some(file) = self.menu_file.as_ref().filter(|_| !self.sources.is_named_run()) else {
+            return is_reset;
+        };
+        let new = file.with_extension("new");
+        let written = std::fs::write(&new, settings::save(&self.sources.menu))
+            .and_then(|()| std::fs::rename(&new, file));
+        if let Err(error) = written {
+            log::warn!(
+                "{} cannot be written ({error}): the menu's settings are lost at the end",
+                file.display()
+            );
+        }
+        is_reset
     }
 
     /// Returns the settings from outside; each mistake is logged once.

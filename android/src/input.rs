@@ -55,10 +55,19 @@ impl Input {
         let pointer = motion.pointer_at_index(0);
         let position = [pointer.x(), pointer.y()];
         match motion.action() {
-            MotionAction::Down => self.touch.down(motion.event_time(), position),
+            MotionAction::Down => {
+                self.touch.down(motion.event_time(), position);
+                self.events.push(Event::Press);
+            }
             MotionAction::Move => self.touch.moved(position, dpi),
-            MotionAction::Up => self.events.extend(self.touch.up(motion.event_time())),
-            MotionAction::PointerDown | MotionAction::Cancel => self.touch.cancel(),
+            MotionAction::Up => {
+                self.events.push(Event::Release);
+                self.events.extend(self.touch.up(motion.event_time()));
+            }
+            MotionAction::PointerDown | MotionAction::Cancel => {
+                self.events.push(Event::Release);
+                self.touch.cancel();
+            }
             _ => {}
         }
         InputStatus::Handled
@@ -82,8 +91,14 @@ impl Input {
             | Keycode::ButtonL2
             | Keycode::ButtonR2 => match key.action() {
                 // A key that is held repeats.
-                KeyAction::Down if key.repeat_count() == 0 => self.trigger.down(key.event_time(), [0.0; 2]),
-                KeyAction::Up => self.events.extend(self.trigger.up(key.event_time())),
+                KeyAction::Down if key.repeat_count() == 0 => {
+                    self.trigger.down(key.event_time(), [0.0; 2]);
+                    self.events.push(Event::Press);
+                }
+                KeyAction::Up => {
+                    self.events.push(Event::Release);
+                    self.events.extend(self.trigger.up(key.event_time()));
+                }
                 _ => {}
             },
             Keycode::H | Keycode::ButtonX if is_down => self.events.push(Event::ToggleHud),

@@ -1,4 +1,4 @@
-//! Settings from outside: defaults < file < intent extras < system properties < the user's changes
+//! Settings from outside: defaults < file < those of the menu < intent extras < system properties < the user's changes
 //! from before the activity was put away.
 
 use std::path::PathBuf;
@@ -11,6 +11,8 @@ pub const PROPERTY_PREFIX: &str = "debug.yoro.";
 const EXTRA_PREFIX: &str = "yoro.";
 /// The settings file in the application's external folder.
 pub const FILE_NAME: &str = "yoro.toml";
+/// What the menu has changed, in the application's own folder.
+pub const MENU_FILE_NAME: &str = "settings-user";
 
 /// A setting as text: key and value.
 pub type Pair = (String, String);
@@ -20,6 +22,8 @@ pub type Pair = (String, String);
 pub struct Sources {
     /// A TOML file, which need not exist.
     pub file: Option<PathBuf>,
+    /// What the menu has changed, also before a restart. A run that has a name (`run`, as those of `yoro device`) is without.
+    pub menu: Vec<Pair>,
     /// Extras of the intent that started the activity.
     pub extras: Vec<Pair>,
     /// System properties, without their prefix.
@@ -40,6 +44,12 @@ impl Sources {
         true
     }
 
+    /// True if the run has a name: it is a measurement, of which the user of the menu knows nothing.
+    pub fn is_named_run(&self) -> bool {
+        let extras = self.extras.iter().filter_map(|(key, _)| extra_key(key));
+        extras.chain(self.properties.iter().map(|(key, _)| key.as_str())).any(|key| key == "run")
+    }
+
     /// Returns the settings, and one sentence for each mistake; a setting with a mistake keeps its value.
     pub fn resolve(&self) -> (Settings, Vec<String>) {
         let mut settings = Settings::default();
@@ -50,7 +60,10 @@ impl Sources {
         let extras = self.extras.iter().filter_map(|(key, value)| Some((extra_key(key)?, value)));
         let saved = self.saved.iter().map(|(key, value)| (key.as_str(), value));
         let properties = self.properties.iter().map(|(key, value)| (key.as_str(), value));
+        let menu = if self.is_named_run() { &[][..] } else { &self.menu };
+        let menu = menu.iter().map(|(key, value)| (key.as_str(), value));
         let layers = [
+            ("the settings of the menu", menu.collect()),
             ("the intent's extras", extras.collect::<Vec<_>>()),
             ("the system properties debug.yoro.*", properties.collect()),
             ("the saved state", saved.collect()),
@@ -129,6 +142,7 @@ mod tests {
                 ("yoro.scene", "stage"),
                 ("android.intent.extra.REFERRER", "x"),
             ]),
+            menu: pairs(&[("seed", "9"), ("ipd", "0.07")]),
             properties: pairs(&[("ipd", "0.065"), ("hud", "false")]),
             saved: pairs(&[("ipd", "0.055")]),
         };
@@ -136,7 +150,7 @@ mod tests {
         assert!(mistakes.is_empty(), "{mistakes:?}");
         assert_eq!(
             (settings.method, settings.ipd, settings.seed),
-            (Method::Mono.into(), Some(Ipd::nearest(0.055)), 7)
+            (Method::Mono.into(), Some(Ipd::nearest(0.055)), 9)
         );
         assert_eq!((settings.scene.as_str(), settings.hud), ("stage", false));
     }
@@ -207,6 +221,18 @@ mod tests {
             (settings.method, settings.ipd, settings.hud),
             (Method::Conventional.into(), Some(Ipd::nearest(0.05)), true)
         );
+        assert!(mistakes.is_empty(), "{mistakes:?}");
+    }
+
+    #[test]
+    fn a_named_run_knows_nothing_of_the_menu() {
+        let menu = pairs(&[("method", "mono"), ("hud", "false")]);
+        let mut sources = Sources { menu, extras: pairs(&[("hud", "true")]), ..Sources::default() };
+        let (settings, _) = sources.resolve();
+        assert_eq!((settings.method, settings.hud), (Method::Mono.into(), true));
+        sources.extras = pairs(&[("yoro.run", "7")]);
+        let (settings, mistakes) = sources.resolve();
+        assert_eq!((settings.method, settings.hud), (Settings::default().method, true));
         assert!(mistakes.is_empty(), "{mistakes:?}");
     }
 

@@ -92,6 +92,7 @@ static FILES: &[(&str, &str)] = embed![
     "viewer/hud.frag",
     "viewer/lens.frag",
     "viewer/lens.vert",
+    "viewer/menu.frag",
     "viewer/show.frag",
 ];
 

@@ -172,6 +172,7 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
         Program::new(gl, source, &defines)?;
     }
     Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
+    Program::new(gl, ShaderSource::Screen("viewer/menu.frag"), &[])?;
     for define in [None, Some("ANAGLYPH"), Some("DIFFERENCE"), Some("WITH_DEPTH"), Some("PACKED_DEPTH")] {
         let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
         Program::new(gl, ShaderSource::Screen("viewer/show.frag"), &defines)?;

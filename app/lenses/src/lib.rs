@@ -5,6 +5,7 @@
 //!
 //! This crate must never know a renderer, a scene, settings, or where a GL context comes from; it builds for phones and browsers alike.
 
+mod board;
 mod head;
 mod hud;
 mod lens;
@@ -12,6 +13,9 @@ mod optics;
 mod params;
 mod text;
 
+pub use board::{
+    Board, HEADING_COLUMNS, TILE_COLUMNS, TILES, Tiles, board_hit, board_metres, board_pose, tile_at,
+};
 pub use head::{HeadTracker, MotionSample, neck_offset};
 pub use hud::{COLUMNS, Content, Hud, Panel, Placement};
 pub use lens::LensPass;

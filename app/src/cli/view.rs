@@ -17,7 +17,7 @@ use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lab::picture::{self, PictureError, rgb_image};
 use yoro_lenses::{Rotation, Screen};
 use yoro_protocol::Settings;
-use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};
+use yoro_viewer::{Cardboard, Event, FrameTiming, HeldHead, SceneState};
 
 /// The refresh rate of the imagined display.
 const REFRESH_HZ: f32 = 60.0;
@@ -56,6 +56,10 @@ pub struct ViewArgs {
     renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     settings: SettingsArgs,
+    /// What the user does before the picture, in order: `hold` (the menu), `tap`, `press`, `release`, `look:YAW:PITCH` in
+    /// degrees, `wait:SECONDS`
+    #[arg(long = "do", value_name = "ACTION,...", value_delimiter = ',', value_parser = parse_act, allow_hyphen_values = true)]
+    acts: Vec<Act>,
     /// Draw the loading screen
     #[arg(long)]
     loading: bool,
@@ -132,6 +136,33 @@ fn run(args: &ViewArgs) -> anyhow::Result<()> {
             bar.inc(1);
         }
         bar.finish_and_clear();
+        for act in &args.acts {
+            interrupt::check()?;
+            let mut frames = 1;
+            match *act {
+                Act::Event(event) => println!("{}", viewer.event(event)?),
+                Act::Look { yaw, pitch } => {
+                    let turn = Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
+                    viewer.hold_head(Some(HeldHead { rendered: turn, displayed: turn }));
+                }
+                Act::Wait { seconds } => frames = (seconds * REFRESH_HZ).ceil() as u32,
+            }
+            for _ in 0..frames {
+                frame(&mut viewer)?;
+            }
+            // Another scene is on its way.
+            while viewer.viewer().is_loading() {
+                interrupt::check()?;
+                viewer.viewer_mut().poll_scene();
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        }
+        if let Some(kept) = viewer.viewer_mut().take_kept() {
+            kept.iter().for_each(|(key, value)| println!("{key}={value}"));
+        }
+        if !args.acts.is_empty() {
+            frame(&mut viewer)?;
+        }
     }
     if let Some(errors) = gl.take_errors() {
         bail!("the GL driver reports {errors}: please report this as a bug");
@@ -140,6 +171,36 @@ fn run(args: &ViewArgs) -> anyhow::Result<()> {
     picture::save_color(&args.png, &rgb_image(&pixels, args.screen))?;
     println!("{}", args.png.display());
     Ok(())
+}
+
+/// An action of the user.
+#[derive(Clone, Copy, Debug)]
+enum Act {
+    Event(Event),
+    /// Turns the head, in radians.
+    Look {
+        yaw: f32,
+        pitch: f32,
+    },
+    Wait {
+        seconds: f32,
+    },
+}
+
+fn parse_act(text: &str) -> Result<Act, String> {
+    let mut parts = text.split(':');
+    let name = parts.next().unwrap_or_default();
+    let numbers: Vec<f32> =
+        parts.filter_map(|part| part.parse().ok().filter(|n: &f32| n.is_finite())).collect();
+    match (name, numbers.as_slice()) {
+        ("hold", []) => Ok(Act::Event(Event::LongPress)),
+        ("tap", []) => Ok(Act::Event(Event::Tap)),
+        ("press", []) => Ok(Act::Event(Event::Press)),
+        ("release", []) => Ok(Act::Event(Event::Release)),
+        ("look", &[yaw, pitch]) => Ok(Act::Look { yaw: yaw.to_radians(), pitch: pitch.to_radians() }),
+        ("wait", &[seconds]) if (0.0..=60.0).contains(&seconds) => Ok(Act::Wait { seconds }),
+        _ => Err("give hold, tap, press, release, look:YAW:PITCH or wait:SECONDS (at most 60)".into()),
+    }
 }
 
 fn parse_screen(text: &str) -> Result<[u32; 2], String> {

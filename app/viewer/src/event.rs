@@ -7,12 +7,17 @@ use yoro_protocol::{Ipd, MethodChoice};
 /// An action of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A tap on the screen, the viewer's trigger, or a controller's: the next method.
+    /// A tap on the screen, the viewer's trigger, or a controller's: the next method, or the tile of the menu that is
+    /// pointed at.
     Tap,
     /// The method before.
     PreviousMethod,
-    /// A long press: straight ahead is where the head points now.
+    /// A long press: opens the menu; in the menu, straight ahead is where the head points now.
     LongPress,
+    /// The trigger goes down: in the menu, comparing begins.
+    Press,
+    /// The trigger goes up.
+    Release,
     /// Volume up: the eyes a millimetre further apart.
     IpdUp,
     /// Volume down: the eyes a millimetre closer.
@@ -32,6 +37,10 @@ pub enum Action {
     Method(MethodChoice),
     /// The head's direction starts over: that is for the display to do.
     Recenter,
+    /// The menu was opened or closed.
+    Menu(bool),
+    /// The menu has changed settings, which the display takes: `Viewer::take_settings`.
+    Settings,
     /// The distance between the eyes.
     Ipd(Ipd),
     /// True if the HUD is shown.
@@ -53,6 +62,8 @@ impl fmt::Display for Action {
         match self {
             Action::Method(method) => write!(f, "method: {}", method.name()),
             Action::Recenter => f.write_str("recentered"),
+            Action::Menu(is_open) => write!(f, "menu: {}", if *is_open { "open" } else { "closed" }),
+            Action::Settings => f.write_str("settings of the menu"),
             Action::Ipd(ipd) => write!(f, "ipd: {:.3} m", ipd.metres()),
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
             Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),

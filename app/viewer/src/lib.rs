@@ -14,6 +14,7 @@ mod error;
 mod event;
 mod frame;
 mod loading;
+mod menu;
 mod method_slot;
 pub mod openxr;
 mod questionnaire;

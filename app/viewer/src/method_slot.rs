@@ -30,7 +30,9 @@ pub(crate) struct MethodSlot {
     unfit: Option<EyesError>,
     /// The method, while there is a scene to use it on.
     made: Option<Chosen>,
-    /// Renders both eyes while they are unfit.
+    /// Both eyes are rendered, to be compared with the method.
+    is_comparing: bool,
+    /// Renders both eyes while they are unfit or compared.
     substitute: Substitute,
 }
 
@@ -46,6 +48,7 @@ impl MethodSlot {
             quality: Quality::FULL,
             unfit: None,
             made: None,
+            is_comparing: false,
             substitute: Substitute::default(),
         }
     }
@@ -209,6 +212,17 @@ impl MethodSlot {
         self.unfit = unfit;
     }
 
+    /// Compiles two real renders, so that the first frame of a comparison need not.
+    pub fn prepare_comparison(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
+        let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
+        self.substitute.get(|method| stereo::create(gl, method, &render, &options)).map(drop)
+    }
+
+    /// Begins or ends a comparison; true if that is new.
+    pub fn compare(&mut self, is_comparing: bool) -> bool {
+        std::mem::replace(&mut self.is_comparing, is_comparing) != is_comparing
+    }
+
     /// Renders both eyes; unfit ones without synthesis, by the substitute.
     pub fn render(
         &mut self,
@@ -221,11 +235,12 @@ impl MethodSlot {
         let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
         let method = match &mut self.made {
             // It renders both eyes by itself.
-            Some(Chosen::Auto(auto)) => auto.as_mut(),
-            _ if self.unfit.is_some() => {
+            Some(Chosen::Auto(auto)) if !self.is_comparing => auto.as_mut(),
+            _ if self.is_comparing || self.unfit.is_some() => {
                 self.substitute.get(|method| stereo::create(gl, method, &render, &options))?
             }
             Some(Chosen::Named(method)) => method.as_mut(),
+            Some(Chosen::Auto(auto)) => auto.as_mut(),
             None => return Err(ViewerError::NoContext),
         };
         Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)

@@ -150,6 +150,11 @@ impl SceneSlot {
         sources.into_iter().nth(next).filter(|source| *source != self.source)
     }
 
+    /// The number of the viewpoint in use.
+    pub fn viewpoint(&self) -> usize {
+        self.viewpoint
+    }
+
     /// Goes to a viewpoint; beyond the last it starts over.
     pub fn go_to(&mut self, viewpoint: usize) {
         self.viewpoint = viewpoint % self.viewpoints.len().max(1);

@@ -148,6 +148,15 @@ impl Cardboard {
     /// # Errors
     /// See [`Viewer::configure`], and [`ViewerError::Params`]; the settings before stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
+        self.change(settings, folders, |viewer, settings| viewer.configure(settings, folders))
+    }
+
+    fn change(
+        &mut self,
+        settings: Settings,
+        folders: &[PathBuf],
+        change: impl FnOnce(&mut Viewer, Settings) -> Result<(), ViewerError>,
+    ) -> Result<(), ViewerError> {
         let before = self.viewer.settings();
         let optics_differ = (settings.chromatic, settings.screen) != (before.chromatic, before.screen);
         let params = if settings.viewer == before.viewer {
@@ -155,7 +164,7 @@ impl Cardboard {
         } else {
             Some(ViewerParams::find_in(&settings.viewer, folders)?)
         };
-        self.viewer.configure(settings, folders)?;
+        change(&mut self.viewer, settings)?;
         let lenses_differ = params.is_some() || optics_differ;
         if let Some(params) = params {
             self.params = params;
@@ -174,10 +183,21 @@ impl Cardboard {
     /// See [`Viewer::event`].
     pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
         let action = self.viewer.event(event)?;
+        self.follow(action)?;
+        Ok(action)
+    }
+
+    /// Does the display's part of an action.
+    fn follow(&mut self, action: Action) -> Result<(), ViewerError> {
         if action == Action::Recenter {
             self.tracker.recenter();
         }
-        Ok(action)
+        if let Some(settings) = self.viewer.take_settings() {
+            let folders = self.viewer.folders().to_vec();
+            self.change(settings, &folders, |viewer, settings| viewer.change(settings, &folders))?;
+            self.viewer.write_menu();
+        }
+        Ok(())
     }
 
     /// Takes a sample of a motion sensor with its own timestamp in nanoseconds.
@@ -218,6 +238,11 @@ impl Cardboard {
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         self.viewer.begin(timing);
         let head = self.head(timing).0;
+        let action = self.viewer.look(relative(head), None)?;
+        if action != Action::Nothing {
+            log::info!("{action}");
+        }
+        self.follow(action)?;
         let pair = self.eyes(head);
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         attached.frame.resize(pair.size)?;
@@ -226,6 +251,7 @@ impl Cardboard {
         if let Some(panel) = self.viewer.hud()? {
             panel.draw_into_eyes(&pair, &targets.map(|target| target.color));
         }
+        self.viewer.draw_menu(&pair, &targets.map(|target| target.color));
         attached.rendered = Some(head);
         Ok(())
     }
@@ -285,9 +311,7 @@ impl Cardboard {
 
     /// The eyes of a head that is turned like this, at the scene's viewpoint.
     fn eyes(&self, head: Quat) -> EyePair {
-        // At rest the eyes are where the scene's author has put them.
-        let moved = neck_offset(head) - neck_offset(Quat::IDENTITY);
-        let head = self.viewer.place(Pose { position: moved, orientation: head });
+        let head = self.viewer.place(relative(head));
         let half = self.viewer.ipd().metres() / 2.0;
         EyePair {
             poses: Eye::BOTH.map(|eye| head.translated_local(Vec3::X * (eye.side() * half))),
@@ -297,6 +321,12 @@ impl Cardboard {
             dominant: self.viewer.settings().dominant,
         }
     }
+}
+
+/// Returns a head that is turned like this, relative to the viewpoint.
+fn relative(head: Quat) -> Pose {
+    // At rest the eyes are where the scene's author has put them.
+    Pose { position: neck_offset(head) - neck_offset(Quat::IDENTITY), orientation: head }
 }
 
 /// Returns width and height in metres of the screen behind the lenses, from the settings or else from the device.

@@ -2,7 +2,7 @@
 //!
 //! | control | Touch and Pico controllers | simple controller | does |
 //! |---|---|---|---|
-//! | select | trigger, A, X | select | next method; held: straight ahead is where the head points now |
+//! | select | trigger, A, X | select | next method; held: opens the menu, in the menu recenters |
 //! | menu | menu, B, Y | menu | HUD; held: as above |
 //! | stick left, right | thumbstick | | method before, next method |
 //! | stick up, down | thumbstick | | next scene, next viewpoint |
@@ -81,6 +81,9 @@ struct Memory {
 
 impl Memory {
     fn update(&mut self, controls: Controls, now_ns: i64, events: &mut Vec<Event>) {
+        if self.select.since_ns.is_some() != controls.select {
+            events.push(if controls.select { Event::Press } else { Event::Release });
+        }
         events.extend(self.select.update(controls.select, now_ns, Event::Tap, Event::LongPress));
         events.extend(self.menu.update(controls.menu, now_ns, Event::ToggleHud, Event::LongPress));
         let Vec2 { x, y } = controls.stick;
@@ -236,8 +239,14 @@ mod tests {
     fn buttons_short_and_long() {
         let (none, select) = (Controls::default(), Controls { select: true, ..Controls::default() });
         let menu = Controls { menu: true, ..none };
-        assert_eq!(play(&[(0, none), (10, select), (100, select), (200, none)]), [Event::Tap]);
-        assert_eq!(play(&[(0, select), (700, select), (900, select), (950, none)]), [Event::LongPress]);
+        assert_eq!(
+            play(&[(0, none), (10, select), (100, select), (200, none)]),
+            [Event::Press, Event::Release, Event::Tap]
+        );
+        assert_eq!(
+            play(&[(0, select), (700, select), (900, select), (950, none)]),
+            [Event::Press, Event::LongPress, Event::Release]
+        );
         assert_eq!(play(&[(0, menu), (20, none), (40, menu), (60, none)]), [Event::ToggleHud; 2]);
     }
 

@@ -18,6 +18,14 @@ impl Viewer {
     /// [`ViewerError::NoScene`], and [`ViewerError::Gl`] when the driver refuses; the former settings
     /// stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
+        let given = settings.clone();
+        self.change(settings, folders)?;
+        self.given = given;
+        Ok(())
+    }
+
+    /// See [`Viewer::configure`].
+    pub(crate) fn change(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         // First everything that a mistake in the settings can make fail.
         let source = self.other_scene(&settings, folders)?;
         let (render, method_differs) =

@@ -7,7 +7,7 @@ use yoro_protocol::telemetry::{Rating, ViewerState};
 use yoro_protocol::{Ipd, Settings};
 
 /// The IPD changes by this much at a time, in metres.
-const IPD_STEP: f32 = 0.001;
+pub(super) const IPD_STEP: f32 = 0.001;
 
 impl Viewer {
     /// Takes an action of the user.
@@ -19,9 +19,19 @@ impl Viewer {
             return Ok(self.reply(event));
         }
         let action = match event {
+            Event::Press | Event::Release => {
+                self.press(event == Event::Press);
+                return Ok(Action::Nothing);
+            }
+            Event::Tap if self.menu.board().is_some() => return self.choose_pointed(),
             Event::Tap => self.other_method(1)?,
             Event::PreviousMethod => self.other_method(-1)?,
-            Event::LongPress => Action::Recenter,
+            Event::LongPress if self.menu.is_comparing() => return Ok(Action::Nothing),
+            Event::LongPress if self.menu.board().is_some() => {
+                self.menu.close();
+                Action::Recenter
+            }
+            Event::LongPress => return Ok(self.open_menu()),
             Event::IpdUp => self.change_ipd(IPD_STEP),
             Event::IpdDown => self.change_ipd(-IPD_STEP),
             Event::ToggleHud => {
@@ -36,9 +46,13 @@ impl Viewer {
             Action::Recenter => "recentered".into(),
             Action::Ipd(ipd) => format!("IPD {:.0} mm", ipd.metres() * 1e3),
             Action::Viewpoint(n) => format!("viewpoint {n}"),
-            Action::Hud(_) | Action::Scene | Action::Marker(_) | Action::Answer | Action::Nothing => {
-                String::new()
-            }
+            Action::Menu(_)
+            | Action::Settings
+            | Action::Hud(_)
+            | Action::Scene
+            | Action::Marker(_)
+            | Action::Answer
+            | Action::Nothing => String::new(),
         };
         self.caption.announce(message, self.now_ns);
         Ok(action)
@@ -63,9 +77,12 @@ impl Viewer {
                 question.recenter();
                 Action::Recenter
             }
-            Event::PreviousMethod | Event::ToggleHud | Event::NextViewpoint | Event::NextScene => {
-                Action::Nothing
-            }
+            Event::Press
+            | Event::Release
+            | Event::PreviousMethod
+            | Event::ToggleHud
+            | Event::NextViewpoint
+            | Event::NextScene => Action::Nothing,
         }
     }
 
@@ -90,27 +107,27 @@ impl Viewer {
         self.stats.question().is_none()
     }
 
-    fn change_ipd(&mut self, change: f32) -> Action {
+    pub(super) fn change_ipd(&mut self, change: f32) -> Action {
         let ipd = Ipd::nearest(self.ipd().metres() + change);
         self.ipd.chosen = Some(ipd);
         Action::Ipd(ipd)
     }
 
-    fn next_viewpoint(&mut self) -> Action {
+    pub(super) fn next_viewpoint(&mut self) -> Action {
         let Some(viewpoint) = self.scene.next_viewpoint() else { return Action::Nothing };
         self.method.measure_again();
         Action::Viewpoint(viewpoint)
     }
 
     /// Loads the scene after this one.
-    fn next_scene(&mut self) -> Action {
+    pub(super) fn next_scene(&mut self) -> Action {
         let Some(source) = self.scene.next(self.settings.seed, &self.folders) else { return Action::Nothing };
         self.replace_scene(source, 0);
         Action::Scene
     }
 
     /// Goes to the next (1) or previous (-1) method of the list that the driver can do.
-    fn other_method(&mut self, step: isize) -> Result<Action, ViewerError> {
+    pub(super) fn other_method(&mut self, step: isize) -> Result<Action, ViewerError> {
         let gl = gl_with_scene(&self.attached, &self.scene);
         let other = self.method.switch(gl, &self.settings, step)?;
         Ok(other.map_or(Action::Nothing, Action::Method))

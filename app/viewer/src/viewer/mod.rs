@@ -18,6 +18,7 @@
 mod configure;
 mod frames;
 mod input;
+mod menu;
 #[cfg(test)]
 mod tests;
 
@@ -28,12 +29,13 @@ use crate::caption::Caption;
 use crate::error::ViewerError;
 use crate::frame::SceneState;
 use crate::loading::SceneSource;
+use crate::menu::Menu;
 use crate::method_slot::MethodSlot;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
 use yoro::eyes::Pose;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
-use yoro_lenses::Hud;
+use yoro_lenses::{Board, Hud};
 use yoro_protocol::{Ipd, Settings};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::MethodChoice;
@@ -46,6 +48,7 @@ const MOST_PASSES: usize = 64;
 struct Attached {
     gl: Rc<Context>,
     hud: Hud,
+    board: Board,
     pass_times: Vec<PassTime>,
 }
 
@@ -69,6 +72,14 @@ pub struct Viewer {
     ipd: IpdSources,
     attached: Option<Attached>,
     now_ns: i64,
+    menu: Menu,
+    /// The settings that the viewer was made with or given since, without the changes of the menu.
+    given: Settings,
+    /// Settings of the menu that the display has not taken yet.
+    wanted: Option<Settings>,
+    /// The settings that the menu has changed, by their keys, and whether they have changed since they were taken.
+    kept: Vec<(&'static str, String)>,
+    is_kept_new: bool,
 }
 
 impl Viewer {
@@ -88,6 +99,11 @@ impl Viewer {
             ipd: IpdSources { chosen: settings.ipd, native: Ipd::nearest(0.0) },
             attached: None,
             now_ns: 0,
+            menu: Menu::default(),
+            given: settings.clone(),
+            wanted: None,
+            kept: Vec::new(),
+            is_kept_new: false,
             settings,
         })
     }
@@ -101,8 +117,8 @@ impl Viewer {
         self.method.choose_pipeline(&gl, &self.settings);
         // What a context before this one held.
         self.detach();
-        let hud = Hud::new(&gl)?;
-        self.attached = Some(Attached { hud, pass_times: Vec::with_capacity(MOST_PASSES), gl });
+        let (hud, board) = (Hud::new(&gl)?, Board::new(&gl)?);
+        self.attached = Some(Attached { hud, board, pass_times: Vec::with_capacity(MOST_PASSES), gl });
         self.scene.reload();
         Ok(())
     }
@@ -176,6 +192,11 @@ impl Viewer {
         self.ipd.chosen = self.settings.ipd;
     }
 
+    /// Where scenes and viewers given by name are looked for.
+    pub(crate) fn folders(&self) -> &[PathBuf] {
+        &self.folders
+    }
+
     /// The scene that is in view or on its way.
     pub fn scene_name(&self) -> &str {
         self.scene.name()
@@ -194,6 +215,11 @@ impl Viewer {
     /// The state of the scene.
     pub fn scene_state(&self) -> SceneState {
         self.scene.state()
+    }
+
+    /// True while a scene is on its way, also if another one is in view.
+    pub fn is_loading(&self) -> bool {
+        self.scene.is_loading()
     }
 
     /// The reason why the scene cannot be shown, in one sentence.

@@ -143,6 +143,7 @@ fn events_change_method_ipd_hud_and_viewpoint() {
     assert_eq!(run.viewer.viewer().ipd(), Ipd::MAX);
     run.frame();
     assert_ne!(run.image(), yoro);
+    assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Menu(true));
     assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Recenter);
     assert_eq!(run.viewer.event(Event::ToggleHud).unwrap(), Action::Hud(true));
     assert!(matches!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Viewpoint(1)));
@@ -403,6 +404,63 @@ fn mistakes_change_nothing() {
         assert_eq!((viewer.viewer().settings(), viewer.viewer().method()), (&before, before.method));
     }
     viewer.render(&TIMING).unwrap();
+}
+
+#[test]
+fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["hud=false"]);
+    run.load();
+    let look = |run: &mut Run, yaw: f32, pitch: f32, frames: u32| {
+        let turn = Quat::from_rotation_y(yaw.to_radians()) * Quat::from_rotation_x(pitch.to_radians());
+        run.viewer.hold_head(Some(HeldHead { rendered: turn, displayed: turn }));
+        for _ in 0..frames {
+            run.frame();
+        }
+        run.image()
+    };
+    let synthesized = look(&mut run, 0.0, 0.0, 2);
+    assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Menu(true));
+    let open = look(&mut run, 0.0, 0.0, 1);
+    let differing = open.chunks_exact(4).zip(synthesized.chunks_exact(4)).filter(|(a, b)| a != b).count();
+    let all = open.len() / 4;
+    assert!(differing > all / 20 && differing < all / 3, "the panel alone: {differing} of {all}");
+    // The dominant eye by looking for a second and a half; its lenses' tile by the trigger.
+    look(&mut run, 15.0, -3.5, 95);
+    assert_eq!(run.viewer.viewer().settings().dominant, yoro::eyes::Eye::Left);
+    look(&mut run, 5.0, -3.5, 2);
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Settings);
+    assert_eq!(run.viewer.viewer().settings().viewer, "v2");
+    let kept = run.viewer.viewer_mut().take_kept().unwrap();
+    assert_eq!(kept, [("dominant", "left".to_owned()), ("viewer", "v2".to_owned())]);
+    assert_eq!(run.viewer.viewer_mut().take_kept(), None);
+    // Compared for as long as the trigger is held, and without the panel.
+    look(&mut run, 5.0, -7.5, 2);
+    let menu = run.image();
+    run.viewer.event(Event::Press).unwrap();
+    let compared = look(&mut run, 5.0, -7.5, 1);
+    assert_eq!(run.viewer.event(Event::LongPress).unwrap(), Action::Nothing);
+    run.viewer.event(Event::Release).unwrap();
+    run.frame();
+    let after = run.image();
+    assert!(compared != menu && after != compared);
+    let mut plain = Run::new(gl, &["hud=false", "method=conventional", "dominant=left", "viewer=v2"]);
+    plain.load();
+    let expected = look(&mut plain, 5.0, -7.5, 1);
+    let apart = compared.iter().zip(&expected).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(apart < expected.len() / 50, "two real renders besides the message: {apart}");
+    drop(plain);
+    // Reset takes the settings of the start.
+    look(&mut run, -5.0, -7.5, 2);
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Settings);
+    assert_eq!(run.viewer.viewer().settings().viewer, "v1");
+    assert_eq!(run.viewer.viewer_mut().take_kept(), Some(Vec::new()));
+    look(&mut run, -15.0, -7.5, 2);
+    assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Menu(false));
+    assert!(look(&mut run, 0.0, 0.0, 2) == synthesized);
+    drop(run);
+    assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
 }
 
 /// A triangle that goes from left to right in a second.

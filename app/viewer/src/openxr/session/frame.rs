@@ -5,12 +5,14 @@ use xr::sys;
 
 use super::eyes::{from_frustum, from_pose};
 use super::state::{PanelImages, Session};
+use crate::event::Action;
 use crate::openxr::description::Capture;
 use crate::openxr::error::{XrError, check};
 use crate::viewer::Viewer;
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Pose};
 use yoro_context::Graphics;
 use yoro_gl::Destination;
+use yoro_lenses::{Board, board_metres};
 use yoro_protocol::Ipd;
 use yoro_render::stereo::{DepthTarget, EyeTarget};
 
@@ -35,6 +37,11 @@ impl Session {
         let Some(native) = self.locate(viewer.settings(), time, size)? else { return Ok(nothing) };
         viewer.set_native_ipd(Ipd::nearest((native.poses[1].position - native.poses[0].position).length()));
         let shown = self.align(viewer, native);
+        let head = Pose { position: shown.middle(), orientation: shown.poses[0].orientation };
+        if let Some(action) = self.told(viewer.look(head, None)).filter(|action| *action != Action::Nothing) {
+            log::info!("{action}");
+            self.recenter |= action == Action::Recenter;
+        }
         let mut pair = shown;
         if let Some(ipd) = viewer.chosen_ipd() {
             let middle = pair.middle();
@@ -95,13 +102,38 @@ impl Session {
         Ok(self.told(rendered).is_some())
     }
 
-    /// Brings the HUD up to date, if it is to be seen.
+    /// Brings the menu or the HUD up to date, if it is to be seen.
     fn render_panel(
         &mut self,
         graphics: &dyn Graphics,
         viewer: &mut Viewer,
     ) -> Result<Option<sys::CompositionLayerQuad>, XrError> {
         let Some(PanelImages { images, version }) = &mut self.panel else { return Ok(None) };
+        let quad =
+            |space: &xr::Space, sub_image, pose, [width, height]: [f32; 2]| sys::CompositionLayerQuad {
+                ty: sys::CompositionLayerQuad::TYPE,
+                next: std::ptr::null(),
+                layer_flags: xr::CompositionLayerFlags::BLEND_TEXTURE_SOURCE_ALPHA
+                    | xr::CompositionLayerFlags::UNPREMULTIPLIED_ALPHA,
+                space: space.as_raw(),
+                eye_visibility: xr::EyeVisibility::BOTH,
+                sub_image,
+                pose,
+                size: xr::Extent2Df { width, height },
+            };
+        if let Some(place) = viewer.menu_place() {
+            // The dot moves with each frame.
+            images.acquire(graphics)?;
+            if let Some(to) = images.destination(0, Board::SIZE) {
+                viewer.draw_menu_image(&to);
+                // SAFETY: no arguments.
+                unsafe { glow::HasContext::flush(self.gl.raw()) };
+            }
+            images.release(graphics)?;
+            *version = None;
+            let sub_image = images.sub_image(0, Board::SIZE);
+            return Ok(Some(quad(&self.spaces.ahead, sub_image, from_pose(&place), board_metres())));
+        }
         let panel = match viewer.hud() {
             Ok(Some(panel)) => panel,
             Ok(None) => return Ok(None),
@@ -120,20 +152,10 @@ impl Session {
             images.release(graphics)?;
             *version = Some(panel.version());
         }
-        let ([width, height], center) = (panel.metres(), panel.center());
+        let (metres, center) = (panel.metres(), panel.center());
         let mut pose = xr::Posef::IDENTITY;
         pose.position = xr::Vector3f { x: center.x, y: center.y, z: center.z };
-        Ok(Some(sys::CompositionLayerQuad {
-            ty: sys::CompositionLayerQuad::TYPE,
-            next: std::ptr::null(),
-            layer_flags: xr::CompositionLayerFlags::BLEND_TEXTURE_SOURCE_ALPHA
-                | xr::CompositionLayerFlags::UNPREMULTIPLIED_ALPHA,
-            space: self.spaces.head.as_raw(),
-            eye_visibility: xr::EyeVisibility::BOTH,
-            sub_image: images.sub_image(0, panel.size()),
-            pose,
-            size: xr::Extent2Df { width, height },
-        }))
+        Ok(Some(quad(&self.spaces.head, images.sub_image(0, panel.size()), pose, metres)))
     }
 
     /// Size in pixels of each eye in this frame, which is no larger than the images.

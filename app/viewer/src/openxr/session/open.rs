@@ -20,7 +20,7 @@ use crate::openxr::storage::{self, Storage};
 use yoro::eyes::Eye;
 use yoro_context::Graphics;
 use yoro_gl::Context;
-use yoro_lenses::Panel;
+use yoro_lenses::{Board, Panel};
 use yoro_protocol::Settings;
 use yoro_render::DepthCopy;
 
@@ -245,7 +245,12 @@ impl FrameImages {
             }
             _ => None,
         };
-        let panel = Images::new(graphics, gl, session, Kind { size: Panel::MAX_SIZE, layers: 1, ..kind });
+        let panel = Images::new(
+            graphics,
+            gl,
+            session,
+            Kind { size: [0, 1].map(|i| Panel::MAX_SIZE[i].max(Board::SIZE[i])), layers: 1, ..kind },
+        );
         let panel = optional("there is no HUD", panel)?.map(|images| PanelImages { images, version: None });
         Ok(FrameImages { color, eyes, depth, panel })
     }

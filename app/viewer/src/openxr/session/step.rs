@@ -85,6 +85,9 @@ impl Session {
             }
         }
         self.events = events;
+        if let Some(settings) = viewer.take_settings() {
+            viewer.apply_menu(settings);
+        }
         if std::mem::take(&mut self.recenter) {
             let place = call("xrLocateSpace", self.spaces.head.locate(&self.spaces.base, time))?;
             let flags = xr::SpaceLocationFlags::POSITION_VALID | xr::SpaceLocationFlags::ORIENTATION_VALID;

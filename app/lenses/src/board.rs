@@ -1,0 +1,264 @@
+//! The menu's panel: tiles that stand in the world before the eyes.
+
+use std::rc::Rc;
+
+use glam::{Mat3, Vec2, Vec3};
+
+use crate::text::{CELL, Letters};
+use yoro::eyes::{Eye, EyePair, Pose};
+use yoro_gl::{
+    Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
+};
+
+/// The tiles of a row, and the rows.
+pub const TILES: [usize; 2] = [4, 3];
+/// The characters that a line of a tile has room for, and those of a line of the heading; longer lines are cut.
+pub const TILE_COLUMNS: usize = 12;
+/// See [`TILE_COLUMNS`].
+pub const HEADING_COLUMNS: usize = 53;
+const HEADING_LINES: usize = 4;
+const GAP: usize = 8;
+const INSET: usize = 10;
+const TILE: [usize; 2] = [TILE_COLUMNS * CELL[0] + 2 * INSET, 2 * CELL[1] + 2 * INSET];
+const TOP: usize = HEADING_LINES * CELL[1] + 2 * INSET;
+const SIZE: [usize; 2] = [TILES[0] * (TILE[0] + GAP) + GAP, TOP + TILES[1] * (TILE[1] + GAP)];
+
+/// Distance of the panel in metres, and its width in degrees.
+const DISTANCE: f32 = 2.0;
+const WIDTH_DEGREES: f32 = 40.0;
+/// Diameter of the dot in degrees.
+const DOT_DEGREES: f32 = 0.8;
+
+const GROUND: u8 = 15;
+const TILE_GROUND: u8 = 45;
+const POINTED_GROUND: u8 = 95;
+/// Height in pixels of the bar that fills while a tile is looked at.
+const BAR: usize = 6;
+
+/// What the panel shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tiles {
+    /// At most four lines.
+    pub heading: String,
+    /// Two lines for each tile, row after row from the upper left.
+    pub tiles: [String; TILES[0] * TILES[1]],
+    /// The tile that is pointed at, and how far its choice has come, 0 to 1.
+    pub pointed: Option<(usize, f32)>,
+}
+
+/// The panel's place: its centre, turned so that its own Z points to who reads it.
+pub fn board_pose(head: Pose) -> Pose {
+    let ahead = head.forward();
+    let (yaw, pitch) = ((-ahead.x).atan2(-ahead.z), ahead.y.clamp(-1.0, 1.0).asin());
+    let orientation = glam::Quat::from_rotation_y(yaw) * glam::Quat::from_rotation_x(pitch);
+    Pose { position: head.position + orientation * Vec3::NEG_Z * DISTANCE, orientation }
+}
+
+/// Size of the panel in metres.
+pub fn board_metres() -> [f32; 2] {
+    let width = 2.0 * DISTANCE * (WIDTH_DEGREES.to_radians() / 2.0).tan();
+    [width, width * SIZE[1] as f32 / SIZE[0] as f32]
+}
+
+/// Returns the place on the panel, 0 to 1 from the lower left, that a ray along a pose's -Z meets.
+pub fn board_hit(board: &Pose, ray: &Pose) -> Option<Vec2> {
+    let inverse = board.orientation.inverse();
+    let from = inverse * (ray.position - board.position);
+    let along = inverse * ray.forward();
+    let is_towards = from.z > 0.0 && along.z < 0.0;
+    let at = (from - along * (from.z / along.z)).truncate() / Vec2::from(board_metres()) + 0.5;
+    (is_towards && at.cmpge(Vec2::ZERO).all() && at.cmple(Vec2::ONE).all()).then_some(at)
+}
+
+/// Returns the tile at a place on the panel, and how far to the right in it that is, 0 to 1.
+pub fn tile_at(at: Vec2) -> Option<(usize, f32)> {
+    let [x, y] = [at.x * SIZE[0] as f32, (1.0 - at.y) * SIZE[1] as f32];
+    let cell = |n: f32, size: usize| {
+        let pitch = (size + GAP) as f32;
+        let index = (n / pitch).floor();
+        (n >= 0.0 && n - index * pitch <= size as f32)
+            .then_some((index as usize, (n - index * pitch) / size as f32))
+    };
+    let (column, share) = cell(x - GAP as f32, TILE[0])?;
+    let (row, _) = cell(y - TOP as f32, TILE[1])?;
+    (column < TILES[0] && row < TILES[1]).then_some((row * TILES[0] + column, share))
+}
+
+/// Draws the panel's pixels, rows from the top.
+fn draw(tiles: &Tiles, letters: &Letters, pixels: &mut [u8]) {
+    pixels.fill(GROUND);
+    for (i, line) in tiles.heading.lines().take(HEADING_LINES).enumerate() {
+        letters.draw(line, HEADING_COLUMNS, pixels, SIZE[0], [GAP + INSET, INSET + i * CELL[1]]);
+    }
+    for (i, text) in tiles.tiles.iter().enumerate() {
+        let left = GAP + (i % TILES[0]) * (TILE[0] + GAP);
+        let top = TOP + (i / TILES[0]) * (TILE[1] + GAP);
+        let share = tiles.pointed.filter(|&(tile, _)| tile == i).map(|(_, share)| share);
+        let ground = if share.is_some() { POINTED_GROUND } else { TILE_GROUND };
+        let filled = (share.unwrap_or(0.0).clamp(0.0, 1.0) * TILE[0] as f32) as usize;
+        for y in 0..TILE[1] {
+            let row = &mut pixels[(top + y) * SIZE[0] + left..][..TILE[0]];
+            row.fill(ground);
+            if y + BAR >= TILE[1] {
+                row[..filled].fill(255);
+            }
+        }
+        for (n, line) in text.lines().take(2).enumerate() {
+            letters.draw(
+                line,
+                TILE_COLUMNS,
+                pixels,
+                SIZE[0],
+                [left + INSET, top + INSET + n * CELL[1] - BAR / 2],
+            );
+        }
+    }
+}
+
+/// The panel on the GPU.
+pub struct Board {
+    gl: Rc<Context>,
+    program: Program,
+    texture: Texture,
+    letters: Letters,
+    pixels: Vec<u8>,
+    rows: Vec<u8>,
+    shown: Tiles,
+}
+
+impl Board {
+    /// The panel's size in pixels.
+    pub const SIZE: [u32; 2] = [SIZE[0] as u32, SIZE[1] as u32];
+
+    /// Makes an empty panel.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses the program or the texture.
+    pub fn new(gl: &Rc<Context>) -> Result<Board, GlError> {
+        Ok(Board {
+            gl: gl.clone(),
+            program: Program::new(gl, ShaderSource::Screen("viewer/menu.frag"), &[])?,
+            texture: Texture::new(gl, Board::SIZE, Format::R8, Filter::Linear)?,
+            letters: Letters::new(),
+            pixels: vec![0; SIZE[0] * SIZE[1]],
+            rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
+            shown: Tiles::default(),
+        })
+    }
+
+    /// Changes what the panel shows; nothing happens if it is the same.
+    pub fn set(&mut self, tiles: &Tiles) {
+        if self.shown != *tiles {
+            self.shown.clone_from(tiles);
+            draw(tiles, &self.letters, &mut self.pixels);
+            self.rows.clear();
+            self.pixels.chunks_exact(SIZE[0]).rev().for_each(|row| self.rows.extend_from_slice(row));
+            self.texture.upload(&self.rows);
+        }
+    }
+
+    /// Draws the panel at a place in the scene into the images of both eyes, with a dot at `pointer`.
+    pub fn draw_into_eyes(
+        &self,
+        board: &Pose,
+        pointer: Option<Vec2>,
+        pair: &EyePair,
+        eyes: &[Destination; 2],
+    ) {
+        self.gl.pass("menu", || {
+            self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
+            for eye in Eye::BOTH {
+                self.run(to_panel(board, pair, eye), pointer, &eyes[eye.index()]);
+            }
+            self.gl.set_raster_state(&RasterState::SCREEN);
+        });
+    }
+
+    /// Fills an image of the panel's size; colour is not multiplied by alpha.
+    pub fn draw(&self, pointer: Option<Vec2>, to: &Destination) {
+        self.gl.pass("menu", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            let scale = Vec2::new(1.0 / to.size[0] as f32, 1.0 / to.size[1] as f32);
+            self.run(Mat3::from_scale(scale), pointer, to);
+        });
+    }
+
+    fn run(&self, to_panel: Mat3, pointer: Option<Vec2>, to: &Destination) {
+        let radius = DISTANCE * (DOT_DEGREES.to_radians() / 2.0).tan();
+        self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+        self.program
+            .bind()
+            .texture("panel", 0, self.texture.raw())
+            .set("to_panel", to_panel)
+            .set("origin", Vec2::new(to.origin[0] as f32, to.origin[1] as f32))
+            .set("pointer", pointer.unwrap_or(Vec2::splat(-9.0)))
+            .set("dot_radius", radius / Vec2::from(board_metres()));
+        self.gl.draw_screen();
+    }
+}
+
+/// Returns the transform from pixels of an eye's image to the panel, homogeneous.
+fn to_panel(board: &Pose, pair: &EyePair, eye: Eye) -> Mat3 {
+    let (pose, frustum) = (&pair.poses[eye.index()], &pair.frusta[eye.index()]);
+    let inverse = board.orientation.inverse();
+    let from = inverse * (pose.position - board.position);
+    let [width, height] = pair.size.map(|n| n as f32);
+    // From pixels to a direction in the eye's space, and on to the panel's.
+    let direction = Mat3::from_cols(
+        Vec3::new(frustum.width() / width, 0.0, 0.0),
+        Vec3::new(0.0, frustum.height() / height, 0.0),
+        Vec3::new(frustum.left, frustum.bottom, -1.0),
+    );
+    let along = Mat3::from_quat(inverse * pose.orientation) * direction;
+    // The ray meets the panel's plane z = 0 at (from.xy along.z - from.z along.xy) / along.z; the eye sees its front.
+    let metres = board_metres();
+    let meet = Mat3::from_cols(
+        Vec3::new(from.z / metres[0], 0.0, 0.0),
+        Vec3::new(0.0, from.z / metres[1], 0.0),
+        Vec3::new(-from.x / metres[0] - 0.5, -from.y / metres[1] - 0.5, -1.0),
+    );
+    meet * along
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use yoro::eyes::{DepthRange, Frustum};
+
+    #[test]
+    fn the_panel_is_where_one_looks_and_each_tile_is_found() {
+        let turned = glam::Quat::from_rotation_y(0.5) * glam::Quat::from_rotation_x(-0.3);
+        let head = Pose {
+            position: Vec3::new(0.1, 0.2, 0.3),
+            orientation: turned * glam::Quat::from_rotation_z(0.4),
+        };
+        let board = board_pose(head);
+        let middle = board_hit(&board, &head).unwrap();
+        assert!((middle - 0.5).length() < 1e-4, "{middle}");
+        let behind = Pose { orientation: turned * glam::Quat::from_rotation_y(3.0), ..head };
+        assert_eq!(board_hit(&board, &behind), None);
+        for i in 0..TILES[0] * TILES[1] {
+            let x = GAP + (i % TILES[0]) * (TILE[0] + GAP) + TILE[0] / 4;
+            let y = TOP + (i / TILES[0]) * (TILE[1] + GAP) + TILE[1] / 2;
+            let at = Vec2::new(x as f32 / SIZE[0] as f32, 1.0 - y as f32 / SIZE[1] as f32);
+            let (tile, share) = tile_at(at).unwrap();
+            assert!(tile == i && (share - 0.25).abs() < 0.01, "{tile} {share}");
+        }
+        assert_eq!(tile_at(Vec2::new(0.5, 0.99)), None);
+    }
+
+    #[test]
+    fn a_pixel_goes_to_the_panel_as_its_ray_does() {
+        let frustum = Frustum::from_fov(-0.7, 0.7, 0.7, -0.7);
+        let turn = glam::Quat::from_rotation_y(0.2);
+        let head = Pose { orientation: turn, ..Pose::IDENTITY };
+        let pair = EyePair::parallel(head, frustum, 0.06, DepthRange::PAPER, [1000; 2], Eye::Right);
+        let board = board_pose(Pose::IDENTITY);
+        for eye in Eye::BOTH {
+            let pose = &pair.poses[eye.index()];
+            let at = to_panel(&board, &pair, eye) * Vec3::new(500.0, 500.0, 1.0);
+            let expected = board_hit(&board, pose).unwrap();
+            assert!(at.z > 0.0 && (at.truncate() / at.z - expected).length() < 1e-4);
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The menu: opens it, does what is chosen, and draws it.
+
+use super::input::IPD_STEP;
+use super::{Viewer, gl_with_scene};
+use crate::error::ViewerError;
+use crate::event::Action;
+use crate::menu::{Choice, Item, Look};
+use yoro::eyes::{Eye, EyePair, Pose};
+use yoro_gl::Destination;
+use yoro_protocol::{Setting, Settings};
+
+/// The steps of quality: the name, and the settings.
+const QUALITIES: [(&str, f32, bool, u32); 3] =
+    [("saving", 0.7, true, 2), ("balanced", 1.0, false, 4), ("best", 1.4, false, 4)];
+
+impl Viewer {
+    /// Says where the head is, relative to the viewpoint, and where a controller points, if one is used. Opens the menu when
+    /// the user has looked down for a second, and returns what was chosen by looking.
+    ///
+    /// # Errors
+    /// See [`Viewer::event`].
+    pub fn look(&mut self, head: Pose, ray: Option<Pose>) -> Result<Action, ViewerError> {
+        if self.stats.question().is_some() {
+            self.menu.close();
+            return Ok(Action::Nothing);
+        }
+        let action = match self.menu.look(head, ray, self.now_ns) {
+            Look::Nothing => Action::Nothing,
+            Look::Open => self.open_menu(),
+            Look::Choose(choice) => self.choose(choice)?,
+        };
+        self.compare();
+        Ok(action)
+    }
+
+    pub(super) fn open_menu(&mut self) -> Action {
+        if self.menu.board().is_none() {
+            self.menu.open();
+        }
+        self.write_menu();
+        let gl = gl_with_scene(&self.attached, &self.scene);
+        if let Some(Err(error)) = gl.map(|gl| self.method.prepare_comparison(gl, &self.settings)) {
+            log::warn!("nothing to compare with: {error}");
+        }
+        Action::Menu(true)
+    }
+
+    pub(super) fn press(&mut self, is_pressed: bool) {
+        self.menu.press(is_pressed);
+        self.compare();
+    }
+
+    fn compare(&mut self) {
+        let is_comparing = self.menu.is_comparing();
+        if self.method.compare(is_comparing) {
+            log::info!("compare: {}", if is_comparing { "two real renders" } else { self.method().name() });
+            let message = if is_comparing { "both eyes rendered" } else { "" };
+            self.caption.announce(message.into(), self.now_ns);
+        }
+    }
+
+    /// Chooses the tile that is pointed at, if any.
+    pub(super) fn choose_pointed(&mut self) -> Result<Action, ViewerError> {
+        let Some(choice) = self.menu.pointed() else { return Ok(Action::Nothing) };
+        self.menu.spend();
+        self.choose(choice)
+    }
+
+    fn choose(&mut self, (item, step): Choice) -> Result<Action, ViewerError> {
+        let action = match item {
+            Item::Recenter => {
+                self.menu.close();
+                Action::Recenter
+            }
+            Item::Close => {
+                self.menu.close();
+                Action::Menu(false)
+            }
+            Item::Compare => Action::Nothing,
+            Item::Scene => {
+                let action = self.next_scene();
+                let name = self.scene.name().to_owned();
+                self.keep(&[("scene", name), ("viewpoint", "0".into())]);
+                action
+            }
+            Item::Viewpoint => {
+                let action = self.next_viewpoint();
+                if let Action::Viewpoint(n) = action {
+                    self.keep(&[("viewpoint", n.to_string())]);
+                }
+                action
+            }
+            Item::Method => {
+                let action = self.other_method(step)?;
+                self.keep(&[("method", self.method().name().to_owned())]);
+                action
+            }
+            Item::Distance => {
+                let action = self.change_ipd(IPD_STEP * step as f32);
+                self.keep(&[("ipd", self.ipd().to_string())]);
+                action
+            }
+            Item::Hud => {
+                self.caption.is_shown = !self.caption.is_shown;
+                self.keep(&[("hud", self.caption.is_shown.to_string())]);
+                Action::Hud(self.caption.is_shown)
+            }
+            Item::Eye => {
+                let other = if self.settings.dominant == Eye::Left { "right" } else { "left" };
+                self.want(&[("dominant", other.into())])
+            }
+            Item::Lenses => {
+                let other = if self.settings.viewer == "v1" { "v2" } else { "v1" };
+                self.want(&[("viewer", other.into())])
+            }
+            Item::Quality => {
+                let at = self.quality().map_or(1, |at| (at + 1) % QUALITIES.len());
+                let (_, scale, adaptive, msaa) = QUALITIES[at];
+                self.want(&[
+                    ("render-scale", scale.to_string()),
+                    ("adaptive", adaptive.to_string()),
+                    ("msaa", msaa.to_string()),
+                ])
+            }
+            Item::Reset => {
+                log::info!("menu: reset");
+                self.kept.clear();
+                self.is_kept_new = true;
+                self.wanted = Some(self.given.clone());
+                Action::Settings
+            }
+        };
+        self.write_menu();
+        Ok(action)
+    }
+
+    /// Notes settings that are in use already.
+    fn keep(&mut self, pairs: &[(&'static str, String)]) {
+        for (key, value) in pairs {
+            log::info!("menu: {key}={value}");
+            if let Err(error) = self.settings.apply(&format!("{key}={value}")) {
+                log::warn!("{error}");
+            }
+            self.kept.retain(|(other, _)| other != key);
+            self.kept.push((key, value.clone()));
+        }
+        self.is_kept_new = true;
+    }
+
+    /// Asks the display for other settings.
+    fn want(&mut self, pairs: &[(&'static str, String)]) -> Action {
+        let before = self.settings.clone();
+        self.keep(pairs);
+        self.wanted = Some(std::mem::replace(&mut self.settings, before));
+        Action::Settings
+    }
+
+    fn quality(&self) -> Option<usize> {
+        let Settings { render_scale, adaptive, .. } = self.settings;
+        QUALITIES
+            .iter()
+            .position(|&(_, scale, is_adaptive, _)| (scale, is_adaptive) == (render_scale, adaptive))
+    }
+
+    /// Returns the settings that the menu asks for, once; the display applies them.
+    pub(crate) fn take_settings(&mut self) -> Option<Settings> {
+        self.wanted.take()
+    }
+
+    /// Applies settings of the menu; a mistake changes nothing.
+    pub(crate) fn apply_menu(&mut self, settings: Settings) {
+        let folders = self.folders.clone();
+        if let Err(error) = self.change(settings, &folders) {
+            log::error!("{error}; the settings stay as they were");
+        }
+        self.write_menu();
+    }
+
+    /// Returns the settings that the menu has changed, as keys and values, if they are others than at the last call.
+    pub fn take_kept(&mut self) -> Option<Vec<(&'static str, String)>> {
+        std::mem::take(&mut self.is_kept_new).then(|| self.kept.clone())
+    }
+
+    /// Writes the menu's texts.
+    pub(crate) fn write_menu(&mut self) {
+        if self.menu.board().is_none() {
+            return;
+        }
+        let text =
+            |key: &str| Setting::find(key).map_or_else(String::new, |setting| setting.text(&self.settings));
+        let made_up = if self.settings.dominant == Eye::Left { "right" } else { "left" };
+        let quality = self.quality().map_or("own", |at| QUALITIES[at].0);
+        let tiles = Item::ALL.map(|item| match item {
+            Item::Recenter => "Recenter".into(),
+            Item::Scene => format!("Scene\n{}", self.scene.name()),
+            Item::Viewpoint => format!("Viewpoint\n{}", self.scene.viewpoint()),
+            Item::Method => format!("< Method >\n{}", self.method().name()),
+            Item::Eye => format!("Own eye\n{}", text("dominant")),
+            Item::Lenses => format!("Viewer\n{}", text("viewer")),
+            Item::Distance => format!("- Eyes     +\n{:.0} mm", self.ipd().metres() * 1e3),
+            Item::Quality => format!("Quality\n{quality}"),
+            Item::Hud => format!("Figures\n{}", if self.caption.is_shown { "on" } else { "off" }),
+            Item::Compare => "Compare\nwhile held".into(),
+            Item::Reset => "Reset\nall settings".into(),
+            Item::Close => "Close".into(),
+        });
+        self.menu.tiles.tiles = tiles;
+        self.menu.tiles.heading = format!(
+            "By yoro, the {made_up} eye's picture is made up.\n\
+             Compare, held or looked at: both eyes are rendered.\n\
+             Figures: frames a second, a frame's ms, degrees C.\n\
+             Look at a tile for 1.5 s, or tap. Hold: recenter."
+        );
+    }
+
+    /// The place of the menu's panel relative to the viewpoint, while it is in view.
+    pub fn menu_place(&self) -> Option<Pose> {
+        self.menu.board().filter(|_| !self.menu.is_comparing())
+    }
+
+    /// Draws the menu over both eyes, if it is in view.
+    pub fn draw_menu(&mut self, pair: &EyePair, eyes: &[Destination; 2]) {
+        let Some(board) = self.menu_place() else { return };
+        let board_pose = self.place(board);
+        let Some(attached) = &mut self.attached else { return };
+        attached.board.set(&self.menu.tiles);
+        attached.board.draw_into_eyes(&board_pose, self.menu.hit(), pair, eyes);
+    }
+
+    /// Fills an image of [`Board::SIZE`](yoro_lenses::Board::SIZE) with the menu.
+    pub fn draw_menu_image(&mut self, to: &Destination) {
+        let Some(attached) = &mut self.attached else { return };
+        attached.board.set(&self.menu.tiles);
+        attached.board.draw(self.menu.hit(), to);
+    }
+}
