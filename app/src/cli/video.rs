@@ -43,12 +43,12 @@ pub fn render(
     // Twice: 8 bits of depth are spread over the distances that all frames show.
     let bar = progress_bar(2 * heads.len() as u64);
     bar.set_message("distances");
-    let [mut nearest, mut farthest, mut columns] = [f32::INFINITY, 0.0, 0.0f32];
+    let ([mut nearest, mut farthest], mut guard_columns) = ([f32::INFINITY, 0.0], 0);
     for (i, &head) in heads.iter().enumerate() {
         interrupt::check()?;
         renderer.set_time(&mut scene, seconds(i))?;
         let source = groups.render_source(&mut renderer, &scene, &eyes.pair(head))?;
-        columns = columns.max((source.views.source.size[0] - eyes.size[0]) as f32);
+        guard_columns = guard_columns.max(source.views.source.size[0] - eyes.size[0]);
         let distances = source.depth.iter().map(|depth| source.depth_range.distance(*depth));
         for distance in distances.filter(|distance| distance.is_finite()) {
             [nearest, farthest] = [nearest.min(distance), farthest.max(distance)];
@@ -62,7 +62,7 @@ pub fn render(
     let rgbd = Rgbd {
         size: options.size,
         eye: options.dominant,
-        guard_columns: columns as u32,
+        guard_columns,
         fov_y: options.fov_y,
         outer_inner: options.outer_inner,
         ipd: options.ipd,

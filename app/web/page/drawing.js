@@ -105,7 +105,7 @@ function frame(now) {
       app.page.endFrame(now, 0);
       // Frames of a second and more count as pauses: nothing can be chosen by them.
       slow = now - drawn < 1000 ? 0 : slow + 1;
-      if (choosing() && slow < MOST_SLOW) due = RENDER;
+      if (choosing(slow >= MOST_SLOW)) due = RENDER;
       drawn = now;
     }
     if (work !== NOTHING) {

@@ -41,15 +41,19 @@ export function figures() {
   }, REST);
 }
 
-/** Says what `auto` has chosen, and why; true while it still measures, for which it needs frames. */
-export function choosing() {
+/**
+ * Says what `auto` has chosen, and why; true while it still measures, for which it needs frames.
+ * @param {boolean} slow whether frames come too slowly to measure
+ */
+export function choosing(slow) {
   const { reason, costs, isMeasuring } = app.page;
   if (!reason) return false;
-  const text = isMeasuring ? 'Two renders and yoro take turns.'
-    : costs ? sentences('yoro', costs[1] / costs[0], costs[1], costs[0], null) : 'The two cannot be compared here.';
+  const text = isMeasuring && slow ? 'A frame takes longer than a second here: nothing can be chosen by that.'
+    : isMeasuring ? 'Two renders and yoro take turns.'
+    : costs ? sentences('yoro', costs[1] / costs[0], costs[1], costs[0]) : 'The two cannot be compared here.';
   const said = `${inUse()}. ${text}`;
   if (element('figures').textContent !== said) element('figures').textContent = said;
-  return isMeasuring;
+  return isMeasuring && !slow;
 }
 
 /** Returns the ms of a frame of two batches, one by the method and one by two renders, and the frames of a batch. */
@@ -85,16 +89,17 @@ async function measure(run) {
   }
   if (!pairs.length) return;
   const [made, real] = [0, 1].map((i) => median(pairs.map((times) => times[i])));
-  const share = median(pairs.map(([a, b]) => a / b));
+  const share = made / real;
   element('figures').textContent = sentences(app.page.methodInUse, share, made, real, app.page.psnr);
   app.figures = { share, made, real };
 }
 
-/** Returns the figures in words; `psnr` is null where there is no real render to compare with. */
-export function sentences(method, share, made, real, psnr) {
+/** Returns the figures in words; `psnr` is nothing where there is no real render to compare with. */
+export function sentences(method, share, made, real, psnr = undefined) {
   const digits = (ms) => `${ms.toFixed(ms < 10 ? 2 : ms < 100 ? 1 : 0)} ms`;
   const who = /llvmpipe|swiftshader|software|basic render/i.test(app.page.gpu) ? 'This device’s processor, without a GPU,' : 'Your GPU';
-  const seen = psnr === null ? '' : psnr === Infinity ? ', without any difference to a real render' : `, at ${psnr.toFixed(1)} dB PSNR against a real render`;
+  const seen = !psnr ? '' : psnr[0] === Infinity ? ', without any difference to a real render'
+    : `, at ${psnr[0].toFixed(1)} dB PSNR against a real render (the same image to both eyes: ${psnr[1].toFixed(1)} dB)`;
   if (method === 'conventional') return `${who} draws this stereo picture by two renders in ${digits(real)}. Choose yoro to compare.`;
   const both = `${digits(made)} against ${digits(real)}`;
   const percent = Math.round(share * 100);

@@ -41,7 +41,8 @@ impl Gather {
     ///
     /// # Errors
     /// [`WgpuError::Format`], [`WgpuError::SampleCount`] and [`WgpuError::OpenGl`] for what the device cannot do,
-    /// [`WgpuError::Refused`] for whatever else it refuses. In a browser such things are told to the device's handler of uncaptured errors.
+    /// [`WgpuError::Refused`] for whatever else it refuses. In a browser the device's handler of uncaptured errors is told of
+    /// such things.
     pub fn new(device: &Device, options: &Options) -> Result<Gather, WgpuError> {
         let variant = match device.adapter_info().device_type {
             DeviceType::Cpu => GatherVariant::Software,

@@ -69,10 +69,29 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
                   yoro.page.draw = function(...all) { frames++; return draw.apply(this, all); }; \
                   setTimeout(() => { delete yoro.page.draw; done(frames); }, 300); })";
     assert_eq!(page.evaluate(frames), 0);
+    // Where frames come too slowly to measure, the page says so, and draws no more of them.
+    page.evaluate(
+        "import([...document.querySelectorAll('link[rel=modulepreload]')].find(({ href }) => href.endsWith('figures.js')).href)\
+         .then(({ choosing }) => { yoro.choosing = choosing; return 0; })",
+    );
     page.choose("viewpoint", "1");
-    page.until("yoro.page.isMeasuring");
+    page.until(
+        "yoro.page.isMeasuring && !yoro.choosing(true) \
+         && document.getElementById('figures').textContent.includes('longer than a second')",
+    );
     page.choose("display", "divider");
     assert_eq!(page.evaluate(method), json!(["auto", "yoro", null]));
+
+    // The sentence below the divider says one thing: the share is that of the times beside it, and the baseline is told.
+    page.until("document.getElementById('figures').textContent.includes('the same image to both eyes')");
+    let numbers = page.evaluate(
+        "document.getElementById('figures').textContent.match(/[\\d.]+(?= %| ms| dB)/g).map(Number)",
+    );
+    let numbers: Vec<f64> =
+        numbers.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect();
+    let [share, made, real, psnr, same] = numbers[..] else { panic!("{numbers:?}") };
+    assert!((100.0 * made / real - share).abs() < 2.0, "{numbers:?}");
+    assert!(psnr > same, "{numbers:?}");
 
     // Four pictures say why, once they are in sight.
     assert_eq!(page.evaluate("document.getElementById('why-holes').textContent"), "");

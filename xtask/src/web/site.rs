@@ -4,14 +4,17 @@
 use std::fs;
 use std::hash::{DefaultHasher, Hasher as _};
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use anyhow::Context as _;
 use yoro_tools::folders::{self, copy, root};
 
 /// The name that stands for the version in the page's sources.
 pub const VERSION: &str = "VERSION";
-/// The page's address on a code host; without one there is no link to the source.
-const SOURCE: Option<&str> = None;
+/// The address of the project's repository as Cargo.toml has it; empty without one.
+const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
+/// The archive of the source, beside the page; where there is no repository, the page links to it.
+const ARCHIVE: &str = "yoro-source.tar.gz";
 /// The files that keep their names from version to version.
 const LASTING: [&str; 8] = [
     "index.html",
@@ -28,17 +31,26 @@ const SEPARATE: [&str; 2] = ["boot.js", "worker.js"];
 /// The content policy that the page works under.
 pub const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
 
+/// Returns the folder of the page's sources.
+pub fn sources() -> PathBuf {
+    root().join("app/web/page")
+}
+
 /// Completes a folder in which the module lies in [`VERSION`]: copies the page's sources, and names the version by its content.
 ///
 /// # Errors
 /// When a file cannot be read or written.
 pub fn assemble(folder: &Path) -> anyhow::Result<()> {
-    let (page, unnamed) = (root().join("app/web/page"), folder.join(VERSION));
-    for path in files(&page)? {
+    let unnamed = folder.join(VERSION);
+    for path in files(&sources())? {
         let name = name(&path);
         copy(&path, &if LASTING.contains(&&*name) { folder.join(name) } else { unnamed.join(name) })?;
     }
     copy(&root().join("docs/web.jpg"), &folder.join("preview.jpg"))?;
+    let source = match REPOSITORY {
+        "" => archive(&folder.join(ARCHIVE)).then_some(ARCHIVE),
+        address => Some(address),
+    };
     let mut hash = DefaultHasher::new();
     let mut names = Vec::new();
     for path in files(&unnamed)? {
@@ -52,7 +64,7 @@ pub fn assemble(folder: &Path) -> anyhow::Result<()> {
     for name in ["index.html", "offline.js"] {
         let path = folder.join(name);
         let text = String::from_utf8_lossy(&read(&path)?).into_owned();
-        folders::write(&path, fill(&text, &version, &names))?;
+        folders::write(&path, fill(&text, &version, &names, source))?;
     }
     folders::write(&folder.join("_headers"), headers(&version))
 }
@@ -79,16 +91,27 @@ pub fn publish(built: &Path, out: &Path) -> anyhow::Result<()> {
 }
 
 /// Puts the version and its files into a document or a script.
-fn fill(text: &str, version: &str, names: &[String]) -> String {
+fn fill(text: &str, version: &str, names: &[String], source: Option<&str>) -> String {
     let scripts = names.iter().filter(|name| name.ends_with(".js") && !SEPARATE.contains(&name.as_str()));
     let modules: Vec<String> =
         scripts.map(|name| format!("<link rel=\"modulepreload\" href=\"{VERSION}/{name}\">")).collect();
     let list: Vec<String> = names.iter().map(|name| format!("'{VERSION}/{name}'")).collect();
-    let source = SOURCE.map_or_else(String::new, |source| format!("<a href=\"{source}\">Source</a>"));
+    let source = source.map_or_else(String::new, |source| format!("<a href=\"{source}\">Source</a>"));
     text.replace("<!-- MODULES -->", &modules.join("\n"))
         .replace("/* FILES */", &list.join(", "))
         .replace("<!-- SOURCE -->", &source)
         .replace(VERSION, version)
+}
+
+/// Writes the committed source into an archive. Returns false where there is no git, or no repository of it.
+fn archive(file: &Path) -> bool {
+    let mut command = Command::new("git");
+    command
+        .current_dir(root())
+        .args(["archive", "--format=tar.gz", "--prefix=yoro/", "--output"])
+        .arg(file)
+        .arg("HEAD");
+    command.stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
 /// Returns the headers that the page wants, as Netlify's and Cloudflare's hosts read them.
@@ -137,11 +160,12 @@ mod tests {
     #[test]
     fn every_file_is_asked_for_by_its_version() {
         let names = ["boot.js", "main.js", "yoro_web_bg.wasm"].map(str::to_owned);
-        let page = fs::read_to_string(root().join("app/web/page/index.html")).unwrap();
-        let filled = fill(&page, "0123", &names);
+        let page = fs::read_to_string(sources().join("index.html")).unwrap();
+        let filled = fill(&page, "0123", &names, Some("source.tar.gz"));
+        assert!(filled.contains("<a href=\"source.tar.gz\">Source</a>"));
         assert!(filled.contains("src=\"0123/boot.js\"") && !filled.contains(VERSION), "{filled}");
         assert_eq!(filled.matches("modulepreload").count(), 1);
-        let offline = fs::read_to_string(root().join("app/web/page/offline.js")).unwrap();
-        assert!(fill(&offline, "0123", &names).contains("'0123/main.js', '0123/yoro_web_bg.wasm'"));
+        let offline = fs::read_to_string(sources().join("offline.js")).unwrap();
+        assert!(fill(&offline, "0123", &names, None).contains("'0123/main.js', '0123/yoro_web_bg.wasm'"));
     }
 }

@@ -1,32 +1,56 @@
-//! `yoro-web-bindgen MODULE.wasm FOLDER`: writes the module and its JavaScript as a browser loads them, and says how many
-//! bytes of the module are transferred.
+//! `yoro-web-bindgen MODULE.wasm FOLDER PAGE`: writes the module and its JavaScript into FOLDER as a browser loads them, and
+//! prints three numbers: the module's bytes, its bytes as transferred, and those of a first visit, which loads the texts in
+//! PAGE, too.
 //!
 //! A program of its own, so that only those who build the page wait for its dependencies.
 
-use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 use anyhow::Context as _;
 use wasm_bindgen_cli_support::Bindgen;
 
+/// What a first visit loads besides the module.
+const TEXTS: [&str; 5] = ["css", "html", "js", "svg", "webmanifest"];
+
 fn main() -> anyhow::Result<()> {
-    let mut arguments = env::args_os().skip(1).map(PathBuf::from);
-    let (module, folder) =
-        arguments.next().zip(arguments.next()).context("usage: yoro-web-bindgen MODULE.wasm FOLDER")?;
+    let arguments: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();
+    let [module, folder, page] = &arguments[..] else {
+        anyhow::bail!("usage: yoro-web-bindgen MODULE.wasm FOLDER PAGE");
+    };
     Bindgen::new()
-        .input_path(&module)
+        .input_path(module)
         .web(true)?
         .typescript(false)
         .remove_name_section(true)
         .remove_producers_section(true)
-        .generate(&folder)
+        .generate(folder)
         .with_context(|| format!("{} cannot be made ready for browsers", module.display()))?;
     let name = module.file_stem().unwrap_or_default().to_string_lossy();
     let file = folder.join(format!("{name}_bg.wasm"));
-    let bytes = std::fs::read(&file).with_context(|| format!("{} cannot be read", file.display()))?;
+    let transferred = compressed(&file)?;
+    let visit = transferred + texts(folder)? + texts(page)?;
+    println!("{} {transferred} {visit}", fs::metadata(&file)?.len());
+    Ok(())
+}
+
+/// Returns the bytes of a folder's texts as transferred.
+fn texts(folder: &Path) -> anyhow::Result<usize> {
+    let mut sum = 0;
+    for entry in fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|kind| TEXTS.iter().any(|text| kind == *text)) {
+            sum += compressed(&path)?;
+        }
+    }
+    Ok(sum)
+}
+
+/// Returns the bytes of a file as hosts transfer it (brotli, quality 9).
+fn compressed(file: &Path) -> anyhow::Result<usize> {
+    let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
     let mut compressed = Vec::new();
     let parameters = brotli::enc::BrotliEncoderParams { quality: 9, ..Default::default() };
     brotli::BrotliCompress(&mut bytes.as_slice(), &mut compressed, &parameters)?;
-    println!("{} {}", bytes.len(), compressed.len());
-    Ok(())
+    Ok(compressed.len())
 }

@@ -347,15 +347,16 @@ impl Page {
         self.scene().map_or(Ok(()), |scene| scene.repeat(real, count)).map_err(sentence)
     }
 
-    /// Returns the PSNR in dB of the method's image of the eye that is not dominant, against the real one, both as last drawn.
-    /// It is infinite for equal images, and none without a display that needs both. Waits for the GPU.
+    /// Returns the PSNR in dB against the real image of the eye that is not dominant: of the method's image, and of the
+    /// dominant eye's (the same image to both eyes), all as last drawn. It is infinite for equal images, and none without a
+    /// display that needs the real image. Waits for the GPU.
     #[wasm_bindgen(getter)]
-    pub fn psnr(&self) -> Option<f64> {
+    pub fn psnr(&self) -> Option<Vec<f64>> {
         let Content::Scene(scene) = &self.content else { return None };
-        let real = scene.real_eye(&self.settings)?;
-        let made = scene.frame.eye(self.settings.dominant.other());
         let read = |target: &RenderTarget| target.read_rgba8(0, [0, 0], target.size());
-        Some(psnr(&read(made), &read(real)))
+        let real = read(scene.real_eye(&self.settings)?);
+        let dominant = self.settings.dominant;
+        Some([dominant.other(), dominant].map(|eye| psnr(&read(scene.frame.eye(eye)), &real)).to_vec())
     }
 
     /// Returns an eye's image of the last frame on the canvas, 0 left and 1 right: RGBA, rows from the bottom; empty if
