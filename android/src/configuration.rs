@@ -14,6 +14,9 @@ use crate::results;
 use crate::settings::{self, Pair, Sources};
 use crate::system;
 
+/// What the menu has changed, in the application's own folder.
+const MENU_FILE_NAME: &str = "settings-user";
+
 /// Settings from outside, and the folders in which scenes and viewers are looked for.
 pub struct Configuration {
     sources: Sources,
@@ -58,7 +61,7 @@ impl Configuration {
         }
         // A scenario is a measurement, of which the user of the menu knows nothing.
         let folder = app.internal_data_path().filter(|_| scenario.is_none());
-        let menu_file = folder.map(|folder| folder.join(settings::MENU_FILE_NAME));
+        let menu_file = folder.map(|folder| folder.join(MENU_FILE_NAME));
         let menu = menu_file.as_ref().and_then(|file| std::fs::read(file).ok());
         let sources = Sources {
             menu: menu.map_or_else(Vec::new, |bytes| settings::restore(&bytes)),

@@ -11,8 +11,6 @@ pub const PROPERTY_PREFIX: &str = "debug.yoro.";
 const EXTRA_PREFIX: &str = "yoro.";
 /// The settings file in the application's external folder.
 pub const FILE_NAME: &str = "yoro.toml";
-/// What the menu has changed, in the application's own folder.
-pub const MENU_FILE_NAME: &str = "settings-user";
 
 /// A setting as text: key and value.
 pub type Pair = (String, String);

@@ -1,4 +1,4 @@
-//! A phone behind the lenses of a Cardboard-compatible viewer, and a panel of text before both eyes.
+//! A phone behind the lenses of a Cardboard-compatible viewer, and panels of text and of tiles before both eyes.
 //!
 //! A viewer's parameters and a screen's size come in; frusta, the mesh that undoes the lenses' distortion, and the pass
 //! that draws both eyes through it go out. Motion samples come in, and the head's orientation goes out.

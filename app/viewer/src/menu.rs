@@ -103,17 +103,17 @@ impl Menu {
         matches!(self.pointed, Some((Item::Compare, _))) && (self.is_pressed || self.is_spent)
     }
 
-    /// The tile that is pointed at.
+    /// Returns the tile that is pointed at.
     pub fn pointed(&self) -> Option<Choice> {
         self.pointed
     }
 
     /// The user looks somewhere: opens the menu if that was down for long enough, and returns the tile that has been looked
-    /// at for long enough. A controller's `ray` points in place of the head, and chooses by its trigger alone.
-    pub fn look(&mut self, head: Pose, ray: Option<Pose>, now_ns: i64) -> Look {
+    /// at for long enough.
+    pub fn look(&mut self, head: Pose, now_ns: i64) -> Look {
         self.head = Some(head);
         let Some(board) = &self.board else { return self.look_down(head, now_ns) };
-        self.hit = board_hit(board, &ray.unwrap_or(head));
+        self.hit = board_hit(board, &head);
         let tile = self.hit.and_then(tile_at).map(|(i, share)| (i, if share < 0.5 { -1 } else { 1 }));
         let pointed = tile.map(|(i, step)| (Item::ALL[i], step));
         if pointed != self.pointed {
@@ -125,11 +125,7 @@ impl Menu {
                 (self.since_ns, self.is_spent) = (now_ns, false);
             }
         }
-        let share = if ray.is_some() || self.is_spent {
-            0.0
-        } else {
-            (now_ns - self.since_ns) as f32 / DWELL_NS as f32
-        };
+        let share = if self.is_spent { 0.0 } else { (now_ns - self.since_ns) as f32 / DWELL_NS as f32 };
         self.tiles.pointed = tile.map(|(i, _)| (i, (share * STEPS).floor() / STEPS));
         match pointed {
             Some(choice) if share >= 1.0 => {
@@ -193,57 +189,55 @@ mod tests {
     #[test]
     fn a_tile_is_chosen_once_by_looking_at_it() {
         let mut menu = Menu::default();
-        menu.look(head(0.0, 0.0), None, 0);
+        menu.look(head(0.0, 0.0), 0);
         menu.open();
         // The upper left tile.
         let at = head(15.0, 2.0);
-        assert_eq!(menu.look(at, None, 0), Look::Nothing);
+        assert_eq!(menu.look(at, 0), Look::Nothing);
         assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
-        assert_eq!(menu.look(at, None, 1499 * MS), Look::Nothing);
+        assert_eq!(menu.look(at, 1499 * MS), Look::Nothing);
         assert!(menu.tiles.pointed.unwrap().1 > 0.9);
-        assert!(matches!(menu.look(at, None, 1500 * MS), Look::Choose((Item::Recenter, _))));
-        assert_eq!(menu.look(at, None, 9000 * MS), Look::Nothing);
+        assert!(matches!(menu.look(at, 1500 * MS), Look::Choose((Item::Recenter, _))));
+        assert_eq!(menu.look(at, 9000 * MS), Look::Nothing);
         // Away and back.
-        menu.look(head(60.0, 0.0), None, 9100 * MS);
+        menu.look(head(60.0, 0.0), 9100 * MS);
         assert_eq!((menu.pointed(), menu.hit()), (None, None));
-        menu.look(at, None, 9200 * MS);
-        assert!(matches!(menu.look(at, None, 10_700 * MS), Look::Choose(_)));
-        // A ray points, and does not choose.
-        let ray = head(-15.0, 2.0);
-        menu.look(at, Some(ray), 11_000 * MS);
+        menu.look(at, 9200 * MS);
+        assert!(matches!(menu.look(at, 10_700 * MS), Look::Choose(_)));
+        // Another tile.
+        menu.look(head(-15.0, 2.0), 11_000 * MS);
         assert_eq!(menu.pointed().unwrap().0, Item::Method);
-        assert_eq!(menu.look(at, Some(ray), 20_000 * MS), Look::Nothing);
     }
 
     #[test]
     fn looking_down_opens_it_once_at_the_horizon() {
         let mut menu = Menu::default();
         let down = head(90.0, -85.0);
-        assert_eq!(menu.look(down, None, 0), Look::Nothing);
-        assert_eq!(menu.look(head(90.0, -20.0), None, 900 * MS), Look::Nothing);
-        assert_eq!(menu.look(down, None, 1000 * MS), Look::Nothing);
-        assert_eq!(menu.look(down, None, 2000 * MS), Look::Open);
+        assert_eq!(menu.look(down, 0), Look::Nothing);
+        assert_eq!(menu.look(head(90.0, -20.0), 900 * MS), Look::Nothing);
+        assert_eq!(menu.look(down, 1000 * MS), Look::Nothing);
+        assert_eq!(menu.look(down, 2000 * MS), Look::Open);
         let board = menu.board().unwrap();
         assert!(board.position.abs_diff_eq(Vec3::new(-2.0, 0.0, 0.0), 1e-3), "{}", board.position);
         menu.close();
-        assert_eq!(menu.look(down, None, 9000 * MS), Look::Nothing);
+        assert_eq!(menu.look(down, 9000 * MS), Look::Nothing);
     }
 
     #[test]
     fn comparing_lasts_as_long_as_it_is_asked_for() {
         let mut menu = Menu::default();
-        menu.look(head(0.0, 0.0), None, 0);
+        menu.look(head(0.0, 0.0), 0);
         menu.open();
         let at = head(4.0, -8.0);
-        menu.look(at, None, 0);
+        menu.look(at, 0);
         assert_eq!(menu.pointed().unwrap().0, Item::Compare);
         menu.press(true);
         assert!(menu.is_comparing());
         menu.press(false);
         assert!(!menu.is_comparing());
-        menu.look(at, None, 1500 * MS);
+        menu.look(at, 1500 * MS);
         assert!(menu.is_comparing());
-        menu.look(head(15.0, 2.0), None, 1600 * MS);
+        menu.look(head(15.0, 2.0), 1600 * MS);
         assert!(!menu.is_comparing());
     }
 }

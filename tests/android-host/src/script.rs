@@ -120,10 +120,22 @@ pub struct Device {
     pub properties: BTreeMap<String, String>,
     /// Extras of the intent that starts the activity; all are strings, as `am start --es` gives them.
     pub extras: BTreeMap<String, String>,
+    /// The activity is started for a game loop, as Firebase Test Lab does.
+    pub game_loop: Option<GameLoop>,
     /// Text files in the application's external folder, by relative path.
     pub files: BTreeMap<String, String>,
     /// A headset: a runtime broker names the simulated OpenXR runtime. Without it no broker answers.
     pub openxr: Option<OpenXr>,
+}
+
+/// What starts a game loop.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct GameLoop {
+    /// The extra `scenario`.
+    pub scenario: i32,
+    /// The file that the intent's data names; absent: it names none.
+    pub results: Option<PathBuf>,
 }
 
 /// A headset's OpenXR runtime, the library of `tests/openxr-stub`.
@@ -155,7 +167,7 @@ impl Default for Device {
             slept_seconds: 0.0,
             features: BTreeMap::new(),
             sustained_performance: true,
-            sdk: 34,
+            sdk: 36,
             gles: GlesVersion::Es32,
             sensors: vec![
                 SensorKind::GyroscopeUncalibrated,
@@ -167,6 +179,7 @@ impl Default for Device {
             thermal: Thermal::default(),
             properties: BTreeMap::new(),
             extras: BTreeMap::new(),
+            game_loop: None,
             files: BTreeMap::new(),
             openxr: None,
         }

@@ -666,3 +666,41 @@ fn the_arm64_library_does_what_the_x86_64_library_does() {
     let methods = decibels(&arm64.picture("yoro.png"), &x86_64.picture("conventional.png"));
     assert!(methods < 40.0, "the two methods' pictures are the same: {methods:.1} dB");
 }
+
+/// Each scenario of a game loop plays its steps, writes them to the file that the intent names, and ends by itself.
+#[test]
+fn game_loops_write_their_results_and_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = folder.path().join("lab");
+    let results = lab.join("simulated-36-en-landscape/game_loop_results");
+    std::fs::create_dir_all(&results).unwrap();
+    for scenario in 1..=3 {
+        let file = results.join(format!("results_scenario_{scenario}.json"));
+        let keys = format!(
+            "extras = {{ seconds = \"3.2\" }}\ngame_loop = {{ scenario = {scenario}, results = {file:?} }}"
+        );
+        // Properties are stronger than a scenario's settings: what it changes is left to it.
+        let settings: Vec<_> =
+            settings(&[]).into_iter().filter(|(key, _)| !["method", "hud"].contains(key)).collect();
+        let steps = r#""launch", { wait-finish = { frames = 3000 } }, "quit""#;
+        let Some(run) = play(&format!("game-loop-{scenario}"), &device(&settings, &keys), steps) else {
+            return;
+        };
+        run.assert_clean();
+    }
+    let captures = yoro_devices::farm::read(&lab, &folder.path().join("captures")).unwrap();
+    let methods: Vec<&str> = captures.iter().map(|capture| capture.method.as_str()).collect();
+    assert_eq!(methods, ["loop-1-gather", "loop-1-paper", "conventional", "mono", "yoro", "loop-3-yoro"]);
+    for capture in captures {
+        assert_eq!(capture.outcome, yoro_devices::capture::Outcome::Complete, "{capture:?}");
+        assert!(capture.device.simulated && capture.duration_s >= 3.0, "{capture:?}");
+    }
+
+    // There is no scenario 4: it says so, and ends.
+    let device = phone(&[], "game_loop = { scenario = 4 }");
+    let Some(run) = play("game-loop-4", &device, r#""launch", { wait-finish = { frames = 300 } }, "quit""#)
+    else {
+        return;
+    };
+    assert!(run.summary.log_of("YORO").any(|text| text.starts_with("there is no scenario 4")));
+}

@@ -238,7 +238,7 @@ impl Cardboard {
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         self.viewer.begin(timing);
         let head = self.head(timing).0;
-        let action = self.viewer.look(relative(head), None)?;
+        let action = self.viewer.look(relative(head))?;
         if action != Action::Nothing {
             log::info!("{action}");
         }

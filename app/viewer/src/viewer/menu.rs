@@ -14,17 +14,17 @@ const QUALITIES: [(&str, f32, bool, u32); 3] =
     [("saving", 0.7, true, 2), ("balanced", 1.0, false, 4), ("best", 1.4, false, 4)];
 
 impl Viewer {
-    /// Says where the head is, relative to the viewpoint, and where a controller points, if one is used. Opens the menu when
-    /// the user has looked down for a second, and returns what was chosen by looking.
+    /// Says where the head is, relative to the viewpoint. Opens the menu when the user has looked down for a second, and
+    /// returns what was chosen by looking.
     ///
     /// # Errors
     /// See [`Viewer::event`].
-    pub fn look(&mut self, head: Pose, ray: Option<Pose>) -> Result<Action, ViewerError> {
+    pub fn look(&mut self, head: Pose) -> Result<Action, ViewerError> {
         if self.stats.question().is_some() {
             self.menu.close();
             return Ok(Action::Nothing);
         }
-        let action = match self.menu.look(head, ray, self.now_ns) {
+        let action = match self.menu.look(head, self.now_ns) {
             Look::Nothing => Action::Nothing,
             Look::Open => self.open_menu(),
             Look::Choose(choice) => self.choose(choice)?,

@@ -1,6 +1,8 @@
 //! Answers of Java methods and fields.
 
 use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::os::fd::IntoRawFd as _;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -137,16 +139,36 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         "isPowerSaveMode" => Value::Boolean(false),
 
         "getIntent" => {
+            let scenario =
+                host.device.game_loop.iter().map(|game| ("scenario".into(), Value::Int(game.scenario)));
             let extras = host
                 .device
                 .extras
                 .iter()
                 .map(|(key, value)| (key.clone(), Value::object(Object::string(value))))
+                .chain(scenario)
                 .collect();
             Value::object(Object::new("android/content/Intent", Data::Extras(extras)))
         }
         "getAction" if class == "android/content/Intent" => {
-            Value::object(Object::string("android.intent.action.MAIN"))
+            Value::object(Object::string(match host.device.game_loop {
+                Some(_) => "com.google.intent.action.TEST_LOOP",
+                None => "android.intent.action.MAIN",
+            }))
+        }
+        "getData" if class == "android/content/Intent" => {
+            let results = host.device.game_loop.as_ref().and_then(|game| game.results.as_ref());
+            Value::Object(
+                results.map(|path| Object::new("android/net/Uri", Data::Text(path.display().to_string()))),
+            )
+        }
+        "openFileDescriptor" if text(1).as_deref() == Some("w") => {
+            Value::object(Object::new("android/os/ParcelFileDescriptor", Data::Text(text(0)?)))
+        }
+        "detachFd" => {
+            let mut file = std::fs::File::create(receiver.text()?).ok()?;
+            file.write_all(b"--------- simulated Android host\n").ok()?;
+            Value::Int(file.into_raw_fd())
         }
         "getExtras" => match &receiver.data {
             Data::Extras(extras) if !extras.is_empty() => {

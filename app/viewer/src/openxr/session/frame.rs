@@ -38,7 +38,7 @@ impl Session {
         viewer.set_native_ipd(Ipd::nearest((native.poses[1].position - native.poses[0].position).length()));
         let shown = self.align(viewer, native);
         let head = Pose { position: shown.middle(), orientation: shown.poses[0].orientation };
-        if let Some(action) = self.told(viewer.look(head, None)).filter(|action| *action != Action::Nothing) {
+        if let Some(action) = self.told(viewer.look(head)).filter(|action| *action != Action::Nothing) {
             log::info!("{action}");
             self.recenter |= action == Action::Recenter;
         }
