@@ -190,10 +190,11 @@ fn the_picture_shows_the_head_at_the_time_it_is_seen() {
 }
 
 #[test]
-fn a_long_press_recenters() {
+fn a_long_press_opens_the_menu_and_another_recenters() {
     let steps = r#"{ capture = "before.png" }, { head = { yaw = 35, seconds = 0.5 } }, { long-press = {} },
-        { seconds = 0.3 }, { capture = "after.png" }"#;
+        { seconds = 0.3 }, { capture = "menu.png" }, { long-press = {} }, { seconds = 0.3 }, { capture = "after.png" }"#;
     let Some(run) = show("recenter", &phone(&[], ""), steps) else { return };
+    assert!(run.summary.log_of("YORO").any(|text| text == "menu: open"));
     assert!(run.summary.log_of("YORO").any(|text| text == "recentered"));
     let before = run.picture("before.png");
     let same = decibels(&before, &run.picture("after.png"));
@@ -202,6 +203,8 @@ fn a_long_press_recenters() {
         same > turned + 5.0,
         "straight ahead before and after: {same:.1} dB, 35 degrees apart: {turned:.1} dB"
     );
+    let panel = decibels(&run.picture("menu.png"), &desktop(&[], Some(35.0)));
+    assert!(panel < same, "the panel is in view: {panel:.1} dB, {same:.1} dB without it");
 }
 
 #[test]
