@@ -53,11 +53,13 @@ pub fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
         // Silhouettes that cross the rows at a slant.
         let u = u + 0.06 * (v - 0.5);
         let wave = 20.0 * (9.0 * u).sin() * (5.0 * v).cos();
+        // Detail of a few columns, beside all shapes.
+        let detail = if (0.09..0.91).contains(&u) { 0.0 } else { 60.0 * (1.7 * x).sin() };
         let hit = SHAPES.iter().filter(|([l, r, b, t], ..)| (*l..*r).contains(&u) && (*b..*t).contains(&v));
         let nearest = hit.min_by(|a, b| a.1.total_cmp(&b.1));
         let (z, color) = nearest
             .map_or((4.0 + 3.0 * u + v, [120, 120, 130]), |(_, z, color)| (z * (1.0 + 0.03 * u), *color));
-        (range.depth(z as f32), color.map(|c: u8| (f64::from(c) + wave).clamp(0.0, 255.0) as u8))
+        (range.depth(z as f32), color.map(|c: u8| (f64::from(c) + wave + detail).clamp(0.0, 255.0) as u8))
     };
     let place = |i: usize, k: usize| {
         let (column, row) = ((i % size[0] as usize) as f64, (i / size[0] as usize) as f64);

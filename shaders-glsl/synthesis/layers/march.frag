@@ -21,6 +21,11 @@ layout(location = 1) out uint source_entry;
 // The search ends when less than this share of the pixel is uncovered.
 const float REST = 0.01;
 
+// Slope of the cubic kernel at its first zero: `a` of Keys, "Cubic Convolution Interpolation for Digital Image Processing" (1981).
+const float SLOPE = -0.75;
+// Neighbouring colours that differ by no more than this are interpolated linearly.
+const float ALIKE = 8.0 / 255.0;
+
 uint layer_bits(int column, int row) {
     return texelFetch(layer_map, ivec2(column, row), 0).r;
 }
@@ -63,6 +68,24 @@ vec4 right_of(float place) {
 
 float covered(vec4 mask, vec4 stripes) {
     return 0.25 * dot(mask, stripes);
+}
+
+// Colour at a fractional forward column inside of a surface: cubic along the row, clamped to the range of its two neighbours.
+vec4 sharp_color_at(float x, int row) {
+    int last = source_size.x - 1;
+    int column = int(x);
+    float f = x - float(column);
+    vec4 here = color_texel(column, row);
+    vec4 next = color_texel(min(column + 1, last), row);
+    vec4 apart = abs(next - here);
+    if (max(apart.r, max(apart.g, apart.b)) <= ALIKE) {
+        return mix(here, next, f);
+    }
+    vec2 outer = SLOPE * f * (1.0 - f) * vec2(1.0 - f, f);
+    float inner = ((SLOPE + 2.0) * f - (SLOPE + 3.0)) * f * f + 1.0;
+    vec4 sum = outer.x * color_texel(max(column - 1, 0), row) + outer.y * color_texel(min(column + 2, last), row)
+        + inner * here + (1.0 - inner - outer.x - outer.y) * next;
+    return clamp(sum, min(here, next), max(here, next));
 }
 
 // Colour of a layer's front and back, by their weights.
@@ -131,7 +154,6 @@ void main() {
         if (plain && then > 0.0) {
             float g = -at / (then - at);
             cover(seen, 1.0, x + g, mix(front, following, g));
-            color = color_at(x + g, row);
             limit = x;
         } else if (plain) {
             x += 1.0;
@@ -139,6 +161,9 @@ void main() {
             front = following;
             at = then;
         }
+    }
+    if (seen.rest < REST) {
+        color = sharp_color_at(seen.column, row);
     }
     Layer here = layer_at(column, row);
     Edge edge = Edge(-1, false, 1e9, 1.0);

@@ -50,6 +50,8 @@ struct Back {
 pub struct Layer {
     front: f64,
     color: Color,
+    /// Of the whole pixel.
+    resolved: Color,
     mask: [f64; 4],
     back: Option<Back>,
 }
@@ -99,7 +101,7 @@ pub fn multisample_layers(pixels: &Pixels, with_colors: bool) -> Image<Layer> {
         let resolved = pixels.resolved.at(x, y);
         let mask = in_front.map(|is| f64::from(u8::from(is)));
         let share = mask.iter().sum::<f64>() / 4.0;
-        let Some(reach) = back else { return Layer { front, color: resolved, mask, back: None } };
+        let Some(reach) = back else { return Layer { front, color: resolved, resolved, mask, back: None } };
         let color = if with_colors {
             let colors = pixels.colors.at(x, y);
             let parts: Vec<_> =
@@ -148,7 +150,7 @@ fn with_back(front: f64, resolved: Color, mask: [f64; 4], back: Back) -> Layer {
     let share = mask.iter().sum::<f64>() / 4.0;
     let color =
         std::array::from_fn(|c| ((resolved[c] - (1.0 - share) * back.color[c]) / share).clamp(0.0, 1.0));
-    Layer { front, color, mask, back: Some(back) }
+    Layer { front, color, resolved, mask, back: Some(back) }
 }
 
 /// Returns front and back of a pixel with one depth, and true if its depth is that of the back.
@@ -179,7 +181,7 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
     Image::of(reach.size, |x, y| {
         let (x, y) = (x as i64, y as i64);
         let here = resolved.at(x, y);
-        let single = Layer { front: reach.at(x, y), color: here, mask: [1.0; 4], back: None };
+        let single = Layer { front: reach.at(x, y), color: here, resolved: here, mask: [1.0; 4], back: None };
         let Some((front, back, shows_back)) = split(reach, x, y, apart, first_sample) else { return single };
         // Taps of front and back: pure ones, and all.
         let mut taps: [[Vec<(f64, Color)>; 2]; 2] = Default::default();
@@ -331,6 +333,23 @@ impl Composition {
     }
 }
 
+/// Returns the colour between the inner two of four columns, and how many of them are needed. Keys' cubic convolution: "Cubic
+/// Convolution Interpolation for Digital Image Processing" (1981), equation 15 for u(s) with a = -3/4, clamped to the inner two.
+fn sharp_color(columns: [Color; 4], f: f64) -> (Color, u32) {
+    const A: f64 = -0.75;
+    let [_, here, next, _] = columns;
+    if (0..3).all(|c| (next[c] - here[c]).abs() <= 8.0 / 255.0) {
+        return (mix(&[(1.0 - f, here), (f, next)]), 2);
+    }
+    let kernel = |s: f64| match s.abs() {
+        s if s <= 1.0 => (A + 2.0) * s.powi(3) - (A + 3.0) * s.powi(2) + 1.0,
+        s => A * (s.powi(3) - 5.0 * s.powi(2) + 8.0 * s - 4.0),
+    };
+    let sum: Color =
+        std::array::from_fn(|c| (0..4).map(|i| kernel(f + 1.0 - i as f64) * columns[i][c]).sum());
+    (std::array::from_fn(|c| sum[c].clamp(here[c].min(next[c]), here[c].max(next[c]))), 4)
+}
+
 /// Returns the colour of target pixel (t, y), true if more than half of it is filled from beside the hole, and its fetches.
 pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Color, bool, Fetches) {
     let last = layers.size[0] as i64 - 1;
@@ -379,9 +398,15 @@ pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) ->
             let (of_here, of_next) = (covered(here.mask, right_of(g)), covered(next.mask, left_of(g)));
             let share = of_here + of_next;
             if share > 0.0 {
-                out.add(share, mix(&[(of_here / share, here.color), (of_next / share, next.color)]));
-                // Fetches of both columns, or one fetch for both.
-                out.fetches.colors = if plain { 1 } else { out.fetches.colors + 2 };
+                if plain {
+                    let (color, fetched) =
+                        sharp_color([-1, 0, 1, 2].map(|i| layers.at(x + i, y).resolved), g);
+                    out.add(share, color);
+                    out.fetches.colors = fetched;
+                } else {
+                    out.add(share, mix(&[(of_here / share, here.color), (of_next / share, next.color)]));
+                    out.fetches.colors += 2;
+                }
             }
         }
         let rises = next.front > here.front || next.back.is_some();

@@ -42,8 +42,6 @@ struct Edge {
 var<uniform> synthesis: Synthesis;
 @group(0) @binding(1) 
 var color_map_texture: texture_2d<f32>;
-@group(0) @binding(9) 
-var linear_sampler: sampler;
 @group(0) @binding(3) 
 var span_map_texture: texture_2d<u32>;
 var<private> span_at_1: vec2<f32>;
@@ -193,82 +191,163 @@ fn layer_at(column_2: ptr<function, i32>, row_2: ptr<function, i32>) -> Layer {
     return Layer(_e40, _e42, true, _e43);
 }
 
-fn color_at(x: ptr<function, f32>, row_3: ptr<function, i32>) -> vec4<f32> {
-    var column_3: f32;
-    var local_2: f32;
-    var at: vec2<f32>;
-    var local_3: vec2<f32>;
+fn source_column(x: ptr<function, i32>) -> i32 {
+    var local_2: i32;
 
-    let _e15 = synthesis.mirrored;
-    if (_e15 != 0u) {
-        let _e19 = synthesis.source_size[0u];
-        let _e22 = (*x);
-        local_2 = (f32((_e19 - 1i)) - _e22);
+    let _e6 = synthesis.mirrored;
+    if (_e6 != 0u) {
+        let _e10 = synthesis.source_size[0u];
+        let _e12 = (*x);
+        local_2 = ((_e10 - 1i) - _e12);
     } else {
-        let _e24 = (*x);
-        local_2 = _e24;
+        let _e14 = (*x);
+        local_2 = _e14;
     }
-    let _e25 = local_2;
-    column_3 = _e25;
-    let _e26 = column_3;
-    let _e27 = (*row_3);
-    at = (vec2<f32>(_e26, f32(_e27)) + vec2(0.5f));
-    if true {
-        let _e33 = synthesis.source_origin;
-        let _e35 = at;
-        let _e38 = synthesis.texel;
-        local_3 = ((vec2<f32>(_e33) + _e35) * _e38);
-    } else {
-        let _e40 = at;
-        let _e42 = synthesis.source_size;
-        local_3 = (_e40 / vec2<f32>(_e42));
+    let _e15 = local_2;
+    return _e15;
+}
+
+fn color_texel(x_1: ptr<function, i32>, row_3: ptr<function, i32>) -> vec4<f32> {
+    var param_6: i32;
+    var param_7: vec2<i32>;
+
+    let _e6 = (*x_1);
+    param_6 = _e6;
+    let _e7 = source_column((&param_6));
+    let _e8 = (*row_3);
+    param_7 = vec2<i32>(_e7, _e8);
+    let _e10 = in_image((&param_7));
+    let _e11 = textureLoad(color_map_texture, _e10, 0i);
+    return _e11;
+}
+
+fn sharp_color_at(x_2: ptr<function, f32>, row_4: ptr<function, i32>) -> vec4<f32> {
+    var last: i32;
+    var column_3: i32;
+    var f: f32;
+    var here: vec4<f32>;
+    var param_8: i32;
+    var param_9: i32;
+    var next: vec4<f32>;
+    var param_10: i32;
+    var param_11: i32;
+    var apart: vec4<f32>;
+    var outer: vec2<f32>;
+    var inner: f32;
+    var sum: vec4<f32>;
+    var param_12: i32;
+    var param_13: i32;
+    var param_14: i32;
+    var param_15: i32;
+
+    let _e33 = synthesis.source_size[0u];
+    last = (_e33 - 1i);
+    let _e35 = (*x_2);
+    column_3 = i32(_e35);
+    let _e37 = (*x_2);
+    let _e38 = column_3;
+    f = (_e37 - f32(_e38));
+    let _e41 = column_3;
+    param_8 = _e41;
+    let _e42 = (*row_4);
+    param_9 = _e42;
+    let _e43 = color_texel((&param_8), (&param_9));
+    here = _e43;
+    let _e44 = column_3;
+    let _e46 = last;
+    param_10 = min((_e44 + 1i), _e46);
+    let _e48 = (*row_4);
+    param_11 = _e48;
+    let _e49 = color_texel((&param_10), (&param_11));
+    next = _e49;
+    let _e50 = next;
+    let _e51 = here;
+    apart = abs((_e50 - _e51));
+    let _e55 = apart[0u];
+    let _e57 = apart[1u];
+    let _e59 = apart[2u];
+    if (max(_e55, max(_e57, _e59)) <= 0.03137255f) {
+        let _e63 = here;
+        let _e64 = next;
+        let _e65 = f;
+        return mix(_e63, _e64, vec4(_e65));
     }
-    let _e45 = local_3;
-    at = _e45;
-    let _e46 = at;
-    let _e47 = textureSampleLevel(color_map_texture, linear_sampler, _e46, 0f);
-    return _e47;
+    let _e68 = f;
+    let _e70 = f;
+    let _e73 = f;
+    let _e75 = f;
+    outer = (vec2<f32>((1f - _e73), _e75) * ((-0.75f * _e68) * (1f - _e70)));
+    let _e78 = f;
+    let _e81 = f;
+    let _e83 = f;
+    inner = (((((1.25f * _e78) - 2.25f) * _e81) * _e83) + 1f);
+    let _e87 = outer[0u];
+    let _e88 = column_3;
+    param_12 = max((_e88 - 1i), 0i);
+    let _e91 = (*row_4);
+    param_13 = _e91;
+    let _e92 = color_texel((&param_12), (&param_13));
+    let _e95 = outer[1u];
+    let _e96 = column_3;
+    let _e98 = last;
+    param_14 = min((_e96 + 2i), _e98);
+    let _e100 = (*row_4);
+    param_15 = _e100;
+    let _e101 = color_texel((&param_14), (&param_15));
+    let _e104 = inner;
+    let _e105 = here;
+    let _e108 = inner;
+    let _e111 = outer[0u];
+    let _e114 = outer[1u];
+    let _e116 = next;
+    sum = ((((_e92 * _e87) + (_e101 * _e95)) + (_e105 * _e104)) + (_e116 * (((1f - _e108) - _e111) - _e114)));
+    let _e119 = sum;
+    let _e120 = here;
+    let _e121 = next;
+    let _e123 = here;
+    let _e124 = next;
+    return clamp(_e119, min(_e120, _e121), max(_e123, _e124));
 }
 
 fn cover(seen: ptr<function, Seen>, share_1: ptr<function, f32>, column_4: ptr<function, f32>, reach_1: ptr<function, f32>) -> f32 {
     var taken: f32;
     var passes: bool;
+    var local_3: f32;
     var local_4: f32;
-    var local_5: f32;
-    var phi_437_: bool;
+    var phi_528_: bool;
 
     let _e10 = (*seen).rest;
     let _e11 = (*share_1);
     taken = (_e10 * _e11);
     let _e14 = (*seen).rest;
     let _e15 = (_e14 > 0.5f);
-    phi_437_ = _e15;
+    phi_528_ = _e15;
     if _e15 {
         let _e17 = (*seen).rest;
         let _e18 = taken;
-        phi_437_ = ((_e17 - _e18) <= 0.5f);
+        phi_528_ = ((_e17 - _e18) <= 0.5f);
     }
-    let _e22 = phi_437_;
+    let _e22 = phi_528_;
     passes = _e22;
     let _e23 = passes;
     if _e23 {
         let _e24 = (*column_4);
-        local_4 = _e24;
+        local_3 = _e24;
     } else {
         let _e26 = (*seen).column;
-        local_4 = _e26;
+        local_3 = _e26;
     }
-    let _e27 = local_4;
+    let _e27 = local_3;
     (*seen).column = _e27;
     let _e29 = passes;
     if _e29 {
         let _e30 = (*reach_1);
-        local_5 = _e30;
+        local_4 = _e30;
     } else {
         let _e32 = (*seen).reach;
-        local_5 = _e32;
+        local_4 = _e32;
     }
-    let _e33 = local_5;
+    let _e33 = local_4;
     (*seen).reach = _e33;
     let _e35 = taken;
     let _e37 = (*seen).rest;
@@ -277,48 +356,32 @@ fn cover(seen: ptr<function, Seen>, share_1: ptr<function, f32>, column_4: ptr<f
     return _e40;
 }
 
-fn source_column(x_1: ptr<function, i32>) -> i32 {
-    var local_6: i32;
-
-    let _e6 = synthesis.mirrored;
-    if (_e6 != 0u) {
-        let _e10 = synthesis.source_size[0u];
-        let _e12 = (*x_1);
-        local_6 = ((_e10 - 1i) - _e12);
-    } else {
-        let _e14 = (*x_1);
-        local_6 = _e14;
-    }
-    let _e15 = local_6;
-    return _e15;
-}
-
 fn span_steps(span: ptr<function, u32>) -> f32 {
     var steps: u32;
-    var local_7: f32;
+    var local_5: f32;
 
     let _e5 = (*span);
     steps = (_e5 & 1023u);
     let _e7 = steps;
     if (_e7 == 1023u) {
-        local_7 = 1000000000f;
+        local_5 = 1000000000f;
     } else {
         let _e9 = steps;
-        local_7 = f32(_e9);
+        local_5 = f32(_e9);
     }
-    let _e11 = local_7;
+    let _e11 = local_5;
     return _e11;
 }
 
 fn pixel_span() -> vec4<u32> {
-    var last: vec2<i32>;
+    var last_1: vec2<i32>;
 
     if true {
         let _e14 = synthesis.target_size[0u];
         let _e17 = synthesis.source_size[1u];
-        last = ((vec2<i32>(_e14, _e17) - vec2(1i)) / vec2<i32>(16i, 8i));
+        last_1 = ((vec2<i32>(_e14, _e17) - vec2(1i)) / vec2<i32>(16i, 8i));
         let _e22 = span_at_1;
-        let _e24 = last;
+        let _e24 = last_1;
         let _e26 = textureLoad(span_map_texture, clamp(vec2<i32>(_e22), vec2<i32>(0i, 0i), _e24), 0i);
         return _e26;
     }
@@ -326,60 +389,60 @@ fn pixel_span() -> vec4<u32> {
 }
 
 fn main_1() {
-    var last_1: f32;
-    var row_4: i32;
+    var last_2: f32;
+    var row_5: i32;
     var t: f32;
     var span_1: u32;
-    var x_2: f32;
+    var x_3: f32;
     var limit: f32;
-    var param_6: u32;
+    var param_16: u32;
     var sense: i32;
     var column_5: i32;
-    var param_7: i32;
+    var param_17: i32;
     var seen_1: Seen;
     var bits_1: u32;
-    var param_8: i32;
-    var param_9: i32;
+    var param_18: i32;
+    var param_19: i32;
     var front_1: f32;
-    var param_10: u32;
-    var at_1: f32;
+    var param_20: u32;
+    var at: f32;
     var plain: bool;
-    var param_11: u32;
-    var param_12: i32;
-    var param_13: i32;
-    var following: f32;
-    var param_14: u32;
-    var param_15: u32;
-    var then: f32;
-    var g: f32;
-    var param_16: Seen;
-    var param_17: f32;
-    var param_18: f32;
-    var param_19: f32;
-    var param_20: f32;
-    var param_21: i32;
-    var here: Layer;
+    var param_21: u32;
     var param_22: i32;
     var param_23: i32;
+    var following: f32;
+    var param_24: u32;
+    var param_25: u32;
+    var then: f32;
+    var g: f32;
+    var param_26: Seen;
+    var param_27: f32;
+    var param_28: f32;
+    var param_29: f32;
+    var param_30: f32;
+    var param_31: i32;
+    var here_1: Layer;
+    var param_32: i32;
+    var param_33: i32;
     var edge: Edge;
     var second: Edge;
     var on_front: bool;
     var on_back: bool;
     var before: Layer;
-    var param_24: i32;
-    var param_25: i32;
+    var param_34: i32;
+    var param_35: i32;
     var idle: bool;
     var landed: f32;
     var ahead: u32;
-    var param_26: i32;
-    var param_27: i32;
+    var param_36: i32;
+    var param_37: i32;
     var following_1: f32;
-    var param_28: u32;
+    var param_38: u32;
     var then_1: f32;
-    var param_29: u32;
-    var next: Layer;
-    var param_30: i32;
-    var param_31: i32;
+    var param_39: u32;
+    var next_1: Layer;
+    var param_40: i32;
+    var param_41: i32;
     var a: f32;
     var b: f32;
     var c: f32;
@@ -392,154 +455,154 @@ fn main_1() {
     var backs: vec2<f32>;
     var g_1: f32;
     var right: vec4<f32>;
-    var param_32: f32;
+    var param_42: f32;
     var shares: vec2<f32>;
-    var param_33: vec4<f32>;
-    var param_34: vec4<f32>;
-    var param_35: vec4<f32>;
-    var param_36: vec4<f32>;
-    var share_2: f32;
-    var param_37: Seen;
-    var param_38: f32;
-    var param_39: f32;
-    var param_40: f32;
-    var share_3: f32;
-    var param_41: f32;
-    var param_42: vec4<f32>;
     var param_43: vec4<f32>;
-    var param_44: Seen;
-    var param_45: f32;
-    var param_46: f32;
-    var param_47: f32;
+    var param_44: vec4<f32>;
+    var param_45: vec4<f32>;
+    var param_46: vec4<f32>;
+    var share_2: f32;
+    var param_47: Seen;
     var param_48: f32;
-    var param_49: vec4<f32>;
-    var param_50: vec4<f32>;
-    var param_51: Seen;
-    var param_52: f32;
-    var param_53: f32;
-    var param_54: f32;
-    var g_2: f32;
-    var taken_1: f32;
-    var param_55: Seen;
+    var param_49: f32;
+    var param_50: f32;
+    var share_3: f32;
+    var param_51: f32;
+    var param_52: vec4<f32>;
+    var param_53: vec4<f32>;
+    var param_54: Seen;
+    var param_55: f32;
     var param_56: f32;
     var param_57: f32;
     var param_58: f32;
-    var g_3: f32;
-    var taken_2: f32;
-    var param_59: Seen;
-    var param_60: f32;
-    var param_61: f32;
+    var param_59: vec4<f32>;
+    var param_60: vec4<f32>;
+    var param_61: Seen;
     var param_62: f32;
-    var g_4: f32;
-    var taken_3: f32;
-    var param_63: Seen;
+    var param_63: f32;
     var param_64: f32;
-    var param_65: f32;
+    var g_2: f32;
+    var taken_1: f32;
+    var param_65: Seen;
     var param_66: f32;
-    var ends: bool;
-    var stripes_1: vec4<f32>;
-    var local_8: vec4<f32>;
     var param_67: f32;
     var param_68: f32;
-    var param_69: vec4<f32>;
-    var param_70: vec4<f32>;
-    var param_71: Seen;
+    var g_3: f32;
+    var taken_2: f32;
+    var param_69: Seen;
+    var param_70: f32;
+    var param_71: f32;
     var param_72: f32;
-    var param_73: f32;
+    var g_4: f32;
+    var taken_3: f32;
+    var param_73: Seen;
     var param_74: f32;
+    var param_75: f32;
+    var param_76: f32;
+    var ends: bool;
+    var stripes_1: vec4<f32>;
+    var local_6: vec4<f32>;
+    var param_77: f32;
+    var param_78: f32;
+    var param_79: vec4<f32>;
+    var param_80: vec4<f32>;
+    var param_81: Seen;
+    var param_82: f32;
+    var param_83: f32;
+    var param_84: f32;
     var at_back: bool;
     var at_front: bool;
     var reach_2: f32;
-    var local_9: f32;
+    var local_7: f32;
     var away: f32;
-    var local_10: f32;
+    var local_8: f32;
     var weight: f32;
-    var local_11: f32;
-    var param_75: vec4<f32>;
-    var param_76: vec4<f32>;
+    var local_9: f32;
+    var param_85: vec4<f32>;
+    var param_86: vec4<f32>;
     var found: Edge;
     var taken_4: f32;
-    var param_77: Seen;
-    var param_78: f32;
-    var param_79: f32;
-    var param_80: f32;
-    var param_81: i32;
-    var param_82: i32;
-    var param_83: f32;
-    var param_84: f32;
-    var param_85: i32;
-    var param_86: i32;
-    var param_87: f32;
+    var param_87: Seen;
     var param_88: f32;
+    var param_89: f32;
+    var param_90: f32;
+    var param_91: i32;
+    var param_92: i32;
+    var param_93: f32;
+    var param_94: f32;
+    var param_95: i32;
+    var param_96: i32;
+    var param_97: f32;
+    var param_98: f32;
     var hole: bool;
     var beyond: bool;
-    var local_12: f32;
+    var local_10: f32;
     var edge_x: f32;
-    var param_89: i32;
+    var param_99: i32;
     var away_1: f32;
     var spread: f32;
-    var sum: vec4<f32>;
+    var sum_1: vec4<f32>;
     var weights: f32;
     var rows: i32;
     var i: i32;
-    var at_2: i32;
+    var at_1: i32;
     var layer_3: Layer;
-    var param_90: i32;
-    var param_91: i32;
+    var param_100: i32;
+    var param_101: i32;
     var front_2: bool;
-    var local_13: bool;
+    var local_11: bool;
     var behind_1: bool;
-    var local_14: bool;
+    var local_12: bool;
     var weight_1: f32;
+    var local_13: f32;
+    var local_14: f32;
     var local_15: f32;
-    var local_16: f32;
-    var local_17: f32;
-    var param_92: vec4<f32>;
-    var param_93: vec4<f32>;
-    var param_94: i32;
-    var param_95: i32;
-    var param_96: f32;
-    var param_97: f32;
+    var param_102: vec4<f32>;
+    var param_103: vec4<f32>;
+    var param_104: i32;
+    var param_105: i32;
+    var param_106: f32;
+    var param_107: f32;
     var fill: vec4<f32>;
     var one: vec2<f32>;
-    var param_98: i32;
-    var param_99: i32;
-    var param_100: f32;
-    var param_101: f32;
-    var param_102: Seen;
-    var param_103: f32;
-    var param_104: f32;
-    var param_105: f32;
-    var phi_595_: bool;
+    var param_108: i32;
+    var param_109: i32;
+    var param_110: f32;
+    var param_111: f32;
+    var param_112: Seen;
+    var param_113: f32;
+    var param_114: f32;
+    var param_115: f32;
     var phi_685_: bool;
-    var phi_692_: bool;
-    var phi_711_: bool;
-    var phi_740_: bool;
-    var phi_754_: bool;
-    var phi_806_: bool;
-    var phi_814_: bool;
-    var phi_890_: bool;
-    var phi_903_: bool;
-    var phi_919_: bool;
-    var phi_1000_: bool;
-    var phi_1052_: bool;
-    var phi_1100_: bool;
-    var phi_1150_: bool;
-    var phi_1200_: bool;
-    var phi_1252_: bool;
-    var phi_1258_: bool;
-    var phi_1310_: bool;
-    var phi_1331_: bool;
-    var phi_1343_: bool;
-    var phi_1621_: bool;
-    var phi_1683_: bool;
+    var phi_779_: bool;
+    var phi_786_: bool;
+    var phi_805_: bool;
+    var phi_834_: bool;
+    var phi_848_: bool;
+    var phi_900_: bool;
+    var phi_908_: bool;
+    var phi_984_: bool;
+    var phi_997_: bool;
+    var phi_1013_: bool;
+    var phi_1094_: bool;
+    var phi_1146_: bool;
+    var phi_1194_: bool;
+    var phi_1244_: bool;
+    var phi_1294_: bool;
+    var phi_1346_: bool;
+    var phi_1352_: bool;
+    var phi_1404_: bool;
+    var phi_1425_: bool;
+    var phi_1437_: bool;
+    var phi_1715_: bool;
+    var phi_1777_: bool;
 
     let _e213 = synthesis.source_size[0u];
-    last_1 = f32((_e213 - 1i));
+    last_2 = f32((_e213 - 1i));
     let _e217 = gl_FragCoord_1[1u];
     let _e219 = synthesis.first_row;
     let _e223 = synthesis.source_size[1u];
-    row_4 = i32(clamp((_e217 - _e219), 0f, f32((_e223 - 1i))));
+    row_5 = i32(clamp((_e217 - _e219), 0f, f32((_e223 - 1i))));
     let _e230 = synthesis.origins[0u];
     let _e232 = gl_FragCoord_1[0u];
     let _e236 = synthesis.origins[1u];
@@ -549,113 +612,106 @@ fn main_1() {
     span_1 = _e242.x;
     let _e244 = t;
     let _e245 = span_1;
-    let _e250 = last_1;
-    x_2 = clamp(floor(((_e244 - bitcast<f32>(_e245)) - 1.01f)), 0f, _e250);
-    let _e252 = x_2;
+    let _e250 = last_2;
+    x_3 = clamp(floor(((_e244 - bitcast<f32>(_e245)) - 1.01f)), 0f, _e250);
+    let _e252 = x_3;
     let _e253 = span_1;
-    param_6 = _e253;
-    let _e254 = span_steps((&param_6));
-    let _e257 = last_1;
+    param_16 = _e253;
+    let _e254 = span_steps((&param_16));
+    let _e257 = last_2;
     limit = min(((_e252 + _e254) + 2f), _e257);
     let _e260 = synthesis.mirrored;
     sense = select(1i, -1i, (_e260 != 0u));
-    let _e263 = x_2;
-    param_7 = i32(_e263);
-    let _e265 = source_column((&param_7));
+    let _e263 = x_3;
+    param_17 = i32(_e263);
+    let _e265 = source_column((&param_17));
     column_5 = _e265;
     seen_1 = Seen(1f, 0f, 0f);
     color = vec4<f32>(0f, 0f, 0f, 0f);
     let _e266 = column_5;
-    param_8 = _e266;
-    let _e267 = row_4;
-    param_9 = _e267;
-    let _e268 = layer_bits((&param_8), (&param_9));
+    param_18 = _e266;
+    let _e267 = row_5;
+    param_19 = _e267;
+    let _e268 = layer_bits((&param_18), (&param_19));
     bits_1 = _e268;
     let _e269 = bits_1;
-    param_10 = _e269;
-    let _e270 = full_front((&param_10));
+    param_20 = _e269;
+    let _e270 = full_front((&param_20));
     front_1 = _e270;
-    let _e271 = x_2;
+    let _e271 = x_3;
     let _e272 = front_1;
     let _e274 = t;
-    at_1 = ((_e271 + _e272) - _e274);
+    at = ((_e271 + _e272) - _e274);
     let _e276 = bits_1;
-    param_11 = _e276;
-    let _e277 = is_full((&param_11));
-    let _e278 = at_1;
+    param_21 = _e276;
+    let _e277 = is_full((&param_21));
+    let _e278 = at;
     plain = (_e277 && (_e278 <= 0f));
     loop {
         let _e281 = plain;
-        let _e282 = x_2;
+        let _e282 = x_3;
         let _e283 = limit;
         if (_e281 && (_e282 < _e283)) {
             let _e286 = column_5;
             let _e287 = sense;
-            param_12 = (_e286 + _e287);
-            let _e289 = row_4;
-            param_13 = _e289;
-            let _e290 = layer_bits((&param_12), (&param_13));
+            param_22 = (_e286 + _e287);
+            let _e289 = row_5;
+            param_23 = _e289;
+            let _e290 = layer_bits((&param_22), (&param_23));
             bits_1 = _e290;
             let _e291 = bits_1;
-            param_14 = _e291;
-            let _e292 = full_front((&param_14));
+            param_24 = _e291;
+            let _e292 = full_front((&param_24));
             following = _e292;
             let _e293 = bits_1;
-            param_15 = _e293;
-            let _e294 = is_full((&param_15));
-            phi_595_ = _e294;
+            param_25 = _e293;
+            let _e294 = is_full((&param_25));
+            phi_685_ = _e294;
             if _e294 {
                 let _e295 = following;
                 let _e296 = front_1;
-                phi_595_ = (abs((_e295 - _e296)) < 0.5f);
+                phi_685_ = (abs((_e295 - _e296)) < 0.5f);
             }
-            let _e301 = phi_595_;
+            let _e301 = phi_685_;
             plain = _e301;
-            let _e302 = x_2;
+            let _e302 = x_3;
             let _e304 = following;
             let _e306 = t;
             then = (((_e302 + 1f) + _e304) - _e306);
             let _e308 = plain;
             let _e309 = then;
             if (_e308 && (_e309 > 0f)) {
-                let _e312 = at_1;
+                let _e312 = at;
                 let _e314 = then;
-                let _e315 = at_1;
+                let _e315 = at;
                 g = (-(_e312) / (_e314 - _e315));
-                let _e318 = x_2;
+                let _e318 = x_3;
                 let _e319 = g;
                 let _e321 = front_1;
                 let _e322 = following;
                 let _e323 = g;
                 let _e325 = seen_1;
-                param_16 = _e325;
-                param_17 = 1f;
-                param_18 = (_e318 + _e319);
-                param_19 = mix(_e321, _e322, _e323);
-                let _e326 = cover((&param_16), (&param_17), (&param_18), (&param_19));
-                let _e327 = param_16;
+                param_26 = _e325;
+                param_27 = 1f;
+                param_28 = (_e318 + _e319);
+                param_29 = mix(_e321, _e322, _e323);
+                let _e326 = cover((&param_26), (&param_27), (&param_28), (&param_29));
+                let _e327 = param_26;
                 seen_1 = _e327;
-                let _e328 = x_2;
-                let _e329 = g;
-                param_20 = (_e328 + _e329);
-                let _e331 = row_4;
-                param_21 = _e331;
-                let _e332 = color_at((&param_20), (&param_21));
-                color = _e332;
-                let _e333 = x_2;
-                limit = _e333;
+                let _e328 = x_3;
+                limit = _e328;
             } else {
-                let _e334 = plain;
-                if _e334 {
-                    let _e335 = x_2;
-                    x_2 = (_e335 + 1f);
-                    let _e337 = sense;
-                    let _e338 = column_5;
-                    column_5 = (_e338 + _e337);
-                    let _e340 = following;
-                    front_1 = _e340;
-                    let _e341 = then;
-                    at_1 = _e341;
+                let _e329 = plain;
+                if _e329 {
+                    let _e330 = x_3;
+                    x_3 = (_e330 + 1f);
+                    let _e332 = sense;
+                    let _e333 = column_5;
+                    column_5 = (_e333 + _e332);
+                    let _e335 = following;
+                    front_1 = _e335;
+                    let _e336 = then;
+                    at = _e336;
                 }
             }
             continue;
@@ -663,143 +719,152 @@ fn main_1() {
             break;
         }
     }
-    let _e342 = column_5;
-    param_22 = _e342;
-    let _e343 = row_4;
-    param_23 = _e343;
-    let _e344 = layer_at((&param_22), (&param_23));
-    here = _e344;
+    let _e338 = seen_1.rest;
+    if (_e338 < 0.01f) {
+        let _e341 = seen_1.column;
+        param_30 = _e341;
+        let _e342 = row_5;
+        param_31 = _e342;
+        let _e343 = sharp_color_at((&param_30), (&param_31));
+        color = _e343;
+    }
+    let _e344 = column_5;
+    param_32 = _e344;
+    let _e345 = row_5;
+    param_33 = _e345;
+    let _e346 = layer_at((&param_32), (&param_33));
+    here_1 = _e346;
     edge = Edge(-1i, false, 1000000000f, 1f);
-    let _e345 = edge;
-    second = _e345;
-    let _e346 = x_2;
-    if (_e346 == 0f) {
-        let _e349 = here.front;
-        let _e350 = t;
-        if (_e349 > _e350) {
-            let _e352 = column_5;
-            let _e354 = here.front;
-            edge = Edge(_e352, false, _e354, 1f);
+    let _e347 = edge;
+    second = _e347;
+    let _e348 = x_3;
+    if (_e348 == 0f) {
+        let _e351 = here_1.front;
+        let _e352 = t;
+        if (_e351 > _e352) {
+            let _e354 = column_5;
+            let _e356 = here_1.front;
+            edge = Edge(_e354, false, _e356, 1f);
         }
-        let _e357 = here.split;
-        phi_685_ = _e357;
-        if _e357 {
-            let _e359 = here.back;
-            let _e361 = edge.reach;
-            phi_685_ = (_e359 < _e361);
+        let _e359 = here_1.split;
+        phi_779_ = _e359;
+        if _e359 {
+            let _e361 = here_1.back;
+            let _e363 = edge.reach;
+            phi_779_ = (_e361 < _e363);
         }
-        let _e364 = phi_685_;
-        phi_692_ = _e364;
-        if _e364 {
-            let _e366 = here.back;
-            let _e367 = t;
-            phi_692_ = (_e366 > _e367);
+        let _e366 = phi_779_;
+        phi_786_ = _e366;
+        if _e366 {
+            let _e368 = here_1.back;
+            let _e369 = t;
+            phi_786_ = (_e368 > _e369);
         }
-        let _e370 = phi_692_;
-        if _e370 {
-            let _e371 = column_5;
-            let _e373 = here.back;
-            edge = Edge(_e371, true, _e373, 1f);
+        let _e372 = phi_786_;
+        if _e372 {
+            let _e373 = column_5;
+            let _e375 = here_1.back;
+            edge = Edge(_e373, true, _e375, 1f);
         }
     }
     on_front = false;
     on_back = false;
-    let _e375 = x_2;
-    let _e378 = here.split;
-    let _e379 = ((_e375 > 0f) && _e378);
-    phi_711_ = _e379;
-    if _e379 {
-        let _e381 = seen_1.rest;
-        phi_711_ = (_e381 > 0.01f);
+    let _e377 = x_3;
+    let _e380 = here_1.split;
+    let _e381 = ((_e377 > 0f) && _e380);
+    phi_805_ = _e381;
+    if _e381 {
+        let _e383 = seen_1.rest;
+        phi_805_ = (_e383 > 0.01f);
     }
-    let _e384 = phi_711_;
-    if _e384 {
-        let _e385 = column_5;
-        let _e386 = sense;
-        param_24 = (_e385 - _e386);
-        let _e388 = row_4;
-        param_25 = _e388;
-        let _e389 = layer_at((&param_24), (&param_25));
-        before = _e389;
-        let _e391 = before.front;
-        let _e393 = here.back;
-        on_front = (abs((_e391 - _e393)) < 0.5f);
-        let _e398 = before.split;
-        phi_740_ = _e398;
-        if _e398 {
-            let _e400 = before.back;
-            let _e402 = here.back;
-            phi_740_ = (abs((_e400 - _e402)) < 0.5f);
+    let _e386 = phi_805_;
+    if _e386 {
+        let _e387 = column_5;
+        let _e388 = sense;
+        param_34 = (_e387 - _e388);
+        let _e390 = row_5;
+        param_35 = _e390;
+        let _e391 = layer_at((&param_34), (&param_35));
+        before = _e391;
+        let _e393 = before.front;
+        let _e395 = here_1.back;
+        on_front = (abs((_e393 - _e395)) < 0.5f);
+        let _e400 = before.split;
+        phi_834_ = _e400;
+        if _e400 {
+            let _e402 = before.back;
+            let _e404 = here_1.back;
+            phi_834_ = (abs((_e402 - _e404)) < 0.5f);
         }
-        let _e407 = phi_740_;
-        on_back = _e407;
+        let _e409 = phi_834_;
+        on_back = _e409;
     }
     loop {
-        let _e408 = x_2;
-        let _e409 = limit;
-        let _e410 = (_e408 < _e409);
-        phi_754_ = _e410;
-        if _e410 {
-            let _e412 = seen_1.rest;
-            phi_754_ = (_e412 > 0.01f);
+        let _e410 = x_3;
+        let _e411 = limit;
+        let _e412 = (_e410 < _e411);
+        phi_848_ = _e412;
+        if _e412 {
+            let _e414 = seen_1.rest;
+            phi_848_ = (_e414 > 0.01f);
         }
-        let _e415 = phi_754_;
-        if _e415 {
-            let _e417 = here.split;
-            idle = !(_e417);
-            let _e419 = x_2;
-            let _e421 = here.front;
-            let _e423 = t;
-            landed = ((_e419 + _e421) - _e423);
+        let _e417 = phi_848_;
+        if _e417 {
+            let _e419 = here_1.split;
+            idle = !(_e419);
+            let _e421 = x_3;
+            let _e423 = here_1.front;
+            let _e425 = t;
+            landed = ((_e421 + _e423) - _e425);
             loop {
-                let _e425 = idle;
-                let _e426 = x_2;
-                let _e427 = limit;
-                if (_e425 && (_e426 < _e427)) {
-                    let _e430 = column_5;
-                    let _e431 = sense;
-                    param_26 = (_e430 + _e431);
-                    let _e433 = row_4;
-                    param_27 = _e433;
-                    let _e434 = layer_bits((&param_26), (&param_27));
-                    ahead = _e434;
-                    let _e435 = ahead;
-                    param_28 = _e435;
-                    let _e436 = full_front((&param_28));
-                    following_1 = _e436;
-                    let _e437 = x_2;
-                    let _e439 = following_1;
-                    let _e441 = t;
-                    then_1 = (((_e437 + 1f) + _e439) - _e441);
-                    let _e443 = ahead;
-                    param_29 = _e443;
-                    let _e444 = is_full((&param_29));
-                    phi_806_ = _e444;
-                    if _e444 {
-                        let _e445 = following_1;
-                        let _e447 = here.front;
-                        phi_806_ = (abs((_e445 - _e447)) < 0.5f);
+                let _e427 = idle;
+                let _e428 = x_3;
+                let _e429 = limit;
+                if (_e427 && (_e428 < _e429)) {
+                    let _e432 = column_5;
+                    let _e433 = sense;
+                    param_36 = (_e432 + _e433);
+                    let _e435 = row_5;
+                    param_37 = _e435;
+                    let _e436 = layer_bits((&param_36), (&param_37));
+                    ahead = _e436;
+                    let _e437 = ahead;
+                    param_38 = _e437;
+                    let _e438 = full_front((&param_38));
+                    following_1 = _e438;
+                    let _e439 = x_3;
+                    let _e441 = following_1;
+                    let _e443 = t;
+                    then_1 = (((_e439 + 1f) + _e441) - _e443);
+                    let _e445 = ahead;
+                    param_39 = _e445;
+                    let _e446 = is_full((&param_39));
+                    phi_900_ = _e446;
+                    if _e446 {
+                        let _e447 = following_1;
+                        let _e449 = here_1.front;
+                        phi_900_ = (abs((_e447 - _e449)) < 0.5f);
                     }
-                    let _e452 = phi_806_;
-                    phi_814_ = _e452;
-                    if _e452 {
-                        let _e453 = landed;
-                        let _e455 = then_1;
-                        phi_814_ = ((_e453 > 0f) || (_e455 <= 0f));
+                    let _e454 = phi_900_;
+                    phi_908_ = _e454;
+                    if _e454 {
+                        let _e455 = landed;
+                        let _e457 = then_1;
+                        phi_908_ = ((_e455 > 0f) || (_e457 <= 0f));
                     }
-                    let _e459 = phi_814_;
-                    idle = _e459;
-                    let _e460 = idle;
-                    if _e460 {
-                        let _e461 = x_2;
-                        x_2 = (_e461 + 1f);
-                        let _e463 = sense;
-                        let _e464 = column_5;
-                        column_5 = (_e464 + _e463);
-                        let _e466 = following_1;
-                        here.front = _e466;
-                        let _e468 = then_1;
-                        landed = _e468;
+                    let _e461 = phi_908_;
+                    idle = _e461;
+                    let _e462 = idle;
+                    if _e462 {
+                        let _e463 = x_3;
+                        x_3 = (_e463 + 1f);
+                        let _e465 = sense;
+                        let _e466 = column_5;
+                        column_5 = (_e466 + _e465);
+                        let _e468 = following_1;
+                        here_1.front = _e468;
+                        let _e470 = then_1;
+                        landed = _e470;
                         on_front = false;
                         on_back = false;
                     }
@@ -808,677 +873,677 @@ fn main_1() {
                     break;
                 }
             }
-            let _e469 = x_2;
-            let _e470 = limit;
-            if (_e469 >= _e470) {
+            let _e471 = x_3;
+            let _e472 = limit;
+            if (_e471 >= _e472) {
                 break;
             }
-            let _e472 = column_5;
-            let _e473 = sense;
-            param_30 = (_e472 + _e473);
-            let _e475 = row_4;
-            param_31 = _e475;
-            let _e476 = layer_at((&param_30), (&param_31));
-            next = _e476;
-            let _e477 = x_2;
-            let _e479 = here.front;
-            let _e481 = t;
-            a = ((_e477 + _e479) - _e481);
-            let _e483 = x_2;
-            let _e486 = next.front;
-            let _e488 = t;
-            b = (((_e483 + 1f) + _e486) - _e488);
-            let _e490 = x_2;
-            let _e492 = here.back;
-            let _e494 = t;
-            c = ((_e490 + _e492) - _e494);
-            let _e496 = x_2;
-            let _e499 = next.back;
-            let _e501 = t;
-            d = (((_e496 + 1f) + _e499) - _e501);
-            let _e504 = next.front;
-            let _e506 = here.front;
-            front_front = (abs((_e504 - _e506)) < 0.5f);
-            let _e511 = next.split;
-            phi_890_ = _e511;
-            if _e511 {
-                let _e513 = next.back;
-                let _e515 = here.front;
-                phi_890_ = (abs((_e513 - _e515)) < 0.5f);
+            let _e474 = column_5;
+            let _e475 = sense;
+            param_40 = (_e474 + _e475);
+            let _e477 = row_5;
+            param_41 = _e477;
+            let _e478 = layer_at((&param_40), (&param_41));
+            next_1 = _e478;
+            let _e479 = x_3;
+            let _e481 = here_1.front;
+            let _e483 = t;
+            a = ((_e479 + _e481) - _e483);
+            let _e485 = x_3;
+            let _e488 = next_1.front;
+            let _e490 = t;
+            b = (((_e485 + 1f) + _e488) - _e490);
+            let _e492 = x_3;
+            let _e494 = here_1.back;
+            let _e496 = t;
+            c = ((_e492 + _e494) - _e496);
+            let _e498 = x_3;
+            let _e501 = next_1.back;
+            let _e503 = t;
+            d = (((_e498 + 1f) + _e501) - _e503);
+            let _e506 = next_1.front;
+            let _e508 = here_1.front;
+            front_front = (abs((_e506 - _e508)) < 0.5f);
+            let _e513 = next_1.split;
+            phi_984_ = _e513;
+            if _e513 {
+                let _e515 = next_1.back;
+                let _e517 = here_1.front;
+                phi_984_ = (abs((_e515 - _e517)) < 0.5f);
             }
-            let _e520 = phi_890_;
-            front_back = _e520;
-            let _e522 = here.split;
-            phi_903_ = _e522;
-            if _e522 {
-                let _e524 = next.front;
-                let _e526 = here.back;
-                phi_903_ = (abs((_e524 - _e526)) < 0.5f);
+            let _e522 = phi_984_;
+            front_back = _e522;
+            let _e524 = here_1.split;
+            phi_997_ = _e524;
+            if _e524 {
+                let _e526 = next_1.front;
+                let _e528 = here_1.back;
+                phi_997_ = (abs((_e526 - _e528)) < 0.5f);
             }
-            let _e531 = phi_903_;
-            back_front = _e531;
-            let _e533 = here.split;
-            let _e535 = next.split;
-            let _e536 = (_e533 && _e535);
-            phi_919_ = _e536;
-            if _e536 {
-                let _e538 = next.back;
-                let _e540 = here.back;
-                phi_919_ = (abs((_e538 - _e540)) < 0.5f);
+            let _e533 = phi_997_;
+            back_front = _e533;
+            let _e535 = here_1.split;
+            let _e537 = next_1.split;
+            let _e538 = (_e535 && _e537);
+            phi_1013_ = _e538;
+            if _e538 {
+                let _e540 = next_1.back;
+                let _e542 = here_1.back;
+                phi_1013_ = (abs((_e540 - _e542)) < 0.5f);
             }
-            let _e545 = phi_919_;
-            back_back = _e545;
+            let _e547 = phi_1013_;
+            back_back = _e547;
             fronts = vec2<f32>(0f, 0f);
             backs = vec2<f32>(0f, 0f);
-            let _e546 = front_front;
-            let _e547 = a;
-            let _e550 = b;
-            if ((_e546 && (_e547 <= 0f)) && (_e550 > 0f)) {
-                let _e553 = a;
-                let _e555 = b;
-                let _e556 = a;
-                g_1 = (-(_e553) / (_e555 - _e556));
-                let _e559 = g_1;
-                param_32 = _e559;
-                let _e560 = right_of((&param_32));
-                right = _e560;
-                let _e562 = here.mask;
-                param_33 = _e562;
-                let _e563 = right;
-                param_34 = _e563;
-                let _e564 = covered((&param_33), (&param_34));
+            let _e548 = front_front;
+            let _e549 = a;
+            let _e552 = b;
+            if ((_e548 && (_e549 <= 0f)) && (_e552 > 0f)) {
+                let _e555 = a;
+                let _e557 = b;
+                let _e558 = a;
+                g_1 = (-(_e555) / (_e557 - _e558));
+                let _e561 = g_1;
+                param_42 = _e561;
+                let _e562 = right_of((&param_42));
+                right = _e562;
+                let _e564 = here_1.mask;
+                param_43 = _e564;
                 let _e565 = right;
-                let _e569 = next.mask;
-                param_35 = _e569;
-                param_36 = (vec4(1f) - _e565);
-                let _e570 = covered((&param_35), (&param_36));
-                shares = vec2<f32>(_e564, _e570);
-                let _e573 = shares[0u];
-                let _e575 = shares[1u];
-                share_2 = (_e573 + _e575);
-                let _e577 = x_2;
-                let _e578 = g_1;
-                let _e581 = here.front;
-                let _e583 = next.front;
-                let _e584 = g_1;
-                let _e586 = seen_1;
-                param_37 = _e586;
-                let _e587 = share_2;
-                param_38 = _e587;
-                param_39 = (_e577 + _e578);
-                param_40 = mix(_e581, _e583, _e584);
-                let _e588 = cover((&param_37), (&param_38), (&param_39), (&param_40));
-                let _e589 = param_37;
-                seen_1 = _e589;
-                let _e590 = shares;
-                let _e592 = share_2;
-                fronts = ((_e590 * _e588) / vec2(max(_e592, 0.000001f)));
+                param_44 = _e565;
+                let _e566 = covered((&param_43), (&param_44));
+                let _e567 = right;
+                let _e571 = next_1.mask;
+                param_45 = _e571;
+                param_46 = (vec4(1f) - _e567);
+                let _e572 = covered((&param_45), (&param_46));
+                shares = vec2<f32>(_e566, _e572);
+                let _e575 = shares[0u];
+                let _e577 = shares[1u];
+                share_2 = (_e575 + _e577);
+                let _e579 = x_3;
+                let _e580 = g_1;
+                let _e583 = here_1.front;
+                let _e585 = next_1.front;
+                let _e586 = g_1;
+                let _e588 = seen_1;
+                param_47 = _e588;
+                let _e589 = share_2;
+                param_48 = _e589;
+                param_49 = (_e579 + _e580);
+                param_50 = mix(_e583, _e585, _e586);
+                let _e590 = cover((&param_47), (&param_48), (&param_49), (&param_50));
+                let _e591 = param_47;
+                seen_1 = _e591;
+                let _e592 = shares;
+                let _e594 = share_2;
+                fronts = ((_e592 * _e590) / vec2(max(_e594, 0.000001f)));
             }
-            let _e596 = front_front;
-            let _e597 = !(_e596);
-            phi_1000_ = _e597;
-            if _e597 {
-                let _e599 = next.front;
-                let _e601 = here.front;
-                let _e604 = next.split;
-                phi_1000_ = ((_e599 > _e601) || _e604);
+            let _e598 = front_front;
+            let _e599 = !(_e598);
+            phi_1094_ = _e599;
+            if _e599 {
+                let _e601 = next_1.front;
+                let _e603 = here_1.front;
+                let _e606 = next_1.split;
+                phi_1094_ = ((_e601 > _e603) || _e606);
             }
-            let _e607 = phi_1000_;
-            let _e608 = back_front;
-            let _e611 = b;
-            let _e614 = b;
-            if (((_e607 && !(_e608)) && (_e611 > 0f)) && (_e614 < 1f)) {
-                let _e617 = b;
-                param_41 = (1f - _e617);
-                let _e619 = right_of((&param_41));
-                let _e623 = next.mask;
-                param_42 = _e623;
-                param_43 = (vec4(1f) - _e619);
-                let _e624 = covered((&param_42), (&param_43));
-                share_3 = _e624;
-                let _e625 = x_2;
-                let _e627 = seen_1;
-                param_44 = _e627;
-                let _e628 = share_3;
-                param_45 = _e628;
-                param_46 = (_e625 + 1f);
-                let _e630 = next.front;
-                param_47 = _e630;
-                let _e631 = cover((&param_44), (&param_45), (&param_46), (&param_47));
-                let _e632 = param_44;
-                seen_1 = _e632;
-                let _e634 = fronts[1u];
-                fronts[1u] = (_e634 + _e631);
+            let _e609 = phi_1094_;
+            let _e610 = back_front;
+            let _e613 = b;
+            let _e616 = b;
+            if (((_e609 && !(_e610)) && (_e613 > 0f)) && (_e616 < 1f)) {
+                let _e619 = b;
+                param_51 = (1f - _e619);
+                let _e621 = right_of((&param_51));
+                let _e625 = next_1.mask;
+                param_52 = _e625;
+                param_53 = (vec4(1f) - _e621);
+                let _e626 = covered((&param_52), (&param_53));
+                share_3 = _e626;
+                let _e627 = x_3;
+                let _e629 = seen_1;
+                param_54 = _e629;
+                let _e630 = share_3;
+                param_55 = _e630;
+                param_56 = (_e627 + 1f);
+                let _e632 = next_1.front;
+                param_57 = _e632;
+                let _e633 = cover((&param_54), (&param_55), (&param_56), (&param_57));
+                let _e634 = param_54;
+                seen_1 = _e634;
+                let _e636 = fronts[1u];
+                fronts[1u] = (_e636 + _e633);
             }
-            let _e637 = front_front;
-            let _e638 = !(_e637);
-            phi_1052_ = _e638;
-            if _e638 {
-                let _e640 = next.front;
-                let _e642 = here.front;
-                let _e645 = here.split;
-                phi_1052_ = ((_e640 < _e642) || _e645);
+            let _e639 = front_front;
+            let _e640 = !(_e639);
+            phi_1146_ = _e640;
+            if _e640 {
+                let _e642 = next_1.front;
+                let _e644 = here_1.front;
+                let _e647 = here_1.split;
+                phi_1146_ = ((_e642 < _e644) || _e647);
             }
-            let _e648 = phi_1052_;
-            let _e649 = front_back;
-            let _e652 = a;
-            let _e655 = a;
-            if (((_e648 && !(_e649)) && (_e652 <= 0f)) && (_e655 > -1f)) {
-                let _e658 = a;
-                param_48 = -(_e658);
-                let _e660 = right_of((&param_48));
-                let _e662 = here.mask;
-                param_49 = _e662;
-                param_50 = _e660;
-                let _e663 = covered((&param_49), (&param_50));
-                let _e664 = seen_1;
-                param_51 = _e664;
-                param_52 = _e663;
-                let _e665 = x_2;
-                param_53 = _e665;
-                let _e667 = here.front;
-                param_54 = _e667;
-                let _e668 = cover((&param_51), (&param_52), (&param_53), (&param_54));
-                let _e669 = param_51;
-                seen_1 = _e669;
-                let _e671 = fronts[0u];
-                fronts[0u] = (_e671 + _e668);
+            let _e650 = phi_1146_;
+            let _e651 = front_back;
+            let _e654 = a;
+            let _e657 = a;
+            if (((_e650 && !(_e651)) && (_e654 <= 0f)) && (_e657 > -1f)) {
+                let _e660 = a;
+                param_58 = -(_e660);
+                let _e662 = right_of((&param_58));
+                let _e664 = here_1.mask;
+                param_59 = _e664;
+                param_60 = _e662;
+                let _e665 = covered((&param_59), (&param_60));
+                let _e666 = seen_1;
+                param_61 = _e666;
+                param_62 = _e665;
+                let _e667 = x_3;
+                param_63 = _e667;
+                let _e669 = here_1.front;
+                param_64 = _e669;
+                let _e670 = cover((&param_61), (&param_62), (&param_63), (&param_64));
+                let _e671 = param_61;
+                seen_1 = _e671;
+                let _e673 = fronts[0u];
+                fronts[0u] = (_e673 + _e670);
             }
-            let _e674 = front_back;
-            let _e675 = a;
-            let _e678 = d;
-            let _e680 = ((_e674 && (_e675 <= 0f)) && (_e678 > 0f));
-            phi_1100_ = _e680;
-            if _e680 {
-                let _e682 = seen_1.rest;
-                phi_1100_ = (_e682 > 0.01f);
+            let _e676 = front_back;
+            let _e677 = a;
+            let _e680 = d;
+            let _e682 = ((_e676 && (_e677 <= 0f)) && (_e680 > 0f));
+            phi_1194_ = _e682;
+            if _e682 {
+                let _e684 = seen_1.rest;
+                phi_1194_ = (_e684 > 0.01f);
             }
-            let _e685 = phi_1100_;
-            if _e685 {
-                let _e686 = a;
-                let _e688 = d;
-                let _e689 = a;
-                g_2 = (-(_e686) / (_e688 - _e689));
-                let _e692 = x_2;
-                let _e693 = g_2;
-                let _e695 = seen_1;
-                param_55 = _e695;
-                param_56 = 1f;
-                param_57 = (_e692 + _e693);
-                let _e697 = here.front;
-                param_58 = _e697;
-                let _e698 = cover((&param_55), (&param_56), (&param_57), (&param_58));
-                let _e699 = param_55;
-                seen_1 = _e699;
-                taken_1 = _e698;
-                let _e700 = taken_1;
-                let _e701 = g_2;
-                let _e705 = fronts[0u];
-                fronts[0u] = (_e705 + (_e700 * (1f - _e701)));
-                let _e708 = taken_1;
-                let _e709 = g_2;
-                let _e712 = backs[1u];
-                backs[1u] = (_e712 + (_e708 * _e709));
+            let _e687 = phi_1194_;
+            if _e687 {
+                let _e688 = a;
+                let _e690 = d;
+                let _e691 = a;
+                g_2 = (-(_e688) / (_e690 - _e691));
+                let _e694 = x_3;
+                let _e695 = g_2;
+                let _e697 = seen_1;
+                param_65 = _e697;
+                param_66 = 1f;
+                param_67 = (_e694 + _e695);
+                let _e699 = here_1.front;
+                param_68 = _e699;
+                let _e700 = cover((&param_65), (&param_66), (&param_67), (&param_68));
+                let _e701 = param_65;
+                seen_1 = _e701;
+                taken_1 = _e700;
+                let _e702 = taken_1;
+                let _e703 = g_2;
+                let _e707 = fronts[0u];
+                fronts[0u] = (_e707 + (_e702 * (1f - _e703)));
+                let _e710 = taken_1;
+                let _e711 = g_2;
+                let _e714 = backs[1u];
+                backs[1u] = (_e714 + (_e710 * _e711));
             }
-            let _e715 = back_front;
-            let _e716 = c;
-            let _e719 = b;
-            let _e721 = ((_e715 && (_e716 <= 0f)) && (_e719 > 0f));
-            phi_1150_ = _e721;
-            if _e721 {
-                let _e723 = seen_1.rest;
-                phi_1150_ = (_e723 > 0.01f);
+            let _e717 = back_front;
+            let _e718 = c;
+            let _e721 = b;
+            let _e723 = ((_e717 && (_e718 <= 0f)) && (_e721 > 0f));
+            phi_1244_ = _e723;
+            if _e723 {
+                let _e725 = seen_1.rest;
+                phi_1244_ = (_e725 > 0.01f);
             }
-            let _e726 = phi_1150_;
-            if _e726 {
-                let _e727 = c;
-                let _e729 = b;
-                let _e730 = c;
-                g_3 = (-(_e727) / (_e729 - _e730));
-                let _e733 = x_2;
-                let _e734 = g_3;
-                let _e736 = seen_1;
-                param_59 = _e736;
-                param_60 = 1f;
-                param_61 = (_e733 + _e734);
-                let _e738 = next.front;
-                param_62 = _e738;
-                let _e739 = cover((&param_59), (&param_60), (&param_61), (&param_62));
-                let _e740 = param_59;
-                seen_1 = _e740;
-                taken_2 = _e739;
-                let _e741 = taken_2;
-                let _e742 = g_3;
-                let _e746 = backs[0u];
-                backs[0u] = (_e746 + (_e741 * (1f - _e742)));
-                let _e749 = taken_2;
-                let _e750 = g_3;
-                let _e753 = fronts[1u];
-                fronts[1u] = (_e753 + (_e749 * _e750));
+            let _e728 = phi_1244_;
+            if _e728 {
+                let _e729 = c;
+                let _e731 = b;
+                let _e732 = c;
+                g_3 = (-(_e729) / (_e731 - _e732));
+                let _e735 = x_3;
+                let _e736 = g_3;
+                let _e738 = seen_1;
+                param_69 = _e738;
+                param_70 = 1f;
+                param_71 = (_e735 + _e736);
+                let _e740 = next_1.front;
+                param_72 = _e740;
+                let _e741 = cover((&param_69), (&param_70), (&param_71), (&param_72));
+                let _e742 = param_69;
+                seen_1 = _e742;
+                taken_2 = _e741;
+                let _e743 = taken_2;
+                let _e744 = g_3;
+                let _e748 = backs[0u];
+                backs[0u] = (_e748 + (_e743 * (1f - _e744)));
+                let _e751 = taken_2;
+                let _e752 = g_3;
+                let _e755 = fronts[1u];
+                fronts[1u] = (_e755 + (_e751 * _e752));
             }
-            let _e756 = back_back;
-            let _e757 = c;
-            let _e760 = d;
-            let _e762 = ((_e756 && (_e757 <= 0f)) && (_e760 > 0f));
-            phi_1200_ = _e762;
-            if _e762 {
-                let _e764 = seen_1.rest;
-                phi_1200_ = (_e764 > 0.01f);
+            let _e758 = back_back;
+            let _e759 = c;
+            let _e762 = d;
+            let _e764 = ((_e758 && (_e759 <= 0f)) && (_e762 > 0f));
+            phi_1294_ = _e764;
+            if _e764 {
+                let _e766 = seen_1.rest;
+                phi_1294_ = (_e766 > 0.01f);
             }
-            let _e767 = phi_1200_;
-            if _e767 {
-                let _e768 = c;
-                let _e770 = d;
-                let _e771 = c;
-                g_4 = (-(_e768) / (_e770 - _e771));
-                let _e774 = x_2;
-                let _e775 = g_4;
-                let _e777 = seen_1;
-                param_63 = _e777;
-                param_64 = 1f;
-                param_65 = (_e774 + _e775);
-                let _e779 = here.back;
-                param_66 = _e779;
-                let _e780 = cover((&param_63), (&param_64), (&param_65), (&param_66));
-                let _e781 = param_63;
-                seen_1 = _e781;
-                taken_3 = _e780;
-                let _e782 = taken_3;
-                let _e783 = g_4;
+            let _e769 = phi_1294_;
+            if _e769 {
+                let _e770 = c;
+                let _e772 = d;
+                let _e773 = c;
+                g_4 = (-(_e770) / (_e772 - _e773));
+                let _e776 = x_3;
+                let _e777 = g_4;
+                let _e779 = seen_1;
+                param_73 = _e779;
+                param_74 = 1f;
+                param_75 = (_e776 + _e777);
+                let _e781 = here_1.back;
+                param_76 = _e781;
+                let _e782 = cover((&param_73), (&param_74), (&param_75), (&param_76));
+                let _e783 = param_73;
+                seen_1 = _e783;
+                taken_3 = _e782;
+                let _e784 = taken_3;
                 let _e785 = g_4;
-                let _e788 = backs;
-                backs = (_e788 + (vec2<f32>((1f - _e783), _e785) * _e782));
+                let _e787 = g_4;
+                let _e790 = backs;
+                backs = (_e790 + (vec2<f32>((1f - _e785), _e787) * _e784));
             }
-            let _e791 = here.split;
-            let _e792 = back_front;
-            let _e795 = back_back;
-            ends = ((_e791 && !(_e792)) && !(_e795));
-            let _e798 = ends;
-            let _e799 = on_front;
-            let _e802 = on_back;
-            let _e804 = ((_e798 && !(_e799)) && !(_e802));
-            phi_1252_ = _e804;
-            if _e804 {
-                let _e805 = c;
-                phi_1252_ = (abs(_e805) < 1f);
+            let _e793 = here_1.split;
+            let _e794 = back_front;
+            let _e797 = back_back;
+            ends = ((_e793 && !(_e794)) && !(_e797));
+            let _e800 = ends;
+            let _e801 = on_front;
+            let _e804 = on_back;
+            let _e806 = ((_e800 && !(_e801)) && !(_e804));
+            phi_1346_ = _e806;
+            if _e806 {
+                let _e807 = c;
+                phi_1346_ = (abs(_e807) < 1f);
             }
-            let _e809 = phi_1252_;
-            phi_1258_ = _e809;
-            if _e809 {
-                let _e811 = seen_1.rest;
-                phi_1258_ = (_e811 > 0.01f);
+            let _e811 = phi_1346_;
+            phi_1352_ = _e811;
+            if _e811 {
+                let _e813 = seen_1.rest;
+                phi_1352_ = (_e813 > 0.01f);
             }
-            let _e814 = phi_1258_;
-            if _e814 {
-                let _e815 = c;
-                if (_e815 <= 0f) {
-                    let _e817 = c;
-                    param_67 = -(_e817);
-                    let _e819 = right_of((&param_67));
-                    local_8 = _e819;
+            let _e816 = phi_1352_;
+            if _e816 {
+                let _e817 = c;
+                if (_e817 <= 0f) {
+                    let _e819 = c;
+                    param_77 = -(_e819);
+                    let _e821 = right_of((&param_77));
+                    local_6 = _e821;
                 } else {
-                    let _e820 = c;
-                    param_68 = (1f - _e820);
-                    let _e822 = right_of((&param_68));
-                    local_8 = (vec4(1f) - _e822);
+                    let _e822 = c;
+                    param_78 = (1f - _e822);
+                    let _e824 = right_of((&param_78));
+                    local_6 = (vec4(1f) - _e824);
                 }
-                let _e825 = local_8;
-                stripes_1 = _e825;
-                let _e827 = here.mask;
-                param_69 = (vec4(1f) - _e827);
-                let _e830 = stripes_1;
-                param_70 = _e830;
-                let _e831 = covered((&param_69), (&param_70));
-                let _e832 = seen_1;
-                param_71 = _e832;
-                param_72 = _e831;
-                let _e833 = x_2;
-                param_73 = _e833;
-                let _e835 = here.back;
-                param_74 = _e835;
-                let _e836 = cover((&param_71), (&param_72), (&param_73), (&param_74));
-                let _e837 = param_71;
-                seen_1 = _e837;
-                let _e839 = backs[0u];
-                backs[0u] = (_e839 + _e836);
+                let _e827 = local_6;
+                stripes_1 = _e827;
+                let _e829 = here_1.mask;
+                param_79 = (vec4(1f) - _e829);
+                let _e832 = stripes_1;
+                param_80 = _e832;
+                let _e833 = covered((&param_79), (&param_80));
+                let _e834 = seen_1;
+                param_81 = _e834;
+                param_82 = _e833;
+                let _e835 = x_3;
+                param_83 = _e835;
+                let _e837 = here_1.back;
+                param_84 = _e837;
+                let _e838 = cover((&param_81), (&param_82), (&param_83), (&param_84));
+                let _e839 = param_81;
+                seen_1 = _e839;
+                let _e841 = backs[0u];
+                backs[0u] = (_e841 + _e838);
             }
-            let _e842 = ends;
-            phi_1310_ = _e842;
-            if _e842 {
-                let _e844 = next.front;
-                let _e846 = here.back;
-                phi_1310_ = (_e844 > _e846);
+            let _e844 = ends;
+            phi_1404_ = _e844;
+            if _e844 {
+                let _e846 = next_1.front;
+                let _e848 = here_1.back;
+                phi_1404_ = (_e846 > _e848);
             }
-            let _e849 = phi_1310_;
-            let _e850 = c;
-            at_back = (_e849 && (_e850 <= 0f));
-            let _e854 = here.split;
-            let _e856 = front_front;
-            let _e859 = front_back;
-            let _e861 = ((!(_e854) && !(_e856)) && !(_e859));
-            phi_1331_ = _e861;
-            if _e861 {
-                let _e863 = next.front;
-                let _e865 = here.front;
-                phi_1331_ = (_e863 > _e865);
+            let _e851 = phi_1404_;
+            let _e852 = c;
+            at_back = (_e851 && (_e852 <= 0f));
+            let _e856 = here_1.split;
+            let _e858 = front_front;
+            let _e861 = front_back;
+            let _e863 = ((!(_e856) && !(_e858)) && !(_e861));
+            phi_1425_ = _e863;
+            if _e863 {
+                let _e865 = next_1.front;
+                let _e867 = here_1.front;
+                phi_1425_ = (_e865 > _e867);
             }
-            let _e868 = phi_1331_;
-            let _e869 = a;
-            at_front = (_e868 && (_e869 <= 0f));
-            let _e872 = at_back;
-            let _e873 = at_front;
-            let _e874 = (_e872 || _e873);
-            phi_1343_ = _e874;
-            if _e874 {
-                let _e876 = seen_1.rest;
-                phi_1343_ = (_e876 > 0.01f);
+            let _e870 = phi_1425_;
+            let _e871 = a;
+            at_front = (_e870 && (_e871 <= 0f));
+            let _e874 = at_back;
+            let _e875 = at_front;
+            let _e876 = (_e874 || _e875);
+            phi_1437_ = _e876;
+            if _e876 {
+                let _e878 = seen_1.rest;
+                phi_1437_ = (_e878 > 0.01f);
             }
-            let _e879 = phi_1343_;
-            if _e879 {
-                let _e880 = at_back;
-                if _e880 {
-                    let _e882 = here.back;
-                    local_9 = _e882;
+            let _e881 = phi_1437_;
+            if _e881 {
+                let _e882 = at_back;
+                if _e882 {
+                    let _e884 = here_1.back;
+                    local_7 = _e884;
                 } else {
-                    let _e884 = here.front;
-                    local_9 = _e884;
+                    let _e886 = here_1.front;
+                    local_7 = _e886;
                 }
-                let _e885 = local_9;
-                reach_2 = _e885;
-                let _e886 = at_back;
-                if _e886 {
-                    let _e887 = c;
-                    local_10 = -(_e887);
+                let _e887 = local_7;
+                reach_2 = _e887;
+                let _e888 = at_back;
+                if _e888 {
+                    let _e889 = c;
+                    local_8 = -(_e889);
                 } else {
-                    let _e889 = a;
-                    local_10 = -(_e889);
+                    let _e891 = a;
+                    local_8 = -(_e891);
                 }
-                let _e891 = local_10;
-                away = _e891;
-                let _e892 = at_back;
-                let _e893 = on_front;
-                if (_e892 && !(_e893)) {
-                    let _e897 = here.mask;
-                    param_75 = _e897;
-                    param_76 = vec4<f32>(1f, 1f, 1f, 1f);
-                    let _e898 = covered((&param_75), (&param_76));
-                    local_11 = (1f - _e898);
+                let _e893 = local_8;
+                away = _e893;
+                let _e894 = at_back;
+                let _e895 = on_front;
+                if (_e894 && !(_e895)) {
+                    let _e899 = here_1.mask;
+                    param_85 = _e899;
+                    param_86 = vec4<f32>(1f, 1f, 1f, 1f);
+                    let _e900 = covered((&param_85), (&param_86));
+                    local_9 = (1f - _e900);
                 } else {
-                    local_11 = 1f;
+                    local_9 = 1f;
                 }
-                let _e900 = local_11;
-                weight = _e900;
-                let _e901 = column_5;
-                let _e902 = at_back;
-                let _e903 = reach_2;
-                let _e904 = weight;
-                found = Edge(_e901, _e902, _e903, _e904);
+                let _e902 = local_9;
+                weight = _e902;
+                let _e903 = column_5;
+                let _e904 = at_back;
+                let _e905 = reach_2;
                 let _e906 = weight;
-                let _e908 = away;
-                if ((_e906 == 1f) && (_e908 < 0.5f)) {
-                    let _e911 = seen_1;
-                    param_77 = _e911;
-                    param_78 = 1f;
-                    let _e912 = x_2;
-                    param_79 = _e912;
-                    let _e913 = reach_2;
-                    param_80 = _e913;
-                    let _e914 = cover((&param_77), (&param_78), (&param_79), (&param_80));
-                    let _e915 = param_77;
-                    seen_1 = _e915;
-                    taken_4 = _e914;
-                    let _e916 = at_back;
-                    let _e917 = taken_4;
-                    let _e920 = backs[0u];
-                    backs[0u] = (_e920 + select(0f, _e917, _e916));
-                    let _e923 = at_back;
-                    let _e924 = taken_4;
-                    let _e927 = fronts[0u];
-                    fronts[0u] = (_e927 + select(_e924, 0f, _e923));
+                found = Edge(_e903, _e904, _e905, _e906);
+                let _e908 = weight;
+                let _e910 = away;
+                if ((_e908 == 1f) && (_e910 < 0.5f)) {
+                    let _e913 = seen_1;
+                    param_87 = _e913;
+                    param_88 = 1f;
+                    let _e914 = x_3;
+                    param_89 = _e914;
+                    let _e915 = reach_2;
+                    param_90 = _e915;
+                    let _e916 = cover((&param_87), (&param_88), (&param_89), (&param_90));
+                    let _e917 = param_87;
+                    seen_1 = _e917;
+                    taken_4 = _e916;
+                    let _e918 = at_back;
+                    let _e919 = taken_4;
+                    let _e922 = backs[0u];
+                    backs[0u] = (_e922 + select(0f, _e919, _e918));
+                    let _e925 = at_back;
+                    let _e926 = taken_4;
+                    let _e929 = fronts[0u];
+                    fronts[0u] = (_e929 + select(_e926, 0f, _e925));
                 }
-                let _e930 = reach_2;
-                let _e932 = edge.reach;
-                if (_e930 < _e932) {
-                    let _e934 = weight;
-                    if (_e934 < 1f) {
-                        let _e936 = edge;
-                        second = _e936;
+                let _e932 = reach_2;
+                let _e934 = edge.reach;
+                if (_e932 < _e934) {
+                    let _e936 = weight;
+                    if (_e936 < 1f) {
+                        let _e938 = edge;
+                        second = _e938;
                     }
-                    let _e937 = found;
-                    edge = _e937;
+                    let _e939 = found;
+                    edge = _e939;
                 } else {
-                    let _e938 = reach_2;
-                    let _e940 = second.reach;
-                    if (_e938 < _e940) {
-                        let _e942 = found;
-                        second = _e942;
+                    let _e940 = reach_2;
+                    let _e942 = second.reach;
+                    if (_e940 < _e942) {
+                        let _e944 = found;
+                        second = _e944;
                     }
                 }
             }
-            let _e944 = fronts[0u];
-            let _e946 = backs[0u];
-            if (max(_e944, _e946) > 0f) {
-                let _e949 = column_5;
-                param_81 = _e949;
-                let _e950 = row_4;
-                param_82 = _e950;
-                let _e952 = fronts[0u];
-                param_83 = _e952;
-                let _e954 = backs[0u];
-                param_84 = _e954;
-                let _e955 = weighted((&param_81), (&param_82), (&param_83), (&param_84));
-                let _e956 = color;
-                color = (_e956 + _e955);
+            let _e946 = fronts[0u];
+            let _e948 = backs[0u];
+            if (max(_e946, _e948) > 0f) {
+                let _e951 = column_5;
+                param_91 = _e951;
+                let _e952 = row_5;
+                param_92 = _e952;
+                let _e954 = fronts[0u];
+                param_93 = _e954;
+                let _e956 = backs[0u];
+                param_94 = _e956;
+                let _e957 = weighted((&param_91), (&param_92), (&param_93), (&param_94));
+                let _e958 = color;
+                color = (_e958 + _e957);
             }
-            let _e959 = fronts[1u];
-            let _e961 = backs[1u];
-            if (max(_e959, _e961) > 0f) {
-                let _e964 = column_5;
-                let _e965 = sense;
-                param_85 = (_e964 + _e965);
-                let _e967 = row_4;
-                param_86 = _e967;
-                let _e969 = fronts[1u];
-                param_87 = _e969;
-                let _e971 = backs[1u];
-                param_88 = _e971;
-                let _e972 = weighted((&param_85), (&param_86), (&param_87), (&param_88));
-                let _e973 = color;
-                color = (_e973 + _e972);
+            let _e961 = fronts[1u];
+            let _e963 = backs[1u];
+            if (max(_e961, _e963) > 0f) {
+                let _e966 = column_5;
+                let _e967 = sense;
+                param_95 = (_e966 + _e967);
+                let _e969 = row_5;
+                param_96 = _e969;
+                let _e971 = fronts[1u];
+                param_97 = _e971;
+                let _e973 = backs[1u];
+                param_98 = _e973;
+                let _e974 = weighted((&param_95), (&param_96), (&param_97), (&param_98));
+                let _e975 = color;
+                color = (_e975 + _e974);
             }
-            let _e975 = front_back;
-            on_front = _e975;
-            let _e976 = back_back;
-            on_back = _e976;
-            let _e977 = next;
-            here = _e977;
-            let _e978 = sense;
-            let _e979 = column_5;
-            column_5 = (_e979 + _e978);
-            let _e981 = x_2;
-            x_2 = (_e981 + 1f);
+            let _e977 = front_back;
+            on_front = _e977;
+            let _e978 = back_back;
+            on_back = _e978;
+            let _e979 = next_1;
+            here_1 = _e979;
+            let _e980 = sense;
+            let _e981 = column_5;
+            column_5 = (_e981 + _e980);
+            let _e983 = x_3;
+            x_3 = (_e983 + 1f);
             continue;
         } else {
             break;
         }
     }
-    let _e984 = seen_1.rest;
-    hole = (_e984 > 0.5f);
-    let _e987 = seen_1.rest;
-    if (_e987 > 0.01f) {
-        let _e990 = edge.column;
-        beyond = (_e990 < 0i);
-        let _e992 = beyond;
-        if _e992 {
-            let _e993 = column_5;
-            let _e995 = here.split;
-            let _e997 = here.split;
-            if _e997 {
-                let _e999 = here.back;
-                local_12 = _e999;
+    let _e986 = seen_1.rest;
+    hole = (_e986 > 0.5f);
+    let _e989 = seen_1.rest;
+    if (_e989 > 0.01f) {
+        let _e992 = edge.column;
+        beyond = (_e992 < 0i);
+        let _e994 = beyond;
+        if _e994 {
+            let _e995 = column_5;
+            let _e997 = here_1.split;
+            let _e999 = here_1.split;
+            if _e999 {
+                let _e1001 = here_1.back;
+                local_10 = _e1001;
             } else {
-                let _e1001 = here.front;
-                local_12 = _e1001;
+                let _e1003 = here_1.front;
+                local_10 = _e1003;
             }
-            let _e1002 = local_12;
-            edge = Edge(_e993, _e995, _e1002, 1f);
+            let _e1004 = local_10;
+            edge = Edge(_e995, _e997, _e1004, 1f);
         }
-        let _e1005 = edge.column;
-        param_89 = _e1005;
-        let _e1006 = source_column((&param_89));
-        edge_x = f32(_e1006);
-        let _e1008 = t;
-        let _e1009 = edge_x;
-        let _e1012 = edge.reach;
-        away_1 = abs(((_e1008 - _e1009) - _e1012));
-        let _e1015 = away_1;
-        spread = (0.5f * clamp(_e1015, 1f, 12f));
-        sum = vec4<f32>(0f, 0f, 0f, 0f);
+        let _e1007 = edge.column;
+        param_99 = _e1007;
+        let _e1008 = source_column((&param_99));
+        edge_x = f32(_e1008);
+        let _e1010 = t;
+        let _e1011 = edge_x;
+        let _e1014 = edge.reach;
+        away_1 = abs(((_e1010 - _e1011) - _e1014));
+        let _e1017 = away_1;
+        spread = (0.5f * clamp(_e1017, 1f, 12f));
+        sum_1 = vec4<f32>(0f, 0f, 0f, 0f);
         weights = 0f;
-        let _e1018 = beyond;
-        let _e1019 = away_1;
-        rows = select(2i, 0i, (_e1018 && (_e1019 < 0.5f)));
-        let _e1023 = rows;
-        i = -(_e1023);
+        let _e1020 = beyond;
+        let _e1021 = away_1;
+        rows = select(2i, 0i, (_e1020 && (_e1021 < 0.5f)));
+        let _e1025 = rows;
+        i = -(_e1025);
         loop {
-            let _e1025 = i;
-            let _e1026 = rows;
-            if (_e1025 <= _e1026) {
-                let _e1028 = row_4;
-                let _e1029 = i;
-                let _e1031 = spread;
-                let _e1038 = synthesis.source_size[1u];
-                at_2 = clamp((_e1028 + i32(round((f32(_e1029) * _e1031)))), 0i, (_e1038 - 1i));
-                let _e1042 = edge.column;
-                param_90 = _e1042;
-                let _e1043 = at_2;
-                param_91 = _e1043;
-                let _e1044 = layer_at((&param_90), (&param_91));
-                layer_3 = _e1044;
-                let _e1045 = i;
-                if (_e1045 == 0i) {
-                    let _e1048 = edge.back;
-                    local_13 = !(_e1048);
+            let _e1027 = i;
+            let _e1028 = rows;
+            if (_e1027 <= _e1028) {
+                let _e1030 = row_5;
+                let _e1031 = i;
+                let _e1033 = spread;
+                let _e1040 = synthesis.source_size[1u];
+                at_1 = clamp((_e1030 + i32(round((f32(_e1031) * _e1033)))), 0i, (_e1040 - 1i));
+                let _e1044 = edge.column;
+                param_100 = _e1044;
+                let _e1045 = at_1;
+                param_101 = _e1045;
+                let _e1046 = layer_at((&param_100), (&param_101));
+                layer_3 = _e1046;
+                let _e1047 = i;
+                if (_e1047 == 0i) {
+                    let _e1050 = edge.back;
+                    local_11 = !(_e1050);
                 } else {
-                    let _e1051 = layer_3.front;
-                    let _e1053 = edge.reach;
-                    local_13 = (_e1051 <= (_e1053 + 1f));
+                    let _e1053 = layer_3.front;
+                    let _e1055 = edge.reach;
+                    local_11 = (_e1053 <= (_e1055 + 1f));
                 }
-                let _e1056 = local_13;
-                front_2 = _e1056;
-                let _e1057 = i;
-                if (_e1057 == 0i) {
-                    let _e1060 = edge.back;
-                    local_14 = _e1060;
+                let _e1058 = local_11;
+                front_2 = _e1058;
+                let _e1059 = i;
+                if (_e1059 == 0i) {
+                    let _e1062 = edge.back;
+                    local_12 = _e1062;
                 } else {
-                    let _e1061 = front_2;
-                    let _e1064 = layer_3.split;
-                    let _e1065 = (!(_e1061) && _e1064);
-                    phi_1621_ = _e1065;
-                    if _e1065 {
-                        let _e1067 = layer_3.back;
-                        let _e1069 = edge.reach;
-                        phi_1621_ = (_e1067 <= (_e1069 + 1f));
+                    let _e1063 = front_2;
+                    let _e1066 = layer_3.split;
+                    let _e1067 = (!(_e1063) && _e1066);
+                    phi_1715_ = _e1067;
+                    if _e1067 {
+                        let _e1069 = layer_3.back;
+                        let _e1071 = edge.reach;
+                        phi_1715_ = (_e1069 <= (_e1071 + 1f));
                     }
-                    let _e1073 = phi_1621_;
-                    local_14 = _e1073;
+                    let _e1075 = phi_1715_;
+                    local_12 = _e1075;
                 }
-                let _e1074 = local_14;
-                behind_1 = _e1074;
-                let _e1075 = i;
-                if (_e1075 == 0i) {
-                    local_15 = 2f;
+                let _e1076 = local_12;
+                behind_1 = _e1076;
+                let _e1077 = i;
+                if (_e1077 == 0i) {
+                    local_13 = 2f;
                 } else {
-                    let _e1077 = front_2;
-                    if _e1077 {
-                        local_16 = 1f;
+                    let _e1079 = front_2;
+                    if _e1079 {
+                        local_14 = 1f;
                     } else {
-                        let _e1078 = behind_1;
-                        if _e1078 {
-                            let _e1080 = layer_3.mask;
-                            param_92 = _e1080;
-                            param_93 = vec4<f32>(1f, 1f, 1f, 1f);
-                            let _e1081 = covered((&param_92), (&param_93));
-                            local_17 = (1f - _e1081);
+                        let _e1080 = behind_1;
+                        if _e1080 {
+                            let _e1082 = layer_3.mask;
+                            param_102 = _e1082;
+                            param_103 = vec4<f32>(1f, 1f, 1f, 1f);
+                            let _e1083 = covered((&param_102), (&param_103));
+                            local_15 = (1f - _e1083);
                         } else {
-                            local_17 = 0f;
+                            local_15 = 0f;
                         }
-                        let _e1083 = local_17;
-                        local_16 = _e1083;
+                        let _e1085 = local_15;
+                        local_14 = _e1085;
                     }
-                    let _e1084 = local_16;
-                    local_15 = _e1084;
+                    let _e1086 = local_14;
+                    local_13 = _e1086;
                 }
-                let _e1085 = local_15;
-                weight_1 = _e1085;
-                let _e1086 = front_2;
-                let _e1087 = weight_1;
-                let _e1089 = front_2;
-                let _e1090 = weight_1;
-                let _e1093 = edge.column;
-                param_94 = _e1093;
-                let _e1094 = at_2;
-                param_95 = _e1094;
-                param_96 = select(0f, _e1087, _e1086);
-                param_97 = select(_e1090, 0f, _e1089);
-                let _e1095 = weighted((&param_94), (&param_95), (&param_96), (&param_97));
-                let _e1096 = sum;
-                sum = (_e1096 + _e1095);
-                let _e1098 = weight_1;
-                let _e1099 = weights;
-                weights = (_e1099 + _e1098);
+                let _e1087 = local_13;
+                weight_1 = _e1087;
+                let _e1088 = front_2;
+                let _e1089 = weight_1;
+                let _e1091 = front_2;
+                let _e1092 = weight_1;
+                let _e1095 = edge.column;
+                param_104 = _e1095;
+                let _e1096 = at_1;
+                param_105 = _e1096;
+                param_106 = select(0f, _e1089, _e1088);
+                param_107 = select(_e1092, 0f, _e1091);
+                let _e1097 = weighted((&param_104), (&param_105), (&param_106), (&param_107));
+                let _e1098 = sum_1;
+                sum_1 = (_e1098 + _e1097);
+                let _e1100 = weight_1;
+                let _e1101 = weights;
+                weights = (_e1101 + _e1100);
                 continue;
             } else {
                 break;
             }
             continuing {
-                let _e1101 = i;
-                i = (_e1101 + 1i);
+                let _e1103 = i;
+                i = (_e1103 + 1i);
             }
         }
-        let _e1103 = sum;
-        let _e1104 = weights;
-        fill = (_e1103 / vec4(_e1104));
-        let _e1108 = second.column;
-        let _e1109 = (_e1108 >= 0i);
-        phi_1683_ = _e1109;
-        if _e1109 {
-            let _e1111 = edge.weight;
-            phi_1683_ = (_e1111 < 1f);
+        let _e1105 = sum_1;
+        let _e1106 = weights;
+        fill = (_e1105 / vec4(_e1106));
+        let _e1110 = second.column;
+        let _e1111 = (_e1110 >= 0i);
+        phi_1777_ = _e1111;
+        if _e1111 {
+            let _e1113 = edge.weight;
+            phi_1777_ = (_e1113 < 1f);
         }
-        let _e1114 = phi_1683_;
-        if _e1114 {
-            let _e1116 = second.back;
-            one = select(vec2<f32>(1f, 0f), vec2<f32>(0f, 1f), vec2(_e1116));
-            let _e1120 = second.column;
-            param_98 = _e1120;
-            let _e1121 = row_4;
-            param_99 = _e1121;
-            let _e1123 = one[0u];
-            param_100 = _e1123;
-            let _e1125 = one[1u];
-            param_101 = _e1125;
-            let _e1126 = weighted((&param_98), (&param_99), (&param_100), (&param_101));
-            let _e1127 = fill;
-            let _e1129 = edge.weight;
-            fill = mix(_e1126, _e1127, vec4(_e1129));
+        let _e1116 = phi_1777_;
+        if _e1116 {
+            let _e1118 = second.back;
+            one = select(vec2<f32>(1f, 0f), vec2<f32>(0f, 1f), vec2(_e1118));
+            let _e1122 = second.column;
+            param_108 = _e1122;
+            let _e1123 = row_5;
+            param_109 = _e1123;
+            let _e1125 = one[0u];
+            param_110 = _e1125;
+            let _e1127 = one[1u];
+            param_111 = _e1127;
+            let _e1128 = weighted((&param_108), (&param_109), (&param_110), (&param_111));
+            let _e1129 = fill;
+            let _e1131 = edge.weight;
+            fill = mix(_e1128, _e1129, vec4(_e1131));
         }
-        let _e1132 = hole;
-        let _e1133 = away_1;
-        hole = (_e1132 && (_e1133 >= 0.5f));
-        let _e1136 = seen_1;
-        param_102 = _e1136;
-        param_103 = 1f;
-        let _e1137 = edge_x;
-        param_104 = _e1137;
-        let _e1139 = edge.reach;
-        param_105 = _e1139;
-        let _e1140 = cover((&param_102), (&param_103), (&param_104), (&param_105));
-        let _e1141 = param_102;
-        seen_1 = _e1141;
-        let _e1142 = fill;
-        let _e1144 = color;
-        color = (_e1144 + (_e1142 * _e1140));
+        let _e1134 = hole;
+        let _e1135 = away_1;
+        hole = (_e1134 && (_e1135 >= 0.5f));
+        let _e1138 = seen_1;
+        param_112 = _e1138;
+        param_113 = 1f;
+        let _e1139 = edge_x;
+        param_114 = _e1139;
+        let _e1141 = edge.reach;
+        param_115 = _e1141;
+        let _e1142 = cover((&param_112), (&param_113), (&param_114), (&param_115));
+        let _e1143 = param_112;
+        seen_1 = _e1143;
+        let _e1144 = fill;
+        let _e1146 = color;
+        color = (_e1146 + (_e1144 * _e1142));
     }
     return;
 }
