@@ -134,6 +134,7 @@ pub struct GpuScene {
     triangle_count: usize,
     mesh: Mesh,
     moving: Option<Moving>,
+    times_moved: u64,
     pub(super) materials: Vec<GpuMaterial>,
     textures: Vec<Texture>,
     pub(super) clusters: Vec<Cluster>,
@@ -194,6 +195,7 @@ impl GpuScene {
             triangle_count,
             mesh,
             moving,
+            times_moved: 0,
             materials,
             textures,
             clusters,
@@ -216,12 +218,18 @@ impl GpuScene {
         self.moving.is_some()
     }
 
+    /// Returns how often something has moved.
+    pub(crate) fn times_moved(&self) -> u64 {
+        self.times_moved
+    }
+
     /// Moves everything to where it is at a time in seconds; false if it is there already. A renderer's shadow map has to be
     /// drawn again then.
     pub(super) fn set_time(&mut self, seconds: f64) -> bool {
         let Some(moving) = &mut self.moving else { return false };
         let moved = moving.set_time(seconds, &mut self.clusters);
         if moved {
+            self.times_moved += 1;
             moving.moment.light(&moving.motion, &mut self.lights, &mut self.sky);
         }
         moved
@@ -249,7 +257,17 @@ impl GpuScene {
 
     /// True if anything is blended.
     pub fn has_transparent(&self) -> bool {
-        self.batches.iter().any(|batch| self.materials[batch.material].blended)
+        self.blended().next().is_some()
+    }
+
+    /// True if anything that is blended may be seen in a view.
+    pub(crate) fn is_transparent_in(&self, view: &View) -> bool {
+        let culler = Culler::of_view(view);
+        self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]).any(|c| culler.sees(&c.bounds))
+    }
+
+    fn blended(&self) -> impl Iterator<Item = &Batch> {
+        self.batches.iter().filter(|batch| self.materials[batch.material].blended)
     }
 
     /// True if anything opaque may be seen in a slice of a view (near and far plane in metres).

@@ -23,6 +23,8 @@ const GROWTH: f32 = 0.1;
 /// A strip is given up when the head has moved by so many metres from where it was rendered, or turned by so much.
 const LEAP: f32 = 0.5;
 const TURN: f32 = std::f32::consts::FRAC_PI_4;
+/// A strip is given up when the scene has moved so often since it was rendered, which it has not while rounds follow one another.
+const MOVED: u64 = Strips::MOST as u64;
 
 /// The history of one method.
 pub(super) struct Past<R: StereoRenderer> {
@@ -33,12 +35,21 @@ pub(super) struct Past<R: StereoRenderer> {
     color: RenderTarget,
     depth: RenderTarget,
     copy: DepthCopy,
-    strips: [Option<View>; Strips::MOST],
+    strips: [Option<Strip>; Strips::MOST],
     eyes: Option<Eyes>,
     need: Need,
     rounds: Rounds,
     /// Pixels that were rendered in the last frame.
     rendered: u32,
+}
+
+/// What a strip shows.
+#[derive(Clone, Copy)]
+struct Strip {
+    /// The whole eye from where it was rendered.
+    view: View,
+    /// [`GpuScene::times_moved`](crate::GpuScene) then.
+    times_moved: u64,
 }
 
 /// What all strips have in common.
@@ -93,6 +104,12 @@ impl Rounds {
         *self = Rounds { left: Strips::MOST, round: self.round + 1, least: None };
     }
 
+    /// All strips were replaced at once.
+    fn served(&mut self) {
+        self.begin();
+        self.left = 0;
+    }
+
     /// The number of the round that serves a frame, if it is complete.
     fn complete(&self) -> Option<u32> {
         (self.left == 0).then_some(self.round)
@@ -117,13 +134,8 @@ impl<R: StereoRenderer> Past<R> {
         })
     }
 
-    /// Renders a strip, if one is needed, and returns what there is.
-    pub(super) fn history(
-        &mut self,
-        frame: &Frame<R>,
-        views: &SynthesisViews,
-        selection: Selection,
-    ) -> Result<History, GlError> {
+    /// Begins anew if these are not the eyes that the strips are of.
+    fn fit(&mut self, frame: &Frame<R>, views: &SynthesisViews) -> Result<(), GlError> {
         let eyes = Eyes::new(frame.scene.id(), frame.pair, views);
         if self.eyes.is_none_or(|before| eyes.replaces(&before)) {
             self.strips = [None; Strips::MOST];
@@ -133,18 +145,63 @@ impl<R: StereoRenderer> Past<R> {
             self.depth.resize(self.size(views))?;
         }
         self.eyes = Some(eyes);
-        for strip in &mut self.strips {
-            let pose = views.target.pose;
-            *strip = strip.filter(|view| {
-                (view.pose.position - pose.position).length() < LEAP
-                    && view.pose.orientation.angle_between(pose.orientation) < TURN
-            });
+        Ok(())
+    }
+
+    /// True if the history can be an image of the whole other eye: it has its size, and no glass is seen in it.
+    pub(super) fn takes_whole(&self, frame: &Frame<R>, views: &SynthesisViews) -> bool {
+        self.scale == 1 && !frame.scene.is_transparent_in(&views.target)
+    }
+
+    /// Takes all strips from an image of the whole other eye with depth.
+    pub(super) fn take_whole(
+        &mut self,
+        frame: &Frame<R>,
+        views: &SynthesisViews,
+        targets: &R::Targets,
+    ) -> Result<(), GlError> {
+        self.fit(frame, views)?;
+        self.keep(targets, 0, 0, views.target.size);
+        let strip = Strip { view: views.target, times_moved: frame.scene.times_moved() };
+        self.strips = [Some(strip); Strips::MOST];
+        self.rounds.served();
+        Ok(())
+    }
+
+    /// Copies a part of a rendered image, from row `from` on, to row `first` of the history.
+    fn keep(&self, targets: &R::Targets, from: u32, first: u32, size: [u32; 2]) {
+        let to =
+            |target: &RenderTarget| Destination { origin: [0, first], size, ..Destination::whole(target) };
+        targets.color().copy_color([0, from], &to(&self.color));
+        let depth = DepthImage { origin: [0, from], ..DepthImage::whole(targets.depth()) };
+        self.copy.run(depth, &to(&self.depth));
+    }
+
+    /// Renders a strip, if one is needed, and returns what there is.
+    pub(super) fn history(
+        &mut self,
+        frame: &Frame<R>,
+        views: &SynthesisViews,
+        selection: Selection,
+    ) -> Result<History, GlError> {
+        self.fit(frame, views)?;
+        let mut is_late = false;
+        for slot in &mut self.strips {
+            let Some(strip) = *slot else { continue };
+            let (from, to) = (strip.view.pose, views.target.pose);
+            let moved = frame.scene.times_moved() - strip.times_moved;
+            if (from.position - to.position).length() >= LEAP
+                || from.orientation.angle_between(to.orientation) >= TURN
+                || moved >= MOVED
+            {
+                *slot = None;
+            }
+            is_late |= slot.is_none() || moved > 0;
         }
         if let Some((round, measured)) = self.need.take() {
             self.rounds.measured(round, &measured);
         }
-        // What moves is no older than a round.
-        if frame.scene.moves() && self.rounds.left == 0 {
+        if is_late && self.rounds.left == 0 {
             self.rounds.begin();
         }
         self.rendered = 0;
@@ -163,7 +220,7 @@ impl<R: StereoRenderer> Past<R> {
         History {
             color: self.color.color(0).raw(),
             depth: self.depth.depth().raw(),
-            strips: Strips::new(&views.target, &self.strips),
+            strips: Strips::new(&views.target, &self.strips.map(|strip| strip.map(|strip| strip.view))),
         }
     }
 
@@ -191,15 +248,8 @@ impl<R: StereoRenderer> Past<R> {
         let view = View { frustum, size: [width, high], ..whole };
         let request = ViewRequest { selection, ..ViewRequest::default() };
         frame.renderer.render(&mut self.targets, frame.scene, &view, &request)?;
-        let to = |target: &RenderTarget| Destination {
-            origin: [0, first],
-            size: [width, shown],
-            ..Destination::whole(target)
-        };
-        self.targets.color().copy_color([0, MARGIN], &to(&self.color));
-        let depth = DepthImage { origin: [0, MARGIN], ..DepthImage::whole(self.targets.depth()) };
-        self.copy.run(depth, &to(&self.depth));
-        self.strips[strip] = Some(whole);
+        self.keep(&self.targets, MARGIN, first, [width, shown]);
+        self.strips[strip] = Some(Strip { view: whole, times_moved: frame.scene.times_moved() });
         self.rendered = width * high;
         Ok(())
     }

@@ -86,7 +86,7 @@ impl<R: StereoRenderer> Synthesized<R> {
                 policy,
                 mode: FrameMode::default(),
                 fraction: NearFraction::new(gl, reads_samples)?,
-                conventional: Conventional::new(setup)?.keeping_depth(),
+                conventional: Conventional::new(setup)?,
             })
         });
         let has_near = options.near_field.is_some();
@@ -121,12 +121,14 @@ impl<R: StereoRenderer> Synthesized<R> {
     }
 
     /// Renders both eyes if the last frames were mostly too near; true if it did.
-    fn render_both(&mut self, frame: &Frame<R>) -> Result<bool, StereoError> {
-        let Some(switch) = &mut self.switch else { return Ok(false) };
-        if let Some(fraction) = switch.fraction.take() {
-            switch.mode = switch.policy.next(switch.mode, fraction);
+    fn render_both(&mut self, frame: &Frame<R>, views: &SynthesisViews) -> Result<bool, StereoError> {
+        let Some(Switch { policy, mode, fraction, conventional }) = &mut self.switch else {
+            return Ok(false);
+        };
+        if let Some(fraction) = fraction.take() {
+            *mode = policy.next(*mode, fraction);
         }
-        if switch.mode != FrameMode::BothRendered {
+        if *mode != FrameMode::BothRendered {
             return Ok(false);
         }
         if let Some(auto) = &mut self.auto_guard_band {
@@ -135,9 +137,24 @@ impl<R: StereoRenderer> Synthesized<R> {
         if let Some(past) = &mut self.past {
             past.interrupt();
         }
-        switch.conventional.render_frame(frame)?;
-        let (pair, depth) = (frame.pair, DepthMap::Resolved(switch.conventional.depth()));
-        switch.fraction.measure(depth, [0, 0], pair.size, &pair.depth, switch.policy.distance);
+        let pair = frame.pair;
+        // What is not synthesized is not for the history.
+        let all = self.options.near_field.is_none();
+        let mut past = self.past.as_mut().filter(|past| all && past.takes_whole(frame, views));
+        let takes = past.is_some();
+        conventional.render_eyes(
+            frame,
+            |eye| eye == pair.dominant || takes,
+            |eye, targets| match &mut past {
+                _ if eye == pair.dominant => {
+                    let depth = DepthMap::Resolved(targets.depth());
+                    fraction.measure(depth, [0, 0], pair.size, &pair.depth, policy.distance);
+                    Ok(())
+                }
+                Some(past) => past.take_whole(frame, views, targets),
+                None => Ok(()),
+            },
+        )?;
         Ok(true)
     }
 
@@ -212,15 +229,16 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
     }
 
     fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
-        if self.render_both(frame)? {
-            return Ok(());
-        }
         let pair = frame.pair;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let views = pair.synthesis(self.options.guard_band)?;
+        if self.render_both(frame, &views)? {
+            return Ok(());
+        }
         let from = pair.middle();
         let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
-        let over = Over { near, transparent: frame.scene.has_transparent() };
+        let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
+        let over = Over { near, transparent };
         let selection = self.selection(frame);
         let past = self.past.as_mut();
         let history = past.map(|past| past.history(frame, &views, selection)).transpose()?;
@@ -230,18 +248,19 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
         let depth = depth_samples.unwrap_or_else(|| self.targets.depth().raw());
         let samples = self.targets.color_samples();
         let source = Source { samples, history, ..Source::new(color.color(0).raw(), depth) };
-        let needs_depth = over.is_any() || frame.wants_depth(other);
+        // Glass that comes into view changes neither the program nor its targets.
+        let has_glass = frame.scene.has_transparent();
+        let reads_depth = over.is_any() || frame.wants_depth(other);
         // An eye that is complete once it is synthesized is not copied.
-        let is_complete = !needs_depth && self.finish.is_copy();
-        let Synthesizer { synthesis, image } = self.synthesizers.get(needs_depth)?;
-        let mut to = frame.to(other).color;
-        if !is_complete {
+        let is_complete = !reads_depth && self.finish.is_copy();
+        let Synthesizer { synthesis, image } = self.synthesizers.get(reads_depth || has_glass)?;
+        if !is_complete || has_glass {
             image.resize(pair.size)?;
-            to = Destination::whole(image);
         }
+        let to = if is_complete { frame.to(other).color } else { Destination::whole(image) };
         synthesis.synthesize(source, &views.warp, &to)?;
         self.measure(frame, &views);
-        let image = &self.synthesizers.get(needs_depth)?.image;
+        let image = &self.synthesizers.get(reads_depth || has_glass)?.image;
         let eyes = [EyeSource::Rendered(self.smooth.as_ref()), EyeSource::Synthesized(image)];
         let unfinished = if is_complete { 1 } else { 2 };
         for (eye, source) in [dominant, other].into_iter().zip(eyes).take(unfinished) {

@@ -14,7 +14,7 @@ use crate::render::{
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
 use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Destination, Filter, Format, Profiling, RenderTarget};
+use yoro_gl::{Command, Destination, Filter, Format, Profiling, RenderTarget};
 use yoro_scene::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_scene::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
 
@@ -50,6 +50,21 @@ fn scene() -> Scene {
     }
 }
 
+/// Lets the last quad of a scene go a metre to the right from 0.1 to 0.225 seconds; after 0.4 it begins again.
+fn move_last_quad(scene: &mut Scene) {
+    let end = scene.model.vertices.len();
+    let vertices = end - 4..end;
+    let rest = scene.model.vertices[vertices.clone()].to_vec();
+    let moves = Track {
+        times: vec![0.1, 0.225, 0.4],
+        values: vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        ..Track::default()
+    };
+    let nodes = vec![Node { moves: Some(moves), ..Node::default() }];
+    let meshes = vec![MovingMesh { vertices, rest, carrier: Carrier::Node(0), morph: None }];
+    scene.motion = Motion { loops: vec![0.4], nodes, meshes, ..Motion::default() };
+}
+
 /// Only what stays on its pixel: no ambient occlusion, no bloom.
 pub(super) fn local() -> RenderSettings {
     RenderSettings { shadow_map_size: 256, ssao: false, bloom: false, ..RenderSettings::default() }
@@ -68,7 +83,11 @@ pub(super) struct Rig {
 
 impl Rig {
     pub(super) fn new(gl: &Rc<Context>, settings: &RenderSettings) -> Rig {
-        let scene = GpuScene::upload(gl, scene()).unwrap();
+        Rig::of(gl, settings, scene())
+    }
+
+    fn of(gl: &Rc<Context>, settings: &RenderSettings, scene: Scene) -> Rig {
+        let scene = GpuScene::upload(gl, scene).unwrap();
         let renderer = Renderer::new(gl, settings, &scene).unwrap();
         Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
     }
@@ -318,11 +337,7 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
     quad(&mut near.model, 2, corner, Vec3::X * 0.5, Vec3::Y);
     for renderer in [RendererKind::Deferred, RendererKind::Forward] {
         let settings = RenderSettings { renderer, ..local() };
-        let mut rigs = [far.clone(), near.clone()].map(|scene| {
-            let scene = GpuScene::upload(gl, scene).unwrap();
-            let renderer = Renderer::new(gl, &settings, &scene).unwrap();
-            Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() }
-        });
+        let mut rigs = [far.clone(), near.clone()].map(|scene| Rig::of(gl, &settings, scene));
         let pair = pair(Eye::Right, DepthConvention::Standard);
         let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
         for _ in 0..5 {
@@ -350,21 +365,9 @@ fn what_moves_at_the_border_is_drawn_at_once() {
     let mut scene = scene();
     scene.model.parts.truncate(2);
     // A board at 40 cm comes in at the left border in an eighth of a second, and stays a while.
-    let first = scene.model.vertices.len();
     quad(&mut scene.model, 2, Vec3::new(-1.6, -0.5, -0.4), Vec3::X * 0.5, Vec3::Y);
-    let vertices = first..first + 4;
-    let rest = scene.model.vertices[vertices.clone()].to_vec();
-    let moves = Track {
-        times: vec![0.1, 0.225, 0.4],
-        values: vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0],
-        ..Track::default()
-    };
-    let nodes = vec![Node { moves: Some(moves), ..Node::default() }];
-    let meshes = vec![MovingMesh { vertices, rest, carrier: Carrier::Node(0), morph: None }];
-    scene.motion = Motion { loops: vec![0.4], nodes, meshes, ..Motion::default() };
-    let scene = GpuScene::upload(gl, scene).unwrap();
-    let renderer = Renderer::new(gl, &local(), &scene).unwrap();
-    let mut rig = Rig { scene, renderer, frame: StereoFrame::new(gl, SIZE).unwrap() };
+    move_last_quad(&mut scene);
+    let mut rig = Rig::of(gl, &local(), scene);
     let pair = pair(Eye::Right, DepthConvention::Standard);
     let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
     let [mut whole, mut auto] =
@@ -397,7 +400,18 @@ fn count_passes(
     wanted: [bool; 2],
     name: &str,
 ) -> usize {
-    let pair = pair(Eye::Right, DepthConvention::Reversed);
+    count_passes_of(gl, rig, method, &pair(Eye::Right, DepthConvention::Reversed), wanted, name)
+}
+
+/// Does the same for a pair of eyes.
+fn count_passes_of(
+    gl: &Rc<Context>,
+    rig: &mut Rig,
+    method: &mut dyn StereoMethod,
+    pair: &EyePair,
+    wanted: [bool; 2],
+    name: &str,
+) -> usize {
     let copy = DepthCopy::new(gl).unwrap();
     let depth = [(); 2].map(|()| RenderTarget::new(gl, SIZE, &[], Some(Format::Depth32F)).unwrap());
     let mut targets = rig.frame.targets();
@@ -405,7 +419,7 @@ fn count_passes(
         target.depth = Some(DepthTarget { to: Destination::whole(depth), copy: &copy });
     }
     gl.set_profiling(Profiling::Finish);
-    method.render_to(&mut rig.renderer, &rig.scene, &pair, &targets).unwrap();
+    method.render_to(&mut rig.renderer, &rig.scene, pair, &targets).unwrap();
     let passes = gl.take_pass_times();
     gl.set_profiling(Profiling::Off);
     assert!(passes.iter().any(|pass| pass.name == "forward"));
@@ -467,14 +481,52 @@ fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
     let [nobody, other] = [[false, false], [true, false]];
     let mut pictures = Vec::new();
     for (scene, wanted, copies) in [(scene(), nobody, 2), (opaque.clone(), nobody, 1), (opaque, other, 2)] {
-        let mut rig = Rig::new(gl, &forward());
-        rig.scene = GpuScene::upload(gl, scene).unwrap();
-        rig.renderer = Renderer::new(gl, &forward(), &rig.scene).unwrap();
+        let mut rig = Rig::of(gl, &forward(), scene);
         let mut method = create(gl, Method::Yoro, &forward(), &StereoOptions::default()).unwrap();
         assert_eq!(count_passes(gl, &mut rig, &mut *method, wanted, "copy"), copies);
         pictures.push(Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE)));
     }
     assert!(pictures[0] != pictures[1] && pictures[1] == pictures[2]);
+    assert_eq!(gl.take_errors(), None);
+}
+
+/// Looking around: samples are kept, and the other eye copied, where glass changes either eye, and hardly anywhere else.
+#[test]
+fn glass_out_of_view_costs_nothing() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut opaque = scene();
+    opaque.model.parts.pop();
+    let mut rigs = [scene(), opaque].map(|scene| Rig::of(gl, &forward(), scene));
+    for edges in [Edges::Hard, Edges::Multisample] {
+        let options = StereoOptions { edges: Some(edges), policy: None, ..StereoOptions::default() };
+        let mut methods = [(); 2].map(|()| create(gl, Method::Yoro, &forward(), &options).unwrap());
+        let mut free = 0;
+        for turn in 0..24 {
+            let orientation = Quat::from_rotation_y(turn as f32 * std::f32::consts::TAU / 24.0);
+            let still = pair(Eye::Right, DepthConvention::Reversed);
+            let pose = Pose { orientation, ..Pose::IDENTITY };
+            let pair =
+                EyePair::parallel(pose, still.frusta[0], still.ipd(), still.depth, SIZE, still.dominant);
+            let [glass, plain] = [0, 1].map(|i| {
+                let (rig, method) = (&mut rigs[i], &mut *methods[i]);
+                gl.record();
+                let copies = count_passes_of(gl, rig, method, &pair, [false; 2], "copy");
+                let kept =
+                    gl.take_record().iter().filter(|c| matches!(c, Command::Discard(_, [true, _]))).count();
+                let eyes = Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE));
+                (eyes, copies, kept)
+            });
+            if glass.1 == 1 {
+                assert!(glass == plain, "{edges:?}, turn {turn}");
+                free += 1;
+            } else {
+                assert!(glass.1 == 2 && glass.2 != plain.2, "{edges:?}, turn {turn}");
+            }
+        }
+        // The view is 67 degrees wide, the glass 19.
+        assert!((16..24).contains(&free), "{edges:?}: {free} of 24");
+    }
     assert_eq!(gl.take_errors(), None);
 }
 
@@ -669,6 +721,112 @@ fn a_history_shows_what_is_uncovered_and_is_renewed_by_need() {
                 "{what}, {history:?}: {used:?}"
             );
         }
+    }
+    assert_eq!(gl.take_errors(), None);
+}
+
+/// Returns in which of the eight strips two images of an eye differ.
+fn strips_that_differ(a: &[u8], b: &[u8]) -> Vec<usize> {
+    let strip = a.len() / 8;
+    let strips = a.chunks(strip).zip(b.chunks(strip)).enumerate();
+    strips.filter(|(_, (a, b))| a != b).map(|(i, _)| i).collect()
+}
+
+/// A pane of glass moves in a corner; before the posts nothing does, so that an old strip would show.
+#[test]
+fn strips_of_a_moving_scene_are_given_up_when_it_has_moved_eight_times() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut scene = scene();
+    quad(&mut scene.model, 3, Vec3::new(-0.5, 0.9, -3.0), Vec3::X * 0.1, Vec3::Y * 0.1);
+    move_last_quad(&mut scene);
+    let mut rig = Rig::of(gl, &local(), scene);
+    let pair = pair(Eye::Right, DepthConvention::Standard);
+    let [mut without, mut method] = [History::Off, History::Full].map(|history| {
+        let plain = StereoOptions { policy: None, anti_aliasing: AntiAliasing::Off, ..Default::default() };
+        create(gl, Method::Yoro, &local(), &StereoOptions { history, ..plain }).unwrap()
+    });
+    let mut frame = 0;
+    let mut moved = |rig: &mut Rig, times| {
+        for _ in 0..times {
+            frame += 1;
+            rig.renderer.set_time(&mut rig.scene, f64::from(frame) / 72.0).unwrap();
+        }
+    };
+    let mut shown = |rig: &mut Rig, method: &mut dyn StereoMethod| {
+        let (plain, with) = (rig.render(&mut *without, &pair), rig.render(method, &pair));
+        strips_that_differ(&plain[0], &with[0])
+    };
+    let mut all = Vec::new();
+    for _ in 0..20 {
+        moved(&mut rig, 1);
+        all = shown(&mut rig, &mut *method);
+        let used = method.history().unwrap();
+        assert!(used.uncovered == 0 || used.rendered > 0, "what moves is renewed: {used:?}");
+    }
+    assert!(all.len() > 3, "all strips show something: {all:?}");
+    // The scene stands still.
+    let mut rendered = 0;
+    for _ in 0..16 {
+        assert_eq!(shown(&mut rig, &mut *method), all);
+        rendered = method.history().unwrap().rendered;
+    }
+    assert_eq!(rendered, 0);
+    // Another method was in use for a while.
+    moved(&mut rig, 7);
+    assert_eq!(shown(&mut rig, &mut *method), all);
+    moved(&mut rig, 7);
+    let one = shown(&mut rig, &mut *method);
+    assert!(one.iter().all(|strip| *strip < 2), "only what was rendered in these two frames: {one:?}");
+    assert_eq!(gl.take_errors(), None);
+}
+
+/// Both eyes are rendered while the head looks at the floor. What the other eye saw last fills the first frame that is
+/// synthesized, unless there was glass in it.
+#[test]
+fn the_switch_to_two_renders_fills_the_history() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let mut opaque = scene();
+    opaque.model.parts.pop();
+    let plain = StereoOptions { policy: None, anti_aliasing: AntiAliasing::Off, ..Default::default() };
+    let policy = Some(NearFieldPolicy { distance: 1.3, ..NearFieldPolicy::default() });
+    for (settings, scene, fills) in
+        [(local(), opaque.clone(), true), (forward(), opaque, true), (local(), scene(), false)]
+    {
+        let what = settings.renderer;
+        let mut rig = Rig::of(gl, &settings, scene);
+        let ahead = pair(Eye::Right, DepthConvention::Standard);
+        let down = Pose { orientation: Quat::from_rotation_x(-1.5), ..Pose::IDENTITY };
+        let down = EyePair::parallel(down, ahead.frusta[0], ahead.ipd(), ahead.depth, SIZE, ahead.dominant);
+        let switching = StereoOptions { policy, history: History::Full, ..plain };
+        let mut method = create(gl, Method::Yoro, &settings, &switching).unwrap();
+        (0..5).for_each(|_| drop(rig.render(&mut *method, &down)));
+        assert!(method.is_substituted());
+        let mut shown = rig.render(&mut *method, &ahead);
+        while method.is_substituted() {
+            shown = rig.render(&mut *method, &ahead);
+        }
+        assert_eq!(
+            method.history().unwrap().rendered == 0,
+            fills,
+            "{what:?}: strips begin anew, or need not"
+        );
+        let mut without = create(gl, Method::Yoro, &settings, &plain).unwrap();
+        let plain_picture = rig.render(&mut *without, &ahead);
+        let strips = strips_that_differ(&shown[0], &plain_picture[0]);
+        assert_eq!(strips.len() > 3, fills, "{what:?}: strips {strips:?}");
+        // The same as strips show that were rendered here.
+        let by_need = StereoOptions { history: History::Full, ..plain };
+        let mut by_need = create(gl, Method::Yoro, &settings, &by_need).unwrap();
+        let (mut expected, mut pixels) = (plain_picture.clone(), 0);
+        for _ in 0..12 {
+            expected = rig.render(&mut *by_need, &ahead);
+            pixels += by_need.history().unwrap().rendered;
+        }
+        assert!(pixels > SIZE[0] * SIZE[1] && expected != plain_picture);
+        let share = equal_share(&shown[0], &expected[0]);
+        assert_eq!(share > 0.9995, fills, "{what:?}: {share} of the picture");
     }
     assert_eq!(gl.take_errors(), None);
 }
