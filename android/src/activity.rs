@@ -16,7 +16,7 @@ use yoro_lenses::{MotionSample, Screen};
 use yoro_protocol::DisplayKind;
 use yoro_protocol::telemetry::DeviceState;
 use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
-use yoro_viewer::{Action, Cardboard, FrameReport, FrameTiming, Viewer, ViewerError};
+use yoro_viewer::{Action, Cardboard, Event, FrameReport, FrameTiming, Viewer, ViewerError};
 
 use crate::configuration::Configuration;
 use crate::device::Device;
@@ -85,6 +85,8 @@ struct Activity {
     /// True once it is decided which display the eyes see.
     is_display_chosen: bool,
     is_resumed: bool,
+    /// True while the screen's brightness is raised.
+    is_bright: bool,
     is_finishing: bool,
     is_over: bool,
     /// The scene in view, and true if the summary of its session is in the log.
@@ -116,6 +118,7 @@ impl Activity {
             samples: Vec::new(),
             is_display_chosen: false,
             is_resumed: false,
+            is_bright: false,
             is_finishing: false,
             is_over: false,
             scene: String::new(),
@@ -197,6 +200,7 @@ impl Activity {
                 self.resume();
             }
             MainEvent::Pause => self.pause(),
+            MainEvent::Stop => self.leave(),
             MainEvent::SaveState { saver, .. } => {
                 saver.store(&self.configuration.save(self.display.viewer()));
             }
@@ -232,6 +236,15 @@ impl Activity {
         }
         if let Some(cardboard) = self.display.cardboard_mut() {
             cardboard.pause();
+        }
+    }
+
+    /// Ends an activity that was started by hand when the user leaves it: only a new one sees what other applications share.
+    /// A device that goes to sleep is not left.
+    fn leave(&mut self) {
+        if self.configuration.is_by_hand() && !self.display.is_headset() && self.java.is_awake() {
+            self.configuration.leave(self.display.viewer());
+            self.finish();
         }
     }
 
@@ -419,7 +432,10 @@ impl Activity {
         if let Display::None = self.display {
             let new = |settings, folders: &[PathBuf]| Cardboard::new(settings, screen, folders);
             match self.configuration.make_viewer(new) {
-                Ok(cardboard) => self.display = Display::Cardboard(Box::new(cardboard)),
+                Ok(mut cardboard) => {
+                    self.configuration.begin(&mut cardboard);
+                    self.display = Display::Cardboard(Box::new(cardboard));
+                }
                 Err(error) => return self.fail(error.to_string()),
             }
         }
@@ -527,11 +543,28 @@ impl Activity {
         };
         cardboard.resize(screen)?;
         for event in self.input.events.drain(..) {
-            match cardboard.event(event) {
+            let done = match event {
+                Event::Tap => match cardboard.touch(self.input.touched) {
+                    Ok(None) => cardboard.event(event),
+                    done => done.map(Option::unwrap_or_default),
+                },
+                _ if cardboard.viewer().is_start_screen() => continue,
+                _ => cardboard.event(event),
+            };
+            match done {
                 Ok(Action::Nothing) => {}
-                Ok(action) => log::info!("{action}"),
+                Ok(action) => {
+                    log::info!("{action}");
+                    if action == Action::ShareLog {
+                        self.java.share(results::recent());
+                    }
+                }
                 Err(error) => log::error!("{error}"),
             }
+        }
+        let is_bright = cardboard.viewer().offers_start_screen() && !cardboard.viewer().is_start_screen();
+        if is_bright != std::mem::replace(&mut self.is_bright, is_bright) {
+            self.java.raise_brightness(is_bright);
         }
         let begin = now_ns();
         let refresh_hz = self.screen.refresh_hz;

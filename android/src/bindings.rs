@@ -14,6 +14,7 @@ bind_java_type! {
     },
     methods {
         fn finish(),
+        fn start_activity(intent: Intent),
         fn get_application_context() -> android.content.Context,
         fn get_content_resolver() -> ContentResolver,
         fn get_intent() -> Intent,
@@ -63,11 +64,18 @@ bind_java_type! {
 
 bind_java_type! {
     pub Window => android.view.Window,
-    type_map = { View => android.view.View },
+    type_map = { LayoutParams => "android.view.WindowManager$LayoutParams", View => android.view.View },
     methods {
+        fn get_attributes() -> LayoutParams,
         fn get_decor_view() -> View,
+        fn set_attributes(attributes: LayoutParams),
         fn set_sustained_performance_mode(enable: bool),
     },
+}
+
+bind_java_type! {
+    pub LayoutParams => "android.view.WindowManager$LayoutParams",
+    fields { screen_brightness: jfloat },
 }
 
 bind_java_type! {
@@ -82,7 +90,10 @@ bind_java_type! {
 
 bind_java_type! {
     pub PowerManager => android.os.PowerManager,
-    methods { fn is_sustained_performance_mode_supported() -> bool },
+    methods {
+        fn is_interactive() -> bool,
+        fn is_sustained_performance_mode_supported() -> bool,
+    },
 }
 
 bind_java_type! {
@@ -92,18 +103,28 @@ bind_java_type! {
 
 bind_java_type! {
     pub Intent => android.content.Intent,
-    type_map = { Bundle => android.os.Bundle, Uri => android.net.Uri },
+    type_map = { Bundle => android.os.Bundle, Parcelable => android.os.Parcelable, Uri => android.net.Uri },
+    constructors { fn new(action: JString) },
     methods {
+        static fn create_chooser(target: Intent, title: JCharSequence) -> Intent,
         fn get_action() -> JString,
         fn get_data() -> Uri,
         fn get_extras() -> Bundle,
         fn get_int_extra(name: JString, default: jint) -> jint,
+        fn get_parcelable_extra(name: JString) -> Parcelable,
+        fn get_string_extra(name: JString) -> JString,
+        fn put_extra(name: JString, value: JString) -> Intent,
+        fn set_type(kind: JString) -> Intent,
     },
 }
 
 bind_java_type! {
     pub IntentFilter => android.content.IntentFilter,
     constructors { fn new(action: JString) },
+}
+
+bind_java_type! {
+    pub Parcelable => android.os.Parcelable,
 }
 
 bind_java_type! {

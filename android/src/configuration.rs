@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use android_activity::AndroidApp;
 use yoro_protocol::Settings;
 use yoro_scenes::BUILTINS;
-use yoro_viewer::{Viewer, ViewerError, list_scenes};
+use yoro_viewer::{Cardboard, Viewer, ViewerError, list_scenes};
 
 use crate::display::Display;
 use crate::game_loop::GameLoop;
-use crate::java::Java;
+use crate::java::{Given, Java};
 use crate::results;
 use crate::settings::{self, Pair, Sources};
+use crate::shared::{self, Shared};
 use crate::system;
 
 /// What the menu has changed, in the application's own folder.
@@ -30,6 +31,8 @@ pub struct Configuration {
     game_loop: Option<GameLoop>,
     /// True if a scenario was asked for that there is not: the activity has nothing to do.
     pub is_unknown_scenario: bool,
+    /// What another application shares, or why it is of no use.
+    shared: Option<Result<Shared, String>>,
 }
 
 impl Configuration {
@@ -46,7 +49,16 @@ impl Configuration {
                 scenes.display()
             );
         }
-        let mut extras = java.extras();
+        let shared = java.given().map(|given| match given {
+            Given::Text(text) => shared::viewer_in_text(&text),
+            Given::File(file, name) => match folders.first() {
+                Some(folder) => shared::read(file, &name, folder),
+                None => Err("There is no folder for what is shared: make room, and share it again.".into()),
+            },
+            Given::Closed => Err("The shared file cannot be opened: share it from another application.".into()),
+        });
+        // What comes with something shared are no settings.
+        let mut extras = if shared.is_some() { Vec::new() } else { java.extras() };
         let scenario = java.scenario();
         let game_loop = scenario.and_then(|scenario| GameLoop::new(scenario, extras.clone()));
         if let Some(scenario) = scenario {
@@ -63,16 +75,63 @@ impl Configuration {
         let folder = app.internal_data_path().filter(|_| scenario.is_none());
         let menu_file = folder.map(|folder| folder.join(MENU_FILE_NAME));
         let menu = menu_file.as_ref().and_then(|file| std::fs::read(file).ok());
-        let sources = Sources {
+        let mut sources = Sources {
             menu: menu.map_or_else(Vec::new, |bytes| settings::restore(&bytes)),
             file: external.map(|folder| folder.join(settings::FILE_NAME)),
             extras,
             properties: settings::properties(system::property),
             saved: Vec::new(),
         };
+        match &shared {
+            Some(Ok(Shared::Scene(name))) => {
+                log::info!("shared: the model {name}");
+                let pairs = [("scene", name.as_str()), ("viewpoint", "0")];
+                sources.keep(pairs.map(|(key, value)| (key.to_owned(), value.to_owned())));
+            }
+            Some(Ok(Shared::Viewer(uri))) => log::info!("shared: the viewer {uri}"),
+            Some(Err(mistake)) => log::warn!("shared: {mistake}"),
+            None => {}
+        }
         let is_unknown_scenario = scenario.is_some() && game_loop.is_none();
         let (settings, mistakes) = (Settings::default(), Vec::new());
-        Configuration { sources, settings, folders, menu_file, mistakes, game_loop, is_unknown_scenario }
+        Configuration {
+            sources,
+            settings,
+            folders,
+            menu_file,
+            mistakes,
+            game_loop,
+            is_unknown_scenario,
+            shared,
+        }
+    }
+
+    /// True if a person has started the application by hand.
+    pub fn is_by_hand(&self) -> bool {
+        self.game_loop.is_none() && self.sources.is_by_hand()
+    }
+
+    /// Begins as a start by hand does: takes what was shared, and shows the start screen where there is something to say,
+    /// or no viewer was chosen yet. Does nothing for a start by a computer.
+    pub fn begin(&mut self, cardboard: &mut Cardboard) {
+        if !self.is_by_hand() {
+            return;
+        }
+        cardboard.viewer_mut().offer_start_screen();
+        let message = match self.shared.take() {
+            Some(Ok(Shared::Viewer(uri))) => match cardboard.choose_viewer(&uri) {
+                Ok(()) => "This is your viewer now. Touch Start.".into(),
+                Err(error) => error.to_string(),
+            },
+            Some(Ok(Shared::Scene(name))) => {
+                self.write_menu_file();
+                format!("The model {name} was opened: touch Start to stand in it.")
+            }
+            Some(Err(mistake)) => mistake,
+            None if self.sources.has_viewer() => return,
+            None => String::new(),
+        };
+        log::info!("{}", cardboard.viewer_mut().show_start_screen(&message));
     }
 
     /// Goes to the next step of a game loop, and returns its settings; none after the last, and without a game loop.
@@ -111,13 +170,20 @@ impl Configuration {
         if is_reset {
             self.sources.menu.clear();
         }
-        for (key, value) in kept {
-            self.sources.menu.retain(|(other, _)| other != key);
-            self.sources.menu.push((key.to_owned(), value));
-        }
-        let Some(file) = self.menu_file.as_ref().filter(|_| !self.sources.is_named_run()) else {
-            return is_reset;
-        };
+        self.sources.keep(kept.into_iter().map(|(key, value)| (key.to_owned(), value)));
+        self.write_menu_file();
+        is_reset
+    }
+
+    /// Keeps what the user has changed by tap and volume keys, too, for the user leaves.
+    pub fn leave(&mut self, viewer: Option<&Viewer>) {
+        let changes = self.changes(viewer);
+        self.sources.keep(changes);
+        self.write_menu_file();
+    }
+
+    fn write_menu_file(&self) {
+        let Some(file) = self.menu_file.as_ref().filter(|_| !self.sources.is_named_run()) else { return };
         let new = file.with_extension("new");
         let written = std::fs::write(&new, settings::save(&self.sources.menu))
             .and_then(|()| std::fs::rename(&new, file));
@@ -127,7 +193,6 @@ impl Configuration {
                 file.display()
             );
         }
-        is_reset
     }
 
     /// Returns the settings from outside; each mistake is logged once.

@@ -13,6 +13,8 @@ pub struct Input {
     trigger: Press,
     /// Events that nobody has taken yet.
     pub events: Vec<Event>,
+    /// Where the finger was that pressed last, in pixels from the upper left corner; none if that was a key.
+    pub touched: Option<[f32; 2]>,
     /// True if Android has events to read.
     pub is_available: bool,
 }
@@ -57,6 +59,7 @@ impl Input {
         match motion.action() {
             MotionAction::Down => {
                 self.touch.down(motion.event_time(), position);
+                self.touched = Some(position);
                 self.events.push(Event::Press);
             }
             MotionAction::Move => self.touch.moved(position, dpi),
@@ -93,6 +96,7 @@ impl Input {
                 // A key that is held repeats.
                 KeyAction::Down if key.repeat_count() == 0 => {
                     self.trigger.down(key.event_time(), [0.0; 2]);
+                    self.touched = None;
                     self.events.push(Event::Press);
                 }
                 KeyAction::Up => {

@@ -15,7 +15,7 @@ use jni::{jni_sig, jni_str};
 use yoro_viewer::openxr::runtime::{Broker, Rows};
 
 use crate::bindings::{
-    Activity, BatteryManager, Cursor, DisplayMetrics as Metrics, IntentFilter, PowerManager, Toast, Uri,
+    Activity, BatteryManager, Cursor, DisplayMetrics as Metrics, Intent, IntentFilter, PowerManager, Toast, Uri,
 };
 
 /// `BatteryManager.BATTERY_PROPERTY_*`.
@@ -47,6 +47,16 @@ pub struct BatteryIntent {
     pub plugged: Option<i32>,
     /// `BATTERY_STATUS_*`.
     pub status: Option<i32>,
+}
+
+/// What another application gives to the activity with the intent that starts it.
+pub enum Given {
+    /// A text, or an address.
+    Text(String),
+    /// A file, open, and its name.
+    File(File, String),
+    /// A file that its owner does not let yoro read.
+    Closed,
 }
 
 /// The display that the activity is on.
@@ -187,6 +197,85 @@ impl Java {
         extras.unwrap_or_default()
     }
 
+    /// Returns what another application shares by the intent that started the activity; none for any other start. What is
+    /// shared while the activity lives does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
+    pub fn given(&self) -> Option<Given> {
+        let given = self.ask("the shared", |env, activity| {
+            let intent = activity.get_intent(env)?;
+            let action = if intent.is_null() { JString::null() } else { intent.get_action(env)? };
+            if action.is_null() {
+                return Ok(None);
+            }
+            let uri = match action.try_to_string(env)?.as_str() {
+                "android.intent.action.SEND" => {
+                    let name = JString::new(env, "android.intent.extra.TEXT")?;
+                    let shared = intent.get_string_extra(env, &name)?;
+                    if !shared.is_null() {
+                        return shared.try_to_string(env).map(Given::Text).map(Some);
+                    }
+                    let name = JString::new(env, "android.intent.extra.STREAM")?;
+                    let stream = intent.get_parcelable_extra(env, &name)?;
+                    if stream.is_null() {
+                        return Ok(None);
+                    }
+                    env.cast_local::<Uri>(stream)?
+                }
+                "android.intent.action.VIEW" => intent.get_data(env)?,
+                _ => return Ok(None),
+            };
+            if uri.is_null() {
+                return Ok(None);
+            }
+            let address = text(env, &uri)?;
+            if address.starts_with("http") {
+                return Ok(Some(Given::Text(address)));
+            }
+            let last = address.rsplit('/').next().unwrap_or_default().to_owned();
+            let shown = query(env, activity, &address, &["_display_name"]).ok().flatten();
+            let shown = shown.and_then(|rows| rows.into_iter().flatten().flatten().next());
+            let file = open(env, activity, &uri, "r").ok().flatten();
+            Ok(Some(file.map_or(Given::Closed, |file| Given::File(file, shown.unwrap_or(last)))))
+        });
+        given.flatten()
+    }
+
+    /// Lets the user give a text to another application. An intent takes half a megabyte at most.
+    pub fn share(&self, shared: String) {
+        self.on_main_thread("sharing", move |env, activity| {
+            let action = JString::new(env, "android.intent.action.SEND")?;
+            let intent = Intent::new(env, &action)?;
+            let kind = JString::new(env, "text/plain")?;
+            intent.set_type(env, &kind)?;
+            let (name, value) = (JString::new(env, "android.intent.extra.TEXT")?, JString::new(env, &shared)?);
+            intent.put_extra(env, &name, &value)?;
+            let title = JString::new(env, "The log of yoro")?;
+            let chooser = Intent::create_chooser(env, &intent, title.as_char_sequence())?;
+            activity.start_activity(env, &chooser)
+        });
+    }
+
+    /// Raises the screen's brightness to its highest, or gives it back to the user's setting.
+    pub fn raise_brightness(&self, is_raised: bool) {
+        // BRIGHTNESS_OVERRIDE_FULL and BRIGHTNESS_OVERRIDE_NONE.
+        let brightness = if is_raised { 1.0 } else { -1.0 };
+        self.on_main_thread("the brightness", move |env, activity| {
+            let window = activity.get_window(env)?;
+            let attributes = window.get_attributes(env)?;
+            attributes.set_screen_brightness(env, brightness)?;
+            window.set_attributes(env, &attributes)
+        });
+    }
+
+    /// True while the device is awake; also where it does not say.
+    pub fn is_awake(&self) -> bool {
+        let answer = self.ask("the power manager", |env, activity| {
+            let name = JString::new(env, "power")?;
+            let manager = activity.get_system_service(env, &name)?;
+            env.cast_local::<PowerManager>(manager)?.is_interactive(env)
+        });
+        answer.unwrap_or(true)
+    }
+
     /// Returns the number of the game loop's scenario that the activity was started for; none for any other start.
     pub fn scenario(&self) -> Option<i32> {
         let scenario = self.ask("the intent's scenario", |env, activity| {
@@ -208,13 +297,7 @@ impl Java {
             if uri.is_null() {
                 return Ok(None);
             }
-            let mode = JString::new(env, "w")?;
-            let opened = activity.get_content_resolver(env)?.open_file_descriptor(env, &uri, &mode)?;
-            if opened.is_null() {
-                return Ok(None);
-            }
-            // SAFETY: a detached descriptor belongs to the caller, and nobody else closes it.
-            Ok(Some(unsafe { File::from_raw_fd(opened.detach_fd(env)?) }))
+            open(env, activity, &uri, "w")
         });
         file.flatten()
     }
@@ -301,6 +384,17 @@ impl Broker for Java {
     fn query(&self, uri: &str, columns: &[&str]) -> Result<Option<Rows>, String> {
         self.try_ask(|env, activity| query(env, activity, uri, columns)).map_err(|error| error.to_string())
     }
+}
+
+/// Opens the file that a URI names, by the content resolver; none if there is none.
+fn open(env: &mut Env, activity: &Activity, uri: &Uri, mode: &str) -> JavaResult<Option<File>> {
+    let mode = JString::new(env, mode)?;
+    let opened = activity.get_content_resolver(env)?.open_file_descriptor(env, uri, &mode)?;
+    if opened.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: a detached descriptor belongs to the caller, and nobody else closes it.
+    Ok(Some(unsafe { File::from_raw_fd(opened.detach_fd(env)?) }))
 }
 
 /// Returns all rows of a provider's table; none where there is no provider.

@@ -12,6 +12,8 @@ mod pace;
 mod press;
 #[cfg(any(target_os = "android", test))]
 mod settings;
+#[cfg(any(target_os = "android", test))]
+mod shared;
 
 #[cfg(target_os = "android")]
 mod activity;

@@ -1,5 +1,6 @@
-//! The log, and its copy in the results of a game loop: the same lines, without logcat's times and tags.
+//! The log, its copy in the results of a game loop, and its last lines to share: without logcat's times and tags.
 
+use std::collections::VecDeque;
 use std::fs::File;
 use std::io::Write as _;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,6 +10,18 @@ use log::{LevelFilter, Log, Metadata, Record};
 
 /// The file for results while a game loop is played.
 static FILE: Mutex<Option<File>> = Mutex::new(None);
+
+/// The last lines of the log.
+static RECENT: Mutex<VecDeque<String>> = Mutex::new(VecDeque::new());
+/// The number of those lines, and of the characters of one: with both an intent has room for all.
+const LINES: usize = 200;
+const CHARACTERS: usize = 600;
+
+/// Returns the last lines of the log.
+pub fn recent() -> String {
+    let lines = RECENT.lock().unwrap_or_else(PoisonError::into_inner);
+    lines.iter().flat_map(|line| [line.as_str(), "\n"]).collect()
+}
 
 fn file() -> MutexGuard<'static, Option<File>> {
     FILE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -40,6 +53,13 @@ impl Log for Logger {
 
     fn log(&self, record: &Record) {
         self.0.log(record);
+        if self.0.enabled(record.metadata()) {
+            let mut lines = RECENT.lock().unwrap_or_else(PoisonError::into_inner);
+            if lines.len() == LINES {
+                lines.pop_front();
+            }
+            lines.push_back(record.args().to_string().chars().take(CHARACTERS).collect());
+        }
         if self.0.enabled(record.metadata())
             && let Some(file) = &mut *file()
         {

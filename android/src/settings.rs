@@ -48,6 +48,28 @@ impl Sources {
         extras.chain(self.properties.iter().map(|(key, _)| key.as_str())).any(|key| key == "run")
     }
 
+    /// True if no computer has given settings: a person has started the application by hand.
+    pub fn is_by_hand(&self) -> bool {
+        self.properties.is_empty() && !self.extras.iter().any(|(key, _)| extra_key(key).is_some())
+    }
+
+    /// True if a viewer was chosen, by the user or in the file.
+    pub fn has_viewer(&self) -> bool {
+        let is_in_file = |path: &PathBuf| {
+            let mut settings = Settings { viewer: String::new(), ..Settings::default() };
+            path.exists() && (settings.apply_file_leniently(path), !settings.viewer.is_empty()).1
+        };
+        value(&self.menu, "viewer").is_some() || self.file.as_ref().is_some_and(is_in_file)
+    }
+
+    /// Keeps values in place of those before.
+    pub fn keep(&mut self, pairs: impl IntoIterator<Item = Pair>) {
+        for (key, value) in pairs {
+            self.menu.retain(|(other, _)| *other != key);
+            self.menu.push((key, value));
+        }
+    }
+
     /// Returns the settings, and one sentence for each mistake; a setting with a mistake keeps its value.
     pub fn resolve(&self) -> (Settings, Vec<String>) {
         let mut settings = Settings::default();
@@ -232,6 +254,31 @@ mod tests {
         let (settings, mistakes) = sources.resolve();
         assert_eq!((settings.method, settings.hud), (Settings::default().method, true));
         assert!(mistakes.is_empty(), "{mistakes:?}");
+    }
+
+    #[test]
+    fn a_start_by_hand_and_the_choice_of_a_viewer_are_known() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(FILE_NAME);
+        let mut sources = Sources {
+            file: Some(file.clone()),
+            extras: pairs(&[("android.intent.extra.REFERRER", "x")]),
+            ..Sources::default()
+        };
+        assert!(sources.is_by_hand() && !sources.has_viewer());
+        std::fs::write(&file, "scene = \"talk\"").unwrap();
+        assert!(!sources.has_viewer());
+        sources.keep(pairs(&[("hud", "true"), ("viewer", "v1")]));
+        assert!(sources.has_viewer());
+        sources.keep(pairs(&[("viewer", "v2")]));
+        assert_eq!(sources.menu, pairs(&[("hud", "true"), ("viewer", "v2")]));
+        sources.menu.clear();
+        std::fs::write(&file, "viewer = \"v2\"").unwrap();
+        assert!(sources.has_viewer());
+        sources.extras = pairs(&[("hud", "false")]);
+        assert!(!sources.is_by_hand());
+        let properties = pairs(&[("hud", "false")]);
+        assert!(!Sources { properties, ..Sources::default() }.is_by_hand());
     }
 
     #[test]

@@ -10,18 +10,17 @@ use yoro_gl::{
     Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
 };
 
-/// The tiles of a row, and the rows.
-pub const TILES: [usize; 2] = [4, 3];
+/// The tiles of a row.
+pub const ROW: usize = 4;
 /// The characters that a line of a tile has room for, and those of a line of the heading; longer lines are cut.
 pub const TILE_COLUMNS: usize = 12;
 /// See [`TILE_COLUMNS`].
 pub const HEADING_COLUMNS: usize = 53;
-const HEADING_LINES: usize = 4;
 const GAP: usize = 8;
 const INSET: usize = 10;
 const TILE: [usize; 2] = [TILE_COLUMNS * CELL[0] + 2 * INSET, 2 * CELL[1] + 2 * INSET];
-const TOP: usize = HEADING_LINES * CELL[1] + 2 * INSET;
-const SIZE: [usize; 2] = [TILES[0] * (TILE[0] + GAP) + GAP, TOP + TILES[1] * (TILE[1] + GAP)];
+/// Three rows of tiles leave room for four lines above them, two for seven.
+const SIZE: [usize; 2] = [ROW * (TILE[0] + GAP) + GAP, 4 * CELL[1] + 2 * INSET + 3 * (TILE[1] + GAP)];
 
 /// Distance of the panel in metres, and its width in degrees.
 const DISTANCE: f32 = 2.0;
@@ -38,10 +37,10 @@ const BAR: usize = 6;
 /// What the panel shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tiles {
-    /// At most four lines.
+    /// The lines above the tiles.
     pub heading: String,
-    /// Two lines for each tile, row after row from the upper left.
-    pub tiles: [String; TILES[0] * TILES[1]],
+    /// Two lines for each tile, row after row from the upper left; an empty text is no tile. The last row stands at the panel's lower edge.
+    pub tiles: Vec<String>,
     /// The tile that is pointed at, and how far its choice has come, 0 to 1.
     pub pointed: Option<(usize, f32)>,
 }
@@ -70,8 +69,13 @@ pub fn board_hit(board: &Pose, ray: &Pose) -> Option<Vec2> {
     (is_towards && at.cmpge(Vec2::ZERO).all() && at.cmple(Vec2::ONE).all()).then_some(at)
 }
 
-/// Returns the tile at a place on the panel, and how far to the right in it that is, 0 to 1.
-pub fn tile_at(at: Vec2) -> Option<(usize, f32)> {
+/// The height of what stands above `tiles` tiles, in pixels.
+fn top(tiles: usize) -> usize {
+    SIZE[1] - tiles.div_ceil(ROW) * (TILE[1] + GAP)
+}
+
+/// Returns the tile, of so many, at a place on the panel, and how far to the right in it that is, 0 to 1.
+pub fn tile_at(at: Vec2, tiles: usize) -> Option<(usize, f32)> {
     let [x, y] = [at.x * SIZE[0] as f32, (1.0 - at.y) * SIZE[1] as f32];
     let cell = |n: f32, size: usize| {
         let pitch = (size + GAP) as f32;
@@ -80,19 +84,23 @@ pub fn tile_at(at: Vec2) -> Option<(usize, f32)> {
             .then_some((index as usize, (n - index * pitch) / size as f32))
     };
     let (column, share) = cell(x - GAP as f32, TILE[0])?;
-    let (row, _) = cell(y - TOP as f32, TILE[1])?;
-    (column < TILES[0] && row < TILES[1]).then_some((row * TILES[0] + column, share))
+    let (row, _) = cell(y - top(tiles) as f32, TILE[1])?;
+    (column < ROW && row * ROW + column < tiles).then_some((row * ROW + column, share))
 }
 
 /// Draws the panel's pixels, rows from the top.
 fn draw(tiles: &Tiles, letters: &Letters, pixels: &mut [u8]) {
     pixels.fill(GROUND);
-    for (i, line) in tiles.heading.lines().take(HEADING_LINES).enumerate() {
+    let top_pixels = top(tiles.tiles.len());
+    for (i, line) in tiles.heading.lines().take((top_pixels - 2 * INSET) / CELL[1]).enumerate() {
         letters.draw(line, HEADING_COLUMNS, pixels, SIZE[0], [GAP + INSET, INSET + i * CELL[1]]);
     }
     for (i, text) in tiles.tiles.iter().enumerate() {
-        let left = GAP + (i % TILES[0]) * (TILE[0] + GAP);
-        let top = TOP + (i / TILES[0]) * (TILE[1] + GAP);
+        let left = GAP + (i % ROW) * (TILE[0] + GAP);
+        let top = top_pixels + (i / ROW) * (TILE[1] + GAP);
+        if text.is_empty() {
+            continue;
+        }
         let share = tiles.pointed.filter(|&(tile, _)| tile == i).map(|(_, share)| share);
         let ground = if share.is_some() { POINTED_GROUND } else { TILE_GROUND };
         let filled = (share.unwrap_or(0.0).clamp(0.0, 1.0) * TILE[0] as f32) as usize;
@@ -120,6 +128,8 @@ pub struct Board {
     gl: Rc<Context>,
     program: Program,
     texture: Texture,
+    /// Cross and gear.
+    signs: [Texture; 2],
     letters: Letters,
     pixels: Vec<u8>,
     rows: Vec<u8>,
@@ -135,7 +145,13 @@ impl Board {
     /// # Errors
     /// [`GlError`] when the driver refuses the program or the texture.
     pub fn new(gl: &Rc<Context>) -> Result<Board, GlError> {
+        let sign = |is_inside: fn(Vec2) -> bool| {
+            let texture = Texture::new(gl, [SIGN as u32; 2], Format::R8, Filter::Linear)?;
+            texture.upload(&sign(is_inside));
+            Ok(texture)
+        };
         Ok(Board {
+            signs: [sign(is_in_cross)?, sign(is_in_gear)?],
             gl: gl.clone(),
             program: Program::new(gl, ShaderSource::Screen("viewer/menu.frag"), &[])?,
             texture: Texture::new(gl, Board::SIZE, Format::R8, Filter::Linear)?,
@@ -168,7 +184,7 @@ impl Board {
         self.gl.pass("menu", || {
             self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
-                self.run(to_panel(board, pair, eye), pointer, &eyes[eye.index()]);
+                self.run(&self.texture, to_panel(board, pair, eye), pointer, &eyes[eye.index()]);
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
         });
@@ -178,23 +194,97 @@ impl Board {
     pub fn draw(&self, pointer: Option<Vec2>, to: &Destination) {
         self.gl.pass("menu", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
-            let scale = Vec2::new(1.0 / to.size[0] as f32, 1.0 / to.size[1] as f32);
-            self.run(Mat3::from_scale(scale), pointer, to);
+            self.run(&self.texture, onto(to), pointer, to);
         });
     }
 
-    fn run(&self, to_panel: Mat3, pointer: Option<Vec2>, to: &Destination) {
+    /// Draws the panel flat, as large as a window allows.
+    pub fn draw_flat(&self, window: &Destination) {
+        let ([x, y], size) = flat_place(window.size);
+        let origin = [window.origin[0] + x, window.origin[1] + y];
+        self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
+        self.gl.fill(window.origin, window.size, [f32::from(GROUND) / 255.0; 4]);
+        self.draw(None, &Destination { origin, size, ..*window });
+    }
+
+    /// Draws a cross into the upper left corner of a window and a gear into the upper right one, `side` pixels wide.
+    pub fn draw_corners(&self, side: u32, window: &Destination) {
+        self.gl.pass("menu", || {
+            self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
+            for (sign, right) in self.signs.iter().zip([0, window.size[0].saturating_sub(side)]) {
+                let y = window.origin[1] + window.size[1].saturating_sub(side);
+                let to = Destination { origin: [window.origin[0] + right, y], size: [side; 2], ..*window };
+                self.run(sign, onto(&to), None, &to);
+            }
+            self.gl.set_raster_state(&RasterState::SCREEN);
+        });
+    }
+
+    fn run(&self, texture: &Texture, to_panel: Mat3, pointer: Option<Vec2>, to: &Destination) {
         let radius = DISTANCE * (DOT_DEGREES.to_radians() / 2.0).tan();
         self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
         self.program
             .bind()
-            .texture("panel", 0, self.texture.raw())
+            .texture("panel", 0, texture.raw())
             .set("to_panel", to_panel)
             .set("origin", Vec2::new(to.origin[0] as f32, to.origin[1] as f32))
             .set("pointer", pointer.unwrap_or(Vec2::splat(-9.0)))
             .set("dot_radius", radius / Vec2::from(board_metres()));
         self.gl.draw_screen();
     }
+}
+
+/// Returns where the flat panel stands in a window of this size: its lower left corner, and its size, in pixels.
+fn flat_place(window: [u32; 2]) -> ([u32; 2], [u32; 2]) {
+    let [width, height] = window.map(u64::from);
+    let [across, up] = SIZE.map(|n| n as u64);
+    let size = if width * up <= height * across {
+        [width, width * up / across]
+    } else {
+        [height * across / up, height]
+    };
+    ([(width - size[0]) / 2, (height - size[1]) / 2].map(|n| n as u32), size.map(|n| n as u32))
+}
+
+/// Returns the place on the flat panel, 0 to 1 from the lower left, of a pixel of the window, counted from the upper left.
+pub fn flat_hit(pixel: Vec2, window: [u32; 2]) -> Option<Vec2> {
+    let ([left, bottom], size) = flat_place(window);
+    let from_corner = Vec2::new(pixel.x - left as f32, window[1] as f32 - pixel.y - bottom as f32);
+    let at = from_corner / Vec2::new(size[0] as f32, size[1] as f32);
+    (at.cmpge(Vec2::ZERO).all() && at.cmple(Vec2::ONE).all()).then_some(at)
+}
+
+/// Returns the transform from pixels of an image to a panel that fills it.
+fn onto(to: &Destination) -> Mat3 {
+    Mat3::from_scale(Vec2::new(1.0 / to.size[0] as f32, 1.0 / to.size[1] as f32))
+}
+
+/// Edge of the image of a corner's sign in pixels.
+const SIGN: usize = 96;
+/// A pixel of a sign is the mean of so many samples squared.
+const SAMPLES: usize = 4;
+
+/// Draws a sign: the share of each pixel that lies inside, in coordinates from -1 to 1.
+fn sign(is_inside: fn(Vec2) -> bool) -> Vec<u8> {
+    let fine = SIGN * SAMPLES;
+    let place = |i: usize| 2.0 * (i as f32 + 0.5) / fine as f32 - 1.0;
+    let pixel = |i: usize| {
+        let [x, y] = [i % SIGN, i / SIGN].map(|n| n * SAMPLES);
+        let samples = (0..SAMPLES * SAMPLES).map(|n| Vec2::new(place(x + n % SAMPLES), place(y + n / SAMPLES)));
+        let inside = samples.filter(|&at| is_inside(at)).count();
+        GROUND + ((255 - usize::from(GROUND)) * inside / (SAMPLES * SAMPLES)) as u8
+    };
+    (0..SIGN * SIGN).map(pixel).collect()
+}
+
+fn is_in_cross(at: Vec2) -> bool {
+    at.abs().max_element() < 0.42 && (at.x.abs() - at.y.abs()).abs() < 0.12
+}
+
+fn is_in_gear(at: Vec2) -> bool {
+    // Eight teeth.
+    let is_tooth = (8.0 * at.y.atan2(at.x)).cos() > 0.0;
+    (0.18..if is_tooth { 0.52 } else { 0.38 }).contains(&at.length())
 }
 
 /// Returns the transform from pixels of an eye's image to the panel, homogeneous.
@@ -237,14 +327,28 @@ mod tests {
         assert!((middle - 0.5).length() < 1e-4, "{middle}");
         let behind = Pose { orientation: turned * glam::Quat::from_rotation_y(3.0), ..head };
         assert_eq!(board_hit(&board, &behind), None);
-        for i in 0..TILES[0] * TILES[1] {
-            let x = GAP + (i % TILES[0]) * (TILE[0] + GAP) + TILE[0] / 4;
-            let y = TOP + (i / TILES[0]) * (TILE[1] + GAP) + TILE[1] / 2;
+        for (tiles, i) in (0..12).map(|i| (12, i)).chain((0..7).map(|i| (7, i))) {
+            let x = GAP + (i % ROW) * (TILE[0] + GAP) + TILE[0] / 4;
+            let y = top(tiles) + (i / ROW) * (TILE[1] + GAP) + TILE[1] / 2;
             let at = Vec2::new(x as f32 / SIZE[0] as f32, 1.0 - y as f32 / SIZE[1] as f32);
-            let (tile, share) = tile_at(at).unwrap();
+            let (tile, share) = tile_at(at, tiles).unwrap();
             assert!(tile == i && (share - 0.25).abs() < 0.01, "{tile} {share}");
         }
-        assert_eq!(tile_at(Vec2::new(0.5, 0.99)), None);
+        assert_eq!(tile_at(Vec2::new(0.5, 0.99), 12), None);
+        assert_eq!(tile_at(Vec2::new(0.9, 0.1), 7), None);
+    }
+
+    #[test]
+    fn the_flat_panel_fills_a_window_and_is_found_by_its_pixels() {
+        for window in [[2340, 1080], [1080, 2340], [320, 180]] {
+            let ([x, y], [width, height]) = flat_place(window);
+            assert!(width == window[0] && x == 0 || height == window[1] && y == 0, "{window:?}");
+            let ratio = width as f32 / height as f32 * SIZE[1] as f32 / SIZE[0] as f32;
+            assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+            let at = Vec2::new(x as f32 + 0.25 * width as f32, window[1] as f32 - y as f32 - 0.1 * height as f32);
+            assert!((flat_hit(at, window).unwrap() - Vec2::new(0.25, 0.1)).length() < 1e-3);
+        }
+        assert_eq!(flat_hit(Vec2::new(1.0, 500.0), [2340, 1080]), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A phone behind the lenses of a Cardboard-compatible viewer, and panels of text and of tiles before both eyes.
 //!
 //! A viewer's parameters and a screen's size come in; frusta, the mesh that undoes the lenses' distortion, and the pass
-//! that draws both eyes through it go out. Motion samples come in, and the head's orientation goes out.
+//! that draws both eyes through it go out. The parameters are also read from a picture of the viewer's QR code. Motion samples come in, and the head's orientation goes out.
 //!
 //! This crate must never know a renderer, a scene, settings, or where a GL context comes from; it builds for phones and browsers alike.
 
@@ -11,13 +11,15 @@ mod hud;
 mod lens;
 mod optics;
 mod params;
+mod qr;
 mod text;
 
 pub use board::{
-    Board, HEADING_COLUMNS, TILE_COLUMNS, TILES, Tiles, board_hit, board_metres, board_pose, tile_at,
+    Board, HEADING_COLUMNS, ROW, TILE_COLUMNS, Tiles, board_hit, board_metres, board_pose, flat_hit, tile_at,
 };
 pub use head::{HeadTracker, MotionSample, neck_offset};
 pub use hud::{COLUMNS, Content, Hud, Panel, Placement};
 pub use lens::LensPass;
 pub use optics::{Optics, Rotation, Screen};
 pub use params::{ParamsError, VerticalAlignment, ViewerParams};
+pub use qr::read_qr;

@@ -165,6 +165,8 @@ settings! {
         range(|s| is_positive(s.split_disparity), "give pixels above 0, such as 1"),
     /// The viewer: v1, v2, the URI of its QR code, or a parameter file.
     "viewer" viewer: String = "v2".into(),
+    /// Viewers that the menu and the start screen offer besides v1 and v2: those that were chosen last.
+    "recent-viewers" recent_viewers: Vec<String> = Vec::new(),
     /// Size of the whole screen behind the lenses, such as `158x71mm`: measure it where the device is wrong about it.
     "screen" screen: Option<ScreenSize> = None; auto("what the device says"),
     /// The eye that is rendered.

@@ -57,7 +57,7 @@ pub struct ViewArgs {
     #[command(flatten)]
     settings: SettingsArgs,
     /// What the user does before the picture, in order: `hold` (the menu), `tap`, `press`, `release`, `look:YAW:PITCH` in
-    /// degrees, `wait:SECONDS`
+    /// degrees, `wait:SECONDS`, `start` (the start screen), `touch:X:Y` (a finger there, 0 to 1 from the upper left)
     #[arg(long = "do", value_name = "ACTION,...", value_delimiter = ',', value_parser = parse_act, allow_hyphen_values = true)]
     acts: Vec<Act>,
     /// Draw the loading screen
@@ -145,6 +145,16 @@ fn run(args: &ViewArgs) -> anyhow::Result<()> {
                     let turn = Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
                     viewer.hold_head(Some(HeldHead { rendered: turn, displayed: turn }));
                 }
+                Act::StartScreen => {
+                    viewer.viewer_mut().offer_start_screen();
+                    println!("{}", viewer.viewer_mut().show_start_screen(""));
+                }
+                Act::Touch { x, y } => {
+                    let at = [x * args.screen[0] as f32, y * args.screen[1] as f32];
+                    if let Some(action) = viewer.touch(Some(at))? {
+                        println!("{action}");
+                    }
+                }
                 Act::Wait { seconds } => frames = (seconds * REFRESH_HZ).ceil() as u32,
             }
             for _ in 0..frames {
@@ -185,6 +195,12 @@ enum Act {
     Wait {
         seconds: f32,
     },
+    StartScreen,
+    /// A finger, 0 to 1 from the upper left.
+    Touch {
+        x: f32,
+        y: f32,
+    },
 }
 
 fn parse_act(text: &str) -> Result<Act, String> {
@@ -198,8 +214,10 @@ fn parse_act(text: &str) -> Result<Act, String> {
         ("press", []) => Ok(Act::Event(Event::Press)),
         ("release", []) => Ok(Act::Event(Event::Release)),
         ("look", &[yaw, pitch]) => Ok(Act::Look { yaw: yaw.to_radians(), pitch: pitch.to_radians() }),
+        ("start", []) => Ok(Act::StartScreen),
+        ("touch", &[x, y]) => Ok(Act::Touch { x, y }),
         ("wait", &[seconds]) if (0.0..=60.0).contains(&seconds) => Ok(Act::Wait { seconds }),
-        _ => Err("give hold, tap, press, release, look:YAW:PITCH or wait:SECONDS (at most 60)".into()),
+        _ => Err("give hold, tap, press, release, look:YAW:PITCH, wait:SECONDS (at most 60), start or touch:X:Y".into()),
     }
 }
 

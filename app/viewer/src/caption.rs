@@ -97,22 +97,26 @@ impl Caption {
 
     /// Writes a sentence in lines of the panel's width, words kept whole.
     pub fn write_sentence(&mut self, sentence: &str) {
-        let text = &mut self.text;
-        text.clear();
-        let mut column = 0;
-        for word in sentence.split_whitespace() {
-            let length = word.chars().count();
-            if column == 0 {
-                column = length;
-            } else if column + 1 + length > COLUMNS {
-                text.push('\n');
-                column = length;
-            } else {
-                text.push(' ');
-                column += 1 + length;
-            }
-            text.push_str(word);
+        self.text.clear();
+        wrap(&mut self.text, sentence, COLUMNS);
+    }
+}
+
+/// Appends a sentence in lines of so many characters at most, words kept whole.
+pub(crate) fn wrap(text: &mut String, sentence: &str, columns: usize) {
+    let mut column = 0;
+    for word in sentence.split_whitespace() {
+        let length = word.chars().count();
+        if column == 0 {
+            column = length;
+        } else if column + 1 + length > columns {
+            text.push('\n');
+            column = length;
+        } else {
+            text.push(' ');
+            column += 1 + length;
         }
+        text.push_str(word);
     }
 }
 

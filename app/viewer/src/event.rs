@@ -31,7 +31,7 @@ pub enum Event {
 }
 
 /// The effect of an event, for the log.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Action {
     /// The method that is used now.
     Method(MethodChoice),
@@ -41,6 +41,10 @@ pub enum Action {
     Menu(bool),
     /// The menu has changed settings, which the display takes: `Viewer::take_settings`.
     Settings,
+    /// The start screen came into view (true), or the user starts from it: the head's direction starts over.
+    StartScreen(bool),
+    /// The user wants to give the log to another application: that is for the platform to do.
+    ShareLog,
     /// The distance between the eyes.
     Ipd(Ipd),
     /// True if the HUD is shown.
@@ -53,6 +57,7 @@ pub enum Action {
     Marker(f32),
     /// A question was answered: the last of [`Viewer::ratings`](crate::Viewer::ratings).
     Answer,
+    #[default]
     /// Nothing, because a question is being asked, or there is no other method, viewpoint or scene.
     Nothing,
 }
@@ -64,6 +69,8 @@ impl fmt::Display for Action {
             Action::Recenter => f.write_str("recentered"),
             Action::Menu(is_open) => write!(f, "menu: {}", if *is_open { "open" } else { "closed" }),
             Action::Settings => f.write_str("settings of the menu"),
+            Action::StartScreen(is_shown) => write!(f, "start screen: {}", if *is_shown { "shown" } else { "left" }),
+            Action::ShareLog => f.write_str("the log is shared"),
             Action::Ipd(ipd) => write!(f, "ipd: {:.3} m", ipd.metres()),
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
             Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),

@@ -40,3 +40,10 @@ pub struct FrameReport {
     /// The session is over and `auto-exit` is on: end the program. True from then on.
     pub exit: bool,
 }
+
+impl FrameReport {
+    /// The report of a picture that is no frame of the session.
+    pub(crate) fn of_start_screen(scene: SceneState) -> FrameReport {
+        FrameReport { scene, late_refreshes: 0, gpu_ms: None, telemetry_due: false, session_over: false, exit: false }
+    }
+}

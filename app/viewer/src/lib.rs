@@ -20,6 +20,7 @@ pub mod openxr;
 mod questionnaire;
 mod scene_slot;
 mod session_stats;
+mod start;
 mod viewer;
 
 pub use cardboard::{Cardboard, HeldHead};

@@ -20,7 +20,7 @@ use crate::frames::Frames;
 use crate::graphics::Graphics;
 use crate::jni::Jni;
 use crate::library::Library;
-use crate::script::{Battery, Device, Script, Thermal};
+use crate::script::{Battery, Device, Script, Share, Thermal};
 use crate::summary::{InputFacts, LABEL, LibraryFacts, Mark, Summary};
 use crate::threads::{self, Progress};
 
@@ -32,6 +32,8 @@ pub struct Host {
     pub battery: Mutex<Option<Battery>>,
     /// The thermal state, which steps change.
     pub thermal: Mutex<Thermal>,
+    /// What another application shares with the next activity, and what it shared with the present one.
+    pub shared: [Mutex<Option<Share>>; 2],
     /// System properties.
     pub properties: Mutex<BTreeMap<String, String>>,
     /// Virtual time.
@@ -133,6 +135,7 @@ impl Host {
         let host = Self {
             battery: Mutex::new(device.battery.clone()),
             thermal: Mutex::new(device.thermal.clone()),
+            shared: Default::default(),
             properties: Mutex::new(device.properties.clone()),
             clock: Clock::new(device.refresh_hz, device.slept_seconds),
             frames: Frames::new(),

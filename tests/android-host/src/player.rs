@@ -171,6 +171,7 @@ impl Player {
             Step::Battery(battery) => self.battery(Some(battery.clone())),
             Step::BatteryMissing => self.battery(None),
             Step::Thermal(thermal) => self.thermal(thermal),
+            Step::Share(share) => *lock(&self.host.shared[0]) = Some(share.clone()),
             Step::Property { name, value } => {
                 lock(&self.host.properties).insert(name.clone(), value.clone());
             }
@@ -250,6 +251,7 @@ impl Player {
         self.expect("create", !self.stage.created);
         let host = self.host;
         host.finish_asked.store(false, Ordering::Release);
+        *lock(&host.shared[1]) = lock(&host.shared[0]).take();
         let activity = Box::leak(Box::new(Activity {
             native: ANativeActivity {
                 callbacks: std::ptr::null_mut(),

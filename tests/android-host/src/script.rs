@@ -392,6 +392,8 @@ pub enum Step {
     BatteryMissing,
     /// The thermal state is another; listeners are called.
     Thermal(Thermal),
+    /// Another application shares something: the intent of the next `create`.
+    Share(Share),
     /// A system property has a new value.
     Property {
         /// Its name.
@@ -429,6 +431,18 @@ fn half() -> f32 {
 
 fn long_press_seconds() -> f64 {
     0.8
+}
+
+/// Something shared: either a text or a file.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Share {
+    /// The extra `android.intent.extra.TEXT`.
+    pub text: Option<String>,
+    /// The file that the content resolver opens.
+    pub file: Option<PathBuf>,
+    /// By `ACTION_VIEW` and the intent's data; otherwise by `ACTION_SEND` and its extras.
+    pub view: bool,
 }
 
 /// A key of a phone or a headset.

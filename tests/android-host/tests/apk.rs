@@ -707,3 +707,122 @@ fn game_loops_write_their_results_and_end() {
     };
     assert!(run.summary.log_of("YORO").any(|text| text.starts_with("there is no scenario 4")));
 }
+
+/// What a person does first, on a phone without a computer: chooses the viewer by a picture of its code, looks at another
+/// scene, compares, and finds it all again at the next start. Then the phone stands upright, and more is shared.
+#[test]
+fn a_first_start_by_hand() {
+    const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let code = qrcode::QrCode::new(URI).unwrap();
+    let (modules, colors) = (code.width() as u32, code.to_colors());
+    image::GrayImage::from_fn(7 * (modules + 8), 7 * (modules + 8), |x, y| {
+        let [x, y] = [x, y].map(|n| (n / 7).wrapping_sub(4));
+        let is_dark =
+            x < modules && y < modules && colors[(y * modules + x) as usize] == qrcode::Color::Dark;
+        image::Luma([if is_dark { 30 } else { 220 }])
+    })
+    .save(file("code.png"))
+    .unwrap();
+    std::fs::write(file("my room.glb"), triangle()).unwrap();
+
+    let toml: String = SETTINGS
+        .iter()
+        .map(|(key, value)| match value.parse::<toml::Value>() {
+            Ok(_) => format!("{key} = {value}\n"),
+            Err(_) => format!("{key} = \"{value}\"\n"),
+        })
+        .collect();
+    let device = format!("[device.files]\n\"yoro.toml\" = {toml:?}");
+    // The middles of the start screen's tiles: columns, and two rows.
+    let tile = |column: u32, row: u32| {
+        let y = [0.635, 0.823][row as usize];
+        format!("{{ tap = {{ x = {}, y = {y} }} }}", 0.125 + 0.25 * f64::from(column))
+    };
+    let wait = |text: &str| format!("{{ wait-log = {{ text = {text:?}, frames = 2000 }} }}");
+    let share = |key: &str, value: &str| format!("\"quit\", {{ share = {{ {key} = {value:?} }} }}, \"launch\"");
+    let look = |yaw: f64, pitch: f64| {
+        format!("{{ head = {{ yaw = {yaw}, pitch = {pitch}, seconds = 0.3 }} }}, {{ seconds = 1.7 }}")
+    };
+    let steps = [
+        "\"launch\"".to_owned(),
+        wait("start screen: shown"),
+        "{ frames = 2 }, { capture = \"first.png\" }".into(),
+        tile(0, 1),
+        "{ frames = 2 }, { capture = \"another.png\" }".into(),
+        tile(1, 1),
+        wait("the log is shared"),
+        share("file", &file("code.png").display().to_string()),
+        wait(&format!("shared: the viewer {URI}")),
+        wait("start screen: shown"),
+        "{ frames = 2 }, { capture = \"chosen.png\" }".into(),
+        tile(3, 1),
+        wait("start screen: left"),
+        READY.into(),
+        "{ seconds = 2.5 }, { capture = \"eyes.png\" }, { long-press = {} }".into(),
+        wait("menu: open"),
+        look(5.0, 2.0),
+        wait("menu: scene="),
+        wait("triangles"),
+        look(5.0, -8.0),
+        wait("compare: two real renders"),
+        look(15.0, 40.0),
+        "{ frames = 2 }, \"quit\", \"launch\"".into(),
+        wait("triangles"),
+        "{ seconds = 0.5 }, { capture = \"again.png\" }, { head = { roll = 90, seconds = 0.5 } }".into(),
+        wait("start screen: shown"),
+        share("text", "Look: https://goo.gl/abc"),
+        wait("shared: https://goo.gl/abc may be a shortened address"),
+        "{ frames = 2 }, { capture = \"shortened.png\" }".into(),
+        format!(
+            "\"quit\", {{ share = {{ file = {:?}, view = true }} }}, \"launch\"",
+            file("my room.glb").display().to_string()
+        ),
+        wait("shared: the model my-room"),
+        tile(3, 1),
+        wait("my-room: 1 triangles"),
+        "{ frames = 2 }, \"quit\"".into(),
+    ];
+    let Some(run) = play("first-start", &device, &steps.join(", ")) else { return };
+    run.assert_clean();
+    assert_eq!(run.summary.jni_invented, Default::default());
+    let log: Vec<&str> = run.summary.log_of("YORO").collect();
+    let settings: Vec<&&str> = log.iter().filter(|line| line.starts_with("settings: ")).collect();
+    let chosen = format!("viewer=\"{URI}\"");
+    assert!(!settings[0].contains(&chosen) && settings.last().unwrap().contains(&chosen), "{settings:#?}");
+    let scene = log.iter().find_map(|line| line.strip_prefix("menu: scene=")).unwrap();
+    let starts = settings.iter().filter(|line| line.contains(&format!("scene=\"{scene}\""))).count();
+    assert!(starts >= 2, "{settings:#?}");
+    assert!(settings.last().unwrap().contains("scene=\"my-room\""), "{settings:#?}");
+    for what in ["brightness 1", "brightness -1", "another application"] {
+        assert!(run.summary.requests.contains_key(what), "{what}: {:?}", run.summary.requests);
+    }
+    let [first, another, chosen] = ["first.png", "another.png", "chosen.png"].map(|name| run.picture(name));
+    assert!(first != another && chosen != first && run.picture("shortened.png") != chosen);
+
+    // What the eyes see is what the desktop draws for this viewer, but for the corners.
+    let (eyes, mut expected) = (run.picture("eyes.png"), desktop(&[("viewer", URI)], None));
+    for (x, y, pixel) in expected.enumerate_pixels_mut() {
+        if y < 23 && !(23..SIZE[0] - 23).contains(&x) {
+            *pixel = *eyes.get_pixel(x, y);
+        }
+    }
+    let (own, other) = (decibels(&eyes, &expected), decibels(&eyes, &desktop(&[], None)));
+    assert!(own > 35.0 && own > other + 10.0, "{own:.1} dB, {other:.1} dB for the v2 viewer: {}", run.folder());
+}
+
+/// A GLB file with one triangle.
+fn triangle() -> Vec<u8> {
+    let json = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,
+        "type":"VEC3","min":[-0.5,-0.5,-2],"max":[0.5,0.5,-2]}]}"#;
+    let mut json = json.to_vec();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let corners = [[-0.5, -0.5, -2.0], [0.5, -0.5, -2.0], [0.0, 0.5, -2.0_f32]];
+    let binary: Vec<u8> = corners.iter().flatten().flat_map(|n| n.to_le_bytes()).collect();
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let length = 12 + 8 + json.len() + 8 + binary.len();
+    [b"glTF", &word(2), &word(length), &word(json.len()), b"JSON", &*json, &word(binary.len()), b"BIN\0", &*binary].concat()
+}

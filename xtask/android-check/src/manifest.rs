@@ -23,6 +23,7 @@ const CONFIG_CHANGES: u64 = 0x4000_7ffc;
 
 const NAME: &str = "android:name";
 const VALUE: &str = "android:value";
+const MIME_TYPE: &str = "android:mimeType";
 const REQUIRED: &str = "android:required";
 /// Any value but none.
 const ANY: &str = "*";
@@ -72,9 +73,27 @@ const NO_LOOP: &str = "device farms would not start its game loops";
 const GAME_LOOPS: [Rule<'_>; 5] = [
     rule("action", &[(NAME, "com.google.intent.action.TEST_LOOP")], NO_LOOP),
     rule("category", &[(NAME, "android.intent.category.DEFAULT")], NO_LOOP),
-    rule("data", &[("android:mimeType", "application/javascript")], NO_LOOP),
+    rule("data", &[(MIME_TYPE, "application/javascript")], NO_LOOP),
     rule("meta-data", &[(NAME, "com.google.test.loops.compatibility"), (VALUE, ANY)], NO_LOOP),
     rule("meta-data", &[(NAME, "com.google.test.loops.performance"), (VALUE, ANY)], NO_LOOP),
+];
+const NO_SHARING: &str = "other applications could not share a viewer's code or a model";
+const SHARING: [Rule<'_>; 7] = [
+    rule("action", &[(NAME, "android.intent.action.SEND")], NO_SHARING),
+    rule("action", &[(NAME, "android.intent.action.VIEW")], NO_SHARING),
+    rule("category", &[(NAME, "android.intent.category.BROWSABLE")], NO_SHARING),
+    rule("data", &[(MIME_TYPE, "text/plain")], NO_SHARING),
+    rule("data", &[(MIME_TYPE, "image/*")], NO_SHARING),
+    rule("data", &[(MIME_TYPE, "model/gltf-binary")], NO_SHARING),
+    rule(
+        "data",
+        &[
+            ("android:scheme", "https"),
+            ("android:host", "google.com"),
+            ("android:pathPrefix", "/cardboard/cfg"),
+        ],
+        NO_SHARING,
+    ),
 ];
 const SCREEN: [Rule<'_>; 4] = [
     rule("application", &[("android:appCategory", "0x0")], "on a tablet the picture would be upright"),
@@ -238,6 +257,7 @@ impl Manifest {
         report.row("launcher", "exported, MAIN, LAUNCHER", self.broken(&LAUNCHER));
         report.row("headsets", "immersive by OpenXR", self.no_headset());
         report.row("game loops", "TEST_LOOP, labels", self.broken(&GAME_LOOPS));
+        report.row("sharing", "viewers and models, by SEND and VIEW", self.broken(&SHARING));
         let changes = self.one("activity").number("android:configChanges").unwrap_or(0);
         let lost = CONFIG_CHANGES & !changes;
         let problem = (lost != 0).then(|| format!("changes {lost:#x} of configChanges would start it anew"));
@@ -364,6 +384,11 @@ mod tests {
             ("com.google.intent.action.TEST_LOOP", "com.google.intent.action.OTHER", "game loops"),
             ("application/javascript", "text/plain", "game loops"),
             ("com.google.test.loops.performance", "com.google.test.loops.other", "game loops"),
+            ("android.intent.action.SEND", "android.intent.action.OTHER", "sharing"),
+            ("android.intent.category.BROWSABLE", "android.intent.category.OTHER", "sharing"),
+            ("\"text/plain\"", "\"text/html\"", "sharing"),
+            ("\"image/*\"", "\"video/*\"", "sharing"),
+            ("/cardboard/cfg", "/other", "sharing"),
             ("appCategory(0x01010545)=(type 0x10)0x0", "appCategory(0x01010545)=(type 0x10)0x1", "screen"),
             ("\"all|", "\"", "headsets"),
             ("libopenxr.google.so", "libopenxr.other.so", "headsets"),

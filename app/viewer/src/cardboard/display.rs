@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use super::fence::Fence;
 use crate::error::ViewerError;
@@ -15,9 +15,12 @@ use yoro_gl::{Context, Destination};
 use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
-use yoro_lenses::{Optics, Screen};
+use yoro_lenses::{Optics, Screen, flat_hit};
 use yoro_protocol::{Ipd, Settings};
 use yoro_render::stereo::StereoFrame;
+
+/// The pixels per inch of a screen that does not know its own.
+const USUAL_DPI: f32 = 400.0;
 
 /// A head held still, instead of the one that the sensors measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,15 +190,53 @@ impl Cardboard {
         Ok(action)
     }
 
+    /// Takes a tap of a finger at a place in pixels from the window's upper left corner, or (`None`) of a key. Returns what
+    /// it does on the start screen or in a corner; elsewhere none, and it is an [`Event::Tap`].
+    ///
+    /// # Errors
+    /// See [`Viewer::event`].
+    pub fn touch(&mut self, at: Option<[f32; 2]>) -> Result<Option<Action>, ViewerError> {
+        let side = self.corner() as f32;
+        let width = self.screen.size[0] as f32;
+        let action = if self.viewer.is_start_screen() {
+            let at = at.map(|at| flat_hit(at.into(), self.screen.size).unwrap_or(Vec2::NEG_ONE));
+            self.viewer.touch_start_screen(at)
+        } else {
+            match at.filter(|&[_, y]| y < side && self.viewer.offers_start_screen()) {
+                Some([x, _]) if x < side => self.viewer.show_start_screen(""),
+                Some([x, _]) if x >= width - side => return self.event(Event::LongPress).map(Some),
+                _ => return Ok(None),
+            }
+        };
+        self.follow(action)?;
+        Ok(Some(action))
+    }
+
+    /// The edge in pixels of the corners that take touches: 48 of Android's density-independent pixels, 7.6 mm.
+    fn corner(&self) -> u32 {
+        let dpi = self.screen.dpi[0];
+        (0.3 * if dpi.is_finite() && dpi > 0.0 { dpi } else { USUAL_DPI }) as u32
+    }
+
+    /// See [`Viewer::choose_viewer`].
+    ///
+    /// # Errors
+    /// See [`Cardboard::configure`].
+    pub fn choose_viewer(&mut self, viewer: &str) -> Result<(), ViewerError> {
+        let action = self.viewer.choose_viewer(viewer);
+        self.follow(action)
+    }
+
     /// Does the display's part of an action.
     fn follow(&mut self, action: Action) -> Result<(), ViewerError> {
-        if action == Action::Recenter {
+        if matches!(action, Action::Recenter | Action::StartScreen(false)) {
             self.tracker.recenter();
         }
         if let Some(settings) = self.viewer.take_settings() {
             let folders = self.viewer.folders().to_vec();
             self.change(settings, &folders, |viewer, settings| viewer.change(settings, &folders))?;
             self.viewer.write_menu();
+            self.viewer.write_start_screen();
         }
         Ok(())
     }
@@ -236,6 +277,13 @@ impl Cardboard {
     /// # Errors
     /// See [`Viewer::render_eyes`].
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
+        let up = self.tracker.head_from_world(0.0) * Vec3::Y;
+        if self.viewer.tilt(up.x, timing.now_ns) {
+            log::info!("{}", Action::StartScreen(true));
+        }
+        if self.viewer.is_start_screen() {
+            return Ok(());
+        }
         self.viewer.begin(timing);
         let head = self.head(timing).0;
         let action = self.viewer.look(relative(head))?;
@@ -276,11 +324,18 @@ impl Cardboard {
         timing: &FrameTiming,
     ) -> Result<FrameReport, ViewerError> {
         let displayed = self.head(timing).1;
+        let corner = self.corner();
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
+        if self.viewer.is_start_screen() {
+            self.viewer.draw_start_screen(window);
+            attached.presented.set();
+            return Ok(FrameReport::of_start_screen(self.viewer.scene_state()));
+        }
         let rendered = attached.rendered.unwrap_or(displayed);
         let timewarp = self.viewer.settings().timewarp;
         let turn = if timewarp { rendered.inverse() * displayed } else { Quat::IDENTITY };
         attached.lens.run(attached.frame.images(), turn, window);
+        self.viewer.draw_corners(corner, window);
         attached.presented.set();
         self.viewer.end(timing)
     }

@@ -22,6 +22,10 @@ impl Viewer {
     pub fn begin(&mut self, timing: &FrameTiming) {
         self.now_ns = timing.now_ns;
         self.poll_scene();
+        if self.start.is_hint_due && self.scene.is_shown() {
+            self.start.is_hint_due = false;
+            self.caption.announce("Hold: the menu".into(), self.now_ns);
+        }
     }
 
     /// Renders both eyes; nothing but a backdrop until the scene is there. Eyes of which neither can be synthesized

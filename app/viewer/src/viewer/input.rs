@@ -48,6 +48,8 @@ impl Viewer {
             Action::Viewpoint(n) => format!("viewpoint {n}"),
             Action::Menu(_)
             | Action::Settings
+            | Action::StartScreen(_)
+            | Action::ShareLog
             | Action::Hud(_)
             | Action::Scene
             | Action::Marker(_)

@@ -24,8 +24,15 @@ impl Viewer {
             self.menu.close();
             return Ok(Action::Nothing);
         }
+        let before = self.menu.pointed();
         let action = match self.menu.look(head, self.now_ns) {
-            Look::Nothing => Action::Nothing,
+            Look::Nothing => {
+                let is_viewer = |choice: Option<Choice>| matches!(choice, Some((Item::Lenses, _)));
+                if is_viewer(self.menu.pointed()) != is_viewer(before) {
+                    self.write_menu();
+                }
+                Action::Nothing
+            }
             Look::Open => self.open_menu(),
             Look::Choose(choice) => self.choose(choice)?,
         };
@@ -110,8 +117,10 @@ impl Viewer {
                 self.want(&[("dominant", other.into())])
             }
             Item::Lenses => {
-                let other = if self.settings.viewer == "v1" { "v2" } else { "v1" };
-                self.want(&[("viewer", other.into())])
+                let viewers = self.viewers();
+                let at = viewers.iter().position(|viewer| *viewer == self.settings.viewer);
+                let next = viewers[at.map_or(0, |at| (at + 1) % viewers.len())].clone();
+                self.choose_viewer(&next)
             }
             Item::Quality => {
                 let at = self.quality().map_or(1, |at| (at + 1) % QUALITIES.len());
@@ -122,20 +131,23 @@ impl Viewer {
                     ("msaa", msaa.to_string()),
                 ])
             }
-            Item::Reset => {
-                log::info!("menu: reset");
-                self.kept.clear();
-                self.is_kept_new = true;
-                self.wanted = Some(self.given.clone());
-                Action::Settings
-            }
+            Item::Reset => self.reset(),
         };
         self.write_menu();
         Ok(action)
     }
 
+    /// Takes back what the menu has changed.
+    pub(super) fn reset(&mut self) -> Action {
+        log::info!("menu: reset");
+        self.kept.clear();
+        self.is_kept_new = true;
+        self.wanted = Some(self.given.clone());
+        Action::Settings
+    }
+
     /// Notes settings that are in use already.
-    fn keep(&mut self, pairs: &[(&'static str, String)]) {
+    pub(super) fn keep(&mut self, pairs: &[(&'static str, String)]) {
         for (key, value) in pairs {
             log::info!("menu: {key}={value}");
             if let Err(error) = self.settings.apply(&format!("{key}={value}")) {
@@ -148,11 +160,16 @@ impl Viewer {
     }
 
     /// Asks the display for other settings.
-    fn want(&mut self, pairs: &[(&'static str, String)]) -> Action {
+    pub(super) fn want(&mut self, pairs: &[(&'static str, String)]) -> Action {
         let before = self.settings.clone();
         self.keep(pairs);
         self.wanted = Some(std::mem::replace(&mut self.settings, before));
         Action::Settings
+    }
+
+    /// Returns which eye's picture is synthesized.
+    pub(super) fn made_up_eye(&self) -> &'static str {
+        if self.settings.dominant == Eye::Left { "right" } else { "left" }
     }
 
     fn quality(&self) -> Option<usize> {
@@ -188,7 +205,7 @@ impl Viewer {
         }
         let text =
             |key: &str| Setting::find(key).map_or_else(String::new, |setting| setting.text(&self.settings));
-        let made_up = if self.settings.dominant == Eye::Left { "right" } else { "left" };
+        let made_up = self.made_up_eye();
         let quality = self.quality().map_or("own", |at| QUALITIES[at].0);
         let tiles = Item::ALL.map(|item| match item {
             Item::Recenter => "Recenter".into(),
@@ -196,7 +213,7 @@ impl Viewer {
             Item::Viewpoint => format!("Viewpoint\n{}", self.scene.viewpoint()),
             Item::Method => format!("< Method >\n{}", self.method().name()),
             Item::Eye => format!("Own eye\n{}", text("dominant")),
-            Item::Lenses => format!("Viewer\n{}", text("viewer")),
+            Item::Lenses => format!("Viewer\n{}", self.viewer_name(&self.settings.viewer)[1]),
             Item::Distance => format!("- Eyes     +\n{:.0} mm", self.ipd().metres() * 1e3),
             Item::Quality => format!("Quality\n{quality}"),
             Item::Hud => format!("Figures\n{}", if self.caption.is_shown { "on" } else { "off" }),
@@ -204,12 +221,16 @@ impl Viewer {
             Item::Reset => "Reset\nall settings".into(),
             Item::Close => "Close".into(),
         });
-        self.menu.tiles.tiles = tiles;
+        self.menu.tiles.tiles = tiles.into();
         self.menu.tiles.heading = format!(
             "By yoro, the {made_up} eye's picture is made up.\n\
              Compare, held or looked at: both eyes are rendered.\n\
              Figures: frames a second, a frame's ms, degrees C.\n\
-             Look at a tile for 1.5 s, or tap. Hold: recenter."
+             {}",
+            match self.menu.pointed() {
+                Some((Item::Lenses, _)) => "Another viewer: share its code with yoro.",
+                _ => "Look at a tile for 1.5 s, or tap. Hold: recenter.",
+            }
         );
     }
 

@@ -19,6 +19,7 @@ mod configure;
 mod frames;
 mod input;
 mod menu;
+mod start;
 #[cfg(test)]
 mod tests;
 
@@ -33,6 +34,7 @@ use crate::menu::Menu;
 use crate::method_slot::MethodSlot;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
+use crate::start::StartScreen;
 use yoro::eyes::Pose;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
@@ -80,6 +82,7 @@ pub struct Viewer {
     /// The settings that the menu has changed, by their keys, and whether they have changed since they were taken.
     kept: Vec<(&'static str, String)>,
     is_kept_new: bool,
+    start: StartScreen,
 }
 
 impl Viewer {
@@ -104,6 +107,7 @@ impl Viewer {
             wanted: None,
             kept: Vec::new(),
             is_kept_new: false,
+            start: StartScreen::default(),
             settings,
         })
     }

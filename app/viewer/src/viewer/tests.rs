@@ -463,6 +463,70 @@ fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
     assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
 }
 
+#[test]
+fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
+    const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["hud=false"]);
+    run.load();
+    let [corner, scene] = [[10.0, 5.0], [160.0, 90.0]];
+    assert_eq!(run.viewer.touch(Some(corner)).unwrap(), None, "a computer has started it: a tap is a tap");
+    run.frame();
+    let bare = run.image();
+    run.viewer.viewer_mut().offer_start_screen();
+    run.frame();
+    let signs = run.image();
+    let differing: Vec<usize> = (0..bare.len() / 4).filter(|i| bare[4 * i..][..4] != signs[4 * i..][..4]).collect();
+    // 48 density-independent pixels at 74 pixels per inch.
+    let is_corner = |i: &usize| 180 - i / 320 <= 22 && (i % 320 < 22 || i % 320 >= 320 - 22);
+    assert!(differing.len() > 500 && differing.iter().all(is_corner), "{}", differing.len());
+    assert_eq!(run.viewer.touch(Some(scene)).unwrap(), None);
+    assert_eq!(run.viewer.touch(Some([315.0, 5.0])).unwrap(), Some(Action::Menu(true)));
+    assert_eq!(run.viewer.touch(Some(corner)).unwrap(), Some(Action::StartScreen(true)));
+    assert_eq!(run.viewer.viewer().menu_place(), None);
+    run.viewer.viewer_mut().take_kept();
+
+    // The tiles' middles, by column and row.
+    let tile = |column: usize, row: usize| Some([40.0 + 80.0 * column as f32, 115.0 + 34.0 * row as f32]);
+    run.frame();
+    let shown = run.image();
+    assert_eq!(run.viewer.touch(tile(1, 0)).unwrap(), Some(Action::Settings));
+    assert_eq!(run.viewer.viewer().settings().viewer, "v2");
+    assert_eq!(run.viewer.touch(tile(2, 0)).unwrap(), Some(Action::Nothing), "there is no third viewer");
+    run.viewer.choose_viewer(URI).unwrap();
+    assert_eq!(run.viewer.viewer().settings().viewer, URI);
+    assert_eq!(run.viewer.touch(tile(0, 0)).unwrap(), Some(Action::Settings));
+    assert_eq!(run.viewer.touch(tile(2, 0)).unwrap(), Some(Action::Settings), "the one before is offered");
+    assert_eq!(run.viewer.viewer().settings().viewer, URI);
+    run.frame();
+    let chosen = run.image();
+    assert_eq!(run.viewer.touch(tile(0, 1)).unwrap(), Some(Action::Nothing));
+    run.frame();
+    assert!(shown != chosen && run.image() != chosen, "it says how to get another viewer");
+    assert_eq!(run.viewer.touch(tile(1, 1)).unwrap(), Some(Action::ShareLog));
+    assert_eq!(run.viewer.touch(Some([160.0, 1.0])).unwrap(), Some(Action::Nothing));
+    assert_eq!(run.viewer.touch(tile(3, 1)).unwrap(), Some(Action::StartScreen(false)));
+    let kept = run.viewer.viewer_mut().take_kept().unwrap();
+    assert_eq!(kept, [("recent-viewers", URI.to_owned()), ("viewer", URI.to_owned())]);
+
+    // Upright for more than a second: gravity along the picture's width.
+    run.frame();
+    assert!(!run.viewer.viewer().is_start_screen());
+    let stand = |run: &mut Run, up: Vec3, frames: i64| {
+        for _ in 0..frames {
+            run.viewer.sensor(MotionSample::Accelerometer(9.81 * up), run.now_ns);
+            run.frame();
+        }
+        run.viewer.viewer().is_start_screen()
+    };
+    assert!(!stand(&mut run, Vec3::X, 30));
+    assert!(stand(&mut run, Vec3::Y, 200));
+    assert_eq!(run.viewer.touch(None).unwrap(), Some(Action::StartScreen(false)), "a key starts");
+    drop(run);
+    assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
+}
+
 /// A triangle that goes from left to right in a second.
 const MOVING: &str = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],

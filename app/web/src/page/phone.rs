@@ -10,7 +10,7 @@ use yoro_render::stereo::StereoFrame;
 use super::Page;
 use super::error::sentence;
 use super::scene_show::SceneShow;
-use crate::qr::read_qr;
+use yoro_lenses::read_qr;
 use crate::sensors::{Head, find_viewer, orientation};
 
 /// The widths and heights of screens, in metres.

@@ -50,6 +50,9 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         | "getResources"
         | "getDisplayMetrics"
         | "getMode"
+        | "getAttributes"
+        | "createChooser"
+        | "setType"
         | "getPackageManager"
         | "currentThread" => Value::object(Object::new(member.returned_class()?, Data::None)),
         "getApplicationContext" => Value::object(Object::new("android/app/Application", Data::None)),
@@ -86,8 +89,18 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::Void
         }
         "parse" if class == "android/net/Uri" => {
-            Value::object(Object::new("android/net/Uri", Data::Text(text(0)?)))
+            Value::object(uri(&text(0)?))
         }
+        "putExtra" => {
+            let lines = text(1)?.lines().count();
+            host.request(format!("{} of {lines} lines", text(0)?));
+            Value::object(Object::new("android/content/Intent", Data::None))
+        }
+        "startActivity" => {
+            host.request("another application".into());
+            Value::Void
+        }
+        "isInteractive" => Value::Boolean(true),
         "query" if class == "android/content/ContentResolver" => {
             let columns = match arguments.get(1) {
                 Some(Value::Object(Some(names))) => match &names.data {
@@ -141,35 +154,52 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         "getIntent" => {
             let scenario =
                 host.device.game_loop.iter().map(|game| ("scenario".into(), Value::Int(game.scenario)));
+            let shared = lock(&host.shared[1]).clone().filter(|shared| !shared.view).unwrap_or_default();
+            let shared_text = shared.text.map(|text| Object::string(&text));
+            let stream = shared.file.map(|file| uri(&file.display().to_string()));
+            let shared = [("TEXT", shared_text), ("STREAM", stream)].into_iter().filter_map(|(key, value)| {
+                Some((format!("android.intent.extra.{key}"), Value::object(value?)))
+            });
             let extras = host
                 .device
                 .extras
                 .iter()
                 .map(|(key, value)| (key.clone(), Value::object(Object::string(value))))
                 .chain(scenario)
+                .chain(shared)
                 .collect();
             Value::object(Object::new("android/content/Intent", Data::Extras(extras)))
         }
         "getAction" if class == "android/content/Intent" => {
-            Value::object(Object::string(match host.device.game_loop {
-                Some(_) => "com.google.intent.action.TEST_LOOP",
-                None => "android.intent.action.MAIN",
+            Value::object(Object::string(match (&host.device.game_loop, &*lock(&host.shared[1])) {
+                (Some(_), _) => "com.google.intent.action.TEST_LOOP",
+                (None, Some(shared)) if shared.view => "android.intent.action.VIEW",
+                (None, Some(_)) => "android.intent.action.SEND",
+                (None, None) => "android.intent.action.MAIN",
             }))
         }
         "getData" if class == "android/content/Intent" => {
             let results = host.device.game_loop.as_ref().and_then(|game| game.results.as_ref());
-            Value::Object(
-                results.map(|path| Object::new("android/net/Uri", Data::Text(path.display().to_string()))),
-            )
+            let shared = lock(&host.shared[1]).clone().filter(|shared| shared.view).unwrap_or_default();
+            let file = results.or(shared.file.as_ref()).map(|path| path.display().to_string());
+            Value::Object(file.or(shared.text).map(|address| uri(&address)))
         }
-        "openFileDescriptor" if text(1).as_deref() == Some("w") => {
-            Value::object(Object::new("android/os/ParcelFileDescriptor", Data::Text(text(0)?)))
+        "openFileDescriptor" => {
+            let path = text(0)?;
+            let file = if text(1).as_deref() == Some("w") {
+                let mut file = std::fs::File::create(path).ok()?;
+                file.write_all(b"--------- simulated Android host\n").ok()?;
+                Some(file)
+            } else {
+                std::fs::File::open(path).ok()
+            };
+            let descriptor = |file| Object::new("android/os/ParcelFileDescriptor", Data::File(Some(file).into()));
+            Value::Object(file.map(descriptor))
         }
-        "detachFd" => {
-            let mut file = std::fs::File::create(receiver.text()?).ok()?;
-            file.write_all(b"--------- simulated Android host\n").ok()?;
-            Value::Int(file.into_raw_fd())
-        }
+        "detachFd" => match &receiver.data {
+            Data::File(file) => Value::Int(lock(file).take()?.into_raw_fd()),
+            _ => return None,
+        },
         "getExtras" => match &receiver.data {
             Data::Extras(extras) if !extras.is_empty() => {
                 Value::object(Object::new("android/os/Bundle", Data::Extras(extras.clone())))
@@ -207,7 +237,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                 _ => default,
             }
         }
-        "getStringExtra" | "getString" | "get" if matches!(receiver.data, Data::Extras(_)) => {
+        "getStringExtra" | "getParcelableExtra" | "getString" | "get" if matches!(receiver.data, Data::Extras(_)) => {
             match extra(receiver, &text(0)?) {
                 Some(value @ Value::Object(_)) => value.clone(),
                 _ => Value::Object(None),
@@ -261,6 +291,17 @@ pub fn field(member: &Member) -> Option<Value> {
         ("android/view/WindowInsets$Type", _) => Value::Int(0),
         _ => return None,
     })
+}
+
+/// Takes a new value of a field.
+pub fn set_field(member: &Member, value: f32) {
+    if member.name == "screenBrightness" {
+        host().request(format!("brightness {value}"));
+    }
+}
+
+fn uri(address: &str) -> Arc<Object> {
+    Object::new("android/net/Uri", Data::Text(address.to_owned()))
 }
 
 fn file(path: &str) -> Value {

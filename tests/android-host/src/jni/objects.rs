@@ -32,6 +32,8 @@ pub enum Data {
     Array(Mutex<Vec<Option<Arc<Object>>>>),
     /// A table that a content provider gave.
     Cursor(Cursor),
+    /// An open file, until somebody takes it.
+    File(Mutex<Option<std::fs::File>>),
 }
 
 /// Rows of texts, and the number of rows moved to.

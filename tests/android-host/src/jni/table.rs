@@ -103,7 +103,7 @@ fn fill(table: &mut jni_sys::JNINativeInterface__1_6) {
         NewWeakGlobalRef DeleteLocalRef DeleteGlobalRef DeleteWeakGlobalRef IsSameObject GetObjectRefType
         GetObjectClass IsInstanceOf GetMethodID GetFieldID NewObjectA CallObjectMethodA CallBooleanMethodA
         CallIntMethodA CallLongMethodA CallFloatMethodA CallDoubleMethodA CallVoidMethodA GetObjectField
-        GetBooleanField GetIntField GetLongField GetFloatField GetDoubleField NewString GetStringLength
+        GetBooleanField GetIntField GetLongField GetFloatField GetDoubleField SetFloatField NewString GetStringLength
         GetStringChars ReleaseStringChars GetStringRegion NewStringUTF GetStringUTFLength GetStringUTFChars
         ReleaseStringUTFChars GetStringUTFRegion GetArrayLength NewObjectArray GetObjectArrayElement
         SetObjectArrayElement MonitorEnter MonitorExit GetJavaVM
@@ -477,6 +477,12 @@ fields! {
     GetLongField: Value::Long(value) => value, jlong;
     GetFloatField: Value::Float(value) => value, jfloat;
     GetDoubleField: Value::Double(value) => value, jdouble;
+}
+
+unsafe extern "system" fn SetFloatField(_env: Env, receiver: jobject, field: jfieldID, value: f32) {
+    get(receiver, "SetFloatField");
+    // SAFETY: it came from `member`, and members are never freed.
+    answers::set_field(unsafe { &*field.cast::<Member>() }, value);
 }
 
 extern "system" fn MonitorEnter(_env: Env, _handle: jobject) -> jint {

@@ -1,4 +1,4 @@
-//! QR codes in a camera's pictures.
+//! QR codes in pictures.
 
 use rqrr::PreparedImage;
 

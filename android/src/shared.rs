@@ -1,0 +1,157 @@
+//! What another application shares with yoro: a viewer's code as a text or as a picture, or a model.
+
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
+use std::path::Path;
+
+use yoro_lenses::{ViewerParams, read_qr};
+
+/// The largest picture and the largest model in bytes.
+const MAX_PICTURE: u64 = 64 << 20;
+const MAX_MODEL: u64 = 1 << 30;
+/// Pictures are made this small at most, in pixels: a code of a hand's width still has several pixels a module.
+const LONGEST: u32 = 2048;
+/// The first bytes of a GLB file.
+const GLB: &[u8] = b"glTF";
+
+/// What was shared, ready for use.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shared {
+    /// A viewer's URI.
+    Viewer(String),
+    /// The name of a model that is in the folder for scenes now.
+    Scene(String),
+}
+
+/// Finds a viewer's URI in a text, among other words.
+///
+/// # Errors
+/// A sentence with the remedy.
+pub fn viewer_in_text(text: &str) -> Result<Shared, String> {
+    let is_address = |word: &&str| word.contains('.') && word.contains('/');
+    let found = text.split_whitespace().find(is_address);
+    let word = found.ok_or("The shared text has no address: share the address that the viewer's code leads to.")?;
+    if !word.contains("/cardboard") {
+        return Err(format!(
+            "{} may be a shortened address: open it in the browser, and share the address that it leads to.",
+            word.chars().take(60).collect::<String>()
+        ));
+    }
+    match ViewerParams::from_uri(word) {
+        Ok(_) => Ok(Shared::Viewer(word.to_owned())),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// Reads a shared file: a picture of a viewer's code, or a model, which is copied into a folder by its name.
+///
+/// # Errors
+/// A sentence with the remedy.
+pub fn read(mut file: File, name: &str, folder: &Path) -> Result<Shared, String> {
+    let failed = |error: std::io::Error| format!("The shared file cannot be read ({error}): share it again.");
+    let mut head = Vec::new();
+    (&mut file).take(GLB.len() as u64).read_to_end(&mut head).map_err(failed)?;
+    // Not every provider gives a file that can be rewound.
+    let mut rest: Box<dyn std::io::Read> = match file.seek(SeekFrom::Start(0)) {
+        Ok(_) => Box::new(file),
+        Err(_) => Box::new(std::io::Cursor::new(head.clone()).chain(file)),
+    };
+    if head == GLB {
+        return keep(&mut rest, name, folder);
+    }
+    let mut bytes = Vec::new();
+    rest.take(MAX_PICTURE).read_to_end(&mut bytes).map_err(failed)?;
+    let picture = image::load_from_memory(&bytes).map_err(|_| {
+        "The shared file is no model (GLB) and no picture that yoro can read: share a PNG or JPEG.".to_owned()
+    })?;
+    let small = if picture.width().max(picture.height()) > LONGEST {
+        picture.thumbnail(LONGEST, LONGEST)
+    } else {
+        picture
+    };
+    drop(bytes);
+    let rgba = small.to_rgba8();
+    match read_qr(&rgba, rgba.width() as usize) {
+        Some(text) => viewer_in_text(&text),
+        None => Err("No QR code can be read in the shared picture: take it from nearer, straight, in even light.".into()),
+    }
+}
+
+/// Copies a model into a folder.
+fn keep(from: &mut dyn std::io::Read, name: &str, folder: &Path) -> Result<Shared, String> {
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '-' };
+    let stem: String = stem.chars().take(60).map(plain).collect();
+    let stem = if stem.is_empty() { "shared".into() } else { stem };
+    let (path, new) = (folder.join(format!("{stem}.glb")), folder.join(format!("{stem}.new")));
+    let copied = (|| {
+        let length = std::io::copy(&mut from.take(MAX_MODEL + 1), &mut File::create(&new)?)?;
+        if length > MAX_MODEL {
+            return Err(std::io::Error::other("it is larger than 1 GiB"));
+        }
+        std::fs::rename(&new, &path)
+    })();
+    match copied {
+        Ok(()) => Ok(Shared::Scene(stem)),
+        Err(error) => {
+            _ = std::fs::remove_file(&new);
+            Err(format!("The model {stem} cannot be kept ({error}): make room, and share it again."))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use image::{GrayImage, Luma};
+    use qrcode::{Color, QrCode};
+
+    use super::*;
+
+    const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";
+
+    #[test]
+    fn a_viewer_is_found_among_words() {
+        let viewer = |uri: &str| Ok(Shared::Viewer(uri.into()));
+        assert_eq!(viewer_in_text(&format!("My viewer: {URI} (scanned)")), viewer(URI));
+        assert_eq!(viewer_in_text("http://g.co/cardboard"), viewer("http://g.co/cardboard"));
+        for (text, part) in [
+            ("https://goo.gl/abc", "shortened"),
+            ("hello", "no address"),
+            ("https://google.com/cardboard/cfg?p=%%%", "is not a viewer's URI"),
+        ] {
+            let mistake = viewer_in_text(text).unwrap_err();
+            assert!(mistake.contains(part) && !mistake.contains('\n'), "{mistake}");
+        }
+    }
+
+    #[test]
+    fn files_are_told_apart_by_their_content() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = |content: &[u8], name: &str| {
+            let path = folder.path().join("shared");
+            std::fs::write(&path, content).unwrap();
+            read(File::open(path).unwrap(), name, folder.path())
+        };
+        let code = QrCode::new(URI).unwrap();
+        let (modules, colors) = (code.width() as u32, code.to_colors());
+        let side = 40 * (modules + 8);
+        let picture = GrayImage::from_fn(side, side, |x, y| {
+            let [x, y] = [x, y].map(|n| (n / 40).wrapping_sub(4));
+            let is_dark = x < modules && y < modules && colors[(y * modules + x) as usize] == Color::Dark;
+            Luma([if is_dark { 20 } else { 230 }])
+        });
+        assert!(side > LONGEST);
+        let mut png = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
+        assert_eq!(read(png.get_ref(), "photo.png"), Ok(Shared::Viewer(URI.into())));
+        let mut blank = std::io::Cursor::new(Vec::new());
+        GrayImage::new(50, 50).write_to(&mut blank, image::ImageFormat::Png).unwrap();
+        assert!(read(blank.get_ref(), "photo.png").unwrap_err().contains("No QR code"));
+        assert!(read(b"", "nothing").unwrap_err().contains("no picture"));
+
+        assert_eq!(read(b"glTF and more", "../my room!.glb"), Ok(Shared::Scene("my-room-".into())));
+        assert_eq!(std::fs::read(folder.path().join("my-room-.glb")).unwrap(), b"glTF and more");
+        let mistake = super::read(File::open(folder.path().join("my-room-.glb")).unwrap(), "a", Path::new("/nowhere"));
+        assert!(mistake.unwrap_err().contains("cannot be kept"));
+    }
+}

@@ -1,0 +1,148 @@
+//! The start screen: does what is touched on it, and draws it; the viewers to choose from.
+
+use glam::Vec2;
+
+use super::Viewer;
+use crate::event::Action;
+use crate::start::{OTHER, Tile, VIEWERS};
+use yoro_gl::Destination;
+use yoro_lenses::{ViewerParams, tile_at};
+
+/// The viewers that are always there, and what they are called.
+const BUILTIN: [&str; 2] = ["v1", "v2"];
+
+impl Viewer {
+    /// From now on the start screen comes into view when the phone stands upright, and the corners have their signs:
+    /// a person has started the application by hand.
+    pub fn offer_start_screen(&mut self) {
+        self.start.is_offered = true;
+    }
+
+    /// True if the start screen comes into view when the phone stands upright.
+    pub fn offers_start_screen(&self) -> bool {
+        self.start.is_offered
+    }
+
+    /// True while the start screen is in view, and the scene is not.
+    pub fn is_start_screen(&self) -> bool {
+        self.start.is_shown
+    }
+
+    /// Brings the start screen into view, with a sentence in place of its explanation unless it is empty.
+    pub fn show_start_screen(&mut self, message: &str) -> Action {
+        if !self.start.is_shown {
+            self.pause();
+        }
+        self.menu.close();
+        self.start.show(message);
+        self.write_start_screen();
+        Action::StartScreen(true)
+    }
+
+    /// Does what is chosen at a place on the panel, 0 to 1 from the lower left; no place is a key, which starts.
+    pub(crate) fn touch_start_screen(&mut self, at: Option<Vec2>) -> Action {
+        let tile = match at {
+            Some(at) => tile_at(at, Tile::ALL.len()).map(|(i, _)| Tile::ALL[i]),
+            None => Some(Tile::Start),
+        };
+        self.start.message.clear();
+        let action = match tile {
+            Some(Tile::Viewer(i)) => match self.viewers().get(i) {
+                Some(viewer) => self.choose_viewer(&viewer.clone()),
+                None => Action::Nothing,
+            },
+            Some(Tile::Other) => {
+                OTHER.clone_into(&mut self.start.message);
+                Action::Nothing
+            }
+            Some(Tile::Log) => Action::ShareLog,
+            Some(Tile::Reset) => self.reset(),
+            Some(Tile::Start) => {
+                // From now on a viewer is chosen, if it is the default.
+                self.keep(&[("viewer", self.settings.viewer.clone())]);
+                self.start.leave();
+                self.resume();
+                Action::StartScreen(false)
+            }
+            None => Action::Nothing,
+        };
+        self.write_start_screen();
+        action
+    }
+
+    /// Notes how far the picture's horizontal points up, -1 to 1, at a time. True if the start screen has come into view.
+    pub(crate) fn tilt(&mut self, sideways: f32, now_ns: i64) -> bool {
+        self.now_ns = now_ns;
+        let is_upright = self.start.tilt(sideways, now_ns);
+        if is_upright {
+            self.show_start_screen("");
+        }
+        is_upright
+    }
+
+    /// Returns the viewers to choose from, as the setting `viewer` names them.
+    pub(super) fn viewers(&self) -> Vec<String> {
+        let chosen = std::iter::once(&self.settings.viewer);
+        let mut viewers: Vec<String> = BUILTIN.map(str::to_owned).into();
+        for viewer in self.settings.recent_viewers.iter().chain(chosen) {
+            if !viewers.contains(viewer) {
+                viewers.push(viewer.clone());
+            }
+        }
+        viewers.truncate(VIEWERS);
+        viewers
+    }
+
+    /// Returns a viewer's maker and model.
+    pub(super) fn viewer_name(&self, viewer: &str) -> [String; 2] {
+        if BUILTIN.contains(&viewer) {
+            return ["Cardboard".into(), viewer.into()];
+        }
+        match ViewerParams::find_in(viewer, &self.folders) {
+            Ok(params) => [params.vendor, params.model],
+            Err(_) => [viewer.into(), String::new()],
+        }
+    }
+
+    /// Asks for a viewer, which becomes the first of those that were chosen last.
+    pub fn choose_viewer(&mut self, viewer: &str) -> Action {
+        let chosen = ("viewer", viewer.to_owned());
+        if BUILTIN.contains(&viewer) {
+            return self.want(&[chosen]);
+        }
+        let mut recent = self.settings.recent_viewers.clone();
+        recent.retain(|other| other != viewer);
+        recent.insert(0, viewer.to_owned());
+        recent.truncate(VIEWERS - BUILTIN.len());
+        self.want(&[chosen, ("recent-viewers", recent.join(","))])
+    }
+
+    /// Writes the start screen's texts.
+    pub(crate) fn write_start_screen(&mut self) {
+        if !self.start.is_shown {
+            return;
+        }
+        let viewers = self.viewers();
+        let chosen = viewers.iter().position(|viewer| *viewer == self.settings.viewer);
+        let names: Vec<_> = viewers.iter().map(|viewer| self.viewer_name(viewer)).collect();
+        let made_up = self.made_up_eye();
+        self.start.write(&names, chosen, made_up);
+    }
+
+    /// Fills a window with the start screen.
+    pub(crate) fn draw_start_screen(&mut self, window: &Destination) {
+        let Some(attached) = &mut self.attached else { return };
+        attached.board.set(&self.start.tiles);
+        attached.board.draw_flat(window);
+        // No frame of the session: its times are nobody's.
+        attached.pass_times.clear();
+        attached.gl.end_timed_frame(&mut attached.pass_times);
+    }
+
+    /// Draws the signs in a window's upper corners, if a person has started the application by hand.
+    pub(crate) fn draw_corners(&self, side: u32, window: &Destination) {
+        if let Some(attached) = self.attached.as_ref().filter(|_| self.start.is_offered) {
+            attached.board.draw_corners(side, window);
+        }
+    }
+}
