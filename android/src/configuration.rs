@@ -55,7 +55,9 @@ impl Configuration {
                 Some(folder) => shared::read(file, &name, folder),
                 None => Err("There is no folder for what is shared: make room, and share it again.".into()),
             },
-            Given::Closed => Err("The shared file cannot be opened: share it from another application.".into()),
+            Given::Closed => {
+                Err("The shared file cannot be opened: share it from another application.".into())
+            }
         });
         // What comes with something shared are no settings.
         let mut extras = if shared.is_some() { Vec::new() } else { java.extras() };

@@ -15,7 +15,8 @@ use jni::{jni_sig, jni_str};
 use yoro_viewer::openxr::runtime::{Broker, Rows};
 
 use crate::bindings::{
-    Activity, BatteryManager, Cursor, DisplayMetrics as Metrics, Intent, IntentFilter, PowerManager, Toast, Uri,
+    Activity, BatteryManager, Cursor, DisplayMetrics as Metrics, Intent, IntentFilter, PowerManager, Toast,
+    Uri,
 };
 
 /// `BatteryManager.BATTERY_PROPERTY_*`.
@@ -246,7 +247,8 @@ impl Java {
             let intent = Intent::new(env, &action)?;
             let kind = JString::new(env, "text/plain")?;
             intent.set_type(env, &kind)?;
-            let (name, value) = (JString::new(env, "android.intent.extra.TEXT")?, JString::new(env, &shared)?);
+            let (name, value) =
+                (JString::new(env, "android.intent.extra.TEXT")?, JString::new(env, &shared)?);
             intent.put_extra(env, &name, &value)?;
             let title = JString::new(env, "The log of yoro")?;
             let chooser = Intent::create_chooser(env, &intent, title.as_char_sequence())?;

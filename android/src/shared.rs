@@ -30,7 +30,8 @@ pub enum Shared {
 pub fn viewer_in_text(text: &str) -> Result<Shared, String> {
     let is_address = |word: &&str| word.contains('.') && word.contains('/');
     let found = text.split_whitespace().find(is_address);
-    let word = found.ok_or("The shared text has no address: share the address that the viewer's code leads to.")?;
+    let word =
+        found.ok_or("The shared text has no address: share the address that the viewer's code leads to.")?;
     if !word.contains("/cardboard") {
         return Err(format!(
             "{} may be a shortened address: open it in the browser, and share the address that it leads to.",
@@ -73,7 +74,10 @@ pub fn read(mut file: File, name: &str, folder: &Path) -> Result<Shared, String>
     let rgba = small.to_rgba8();
     match read_qr(&rgba, rgba.width() as usize) {
         Some(text) => viewer_in_text(&text),
-        None => Err("No QR code can be read in the shared picture: take it from nearer, straight, in even light.".into()),
+        None => {
+            Err("No QR code can be read in the shared picture: take it from nearer, straight, in even light."
+                .into())
+        }
     }
 }
 
@@ -151,7 +155,8 @@ mod tests {
 
         assert_eq!(read(b"glTF and more", "../my room!.glb"), Ok(Shared::Scene("my-room-".into())));
         assert_eq!(std::fs::read(folder.path().join("my-room-.glb")).unwrap(), b"glTF and more");
-        let mistake = super::read(File::open(folder.path().join("my-room-.glb")).unwrap(), "a", Path::new("/nowhere"));
+        let mistake =
+            super::read(File::open(folder.path().join("my-room-.glb")).unwrap(), "a", Path::new("/nowhere"));
         assert!(mistake.unwrap_err().contains("cannot be kept"));
     }
 }

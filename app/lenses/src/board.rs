@@ -270,7 +270,8 @@ fn sign(is_inside: fn(Vec2) -> bool) -> Vec<u8> {
     let place = |i: usize| 2.0 * (i as f32 + 0.5) / fine as f32 - 1.0;
     let pixel = |i: usize| {
         let [x, y] = [i % SIGN, i / SIGN].map(|n| n * SAMPLES);
-        let samples = (0..SAMPLES * SAMPLES).map(|n| Vec2::new(place(x + n % SAMPLES), place(y + n / SAMPLES)));
+        let samples =
+            (0..SAMPLES * SAMPLES).map(|n| Vec2::new(place(x + n % SAMPLES), place(y + n / SAMPLES)));
         let inside = samples.filter(|&at| is_inside(at)).count();
         GROUND + ((255 - usize::from(GROUND)) * inside / (SAMPLES * SAMPLES)) as u8
     };
@@ -345,7 +346,8 @@ mod tests {
             assert!(width == window[0] && x == 0 || height == window[1] && y == 0, "{window:?}");
             let ratio = width as f32 / height as f32 * SIZE[1] as f32 / SIZE[0] as f32;
             assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
-            let at = Vec2::new(x as f32 + 0.25 * width as f32, window[1] as f32 - y as f32 - 0.1 * height as f32);
+            let at =
+                Vec2::new(x as f32 + 0.25 * width as f32, window[1] as f32 - y as f32 - 0.1 * height as f32);
             assert!((flat_hit(at, window).unwrap() - Vec2::new(0.25, 0.1)).length() < 1e-3);
         }
         assert_eq!(flat_hit(Vec2::new(1.0, 500.0), [2340, 1080]), None);

@@ -217,7 +217,10 @@ fn parse_act(text: &str) -> Result<Act, String> {
         ("start", []) => Ok(Act::StartScreen),
         ("touch", &[x, y]) => Ok(Act::Touch { x, y }),
         ("wait", &[seconds]) if (0.0..=60.0).contains(&seconds) => Ok(Act::Wait { seconds }),
-        _ => Err("give hold, tap, press, release, look:YAW:PITCH, wait:SECONDS (at most 60), start or touch:X:Y".into()),
+        _ => Err(
+            "give hold, tap, press, release, look:YAW:PITCH, wait:SECONDS (at most 60), start or touch:X:Y"
+                .into(),
+        ),
     }
 }
 

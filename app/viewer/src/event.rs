@@ -69,7 +69,9 @@ impl fmt::Display for Action {
             Action::Recenter => f.write_str("recentered"),
             Action::Menu(is_open) => write!(f, "menu: {}", if *is_open { "open" } else { "closed" }),
             Action::Settings => f.write_str("settings of the menu"),
-            Action::StartScreen(is_shown) => write!(f, "start screen: {}", if *is_shown { "shown" } else { "left" }),
+            Action::StartScreen(is_shown) => {
+                write!(f, "start screen: {}", if *is_shown { "shown" } else { "left" })
+            }
             Action::ShareLog => f.write_str("the log is shared"),
             Action::Ipd(ipd) => write!(f, "ipd: {:.3} m", ipd.metres()),
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),

@@ -44,6 +44,13 @@ pub struct FrameReport {
 impl FrameReport {
     /// The report of a picture that is no frame of the session.
     pub(crate) fn of_start_screen(scene: SceneState) -> FrameReport {
-        FrameReport { scene, late_refreshes: 0, gpu_ms: None, telemetry_due: false, session_over: false, exit: false }
+        FrameReport {
+            scene,
+            late_refreshes: 0,
+            gpu_ms: None,
+            telemetry_due: false,
+            session_over: false,
+            exit: false,
+        }
     }
 }

@@ -114,7 +114,10 @@ impl Menu {
         self.head = Some(head);
         let Some(board) = &self.board else { return self.look_down(head, now_ns) };
         self.hit = board_hit(board, &head);
-        let tile = self.hit.and_then(|at| tile_at(at, Item::ALL.len())).map(|(i, share)| (i, if share < 0.5 { -1 } else { 1 }));
+        let tile = self
+            .hit
+            .and_then(|at| tile_at(at, Item::ALL.len()))
+            .map(|(i, share)| (i, if share < 0.5 { -1 } else { 1 }));
         let pointed = tile.map(|(i, step)| (Item::ALL[i], step));
         if pointed != self.pointed {
             // Either half of the tile for comparing is the same.

@@ -719,8 +719,7 @@ fn a_first_start_by_hand() {
     let (modules, colors) = (code.width() as u32, code.to_colors());
     image::GrayImage::from_fn(7 * (modules + 8), 7 * (modules + 8), |x, y| {
         let [x, y] = [x, y].map(|n| (n / 7).wrapping_sub(4));
-        let is_dark =
-            x < modules && y < modules && colors[(y * modules + x) as usize] == qrcode::Color::Dark;
+        let is_dark = x < modules && y < modules && colors[(y * modules + x) as usize] == qrcode::Color::Dark;
         image::Luma([if is_dark { 30 } else { 220 }])
     })
     .save(file("code.png"))
@@ -741,7 +740,10 @@ fn a_first_start_by_hand() {
         format!("{{ tap = {{ x = {}, y = {y} }} }}", 0.125 + 0.25 * f64::from(column))
     };
     let wait = |text: &str| format!("{{ wait-log = {{ text = {text:?}, frames = 2000 }} }}");
-    let share = |key: &str, value: &str| format!("\"quit\", {{ share = {{ {key} = {value:?} }} }}, \"launch\"");
+    // An activity that is left asks for its end, so that the next one sees what is shared.
+    let leave = r#""unfocus", "pause", "window-lost", "stop", { wait-finish = { frames = 1 } }, "quit""#;
+    let share =
+        |key: &str, value: &str| format!("{leave}, {{ share = {{ {key} = {value:?} }} }}, \"launch\"");
     let look = |yaw: f64, pitch: f64| {
         format!("{{ head = {{ yaw = {yaw}, pitch = {pitch}, seconds = 0.3 }} }}, {{ seconds = 1.7 }}")
     };
@@ -772,6 +774,7 @@ fn a_first_start_by_hand() {
         wait("triangles"),
         "{ seconds = 0.5 }, { capture = \"again.png\" }, { head = { roll = 90, seconds = 0.5 } }".into(),
         wait("start screen: shown"),
+        "{ frames = 2 }".into(),
         share("text", "Look: https://goo.gl/abc"),
         wait("shared: https://goo.gl/abc may be a shortened address"),
         "{ frames = 2 }, { capture = \"shortened.png\" }".into(),
@@ -809,7 +812,11 @@ fn a_first_start_by_hand() {
         }
     }
     let (own, other) = (decibels(&eyes, &expected), decibels(&eyes, &desktop(&[], None)));
-    assert!(own > 35.0 && own > other + 10.0, "{own:.1} dB, {other:.1} dB for the v2 viewer: {}", run.folder());
+    assert!(
+        own > 35.0 && own > other + 10.0,
+        "{own:.1} dB, {other:.1} dB for the v2 viewer: {}",
+        run.folder()
+    );
 }
 
 /// A GLB file with one triangle.
@@ -824,5 +831,16 @@ fn triangle() -> Vec<u8> {
     let binary: Vec<u8> = corners.iter().flatten().flat_map(|n| n.to_le_bytes()).collect();
     let word = |n: usize| (n as u32).to_le_bytes();
     let length = 12 + 8 + json.len() + 8 + binary.len();
-    [b"glTF", &word(2), &word(length), &word(json.len()), b"JSON", &*json, &word(binary.len()), b"BIN\0", &*binary].concat()
+    [
+        b"glTF",
+        &word(2),
+        &word(length),
+        &word(json.len()),
+        b"JSON",
+        &*json,
+        &word(binary.len()),
+        b"BIN\0",
+        &*binary,
+    ]
+    .concat()
 }

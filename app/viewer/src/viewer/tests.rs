@@ -477,7 +477,8 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     run.viewer.viewer_mut().offer_start_screen();
     run.frame();
     let signs = run.image();
-    let differing: Vec<usize> = (0..bare.len() / 4).filter(|i| bare[4 * i..][..4] != signs[4 * i..][..4]).collect();
+    let differing: Vec<usize> =
+        (0..bare.len() / 4).filter(|i| bare[4 * i..][..4] != signs[4 * i..][..4]).collect();
     // 48 density-independent pixels at 74 pixels per inch.
     let is_corner = |i: &usize| 180 - i / 320 <= 22 && (i % 320 < 22 || i % 320 >= 320 - 22);
     assert!(differing.len() > 500 && differing.iter().all(is_corner), "{}", differing.len());

@@ -10,8 +10,8 @@ use yoro_render::stereo::StereoFrame;
 use super::Page;
 use super::error::sentence;
 use super::scene_show::SceneShow;
-use yoro_lenses::read_qr;
 use crate::sensors::{Head, find_viewer, orientation};
+use yoro_lenses::read_qr;
 
 /// The widths and heights of screens, in metres.
 const SCREEN: std::ops::Range<f32> = 0.03..0.4;

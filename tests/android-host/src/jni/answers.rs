@@ -88,16 +88,14 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             host.finish_asked.store(true, Ordering::Release);
             Value::Void
         }
-        "parse" if class == "android/net/Uri" => {
-            Value::object(uri(&text(0)?))
-        }
+        "parse" if class == "android/net/Uri" => Value::object(uri(&text(0)?)),
         "putExtra" => {
             let lines = text(1)?.lines().count();
             host.request(format!("{} of {lines} lines", text(0)?));
             Value::object(Object::new("android/content/Intent", Data::None))
         }
         "startActivity" => {
-            host.request("another application".into());
+            host.request("another application");
             Value::Void
         }
         "isInteractive" => Value::Boolean(true),
@@ -157,9 +155,10 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             let shared = lock(&host.shared[1]).clone().filter(|shared| !shared.view).unwrap_or_default();
             let shared_text = shared.text.map(|text| Object::string(&text));
             let stream = shared.file.map(|file| uri(&file.display().to_string()));
-            let shared = [("TEXT", shared_text), ("STREAM", stream)].into_iter().filter_map(|(key, value)| {
-                Some((format!("android.intent.extra.{key}"), Value::object(value?)))
-            });
+            let shared =
+                [("TEXT", shared_text), ("STREAM", stream)].into_iter().filter_map(|(key, value)| {
+                    Some((format!("android.intent.extra.{key}"), Value::object(value?)))
+                });
             let extras = host
                 .device
                 .extras
@@ -193,7 +192,8 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             } else {
                 std::fs::File::open(path).ok()
             };
-            let descriptor = |file| Object::new("android/os/ParcelFileDescriptor", Data::File(Some(file).into()));
+            let descriptor =
+                |file| Object::new("android/os/ParcelFileDescriptor", Data::File(Some(file).into()));
             Value::Object(file.map(descriptor))
         }
         "detachFd" => match &receiver.data {
@@ -237,7 +237,9 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                 _ => default,
             }
         }
-        "getStringExtra" | "getParcelableExtra" | "getString" | "get" if matches!(receiver.data, Data::Extras(_)) => {
+        "getStringExtra" | "getCharSequenceExtra" | "getParcelableExtra" | "getString" | "get"
+            if matches!(receiver.data, Data::Extras(_)) =>
+        {
             match extra(receiver, &text(0)?) {
                 Some(value @ Value::Object(_)) => value.clone(),
                 _ => Value::Object(None),
