@@ -42,6 +42,7 @@ pub mod eyes;
 pub mod gl {
     pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError, PassTime, Profiling};
 }
+pub use glam;
 pub mod synthesis;
 #[cfg(feature = "vulkan")]
 pub mod vulkan;

@@ -1,0 +1,452 @@
+//! Stereo cameras: which view is rendered, and the cameras beside it.
+
+use bevy::camera::visibility::{RenderLayers, VisibilitySystems};
+use bevy::camera::{CameraMainTextureUsages, CameraUpdateSystems};
+use bevy::camera::{ClearColorConfig, RenderTarget};
+use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemParam;
+use bevy::prelude::*;
+use bevy::render::camera::NormalizedRenderTargetExt;
+use bevy::render::render_resource::{TextureFormat, TextureUsages};
+use bevy::render::texture::ManualTextureViews;
+use bevy::window::PrimaryWindow;
+use yoro_wgpu::yoro::eyes::{
+    self, DepthConvention, DepthRange, EyeOptions, EyePair, GuardBand, Pose, View, Warp,
+};
+
+use crate::StereoMode;
+use crate::plan::{Plan, Rendering};
+use crate::projection::EyeProjection;
+use crate::shared::ShareSystems;
+
+/// One of the two eyes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Debug, PartialEq, Hash, Clone)]
+pub enum Eye {
+    /// The left eye.
+    Left,
+    /// The right eye.
+    #[default]
+    Right,
+}
+
+impl From<Eye> for eyes::Eye {
+    fn from(eye: Eye) -> eyes::Eye {
+        match eye {
+            Eye::Left => eyes::Eye::Left,
+            Eye::Right => eyes::Eye::Right,
+        }
+    }
+}
+
+/// Stereo from this `Camera3d`, whose transform is the head's. Both eyes go side by side into the camera's render target,
+/// each as wide as half of it. Distances are in the unit of the world, which should be metres.
+///
+/// While this component is there, the camera's projection and render target are the plugin's: set the target anew to show the
+/// eyes elsewhere. Post-processing, anti-aliasing and the like are those of the camera. When the component is removed the
+/// camera gets its target back, and a perspective projection.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[require(Camera3d, Eyes)]
+pub struct StereoCamera {
+    /// How the other eye is made.
+    pub mode: StereoMode,
+    /// The eye that is rendered.
+    pub dominant: Eye,
+    /// Distance between the eyes.
+    pub ipd: f32,
+    /// Vertical field of view of each eye in radians.
+    pub fov_y: f32,
+    /// Distance of the near plane, which is more than 0.
+    pub near: f32,
+    /// Distance beyond which objects are culled.
+    pub far: f32,
+    /// Distance of the nearest object that the other eye sees whole at its outer border: the rendered image is widened by a
+    /// guard band for it. Infinity for none.
+    pub guard_distance: f32,
+}
+
+impl Default for StereoCamera {
+    /// Opaque surfaces synthesized, the right eye rendered, 63 mm, the field of view and planes of Bevy's perspective
+    /// projection, everything beyond 1 m whole.
+    fn default() -> StereoCamera {
+        let PerspectiveProjection { fov, near, far, .. } = PerspectiveProjection::default();
+        StereoCamera {
+            mode: StereoMode::default(),
+            dominant: Eye::default(),
+            ipd: 0.063,
+            fov_y: fov,
+            near,
+            far,
+            guard_distance: 1.0,
+        }
+    }
+}
+
+impl StereoCamera {
+    /// Returns the eyes around a head at the origin, with images of this size in pixels.
+    fn pair(&self, size: [u32; 2]) -> EyePair {
+        let options = EyeOptions {
+            size,
+            fov_y: self.fov_y,
+            ipd: self.ipd,
+            dominant: self.dominant.into(),
+            depth: reversed(self.near),
+            outer_inner: None,
+        };
+        options.pair(Pose::IDENTITY)
+    }
+}
+
+/// Returns Bevy's encoding of depth: reversed, without a far plane.
+pub(crate) fn reversed(near: f32) -> DepthRange {
+    DepthRange { near, far: f32::INFINITY, convention: DepthConvention::Reversed }
+}
+
+/// The state of a stereo camera.
+#[derive(Component, Default)]
+pub(crate) struct Eyes {
+    /// What is done; None before the first frame.
+    pub(crate) arrangement: Option<Arrangement>,
+    /// The views of this frame.
+    pub(crate) views: Option<Views>,
+    /// Where the camera renders to: an image for the widened view.
+    pub(crate) source: Handle<Image>,
+    /// Where the other eye's camera renders to.
+    pub(crate) other: Handle<Image>,
+    /// Shows both eyes.
+    screen: Option<Entity>,
+    /// Where the camera rendered to before.
+    output: Option<RenderTarget>,
+    /// The head in the world.
+    head: Option<GlobalTransform>,
+    /// Why both eyes are rendered although one should be synthesized.
+    reason: Option<String>,
+}
+
+/// What requires other images, projections or cameras when it changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arrangement {
+    pub(crate) plan: Plan,
+    pub(crate) samples: u32,
+    pub(crate) format: TextureFormat,
+    /// Without their poses.
+    views: [View; 2],
+    far: f32,
+    order: isize,
+}
+
+/// The views of the two eyes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Views {
+    /// What the camera renders: the dominant eye, widened unless both are rendered.
+    pub(crate) source: View,
+    /// The other eye.
+    pub(crate) target: View,
+    /// Upper left corner in pixels of the dominant eye's own image in the source.
+    pub(crate) crop: [u32; 2],
+    pub(crate) dominant: eyes::Eye,
+    /// None if both are rendered.
+    pub(crate) warp: Option<Warp>,
+}
+
+impl Views {
+    /// Returns the views for a plan.
+    ///
+    /// # Errors
+    /// Why the other eye cannot be synthesized from these.
+    pub(crate) fn new(pair: &EyePair, plan: Plan, guard: GuardBand) -> Result<Views, eyes::EyesError> {
+        let dominant = pair.dominant;
+        if plan == Plan::Rendered {
+            let (source, target) = (pair.view(dominant), pair.view(dominant.other()));
+            return Ok(Views { source, target, crop: [0, 0], dominant, warp: None });
+        }
+        let views = pair.synthesis(guard)?;
+        let crop = views.dominant_crop_from_top();
+        Ok(Views { source: views.source, target: views.target, crop, dominant, warp: Some(views.warp) })
+    }
+}
+
+/// On a stereo camera: the camera of its other eye.
+#[derive(Component, Clone, Copy)]
+pub(crate) struct OtherCamera {
+    pub(crate) entity: Entity,
+    /// False if it draws only what is not synthesized.
+    pub(crate) rendered: bool,
+}
+
+/// On a camera that shows both eyes: the stereo camera.
+#[derive(Component, Clone, Copy)]
+pub(crate) struct Screen(pub(crate) Entity);
+
+pub(crate) fn build(app: &mut App) {
+    app.register_type::<StereoCamera>()
+        .add_systems(First, back_to_head)
+        .configure_sets(PostUpdate, ShareSystems.before(CameraUpdateSystems))
+        .add_systems(PostUpdate, arrange.before(ShareSystems))
+        .add_systems(
+            PostUpdate,
+            to_eyes.after(TransformSystems::Propagate).before(VisibilitySystems::UpdateFrusta),
+        )
+        .add_observer(end);
+}
+
+/// A stereo camera, as far as it is arranged.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Parts {
+    entity: Entity,
+    pub(crate) eyes: &'static mut Eyes,
+    rendering: Rendering,
+    pub(crate) camera: &'static mut Camera,
+    camera_3d: &'static mut Camera3d,
+    target: &'static mut RenderTarget,
+    projection: &'static mut Projection,
+    other: Option<&'static OtherCamera>,
+}
+
+/// Which eyes a camera is to show.
+pub(crate) struct Wanted<'a> {
+    pub(crate) mode: StereoMode,
+    pub(crate) pair: &'a EyePair,
+    pub(crate) guard_distance: f32,
+    pub(crate) far: f32,
+    /// Format of the images that cameras render to.
+    pub(crate) format: TextureFormat,
+    /// True if the other eye's camera gets an image to render to, and a projection.
+    pub(crate) images: bool,
+}
+
+/// Returns the guard band for everything from a distance on.
+pub(crate) fn guard_band(distance: f32) -> GuardBand {
+    if distance == f32::INFINITY { GuardBand::None } else { GuardBand::Distance(distance) }
+}
+
+/// Where cameras render to.
+#[derive(SystemParam)]
+struct Targets<'w, 's> {
+    windows: Query<'w, 's, (Entity, &'static Window)>,
+    primary: Query<'w, 's, Entity, With<PrimaryWindow>>,
+    manual: Res<'w, ManualTextureViews>,
+}
+
+impl Targets<'_, '_> {
+    /// Returns size in pixels and format of what a camera without `Hdr` renders for a target.
+    fn info(&self, target: &RenderTarget, images: &Assets<Image>) -> Option<(UVec2, TextureFormat)> {
+        let normalized = target.normalize(self.primary.iter().next())?;
+        let info = normalized.get_render_target_info(&self.windows, images, &self.manual).ok()?;
+        let format = match target {
+            RenderTarget::Image(target) => {
+                let image = images.get(&target.handle)?;
+                let view_format = image.texture_view_descriptor.as_ref().and_then(|view| view.format);
+                view_format.unwrap_or(image.texture_descriptor.format)
+            }
+            RenderTarget::TextureView(handle) => self.manual.get(handle)?.view_format,
+            _ => TextureFormat::Rgba8UnormSrgb,
+        };
+        Some((info.physical_size, format))
+    }
+}
+
+fn arrange(
+    mut commands: Commands,
+    targets: Targets,
+    mut images: ResMut<Assets<Image>>,
+    mut cameras: Query<(&StereoCamera, Parts)>,
+    mut others: Query<&mut Camera, Without<StereoCamera>>,
+) {
+    for (stereo, mut parts) in &mut cameras {
+        let is_source = matches!(&*parts.target, RenderTarget::Image(to) if to.handle == parts.eyes.source);
+        if parts.eyes.arrangement.is_none() || !is_source {
+            show(&mut commands, &mut parts);
+        }
+        let Some((size, format)) =
+            parts.eyes.output.as_ref().and_then(|output| targets.info(output, &images))
+        else {
+            continue;
+        };
+        if size.x < 2 || size.y < 1 {
+            continue;
+        }
+        let pair = stereo.pair([size.x / 2, size.y]);
+        let (mode, guard_distance, far) = (stereo.mode, stereo.guard_distance, stereo.far);
+        let wanted = Wanted { mode, pair: &pair, guard_distance, far, format, images: true };
+        parts.arrange(&mut commands, &mut images, &wanted);
+        let beside = [parts.eyes.screen, parts.other.map(|other| other.entity)];
+        for entity in beside.into_iter().flatten() {
+            if let Ok(mut camera) = others.get_mut(entity)
+                && camera.is_active != parts.camera.is_active
+            {
+                camera.is_active = parts.camera.is_active;
+            }
+        }
+    }
+}
+
+/// Shows both eyes where the camera would render to.
+fn show(commands: &mut Commands, parts: &mut PartsItem) {
+    let output = parts.target.clone();
+    parts.eyes.output = Some(output.clone());
+    if let Some(screen) = parts.eyes.screen {
+        // Bevy looks at a camera's target again when its projection changes.
+        let projection = Projection::Orthographic(OrthographicProjection::default_2d());
+        commands.entity(screen).insert((output, projection));
+        return;
+    }
+    let usages = CameraMainTextureUsages::default().0 | TextureUsages::COPY_DST;
+    let camera = Camera {
+        order: parts.camera.order + 2,
+        clear_color: ClearColorConfig::Custom(Color::BLACK),
+        ..default()
+    };
+    let screen = commands.spawn((
+        Camera2d,
+        camera,
+        CameraMainTextureUsages(usages),
+        Msaa::Off,
+        RenderLayers::none(),
+        output,
+        Screen(parts.entity),
+        ChildOf(parts.entity),
+    ));
+    parts.eyes.screen = Some(screen.id());
+}
+
+impl PartsItem<'_, '_> {
+    /// Prepares images, projections and the other eye's camera for the eyes that are wanted. Returns that camera if it is new.
+    pub(crate) fn arrange(
+        &mut self,
+        commands: &mut Commands,
+        images: &mut Assets<Image>,
+        wanted: &Wanted,
+    ) -> Option<Entity> {
+        let guard = guard_band(wanted.guard_distance);
+        let tried = self.rendering.plan(wanted.mode).map_err(String::from).and_then(|plan| {
+            let views = Views::new(wanted.pair, plan, guard).map_err(|error| error.to_string())?;
+            Ok((plan, views))
+        });
+        let (plan, views, reason) = match tried {
+            Ok((plan, views)) => (plan, views, None),
+            Err(reason) => match Views::new(wanted.pair, Plan::Rendered, guard) {
+                Ok(views) => (Plan::Rendered, views, Some(reason)),
+                Err(_) => return None,
+            },
+        };
+        if reason != self.eyes.reason {
+            if let Some(reason) = &reason {
+                warn!("both eyes of {} are rendered: {reason}", self.entity);
+            }
+            self.eyes.reason = reason;
+        }
+        self.eyes.views = Some(views);
+        let still = |view: View| View { pose: Pose::IDENTITY, ..view };
+        let arrangement = Arrangement {
+            plan,
+            samples: self.rendering.samples(),
+            format: wanted.format,
+            views: [views.source, views.target].map(still),
+            far: wanted.far,
+            order: self.camera.order,
+        };
+        if self.eyes.arrangement == Some(arrangement) {
+            return None;
+        }
+        self.eyes.arrangement = Some(arrangement);
+
+        let mut image = |view: &View| {
+            let [width, height] = view.size;
+            let mut image = Image::new_target_texture(width, height, wanted.format, None);
+            image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+            image.data = None;
+            image.copy_on_resize = false;
+            images.add(image)
+        };
+        self.eyes.source = image(&views.source);
+        *self.target = RenderTarget::Image(self.eyes.source.clone().into());
+        *self.projection = Projection::custom(EyeProjection::new(&views.source, wanted.far));
+        let usages = TextureUsages::from(self.camera_3d.depth_texture_usages);
+        self.camera_3d.depth_texture_usages = (usages | TextureUsages::TEXTURE_BINDING).into();
+
+        let rendered = plan == Plan::Rendered;
+        let kept = self.other.filter(|other| plan.has_other_camera() && other.rendered == rendered);
+        if let (Some(other), None) = (self.other, kept) {
+            commands.entity(other.entity).try_despawn();
+            commands.entity(self.entity).remove::<OtherCamera>();
+        }
+        self.eyes.other = Handle::default();
+        if !plan.has_other_camera() {
+            return None;
+        }
+        let own = (
+            Camera {
+                order: self.camera.order + 1,
+                clear_color: self.camera.clear_color,
+                is_active: self.camera.is_active,
+                ..default()
+            },
+            if rendered { self.rendering.msaa() } else { Msaa::Off },
+        );
+        let new = kept.is_none().then(|| {
+            let entity = commands.spawn((Camera3d::default(), ChildOf(self.entity))).id();
+            commands.entity(self.entity).insert(OtherCamera { entity, rendered });
+            entity
+        });
+        let entity = new.or(kept.map(|other| other.entity))?;
+        commands.entity(entity).insert(own);
+        if wanted.images {
+            self.eyes.other = image(&views.target);
+            let target = RenderTarget::Image(self.eyes.other.clone().into());
+            let projection = Projection::custom(EyeProjection::new(&views.target, wanted.far));
+            commands.entity(entity).insert((target, projection));
+        }
+        new
+    }
+}
+
+/// Moves the cameras from the head to the eyes. Transforms stay the head's.
+fn to_eyes(
+    mut cameras: Query<(&mut Eyes, &mut GlobalTransform, Option<&OtherCamera>), With<StereoCamera>>,
+    mut others: Query<&mut GlobalTransform, Without<StereoCamera>>,
+) {
+    for (mut eyes, mut transform, other) in &mut cameras {
+        let Some(views) = eyes.views else { continue };
+        let head = *transform;
+        eyes.head = Some(head);
+        *transform = head.mul_transform(bevy_transform(&views.source.pose));
+        if let Some(mut other) = other.and_then(|other| others.get_mut(other.entity).ok()) {
+            *other = head.mul_transform(bevy_transform(&views.target.pose));
+        }
+    }
+}
+
+/// Moves the cameras back, so that nobody else sees them moved.
+fn back_to_head(mut cameras: Query<(&mut Eyes, &mut GlobalTransform), With<StereoCamera>>) {
+    for (mut eyes, mut transform) in &mut cameras {
+        if let Some(head) = eyes.head.take() {
+            *transform = head;
+        }
+    }
+}
+
+/// Returns a pose as Bevy's transform.
+pub(crate) fn bevy_transform(pose: &Pose) -> Transform {
+    Transform::from_translation(Vec3::from_array(pose.position.to_array()))
+        .with_rotation(Quat::from_array(pose.orientation.to_array()))
+}
+
+/// Makes a single camera of it again.
+fn end(
+    removed: On<Remove, StereoCamera>,
+    mut commands: Commands,
+    cameras: Query<(&StereoCamera, &Eyes, &GlobalTransform, Option<&OtherCamera>)>,
+) {
+    let Ok((stereo, eyes, transform, other)) = cameras.get(removed.entity) else { return };
+    for entity in [eyes.screen, other.map(|other| other.entity)].into_iter().flatten() {
+        commands.entity(entity).try_despawn();
+    }
+    let projection =
+        PerspectiveProjection { fov: stereo.fov_y, near: stereo.near, far: stereo.far, ..default() };
+    let target = eyes.output.clone().unwrap_or_default();
+    let restored = (target, Projection::Perspective(projection), eyes.head.unwrap_or(*transform));
+    commands.entity(removed.entity).try_remove::<(Eyes, OtherCamera)>().try_insert(restored);
+}

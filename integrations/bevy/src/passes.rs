@@ -1,0 +1,235 @@
+//! Synthesis in the render world.
+
+use bevy::camera::Camera;
+use bevy::core_pipeline::core_3d::{
+    AlphaMask3d, CORE_3D_DEPTH_FORMAT, Opaque3d, main_opaque_pass_3d, main_transparent_pass_3d,
+};
+use bevy::core_pipeline::{Core2d, Core2dSystems, Core3d, Core3dSystems};
+use bevy::ecs::system::SystemParam;
+use bevy::pbr::main_transmissive_pass_3d;
+use bevy::prelude::*;
+use bevy::render::render_asset::RenderAssets;
+use bevy::render::render_phase::ViewBinnedRenderPhases;
+use bevy::render::render_resource::{StoreOp, TextureView};
+use bevy::render::renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery};
+use bevy::render::sync_world::RenderEntity;
+use bevy::render::texture::GpuImage;
+use bevy::render::view::{ExtractedView, ViewDepthTexture, ViewTarget};
+use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderSystems};
+use yoro_wgpu::yoro::eyes::{Eye, Warp};
+use yoro_wgpu::{Gather, Options, Source, Target, WgpuError, wgpu};
+
+use crate::camera::{Eyes, OtherCamera, Screen, Views};
+use crate::plan::Plan;
+
+pub(crate) fn build(app: &mut App) {
+    let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
+    render
+        .init_resource::<Pipelines>()
+        .add_systems(ExtractSchedule, extract)
+        .add_systems(Render, leave_out_opaque.in_set(RenderSystems::PhaseSort))
+        .add_systems(
+            Core3d,
+            synthesize_opaque
+                .after(main_opaque_pass_3d)
+                .before(main_transmissive_pass_3d)
+                .before(main_transparent_pass_3d)
+                .in_set(Core3dSystems::MainPass),
+        )
+        .add_systems(Core2d, show.in_set(Core2dSystems::EarlyPostProcess));
+}
+
+/// On a stereo camera in the render world: a frame's [`Eyes`].
+#[derive(Component, Clone)]
+pub(crate) struct Stereo {
+    pub(crate) plan: Plan,
+    samples: u32,
+    pub(crate) views: Views,
+    pub(crate) source: AssetId<Image>,
+    other: AssetId<Image>,
+    other_camera: Option<Entity>,
+}
+
+/// On the camera of a synthesized eye in the render world: its opaque objects are not drawn.
+#[derive(Component)]
+struct Synthesized;
+
+/// On a camera in the render world that shows the eyes of this stereo camera.
+#[derive(Component)]
+struct Shows(Entity);
+
+fn extract(
+    mut commands: Commands,
+    cameras: Extract<Query<(RenderEntity, &Camera, &Eyes, Option<&OtherCamera>)>>,
+    screens: Extract<Query<(RenderEntity, &Screen)>>,
+    entities: Extract<Query<RenderEntity>>,
+    old: Query<Entity, With<Stereo>>,
+) {
+    for entity in &old {
+        commands.entity(entity).remove::<Stereo>();
+    }
+    for (entity, camera, eyes, other) in &cameras {
+        let (Some(arrangement), Some(views)) = (eyes.arrangement, eyes.views) else { continue };
+        if !camera.is_active {
+            continue;
+        }
+        let other_camera = other.and_then(|other| entities.get(other.entity).ok());
+        if let (Some(other), Plan::Opaque(_)) = (other_camera, arrangement.plan) {
+            commands.entity(other).insert(Synthesized);
+        }
+        commands.entity(entity).insert(Stereo {
+            plan: arrangement.plan,
+            samples: arrangement.samples,
+            views,
+            source: eyes.source.id(),
+            other: eyes.other.id(),
+            other_camera,
+        });
+    }
+    for (entity, screen) in &screens {
+        if let Ok(camera) = entities.get(screen.0) {
+            commands.entity(entity).insert(Shows(camera));
+        }
+    }
+}
+
+fn leave_out_opaque(
+    views: Query<&ExtractedView, With<Synthesized>>,
+    mut opaque: ResMut<ViewBinnedRenderPhases<Opaque3d>>,
+    mut masked: ResMut<ViewBinnedRenderPhases<AlphaMask3d>>,
+) {
+    for view in &views {
+        opaque.remove(&view.retained_view_entity);
+        masked.remove(&view.retained_view_entity);
+    }
+}
+
+/// The passes of synthesis for each format and kind of source. None if the device refuses them.
+#[derive(Resource, Default)]
+pub(crate) struct Pipelines(Vec<(Options, Option<Gather>)>);
+
+/// Synthesis in a system of a camera's schedule.
+#[derive(SystemParam)]
+pub(crate) struct Synthesis<'w, 's> {
+    pipelines: ResMut<'w, Pipelines>,
+    device: Res<'w, RenderDevice>,
+    queue: Res<'w, RenderQueue>,
+    pub(crate) context: RenderContext<'w, 's>,
+}
+
+impl Synthesis<'_, '_> {
+    /// Records the passes, or logs once why it cannot be done.
+    pub(crate) fn record(&mut self, options: &Options, source: &Source, warp: &Warp, target: &Target) {
+        let device = self.device.wgpu_device();
+        let pipelines = &mut self.pipelines.0;
+        let known = pipelines.iter().position(|(other, _)| other == options);
+        let index = known.unwrap_or_else(|| {
+            let gather = Gather::new(device, options).inspect_err(log_once).ok();
+            pipelines.push((*options, gather));
+            pipelines.len() - 1
+        });
+        if let Some(gather) = &mut pipelines[index].1 {
+            let encoder = self.context.command_encoder();
+            let recorded = gather.record(device, &self.queue, encoder, source, warp, target);
+            recorded.unwrap_or_else(|error| log_once(&error));
+        }
+    }
+
+    /// Copies a rectangle from one texture into another, as far as both have it.
+    pub(crate) fn copy(
+        &mut self,
+        from: &wgpu::Texture,
+        [x, y]: [u32; 2],
+        to: &wgpu::Texture,
+        at: [u32; 3],
+        size: [u32; 2],
+    ) {
+        if from.format().remove_srgb_suffix() != to.format().remove_srgb_suffix() {
+            error_once!("an eye of {:?} cannot be copied into {:?}", from.format(), to.format());
+            return;
+        }
+        let width = size[0].min(from.width().saturating_sub(x)).min(to.width().saturating_sub(at[0]));
+        let height = size[1].min(from.height().saturating_sub(y)).min(to.height().saturating_sub(at[1]));
+        let place = |texture, [x, y, z]: [u32; 3]| wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x, y, z },
+            aspect: wgpu::TextureAspect::All,
+        };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let encoder = self.context.command_encoder();
+        encoder.copy_texture_to_texture(place(from, [x, y, 0]), place(to, at), size);
+    }
+}
+
+fn log_once(error: &WgpuError) {
+    error_once!("the other eye cannot be synthesized: {error}");
+}
+
+/// Draws the opaque surfaces of the other eye, which its own camera has left out.
+fn synthesize_opaque(
+    view: ViewQuery<(&Stereo, &ViewTarget, &ViewDepthTexture)>,
+    others: Query<(&ViewTarget, &ViewDepthTexture)>,
+    mut synthesis: Synthesis,
+) {
+    let (stereo, source_color, source_depth) = view.into_inner();
+    let (Plan::Opaque(edges), Some(warp)) = (stereo.plan, &stereo.views.warp) else { return };
+    let Some((color, depth)) = stereo.other_camera.and_then(|camera| others.get(camera).ok()) else {
+        return;
+    };
+    // The attachments are cleared when they are asked for the first time: later passes must not clear them.
+    let color_attachment = color.get_unsampled_color_attachment();
+    drop(depth.get_attachment(StoreOp::Store));
+    let options = Options {
+        color_format: color.main_texture_format(),
+        depth_format: Some(CORE_3D_DEPTH_FORMAT),
+        edges,
+        samples: stereo.samples,
+    };
+    let source = Source::new(source_color.main_texture_view(), source_depth.view());
+    let target = Target { color: color_attachment.view, depth: Some(depth.view()), origin: [0, 0] };
+    synthesis.record(&options, &source, warp, &target);
+}
+
+/// Shows both eyes side by side.
+fn show(
+    view: ViewQuery<(&Shows, &ViewTarget)>,
+    cameras: Query<(&Stereo, &ViewDepthTexture)>,
+    images: Res<RenderAssets<GpuImage>>,
+    mut synthesis: Synthesis,
+) {
+    let (shows, target) = view.into_inner();
+    let Ok((stereo, depth)) = cameras.get(shows.0) else { return };
+    let Some(source) = images.get(stereo.source) else { return };
+    let Views { target: other, crop, dominant, .. } = stereo.views;
+    let place = |eye: Eye| [eye.index() as u32 * other.size[0], 0];
+    let [x, y] = place(dominant);
+    synthesis.copy(&source.texture, crop, target.main_texture(), [x, y, 0], other.size);
+    let [x, y] = place(dominant.other());
+    if let Plan::Finished(_) = stereo.plan {
+        let target = Target { color: target.main_texture_view(), depth: None, origin: [x, y] };
+        stereo.synthesize_finished(&mut synthesis, &source.texture_view, depth, &target);
+    } else if let Some(image) = images.get(stereo.other) {
+        synthesis.copy(&image.texture, [0, 0], target.main_texture(), [x, y, 0], other.size);
+    }
+}
+
+impl Stereo {
+    /// Draws the other eye from the finished image of this one.
+    pub(crate) fn synthesize_finished(
+        &self,
+        synthesis: &mut Synthesis,
+        color: &TextureView,
+        depth: &ViewDepthTexture,
+        target: &Target,
+    ) {
+        let (Plan::Finished(edges), Some(warp)) = (self.plan, &self.views.warp) else { return };
+        let options = Options {
+            color_format: target.color.texture().format(),
+            depth_format: None,
+            edges,
+            samples: self.samples,
+        };
+        synthesis.record(&options, &Source::new(color, depth.view()), warp, target);
+    }
+}

@@ -1,0 +1,88 @@
+//! How the other eye of a camera is made.
+
+use bevy::anti_alias::{fxaa::Fxaa, smaa::Smaa};
+use bevy::camera::Hdr;
+use bevy::ecs::query::QueryData;
+use bevy::prelude::*;
+use bevy::render::camera::TemporalJitter;
+use yoro_wgpu::yoro::synthesis::Edges;
+
+/// How the other eye is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Debug, PartialEq, Hash, Clone)]
+pub enum StereoMode {
+    /// Opaque surfaces and sky are synthesized; transparent objects, bloom, tone mapping, FXAA and SMAA are drawn for each
+    /// eye by itself. With 4 or 2 samples the synthesis uses the depth of each. Not with temporal anti-aliasing, and with
+    /// `Hdr` not with samples: both eyes are rendered then.
+    #[default]
+    Opaque,
+    /// The finished image is synthesized: the cheapest way, and it goes with temporal anti-aliasing. Transparent objects
+    /// move with what is behind them, and highlights with their surface.
+    Finished,
+    /// Both eyes are rendered, for comparison.
+    Rendered,
+}
+
+/// What is done: the mode, as far as the camera's other components allow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Plan {
+    Opaque(Edges),
+    Finished(Edges),
+    Rendered,
+}
+
+impl Plan {
+    /// True if the other eye has a camera of its own.
+    pub(crate) fn has_other_camera(self) -> bool {
+        !matches!(self, Plan::Finished(_))
+    }
+}
+
+/// The components of a camera that decide about its plan.
+#[derive(QueryData)]
+pub(crate) struct Rendering {
+    msaa: &'static Msaa,
+    hdr: Has<Hdr>,
+    jitter: Has<TemporalJitter>,
+    fxaa: Has<Fxaa>,
+    smaa: Has<Smaa>,
+}
+
+impl RenderingItem<'_, '_> {
+    /// Returns what can be done.
+    ///
+    /// # Errors
+    /// The reason why the mode is impossible: both eyes are to be rendered.
+    pub(crate) fn plan(&self, mode: StereoMode) -> Result<Plan, &'static str> {
+        let samples = self.msaa.samples();
+        if samples > 4 && mode != StereoMode::Rendered {
+            return Err("8 samples cannot be synthesized; use Msaa::Sample4");
+        }
+        match mode {
+            StereoMode::Opaque if self.jitter => Err(
+                "temporal anti-aliasing needs the history of each eye in StereoMode::Opaque; use StereoMode::Finished",
+            ),
+            StereoMode::Opaque if samples > 1 && self.hdr => Err(
+                "samples with Hdr cannot be synthesized in StereoMode::Opaque; use Msaa::Off, or StereoMode::Finished",
+            ),
+            _ if samples > 1 && mode != StereoMode::Rendered => Ok(match mode {
+                StereoMode::Opaque => Plan::Opaque(Edges::Multisample),
+                _ => Plan::Finished(Edges::Multisample),
+            }),
+            StereoMode::Opaque => Ok(Plan::Opaque(Edges::Hard)),
+            // Colour is smoothed at edges, depth is not.
+            StereoMode::Finished if self.jitter | self.fxaa | self.smaa => Ok(Plan::Finished(Edges::Sample)),
+            StereoMode::Finished => Ok(Plan::Finished(Edges::Hard)),
+            StereoMode::Rendered => Ok(Plan::Rendered),
+        }
+    }
+
+    pub(crate) fn msaa(&self) -> Msaa {
+        *self.msaa
+    }
+
+    /// Returns the number of samples in each pixel.
+    pub(crate) fn samples(&self) -> u32 {
+        self.msaa.samples()
+    }
+}

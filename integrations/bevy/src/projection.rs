@@ -1,0 +1,51 @@
+//! An eye's projection for Bevy's cameras.
+
+use bevy::camera::{CameraProjection, SubCameraView};
+use bevy::math::{Mat4, Vec3A};
+use yoro_wgpu::yoro::eyes::{Frustum, View};
+
+/// The projection of an eye: any frustum, reversed depth without a far plane.
+#[derive(Clone, Debug)]
+pub(crate) struct EyeProjection {
+    clip_from_view: Mat4,
+    frustum: Frustum,
+    /// Distance beyond which objects are culled.
+    far: f32,
+}
+
+impl EyeProjection {
+    pub(crate) fn new(view: &View, far: f32) -> EyeProjection {
+        EyeProjection { clip_from_view: clip_from_view(view), frustum: view.frustum, far }
+    }
+}
+
+/// Returns the projection matrix of a view.
+pub(crate) fn clip_from_view(view: &View) -> Mat4 {
+    Mat4::from_cols_array(&view.wgpu_projection().to_cols_array())
+}
+
+impl CameraProjection for EyeProjection {
+    fn get_clip_from_view(&self) -> Mat4 {
+        self.clip_from_view
+    }
+
+    fn get_clip_from_view_for_sub(&self, _: &SubCameraView) -> Mat4 {
+        self.clip_from_view
+    }
+
+    /// The frustum is the eye's, whatever the size of the image.
+    fn update(&mut self, _: f32, _: f32) {}
+
+    fn far(&self) -> f32 {
+        self.far
+    }
+
+    fn get_frustum_corners(&self, z_near: f32, z_far: f32) -> [Vec3A; 8] {
+        let Frustum { left, right, bottom, top } = self.frustum;
+        let sides = [(right, bottom), (right, top), (left, top), (left, bottom)];
+        std::array::from_fn(|i| {
+            let (z, (x, y)) = (if i < 4 { z_near } else { z_far }, sides[i % 4]);
+            Vec3A::new(x * z.abs(), y * z.abs(), z)
+        })
+    }
+}
