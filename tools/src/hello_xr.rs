@@ -94,6 +94,8 @@ fn write_programs(folder: &Path, root: &Path, monado: &Path) -> anyhow::Result<(
         &monado::run(&monado.join("root"), std::slice::from_ref(&libraries)),
     )?;
     copy(&libraries.join(LOADER), &folder.join(LOADER))?;
+    // Some programs written in Rust look for it without the version.
+    copy(&libraries.join(LOADER), &libraries.join("libopenxr_loader.so"))?;
     let service = format!("exec {} \"$@\"\n", quoted(&monado.join("monado-service")));
     write_launcher(&folder.join("monado-service"), &service)
 }

@@ -1,10 +1,12 @@
 //! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`,
-//! `package`, `kit`, `godot`, `web`. What maintainers run is in tools/.
+//! `package`, `kit`, `bevy`, `godot`, `web`. What maintainers run is in tools/.
 
 mod android;
+mod bevy;
 mod godot;
 mod kit;
 mod lint;
+mod monado;
 mod package;
 mod setup;
 mod testing;
@@ -77,6 +79,11 @@ enum Task {
     },
     /// Write the shader kit into target/kit: synthesis for engines that want no library
     Kit,
+    /// The plugin for Bevy: an example, its tests
+    Bevy {
+        #[command(subcommand)]
+        task: bevy::Task,
+    },
     /// The add-on for Godot: its project, its tests
     Godot {
         #[command(subcommand)]
@@ -141,6 +148,8 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Kit => {
             kit::kit()?;
         }
+        Task::Bevy { task: bevy::Task::Run } => bevy::run()?,
+        Task::Bevy { task: bevy::Task::Test } => bevy::test()?,
         Task::Godot { task: godot::Task::Project } => {
             godot::project()?;
         }

@@ -3,28 +3,20 @@
 use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
 use yoro_tools::{apt, godot};
 
+use crate::monado::{self, Running};
+
 /// Both programs of Godot's folder, and a display.
 pub struct Session {
     godot: PathBuf,
     display: String,
     _screen: Running,
-}
-
-/// A program that ends with this.
-pub struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.0.kill().ok();
-        self.0.wait().ok();
-    }
 }
 
 impl Session {
@@ -90,22 +82,6 @@ impl Session {
     /// # Errors
     /// When it does not start.
     pub fn runtime(&self, folder: &Path) -> anyhow::Result<Running> {
-        let log = File::create(folder.join("runtime.log"))?;
-        let child = Command::new(self.godot.join("monado-service"))
-            .env("XDG_RUNTIME_DIR", folder)
-            .stdin(Stdio::null())
-            .stdout(log.try_clone()?)
-            .stderr(log)
-            .spawn()
-            .context("Monado cannot be started")?;
-        let running = Running(child);
-        let start = Instant::now();
-        while !folder.join("monado_comp_ipc").exists() {
-            if start.elapsed() > Duration::from_secs(20) {
-                bail!("Monado does not start: {}", folder.join("runtime.log").display());
-            }
-            thread::sleep(Duration::from_millis(50));
-        }
-        Ok(running)
+        monado::start(&self.godot.join("monado-service"), folder)
     }
 }

@@ -1,20 +1,21 @@
 //! What the examples and the tests share: a room to look at, and an application without a window.
 #![allow(dead_code)]
 
-use std::sync::{Arc, Mutex};
-
-use bevy::app::PluginsState;
+use bevy::app::{PluginGroupBuilder, PluginsState};
 use bevy::camera::RenderTarget;
-use bevy::image::TextureFormatPixelInfo;
 use bevy::log::LogPlugin;
 use bevy::prelude::*;
-use bevy::render::RenderPlugin;
-use bevy::render::gpu_readback::{Readback, ReadbackComplete};
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
-use bevy::render::settings::{InstanceFlags, RenderCreation, WgpuSettings};
+use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
+use bevy::render::renderer::{RenderDevice, RenderQueue};
+use bevy::render::settings::{InstanceFlags, RenderCreation, WgpuSettings};
+use bevy::render::texture::GpuImage;
+use bevy::render::{RenderApp, RenderPlugin};
 use bevy::window::ExitCondition;
+use bevy::winit::WinitPlugin;
 use bevy_yoro::YoroPlugin;
+use bevy_yoro::yoro_wgpu::wgpu;
 use image::RgbImage;
 
 /// On the glass in the room.
@@ -98,26 +99,35 @@ pub fn room(
 /// Returns Bevy without a window: each `update` renders one frame, with all of its pipelines compiled.
 pub fn headless() -> App {
     let mut app = App::new();
-    let plugins = DefaultPlugins
-        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-        .set(RenderPlugin {
-            render_creation: RenderCreation::Automatic(Box::new(WgpuSettings {
-                instance_flags: InstanceFlags::empty(),
-                ..default()
-            })),
-            synchronous_pipeline_compilation: true,
+    let rendering = RenderPlugin {
+        render_creation: RenderCreation::Automatic(Box::new(WgpuSettings {
+            instance_flags: InstanceFlags::empty(),
             ..default()
-        })
-        .disable::<LogPlugin>()
+        })),
+        synchronous_pipeline_compilation: true,
+        ..default()
+    };
+    app.add_plugins((windowless().set(rendering), YoroPlugin)).add_systems(Startup, room);
+    finish(&mut app);
+    app
+}
+
+/// Returns Bevy's plugins without those for windows, and without rendering one frame while the next one is prepared.
+pub fn windowless() -> PluginGroupBuilder {
+    DefaultPlugins
+        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
         .disable::<PipelinedRenderingPlugin>()
-        .disable::<bevy::winit::WinitPlugin>();
-    app.add_plugins((plugins, YoroPlugin)).add_systems(Startup, room);
+        .disable::<WinitPlugin>()
+        .disable::<LogPlugin>()
+}
+
+/// Waits for the device, as an event loop does.
+pub fn finish(app: &mut App) {
     while app.plugins_state() == PluginsState::Adding {
         bevy::tasks::tick_global_task_pools_on_main_thread();
     }
     app.finish();
     app.cleanup();
-    app
 }
 
 /// Returns an image of this size in pixels that cameras can render to, and that can be read back.
@@ -129,31 +139,44 @@ pub fn target(app: &mut App, size: [u32; 2]) -> Handle<Image> {
 
 /// Renders until everything has arrived, and returns what is in the image.
 pub fn picture(app: &mut App, image: &Handle<Image>) -> RgbImage {
-    for _ in 0..3 {
+    for _ in 0..4 {
         app.update();
     }
-    let read: Arc<Mutex<Option<Vec<u8>>>> = Arc::default();
-    let into = read.clone();
-    let reader = app
-        .world_mut()
-        .spawn(Readback::texture(image.clone()))
-        .observe(move |complete: On<ReadbackComplete>| {
-            *into.lock().unwrap() = Some(complete.data.clone());
-        })
-        .id();
-    let data = (0..100)
-        .find_map(|_| {
-            app.update();
-            read.lock().unwrap().take()
-        })
-        .expect("the image is read back within 100 frames");
-    app.world_mut().despawn(reader);
-    let images = app.world().resource::<Assets<Image>>();
-    let descriptor = &images.get(image).expect("the image is there").texture_descriptor;
-    let (width, height) = (descriptor.size.width, descriptor.size.height);
-    let row = width * descriptor.format.pixel_size().unwrap() as u32;
-    // Rows may be padded as in the buffer of the copy.
-    let pitch = if data.len() as u32 == row * height { row } else { row.next_multiple_of(256) };
+    rendered(app, image)
+}
+
+/// Returns what the last frame has left in an image.
+pub fn rendered(app: &App, image: &Handle<Image>) -> RgbImage {
+    let images = app.sub_app(RenderApp).world().resource::<RenderAssets<GpuImage>>();
+    read(app, &images.get(image).expect("the image is on the device").texture, 0)
+}
+
+/// Returns one layer of a texture of 4 bytes per pixel, red first.
+pub fn read(app: &App, texture: &wgpu::Texture, layer: u32) -> RgbImage {
+    let world = app.sub_app(RenderApp).world();
+    let (device, queue) = (world.resource::<RenderDevice>().wgpu_device(), world.resource::<RenderQueue>());
+    let (width, height) = (texture.width(), texture.height());
+    let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(pitch * height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&default());
+    let from = wgpu::TexelCopyTextureInfo {
+        texture,
+        mip_level: 0,
+        origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+        aspect: wgpu::TextureAspect::All,
+    };
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
+    let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+    encoder.copy_texture_to_buffer(from, to, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
+    queue.submit([encoder.finish()]);
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |mapped| mapped.expect("the buffer can be read"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    let data = buffer.slice(..).get_mapped_range();
     RgbImage::from_fn(width, height, |x, y| {
         let i = (y * pitch + 4 * x) as usize;
         image::Rgb([data[i], data[i + 1], data[i + 2]])

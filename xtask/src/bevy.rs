@@ -1,0 +1,80 @@
+//! The plugin for Bevy: its example and its tests. They are packages apart, with a target folder of their own.
+
+use std::time::Instant;
+
+use anyhow::bail;
+use clap::Subcommand;
+use yoro_tools::folders::{make_parent, remove, root, target_folder};
+use yoro_tools::{cargo, hello_xr, monado as monado_packages};
+
+use crate::{monado, setup};
+
+#[derive(Subcommand)]
+pub enum Task {
+    /// Render a room in both eyes without a window, and write the pictures into out/bevy
+    Run,
+    /// Run the plugin's tests; those of headsets on Monado with a simulated one
+    Test,
+}
+
+/// Runs the example without a window.
+///
+/// # Errors
+/// When it fails.
+pub fn run() -> anyhow::Result<()> {
+    setup::vulkan();
+    let folder = root().join("out/bevy").display().to_string();
+    perform("run", &["--example", "headless", "--", &folder], &[])
+}
+
+/// Runs all tests.
+///
+/// # Errors
+/// When one fails. Where there is no Monado, its tests are left out with a word.
+pub fn test() -> anyhow::Result<()> {
+    let start = Instant::now();
+    setup::vulkan();
+    perform("test", &[], &[])?;
+    match hello_xr::make() {
+        Ok(programs) => {
+            let folder = target_folder()?.join("bevy-tests");
+            remove(&folder)?;
+            make_parent(&folder.join("runtime.log"))?;
+            let _runtime = monado::start(&programs.join("monado-service"), &folder)?;
+            let runner = format!("target.'cfg(all())'.runner=[{:?}]", programs.join("run"));
+            let drivers = monado_packages::make()?.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
+            let environment = [
+                ("XDG_RUNTIME_DIR", folder.display().to_string()),
+                ("VK_DRIVER_FILES", drivers.display().to_string()),
+            ];
+            let environment: Vec<(&str, &str)> =
+                environment.iter().map(|(name, value)| (*name, value.as_str())).collect();
+            let headset = ["--config", &runner, "--test", "headset", "--", "--ignored", "--nocapture"];
+            perform("test", &headset, &environment)?;
+        }
+        Err(error) => println!("Monado cannot be had here: tests of headsets were left out: {error:#}"),
+    }
+    println!("Bevy: {} s", start.elapsed().as_secs());
+    Ok(())
+}
+
+fn perform(command: &str, more: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<()> {
+    let manifest = root().join("integrations/bevy/Cargo.toml").display().to_string();
+    let target = target_folder()?.join("bevy").display().to_string();
+    // The same features for all: nothing is compiled twice.
+    let mut arguments = vec![
+        command,
+        "--locked",
+        "--manifest-path",
+        &manifest,
+        "--target-dir",
+        &target,
+        "--features",
+        "openxr",
+    ];
+    arguments.extend(more);
+    if !cargo::succeeds(&arguments, environment) {
+        bail!("cargo {command} failed: see above");
+    }
+    Ok(())
+}
