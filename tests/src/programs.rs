@@ -20,10 +20,10 @@ use yoro_shaders::{Assembled, MissingFile};
 use crate::{is_tested, scene};
 
 /// The variants of the renderer's programs to make. Other programs are always made in every variant, but for those of
-/// synthesis from parts and layers of textures, and with a history.
+/// synthesis from parts and layers of textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variants {
-    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and layers and with a history.
+    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and layers.
     Every,
     /// Under default settings, materials without maps and with all maps: the cost of the others lies between these. By
     /// every method in the realistic style only.
@@ -38,10 +38,8 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     synthesis(gl, variants)?;
     rendering(gl, variants)?;
     stereo(gl)?;
-    if variants == Variants::Every {
-        let options = StereoOptions { history: History::Full, ..StereoOptions::default() };
-        stereo::create(gl, Method::Yoro, &RenderSettings::default(), &options)?;
-    }
+    let options = StereoOptions { history: History::Full, ..StereoOptions::default() };
+    stereo::create(gl, Method::Yoro, &RenderSettings::default(), &options)?;
     patchers(gl)?;
     viewer(gl)
 }
@@ -82,17 +80,18 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
             Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
         }
     }
-    if variants == Variants::Every {
-        for (parts, layers, history) in
-            [(true, false, false), (false, true, false), (true, true, false), (false, false, true)]
-        {
-            let options = SynthesisOptions { parts, layers, history, ..SynthesisOptions::default() };
-            for variant in GatherVariant::ALL {
-                Gather::with_variant_of(gl, Outputs::default(), variant, &options)?;
-            }
-            for edges in [Edges::Nearest, Edges::Sample] {
-                synthesis::create(gl, &SynthesisOptions { edges, ..options }, Outputs::default())?;
-            }
+    for (parts, layers, history) in
+        [(false, false, true), (true, false, false), (false, true, false), (true, true, false)]
+    {
+        if variants == Variants::Extreme && !history {
+            continue;
+        }
+        let options = SynthesisOptions { parts, layers, history, ..SynthesisOptions::default() };
+        for variant in GatherVariant::ALL {
+            Gather::with_variant_of(gl, Outputs::default(), variant, &options)?;
+        }
+        for edges in [Edges::Nearest, Edges::Sample] {
+            synthesis::create(gl, &SynthesisOptions { edges, ..options }, Outputs::default())?;
         }
     }
     // The march by its parts, for the executed cost.
