@@ -28,6 +28,12 @@ pub fn lint() -> anyhow::Result<()> {
     let mut package = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
     package.extend(PUBLISHED.iter().flat_map(|name| ["--package", name]));
     checks.push(package);
+    // The plugin for Bevy is a workspace of its own; `cargo xtask bevy test` compiles it.
+    let bevy = ["--manifest-path", "integrations/bevy/Cargo.toml"];
+    checks.push([&["fmt", "--check"][..], &bevy].concat());
+    checks.push(
+        [&["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"][..], &bevy].concat(),
+    );
     let mut failed: Vec<String> = checks
         .iter()
         .filter(|check| !cargo::succeeds(check, &[("RUSTDOCFLAGS", "--deny warnings")]))
