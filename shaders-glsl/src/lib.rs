@@ -82,6 +82,8 @@ static FILES: &[(&str, &str)] = embed![
     "stereo/paper/reproject.frag",
     "stereo/paper/scatter.comp",
     "stereo/uncovered.frag",
+    "synthesis/any_view/march.frag",
+    "synthesis/any_view/tiles.frag",
     "synthesis/gather/march.frag",
     "synthesis/gather/spans.frag",
     "synthesis/gather/tiles.frag",

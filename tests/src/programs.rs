@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
-use yoro::synthesis::{self, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
+use yoro::synthesis::{self, AnyView, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro_lab::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_render::stereo::{
@@ -71,6 +71,15 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
                     outputs,
                     PaperOptions { imbuffer, linear_interpolation, kernel_height, strict },
                 )?;
+            }
+        }
+    }
+    for depth in [false, true] {
+        let outputs = Outputs { depth, ..Outputs::default() };
+        AnyView::new(gl, &SynthesisOptions::default(), outputs)?;
+        if variants == Variants::Every {
+            for (parts, layers) in [(true, false), (false, true), (true, true)] {
+                AnyView::new(gl, &SynthesisOptions { parts, layers, ..SynthesisOptions::default() }, outputs)?;
             }
         }
     }

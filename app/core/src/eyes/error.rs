@@ -14,6 +14,11 @@ pub enum EyesError {
         /// Angle between the two viewing directions.
         degrees: f32,
     },
+    /// One view sees what lies too far beside or behind the other.
+    #[error(
+        "a view reaches further than 80 degrees from the axis of the one to render; render a view in a pose nearer to it, or allow less motion"
+    )]
+    Apart,
     /// The eyes are displaced along more than their X axis.
     #[error(
         "the eyes are displaced by {off_axis:.4} m off their common X axis; synthesis moves pixels along rows only: place both eyes on one horizontal line, or turn both at right angles to the line between them"

@@ -7,6 +7,7 @@ mod depth;
 mod error;
 mod guard_band;
 mod pair;
+mod pose_warp;
 mod view;
 mod warp;
 
@@ -14,6 +15,7 @@ pub use depth::{DepthConvention, DepthRange};
 pub use error::EyesError;
 pub use guard_band::{GuardBand, ParseGuardBandError};
 pub use pair::{EyeOptions, EyePair, SynthesisViews};
+pub use pose_warp::{GuardedView, HeadMotion, PoseWarp};
 pub use view::{Frustum, Pose, View};
 pub use warp::{DisparityLaw, Warp, full_overlap_distance, minimum_object_distance};
 

@@ -161,7 +161,7 @@ impl EyePair {
     /// # Errors
     /// [`EyesError`] if pixels do not move along rows only, or move too far.
     pub fn synthesis(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
-        self.check_values()?;
+        Eye::BOTH.iter().try_for_each(|&eye| self.view(eye).check())?;
         if !guard.is_possible() {
             return Err(EyesError::GuardBand(guard));
         }
@@ -213,26 +213,6 @@ impl EyePair {
         };
         warp.check()?;
         Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], guard_columns: guard, warp })
-    }
-
-    /// Checks poses, frusta, depth planes and size.
-    fn check_values(&self) -> Result<(), EyesError> {
-        if !self.poses.iter().all(Pose::is_valid) || !self.frusta.iter().all(Frustum::is_finite) {
-            return Err(EyesError::Invalid);
-        }
-        if self.size.contains(&0) {
-            return Err(EyesError::NoPixels);
-        }
-        // In this form NaN fails, too.
-        let ordered = |f: &Frustum| f.width() > 0.0 && f.height() > 0.0;
-        let range = &self.depth;
-        // Twice the planes' product stands in projections.
-        let product = if range.far.is_finite() { range.near * range.far } else { range.near };
-        let planes = range.near > 0.0 && range.near < range.far && (2.0 * product).is_finite();
-        if !self.frusta.iter().all(ordered) {
-            return Err(EyesError::Empty);
-        }
-        if planes { Ok(()) } else { Err(EyesError::Planes) }
     }
 
     /// Checks that pixels move along rows only: parallel eyes on one horizontal line, with rows on rows.

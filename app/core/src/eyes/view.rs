@@ -1,8 +1,8 @@
 //! One eye: pose, frustum, image.
 
-use glam::{Mat4, Quat, Vec3, Vec4};
+use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
 
-use super::DepthRange;
+use super::{DepthRange, EyesError};
 
 /// A rigid pose in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,6 +144,33 @@ impl View {
         let to_wgpu =
             Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, 0.5, 0.0), Vec4::new(0.0, 0.0, 0.5, 1.0));
         to_wgpu * self.projection()
+    }
+
+    /// Checks pose, frustum, depth planes and size.
+    pub(super) fn check(&self) -> Result<(), EyesError> {
+        let f = &self.frustum;
+        if !self.pose.is_valid() || !f.is_finite() {
+            return Err(EyesError::Invalid);
+        }
+        if self.size.contains(&0) {
+            return Err(EyesError::NoPixels);
+        }
+        // In this form NaN fails, too.
+        if !(f.width() > 0.0 && f.height() > 0.0) {
+            return Err(EyesError::Empty);
+        }
+        let range = &self.depth;
+        // Twice the planes' product stands in projections.
+        let product = if range.far.is_finite() { range.near * range.far } else { range.near };
+        let planes = range.near > 0.0 && range.near < range.far && (2.0 * product).is_finite();
+        if planes { Ok(()) } else { Err(EyesError::Planes) }
+    }
+
+    /// Returns the directions of the image's four corners in local space, at distance 1 along the axis.
+    pub(super) fn corners(&self) -> [DVec3; 4] {
+        let f = &self.frustum;
+        [[f.left, f.bottom], [f.right, f.bottom], [f.left, f.top], [f.right, f.top]]
+            .map(|[x, y]| DVec3::new(x.into(), y.into(), -1.0))
     }
 
     /// Returns the matrix from world to clip space.

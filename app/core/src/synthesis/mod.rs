@@ -8,6 +8,9 @@
 //! |---|---|---|---|
 //! | `Gather` | [`Edges::Hard`] | tile bounds, tile spans, march | ES 3.0 |
 //! | `Layers` | anti-aliased sources | split, tile bounds, tile spans, march | ES 3.0, [`Edges::Multisample`] ES 3.1 |
+//!
+//! [`AnyView`] draws a view in any other pose near the source's, from hard edges: tile bounds and a march along a segment of
+//! any direction, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the warp. It needs ES 3.0.
 
 mod edges;
 mod forward;

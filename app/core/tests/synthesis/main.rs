@@ -1,5 +1,6 @@
 //! The gather pipeline against its f64 reference, and the laws that it must keep, on every GL backend here.
 
+mod any_view;
 mod history;
 mod host;
 mod in_memory;

@@ -1,5 +1,6 @@
 //! Synthesis on OpenGL: two textures of one eye in, the other eye in a framebuffer out.
 
+mod any_view;
 mod gather;
 mod layers;
 mod preserve;
@@ -12,6 +13,7 @@ use super::uniforms::{Places, Uniforms, tiles};
 use crate::eyes::Warp;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
+pub use any_view::AnyView;
 pub use gather::Gather;
 #[doc(hidden)]
 pub use gather::GatherVariant;

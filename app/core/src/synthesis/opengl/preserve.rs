@@ -34,7 +34,7 @@ impl Synthesis for Preserving {
     }
 }
 
-fn preserve<R>(gl: &Context, touched: Touched, body: impl FnOnce() -> R) -> R {
+pub(super) fn preserve<R>(gl: &Context, touched: Touched, body: impl FnOnce() -> R) -> R {
     let state = gl.save_state(touched);
     gl.set_first_unit();
     let result = body();

@@ -1,0 +1,124 @@
+//! The pipeline for any view near the source's: two fragment passes.
+
+use std::rc::Rc;
+
+use glam::{IVec2, Vec2};
+
+use super::preserve::preserve;
+use super::{Edges, GlState, Outputs, Part, Source, SynthesisOptions, draw_target, tiles};
+use crate::eyes::PoseWarp;
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
+
+/// View synthesis for a target in any pose near the source's: tile bounds, march. Where both views are parallel eyes on a
+/// level line it shows what [`Gather`](super::Gather) does, within the rounding of positions, and gather is the fast way.
+/// The buffer has 16 bytes per tile of 16 x 8 source pixels. What a call does to the context's state is in the table of
+/// [`Synthesis`](super::Synthesis).
+pub struct AnyView {
+    gl: Rc<Context>,
+    outputs: Outputs,
+    options: SynthesisOptions,
+    bounds: Program,
+    march: Program,
+    tile_map: RenderTarget,
+}
+
+impl AnyView {
+    /// Compiles the passes. Changes the same state as [`AnyView::prepare`], or none with [`GlState::Preserve`].
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for sources other than with [`Edges::Hard`], for a history, and for a source map, which
+    /// holds columns only; [`GlError::Shader`] if the driver refuses a shader.
+    pub fn new(gl: &Rc<Context>, options: &SynthesisOptions, outputs: Outputs) -> Result<AnyView, GlError> {
+        if options.edges != Edges::Hard || options.history || outputs.source_map {
+            let message = "any view is synthesized from hard edges, without history and source map";
+            return Err(GlError::Unsupported(message.into()));
+        }
+        preserving(gl, options, || {
+            let defines = options.defines();
+            let march = [defines.clone(), outputs.defines()].concat();
+            let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
+            Ok(AnyView {
+                gl: gl.clone(),
+                outputs,
+                options: *options,
+                bounds: program("synthesis/any_view/tiles.frag", &defines)?,
+                march: program("synthesis/any_view/march.frag", &march)?,
+                tile_map: RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None)?,
+            })
+        })
+    }
+
+    /// Allocates the buffer for sources of this size. Costs nothing if the size is the same as before.
+    /// [`AnyView::synthesize`] calls it.
+    ///
+    /// # Errors
+    /// [`GlError`] if the size is beyond the driver's limits.
+    pub fn prepare(&mut self, warp: &PoseWarp) -> Result<(), GlError> {
+        let size = self.options.buffer_size(self.tile_map.size(), tiles(warp.source_size));
+        preserving(&self.gl, &self.options, || self.tile_map.resize(size))
+    }
+
+    /// Synthesizes the target into a rectangle of [`PoseWarp::target_size`] and overwrites all of it.
+    ///
+    /// # Errors
+    /// Those of [`AnyView::prepare`].
+    pub fn synthesize(
+        &mut self,
+        source: Source,
+        warp: &PoseWarp,
+        target: &Destination,
+    ) -> Result<(), GlError> {
+        self.prepare(warp)?;
+        preserving(&self.gl, &self.options, || {
+            let gl = &self.gl;
+            gl.set_first_unit();
+            gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
+            gl.pass("any view tiles", || {
+                self.tile_map.bind_part(tiles(warp.source_size));
+                self.set(&self.bounds, source, warp, target);
+                gl.draw_screen();
+            });
+            gl.pass("any view march", || {
+                self.set(&self.march, source, warp, target);
+                self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
+                draw_target(gl, target, self.outputs);
+            });
+            gl.end_synthesis();
+        });
+        Ok(())
+    }
+
+    /// Makes a pass's program current, and sets its uniforms and textures.
+    fn set(&self, program: &Program, source: Source, warp: &PoseWarp, target: &Destination) {
+        program.bind();
+        if self.options.layers {
+            program.texture_array("depth_map", 0, source.depth).texture_array("color_map", 1, source.color);
+            program.set("source_layer", source.layer as i32);
+        } else {
+            program.texture("depth_map", 0, source.depth).texture("color_map", 1, source.color);
+        }
+        let whole = Part { origin: [0, 0], image_size: warp.source_size };
+        let part = source.part.filter(|_| self.options.parts).unwrap_or(whole);
+        let pixels = |n: [u32; 2]| IVec2::from(n.map(|n| n as i32));
+        let law = |law: [f64; 2]| Vec2::from(law.map(|n| n as f32));
+        program
+            .set("source_size", pixels(warp.source_size))
+            .set("source_origin", pixels(part.origin))
+            .set("texel", Vec2::from(part.image_size.map(|n| 1.0 / n as f32)))
+            .set("target_origin", pixels(target.origin))
+            .set("homography", warp.homography.as_mat3())
+            .set("epipole", warp.epipole.as_vec3())
+            .set("source_law", law(warp.source_law))
+            .set("target_law", law(warp.target_law))
+            .set("nearest", warp.nearest as f32)
+            .set("far_depth", warp.far_depth as f32);
+    }
+}
+
+/// Runs a body, and restores the host's state afterwards if the options say so.
+fn preserving<R>(gl: &Context, options: &SynthesisOptions, body: impl FnOnce() -> R) -> R {
+    match options.gl_state {
+        GlState::Leave => body(),
+        GlState::Preserve => preserve(gl, Touched { draw_buffers: 1, arrays: options.layers }, body),
+    }
+}

@@ -1,0 +1,350 @@
+//! The pipeline for any view against its f64 reference, its laws, and gather where both apply.
+
+use std::rc::Rc;
+
+use glam::{DVec2, Quat, Vec3};
+
+use super::laws::{on_every_backend, pair, scene};
+use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, Pose, PoseWarp, View};
+use yoro::synthesis::*;
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
+
+/// The synthesized view: RGBA, 8 bits each, and stored depth.
+#[derive(Debug, PartialEq)]
+struct Image {
+    rgba: Vec<u8>,
+    depth: Vec<f32>,
+}
+
+/// Synthesizes from images in memory, the source being a part of larger textures if `part` has its corner and their size.
+fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: Option<Part>) -> Image {
+    let size = part.map_or(warp.source_size, |part| part.image_size);
+    let texture = |format, bytes: &[u8]| {
+        let texture = Texture::new(gl, size, format, Filter::Nearest).unwrap();
+        texture.upload(bytes);
+        texture
+    };
+    let color = texture(Format::Rgba8, rgba);
+    let depth = texture(Format::R32F, bytemuck::cast_slice(depth));
+    let options = SynthesisOptions { parts: part.is_some(), ..SynthesisOptions::default() };
+    let outputs = Outputs { depth: true, ..Outputs::default() };
+    let mut pipeline = AnyView::new(gl, &options, outputs).unwrap();
+    let formats = [(Format::Rgba8, Filter::Nearest)];
+    // Not in a corner, where all places would be equal.
+    let size = warp.target_size;
+    let target = RenderTarget::new(gl, size.map(|n| n + 7), &formats, Some(Format::Depth32F)).unwrap();
+    let place = Destination { framebuffer: Some(target.raw()), origin: [3, 5], size };
+    let source = Source { part, ..Source::new(color.raw(), depth.raw()) };
+    pipeline.synthesize(source, warp, &place).unwrap();
+    // Depth is read back as a colour.
+    let copy = RenderTarget::new(gl, target.size(), &[(Format::Rgba32F, Filter::Nearest)], None).unwrap();
+    let program =
+        yoro_gl::Program::new(gl, yoro_gl::ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
+    copy.overwrite();
+    program.bind().texture("source", 0, target.depth().raw());
+    gl.draw_screen();
+    let depth = copy.read_rgba32f(0, [3, 5], size).into_iter().map(|texel| texel[0]).collect();
+    Image { rgba: target.read_rgba8(0, [3, 5], size), depth }
+}
+
+/// A view of `size`, and one moved and turned against it.
+fn views(size: [u32; 2], moved: Vec3, turn: [f32; 3], convention: DepthConvention) -> [View; 2] {
+    let source = pair(size, Eye::Left, 0.0, convention).view(Eye::Left);
+    let [yaw, pitch, roll] = turn;
+    let orientation = Quat::from_euler(glam::EulerRot::YXZ, yaw, pitch, roll);
+    let pose = Pose { position: source.pose.position + moved, orientation };
+    [source, View { pose, ..source }]
+}
+
+/// Motions: to a side, up, askew, forwards, backwards, turned alone, everything at once.
+const MOTIONS: [(Vec3, [f32; 3]); 7] = [
+    (Vec3::new(0.06, 0.0, 0.0), [0.0; 3]),
+    (Vec3::new(0.0, -0.05, 0.0), [0.0; 3]),
+    (Vec3::new(-0.03, 0.04, 0.0), [0.0; 3]),
+    (Vec3::new(0.0, 0.0, -0.2), [0.0; 3]),
+    (Vec3::new(0.01, 0.0, 0.1), [0.0; 3]),
+    (Vec3::ZERO, [0.05, -0.03, 0.1]),
+    (Vec3::new(0.03, -0.02, -0.06), [-0.04, 0.02, -0.05]),
+];
+
+/// The march in f64, over all samples of the segment: the colour of a target pixel, and its stored depth.
+fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64; 4], f64) {
+    let size = warp.source_size.map(|n| n as usize);
+    let [c, m] = warp.source_law;
+    let ray = warp.homography * pixel.extend(1.0);
+    // The source pixel at an inverse distance from the source, by that from the target.
+    let from_target = |s: f64| s * ray.z / (1.0 - s * warp.epipole.z);
+    let at = |depth: f64| warp.source_pixel(pixel, from_target(c + m * depth)) - 0.5;
+    let (far_at, near_at) = (at(warp.far_depth), at(warp.nearest));
+    let whole = near_at - far_at;
+    let steep = usize::from(whole.y.abs() > whole.x.abs());
+    let (long, beside) = (steep, 1 - steep);
+    let sense = if whole[long] > 0.0 { -1.0 } else { 1.0 };
+    let slope = if whole[long] == 0.0 { 0.0 } else { whole[beside] / whole[long] };
+    let law = -sense * whole[long] / (warp.nearest - warp.far_depth);
+    let last = [size[long] as f64 - 1.0, size[beside] as f64 - 1.0];
+    let index = |i: f64, j: f64| {
+        let mut at = [0; 2];
+        (at[long], at[beside]) = (i as usize, j as usize);
+        at[1] * size[0] + at[0]
+    };
+    let landing = |i: f64, d: f64| sense * (i - far_at[long]) + law * (d - warp.far_depth);
+    let sample = |i: f64| {
+        let j = (far_at[beside] + slope * (i - far_at[long])).clamp(0.0, last[1]);
+        let (low, t) = (j.floor(), j.fract());
+        let [here, next] = [low, (low + 1.0).min(last[1])].map(|j| f64::from(depth[index(i, j)]));
+        if (law * (next - here)).abs() < 1.0 {
+            (j, here + t * (next - here))
+        } else {
+            (low + f64::from(t >= 0.5), if t >= 0.5 { next } else { here })
+        }
+    };
+    let color = |i: f64, j: f64| -> [f64; 4] {
+        let (low, high, t) = (index(i, j.floor()), index(i, j.ceil()), j.fract());
+        std::array::from_fn(|c| f64::from(rgba[low * 4 + c]) * (1.0 - t) + f64::from(rgba[high * 4 + c]) * t)
+    };
+    let mix = |a: [f64; 4], b: [f64; 4], t: f64| std::array::from_fn(|c| a[c] + t * (b[c] - a[c]));
+    let first = (sense * (sense * far_at[long] - whole[long].abs()).floor()).clamp(0.0, last[0]);
+    let end = (sense * ((sense * far_at[long]).floor() + 1.0)).clamp(0.0, last[0]);
+    let mut here = (first, sample(first));
+    let mut b = landing(first, here.1.1);
+    let border = if sense > 0.0 { 0.0 } else { last[0] };
+    let mut edge = (first == border && b > 0.0).then_some(here);
+    let (mut rim, mut found) = (None, None);
+    let steps = if edge.is_some() && b < 0.5 { 0 } else { (sense * (end - first)) as i64 };
+    for n in 1..=steps {
+        let before = here;
+        let a = b;
+        let i = first + sense * n as f64;
+        here = (i, sample(i));
+        b = landing(i, here.1.1);
+        if a > 0.0 {
+            continue;
+        }
+        if b > 0.0 && b - a >= 2.0 && b < 1.0 {
+            rim = rim.or(Some(here));
+        } else if b <= 0.0 && b.max(-1.0) < a {
+            rim = rim.or(Some(before));
+        }
+        if b > 0.0 {
+            if b - a < 2.0 || a > -0.5 {
+                let t = if b - a < 2.0 { -a / (b - a) } else { 0.0 };
+                found = Some((
+                    mix(color(before.0, before.1.0), color(here.0, here.1.0), t),
+                    before.1.1 + t * (here.1.1 - before.1.1),
+                ));
+                break;
+            }
+            if edge.is_none_or(|(_, (_, d))| law * (before.1.1 - d) < 0.0) {
+                edge = Some(before);
+            }
+        }
+    }
+    let (mut seen, mut seen_depth) = found.unwrap_or_else(|| {
+        let (i, (j, d)) = edge.unwrap_or(here);
+        let away = landing(i, d).abs();
+        let mut sum = color(i, j).map(|v| 2.0 * v);
+        let mut weights = 2.0;
+        for k in [-2.0, -1.0, 1.0, 2.0f64] {
+            let tap = (j.round() + (k * 0.5 * away.clamp(1.0, 12.0)).round_ties_even()).clamp(0.0, last[1]);
+            if away >= 0.5 && law * (f64::from(depth[index(i, tap)]) - d) <= 1.0 {
+                sum = std::array::from_fn(|c| sum[c] + color(i, tap)[c]);
+                weights += 1.0;
+            }
+        }
+        (sum.map(|v| v / weights), d)
+    });
+    if let Some((i, (j, d))) = rim {
+        let coverage = 1.0 - landing(i, d).abs();
+        seen = mix(seen, color(i, j), coverage);
+        seen_depth = if coverage >= 0.5 { d } else { seen_depth };
+    }
+    let stored = (from_target(c + m * seen_depth) - warp.target_law[0]) / warp.target_law[1];
+    (seen, stored.clamp(0.0, 1.0))
+}
+
+#[test]
+fn any_view_is_its_reference() {
+    on_every_backend(|gl| {
+        for (seed, (moved, turn)) in MOTIONS.into_iter().enumerate() {
+            let convention = [DepthConvention::Standard, DepthConvention::Reversed][seed % 2];
+            let [source, target] = views([97, 71], moved, turn, convention);
+            let target = View { size: [90, 75], ..target };
+            let warp = PoseWarp::new(&source, &target).unwrap();
+            let (rgba, depth) = scene(source.size, source.depth, seed as u64);
+            let got = run(gl, &rgba, &depth, &warp, None);
+            let mut different = 0;
+            for y in 0..75 {
+                for x in 0..90 {
+                    let (color, stored) =
+                        reference(&rgba, &depth, &warp, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+                    let i = (y * 90 + x) as usize;
+                    let off =
+                        got.rgba[i * 4..][..4].iter().zip(color).map(|(a, b)| (f64::from(*a) - b).abs());
+                    // Filters have 8 bits of fraction, for each of two directions.
+                    let near =
+                        off.fold(0.0, f64::max) < 3.0 && (f64::from(got.depth[i]) - stored).abs() < 2e-5;
+                    different += u32::from(!near);
+                }
+            }
+            // Positions within rounding of a decision may go either way.
+            assert!(different <= 90 * 75 / 500, "{moved} {turn:?}: {different} pixels differ");
+        }
+    });
+}
+
+#[test]
+fn the_same_view_is_the_identity() {
+    on_every_backend(|gl| {
+        for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+            let [source, target] = views([101, 63], Vec3::ZERO, [0.0; 3], convention);
+            let warp = PoseWarp::new(&source, &target).unwrap();
+            let (rgba, depth) = scene(source.size, source.depth, 4);
+            let got = run(gl, &rgba, &depth, &warp, None);
+            assert!(got.rgba == rgba, "{convention:?}");
+            let most = got.depth.iter().zip(&depth).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(most < 2e-7, "{convention:?}: depth differs by {most}");
+        }
+    });
+}
+
+/// A picture whose colours are smooth, by the place in a view's image plane.
+fn smooth(at: DVec2) -> [f64; 4] {
+    [at.x * 1.7, at.y * 1.3, (at.x * 0.11).sin() * 60.0 + (at.y * 0.07).cos() * 50.0 + 120.0, 255.0]
+}
+
+/// Depth of a plane that the source sees at inverse distance `s.x * x + s.y * y + s.z` at its pixel (x, y).
+fn plane(view: &View, s: [f64; 3]) -> (Vec<u8>, Vec<f32>) {
+    let (c, m) = view.depth.inverse_distance_law();
+    let pixels = (0..view.size[0] * view.size[1])
+        .map(|i| DVec2::new(f64::from(i % view.size[0]) + 0.5, f64::from(i / view.size[0]) + 0.5));
+    let rgba = pixels.clone().flat_map(|at| smooth(at).map(|v| v.round() as u8)).collect();
+    (rgba, pixels.map(|at| ((s[0] * at.x + s[1] * at.y + s[2] - c) / m) as f32).collect())
+}
+
+#[test]
+fn a_plane_moves_exactly() {
+    on_every_backend(|gl| {
+        for (n, (moved, turn)) in MOTIONS.into_iter().enumerate() {
+            let [source, target] = views([140, 120], moved, turn, DepthConvention::Standard);
+            let warp = PoseWarp::new(&source, &target).unwrap();
+            for s in [[0.0, 0.0, 0.5], [0.002, -0.004, 0.8]] {
+                let (rgba, depth) = plane(&source, s);
+                let got = run(gl, &rgba, &depth, &warp, None);
+                let mut seen = 0;
+                for i in 0..140 * 120 {
+                    let pixel = DVec2::new(f64::from(i % 140) + 0.5, f64::from(i / 140) + 0.5);
+                    // The plane's inverse distance here: s . q = k / q.z with q = H p + k e.
+                    let (h, e, s) = (warp.homography * pixel.extend(1.0), warp.epipole, glam::DVec3::from(s));
+                    let k = s.dot(h) / (1.0 - s.dot(e));
+                    let at = warp.source_pixel(pixel, k);
+                    // Samples beside it are in the image.
+                    if at.min_element() < 2.0 || at.x > 138.0 || at.y > 118.0 {
+                        continue;
+                    }
+                    seen += 1;
+                    let color = smooth(at);
+                    for c in 0..4 {
+                        let value = f64::from(got.rgba[i as usize * 4 + c]);
+                        assert!(
+                            (value - color[c]).abs() < 1.6,
+                            "motion {n}, {pixel}: {value} for {}",
+                            color[c]
+                        );
+                    }
+                    let stored = (k - warp.target_law[0]) / warp.target_law[1];
+                    let off = (f64::from(got.depth[i as usize]) - stored).abs();
+                    assert!(off < 2e-6, "motion {n}, {pixel}, seen at {at}: depth differs by {off}");
+                }
+                assert!(seen > 140 * 120 * 2 / 3, "motion {n}: {seen} pixels");
+            }
+        }
+    });
+}
+
+/// To another view, and from that one's colour and depth back: where both see, the picture is the first one.
+#[test]
+fn forward_and_back_is_the_same_picture() {
+    on_every_backend(|gl| {
+        for (n, (moved, turn)) in MOTIONS.into_iter().enumerate() {
+            let [source, target] = views([140, 120], moved, turn, DepthConvention::Reversed);
+            let (rgba, depth) = plane(&source, [0.002, -0.001, 0.6]);
+            let there = run(gl, &rgba, &depth, &PoseWarp::new(&source, &target).unwrap(), None);
+            let back = run(gl, &there.rgba, &there.depth, &PoseWarp::new(&target, &source).unwrap(), None);
+            for i in 0..140 * 120usize {
+                // Off the borders, which the other view does not see.
+                if (30..110).contains(&(i % 140)) && (30..90).contains(&(i / 140)) {
+                    for c in 0..4 {
+                        let (got, want) = (back.rgba[i * 4 + c], rgba[i * 4 + c]);
+                        assert!(
+                            got.abs_diff(want) <= 2,
+                            "motion {n}, ({}, {}): {got} for {want}",
+                            i % 140,
+                            i / 140
+                        );
+                    }
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn parallel_eyes_are_those_of_gather() {
+    on_every_backend(|gl| {
+        for (seed, dominant, convention) in [
+            (1, Eye::Right, DepthConvention::Standard),
+            (2, Eye::Left, DepthConvention::Reversed),
+            (3, Eye::Left, DepthConvention::Standard),
+        ] {
+            let eyes: EyePair = pair([150, 60], dominant, 0.063, convention);
+            let views = eyes.synthesis(GuardBand::Pixels(9)).unwrap();
+            let (rgba, depth) = scene(views.source.size, eyes.depth, seed);
+            let gather = Box::new(Gather::with_variant(gl, super::OUTPUTS, GatherVariant::Plain).unwrap());
+            let want = super::InMemory::new(gl, gather).run(&rgba, &depth, &views.warp).rgba;
+            let warp = PoseWarp::new(&views.source, &views.target).unwrap();
+            let got = run(gl, &rgba, &depth, &warp, None).rgba;
+            let off: Vec<u8> = got
+                .chunks(4)
+                .zip(want.chunks(4))
+                .map(|(a, b)| (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap())
+                .collect();
+            // Every pixel has a colour of its own: a step of colour is a 250th of a pixel.
+            let different = off.iter().filter(|&&off| off > 2).count();
+            println!("case {seed}: {different} of {} pixels differ by more than 2 of 255", off.len());
+            assert!(different * 1000 <= off.len(), "case {seed}: {different} of {}", off.len());
+        }
+    });
+}
+
+#[test]
+fn a_part_is_what_the_whole_would_be() {
+    on_every_backend(|gl| {
+        for (moved, turn) in MOTIONS {
+            let [source, target] = views([61, 45], moved, turn, DepthConvention::Standard);
+            let warp = PoseWarp::new(&source, &target).unwrap();
+            let (rgba, depth) = scene(source.size, source.depth, 7);
+            let whole = run(gl, &rgba, &depth, &warp, None);
+            let part = Part { origin: [5, 11], image_size: [83, 64] };
+            let (mut around, mut depths) = (vec![13; 83 * 64 * 4], vec![0.0; 83 * 64]);
+            for y in 0..45 {
+                let at = (y + 11) * 83 + 5;
+                around[at * 4..][..61 * 4].copy_from_slice(&rgba[y * 61 * 4..][..61 * 4]);
+                depths[at..][..61].copy_from_slice(&depth[y * 61..][..61]);
+            }
+            let got = run(gl, &around, &depths, &warp, Some(part));
+            // A filter's fraction may round the other way.
+            assert!(got.rgba.iter().zip(&whole.rgba).all(|(a, b)| a.abs_diff(*b) <= 2), "{moved} {turn:?}");
+            assert_eq!(got.depth, whole.depth, "{moved} {turn:?}");
+        }
+    });
+}
+
+#[test]
+fn what_cannot_be_synthesized_is_refused() {
+    on_every_backend(|gl| {
+        let options = SynthesisOptions { edges: Edges::Nearest, ..SynthesisOptions::default() };
+        let refused = AnyView::new(gl, &options, Outputs::default());
+        assert!(matches!(refused, Err(GlError::Unsupported(_))));
+    });
+}

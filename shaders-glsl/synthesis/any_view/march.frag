@@ -1,0 +1,218 @@
+#version 310 es
+// Any view, pass 2: for each target pixel, walk along the segment of the source image on which its ray is seen, from the near
+// plane's place to the far plane's, past the tiles that hold no depth of the ray.
+//
+// A surface at inverse distance s from the source, seen at the target pixel p, lies at the source pixel
+// `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity, `homography * p`, and e the epipole in homogeneous
+// pixels. This is affine in s, and so in the stored depth. The rules for surfaces, silhouettes and holes are those of gather
+// (include/every_column.glsl, include/fill.glsl), with samples along the segment in place of a row's columns.
+
+#include "include/tiles.glsl"
+
+TEXTURE(2) uniform highp usampler2D tile_map;
+
+// From a target pixel to the source pixel of its ray at infinity, both homogeneous.
+uniform mat3 homography;
+// Place of the target's eye in the source image, homogeneous: its third component is the distance moved forwards.
+uniform vec3 epipole;
+// Inverse distance from stored depth, `law.x + law.y * depth`: of the source, and of the target.
+uniform vec2 source_law;
+uniform vec2 target_law;
+// Stored depth of the nearest surface that can be seen, and of the far plane.
+uniform float nearest;
+uniform float far_depth;
+
+layout(location = 0) out vec4 color;
+
+// The segment of a target pixel. Samples are one pixel apart on its longer axis; indices count pixels' middles.
+struct Segment {
+    // The longer axis is that of rows.
+    bool steep;
+    // Direction of samples from near to far: 1 or -1.
+    float sense;
+    // Index of the far plane's place on the longer axis, and on the other one.
+    float far;
+    float far_beside;
+    // Change of the other index along the longer one.
+    float slope;
+    // A sample lands at `sense * (index - far) + law * (depth - far_depth)`, in pixels relative to the target's.
+    float law;
+};
+
+// A place on the segment. Between two pixels side by side, `beside` is fractional if they show one surface.
+struct Sample {
+    float index;
+    float beside;
+    float depth;
+};
+
+ivec2 pixel_of(Segment line, float index, float beside) {
+    return ivec2(line.steep ? vec2(beside, index) : vec2(index, beside));
+}
+
+// The last indices on the longer and on the other axis.
+vec2 last_indices(Segment line) {
+    vec2 last = vec2(source_size - 1);
+    return line.steep ? last.yx : last;
+}
+
+float depth_of(Segment line, float index, float beside) {
+    ivec2 pixel = pixel_of(line, index, beside);
+    return depth_texel(pixel.x, pixel.y);
+}
+
+vec4 color_of(Segment line, Sample at) {
+    vec2 index = line.steep ? vec2(at.beside, at.index) : vec2(at.index, at.beside);
+    return color_sample((vec2(source_origin) + index + 0.5) * texel);
+}
+
+float beside_at(Segment line, float index) {
+    return line.far_beside + line.slope * (index - line.far);
+}
+
+float landing(Segment line, float index, float depth) {
+    return line.sense * (index - line.far) + line.law * (depth - far_depth);
+}
+
+Sample sample_at(Segment line, float index) {
+    float last = last_indices(line).y;
+    float beside = clamp(beside_at(line, index), 0.0, last);
+    float low = floor(beside);
+    float here = depth_of(line, index, low);
+    float next = depth_of(line, index, min(low + 1.0, last));
+    float t = beside - low;
+    bool whole = abs(line.law * (next - here)) < MAX_STRETCH - 1.0;
+    bool upper = t >= 0.5;
+    return Sample(index, whole ? beside : low + float(upper), whole ? mix(here, next, t) : upper ? next : here);
+}
+
+// Number of steps from a sample to the first one beyond its tile.
+float steps_in_tile(Segment line, float index, float beside) {
+    vec2 tile = line.steep ? vec2(TILE.yx) : vec2(TILE);
+    vec2 in_tile = mod(vec2(index, floor(beside)), tile);
+    float along = line.sense > 0.0 ? tile.x - in_tile.x : in_tile.x + 1.0;
+    float drift = line.sense * line.slope;
+    float room = drift > 0.0 ? tile.y - in_tile.y - fract(beside) : in_tile.y + fract(beside);
+    return max(min(along, abs(drift) * along > room ? floor(room / abs(drift)) + 1.0 : along), 1.0);
+}
+
+// True if a surface of the tile may land within a pixel of the target's, from a sample on for some steps.
+bool lands(Segment line, float index, float beside, float steps) {
+    uvec2 bounds = texelFetch(tile_map, pixel_of(line, index, floor(beside)) / TILE, 0).rg;
+    vec2 ends = vec2(landing(line, index, uintBitsToFloat(bounds.x)), landing(line, index, uintBitsToFloat(bounds.y)));
+    return min(ends.x, ends.y) <= 1.0 && max(ends.x, ends.y) + steps >= -1.0;
+}
+
+// The colour of a disocclusion: that of the background next to it, from five samples side by side, as `fill_hole`.
+vec4 fill_beside(Segment line, Sample edge, float away) {
+    float last = last_indices(line).y;
+    float spread = 0.5 * clamp(abs(away), 1.0, 12.0);
+    vec4 sum = 2.0 * color_of(line, edge);
+    float weights = 2.0;
+    for (int i = -2; i <= 2; ++i) {
+        float beside = clamp(round(edge.beside) + roundEven(float(i) * spread), 0.0, last);
+        Sample tap = Sample(edge.index, beside, depth_of(line, edge.index, beside));
+        float weight = i != 0 && line.law * (tap.depth - edge.depth) <= 1.0 ? 1.0 : 0.0;
+        sum += weight * color_of(line, tap);
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+// The target's stored depth of a surface with this one in the source, on a ray with this third component of `homography * p`.
+float target_depth(float depth, float scale) {
+    float inverse = source_law.x + source_law.y * depth;
+    float seen = inverse * scale / (1.0 - inverse * epipole.z);
+    return clamp((seen - target_law.x) / target_law.y, 0.0, 1.0);
+}
+
+void main() {
+    vec3 ray = homography * vec3(gl_FragCoord.xy - vec2(target_origin), 1.0);
+    vec2 infinity = ray.xy / ray.z;
+    // Pixels per unit of inverse distance.
+    vec2 parallax = epipole.xy - epipole.z * infinity;
+    vec2 far = infinity + (source_law.x + source_law.y * far_depth) * parallax - 0.5;
+    vec2 moved = source_law.y * parallax;
+    Segment line;
+    line.steep = abs(moved.y) > abs(moved.x);
+    if (line.steep) {
+        far = far.yx;
+        moved = moved.yx;
+    }
+    float reach = moved.x * (nearest - far_depth);
+    line.sense = reach > 0.0 ? -1.0 : 1.0;
+    line.far = far.x;
+    line.far_beside = far.y;
+    line.slope = moved.x == 0.0 ? 0.0 : moved.y / moved.x;
+    line.law = -line.sense * moved.x;
+    // From before the nearest place to behind the farthest one; a hundredth of a pixel for rounding. Samples beyond the
+    // borders repeat them.
+    vec2 last = last_indices(line);
+    float middle = line.sense * line.far;
+    float first = clamp(line.sense * floor(middle - abs(reach) - 0.01), 0.0, last.x);
+    float end = clamp(line.sense * (floor(middle + 0.01) + 1.0), 0.0, last.x);
+    float left = line.sense * (end - first);
+
+    Sample here = sample_at(line, first);
+    Sample before = here;
+    float b = landing(line, first, here.depth);
+    float a = b;
+    bool found = false;
+    // Before all samples the border of the image is the background.
+    bool outside = b > 0.0 && first == (line.sense > 0.0 ? 0.0 : last.x);
+    bool has_edge = outside;
+    Sample edge = here;
+    left = outside && b < 0.5 ? 0.0 : left;
+    // The nearest silhouette beside the pixel.
+    bool has_rim = false;
+    Sample rim = here;
+    while (left > 0.0 && !found) {
+        float beside = clamp(beside_at(line, here.index), 0.0, last.y);
+        float steps = min(steps_in_tile(line, here.index, beside), left);
+        bool walked = lands(line, here.index, beside, steps);
+        left -= steps;
+        if (!walked) {
+            // The tile's bounds contain the first sample beyond it.
+            here = sample_at(line, here.index + line.sense * steps);
+            b = landing(line, here.index, here.depth);
+        }
+        for (; walked && steps > 0.0 && !found; steps -= 1.0) {
+            a = b;
+            before = here;
+            here = sample_at(line, before.index + line.sense);
+            b = landing(line, here.index, here.depth);
+            bool behind = a <= 0.0;
+            bool jump = behind && b > 0.0;
+            bool torn = b - a >= MAX_STRETCH;
+            found = jump && (a > -0.5 || !torn);
+            bool fold = behind && max(b, -1.0) < a;
+            if (!has_rim && (fold || (jump && torn && b < 1.0))) {
+                has_rim = true;
+                rim = fold ? before : here;
+            }
+            if (jump && (!has_edge || line.law * (before.depth - edge.depth) < 0.0)) {
+                has_edge = true;
+                edge = before;
+            }
+        }
+    }
+    // Where nothing is found: the hole's edge, or the last sample beyond everything.
+    float t = b - a < MAX_STRETCH ? -a / (b - a) : 0.0;
+    float depth = mix(before.depth, here.depth, t);
+    if (found) {
+        color = mix(color_of(line, before), color_of(line, here), t);
+    } else {
+        Sample fill = has_edge ? edge : here;
+        depth = fill.depth;
+        float away = landing(line, fill.index, depth);
+        color = abs(away) >= 0.5 ? fill_beside(line, fill, away) : color_of(line, fill);
+    }
+    if (has_rim) {
+        float coverage = 1.0 - abs(landing(line, rim.index, rim.depth));
+        color = mix(color, color_of(line, rim), coverage);
+        depth = coverage >= 0.5 ? rim.depth : depth;
+    }
+#ifdef WRITE_DEPTH
+    gl_FragDepth = target_depth(depth, ray.z);
+#endif
+}
