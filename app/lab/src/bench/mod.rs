@@ -30,6 +30,6 @@ pub use pictures::{picture_folder, pictures_beside};
 pub use record::{Measurement, Record, RecordError, Results, Setting, Writer, metric};
 pub use runner::{Bounds, Inputs, Runner};
 pub use scenes::{LazyObject, Object};
-pub use suite::{Choices, Job, Measure, Source, Suite};
+pub use suite::{Choices, Displaced, Job, Measure, Source, Suite};
 pub use summary::text;
 pub use views::{Motion, spread};

@@ -67,6 +67,7 @@ suites! {
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     History "history" "Quality, flicker and frame time with what the other eye has seen, as the head moves",
+    Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
     Bandwidth "bandwidth" "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs that need not be here",
 }
@@ -89,12 +90,23 @@ pub enum Measure {
     History(Motion),
     /// Patchers on reprojected images.
     Patchers,
+    /// One render shown at other poses.
+    Reprojection(Displaced),
     /// Coded sequences along a piece of the camera path.
     Bandwidth,
     /// An estimate for a GPU that need not be here.
     Executed(Device),
     /// The same of whole frames, for several.
     WholeFrames,
+}
+
+/// The pose at which a render is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Displaced {
+    /// That of the same eye a number of frames later, at 72 frames a second.
+    Late(Motion, usize),
+    /// That of the other one of two canted eyes.
+    Canted,
 }
 
 /// The source of a scene.
@@ -148,7 +160,7 @@ impl Job {
         if self.measure == Measure::Bandwidth {
             return bandwidth::steps(self.frames, &self.bandwidth);
         }
-        if let Measure::Executed(_) = self.measure {
+        if let Measure::Executed(_) | Measure::Reprojection(_) = self.measure {
             return self.frames as u64;
         }
         if self.measure == Measure::WholeFrames {
@@ -298,6 +310,24 @@ impl Choices {
                         job.measure = Measure::History(motion);
                         job.setting.label = Some(motion.name().to_owned());
                         job.frames = HISTORY_FRAMES[usize::from(self.quick)];
+                    },
+                )
+            }
+            Suite::Reprojection => {
+                let late = |motion| [1, 2, 3, 4].map(|frames| Displaced::Late(motion, frames));
+                let poses = [vec![Displaced::Canted], late(Motion::Sway).into(), late(Motion::Walk).into()];
+                let scenes = if self.quick { &QUICK_SCENES[..] } else { &VARIED_SCENES };
+                plan(Measure::Reprojection(Displaced::Canted), Vec::new()).over(
+                    self.scenes(scenes),
+                    poses.concat(),
+                    |job, displaced| {
+                        // Ways to show a render take part, not methods.
+                        job.contenders.clear();
+                        job.measure = Measure::Reprojection(displaced);
+                        job.setting.label = Some(match displaced {
+                            Displaced::Canted => "canted eyes".to_owned(),
+                            Displaced::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
+                        });
                     },
                 )
             }

@@ -71,6 +71,7 @@ pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
 }
 
 /// The frames of a setting.
+#[derive(Clone)]
 pub(super) struct Views {
     pub names: Vec<String>,
     pub pairs: Vec<EyePair>,

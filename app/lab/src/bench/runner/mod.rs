@@ -2,6 +2,7 @@
 
 mod frames;
 mod patchers;
+mod reprojection;
 mod sequences;
 mod whole_frames;
 
@@ -16,7 +17,7 @@ use super::contender::Contender;
 use super::pictures::picture_folder;
 use super::record::{Measurement, Record, Results, RoundEnd, Unsupported, Writer};
 use super::scenes::LazyObject;
-use super::suite::{Choices, Job, Measure, Source, Suite};
+use super::suite::{Choices, Displaced, Job, Measure, Source, Suite};
 use super::views::{self, Views};
 use crate::inpaint::PatcherOptions;
 use crate::picture;
@@ -105,6 +106,7 @@ impl<'a> Runner<'a> {
             Measure::GuardBand => self.guard_band(job, &mut prepared),
             Measure::History(motion) => self.history(job, motion, &mut prepared),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
+            Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
             Measure::Bandwidth => self.bandwidth(job, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
             Measure::WholeFrames => self.whole_frames(job, &mut prepared),
@@ -128,13 +130,17 @@ impl<'a> Runner<'a> {
             return Ok(());
         }
         let views = match job.measure {
-            Measure::Frames { .. } | Measure::Patchers | Measure::Executed(_) | Measure::WholeFrames => {
-                Views::spread(job, prepared)?
-            }
+            Measure::Frames { .. }
+            | Measure::Patchers
+            | Measure::Reprojection(Displaced::Canted)
+            | Measure::Executed(_)
+            | Measure::WholeFrames => Views::spread(job, prepared)?,
             // Only the start of the path has to show something; a later frame may look past the scene.
-            Measure::Flicker | Measure::GuardBand | Measure::History(_) | Measure::Bandwidth => {
-                Views::along_path(job, prepared, views::STEP)?.first()
-            }
+            Measure::Flicker
+            | Measure::GuardBand
+            | Measure::History(_)
+            | Measure::Reprojection(Displaced::Late(..))
+            | Measure::Bandwidth => Views::along_path(job, prepared, views::STEP)?.first(),
         };
         BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))
     }

@@ -1,0 +1,180 @@
+//! One render shown at other poses: when the head has moved on, and for canted eyes.
+
+use std::rc::Rc;
+
+use glam::Quat;
+use image::RgbImage;
+
+use super::Runner;
+use crate::bench::record::{Measurement, Record, metric};
+use crate::bench::suite::{Displaced, Job};
+use crate::bench::views::Views;
+use crate::metrics::{Channels, SsimWindow, psnr, ssim};
+use crate::picture;
+use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
+use yoro::synthesis::{AnyView, Outputs, Source, Synthesis, SynthesisOptions};
+use yoro_files::interrupt;
+use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_render::{PreparedScene, ViewTargets};
+
+/// Names of the ways to show a render at another pose.
+const SAME_IMAGE: &str = "same-image";
+const ROTATION: &str = "rotation";
+const ANY_VIEW: &str = "any-view";
+/// Gather between parallel eyes around the canted ones, then turned back.
+const PARALLEL_EYES: &str = "gather, parallel eyes";
+
+/// The distance in metres from which on all surfaces are in the source's guard band.
+const NEAREST: f32 = 0.5;
+/// The angle by which each canted eye is turned outwards.
+const CANT_DEGREES: f32 = 5.0;
+
+/// One way's pictures and their truths.
+type Shown = Vec<(&'static str, RgbImage)>;
+
+impl Runner<'_> {
+    /// Measures the frames of the job, each against a render at the pose where it is shown.
+    pub(super) fn reprojection(
+        &mut self,
+        job: &Job,
+        displaced: Displaced,
+        prepared: &mut PreparedScene,
+    ) -> anyhow::Result<()> {
+        self.bar.set_message(job.setting.to_string());
+        let mut shower = Shower::new(self.gl)?;
+        let (views, late) = match displaced {
+            Displaced::Late(motion, late) => {
+                // Spread over the motion, so that neighbours are not alike.
+                let all = Job { frames: job.frames * SPREAD + late, ..job.clone() };
+                (Views::of_motion(&all, prepared, motion)?.split_at_last(all.frames)[1].clone(), Some(late))
+            }
+            Displaced::Canted => (Views::spread(job, prepared)?, None),
+        };
+        let mut measurements: Vec<Measurement> = Vec::new();
+        for i in 0..job.frames.min(views.pairs.len()) {
+            interrupt::check()?;
+            let (shown, truth) = match late {
+                Some(late) => {
+                    let [then, now] = [0, late].map(|n| views.pairs[i * SPREAD + n]);
+                    shower.late(prepared, &then, &now)?
+                }
+                None => shower.canted(prepared, &canted(&views.pairs[i]))?,
+            };
+            for (way, image) in shown {
+                if !measurements.iter().any(|m| m.contender == way) {
+                    measurements.push(Measurement::new(&job.setting, way, 0));
+                }
+                let measurement = measurements.iter_mut().find(|m| m.contender == way);
+                let measurement = measurement.expect("it has just been made");
+                measurement.push(metric::PSNR, psnr(&image, &truth, Channels::Rgb)?.0);
+                measurement.push(metric::SSIM, ssim(&image, &truth, SsimWindow::Gaussian11, Channels::Rgb)?);
+            }
+            self.bar.inc(1);
+        }
+        self.finish_round(job, 0, vec![Record::Scene(views.facts(job, prepared))], measurements)
+    }
+}
+
+/// Frames from one measured frame to the next.
+const SPREAD: usize = 9;
+
+/// The same eyes, turned outwards.
+fn canted(pair: &EyePair) -> EyePair {
+    let mut eyes = *pair;
+    for (pose, side) in eyes.poses.iter_mut().zip([1.0, -1.0]) {
+        pose.orientation *= Quat::from_rotation_y(side * CANT_DEGREES.to_radians());
+    }
+    eyes
+}
+
+/// Renders views and shows them at other poses, with one sample per pixel.
+struct Shower {
+    gl: Rc<Context>,
+    any_view: AnyView,
+    gather: Box<dyn Synthesis>,
+    rendered: ViewTargets,
+    parallel: RenderTarget,
+    shown: RenderTarget,
+}
+
+impl Shower {
+    fn new(gl: &Rc<Context>) -> Result<Shower, GlError> {
+        let options = SynthesisOptions::default();
+        let formats = [(Format::Rgba8, Filter::Linear)];
+        let outputs = Outputs { depth: true, ..Outputs::default() };
+        Ok(Shower {
+            gl: gl.clone(),
+            any_view: AnyView::new(gl, &options, Outputs::default())?,
+            gather: yoro::synthesis::create(gl, &options, outputs)?,
+            rendered: ViewTargets::default(),
+            parallel: RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F))?,
+            shown: RenderTarget::new(gl, [1, 1], &formats, None)?,
+        })
+    }
+
+    fn render(&mut self, prepared: &PreparedScene, view: &View) -> Result<(RgbImage, Source), GlError> {
+        let rendered = prepared.renderer.render_all(&mut self.rendered, &prepared.scene, view)?;
+        let image = picture::rgb_image(&rendered.color.read_rgba8(0, [0, 0], view.size), view.size);
+        Ok((image, Source::new(rendered.color.color(0).raw(), rendered.depth.raw())))
+    }
+
+    fn show(&mut self, source: Source, warp: &PoseWarp) -> Result<RgbImage, GlError> {
+        self.shown.resize(warp.target_size)?;
+        self.any_view.synthesize(source, warp, &Destination::whole(&self.shown))?;
+        self.gl.finish();
+        Ok(picture::rgb_image(&self.shown.read_rgba8(0, [0, 0], warp.target_size), warp.target_size))
+    }
+
+    /// Shows the dominant eye of one frame at its pose of a later one.
+    fn late(
+        &mut self,
+        prepared: &PreparedScene,
+        then: &EyePair,
+        now: &EyePair,
+    ) -> anyhow::Result<(Shown, RgbImage)> {
+        let [old, target] = [then, now].map(|pair| pair.view(pair.dominant));
+        let motion = HeadMotion {
+            rotation: old.pose.orientation.angle_between(target.pose.orientation),
+            translation: old.pose.position.distance(target.pose.position),
+        };
+        let source = motion.guarded(&old, NEAREST)?.view;
+        let (truth, _) = self.render(prepared, &target)?;
+        let (same, _) = self.render(prepared, &old)?;
+        let (_, image) = self.render(prepared, &source)?;
+        let warp = PoseWarp::new(&source, &target)?;
+        let shown = vec![
+            (SAME_IMAGE, same),
+            (ROTATION, self.show(image, &warp.rotation_only())?),
+            (ANY_VIEW, self.show(image, &warp)?),
+        ];
+        Ok((shown, truth))
+    }
+
+    /// Synthesizes the other one of two canted eyes, directly and by parallel eyes with as many pixels per tangent.
+    fn canted(&mut self, prepared: &PreparedScene, eyes: &EyePair) -> anyhow::Result<(Shown, RgbImage)> {
+        let other = eyes.dominant.other();
+        let [own, target] = [eyes.dominant, other].map(|eye| eyes.view(eye));
+        let (truth, _) = self.render(prepared, &target)?;
+        let (same, _) = self.render(prepared, &own)?;
+
+        let motion = HeadMotion { rotation: 2.0 * CANT_DEGREES.to_radians(), translation: eyes.ipd().abs() };
+        let source = motion.guarded(&own, NEAREST)?.view;
+        let (_, image) = self.render(prepared, &source)?;
+        let direct = self.show(image, &PoseWarp::new(&source, &target)?)?;
+
+        let mut parallel =
+            eyes.parallelized().ok_or_else(|| anyhow::anyhow!("the eyes are turned too far"))?;
+        let (wide, narrow) = (parallel.frusta[Eye::Left.index()], own.frustum);
+        parallel.size = [
+            (eyes.size[0] as f32 * wide.width() / narrow.width()).ceil() as u32,
+            (eyes.size[1] as f32 * wide.height() / narrow.height()).ceil() as u32,
+        ];
+        let views = parallel.synthesis(GuardBand::Distance(NEAREST))?;
+        let (_, image) = self.render(prepared, &views.source)?;
+        self.parallel.resize(views.target.size)?;
+        self.gather.synthesize(image, &views.warp, &Destination::whole(&self.parallel))?;
+        let image = Source::new(self.parallel.color(0).raw(), self.parallel.depth().raw());
+        let turned = self.show(image, &PoseWarp::new(&views.target, &target)?.rotation_only())?;
+        Ok((vec![(SAME_IMAGE, same), (PARALLEL_EYES, turned), (ANY_VIEW, direct)], truth))
+    }
+}
