@@ -79,7 +79,11 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         AnyView::new(gl, &SynthesisOptions::default(), outputs)?;
         if variants == Variants::Every {
             for (parts, layers) in [(true, false), (false, true), (true, true)] {
-                AnyView::new(gl, &SynthesisOptions { parts, layers, ..SynthesisOptions::default() }, outputs)?;
+                AnyView::new(
+                    gl,
+                    &SynthesisOptions { parts, layers, ..SynthesisOptions::default() },
+                    outputs,
+                )?;
             }
         }
     }
