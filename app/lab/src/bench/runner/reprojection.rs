@@ -6,6 +6,7 @@ use glam::Quat;
 use image::RgbImage;
 
 use super::Runner;
+use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::suite::{Displaced, Job};
 use crate::bench::views::Views;
@@ -22,7 +23,7 @@ const SAME_IMAGE: &str = "same-image";
 const ROTATION: &str = "rotation";
 const ANY_VIEW: &str = "any-view";
 /// Gather between parallel eyes around the canted ones, then turned back.
-const PARALLEL_EYES: &str = "gather, parallel eyes";
+const PARALLEL_EYES: &str = "gather-parallel-eyes";
 
 /// The distance in metres from which on all surfaces are in the source's guard band.
 const NEAREST: f32 = 0.5;
@@ -60,6 +61,13 @@ impl Runner<'_> {
                 }
                 None => shower.canted(prepared, &canted(&views.pairs[i]))?,
             };
+            if i == 0 {
+                let folder = picture_folder(&self.before.path, &job.setting);
+                for (name, image) in shown.iter().map(|(way, image)| (*way, image)).chain([("truth", &truth)])
+                {
+                    picture::save_color(&folder.join(format!("{name}.png")), image)?;
+                }
+            }
             for (way, image) in shown {
                 if !measurements.iter().any(|m| m.contender == way) {
                     measurements.push(Measurement::new(&job.setting, way, 0));
