@@ -108,11 +108,11 @@ bind_java_type! {
     methods {
         static fn create_chooser(target: Intent, title: JCharSequence) -> Intent,
         fn get_action() -> JString,
+        fn get_char_sequence_extra(name: JString) -> JCharSequence,
         fn get_data() -> Uri,
         fn get_extras() -> Bundle,
         fn get_int_extra(name: JString, default: jint) -> jint,
         fn get_parcelable_extra(name: JString) -> Parcelable,
-        fn get_string_extra(name: JString) -> JString,
         fn put_extra(name: JString, value: JString) -> Intent,
         fn set_type(kind: JString) -> Intent,
     },

@@ -209,15 +209,14 @@ impl Java {
             }
             let uri = match action.try_to_string(env)?.as_str() {
                 "android.intent.action.SEND" => {
-                    let name = JString::new(env, "android.intent.extra.TEXT")?;
-                    let shared = intent.get_string_extra(env, &name)?;
-                    if !shared.is_null() {
-                        return shared.try_to_string(env).map(Given::Text).map(Some);
-                    }
+                    // A picture may come with words besides.
                     let name = JString::new(env, "android.intent.extra.STREAM")?;
                     let stream = intent.get_parcelable_extra(env, &name)?;
                     if stream.is_null() {
-                        return Ok(None);
+                        let name = JString::new(env, "android.intent.extra.TEXT")?;
+                        let shared = intent.get_char_sequence_extra(env, &name)?;
+                        let shared = if shared.is_null() { None } else { Some(text(env, &shared)?) };
+                        return Ok(shared.map(Given::Text));
                     }
                     env.cast_local::<Uri>(stream)?
                 }

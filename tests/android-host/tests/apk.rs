@@ -755,7 +755,8 @@ fn a_first_start_by_hand() {
         "{ frames = 2 }, { capture = \"another.png\" }".into(),
         tile(1, 1),
         wait("the log is shared"),
-        share("file", &file("code.png").display().to_string()),
+        // A picture with words besides, which are none of a viewer.
+        share("text = \"My viewer\", file", &file("code.png").display().to_string()),
         wait(&format!("shared: the viewer {URI}")),
         wait("start screen: shown"),
         "{ frames = 2 }, { capture = \"chosen.png\" }".into(),

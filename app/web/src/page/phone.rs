@@ -4,14 +4,13 @@ use glam::{Quat, Vec3};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
 use yoro_gl::Destination;
-use yoro_lenses::{LensPass, Optics, neck_offset};
+use yoro_lenses::{LensPass, Optics, neck_offset, read_qr};
 use yoro_render::stereo::StereoFrame;
 
 use super::Page;
 use super::error::sentence;
 use super::scene_show::SceneShow;
 use crate::sensors::{Head, find_viewer, orientation};
-use yoro_lenses::read_qr;
 
 /// The widths and heights of screens, in metres.
 const SCREEN: std::ops::Range<f32> = 0.03..0.4;
