@@ -116,7 +116,7 @@ fn hdr_and_samples_are_synthesized_where_they_can_be() {
     stage.app.world_mut().entity_mut(camera).insert(Exposure::default());
     // Samples.
     stage.app.world_mut().entity_mut(camera).remove::<(Hdr, Bloom)>().insert(Msaa::Sample4);
-    stage.check("4 samples", [36.5, 31.0]);
+    stage.check("4 samples", [37.5, 31.0]);
     // Both eyes are rendered.
     stage.app.world_mut().entity_mut(camera).insert(Hdr);
     let truth = stage.in_mode(StereoMode::Rendered);

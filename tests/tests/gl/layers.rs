@@ -120,7 +120,13 @@ pub fn multisample_layers(pixels: &Pixels, with_colors: bool) -> Image<Layer> {
                 }
             }
             match (mean(&fronts), mean(&backs)) {
-                (Some(front), Some(back)) => shared_back(resolved, front, back, share),
+                (Some(front), Some(back)) => {
+                    let of = |c: usize, pick: fn(f64, f64) -> f64| {
+                        backs.iter().map(|(_, tap)| tap[c]).reduce(pick).expect("there is a back")
+                    };
+                    let shared = shared_back(resolved, front, back, share);
+                    std::array::from_fn(|c| shared[c].clamp(of(c, f64::min), of(c, f64::max)))
+                }
                 (Some(front), None) => std::array::from_fn(|c| {
                     ((resolved[c] - share * front[c]) / (1.0 - share)).clamp(0.0, 1.0)
                 }),

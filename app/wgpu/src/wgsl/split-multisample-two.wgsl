@@ -199,6 +199,8 @@ fn main_1() {
     var back_sum: vec4<f32>;
     var front_weight: f32;
     var back_weight: f32;
+    var least: vec4<f32>;
+    var most: vec4<f32>;
     var i: i32;
     var other: vec4<f32>;
     var indexable: array<vec2<i32>, 8>;
@@ -219,182 +221,195 @@ fn main_1() {
     var param_19: vec4<f32>;
     var param_20: f32;
 
-    let _e65 = gl_FragCoord_1;
-    pixel_4 = vec2<i32>(_e65.xy);
-    let _e68 = pixel_4;
-    param_4 = _e68;
-    let _e69 = displacements((&param_4));
-    samples = _e69;
-    let _e70 = samples;
-    param_5 = _e70;
-    let _e71 = largest((&param_5));
-    nearest = _e71;
-    let _e72 = nearest;
-    let _e73 = samples;
-    param_6 = _e73;
-    let _e74 = smallest((&param_6));
-    full = ((_e72 - _e74) < 0.5f);
-    let _e77 = full;
-    if _e77 {
+    let _e67 = gl_FragCoord_1;
+    pixel_4 = vec2<i32>(_e67.xy);
+    let _e70 = pixel_4;
+    param_4 = _e70;
+    let _e71 = displacements((&param_4));
+    samples = _e71;
+    let _e72 = samples;
+    param_5 = _e72;
+    let _e73 = largest((&param_5));
+    nearest = _e73;
+    let _e74 = nearest;
+    let _e75 = samples;
+    param_6 = _e75;
+    let _e76 = smallest((&param_6));
+    full = ((_e74 - _e76) < 0.5f);
+    let _e79 = full;
+    if _e79 {
         local_1 = vec4<f32>(1f, 1f, 1f, 1f);
     } else {
-        let _e78 = samples;
-        let _e79 = nearest;
-        local_1 = select(vec4<f32>(0f, 0f, 0f, 0f), vec4<f32>(1f, 1f, 1f, 1f), (_e78 > vec4((_e79 - 0.5f))));
+        let _e80 = samples;
+        let _e81 = nearest;
+        local_1 = select(vec4<f32>(0f, 0f, 0f, 0f), vec4<f32>(1f, 1f, 1f, 1f), (_e80 > vec4((_e81 - 0.5f))));
     }
-    let _e84 = local_1;
-    in_front = _e84;
-    let _e85 = in_front;
-    count = dot(_e85, vec4<f32>(1f, 1f, 1f, 1f));
+    let _e86 = local_1;
+    in_front = _e86;
     let _e87 = in_front;
-    let _e88 = samples;
-    let _e90 = count;
-    front_2 = (dot(_e87, _e88) / _e90);
-    let _e92 = samples;
-    let _e93 = in_front;
-    param_7 = mix(_e92, vec4<f32>(-1000000000f, -1000000000f, -1000000000f, -1000000000f), _e93);
-    let _e95 = largest((&param_7));
-    second = _e95;
-    let _e96 = in_front;
-    let _e99 = samples;
-    let _e100 = second;
-    behind = ((vec4(1f) - _e96) * select(vec4<f32>(0f, 0f, 0f, 0f), vec4<f32>(1f, 1f, 1f, 1f), (_e99 > vec4((_e100 - 0.5f)))));
-    let _e106 = behind;
-    let _e107 = samples;
-    let _e109 = behind;
-    back_displacement = (dot(_e106, _e107) / max(dot(_e109, vec4<f32>(1f, 1f, 1f, 1f)), 1f));
-    let _e113 = in_front;
-    bits = u32(dot(_e113, vec4<f32>(1f, 2f, 4f, 8f)));
-    let _e116 = full;
-    if _e116 {
-        let _e117 = front_2;
-        param_8 = _e117;
-        let _e118 = pack_full((&param_8));
-        local_2 = _e118;
-    } else {
+    count = dot(_e87, vec4<f32>(1f, 1f, 1f, 1f));
+    let _e89 = in_front;
+    let _e90 = samples;
+    let _e92 = count;
+    front_2 = (dot(_e89, _e90) / _e92);
+    let _e94 = samples;
+    let _e95 = in_front;
+    param_7 = mix(_e94, vec4<f32>(-1000000000f, -1000000000f, -1000000000f, -1000000000f), _e95);
+    let _e97 = largest((&param_7));
+    second = _e97;
+    let _e98 = in_front;
+    let _e101 = samples;
+    let _e102 = second;
+    behind = ((vec4(1f) - _e98) * select(vec4<f32>(0f, 0f, 0f, 0f), vec4<f32>(1f, 1f, 1f, 1f), (_e101 > vec4((_e102 - 0.5f)))));
+    let _e108 = behind;
+    let _e109 = samples;
+    let _e111 = behind;
+    back_displacement = (dot(_e108, _e109) / max(dot(_e111, vec4<f32>(1f, 1f, 1f, 1f)), 1f));
+    let _e115 = in_front;
+    bits = u32(dot(_e115, vec4<f32>(1f, 2f, 4f, 8f)));
+    let _e118 = full;
+    if _e118 {
         let _e119 = front_2;
-        param_9 = _e119;
-        let _e120 = back_displacement;
-        param_10 = _e120;
-        let _e121 = bits;
-        param_11 = _e121;
-        let _e122 = pack_split((&param_9), (&param_10), (&param_11));
-        local_2 = _e122;
+        param_8 = _e119;
+        let _e120 = pack_full((&param_8));
+        local_2 = _e120;
+    } else {
+        let _e121 = front_2;
+        param_9 = _e121;
+        let _e122 = back_displacement;
+        param_10 = _e122;
+        let _e123 = bits;
+        param_11 = _e123;
+        let _e124 = pack_split((&param_9), (&param_10), (&param_11));
+        local_2 = _e124;
     }
-    let _e123 = local_2;
-    layer = _e123;
-    let _e124 = count;
-    share_1 = (0.25f * _e124);
-    let _e126 = pixel_4;
-    param_12 = _e126;
-    let _e127 = color_of((&param_12));
-    color_1 = _e127;
+    let _e125 = local_2;
+    layer = _e125;
+    let _e126 = count;
+    share_1 = (0.25f * _e126);
+    let _e128 = pixel_4;
+    param_12 = _e128;
+    let _e129 = color_of((&param_12));
+    color_1 = _e129;
     front_sum = vec4<f32>(0f, 0f, 0f, 0f);
     back_sum = vec4<f32>(0f, 0f, 0f, 0f);
     front_weight = 0f;
     back_weight = 0f;
-    let _e128 = full;
-    i = select(0i, 8i, _e128);
+    least = vec4<f32>(1f, 1f, 1f, 1f);
+    most = vec4<f32>(0f, 0f, 0f, 0f);
+    let _e130 = full;
+    i = select(0i, 8i, _e130);
     loop {
-        let _e130 = i;
-        if (_e130 < 8i) {
-            let _e132 = pixel_4;
-            let _e133 = i;
+        let _e132 = i;
+        if (_e132 < 8i) {
+            let _e134 = pixel_4;
+            let _e135 = i;
             indexable = array<vec2<i32>, 8>(vec2<i32>(-1i, 0i), vec2<i32>(1i, 0i), vec2<i32>(0i, -1i), vec2<i32>(0i, 1i), vec2<i32>(-1i, -1i), vec2<i32>(1i, -1i), vec2<i32>(-1i, 1i), vec2<i32>(1i, 1i));
-            let _e135 = indexable[_e133];
-            param_13 = (_e132 + _e135);
-            let _e137 = displacements((&param_13));
-            other = _e137;
-            let _e138 = other;
-            middle = dot(_e138, vec4<f32>(0.25f, 0.25f, 0.25f, 0.25f));
-            let _e140 = i;
-            weight = select(1f, 2f, (_e140 < 4i));
-            let _e143 = other;
-            param_14 = _e143;
-            let _e144 = largest((&param_14));
+            let _e137 = indexable[_e135];
+            param_13 = (_e134 + _e137);
+            let _e139 = displacements((&param_13));
+            other = _e139;
+            let _e140 = other;
+            middle = dot(_e140, vec4<f32>(0.25f, 0.25f, 0.25f, 0.25f));
+            let _e142 = i;
+            weight = select(1f, 2f, (_e142 < 4i));
             let _e145 = other;
-            param_15 = _e145;
-            let _e146 = smallest((&param_15));
-            let _e149 = weight;
-            weight = select(0f, _e149, ((_e144 - _e146) < 0.5f));
-            let _e151 = pixel_4;
-            let _e152 = i;
+            param_14 = _e145;
+            let _e146 = largest((&param_14));
+            let _e147 = other;
+            param_15 = _e147;
+            let _e148 = smallest((&param_15));
+            let _e151 = weight;
+            weight = select(0f, _e151, ((_e146 - _e148) < 0.5f));
+            let _e153 = pixel_4;
+            let _e154 = i;
             indexable_1 = array<vec2<i32>, 8>(vec2<i32>(-1i, 0i), vec2<i32>(1i, 0i), vec2<i32>(0i, -1i), vec2<i32>(0i, 1i), vec2<i32>(-1i, -1i), vec2<i32>(1i, -1i), vec2<i32>(-1i, 1i), vec2<i32>(1i, 1i));
-            let _e154 = indexable_1[_e152];
-            param_16 = (_e151 + _e154);
-            let _e156 = color_of((&param_16));
-            tap = _e156;
-            let _e157 = middle;
-            let _e158 = front_2;
-            let _e162 = weight;
-            of_front = select(0f, _e162, (abs((_e157 - _e158)) < 0.5f));
-            let _e164 = middle;
-            let _e165 = back_displacement;
-            let _e169 = weight;
-            of_back = select(0f, _e169, (abs((_e164 - _e165)) < 0.5f));
-            let _e171 = of_front;
-            let _e172 = tap;
-            let _e174 = front_sum;
-            front_sum = (_e174 + (_e172 * _e171));
-            let _e176 = of_back;
-            let _e177 = tap;
-            let _e179 = back_sum;
-            back_sum = (_e179 + (_e177 * _e176));
-            let _e181 = of_front;
-            let _e182 = front_weight;
-            front_weight = (_e182 + _e181);
-            let _e184 = of_back;
-            let _e185 = back_weight;
-            back_weight = (_e185 + _e184);
+            let _e156 = indexable_1[_e154];
+            param_16 = (_e153 + _e156);
+            let _e158 = color_of((&param_16));
+            tap = _e158;
+            let _e159 = middle;
+            let _e160 = front_2;
+            let _e164 = weight;
+            of_front = select(0f, _e164, (abs((_e159 - _e160)) < 0.5f));
+            let _e166 = middle;
+            let _e167 = back_displacement;
+            let _e171 = weight;
+            of_back = select(0f, _e171, (abs((_e166 - _e167)) < 0.5f));
+            let _e173 = of_front;
+            let _e174 = tap;
+            let _e176 = front_sum;
+            front_sum = (_e176 + (_e174 * _e173));
+            let _e178 = of_back;
+            let _e179 = tap;
+            let _e181 = back_sum;
+            back_sum = (_e181 + (_e179 * _e178));
+            let _e183 = of_front;
+            let _e184 = front_weight;
+            front_weight = (_e184 + _e183);
+            let _e186 = of_back;
+            let _e187 = back_weight;
+            back_weight = (_e187 + _e186);
+            let _e189 = of_back;
+            if (_e189 > 0f) {
+                let _e191 = least;
+                let _e192 = tap;
+                least = min(_e191, _e192);
+                let _e194 = most;
+                let _e195 = tap;
+                most = max(_e194, _e195);
+            }
             continue;
         } else {
             break;
         }
         continuing {
-            let _e187 = i;
-            i = (_e187 + 1i);
+            let _e197 = i;
+            i = (_e197 + 1i);
         }
     }
-    let _e189 = front_sum;
-    let _e190 = front_weight;
-    front_color_1 = (_e189 / vec4(max(_e190, 1f)));
-    let _e194 = back_sum;
-    let _e195 = back_weight;
-    back_color_1 = (_e194 / vec4(max(_e195, 1f)));
-    let _e199 = front_weight;
-    let _e201 = back_weight;
-    if ((_e199 > 0f) && (_e201 > 0f)) {
-        let _e204 = color_1;
-        param_17 = _e204;
-        let _e205 = front_color_1;
-        param_18 = _e205;
-        let _e206 = back_color_1;
-        param_19 = _e206;
-        let _e207 = share_1;
-        param_20 = _e207;
-        let _e208 = shared_back((&param_17), (&param_18), (&param_19), (&param_20));
-        back_color_1 = _e208;
+    let _e199 = front_sum;
+    let _e200 = front_weight;
+    front_color_1 = (_e199 / vec4(max(_e200, 1f)));
+    let _e204 = back_sum;
+    let _e205 = back_weight;
+    back_color_1 = (_e204 / vec4(max(_e205, 1f)));
+    let _e209 = front_weight;
+    let _e211 = back_weight;
+    if ((_e209 > 0f) && (_e211 > 0f)) {
+        let _e214 = color_1;
+        param_17 = _e214;
+        let _e215 = front_color_1;
+        param_18 = _e215;
+        let _e216 = back_color_1;
+        param_19 = _e216;
+        let _e217 = share_1;
+        param_20 = _e217;
+        let _e218 = shared_back((&param_17), (&param_18), (&param_19), (&param_20));
+        let _e219 = least;
+        let _e220 = most;
+        back_color_1 = clamp(_e218, _e219, _e220);
     } else {
-        let _e209 = front_weight;
-        let _e211 = full;
-        if ((_e209 > 0f) && !(_e211)) {
-            let _e214 = color_1;
-            let _e215 = share_1;
-            let _e216 = front_color_1;
-            let _e219 = share_1;
-            back_color_1 = clamp(((_e214 - (_e216 * _e215)) / vec4((1f - _e219))), vec4(0f), vec4(1f));
+        let _e222 = front_weight;
+        let _e224 = full;
+        if ((_e222 > 0f) && !(_e224)) {
+            let _e227 = color_1;
+            let _e228 = share_1;
+            let _e229 = front_color_1;
+            let _e232 = share_1;
+            back_color_1 = clamp(((_e227 - (_e229 * _e228)) / vec4((1f - _e232))), vec4(0f), vec4(1f));
         } else {
-            let _e226 = back_weight;
-            if (_e226 == 0f) {
-                let _e228 = color_1;
-                back_color_1 = _e228;
+            let _e239 = back_weight;
+            if (_e239 == 0f) {
+                let _e241 = color_1;
+                back_color_1 = _e241;
             }
         }
     }
-    let _e229 = back_color_1;
-    let _e230 = _e229.xyz;
-    let _e231 = share_1;
-    back_1 = vec4<f32>(_e230.x, _e230.y, _e230.z, _e231);
+    let _e242 = back_color_1;
+    let _e243 = _e242.xyz;
+    let _e244 = share_1;
+    back_1 = vec4<f32>(_e243.x, _e243.y, _e243.z, _e244);
     return;
 }
 
