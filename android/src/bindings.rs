@@ -111,6 +111,7 @@ bind_java_type! {
         fn get_char_sequence_extra(name: JString) -> JCharSequence,
         fn get_data() -> Uri,
         fn get_extras() -> Bundle,
+        fn get_flags() -> jint,
         fn get_int_extra(name: JString, default: jint) -> jint,
         fn get_parcelable_extra(name: JString) -> Parcelable,
         fn put_extra(name: JString, value: JString) -> Intent,

@@ -49,6 +49,9 @@ impl Configuration {
                 scenes.display()
             );
         }
+        if let Some(scenes) = folders.first() {
+            shared::remove_unfinished(scenes);
+        }
         let shared = java.given().map(|given| match given {
             Given::Text(text) => shared::viewer_in_text(&text),
             Given::File(file, name) => match folders.first() {
@@ -59,7 +62,7 @@ impl Configuration {
                 Err("The shared file cannot be opened: share it from another application.".into())
             }
         });
-        // What comes with something shared are no settings.
+        // Extras of a shared intent are not settings.
         let mut extras = if shared.is_some() { Vec::new() } else { java.extras() };
         let scenario = java.scenario();
         let game_loop = scenario.and_then(|scenario| GameLoop::new(scenario, extras.clone()));
@@ -125,8 +128,8 @@ impl Configuration {
                 Ok(()) => "This is your viewer now. Touch Start.".into(),
                 Err(error) => error.to_string(),
             },
+            // It is kept when the user leaves: a model that no memory has room for would end every start.
             Some(Ok(Shared::Scene(name))) => {
-                self.write_menu_file();
                 format!("The model {name} was opened: touch Start to stand in it.")
             }
             Some(Err(mistake)) => mistake,

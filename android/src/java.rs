@@ -50,6 +50,9 @@ pub struct BatteryIntent {
     pub status: Option<i32>,
 }
 
+/// `Intent.FLAG_ACTIVITY_LAUNCHED_FROM_HISTORY`.
+const LAUNCHED_FROM_HISTORY: i32 = 0x0010_0000;
+
 /// What another application gives to the activity with the intent that starts it.
 pub enum Given {
     /// A text, or an address.
@@ -203,7 +206,11 @@ impl Java {
     pub fn given(&self) -> Option<Given> {
         let given = self.ask("the shared", |env, activity| {
             let intent = activity.get_intent(env)?;
-            let action = if intent.is_null() { JString::null() } else { intent.get_action(env)? };
+            // Begun again from the list of recent applications, the activity has the intent of its first start.
+            if intent.is_null() || intent.get_flags(env)? & LAUNCHED_FROM_HISTORY != 0 {
+                return Ok(None);
+            }
+            let action = intent.get_action(env)?;
             if action.is_null() {
                 return Ok(None);
             }
@@ -227,13 +234,19 @@ impl Java {
                 return Ok(None);
             }
             let address = text(env, &uri)?;
-            if address.starts_with("http") {
+            if address.starts_with("http://") || address.starts_with("https://") {
                 return Ok(Some(Given::Text(address)));
+            }
+            // That may be one of yoro's own.
+            if address.starts_with("file:") {
+                return Ok(Some(Given::Closed));
             }
             let last = address.rsplit('/').next().unwrap_or_default().to_owned();
             let shown = query(env, activity, &address, &["_display_name"]).ok().flatten();
+            env.exception_clear();
             let shown = shown.and_then(|rows| rows.into_iter().flatten().flatten().next());
             let file = open(env, activity, &uri, "r").ok().flatten();
+            env.exception_clear();
             Ok(Some(file.map_or(Given::Closed, |file| Given::File(file, shown.unwrap_or(last)))))
         });
         given.flatten()

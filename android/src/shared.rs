@@ -9,7 +9,9 @@ use yoro_lenses::{ViewerParams, read_qr};
 /// The largest picture and the largest model in bytes.
 const MAX_PICTURE: u64 = 64 << 20;
 const MAX_MODEL: u64 = 1 << 30;
-/// Pictures are made this small at most, in pixels: a code of a hand's width still has several pixels a module.
+/// The memory of a picture's pixels in bytes.
+const MAX_PIXELS: u64 = 192 << 20;
+/// Larger pictures are shrunk to this, in pixels: a code of a hand's width still has several pixels a module.
 const LONGEST: u32 = 2048;
 /// The first bytes of a GLB file.
 const GLB: &[u8] = b"glTF";
@@ -19,9 +21,12 @@ const GLB: &[u8] = b"glTF";
 pub enum Shared {
     /// A viewer's URI.
     Viewer(String),
-    /// The name of a model that is in the folder for scenes now.
+    /// The file name of a model that is in the folder for scenes now.
     Scene(String),
 }
+
+/// The longest address that a viewer's code leads to, in bytes.
+const MAX_ADDRESS: usize = 2048;
 
 /// Finds a viewer's URI in a text, among other words.
 ///
@@ -29,10 +34,18 @@ pub enum Shared {
 /// A sentence with the remedy.
 pub fn viewer_in_text(text: &str) -> Result<Shared, String> {
     let is_address = |word: &&str| word.contains('.') && word.contains('/');
-    let found = text.split_whitespace().find(is_address);
+    let is_viewer = |word: &&str| is_address(word) && word.contains("/cardboard");
+    // Not its brackets, the end of its sentence, or what follows the parameters.
+    let words = || {
+        text.split_whitespace().map(|word| {
+            let word = word.trim_matches(|c: char| "()<>[]{}\"'.,;!".contains(c));
+            word.split(['&', '#']).next().unwrap_or_default()
+        })
+    };
+    let found = words().find(is_viewer).or_else(|| words().find(is_address));
     let word =
         found.ok_or("The shared text has no address: share the address that the viewer's code leads to.")?;
-    if !word.contains("/cardboard") {
+    if word.len() > MAX_ADDRESS || !is_viewer(&word) {
         return Err(format!(
             "{} may be a shortened address: open it in the browser, and share the address that it leads to.",
             word.chars().take(60).collect::<String>()
@@ -62,9 +75,19 @@ pub fn read(mut file: File, name: &str, folder: &Path) -> Result<Shared, String>
     }
     let mut bytes = Vec::new();
     rest.take(MAX_PICTURE).read_to_end(&mut bytes).map_err(failed)?;
-    let picture = image::load_from_memory(&bytes).map_err(|_| {
-        "The shared file is no model (GLB) and no picture that yoro can read: share a PNG or JPEG.".to_owned()
-    })?;
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(MAX_PIXELS);
+    let picture = image::ImageReader::new(std::io::Cursor::new(&bytes))
+        .with_guessed_format()
+        .map_err(image::ImageError::IoError)
+        .and_then(|mut reader| {
+            reader.limits(limits);
+            reader.decode()
+        })
+        .map_err(|_| {
+            "The shared file is no model (GLB) and no picture that yoro can read: share a PNG or JPEG of at most 60 megapixels."
+                .to_owned()
+        })?;
     let small = if picture.width().max(picture.height()) > LONGEST {
         picture.thumbnail(LONGEST, LONGEST)
     } else {
@@ -78,6 +101,15 @@ pub fn read(mut file: File, name: &str, folder: &Path) -> Result<Shared, String>
             Err("No QR code can be read in the shared picture: take it from nearer, straight, in even light."
                 .into())
         }
+    }
+}
+
+/// Removes what a process that was ended while copying has left in a folder.
+pub fn remove_unfinished(folder: &Path) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "new"))
+    {
+        _ = std::fs::remove_file(path);
     }
 }
 
@@ -96,7 +128,7 @@ fn keep(from: &mut dyn std::io::Read, name: &str, folder: &Path) -> Result<Share
         std::fs::rename(&new, &path)
     })();
     match copied {
-        Ok(()) => Ok(Shared::Scene(stem)),
+        Ok(()) => Ok(Shared::Scene(format!("{stem}.glb"))),
         Err(error) => {
             _ = std::fs::remove_file(&new);
             Err(format!("The model {stem} cannot be kept ({error}): make room, and share it again."))
@@ -117,6 +149,7 @@ mod tests {
     fn a_viewer_is_found_among_words() {
         let viewer = |uri: &str| Ok(Shared::Viewer(uri.into()));
         assert_eq!(viewer_in_text(&format!("My viewer: {URI} (scanned)")), viewer(URI));
+        assert_eq!(viewer_in_text(&format!("See a.example/x (as {URI}&a,b).")), viewer(URI));
         assert_eq!(viewer_in_text("http://g.co/cardboard"), viewer("http://g.co/cardboard"));
         for (text, part) in [
             ("https://goo.gl/abc", "shortened"),
@@ -153,7 +186,7 @@ mod tests {
         assert!(read(blank.get_ref(), "photo.png").unwrap_err().contains("No QR code"));
         assert!(read(b"", "nothing").unwrap_err().contains("no picture"));
 
-        assert_eq!(read(b"glTF and more", "../my room!.glb"), Ok(Shared::Scene("my-room-".into())));
+        assert_eq!(read(b"glTF and more", "../my room!.glb"), Ok(Shared::Scene("my-room-.glb".into())));
         assert_eq!(std::fs::read(folder.path().join("my-room-.glb")).unwrap(), b"glTF and more");
         let mistake =
             super::read(File::open(folder.path().join("my-room-.glb")).unwrap(), "a", Path::new("/nowhere"));

@@ -30,7 +30,7 @@ pub fn run() -> anyhow::Result<()> {
 /// Runs all tests.
 ///
 /// # Errors
-/// When one fails. Where there is no Monado, its tests are left out with a word.
+/// When one fails. Where there is no Monado, its tests are skipped with a message.
 pub fn test() -> anyhow::Result<()> {
     let start = Instant::now();
     setup::vulkan();
@@ -52,7 +52,7 @@ pub fn test() -> anyhow::Result<()> {
             let headset = ["--config", &runner, "--test", "headset", "--", "--ignored", "--nocapture"];
             perform("test", &headset, &environment)?;
         }
-        Err(error) => println!("Monado cannot be had here: tests of headsets were left out: {error:#}"),
+        Err(error) => println!("Monado cannot be had here: tests of headsets are skipped: {error:#}"),
     }
     println!("Bevy: {} s", start.elapsed().as_secs());
     Ok(())

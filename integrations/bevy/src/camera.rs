@@ -5,6 +5,8 @@ use bevy::camera::{CameraMainTextureUsages, CameraUpdateSystems};
 use bevy::camera::{ClearColorConfig, RenderTarget};
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
+use bevy::light::SimulationLightSystems;
+use bevy::pbr::update_previous_view_data;
 use bevy::prelude::*;
 use bevy::render::camera::NormalizedRenderTargetExt;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
@@ -40,7 +42,7 @@ impl From<Eye> for eyes::Eye {
 }
 
 /// Stereo from this `Camera3d`, whose transform is the head's. Both eyes go side by side into the camera's render target,
-/// each as wide as half of it. Distances are in the unit of the world, which should be metres.
+/// each as wide as half of it. Distances are in the camera's unit, which is that of the world unless a parent is scaled.
 ///
 /// While this component is there, the camera's projection and render target are the plugin's: set the target anew to show the
 /// eyes elsewhere. Post-processing, anti-aliasing and the like are those of the camera. When the component is removed the
@@ -61,8 +63,8 @@ pub struct StereoCamera {
     pub near: f32,
     /// Distance beyond which objects are culled.
     pub far: f32,
-    /// Distance of the nearest object that the other eye sees whole at its outer border: the rendered image is widened by a
-    /// guard band for it. Infinity for none.
+    /// Distance of the nearest object that is not cut off at the other eye's outer border: the rendered image is widened by
+    /// a guard band for it. Infinity for none.
     pub guard_distance: f32,
 }
 
@@ -116,12 +118,20 @@ pub(crate) struct Eyes {
     pub(crate) other: Handle<Image>,
     /// Shows both eyes.
     screen: Option<Entity>,
-    /// Where the camera rendered to before.
+    /// Where the camera rendered to before, and its size in pixels as the screen knows it.
     output: Option<RenderTarget>,
+    size: UVec2,
     /// The head in the world.
     head: Option<GlobalTransform>,
     /// Why both eyes are rendered although one should be synthesized.
     reason: Option<String>,
+}
+
+impl Eyes {
+    /// True if this is the image for the widened view.
+    fn renders_to(&self, target: &RenderTarget) -> bool {
+        matches!(target, RenderTarget::Image(to) if to.handle == self.source)
+    }
 }
 
 /// What requires other images, projections or cameras when it changes.
@@ -133,7 +143,6 @@ pub(crate) struct Arrangement {
     /// Without their poses.
     views: [View; 2],
     far: f32,
-    order: isize,
 }
 
 /// The views of the two eyes.
@@ -151,16 +160,22 @@ pub(crate) struct Views {
 }
 
 impl Views {
+    /// Returns the views where both eyes are rendered.
+    pub(crate) fn rendered(pair: &EyePair) -> Views {
+        let dominant = pair.dominant;
+        let (source, target) = (pair.view(dominant), pair.view(dominant.other()));
+        Views { source, target, crop: [0, 0], dominant, warp: None }
+    }
+
     /// Returns the views for a plan.
     ///
     /// # Errors
     /// Why the other eye cannot be synthesized from these.
     pub(crate) fn new(pair: &EyePair, plan: Plan, guard: GuardBand) -> Result<Views, eyes::EyesError> {
-        let dominant = pair.dominant;
         if plan == Plan::Rendered {
-            let (source, target) = (pair.view(dominant), pair.view(dominant.other()));
-            return Ok(Views { source, target, crop: [0, 0], dominant, warp: None });
+            return Ok(Views::rendered(pair));
         }
+        let dominant = pair.dominant;
         let views = pair.synthesis(guard)?;
         let crop = views.dominant_crop_from_top();
         Ok(Views { source: views.source, target: views.target, crop, dominant, warp: Some(views.warp) })
@@ -181,12 +196,15 @@ pub(crate) struct Screen(pub(crate) Entity);
 
 pub(crate) fn build(app: &mut App) {
     app.register_type::<StereoCamera>()
-        .add_systems(First, back_to_head)
+        .add_systems(PreUpdate, (forget, back_to_head.after(update_previous_view_data)))
         .configure_sets(PostUpdate, ShareSystems.before(CameraUpdateSystems))
         .add_systems(PostUpdate, arrange.before(ShareSystems))
         .add_systems(
             PostUpdate,
-            to_eyes.after(TransformSystems::Propagate).before(VisibilitySystems::UpdateFrusta),
+            to_eyes
+                .after(TransformSystems::Propagate)
+                .before(VisibilitySystems::UpdateFrusta)
+                .before(SimulationLightSystems::UpdateDirectionalLightCascades),
         )
         .add_observer(end);
 }
@@ -256,9 +274,14 @@ fn arrange(
     mut others: Query<&mut Camera, Without<StereoCamera>>,
 ) {
     for (stereo, mut parts) in &mut cameras {
-        let is_source = matches!(&*parts.target, RenderTarget::Image(to) if to.handle == parts.eyes.source);
-        if parts.eyes.arrangement.is_none() || !is_source {
+        if parts.eyes.arrangement.is_none() || !parts.eyes.renders_to(&parts.target) {
             show(&mut commands, &mut parts);
+        }
+        let beside = [(parts.eyes.screen, 2), (parts.other.map(|other| other.entity), 1)];
+        for (entity, later) in beside {
+            if let Some(mut camera) = entity.and_then(|entity| others.get_mut(entity).ok()) {
+                follow(&mut camera, &parts.camera, later);
+            }
         }
         let Some((size, format)) =
             parts.eyes.output.as_ref().and_then(|output| targets.info(output, &images))
@@ -272,14 +295,30 @@ fn arrange(
         let (mode, guard_distance, far) = (stereo.mode, stereo.guard_distance, stereo.far);
         let wanted = Wanted { mode, pair: &pair, guard_distance, far, format, images: true };
         parts.arrange(&mut commands, &mut images, &wanted);
-        let beside = [parts.eyes.screen, parts.other.map(|other| other.entity)];
-        for entity in beside.into_iter().flatten() {
-            if let Ok(mut camera) = others.get_mut(entity)
-                && camera.is_active != parts.camera.is_active
-            {
-                camera.is_active = parts.camera.is_active;
-            }
+        if let Some(screen) = parts.eyes.screen.filter(|_| parts.eyes.size != size) {
+            parts.eyes.size = size;
+            // Bevy looks at a camera's target again when its projection changes.
+            let projection = Projection::Orthographic(OrthographicProjection::default_2d());
+            commands.entity(screen).try_insert(projection);
         }
+    }
+}
+
+/// Makes a camera beside a stereo camera as active as that, and so much later.
+fn follow(camera: &mut Mut<Camera>, stereo: &Camera, later: isize) {
+    if camera.is_active != stereo.is_active || camera.order != stereo.order + later {
+        (camera.is_active, camera.order) = (stereo.is_active, stereo.order + later);
+    }
+    // The screen clears what is beside the eyes.
+    if later == 1 && !same_clear_color(camera.clear_color, stereo.clear_color) {
+        camera.clear_color = stereo.clear_color;
+    }
+}
+
+fn same_clear_color(a: ClearColorConfig, b: ClearColorConfig) -> bool {
+    match (a, b) {
+        (ClearColorConfig::Custom(a), ClearColorConfig::Custom(b)) => a == b,
+        (a, b) => std::mem::discriminant(&a) == std::mem::discriminant(&b),
     }
 }
 
@@ -287,10 +326,9 @@ fn arrange(
 fn show(commands: &mut Commands, parts: &mut PartsItem) {
     let output = parts.target.clone();
     parts.eyes.output = Some(output.clone());
+    (parts.eyes.arrangement, parts.eyes.size) = (None, UVec2::ZERO);
     if let Some(screen) = parts.eyes.screen {
-        // Bevy looks at a camera's target again when its projection changes.
-        let projection = Projection::Orthographic(OrthographicProjection::default_2d());
-        commands.entity(screen).insert((output, projection));
+        commands.entity(screen).try_insert(output);
         return;
     }
     let usages = CameraMainTextureUsages::default().0 | TextureUsages::COPY_DST;
@@ -327,10 +365,7 @@ impl PartsItem<'_, '_> {
         });
         let (plan, views, reason) = match tried {
             Ok((plan, views)) => (plan, views, None),
-            Err(reason) => match Views::new(wanted.pair, Plan::Rendered, guard) {
-                Ok(views) => (Plan::Rendered, views, Some(reason)),
-                Err(_) => return None,
-            },
+            Err(reason) => (Plan::Rendered, Views::rendered(wanted.pair), Some(reason)),
         };
         if reason != self.eyes.reason {
             if let Some(reason) = &reason {
@@ -346,8 +381,11 @@ impl PartsItem<'_, '_> {
             format: wanted.format,
             views: [views.source, views.target].map(still),
             far: wanted.far,
-            order: self.camera.order,
         };
+        let usages = TextureUsages::from(self.camera_3d.depth_texture_usages);
+        if !usages.contains(TextureUsages::TEXTURE_BINDING) {
+            self.camera_3d.depth_texture_usages = (usages | TextureUsages::TEXTURE_BINDING).into();
+        }
         if self.eyes.arrangement == Some(arrangement) {
             return None;
         }
@@ -364,8 +402,6 @@ impl PartsItem<'_, '_> {
         self.eyes.source = image(&views.source);
         *self.target = RenderTarget::Image(self.eyes.source.clone().into());
         *self.projection = Projection::custom(EyeProjection::new(&views.source, wanted.far));
-        let usages = TextureUsages::from(self.camera_3d.depth_texture_usages);
-        self.camera_3d.depth_texture_usages = (usages | TextureUsages::TEXTURE_BINDING).into();
 
         let rendered = plan == Plan::Rendered;
         let kept = self.other.filter(|other| plan.has_other_camera() && other.rendered == rendered);
@@ -392,12 +428,12 @@ impl PartsItem<'_, '_> {
             entity
         });
         let entity = new.or(kept.map(|other| other.entity))?;
-        commands.entity(entity).insert(own);
+        commands.entity(entity).try_insert(own);
         if wanted.images {
             self.eyes.other = image(&views.target);
             let target = RenderTarget::Image(self.eyes.other.clone().into());
             let projection = Projection::custom(EyeProjection::new(&views.target, wanted.far));
-            commands.entity(entity).insert((target, projection));
+            commands.entity(entity).try_insert((target, projection));
         }
         new
     }
@@ -434,19 +470,43 @@ pub(crate) fn bevy_transform(pose: &Pose) -> Transform {
         .with_rotation(Quat::from_array(pose.orientation.to_array()))
 }
 
+/// Forgets cameras that somebody else has removed.
+fn forget(
+    mut commands: Commands,
+    mut stereo: Query<(Entity, &mut Eyes, Option<&OtherCamera>)>,
+    cameras: Query<(), With<Camera>>,
+) {
+    for (entity, mut eyes, other) in &mut stereo {
+        if other.is_some_and(|other| !cameras.contains(other.entity)) {
+            commands.entity(entity).remove::<OtherCamera>();
+            eyes.arrangement = None;
+        }
+        if eyes.screen.is_some_and(|screen| !cameras.contains(screen)) {
+            eyes.screen = None;
+            eyes.arrangement = None;
+        }
+    }
+}
+
 /// Makes a single camera of it again.
 fn end(
     removed: On<Remove, StereoCamera>,
     mut commands: Commands,
-    cameras: Query<(&StereoCamera, &Eyes, &GlobalTransform, Option<&OtherCamera>)>,
+    cameras: Query<
+        (&StereoCamera, &Eyes, &GlobalTransform, &RenderTarget, Option<&OtherCamera>),
+        With<Camera>,
+    >,
 ) {
-    let Ok((stereo, eyes, transform, other)) = cameras.get(removed.entity) else { return };
+    let Ok((stereo, eyes, transform, target, other)) = cameras.get(removed.entity) else { return };
     for entity in [eyes.screen, other.map(|other| other.entity)].into_iter().flatten() {
         commands.entity(entity).try_despawn();
     }
-    let projection =
-        PerspectiveProjection { fov: stereo.fov_y, near: stereo.near, far: stereo.far, ..default() };
-    let target = eyes.output.clone().unwrap_or_default();
-    let restored = (target, Projection::Perspective(projection), eyes.head.unwrap_or(*transform));
-    commands.entity(removed.entity).try_remove::<(Eyes, OtherCamera)>().try_insert(restored);
+    let mut camera = commands.entity(removed.entity);
+    if let (Some(output), true) = (&eyes.output, eyes.renders_to(target)) {
+        let projection =
+            PerspectiveProjection { fov: stereo.fov_y, near: stereo.near, far: stereo.far, ..default() };
+        let head = eyes.head.unwrap_or(*transform);
+        camera.try_insert((output.clone(), Projection::Perspective(projection), head));
+    }
+    camera.try_remove::<(Eyes, OtherCamera)>();
 }

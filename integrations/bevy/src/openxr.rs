@@ -44,10 +44,11 @@ use crate::shared::ShareSystems;
 use crate::{Eye, StereoMode};
 
 /// Stereo in the headset from this `Camera3d`. The runtime's views say where the eyes are and what they see; the camera's
-/// transform, projection and render target are the plugin's. It renders while a session does.
+/// transform, projection and render target are the plugin's. It renders while a session does. Despawn the entity to end it:
+/// without this component the camera is inactive.
 #[derive(Component, Clone, Debug, PartialEq, Reflect, ExtractComponent)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[require(Camera3d, Eyes, XrTracker)]
+#[require(Camera3d, Camera { is_active: false, ..default() }, Eyes, XrTracker)]
 pub struct XrStereoCamera {
     /// How the other eye is made.
     pub mode: StereoMode,
@@ -109,6 +110,7 @@ pub(crate) fn build(app: &mut App) {
                 .before(CameraUpdateSystems)
                 .before(ShareSystems),
         )
+        .add_systems(PreUpdate, rest.run_if(not(should_run_frame_loop)))
         .add_systems(XrPreDestroySession, stop)
         .add_observer(end);
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
@@ -161,17 +163,31 @@ fn arrange(
     }
 }
 
+/// Nothing is rendered without a session.
+fn rest(mut cameras: Query<&mut Camera, With<XrStereoCamera>>) {
+    for mut camera in &mut cameras {
+        if camera.is_active {
+            camera.is_active = false;
+        }
+    }
+}
+
 /// bevy_mod_openxr removes its cameras at the end of a session.
-fn stop(mut commands: Commands, mut cameras: Query<(Entity, &mut Camera), With<XrStereoCamera>>) {
-    for (entity, mut camera) in &mut cameras {
-        camera.is_active = false;
+fn stop(mut commands: Commands, cameras: Query<Entity, With<XrStereoCamera>>) {
+    for entity in &cameras {
         commands.entity(entity).remove::<OtherCamera>().insert(Eyes::default());
     }
 }
 
-/// Makes a single camera of it again.
-fn end(removed: On<Remove, XrStereoCamera>, mut commands: Commands, others: Query<&OtherCamera>) {
-    if let Ok(other) = others.get(removed.entity) {
+/// Removes the other eye's camera.
+fn end(
+    removed: On<Remove, XrStereoCamera>,
+    mut commands: Commands,
+    mut cameras: Query<(&mut Camera, Option<&OtherCamera>)>,
+) {
+    let Ok((mut camera, other)) = cameras.get_mut(removed.entity) else { return };
+    camera.is_active = false;
+    if let Some(other) = other {
         commands.entity(other.entity).try_despawn();
     }
     commands.entity(removed.entity).try_remove::<(Eyes, OtherCamera)>();

@@ -55,25 +55,23 @@ impl RenderingItem<'_, '_> {
     /// The reason why the mode is impossible: both eyes are to be rendered.
     pub(crate) fn plan(&self, mode: StereoMode) -> Result<Plan, &'static str> {
         let samples = self.msaa.samples();
-        if samples > 4 && mode != StereoMode::Rendered {
-            return Err("8 samples cannot be synthesized; use Msaa::Sample4");
-        }
-        match mode {
-            StereoMode::Opaque if self.jitter => Err(
-                "temporal anti-aliasing needs the history of each eye in StereoMode::Opaque; use StereoMode::Finished",
-            ),
-            StereoMode::Opaque if samples > 1 && self.hdr => Err(
-                "samples with Hdr cannot be synthesized in StereoMode::Opaque; use Msaa::Off, or StereoMode::Finished",
-            ),
-            _ if samples > 1 && mode != StereoMode::Rendered => Ok(match mode {
-                StereoMode::Opaque => Plan::Opaque(Edges::Multisample),
-                _ => Plan::Finished(Edges::Multisample),
-            }),
-            StereoMode::Opaque => Ok(Plan::Opaque(Edges::Hard)),
+        let edges = match samples {
             // Colour is smoothed at edges, depth is not.
-            StereoMode::Finished if self.jitter | self.fxaa | self.smaa => Ok(Plan::Finished(Edges::Sample)),
-            StereoMode::Finished => Ok(Plan::Finished(Edges::Hard)),
+            1 if mode == StereoMode::Finished && (self.jitter | self.fxaa | self.smaa) => Edges::Sample,
+            1 => Edges::Hard,
+            _ => Edges::Multisample,
+        };
+        match mode {
             StereoMode::Rendered => Ok(Plan::Rendered),
+            _ if samples > 4 => Err("8 samples cannot be synthesized; use Msaa::Sample4"),
+            StereoMode::Opaque if self.jitter => {
+                Err("a synthesized eye has no history for temporal anti-aliasing; use StereoMode::Finished")
+            }
+            StereoMode::Opaque if samples > 1 && self.hdr => {
+                Err("samples with Hdr need StereoMode::Finished, or use Msaa::Off")
+            }
+            StereoMode::Opaque => Ok(Plan::Opaque(edges)),
+            StereoMode::Finished => Ok(Plan::Finished(edges)),
         }
     }
 

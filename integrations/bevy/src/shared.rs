@@ -7,7 +7,7 @@ use bevy::camera::{CompositingSpace, Exposure, Hdr};
 use bevy::core_pipeline::Skybox;
 use bevy::core_pipeline::oit::OrderIndependentTransparencySettings;
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
-use bevy::light::{AmbientLight, EnvironmentMapLight, ShadowFilteringMethod};
+use bevy::light::{AmbientLight, EnvironmentMapLight, ShadowFilteringMethod, VolumetricFog};
 use bevy::pbr::{DistanceFog, ScreenSpaceAmbientOcclusion, ScreenSpaceTransmission};
 use bevy::post_process::bloom::Bloom;
 use bevy::post_process::dof::DepthOfField;
@@ -58,6 +58,7 @@ pub(crate) fn build(app: &mut App) {
         .share_with_other_eye::<Smaa>()
         .share_with_other_eye::<Tonemapping>()
         .share_with_other_eye::<Vignette>()
+        .share_with_other_eye::<VolumetricFog>()
         // What draws opaque surfaces, or needs passes that do (and brings them along).
         .add_systems(
             PostUpdate,
@@ -75,11 +76,11 @@ fn share<C: Component + Clone, const SYNTHESIZED: bool>(
     mut commands: Commands,
     changed: Query<(&OtherCamera, &C), Or<(Changed<C>, Changed<OtherCamera>)>>,
     mut removed: RemovedComponents<C>,
-    others: Query<&OtherCamera>,
+    others: Query<&OtherCamera, Without<C>>,
 ) {
     for (other, component) in &changed {
         if SYNTHESIZED || other.rendered {
-            commands.entity(other.entity).insert(component.clone());
+            commands.entity(other.entity).try_insert(component.clone());
         }
     }
     for other in removed.read().filter_map(|camera| others.get(camera).ok()) {

@@ -4,6 +4,7 @@
 mod support;
 
 use bevy::camera::{Exposure, Hdr};
+use bevy::core_pipeline::tonemapping::DebandDither;
 use bevy::post_process::bloom::Bloom;
 use bevy::prelude::*;
 use bevy_yoro::{Eye, StereoCamera, StereoMode};
@@ -138,6 +139,32 @@ fn cameras_come_and_go_and_images_change_size() {
         let [left, right] = halves(&stage.picture());
         assert!(psnr(&left, &right) > 15.0, "both halves show the room");
     }
+    assert_eq!(stage.picture(), first);
+    // Another image of the same size; then another order and background for all cameras.
+    let same = target(&mut stage.app, SIZE);
+    stage.image = same.clone();
+    let camera = stage.camera;
+    stage.app.world_mut().entity_mut(camera).insert(into_image(&same));
+    assert_eq!(stage.picture(), first);
+    let set = |stage: &mut Stage, order, clear_color| {
+        let mut camera = stage.app.world_mut().get_mut::<Camera>(camera).unwrap();
+        (camera.order, camera.clear_color) = (order, clear_color);
+    };
+    stage.in_mode(StereoMode::Rendered);
+    set(&mut stage, 7, Color::srgb(1.0, 0.0, 0.0).into());
+    let [left, right] = halves(&stage.picture());
+    for eye in [left, right] {
+        let image::Rgb([r, g, _]) = *eye.get_pixel(5, 5);
+        assert!(r > 200 && g < 50, "the background is red: {r}, {g}");
+    }
+    stage.stereo().mode = StereoMode::Opaque;
+    set(&mut stage, 0, default());
+    assert_eq!(stage.picture(), first);
+    // Somebody removes the cameras beside it, whose images are then made anew.
+    stage.app.world_mut().entity_mut(camera).despawn_children();
+    stage.app.world_mut().entity_mut(camera).insert(DebandDither::Disabled);
+    stage.app.update();
+    stage.app.world_mut().entity_mut(camera).insert(DebandDither::Enabled);
     assert_eq!(stage.picture(), first);
 
     // A second stereo camera beside it, with the other eye rendered.

@@ -1,6 +1,6 @@
 #version 310 es
-// Any view, pass 1: smallest and largest stored depth of each source tile and of the pixels around it, so that every pair of
-// neighbours lies within a tile.
+// Any view, pass 1: smallest and largest stored depth of each source tile and of the pixels around it: one below, and two above, where
+// a sample beyond the tile has its second pixel.
 
 #include "include/tiles.glsl"
 
@@ -12,8 +12,8 @@ void main() {
     ivec2 last = source_size - 1;
     float least = 1e9;
     float most = -1e9;
-    for (int y = -1; y <= TILE.y; ++y) {
-        for (int x = -1; x <= TILE.x; ++x) {
+    for (int y = -1; y <= TILE.y + 1; ++y) {
+        for (int x = -1; x <= TILE.x + 1; ++x) {
             ivec2 pixel = clamp(corner + ivec2(x, y), ivec2(0), last);
             float depth = depth_texel(pixel.x, pixel.y);
             least = min(least, depth);

@@ -38,7 +38,8 @@ impl PoseWarp {
     /// Returns the warp from a rendered view to another one. They may have different poses, frusta, sizes and depth planes.
     ///
     /// # Errors
-    /// [`EyesError::Apart`] if the target sees further than 80 degrees from the source's axis; [`EyesError::Invalid`],
+    /// [`EyesError::Apart`] if the target sees further than 80 degrees from the source's axis, or only what is beyond the
+    /// source's far plane; [`EyesError::Invalid`],
     /// [`EyesError::NoPixels`], [`EyesError::Empty`] or [`EyesError::Planes`] for a view that is none.
     pub fn new(source: &View, target: &View) -> Result<PoseWarp, EyesError> {
         source.check()?;
@@ -54,7 +55,7 @@ impl PoseWarp {
         // Differences of positions first: they are small where positions are large.
         let moved = to_source * (target.pose.position.as_dvec3() - source.pose.position.as_dvec3());
         let pixels = pixels_of(source);
-        // Views of one orientation have no rounding between them: pixels that stay are taken as they are.
+        // Views of one orientation, frustum and size have no rounding between them: pixels that stay are taken as they are.
         let homography = if (source.pose.orientation, source.frustum, source.size)
             == (target.pose.orientation, target.frustum, target.size)
         {
@@ -66,6 +67,9 @@ impl PoseWarp {
         let (target_c, target_m) = target.depth.inverse_distance_law();
         // Nearer surfaces are before a near plane or, where the target is ahead, behind its eye.
         let near = f64::from(source.depth.near).max(LEAST_COSINE * f64::from(target.depth.near) - moved.z);
+        if near >= f64::from(source.depth.far) {
+            return Err(EyesError::Apart);
+        }
         let far_depth = match source.depth.convention {
             DepthConvention::Standard => 1.0,
             DepthConvention::Reversed => 0.0,
@@ -141,7 +145,11 @@ impl HeadMotion {
         if !(0.0..1.0).contains(&shift) || !(0.0..1.0).contains(&self.rotation) {
             return Err(EyesError::Apart);
         }
-        let turn = (f64::from(self.rotation) + shift.asin()).sin();
+        let angle = f64::from(self.rotation) + shift.asin();
+        if angle >= std::f64::consts::FRAC_PI_2 {
+            return Err(EyesError::Apart);
+        }
+        let turn = angle.sin();
         let f = view.frustum;
         let [[left, right], [bottom, top]] =
             [[-f.left, f.right], [-f.bottom, f.top]].map(|sides| sides.map(f64::from));
@@ -167,7 +175,9 @@ impl HeadMotion {
             bottom: f.bottom - bottom as f32 * density[1],
             top: f.top + top as f32 * density[1],
         };
-        let size = [view.size[0] + left + right, view.size[1] + bottom + top];
+        let sum =
+            |parts: [u32; 3]| parts.into_iter().try_fold(0u32, u32::checked_add).ok_or(EyesError::Apart);
+        let size = [sum([view.size[0], left, right])?, sum([view.size[1], bottom, top])?];
         Ok(GuardedView { view: View { frustum, size, ..*view }, crop: [left, bottom] })
     }
 }

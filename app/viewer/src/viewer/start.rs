@@ -82,9 +82,10 @@ impl Viewer {
 
     /// Returns the viewers to choose from, as the setting `viewer` names them.
     pub(super) fn viewers(&self) -> Vec<String> {
-        let chosen = std::iter::once(&self.settings.viewer);
+        let (own, recent) = (&self.settings.viewer, &self.settings.recent_viewers);
+        let own = (!recent.contains(own)).then_some(own);
         let mut viewers: Vec<String> = BUILTIN.map(str::to_owned).into();
-        for viewer in self.settings.recent_viewers.iter().chain(chosen) {
+        for viewer in own.into_iter().chain(recent) {
             if !viewers.contains(viewer) {
                 viewers.push(viewer.clone());
             }
@@ -104,14 +105,13 @@ impl Viewer {
         }
     }
 
-    /// Asks for a viewer, which becomes the first of those that were chosen last.
+    /// Asks for a viewer. A new one becomes the first of those that were chosen last; the others keep their places.
     pub fn choose_viewer(&mut self, viewer: &str) -> Action {
         let chosen = ("viewer", viewer.to_owned());
-        if BUILTIN.contains(&viewer) {
+        let mut recent = self.settings.recent_viewers.clone();
+        if BUILTIN.contains(&viewer) || recent.iter().any(|other| other == viewer) {
             return self.want(&[chosen]);
         }
-        let mut recent = self.settings.recent_viewers.clone();
-        recent.retain(|other| other != viewer);
         recent.insert(0, viewer.to_owned());
         recent.truncate(VIEWERS - BUILTIN.len());
         self.want(&[chosen, ("recent-viewers", recent.join(","))])

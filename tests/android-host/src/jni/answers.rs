@@ -169,6 +169,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                 .collect();
             Value::object(Object::new("android/content/Intent", Data::Extras(extras)))
         }
+        "getFlags" if class == "android/content/Intent" => Value::Int(0),
         "getAction" if class == "android/content/Intent" => {
             Value::object(Object::string(match (&host.device.game_loop, &*lock(&host.shared[1])) {
                 (Some(_), _) => "com.google.intent.action.TEST_LOOP",
