@@ -223,6 +223,8 @@ mod tests {
         assert_eq!(PoseWarp::new(&source, &source).unwrap().homography, DMat3::IDENTITY);
         let behind = view(Vec3::ZERO, base * Quat::from_rotation_y(1.5));
         assert_eq!(PoseWarp::new(&source, &behind), Err(EyesError::Apart));
+        let beyond = source.pose.translated_local(Vec3::NEG_Z * (source.depth.far + 1.0));
+        assert_eq!(PoseWarp::new(&source, &View { pose: beyond, ..source }), Err(EyesError::Apart));
         let none = View { size: [0, 9], ..source };
         assert_eq!(PoseWarp::new(&none, &source), Err(EyesError::NoPixels));
     }
@@ -230,6 +232,8 @@ mod tests {
     #[test]
     fn the_guard_band_holds_what_motion_brings_in_and_little_more() {
         let own = view(Vec3::ZERO, Quat::IDENTITY);
+        let large = HeadMotion { rotation: 0.99, translation: 0.99 };
+        assert_eq!(large.guarded(&own, 1.0), Err(EyesError::Apart));
         let motion = HeadMotion { rotation: 0.08, translation: 0.03 };
         let guarded = motion.guarded(&own, 0.6).unwrap();
         let wide = guarded.view;
