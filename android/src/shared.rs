@@ -186,6 +186,10 @@ mod tests {
         assert!(read(blank.get_ref(), "photo.png").unwrap_err().contains("No QR code"));
         assert!(read(b"", "nothing").unwrap_err().contains("no picture"));
 
+        // What was left half copied.
+        std::fs::write(folder.path().join("room.new"), b"glTF").unwrap();
+        remove_unfinished(folder.path());
+        assert!(!folder.path().join("room.new").exists() && folder.path().join("shared").exists());
         assert_eq!(read(b"glTF and more", "../my room!.glb"), Ok(Shared::Scene("my-room-.glb".into())));
         assert_eq!(std::fs::read(folder.path().join("my-room-.glb")).unwrap(), b"glTF and more");
         let mistake =
