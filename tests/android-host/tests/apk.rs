@@ -798,7 +798,7 @@ fn a_first_start_by_hand() {
     let scene = log.iter().find_map(|line| line.strip_prefix("menu: scene=")).unwrap();
     let starts = settings.iter().filter(|line| line.contains(&format!("scene=\"{scene}\""))).count();
     assert!(starts >= 2, "{settings:#?}");
-    assert!(settings.last().unwrap().contains("scene=\"my-room\""), "{settings:#?}");
+    assert!(settings.last().unwrap().contains("scene=\"my-room.glb\""), "{settings:#?}");
     for what in ["brightness 1", "brightness -1", "another application"] {
         assert!(run.summary.requests.contains_key(what), "{what}: {:?}", run.summary.requests);
     }
