@@ -1,8 +1,7 @@
 //! Stereo cameras: which view is rendered, and the cameras beside it.
 
 use bevy::camera::visibility::{RenderLayers, VisibilitySystems};
-use bevy::camera::{CameraMainTextureUsages, CameraUpdateSystems};
-use bevy::camera::{ClearColorConfig, RenderTarget};
+use bevy::camera::{CameraMainTextureUsages, CameraUpdateSystems, ClearColorConfig, RenderTarget};
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
 use bevy::light::SimulationLightSystems;
@@ -70,7 +69,7 @@ pub struct StereoCamera {
 
 impl Default for StereoCamera {
     /// Opaque surfaces synthesized, the right eye rendered, 63 mm, the field of view and planes of Bevy's perspective
-    /// projection, everything beyond 1 m whole.
+    /// projection, a guard band for objects at 1 m or farther.
     fn default() -> StereoCamera {
         let PerspectiveProjection { fov, near, far, .. } = PerspectiveProjection::default();
         StereoCamera {
@@ -139,7 +138,7 @@ impl Eyes {
 pub(crate) struct Arrangement {
     pub(crate) plan: Plan,
     pub(crate) samples: u32,
-    pub(crate) format: TextureFormat,
+    format: TextureFormat,
     /// Without their poses.
     views: [View; 2],
     far: f32,
@@ -209,7 +208,7 @@ pub(crate) fn build(app: &mut App) {
         .add_observer(end);
 }
 
-/// A stereo camera, as far as it is arranged.
+/// The components of a stereo camera that decide about its arrangement, or are part of it.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(crate) struct Parts {
@@ -304,7 +303,7 @@ fn arrange(
     }
 }
 
-/// Makes a camera beside a stereo camera as active as that, and so much later.
+/// Gives a camera beside a stereo camera its activity, its order plus `later`, and the other eye's its clear colour.
 fn follow(camera: &mut Mut<Camera>, stereo: &Camera, later: isize) {
     if camera.is_active != stereo.is_active || camera.order != stereo.order + later {
         (camera.is_active, camera.order) = (stereo.is_active, stereo.order + later);
@@ -488,7 +487,7 @@ fn forget(
     }
 }
 
-/// Makes a single camera of it again.
+/// Restores the single camera.
 fn end(
     removed: On<Remove, StereoCamera>,
     mut commands: Commands,

@@ -58,12 +58,13 @@ pub struct XrStereoCamera {
     pub near: f32,
     /// Distance in metres beyond which objects are culled.
     pub far: f32,
-    /// Distance in metres of the nearest object that the other eye sees whole at its outer border; infinity for no guard band.
+    /// Distance in metres of the nearest object that is not cut off at the other eye's outer border; infinity for no guard band.
     pub guard_distance: f32,
 }
 
 impl Default for XrStereoCamera {
-    /// Opaque surfaces synthesized, the right eye rendered, planes at 0.1 m and 1000 m, everything beyond 1 m whole.
+    /// Opaque surfaces synthesized, the right eye rendered, planes at 0.1 m and 1000 m, a guard band for objects at 1 m
+    /// or farther.
     fn default() -> XrStereoCamera {
         XrStereoCamera {
             mode: StereoMode::default(),
