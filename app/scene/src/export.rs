@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::load::{MaterialNotes, SceneNotes};
-use super::model::{Alpha, Material, Scene};
+use super::model::{Alpha, Material};
+use super::scene::Scene;
 use super::textures::unique;
 use yoro_files::{FileError, create_folder, write_with};
 

@@ -10,7 +10,6 @@ pub mod export;
 #[cfg(test)]
 mod file_tests;
 mod gltf;
-mod gltf_motion;
 pub mod load;
 pub mod model;
 pub mod motion;
@@ -23,6 +22,7 @@ pub mod path;
 mod polygon;
 mod rays;
 mod repair;
+mod scene;
 mod textures;
 
 pub use error::SceneError;
@@ -31,3 +31,4 @@ pub use load::load;
 pub use model::*;
 pub use motion::{Moment, Motion};
 pub use path::CameraPath;
+pub use scene::Scene;

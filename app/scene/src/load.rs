@@ -9,11 +9,12 @@ use serde::{Deserialize, Serialize};
 use super::defaults;
 use super::error::{SceneError, file_size};
 use super::gltf::load_gltf;
-use super::model::{Alpha, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use super::model::{Alpha, PointLight, ShadingStyle, Sky, Viewpoint};
 use super::motion::Motion;
 use super::obj::load_obj;
 use super::path as camera_path;
 use super::rays::Rays;
+use super::scene::Scene;
 
 /// Largest `camera.json` or `scene.json`, in bytes.
 const MAX_SIDECAR: u64 = 16 << 20;

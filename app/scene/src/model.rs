@@ -6,8 +6,6 @@ use glam::{Vec2, Vec3};
 
 use yoro::eyes::Pose;
 
-use super::motion::Motion;
-
 /// One vertex. 32 bytes, uploaded as it is.
 #[repr(C)]
 #[derive(
@@ -265,23 +263,4 @@ impl Viewpoint {
     pub fn pose(&self) -> Pose {
         Pose::look_at(self.position, self.target)
     }
-}
-
-/// A scene: a model, its light, and viewpoints.
-#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub struct Scene {
-    /// Name: a built-in one, or the file's stem.
-    pub name: String,
-    /// Triangles, materials and pictures.
-    pub model: Model,
-    /// The shading style that it is made for.
-    pub style: ShadingStyle,
-    /// Sun and sky.
-    pub sky: Sky,
-    /// Point lights, brightest first; the renderer uses the first few in view.
-    pub lights: Vec<PointLight>,
-    /// Camera path: key viewpoints, at least one. Smooth in between by [`crate::path`].
-    pub viewpoints: Vec<Viewpoint>,
-    /// What moves. All else says how the scene stands at time 0.
-    pub motion: Motion,
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
 
-use super::model::{Bounds, PointLight, Scene, Sky, Vertex};
+use super::model::{Bounds, PointLight, Sky, Vertex};
 
 /// Moments of the longest loop at which [`Motion::bounds`] looks.
 const LOOKS: u32 = 32;
@@ -197,7 +197,7 @@ pub struct MovingMesh {
 /// A point light that moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MovingLight {
-    /// Index into [`Scene::lights`].
+    /// Index into [`Scene::lights`](crate::Scene::lights).
     pub light: usize,
     /// The node that carries it.
     pub node: usize,
@@ -392,18 +392,6 @@ fn normal_matrix(linear: &Mat3A) -> Mat3A {
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     let cofactors = Mat3A::from_cols(y.cross(z), z.cross(x), x.cross(y));
     if x.dot(cofactors.x_axis) < 0.0 { cofactors * -1.0 } else { cofactors }
-}
-
-impl Scene {
-    /// Returns the scene as it stands at a time in seconds: one in which nothing moves.
-    pub fn at(&self, seconds: f64) -> Scene {
-        let mut scene = Scene { motion: Motion::default(), ..self.clone() };
-        let mut moment = self.motion.start();
-        self.motion.at(seconds, &mut moment);
-        moment.place(&self.motion, &mut scene.model.vertices);
-        moment.light(&self.motion, &mut scene.lights, &mut scene.sky);
-        scene
-    }
 }
 
 impl Moment {

@@ -7,11 +7,11 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::animation::Property;
 use gltf::{Document, Mesh, Node, Primitive, Semantic};
 
-use super::error::{MAX_ELEMENTS, SceneError};
-use super::gltf::Reader;
-use super::model::Model;
-use super::motion::{self, Carrier, Influence, Interpolation, Morph, Motion, MovingMesh, Track};
-use super::repair::Placed;
+use super::reader::Reader;
+use crate::error::{MAX_ELEMENTS, SceneError};
+use crate::model::Model;
+use crate::motion::{self, Carrier, Influence, Interpolation, Morph, Motion, MovingMesh, Track};
+use crate::repair::Placed;
 
 /// A node as the animations begin.
 #[derive(Clone)]

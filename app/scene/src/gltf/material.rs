@@ -1,0 +1,267 @@
+//! Materials and the textures that they want.
+
+use glam::{Vec2, Vec3};
+use gltf::material::{PbrMetallicRoughness, PbrSpecularGlossiness};
+use gltf::texture::{MagFilter, WrappingMode};
+
+use super::file::{data_uri, external};
+use super::reader::Reader;
+use crate::error::SceneError;
+use crate::model::{Alpha, Material};
+use crate::textures::{AlphaUse, Built, METAL_DIFFUSE_LOSS, Recipe, Source, diffuse_of_gloss, to_srgb};
+
+/// The textures of one material, by their number in the [`TextureSet`].
+#[derive(Default)]
+pub(super) struct Wanted {
+    diffuse: Option<usize>,
+    specular: Option<usize>,
+    emissive: Option<usize>,
+    normal: Option<usize>,
+    /// The roughness at texture values 0 and 1, if the roughness is the mean of a texture.
+    roughness: Option<[f32; 2]>,
+    blended: bool,
+    /// A sampler clamps or mirrors one of the textures.
+    pub(super) unrepeated: bool,
+    /// And texture coordinates show it.
+    pub(super) wrapped: bool,
+    /// Set of texture coordinates and their transform; those of the base colour for all.
+    pub(super) set: u32,
+    pub(super) placement: Option<[Vec2; 3]>,
+}
+
+impl Wanted {
+    /// Takes the texture coordinates of the material's main map, or those of the first other map that it has.
+    fn take_coordinates(&mut self, material: &gltf::Material, main: Option<&gltf::texture::Info>) {
+        let Some(info) = main else {
+            let emissive = material.emissive_texture().map(|i| i.tex_coord());
+            let normal = || material.normal_texture().map(|n| n.tex_coord());
+            self.set = emissive.or_else(normal).unwrap_or(0);
+            return;
+        };
+        self.set = info.tex_coord();
+        if let Some(t) = info.texture_transform() {
+            self.set = t.tex_coord().unwrap_or(self.set);
+            let (sin, cos) = t.rotation().sin_cos();
+            let scale = t.scale();
+            self.placement =
+                Some([Vec2::new(cos, -sin) * scale[0], Vec2::new(sin, cos) * scale[1], t.offset().into()]);
+        }
+    }
+
+    pub(super) fn apply(&self, material: &mut Material, built: &Built) {
+        material.diffuse_map = built.index(self.diffuse);
+        material.specular_map = built.index(self.specular);
+        material.emissive_map = built.index(self.emissive);
+        material.normal_map = built.index(self.normal);
+        if let (Some([least, most]), Some(map)) = (self.roughness, built.get(self.specular)) {
+            material.roughness = (least + (most - least) * map.roughness).clamp(0.0, 1.0);
+        }
+        if let (true, Alpha::Blend(opacity)) = (self.blended && self.diffuse.is_some(), material.alpha) {
+            // Exporters mark as blended whatever has an alpha channel; leaves are better cut out.
+            material.alpha = match built.get(self.diffuse).map(|f| f.alpha) {
+                Some(AlphaUse::Mask) if opacity >= 1.0 => Alpha::Cutout(0.5),
+                Some(AlphaUse::Opaque) | None if opacity >= 1.0 => Alpha::Opaque,
+                _ => Alpha::Blend(opacity),
+            };
+        }
+    }
+}
+
+/// A picture and how it is sampled.
+struct Map {
+    source: Source,
+    /// Unfiltered when magnified.
+    nearest: bool,
+}
+
+/// A surface of either material model: colours in linear RGB, which are factors of the maps if there are any.
+struct Surface {
+    diffuse: Vec3,
+    specular: Vec3,
+    roughness: f32,
+    opacity: f32,
+}
+
+/// A factor from 0 to 1; 1 if it is no number.
+pub(super) fn unit(v: f32) -> f32 {
+    if v.is_finite() { v.clamp(0.0, 1.0) } else { 1.0 }
+}
+
+/// The textures of a material's colour, and of metalness and roughness or gloss.
+pub(super) fn surface_textures<'a>(m: &gltf::Material<'a>) -> [Option<gltf::texture::Info<'a>>; 2] {
+    match m.pbr_specular_glossiness() {
+        Some(gloss) => [gloss.diffuse_texture(), gloss.specular_glossiness_texture()],
+        None => {
+            let pbr = m.pbr_metallic_roughness();
+            [pbr.base_color_texture(), pbr.metallic_roughness_texture()]
+        }
+    }
+}
+
+impl Reader<'_> {
+    fn source(&mut self, texture: gltf::Texture) -> Result<Option<Source>, SceneError> {
+        let Some(image) = texture.source() else {
+            log::warn!(
+                "{}: texture {} is in a format that is not supported; it is left out",
+                self.path.display(),
+                texture.index()
+            );
+            return Ok(None);
+        };
+        if let Some(known) = self.images.get(&image.index()) {
+            return Ok(known.clone());
+        }
+        let name = image
+            .name()
+            .filter(|n| !n.is_empty())
+            .map_or_else(|| format!("image-{}", image.index()), |n| n.replace('/', "_"));
+        let embedded = match image.source() {
+            gltf::image::Source::View { view, .. } => Some(self.view(&view)?.to_vec()),
+            gltf::image::Source::Uri { uri, .. } => match data_uri(uri) {
+                Some(data) => {
+                    Some(data.ok_or_else(|| self.damaged(format!("the embedded picture {name} is damaged")))?)
+                }
+                None => None,
+            },
+        };
+        let source = match (embedded, image.source()) {
+            (Some(bytes), _) => {
+                self.textures.memory.push((self.path.join(name), bytes));
+                Some(Source::Memory(self.textures.memory.len() - 1))
+            }
+            (None, gltf::image::Source::Uri { uri, .. }) => {
+                let found = external(self.path, uri).map(Source::File);
+                if found.is_none() {
+                    log::warn!("{}: the texture {uri} is missing", self.path.display());
+                }
+                found
+            }
+            (None, gltf::image::Source::View { .. }) => None,
+        };
+        self.images.insert(image.index(), source.clone());
+        Ok(source)
+    }
+
+    /// The picture of a texture with its sampler.
+    fn map(&mut self, texture: gltf::Texture, wanted: &mut Wanted) -> Result<Option<Map>, SceneError> {
+        let sampler = texture.sampler();
+        wanted.unrepeated |= [sampler.wrap_s(), sampler.wrap_t()].iter().any(|w| *w != WrappingMode::Repeat);
+        let nearest = sampler.mag_filter() == Some(MagFilter::Nearest);
+        Ok(self.source(texture)?.map(|source| Map { source, nearest }))
+    }
+
+    fn request(&mut self, map: Option<Map>, recipe: impl FnOnce(Source) -> Recipe) -> Option<usize> {
+        map.map(|map| self.textures.request_sampled(recipe(map.source), map.nearest))
+    }
+
+    /// Returns a material, and the textures that it wants.
+    pub(super) fn material(&mut self, m: &gltf::Material) -> Result<(Material, Wanted), SceneError> {
+        let srgb = |v: Vec3| Vec3::from(v.to_array().map(to_srgb));
+        let mut wanted = Wanted::default();
+
+        let [color_info, surface_info] = surface_textures(m);
+        wanted.take_coordinates(m, color_info.as_ref().or(surface_info.as_ref()));
+        let color = color_info.map_or(Ok(None), |i| self.map(i.texture(), &mut wanted))?;
+        let surface = surface_info.map_or(Ok(None), |i| self.map(i.texture(), &mut wanted))?;
+        let normal = m.normal_texture().map_or(Ok(None), |n| self.map(n.texture(), &mut wanted))?;
+        let emissive_map = m.emissive_texture().map_or(Ok(None), |i| self.map(i.texture(), &mut wanted))?;
+
+        let Surface { diffuse, specular, roughness, opacity } = match m.pbr_specular_glossiness() {
+            Some(gloss) => self.gloss(&gloss, color, surface, &mut wanted),
+            None => self.metal(&m.pbr_metallic_roughness(), color, surface, &mut wanted),
+        };
+        let strength = m.normal_texture().map_or(1.0, |n| n.scale());
+        wanted.normal = self.request(normal, |source| Recipe::Bump {
+            source,
+            strength: strength.to_bits(),
+            normal: true,
+        });
+        wanted.emissive = self.request(emissive_map, Recipe::Color);
+        let glow = Vec3::from(m.emissive_factor()) * m.emissive_strength().unwrap_or(1.0);
+        let alpha = match m.alpha_mode() {
+            gltf::material::AlphaMode::Opaque => Alpha::Opaque,
+            gltf::material::AlphaMode::Mask => Alpha::Cutout(unit(m.alpha_cutoff().unwrap_or(0.5))),
+            gltf::material::AlphaMode::Blend => {
+                wanted.blended = true;
+                if opacity >= 1.0 && wanted.diffuse.is_none() { Alpha::Opaque } else { Alpha::Blend(opacity) }
+            }
+        };
+        let material = Material {
+            name: m.name().map_or_else(|| format!("material-{}", m.index().unwrap_or(0)), str::to_owned),
+            diffuse: srgb(diffuse),
+            specular: srgb(specular),
+            emissive: if glow.is_finite() { srgb(glow.max(Vec3::ZERO)) } else { Vec3::ZERO },
+            roughness,
+            alpha,
+            double_sided: m.double_sided(),
+            ..Material::default()
+        };
+        Ok((material, wanted))
+    }
+
+    fn metal(
+        &mut self,
+        pbr: &PbrMetallicRoughness,
+        base_map: Option<Map>,
+        orm: Option<Map>,
+        wanted: &mut Wanted,
+    ) -> Surface {
+        let [r, g, b, opacity] = pbr.base_color_factor().map(unit);
+        let base = Vec3::new(r, g, b);
+        let (metallic, roughness) = (unit(pbr.metallic_factor()), unit(pbr.roughness_factor()));
+        match orm {
+            Some(orm) if metallic > 0.0 => {
+                let nearest = base_map.as_ref().unwrap_or(&orm).nearest;
+                let recipe = |specular| Recipe::Metal {
+                    base: base_map.as_ref().map(|m| m.source.clone()),
+                    base_factor: base.to_array().map(f32::to_bits),
+                    orm: orm.source.clone(),
+                    metallic: metallic.to_bits(),
+                    specular,
+                };
+                wanted.diffuse = Some(self.textures.request_sampled(recipe(false), nearest));
+                wanted.specular = Some(self.textures.request_sampled(recipe(true), nearest));
+                wanted.roughness = Some([0.0, roughness]);
+                Surface { diffuse: base, specular: Vec3::ONE, roughness, opacity }
+            }
+            _ => {
+                wanted.diffuse = self.request(base_map, Recipe::Color);
+                let diffuse = base * (1.0 - METAL_DIFFUSE_LOSS * metallic);
+                Surface { diffuse, specular: Vec3::splat(0.04).lerp(base, metallic), roughness, opacity }
+            }
+        }
+    }
+
+    fn gloss(
+        &mut self,
+        pbr: &PbrSpecularGlossiness,
+        diffuse_map: Option<Map>,
+        gloss: Option<Map>,
+        wanted: &mut Wanted,
+    ) -> Surface {
+        let [r, g, b, opacity] = pbr.diffuse_factor().map(unit);
+        let factors = [Vec3::new(r, g, b), Vec3::from(pbr.specular_factor().map(unit))];
+        let roughness = 1.0 - unit(pbr.glossiness_factor());
+        let diffuse = match gloss {
+            Some(gloss) => {
+                let [diffuse_factor, specular_factor] = factors.map(|f| f.to_array().map(f32::to_bits));
+                let recipe = Recipe::Gloss {
+                    diffuse: diffuse_map.as_ref().map(|m| m.source.clone()),
+                    diffuse_factor,
+                    gloss: gloss.source.clone(),
+                    specular_factor,
+                };
+                let nearest = diffuse_map.as_ref().unwrap_or(&gloss).nearest;
+                wanted.diffuse = Some(self.textures.request_sampled(recipe, nearest));
+                wanted.specular = self.request(Some(gloss), Recipe::Specular);
+                wanted.roughness = Some([roughness, 1.0]);
+                Vec3::ONE
+            }
+            None => {
+                wanted.diffuse = self.request(diffuse_map, Recipe::Color);
+                diffuse_of_gloss(factors[0], factors[1])
+            }
+        };
+        Surface { diffuse, specular: factors[1], roughness, opacity }
+    }
+}

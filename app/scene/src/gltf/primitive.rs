@@ -1,0 +1,90 @@
+//! The triangles of a primitive.
+
+use glam::{Mat3, Mat4, Vec3};
+use gltf::accessor::Dimensions;
+use gltf::mesh::Mode;
+use gltf::{Primitive, Semantic};
+
+use super::material::{surface_textures, unit};
+use super::reader::Reader;
+use crate::error::SceneError;
+use crate::model::Vertex;
+use crate::repair::{NO_NORMAL, NO_UV, RawMesh};
+
+impl Reader<'_> {
+    /// The triangles of a primitive, transformed, and turned round to show their other sides if `turned`.
+    pub(super) fn primitive(
+        &self,
+        primitive: &Primitive,
+        (to_world, turned): (Mat4, bool),
+    ) -> Result<Option<RawMesh>, SceneError> {
+        let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(None) };
+        let positions = self.floats::<3>(&positions, &[Dimensions::Vec3])?;
+        let normals = primitive
+            .get(&Semantic::Normals)
+            .map(|a| self.floats::<3>(&a, &[Dimensions::Vec3]))
+            .transpose()?
+            .unwrap_or_default();
+        let set = self.texture_set(primitive);
+        let uvs = primitive
+            .get(&Semantic::TexCoords(set))
+            .map(|a| self.floats::<2>(&a, &[Dimensions::Vec2]))
+            .transpose()?
+            .unwrap_or_default();
+        let linear = Mat3::from_mat4(to_world);
+        // Normals turn with the inverse transpose; the cofactors are that without the division.
+        let normal_matrix = Mat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        ) * if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let vertices: Vec<Vertex> = positions
+            .iter()
+            .enumerate()
+            .map(|(i, p)| Vertex {
+                position: to_world.transform_point3((*p).into()),
+                normal: normals.get(i).map_or(NO_NORMAL, |n| normal_matrix * Vec3::from(*n)),
+                uv: uvs.get(i).map_or(NO_UV, |t| (*t).into()),
+            })
+            .collect();
+        let list = match primitive.indices() {
+            Some(accessor) => self.indices(&accessor, vertices.len())?,
+            None => (0..vertices.len() as u32).collect(),
+        };
+        let mut indices = match primitive.mode() {
+            Mode::Triangles => list,
+            Mode::TriangleStrip => {
+                let odd_turned = |(i, t): (usize, &[u32])| {
+                    if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
+                };
+                list.windows(3).enumerate().flat_map(odd_turned).collect()
+            }
+            Mode::TriangleFan => match list.split_first() {
+                Some((&center, rim)) => rim.windows(2).flat_map(|t| [center, t[0], t[1]]).collect(),
+                None => Vec::new(),
+            },
+            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => return Ok(None),
+        };
+        indices.truncate(indices.len() / 3 * 3);
+        if turned {
+            indices.chunks_exact_mut(3).for_each(|t| t.swap(1, 2));
+        }
+        // The specification wants flat normals where none are given.
+        Ok(Some(RawMesh { vertices, indices, flat: true, ..RawMesh::default() }))
+    }
+
+    fn texture_set(&self, primitive: &Primitive) -> u32 {
+        let [color, surface] = surface_textures(&primitive.material());
+        color
+            .or(surface)
+            .map_or(0, |i| i.texture_transform().and_then(|t| t.tex_coord()).unwrap_or(i.tex_coord()))
+    }
+
+    /// The colours of a primitive's vertices, linear RGB; none if there are none, or if all are white.
+    pub(super) fn colors(&self, primitive: &Primitive) -> Result<Option<Vec<Vec3>>, SceneError> {
+        let Some(accessor) = primitive.get(&Semantic::Colors(0)) else { return Ok(None) };
+        let colors = self.floats::<3>(&accessor, &[Dimensions::Vec3, Dimensions::Vec4])?;
+        let colors: Vec<Vec3> = colors.into_iter().map(|c| Vec3::from(c.map(unit))).collect();
+        Ok(colors.iter().any(|c| *c != Vec3::ONE).then_some(colors))
+    }
+}

@@ -1,0 +1,35 @@
+//! The scene: a model in its light, with viewpoints and motion.
+
+use super::model::{Model, PointLight, ShadingStyle, Sky, Viewpoint};
+use super::motion::Motion;
+
+/// A scene: a model, its light, and viewpoints.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Scene {
+    /// Name: a built-in one, or the file's stem.
+    pub name: String,
+    /// Triangles, materials and pictures.
+    pub model: Model,
+    /// The shading style that it is made for.
+    pub style: ShadingStyle,
+    /// Sun and sky.
+    pub sky: Sky,
+    /// Point lights, brightest first; the renderer uses the first few in view.
+    pub lights: Vec<PointLight>,
+    /// Camera path: key viewpoints, at least one. Smooth in between by [`crate::path`].
+    pub viewpoints: Vec<Viewpoint>,
+    /// What moves. All else says how the scene stands at time 0.
+    pub motion: Motion,
+}
+
+impl Scene {
+    /// Returns the scene as it stands at a time in seconds: one in which nothing moves.
+    pub fn at(&self, seconds: f64) -> Scene {
+        let mut scene = Scene { motion: Motion::default(), ..self.clone() };
+        let mut moment = self.motion.start();
+        self.motion.at(seconds, &mut moment);
+        moment.place(&self.motion, &mut scene.model.vertices);
+        moment.light(&self.motion, &mut scene.lights, &mut scene.sky);
+        scene
+    }
+}
