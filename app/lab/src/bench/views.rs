@@ -1,8 +1,8 @@
 //! The viewpoints of a setting's frames.
 
 use anyhow::{bail, ensure};
-use glam::{Quat, Vec3};
 
+use super::motion::Motion;
 use super::record::SceneFacts;
 use super::suite::{Job, Source};
 use yoro::eyes::{EyePair, Pose};
@@ -21,48 +21,6 @@ pub(super) const HEADSET_RATE: f64 = 72.0;
 
 /// Frames before the measured ones of a moving head: the history is filled by then.
 const SETTLING: usize = 12;
-
-/// The motion of a head, at 72 frames a second.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
-    /// Sitting still: 2 mm and a third of a degree to either side, once in two seconds.
-    Still,
-    /// Seated: 3.2 cm and 9.5 degrees to either side, once in two seconds.
-    Sway,
-    /// Walking along the camera path, 1.35 m/s.
-    Walk,
-    /// Turning by 120 degrees a second.
-    Turn,
-}
-
-impl Motion {
-    /// All of them.
-    pub const ALL: [Motion; 4] = [Motion::Still, Motion::Sway, Motion::Walk, Motion::Turn];
-
-    /// Returns its name in results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Motion::Still => "still",
-            Motion::Sway => "sway",
-            Motion::Walk => "walk",
-            Motion::Turn => "turn",
-        }
-    }
-
-    /// Returns the pose after a time in seconds of a head that was at rest before; None for one that walks.
-    fn pose(self, from: Pose, seconds: f32) -> Option<Pose> {
-        let wave = (std::f32::consts::PI * seconds).sin();
-        let (aside, degrees) = match self {
-            Motion::Still => (0.002 * wave, 0.33 * wave),
-            Motion::Sway => (0.032 * wave, 9.5 * wave),
-            Motion::Walk => return None,
-            Motion::Turn => (0.0, 120.0 * seconds),
-        };
-        let moved = from.translated_local(Vec3::X * aside);
-        let turn = Quat::from_rotation_y(-degrees.to_radians());
-        Some(Pose { orientation: turn * moved.orientation, ..moved })
-    }
-}
 
 /// Returns `wanted` of `count` indices, evenly spread from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
@@ -150,6 +108,8 @@ impl Views {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
 
     #[test]

@@ -8,6 +8,8 @@ use super::uniforms::eye_to_clip;
 use yoro::eyes::View;
 use yoro_scene::{Bounds, Model, Vertex};
 
+/// Floats of position, normal and uv of a [`Vertex`].
+pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
 /// A part with more triangles than this is split.
 const SPLIT_ABOVE: usize = 4096;
 /// Neighbouring parts are put into one cluster up to this many triangles.

@@ -2,8 +2,7 @@
 
 use std::rc::Rc;
 
-use super::cluster::{Batch, Cluster};
-use super::scene::VERTEX_ATTRIBUTES;
+use super::cluster::{Batch, Cluster, VERTEX_ATTRIBUTES};
 use yoro_gl::{Context, GlError, Mesh};
 use yoro_scene::{Model, Moment, Motion, Part};
 

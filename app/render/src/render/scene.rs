@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{Vec3, Vec4};
 
-use super::cluster::{self, Batch, Cluster, Culler};
+use super::cluster::{self, Batch, Cluster, Culler, VERTEX_ATTRIBUTES};
 use super::moving::Moving;
 use yoro::eyes::{DepthRange, View};
 use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
@@ -141,8 +141,6 @@ pub struct GpuScene {
     pub(super) batches: Vec<Batch>,
 }
 
-/// Floats of position, normal and uv of a [`yoro_scene::Vertex`].
-pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
 /// The texture units that materials use.
 const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "normal_map"];
 /// First texture unit that no material uses.
