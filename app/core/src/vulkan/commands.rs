@@ -5,8 +5,12 @@ use std::ffi::CStr;
 use ash::{ext, vk};
 
 use super::Host;
-use super::pipelines::UNIFORM_STAGES;
 use crate::synthesis::Uniforms;
+
+/// The stages that have the uniforms.
+pub(super) const UNIFORM_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
 
 /// The caller's command buffer, in the recording state.
 #[derive(Clone, Copy)]

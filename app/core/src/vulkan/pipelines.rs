@@ -2,6 +2,7 @@
 
 use ash::vk;
 
+use super::commands::UNIFORM_STAGES;
 use super::objects::Objects;
 use super::targets::{PassKind, Rendering};
 use super::{Options, VulkanError, shaders};
@@ -12,11 +13,6 @@ use crate::synthesis::Uniforms;
 pub(super) const TEXTURES: usize = 7;
 /// The binding of the source's colour, which is filtered. All others are fetched as they are.
 const COLOR: usize = 1;
-
-/// The stages that have the uniforms.
-pub(super) const UNIFORM_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
-    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
-);
 
 /// The layouts that all pipelines have.
 #[derive(Clone, Copy)]
