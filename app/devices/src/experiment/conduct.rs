@@ -10,8 +10,8 @@ use indicatif::ProgressBar;
 use super::{Experiment, WhenTooWarm, file_name, length};
 use crate::adb::{Device, DeviceError};
 use crate::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
+use crate::held_settings::{HeldSettings, Wanted};
 use crate::phone::{self, Battery};
-use crate::pins::{Pins, Wanted};
 use crate::run::{self, Found, Plan};
 use yoro_files::{FileError, interrupt};
 
@@ -67,11 +67,11 @@ pub fn conduct(
         run::refuse_charger(device)?;
     }
     let wanted = Wanted { brightness: experiment.brightness, refresh_hz: experiment.refresh_hz };
-    let mut pins = Pins::new(device, &found.info, &wanted)?;
+    let mut held = HeldSettings::new(device, &found.info, &wanted)?;
     let folder = out.join(file_name(&found.info.serial));
-    let made = Conductor { device, experiment, found: &found, pins: &mut pins, folder: &folder, bar }.all();
+    let made = Conductor { device, experiment, found: &found, held: &mut held, folder: &folder, bar }.all();
     // Restored also after Ctrl-C and errors. A second error after the first adds no information.
-    match (made, pins.give_back(device)) {
+    match (made, held.restore(device)) {
         (Ok(_), Err(error)) => Err(error),
         (Err(first), Err(error)) => {
             bar.suspend(|| {
@@ -87,7 +87,7 @@ struct Conductor<'a> {
     device: &'a dyn Device,
     experiment: &'a Experiment,
     found: &'a Found,
-    pins: &'a mut Pins,
+    held: &'a mut HeldSettings,
     folder: &'a Path,
     bar: &'a ProgressBar,
 }
@@ -147,12 +147,12 @@ impl Conductor<'_> {
                 }
             }
         }
-        let mut made = run::capture(self.device, self.found, plan, self.pins, folder, self.bar);
+        let mut made = run::capture(self.device, self.found, plan, self.held, folder, self.bar);
         if made.as_ref().is_err_and(DeviceError::is_lost) && !interrupt::requested() {
             // The device was lost before its log could be followed: waits once, as between runs.
             set_aside(folder)?;
             self.cool_down(plan)?;
-            made = run::capture(self.device, self.found, plan, self.pins, folder, self.bar);
+            made = run::capture(self.device, self.found, plan, self.held, folder, self.bar);
         }
         match made {
             // The capture says so; the other runs may be possible.

@@ -32,7 +32,7 @@ use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::latin::balanced_square;
+use crate::latin_square::balanced_square;
 use crate::run::Plan;
 use crate::table::toml_mistake;
 use yoro_files::{self as files, FileError};
@@ -132,9 +132,9 @@ pub struct Experiment {
     pub rest_seconds: f64,
     /// Scenes, as the viewer's setting `scene` takes them.
     pub scenes: Vec<String>,
-    /// Brightness to pin the screen to, 0 to 255.
+    /// Brightness to hold the screen at, 0 to 255.
     pub brightness: Option<u8>,
-    /// Refresh rate to pin the display to, in Hz.
+    /// Refresh rate to hold the display at, in Hz.
     pub refresh_hz: Option<f64>,
     /// True if power is measured: a device that is plugged in is refused.
     #[serde(default = "Experiment::about_power")]

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::capture::{Capture, FaultKind};
-use super::plausible::implausible;
+use super::mean_power::implausible;
 pub use compare::{Difference, Mean};
 pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
 use yoro_figures::ReportError;

@@ -10,9 +10,9 @@ use crate::adb::{Device, DeviceError};
 use crate::capture::{Fault, FaultKind, Outcome, RunInfo, Sample, Writer};
 use crate::follow::{Event, Follower, faults_of_loss};
 use crate::foreign::Foreign;
+use crate::held_settings::HeldSettings;
+use crate::mean_power::MeanPower;
 use crate::phone;
-use crate::pins::Pins;
-use crate::plausible::MeanPower;
 use crate::reading::{LineContent, Reading};
 use yoro_files::interrupt;
 use yoro_protocol::Settings;
@@ -46,7 +46,7 @@ pub fn capture(
     device: &dyn Device,
     found: &Found,
     plan: &Plan,
-    pins: &mut Pins,
+    held: &mut HeldSettings,
     folder: &Path,
     bar: &ProgressBar,
 ) -> Result<RunInfo, DeviceError> {
@@ -55,7 +55,7 @@ pub fn capture(
     if plan.power && (battery.plugged() || battery.held) {
         refuse_charger(device)?;
     }
-    pins.renew(device)?;
+    held.renew(device)?;
     let started_unix_s = device.now();
     let info = plan.info(found, started_unix_s, battery.celsius);
     let subject = plan.other.as_ref().map(|other| other.subject.clone());
@@ -80,7 +80,7 @@ pub fn capture(
         power: MeanPower::default(),
         refresh_is_told: false,
     };
-    for refused in pins.refused() {
+    for refused in held.refused() {
         session.own_faults.push(Fault { kind: FaultKind::NotPinned, at_s: None, detail: refused.clone() });
     }
     session.renew_faults()?;

@@ -9,7 +9,7 @@ use rand_pcg::Pcg32;
 use serde::Serialize;
 
 use super::error::StudyError;
-use crate::latin::balanced_square;
+use crate::latin_square::balanced_square;
 use crate::table::csv_text;
 use yoro_files as files;
 

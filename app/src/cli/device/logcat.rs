@@ -18,8 +18,8 @@ use yoro_devices::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION
 use yoro_devices::follow::{Event, Follower, faults_of_loss};
 use yoro_devices::foreign::{Foreign, Subject};
 use yoro_devices::log::{self, SIMULATED_MARK};
+use yoro_devices::mean_power::MeanPower;
 use yoro_devices::phone;
-use yoro_devices::plausible::MeanPower;
 use yoro_devices::reading::{LineContent, Reading};
 use yoro_files::FileError;
 use yoro_files::interrupt;

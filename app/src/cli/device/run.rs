@@ -11,7 +11,7 @@ use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::Outcome;
 use yoro_devices::foreign::Subject;
-use yoro_devices::pins::{Pins, Wanted};
+use yoro_devices::held_settings::{HeldSettings, Wanted};
 use yoro_devices::run::{self, Other, Plan};
 use yoro_files::interrupt;
 use yoro_protocol::Settings;
@@ -134,11 +134,11 @@ fn one(
     if plan.power {
         run::refuse_charger(device)?;
     }
-    let mut pins = Pins::new(device, &found.info, wanted)?;
-    let made = run::capture(device, &found, plan, &mut pins, folder, bar);
-    let given_back = pins.give_back(device);
+    let mut held = HeldSettings::new(device, &found.info, wanted)?;
+    let made = run::capture(device, &found, plan, &mut held, folder, bar);
+    let restored = held.restore(device);
     let info = made?;
-    if let Err(error) = given_back {
+    if let Err(error) = restored {
         log::warn!("{error}; the next measurement gives brightness and refresh rate back");
     }
     let faults: String = info.faults.iter().map(|fault| format!("\n  {}", fault.detail)).collect();

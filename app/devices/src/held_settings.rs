@@ -65,25 +65,28 @@ enum Place {
 
 /// A value at its place; `None` if there was none.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Pin {
+struct HeldSetting {
     place: Place,
     value: Option<String>,
 }
 
-impl Pin {
-    fn new(place: Place, value: &str) -> Pin {
+impl HeldSetting {
+    fn new(place: Place, value: &str) -> HeldSetting {
         let value = value.trim();
-        Pin { place, value: Some(value.to_owned()).filter(|value| !value.is_empty() && value != UNSET) }
+        HeldSetting {
+            place,
+            value: Some(value.to_owned()).filter(|value| !value.is_empty() && value != UNSET),
+        }
     }
 
     /// Returns the present value at the place.
-    fn now(device: &dyn Device, place: &Place) -> Result<Pin, DeviceError> {
+    fn now(device: &dyn Device, place: &Place) -> Result<HeldSetting, DeviceError> {
         let value = match place {
             Place::Setting(table, key) => device.shell(&["settings", "get", table.name(), key])?,
             Place::Property(name) => device.shell(&["getprop", name])?,
             Place::Worn => String::new(),
         };
-        Ok(Pin::new(place.clone(), &value))
+        Ok(HeldSetting::new(place.clone(), &value))
     }
 
     fn set(&self, device: &dyn Device) -> Result<(), DeviceError> {
@@ -112,7 +115,7 @@ impl Pin {
         }
     }
 
-    fn read(line: &str) -> Option<Pin> {
+    fn read(line: &str) -> Option<HeldSetting> {
         let mut words = line.splitn(3, ' ');
         let (kind, key, value) = (words.next()?, words.next()?.to_owned(), words.next()?);
         let place = match kind {
@@ -120,42 +123,45 @@ impl Pin {
             "headset" => Place::Worn,
             kind => Place::Setting(Table::ALL.into_iter().find(|table| table.name() == kind)?, key),
         };
-        Some(Pin::new(place, value))
+        Some(HeldSetting::new(place, value))
     }
 }
 
-/// Holds values fixed. [`Pins::give_back`] must be called; otherwise the next [`Pins::new`] restores them.
+/// Holds values fixed. [`HeldSettings::restore`] must be called; otherwise the next [`HeldSettings::new`] restores them.
 #[must_use]
 #[derive(Debug)]
-pub struct Pins {
-    wanted: Vec<Pin>,
-    before: Vec<Pin>,
+pub struct HeldSettings {
+    wanted: Vec<HeldSetting>,
+    before: Vec<HeldSetting>,
     refused: Vec<String>,
     /// The start of the device that they were set in.
     boot: String,
 }
 
-impl Pins {
+impl HeldSettings {
     /// Restores the values that an earlier run has left, then sets the wanted ones, keeps the screen on, silences
     /// notifications, and clears the application's own properties, which would override the settings of a run. A
     /// headset by Meta is told that it is worn. Values that the device refuses to change are reported and kept.
     ///
     /// # Errors
     /// [`DeviceError`]; the next call restores all that was changed.
-    pub fn new(device: &dyn Device, info: &DeviceInfo, wanted: &Wanted) -> Result<Pins, DeviceError> {
-        give_back_leftovers(device)?;
-        let mut pins = pins(info, wanted);
+    pub fn new(device: &dyn Device, info: &DeviceInfo, wanted: &Wanted) -> Result<HeldSettings, DeviceError> {
+        restore_leftovers(device)?;
+        let mut settings = settings_to_hold(info, wanted);
         for (name, value) in phone::properties(device)? {
             ::log::warn!(
                 "{}: {name} is {value}; it is taken away for the time of the measurement",
                 device.serial()
             );
-            pins.push(Pin { place: Place::Property(name), value: None });
+            settings.push(HeldSetting { place: Place::Property(name), value: None });
         }
-        let before = pins.iter().map(|pin| Pin::now(device, &pin.place)).collect::<Result<Vec<_>, _>>()?;
-        device.put(FILE, &before.iter().map(Pin::line).collect::<String>())?;
+        let before = settings
+            .iter()
+            .map(|setting| HeldSetting::now(device, &setting.place))
+            .collect::<Result<Vec<_>, _>>()?;
+        device.put(FILE, &before.iter().map(HeldSetting::line).collect::<String>())?;
         let boot = phone::boot_id(device)?;
-        let mut held = Pins { wanted: pins, before, refused: Vec::new(), boot };
+        let mut held = HeldSettings { wanted: settings, before, refused: Vec::new(), boot };
         held.hold(device)?;
         for refused in &held.refused {
             ::log::warn!("{refused}");
@@ -181,8 +187,8 @@ impl Pins {
 
     fn hold(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
         self.refused.clear();
-        for pin in &self.wanted {
-            match hold(device, pin) {
+        for held in &self.wanted {
+            match hold(device, held) {
                 Err(error) if error.is_lost() => return Err(error),
                 Err(error) => self.refused.push(format!("{error}; it stays as it is")),
                 Ok(()) => {}
@@ -192,60 +198,61 @@ impl Pins {
     }
 
     /// Restores all values. On a device that is gone, the next measurement does it.
-    pub fn give_back(self, device: &dyn Device) -> Result<(), DeviceError> {
-        give_back(device, &self.before)
+    pub fn restore(self, device: &dyn Device) -> Result<(), DeviceError> {
+        restore(device, &self.before)
     }
 }
 
-fn pins(info: &DeviceInfo, wanted: &Wanted) -> Vec<Pin> {
-    let setting = |table: Table, key: &str, value: &str| Pin::new(Place::Setting(table, key.into()), value);
-    let property = |name: &str, value: &str| Pin::new(Place::Property(name.into()), value);
+fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
+    let setting =
+        |table: Table, key: &str, value: &str| HeldSetting::new(Place::Setting(table, key.into()), value);
+    let property = |name: &str, value: &str| HeldSetting::new(Place::Property(name.into()), value);
     let is_by = |maker: &str| info.manufacturer.eq_ignore_ascii_case(maker);
-    let mut pins = vec![
+    let mut settings = vec![
         setting(Table::System, "screen_off_timeout", SCREEN_TIMEOUT_MS),
         setting(Table::Global, "zen_mode", ALARMS_ONLY),
     ];
     if let Some(brightness) = wanted.brightness {
-        pins.push(setting(Table::System, "screen_brightness_mode", "0"));
-        pins.push(setting(Table::System, "screen_brightness", &brightness.to_string()));
+        settings.push(setting(Table::System, "screen_brightness_mode", "0"));
+        settings.push(setting(Table::System, "screen_brightness", &brightness.to_string()));
     }
     if let Some(hz) = wanted.refresh_hz {
         if is_by("samsung") {
             // Peak and least rate alone do nothing there: 0 is the standard rate, 2 the high one.
             let mode = if hz > SAMSUNG_STANDARD_HZ { "2" } else { "0" };
-            pins.push(setting(Table::Secure, "refresh_rate_mode", mode));
+            settings.push(setting(Table::Secure, "refresh_rate_mode", mode));
         }
-        pins.push(setting(Table::System, "peak_refresh_rate", &hz.to_string()));
-        pins.push(setting(Table::System, "min_refresh_rate", &hz.to_string()));
+        settings.push(setting(Table::System, "peak_refresh_rate", &hz.to_string()));
+        settings.push(setting(Table::System, "min_refresh_rate", &hz.to_string()));
         // A phone need not know the property of headsets, but takes any.
-        pins.push(property(QUEST_RATE, &hz.to_string()));
+        settings.push(property(QUEST_RATE, &hz.to_string()));
     }
     if is_by("oculus") || is_by("meta") {
-        pins.push(property(QUEST_BOUNDARY, "1"));
-        pins.push(Pin::new(Place::Worn, "yes"));
+        settings.push(property(QUEST_BOUNDARY, "1"));
+        settings.push(HeldSetting::new(Place::Worn, "yes"));
     }
-    pins
+    settings
 }
 
 /// Sets a value and checks that it has stayed.
-fn hold(device: &dyn Device, pin: &Pin) -> Result<(), DeviceError> {
-    pin.set(device)?;
-    if pin.place == Place::Worn {
+fn hold(device: &dyn Device, held: &HeldSetting) -> Result<(), DeviceError> {
+    held.set(device)?;
+    if held.place == Place::Worn {
         return Ok(());
     }
-    let now = Pin::now(device, &pin.place)?;
-    let number = |pin: &Pin| pin.value.as_ref().and_then(|value| value.parse::<f64>().ok());
-    if now.value == pin.value || number(&now).is_some() && number(&now) == number(pin) {
+    let now = HeldSetting::now(device, &held.place)?;
+    let number = |held: &HeldSetting| held.value.as_ref().and_then(|value| value.parse::<f64>().ok());
+    if now.value == held.value || number(&now).is_some() && number(&now) == number(held) {
         return Ok(());
     }
     let value = now.value.as_deref().unwrap_or(UNSET);
     let reason = format!("it is still {value}");
-    Err(DeviceError::Refused { serial: device.serial().into(), command: pin.line().trim().into(), reason })
+    Err(DeviceError::Refused { serial: device.serial().into(), command: held.line().trim().into(), reason })
 }
 
-fn give_back(device: &dyn Device, before: &[Pin]) -> Result<(), DeviceError> {
-    for pin in before {
-        match pin.set(device) {
+fn restore(device: &dyn Device, before: &[HeldSetting]) -> Result<(), DeviceError> {
+    for held in before {
+        match held.set(device) {
             Err(error) if error.is_lost() => return Err(error),
             Err(error) => ::log::warn!("{error}; it stays as it is"),
             Ok(()) => {}
@@ -255,17 +262,17 @@ fn give_back(device: &dyn Device, before: &[Pin]) -> Result<(), DeviceError> {
 }
 
 /// Restores the values that a killed measurement has left on the device.
-pub fn give_back_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
+pub fn restore_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
     let text = match device.shell(&["cat", FILE]) {
         Ok(text) => text,
         Err(DeviceError::Refused { .. }) => return Ok(()),
         Err(error) => return Err(error),
     };
-    let pins: Vec<Pin> = text.lines().filter_map(Pin::read).collect();
-    if !pins.is_empty() {
+    let settings: Vec<HeldSetting> = text.lines().filter_map(HeldSetting::read).collect();
+    if !settings.is_empty() {
         ::log::warn!("{}: what an earlier measurement had left changed is given back", device.serial());
     }
-    give_back(device, &pins)
+    restore(device, &settings)
 }
 
 #[cfg(test)]
@@ -290,33 +297,33 @@ mod tests {
         let told =
             || ["simulated.worn", QUEST_BOUNDARY].map(|name| device.shell(&["getprop", name]).unwrap());
         let info = phone::info(device).unwrap();
-        let mut pins = Pins::new(device, &info, &Wanted::default()).unwrap();
-        assert_eq!((told(), pins.refused()), (["yes\n".into(), "1\n".into()], &[][..]));
+        let mut settings = HeldSettings::new(device, &info, &Wanted::default()).unwrap();
+        assert_eq!((told(), settings.refused()), (["yes\n".into(), "1\n".into()], &[][..]));
         // Neither outlasts a restart of the headset.
         phone::start(device, &Default::default()).unwrap();
         device.sleep(Duration::from_secs(30));
         assert_eq!(told(), ["\n", "\n"]);
-        pins.renew(device).unwrap();
+        settings.renew(device).unwrap();
         assert_eq!(told(), ["yes\n", "1\n"]);
-        pins.give_back(device).unwrap();
+        settings.restore(device).unwrap();
         assert_eq!(told(), ["\n", "\n"]);
     }
 
     #[test]
     fn pins_survive_writing_and_reading() {
-        let pins = [
-            Pin::new(Place::Setting(Table::System, "screen_brightness".into()), "120\n"),
-            Pin::new(Place::Setting(Table::Secure, "refresh_rate_mode".into()), "null"),
-            Pin::new(Place::Property("debug.yoro.methods".into()), "yoro, mono"),
-            Pin::new(Place::Worn, "null"),
+        let settings = [
+            HeldSetting::new(Place::Setting(Table::System, "screen_brightness".into()), "120\n"),
+            HeldSetting::new(Place::Setting(Table::Secure, "refresh_rate_mode".into()), "null"),
+            HeldSetting::new(Place::Property("debug.yoro.methods".into()), "yoro, mono"),
+            HeldSetting::new(Place::Worn, "null"),
         ];
-        let text: String = pins.iter().map(Pin::line).collect();
+        let text: String = settings.iter().map(HeldSetting::line).collect();
         assert_eq!(
             text,
             "system screen_brightness 120\nsecure refresh_rate_mode null\nproperty debug.yoro.methods yoro, mono\nheadset worn null\n"
         );
-        assert_eq!(text.lines().filter_map(Pin::read).collect::<Vec<_>>(), pins);
-        assert_eq!(Pin::read("nonsense"), None);
+        assert_eq!(text.lines().filter_map(HeldSetting::read).collect::<Vec<_>>(), settings);
+        assert_eq!(HeldSetting::read("nonsense"), None);
     }
 
     #[test]
@@ -324,7 +331,7 @@ mod tests {
         let lines = |manufacturer: &str, hz: f64| -> Vec<String> {
             let info = DeviceInfo { manufacturer: manufacturer.into(), ..DeviceInfo::default() };
             let wanted = Wanted { brightness: None, refresh_hz: Some(hz) };
-            pins(&info, &wanted).iter().map(|pin| pin.line().trim().to_owned()).collect()
+            settings_to_hold(&info, &wanted).iter().map(|setting| setting.line().trim().to_owned()).collect()
         };
         let has = |lines: &[String], line: &str| lines.iter().any(|found| found == line);
         assert!(has(&lines("Google", 60.0), "system screen_off_timeout 86400000"));
