@@ -159,6 +159,13 @@ settings! {
     /// Switch to two real renders while most of the view is too near.
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
+    /// yoro: renders a second. Frames between two renders show the last one at the newest head pose, both eyes synthesized from
+    /// it; what moves in the scene stands still meanwhile. `method=auto` is `yoro` then. Hard edges, without near field, history and
+    /// the switch to two renders; not with the paper's pipeline.
+    "render-rate" render_rate: Option<f32> = None;
+        value_name("HZ");
+        range(|s| s.render_rate.is_none_or(|hz| (5.0..=1000.0).contains(&hz)), "give renders per second from 5 to 1000, or auto");
+        auto("every frame"),
     /// hybrid: the far field starts where the eyes' disparity is this many pixels.
     "split-disparity" split_disparity: f32 = 1.0;
         value_name("PIXELS");
@@ -454,6 +461,7 @@ mod tests {
         refused("screen=158x71", &["\"screen\"", "158x71mm", "auto"]);
         refused("screen=15.8x7.1mm", &["30 to 400"]);
         refused("best-rating=1", &["\"best-rating\"", "2 to 100"]);
+        refused("render-rate=1", &["\"render-rate\"", "5 to 1000"]);
         refused("refresh-rate=0", &["\"refresh-rate\"", "auto"]);
     }
 

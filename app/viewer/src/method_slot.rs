@@ -34,6 +34,8 @@ pub(crate) struct MethodSlot {
     is_comparing: bool,
     /// Renders both eyes while they are unfit or compared.
     substitute: Substitute,
+    /// Time of the last frame that was rendered, while it can be shown again.
+    rendered_ns: Option<i64>,
 }
 
 impl MethodSlot {
@@ -50,6 +52,7 @@ impl MethodSlot {
             made: None,
             is_comparing: false,
             substitute: Substitute::default(),
+            rendered_ns: None,
         }
     }
 
@@ -139,6 +142,7 @@ impl MethodSlot {
 
     /// Compiles the current method, if there is a context with a scene to use it on.
     pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
+        self.rendered_ns = None;
         if let Some(gl) = gl {
             self.made = Some(self.create(gl, settings)?);
             self.substitute = Substitute::default();
@@ -223,6 +227,29 @@ impl MethodSlot {
         std::mem::replace(&mut self.is_comparing, is_comparing) != is_comparing
     }
 
+    /// Shows the last render again, if the settings' rate of renders asks for that now and the method can. A frame that comes
+    /// less than half a refresh too early for the next render is rendered.
+    pub fn show_again(
+        &mut self,
+        settings: &Settings,
+        (now_ns, refresh_hz): (i64, f32),
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<bool, ViewerError> {
+        let Some(rate) = settings.render_rate else { return Ok(false) };
+        let refresh_ns = if refresh_hz > 0.0 { 1e9 / refresh_hz } else { 0.0 };
+        let is_due = |rendered_ns: i64| (now_ns - rendered_ns) as f32 + refresh_ns / 2.0 >= 1e9 / rate;
+        let shows_method = !self.is_comparing && self.unfit.is_none();
+        if shows_method && self.rendered_ns.is_some_and(|ns| !is_due(ns)) {
+            let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
+            if made.method().show_again(pair, to)? {
+                return Ok(true);
+            }
+        }
+        self.rendered_ns = shows_method.then_some(now_ns);
+        Ok(false)
+    }
+
     /// Renders both eyes; unfit ones without synthesis, by the substitute.
     pub fn render(
         &mut self,
@@ -264,6 +291,7 @@ impl MethodSlot {
 
     /// Measures again, where the cheaper method is used: another place in the scene, or another resolution.
     pub fn measure_again(&mut self) {
+        self.rendered_ns = None;
         if let Some(auto) = self.made.as_mut().and_then(Chosen::auto_mut) {
             auto.scene_changed();
         }
@@ -288,6 +316,7 @@ impl MethodSlot {
 
     /// Forgets the frames counted so far, which no longer describe the load after a pause.
     pub fn interrupt(&mut self) {
+        self.rendered_ns = None;
         self.controller.restart();
     }
 

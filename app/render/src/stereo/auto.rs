@@ -40,6 +40,10 @@ impl Chosen {
     ) -> Result<Chosen, GlError> {
         Ok(match choice {
             MethodChoice::Named(method) => Chosen::Named(super::create(gl, method, settings, options)?),
+            // Two renders have nothing to show again.
+            MethodChoice::Auto if options.render_rate.is_some() => {
+                Chosen::Named(super::create(gl, Method::Yoro, settings, options)?)
+            }
             MethodChoice::Auto => Chosen::Auto(Box::new(Auto::new(gl, settings, options)?)),
         })
     }

@@ -30,6 +30,11 @@ impl<R> Frame<'_, R> {
         &self.to[eye.index()]
     }
 
+    /// Returns both targets, by [`Eye::index`].
+    pub(super) fn targets(&self) -> &[EyeTarget<'_>; 2] {
+        self.to
+    }
+
     /// True if an eye's target has depth.
     pub(super) fn wants_depth(&self, eye: Eye) -> bool {
         self.to(eye).depth.is_some()
@@ -48,6 +53,11 @@ pub(super) trait FrameMethod: Sized {
 
     /// Renders both eyes into their targets.
     fn render_frame(&mut self, frame: &Frame<Self::Renderer>) -> Result<(), StereoError>;
+
+    /// See [`StereoMethod::show_again`].
+    fn show_last(&mut self, _pair: &EyePair, _to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
+        Ok(false)
+    }
 
     /// See [`StereoMethod::guard_band`].
     fn guard_band_use(&self) -> Option<GuardBandUse> {
@@ -107,5 +117,9 @@ impl<M: FrameMethod> StereoMethod for M {
         let renderer = of_kind(renderer, scene)?;
         self.compile(renderer, scene)?;
         self.render_frame(&Frame { renderer, scene, pair, to })
+    }
+
+    fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
+        self.show_last(pair, to)
     }
 }

@@ -139,6 +139,15 @@ pub trait StereoMethod {
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError>;
 
+    /// Shows the last frame's render once more, at the poses that the eyes have now. Returns false, with nothing drawn, if
+    /// the method cannot, or if the last render does not reach as far: render a frame then.
+    ///
+    /// # Errors
+    /// As [`StereoMethod::render_to`].
+    fn show_again(&mut self, _pair: &EyePair, _to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
+        Ok(false)
+    }
+
     /// Renders both eyes into a frame, which is resized to the pair's size.
     ///
     /// # Errors

@@ -18,6 +18,7 @@ mod overlay;
 mod paper;
 mod past;
 mod readback;
+mod reprojected;
 mod shading_reprojection;
 mod single_pass;
 mod substitute;
@@ -41,6 +42,7 @@ pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
 pub use options::{AntiAliasing, History, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
+use reprojected::Reprojected;
 use shading_reprojection::ShadingReprojection;
 use single_pass::{DeferredPair, SinglePass};
 pub use substitute::Substitute;
@@ -73,6 +75,9 @@ fn create_for<R: StereoRenderer>(method: Method, setup: &Setup) -> Result<Box<dy
         Method::ShadingReprojection => Box::new(ShadingReprojection::new(setup)?),
         Method::Hybrid => Box::new(Hybrid::<R::Fields>::new(setup)?),
         Method::Mono => Box::new(Mono::<R>::new(setup)?),
-        Method::Yoro => Box::new(Synthesized::<R>::new(setup)?),
+        Method::Yoro => match setup.options.render_rate {
+            Some(rate) => Box::new(Reprojected::<R>::new(setup, rate)?),
+            None => Box::new(Synthesized::<R>::new(setup)?),
+        },
     })
 }

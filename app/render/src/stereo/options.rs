@@ -104,6 +104,10 @@ pub struct StereoOptions {
     pub near_field: Option<f32>,
     /// Render both eyes of frames that are mostly too near; `None` never does.
     pub policy: Option<NearFieldPolicy>,
+    /// Renders a second; frames between two renders show the last one at the newest poses
+    /// ([`super::StereoMethod::show_again`]). `None` renders every frame. Such renders are taken with hard edges, and
+    /// without near field, history and policy. Not with [`Pipeline::Paper`].
+    pub render_rate: Option<f32>,
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
     /// `f_px * IPD / split_disparity` metres.
     pub split_disparity: f32,
@@ -119,6 +123,7 @@ impl Default for StereoOptions {
             anti_aliasing: AntiAliasing::default(),
             near_field: None,
             policy: Some(NearFieldPolicy::default()),
+            render_rate: None,
             split_disparity: 1.0,
         }
     }
@@ -163,6 +168,7 @@ impl StereoOptions {
             anti_aliasing: settings.anti_aliasing.unwrap_or(options.anti_aliasing),
             near_field: settings.near_field,
             policy: settings.switch.then(NearFieldPolicy::default),
+            render_rate: settings.render_rate,
             split_disparity: settings.split_disparity,
         }
     }
@@ -201,6 +207,7 @@ mod tests {
                 "history=full",
                 "near-field=1",
                 "switch=false",
+                "render-rate=36",
                 "split-disparity=2.5",
             ],
         );

@@ -21,6 +21,7 @@ impl Viewer {
     /// Begins a frame: a scene that has been loaded comes into view.
     pub fn begin(&mut self, timing: &FrameTiming) {
         self.now_ns = timing.now_ns;
+        self.refresh_hz = timing.refresh_hz;
         self.poll_scene();
         if self.start.is_hint_due && self.scene.is_shown() {
             self.start.is_hint_due = false;
@@ -44,6 +45,9 @@ impl Viewer {
             }
             return Ok(());
         };
+        if self.method.show_again(&self.settings, (self.now_ns, self.refresh_hz), pair, to)? {
+            return Ok(());
+        }
         shown.move_on(self.now_ns)?;
         self.method.render(gl, &self.settings, shown, pair, to)?;
         if let Some(used) = self.method.guard_band() {

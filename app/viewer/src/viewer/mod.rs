@@ -74,6 +74,7 @@ pub struct Viewer {
     ipd: IpdSources,
     attached: Option<Attached>,
     now_ns: i64,
+    refresh_hz: f32,
     menu: Menu,
     /// The settings that the viewer was made with or given since, without the changes of the menu.
     given: Settings,
@@ -102,6 +103,7 @@ impl Viewer {
             ipd: IpdSources { chosen: settings.ipd, native: Ipd::nearest(0.0) },
             attached: None,
             now_ns: 0,
+            refresh_hz: 0.0,
             menu: Menu::default(),
             given: settings.clone(),
             wanted: None,

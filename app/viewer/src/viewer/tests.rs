@@ -118,6 +118,30 @@ fn a_session_runs_from_loading_to_its_summary() {
 }
 
 #[test]
+fn a_render_rate_below_the_displays_renders_every_other_frame() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl();
+    let mut run = Run::new(gl, &["scene=talk", "hud=false", "method=auto", "render-rate=30"]);
+    run.load();
+    let still = HeldHead { rendered: Quat::IDENTITY, displayed: Quat::IDENTITY };
+    run.viewer.hold_head(Some(still));
+    let mut images = Vec::new();
+    for _ in 0..6 {
+        run.frame();
+        images.push(run.image());
+    }
+    // What moves in the scene moves with each render.
+    let changes: Vec<bool> = images.windows(2).map(|pair| pair[0] != pair[1]).collect();
+    assert_eq!(changes, [false, true, false, true, false]);
+    run.frame();
+    let rendered = run.image();
+    run.viewer.hold_head(Some(HeldHead { rendered: Quat::from_rotation_y(0.02), ..still }));
+    run.frame();
+    assert_ne!(run.image(), rendered, "a frame between two renders has the head's pose");
+    assert_eq!((run.viewer.viewer().method(), gl.take_errors()), (MethodChoice::Auto, None));
+}
+
+#[test]
 fn events_change_method_ipd_hud_and_viewpoint() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
