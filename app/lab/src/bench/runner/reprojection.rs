@@ -1,11 +1,13 @@
 //! One render shown at other poses: when the head has moved on, and for canted eyes.
 
 use std::rc::Rc;
+use std::time::{Duration, Instant};
 
+use anyhow::ensure;
 use glam::Quat;
 use image::RgbImage;
 
-use super::Runner;
+use super::{Runner, milliseconds};
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::suite::{Displaced, Job};
@@ -16,6 +18,7 @@ use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
 use yoro::synthesis::{AnyView, Outputs, Source, Synthesis, SynthesisOptions};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_render::stereo::{self, Method, StereoFrame, StereoMethod, StereoOptions};
 use yoro_render::{PreparedScene, ViewTargets};
 
 /// Names of the ways to show a render at another pose.
@@ -30,6 +33,11 @@ const NEAREST: f32 = 0.5;
 /// The angle by which each canted eye is turned outwards.
 const CANT_DEGREES: f32 = 5.0;
 
+/// Names of what is timed: two renders, and with a rate of renders the frames that are rendered and those between.
+const TIMED: [&str; 3] = ["conventional", "rendered", "shown-again"];
+/// Renders a second: every other frame of a sequence.
+const RENDER_RATE: f32 = 36.0;
+
 /// One way's pictures and their truths.
 type Shown = Vec<(&'static str, RgbImage)>;
 
@@ -43,6 +51,7 @@ impl Runner<'_> {
     ) -> anyhow::Result<()> {
         self.bar.set_message(job.setting.to_string());
         let mut shower = Shower::new(self.gl)?;
+        let mut timer = Timer::new(self.gl, job)?;
         let (views, late) = match displaced {
             Displaced::Late(motion, late) => {
                 // Spread over the motion, so that neighbours are not alike.
@@ -69,18 +78,29 @@ impl Runner<'_> {
                 }
             }
             for (way, image) in shown {
-                if !measurements.iter().any(|m| m.contender == way) {
-                    measurements.push(Measurement::new(&job.setting, way, 0));
-                }
-                let measurement = measurements.iter_mut().find(|m| m.contender == way);
-                let measurement = measurement.expect("it has just been made");
+                let measurement = measurement_of(&mut measurements, job, way);
                 measurement.push(metric::PSNR, psnr(&image, &truth, Channels::Rgb)?.0);
                 measurement.push(metric::SSIM, ssim(&image, &truth, SsimWindow::Gaussian11, Channels::Rgb)?);
+            }
+            if late == Some(1) {
+                let [then, now] = [0, 1].map(|n| views.pairs[i * SPREAD + n]);
+                for (name, time) in TIMED.iter().zip(timer.run(prepared, &then, &now)?) {
+                    measurement_of(&mut measurements, job, name).push(metric::FRAME_MS, milliseconds(time));
+                }
             }
             self.bar.inc(1);
         }
         self.finish_round(job, 0, vec![Record::Scene(views.facts(job, prepared))], measurements)
     }
+}
+
+/// Returns the measurement of a contender, which is made if there is none yet.
+fn measurement_of<'a>(all: &'a mut Vec<Measurement>, job: &Job, name: &str) -> &'a mut Measurement {
+    let at = all.iter().position(|m| m.contender == name).unwrap_or_else(|| {
+        all.push(Measurement::new(&job.setting, name, 0));
+        all.len() - 1
+    });
+    &mut all[at]
 }
 
 /// Frames from one measured frame to the next.
@@ -93,6 +113,52 @@ fn canted(pair: &EyePair) -> EyePair {
         pose.orientation *= Quat::from_rotation_y(side * CANT_DEGREES.to_radians());
     }
     eyes
+}
+
+/// Times of whole stereo frames.
+struct Timer {
+    gl: Rc<Context>,
+    /// Two renders, and one render shown in several frames.
+    methods: [Box<dyn StereoMethod>; 2],
+    frame: StereoFrame,
+}
+
+impl Timer {
+    fn new(gl: &Rc<Context>, job: &Job) -> Result<Timer, GlError> {
+        let options =
+            StereoOptions { render_rate: Some(RENDER_RATE), policy: None, ..StereoOptions::default() };
+        let create = |method| stereo::create(gl, method, &job.render, &options);
+        let methods = [create(Method::Conventional)?, create(Method::Yoro)?];
+        Ok(Timer { gl: gl.clone(), methods, frame: StereoFrame::new(gl, job.eyes.size)? })
+    }
+
+    /// Returns the times up to glFinish, by [`TIMED`], after a frame of each that is not timed.
+    fn run(
+        &mut self,
+        prepared: &mut PreparedScene,
+        then: &EyePair,
+        now: &EyePair,
+    ) -> anyhow::Result<[Duration; 3]> {
+        let mut times = [Duration::ZERO; 3];
+        for is_timed in [false, true] {
+            for (at, time) in times.iter_mut().enumerate() {
+                self.gl.finish();
+                let begin = Instant::now();
+                let method = &mut self.methods[at.min(1)];
+                match at {
+                    2 => {
+                        ensure!(method.show_again(now, &self.frame.targets())?, "the head has turned too far")
+                    }
+                    _ => method.render(&mut prepared.renderer, &prepared.scene, then, &mut self.frame)?,
+                }
+                self.gl.finish();
+                if is_timed {
+                    *time = begin.elapsed();
+                }
+            }
+        }
+        Ok(times)
+    }
 }
 
 /// Renders views and shows them at other poses, with one sample per pixel.
