@@ -71,13 +71,14 @@ fn main() -> Result<()> {
             depth: layer(&depth, DEPTH, uploaded, ImageState::SAMPLED),
             sample_color: None,
             size: source_size,
+            history: None,
         })?;
         let target = gather.register_target(&TargetImages {
             color: layer(&target, COLOR, ImageState::DISCARDED, downloaded),
             depth: None,
             size: target_size,
         })?;
-        (gather, Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] })
+        (gather, Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None })
     };
 
     // Each frame, in the engine's own command buffer.

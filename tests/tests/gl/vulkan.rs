@@ -73,6 +73,7 @@ fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
                 depth: image(&depth, WRITTEN, ImageState::SAMPLED),
                 sample_color: None,
                 size: warp.source_size,
+                history: None,
             })
             .unwrap();
         let written = gather
@@ -82,7 +83,8 @@ fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
                 size: warp.target_size,
             })
             .unwrap();
-        let frame = Frame { source, source_origin: [0, 0], target: written, target_origin: [0, 0] };
+        let frame =
+            Frame { source, source_origin: [0, 0], target: written, target_origin: [0, 0], history: None };
         gpu.run(|commands| gather.record(commands, &frame, warp).unwrap());
     }
     let [w, h] = warp.target_size;

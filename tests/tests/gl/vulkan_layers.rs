@@ -301,7 +301,7 @@ fn synthesize(
     unsafe {
         let mut gather = Gather::new(host, &options).unwrap();
         let color = resolved.layer(0, WRITTEN, ImageState::SAMPLED);
-        let images = SourceImages { color, depth, sample_color, size: samples.size };
+        let images = SourceImages { color, depth, sample_color, size: samples.size, history: None };
         let source = gather.register_source(&images).unwrap();
         let images = TargetImages {
             color: target.layer(0, ImageState::DISCARDED, READ),
@@ -309,7 +309,8 @@ fn synthesize(
             size: warp.target_size,
         };
         let written = gather.register_target(&images).unwrap();
-        let frame = Frame { source, source_origin: [0, 0], target: written, target_origin: [0, 0] };
+        let frame =
+            Frame { source, source_origin: [0, 0], target: written, target_origin: [0, 0], history: None };
         gpu.run(|commands| gather.record(commands, &frame, warp).unwrap());
         let times = gather.pass_times().unwrap().expect("one frame was recorded and is done");
         assert!(times.split.is_zero() == (edges == Edges::Hard) && !times.march.is_zero(), "{times:?}");

@@ -13,8 +13,6 @@ pub struct Strips {
     /// From a pixel of the target and its depth to a pixel of each strip's image and its depth. Zero for strips with nothing in
     /// them.
     pub to_history: [Mat4; Strips::MOST],
-    /// The other way.
-    pub from_history: [Mat4; Strips::MOST],
     /// Number of strips, at least 1.
     pub history_strips: i32,
     _padding: [i32; 3],
@@ -24,15 +22,11 @@ impl Strips {
     /// The largest number of strips.
     pub const MOST: usize = 8;
     /// A history with nothing in it.
-    pub const NONE: Strips = Strips {
-        to_history: [Mat4::ZERO; Strips::MOST],
-        from_history: [Mat4::ZERO; Strips::MOST],
-        history_strips: 1,
-        _padding: [0; 3],
-    };
+    pub const NONE: Strips =
+        Strips { to_history: [Mat4::ZERO; Strips::MOST], history_strips: 1, _padding: [0; 3] };
 
-    /// Returns the relation of a target to the strips of a history, from row 0 on, each by the view of the whole image from which
-    /// it was rendered; `None` if nothing is there. All but the last have as many rows: those of the image divided by the number
+    /// Returns the relation of a target to the strips of a history, from row 0 of the image on, each by the view of the whole image
+    /// from which it was rendered; `None` if nothing is there. All but the last have as many rows: those of the image divided by the number
     /// of strips, rounded up. Views have the depth planes and encoding of the target. Strips after the first
     /// [`Strips::MOST`] are ignored.
     pub fn new(target: &View, strips: &[Option<View>]) -> Strips {
@@ -47,18 +41,28 @@ impl Strips {
             let mut between = turn(view).transpose() * turn(target);
             between.w_axis += turn(view).transpose() * moved;
             let to = window(view) * between * from_target;
-            (relation.to_history[i], relation.from_history[i]) = (to.as_mat4(), to.inverse().as_mat4());
+            relation.to_history[i] = to.as_mat4();
         }
         relation
+    }
+
+    /// Returns the same relation for images whose rows are counted from the other end, given their heights in pixels: what those
+    /// graphics interfaces use inside whose row 0 is at the top. The order of the strips stays.
+    #[doc(hidden)]
+    pub fn rows_turned(&self, target_height: u32, history_height: u32) -> Strips {
+        let turn = |height: u32| {
+            DMat4::from_translation(DVec3::new(0.0, f64::from(height), 0.0))
+                * DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0))
+        };
+        let turned =
+            |matrix: Mat4| (turn(history_height) * matrix.as_dmat4() * turn(target_height)).as_mat4();
+        Strips { to_history: self.to_history.map(turned), ..*self }
     }
 
     /// Sets the uniforms that a program has, which must be current.
     #[cfg(feature = "gl")]
     pub fn set(&self, program: &yoro_gl::Program) {
-        program
-            .set("to_history", &self.to_history[..])
-            .set("from_history", &self.from_history[..])
-            .set("history_strips", self.history_strips);
+        program.set("to_history", &self.to_history[..]).set("history_strips", self.history_strips);
     }
 }
 
@@ -116,11 +120,12 @@ mod tests {
                     (to - there).truncate().length() < 2e-3 && (to.z - there.z).abs() < 1e-6,
                     "{to}: {there}"
                 );
-                let back = strips.from_history[1].project_point3(to.as_vec3());
-                assert!(
-                    (back - here).truncate().length() < 4e-3 && (back.z - here.z).abs() < 1e-6,
-                    "{back}: {here}"
-                );
+                let turned = strips.rows_turned(480, 240);
+                assert_eq!((turned.history_strips, turned.to_history[0]), (2, Mat4::ZERO));
+                let turn = |at: Vec3, height: f32| Vec3::new(at.x, height - at.y, at.z);
+                let there = there.as_vec3();
+                let to = turn(turned.to_history[1].project_point3(turn(here, 480.0)), 240.0);
+                assert!((to - there).length() < 2e-3, "{to}: {there}");
             }
         }
     }

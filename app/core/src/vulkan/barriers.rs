@@ -6,8 +6,8 @@ use super::commands::Commands;
 use super::formats::{aspects, range};
 use super::{ImageState, LayerImage};
 
-/// The most barriers of a frame: three source images, two target images, and four intermediate images.
-const MOST: usize = 9;
+/// The most barriers of a frame: three source images, two of a history, two target images, and four intermediate images.
+const MOST: usize = 11;
 
 /// Barriers that are recorded with one command.
 pub(super) struct Barriers {

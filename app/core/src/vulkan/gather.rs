@@ -19,7 +19,7 @@ use super::{
     VulkanError,
 };
 use crate::eyes::Warp;
-use crate::synthesis::{Places, Uniforms, tiles};
+use crate::synthesis::{Places, Strips, Uniforms, tiles};
 
 /// The passes of [`crate::synthesis::Gather`]: tile bounds, tile spans, march. For anti-aliased sources those of
 /// [`crate::synthesis::Layers`], with the split into layers before them.
@@ -32,6 +32,8 @@ pub struct Gather {
     options: Options,
     layouts: Layouts,
     passes: Passes,
+    /// The block of a history's strips.
+    strips: Option<vk::Buffer>,
     timer: Option<Timer>,
     labels: Option<Labels>,
     sources: Vec<Source>,
@@ -87,9 +89,11 @@ impl Gather {
         let mut objects = unsafe { Objects::new(&device) };
         // SAFETY: the caller's handles are valid and belong together.
         let rendering = unsafe { Rendering::new(host, &mut objects, options)? };
-        let layouts = Layouts::new(&mut objects)?;
+        let layouts = Layouts::new(&mut objects, options.history)?;
         let memory = adapter.memory();
         let passes = Passes::new(&mut objects, rendering, layouts.pipeline, &memory, options, variant)?;
+        let bytes = size_of::<Strips>() as u64;
+        let strips = options.history.then(|| objects.create_uniform_buffer(&memory, bytes)).transpose()?;
         let timer = Timer::new(&mut objects, options.timed_frames, &family, &adapter.properties.limits)?;
         // SAFETY: the caller's handles are valid and belong together.
         let labels = unsafe { Labels::new(host) };
@@ -99,6 +103,7 @@ impl Gather {
             options: *options,
             layouts,
             passes,
+            strips,
             timer,
             labels,
             sources: Vec::new(),
@@ -111,7 +116,8 @@ impl Gather {
     /// Makes views and descriptors of images to read from.
     ///
     /// # Errors
-    /// [`VulkanError::Format`], [`VulkanError::Size`] and [`VulkanError::SampleColors`]; errors of Vulkan's commands.
+    /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::SampleColors`] and [`VulkanError::History`]; errors of
+    /// Vulkan's commands.
     ///
     /// # Safety
     /// The images are as [`SourceImages`] and [`LayerImage`](super::LayerImage) say, and live until this id is released
@@ -121,7 +127,7 @@ impl Gather {
         // SAFETY: the caller's images are live, and outlive the objects, which go when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
         let id = SourceId(self.last_id.checked_add(1).unwrap_or(1));
-        let source = Source::new(objects, id, images, self.layouts.textures, &self.passes)?;
+        let source = Source::new(objects, id, images, self.layouts.textures, &self.passes, self.strips)?;
         self.last_id = id.0;
         self.sources.push(source);
         Ok(id)
@@ -170,7 +176,8 @@ impl Gather {
     /// of the command buffer's graphics bind point.
     ///
     /// # Errors
-    /// [`VulkanError::NotRegistered`], [`VulkanError::Size`] and [`VulkanError::Rectangle`]; nothing is recorded then.
+    /// [`VulkanError::NotRegistered`], [`VulkanError::Size`], [`VulkanError::Rectangle`] and [`VulkanError::History`]; nothing is
+    /// recorded then.
     ///
     /// # Safety
     /// The command buffer is of this device, in the recording state, outside of render passes and dynamic rendering,
@@ -239,6 +246,11 @@ impl Gather {
             timer.begin(&commands);
         }
         self.acquire_images(&commands, source, target, uses);
+        if let Some(buffer) = self.strips {
+            let former = source.images.history.map_or(0, |history| history.size[1]);
+            let turned = frame.history.map(|strips| strips.rows_turned(warp.target_size[1], former));
+            commands.write_strips(buffer, &turned.unwrap_or(Strips::NONE));
+        }
         commands.bind(self.layouts.pipeline, source.textures, &Uniforms::of_part(&warp, &places));
         if let Some(split) = &passes.split {
             split.record(&recorder, warp.source_size, source.images.sample_color.is_some());
@@ -271,6 +283,9 @@ impl Gather {
         source: &Source,
         target: &Target,
     ) -> Result<(), VulkanError> {
+        if frame.history.is_some() && source.images.history.is_none() {
+            return Err(VulkanError::History);
+        }
         check_size("a source", warp.source_size, self.options.max_source_size)?;
         check_size("a target", warp.target_size, self.options.max_target_size)?;
         check_rectangle("a source", frame.source_origin, warp.source_size, source.images.size)?;

@@ -6,7 +6,7 @@ use super::adapter::Adapter;
 use super::formats::{aspects, is_depth, sampled_state};
 use super::objects::Objects;
 use super::passes::Passes;
-use super::pipelines::TEXTURES;
+use super::pipelines::{HISTORY, TEXTURES};
 use super::targets::{Attachments, PassKind};
 use super::{
     ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages, Use, Uses, VulkanError,
@@ -36,18 +36,35 @@ pub(super) fn check_source(
     images: &SourceImages,
 ) -> Result<(), VulkanError> {
     adapter.check_image_size("a source's image", images.size)?;
-    let sampled = vk::FormatFeatureFlags::SAMPLED_IMAGE;
-    let filtered = sampled | vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
-    adapter.check_format(images.color.format, filtered, "a source's colour")?;
-    let depth = images.depth.format;
-    if !is_depth(depth) && !matches!(depth, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) {
-        return Err(VulkanError::Format { format: depth, role: "a source's depth" });
+    check_sampled(adapter, [&images.color, &images.depth], ["a source's colour", "a source's depth"])?;
+    if let Some(history) = &images.history {
+        if !options.history {
+            return Err(VulkanError::History);
+        }
+        adapter.check_image_size("a history's image", history.size)?;
+        let roles = ["a history's colour", "a history's depth"];
+        check_sampled(adapter, [&history.color, &history.depth], roles)?;
     }
-    adapter.check_format(depth, sampled, "a source's depth")?;
     if images.sample_color.is_some() && options.edges != Edges::Multisample {
         return Err(VulkanError::SampleColors);
     }
     Ok(())
+}
+
+/// Checks that the device can filter colour and fetch depth.
+fn check_sampled(
+    adapter: &Adapter,
+    [color, depth]: [&LayerImage; 2],
+    [color_role, role]: [&'static str; 2],
+) -> Result<(), VulkanError> {
+    let sampled = vk::FormatFeatureFlags::SAMPLED_IMAGE;
+    let filtered = sampled | vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
+    adapter.check_format(color.format, filtered, color_role)?;
+    let format = depth.format;
+    if !is_depth(format) && !matches!(format, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) {
+        return Err(VulkanError::Format { format, role });
+    }
+    adapter.check_format(format, sampled, role)
 }
 
 /// Checks that a target has the formats of the options and a size that the device can draw.
@@ -76,6 +93,7 @@ impl Source {
         images: &SourceImages,
         layout: vk::DescriptorSetLayout,
         passes: &Passes,
+        strips: Option<vk::Buffer>,
     ) -> Result<Source, VulkanError> {
         let mut sampled = |image: &LayerImage| {
             let aspect = if is_depth(image.format) {
@@ -88,11 +106,17 @@ impl Source {
         };
         let color = sampled(&images.color)?;
         let depth = sampled(&images.depth)?;
-        let samples = images.sample_color.as_ref().map(sampled).transpose()?;
-        let sizes = [vk::DescriptorPoolSize {
-            ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-            descriptor_count: TEXTURES as u32,
-        }];
+        let samples = images.sample_color.as_ref().map(&mut sampled).transpose()?;
+        let history = match &images.history {
+            Some(history) => [sampled(&history.depth)?, sampled(&history.color)?],
+            // Nothing is looked up there.
+            None => [color; 2],
+        };
+        let pool = |ty, count| vk::DescriptorPoolSize { ty, descriptor_count: count as u32 };
+        let sizes = [
+            pool(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, TEXTURES + history.len()),
+            pool(vk::DescriptorType::UNIFORM_BUFFER, 1),
+        ];
         let set = objects.allocate_descriptor_set(layout, &sizes)?;
         let intermediate =
             |attachments: &Attachments, i| texture(attachments.color(i), ImageState::SAMPLED.layout);
@@ -107,16 +131,26 @@ impl Source {
             layers(1),
             samples,
         ];
-        write_textures(objects.device(), set, &textures);
+        write_textures(objects.device(), set, 0, &textures);
+        if let Some(strips) = strips {
+            write_textures(objects.device(), set, HISTORY, &history.map(Some));
+            write_strips(objects.device(), set, HISTORY + history.len(), strips);
+        }
         Ok(Source { id, images: *images, textures: set, _objects: objects })
     }
 
     /// The images in a call with these uses, or those of their registration, and the states in which the passes read them.
     pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
-        let SourceImages { color, depth, sample_color, .. } = self.images;
-        let uses =
-            uses.map(|uses| [uses.source_color, uses.source_depth, uses.source_sample_color].map(Some));
-        [Some(color), Some(depth), sample_color]
+        let SourceImages { color, depth, sample_color, history, .. } = self.images;
+        let uses = uses.map(|uses| {
+            let Uses {
+                source_color, source_depth, source_sample_color, history_color, history_depth, ..
+            } = *uses;
+            [source_color, source_depth, source_sample_color, history_color, history_depth].map(Some)
+        });
+        let [former_color, former_depth] =
+            [history.map(|history| history.color), history.map(|history| history.depth)];
+        [Some(color), Some(depth), sample_color, former_color, former_depth]
             .into_iter()
             .zip(uses.unwrap_or_default())
             .filter_map(|(image, other)| image.map(|image| (used(image, other), sampled_state(&image))))
@@ -127,24 +161,37 @@ fn texture(view: vk::ImageView, layout: vk::ImageLayout) -> vk::DescriptorImageI
     vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
 }
 
-/// Writes the textures of a set that no command uses yet.
+/// Writes the textures from a binding on of a set that no command uses yet.
 fn write_textures(
     device: &ash::Device,
     set: vk::DescriptorSet,
-    textures: &[Option<vk::DescriptorImageInfo>; TEXTURES],
+    first: usize,
+    textures: &[Option<vk::DescriptorImageInfo>],
 ) {
     let present = textures.iter().enumerate().filter(|(_, texture)| texture.is_some());
     let writes: Vec<_> = present
         .map(|(binding, texture)| {
             vk::WriteDescriptorSet::default()
                 .dst_set(set)
-                .dst_binding(binding as u32)
+                .dst_binding((first + binding) as u32)
                 .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
                 .image_info(texture.as_slice())
         })
         .collect();
     // SAFETY: the set was just allocated from a pool of this device, and the views are live.
     unsafe { device.update_descriptor_sets(&writes, &[]) };
+}
+
+/// Writes the strips' block of a set that no command uses yet.
+fn write_strips(device: &ash::Device, set: vk::DescriptorSet, binding: usize, strips: vk::Buffer) {
+    let buffer = [vk::DescriptorBufferInfo::default().buffer(strips).range(vk::WHOLE_SIZE)];
+    let write = vk::WriteDescriptorSet::default()
+        .dst_set(set)
+        .dst_binding(binding as u32)
+        .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER)
+        .buffer_info(&buffer);
+    // SAFETY: the set was just allocated from a pool of this device, and the buffer is live.
+    unsafe { device.update_descriptor_sets(&[write], &[]) };
 }
 
 impl Target {

@@ -35,6 +35,7 @@
 //!         depth: image(depth, vk::Format::D32_SFLOAT, ImageState::DEPTH_ATTACHMENT),
 //!         sample_color: None,
 //!         size: views.source.size,
+//!         history: None,
 //!     })?
 //! };
 //! let target = unsafe {
@@ -45,7 +46,7 @@
 //!     })?
 //! };
 //! // Each frame, outside of render passes:
-//! let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+//! let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None };
 //! unsafe { gather.record(commands, &frame, &views.warp)? };
 //! # Ok(())
 //! # }
@@ -67,7 +68,7 @@ mod timer;
 pub use ash;
 use ash::vk;
 
-use crate::synthesis::Edges;
+use crate::synthesis::{Edges, Strips};
 
 pub use gather::Gather;
 #[doc(hidden)]
@@ -144,6 +145,11 @@ pub enum VulkanError {
     /// A source has the colour of its samples, which only [`Edges::Multisample`] uses.
     #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
     SampleColors,
+    /// A source has a history, but [`Options::history`] is off; or a frame has one, but its source was registered without.
+    #[error(
+        "a history is for pipelines made with one, of sources registered with its images; give both, or none"
+    )]
+    History,
     /// A rectangle reaches beyond its image.
     #[error(
         "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
@@ -218,6 +224,8 @@ pub struct Options {
     pub edges: Edges,
     /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 2 or 4, in the standard positions.
     pub samples: u32,
+    /// True if sources may have a history ([`SourceImages::history`]).
+    pub history: bool,
     /// The number of frames after which [`Gather::pass_times`] returns the times of one: at least the frames in flight. 0
     /// for no times.
     pub timed_frames: u32,
@@ -234,7 +242,7 @@ impl Options {
 }
 
 impl Default for Options {
-    /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, hard edges, no times, no cache.
+    /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, hard edges, no history, no times, no cache.
     fn default() -> Options {
         Options {
             color_format: vk::Format::R8G8B8A8_UNORM,
@@ -243,6 +251,7 @@ impl Default for Options {
             max_target_size: [2048; 2],
             edges: Edges::Hard,
             samples: 4,
+            history: false,
             timed_frames: 0,
             pipeline_cache: vk::PipelineCache::null(),
         }
@@ -335,6 +344,20 @@ pub struct SourceImages {
     pub sample_color: Option<LayerImage>,
     /// Width and height of the images in pixels; the source is a rectangle of them.
     pub size: [u32; 2],
+    /// What the other eye has seen, for pipelines with [`Options::history`].
+    pub history: Option<HistoryImages>,
+}
+
+/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HistoryImages {
+    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes afterwards. In
+    /// the encoding of the source's.
+    pub color: LayerImage,
+    /// Depth in one of the formats of [`SourceImages::depth`], one value a pixel, with the planes and encoding of the source's.
+    pub depth: LayerImage,
+    /// Width and height of the images in pixels, any.
+    pub size: [u32; 2],
 }
 
 /// The images that the other eye is written to.
@@ -375,7 +398,7 @@ macro_rules! raw_ids {
 raw_ids!(SourceId, TargetId);
 
 /// The images and places of one call of [`Gather::record`]. Sizes are those of the warp.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The images to read.
     pub source: SourceId,
@@ -385,6 +408,9 @@ pub struct Frame {
     pub target: TargetId,
     /// Upper left corner of the rectangle to write in them, in pixels. Pixels outside of it stay as they are.
     pub target_origin: [u32; 2],
+    /// The views of the strips of [`SourceImages::history`], from the top on, as [`Strips::new`] returns them: its rows, which
+    /// are counted from the bottom, are turned inside. None: nothing is looked up.
+    pub history: Option<Strips>,
 }
 
 /// The uses of an image before and after one call, in place of those of its [`LayerImage`].
@@ -405,6 +431,10 @@ pub struct Uses {
     pub source_depth: Use,
     /// Of [`SourceImages::sample_color`].
     pub source_sample_color: Use,
+    /// Of [`HistoryImages::color`].
+    pub history_color: Use,
+    /// Of [`HistoryImages::depth`].
+    pub history_depth: Use,
     /// Of [`TargetImages::color`].
     pub target_color: Use,
     /// Of [`TargetImages::depth`].

@@ -49,6 +49,7 @@ macro_rules! objects {
 }
 
 objects! {
+    create_buffer(vk::BufferCreateInfo<'_>) -> Buffer(vk::Buffer), "vkCreateBuffer", destroy_buffer;
     create_descriptor_pool(vk::DescriptorPoolCreateInfo<'_>) -> DescriptorPool(vk::DescriptorPool),
         "vkCreateDescriptorPool", destroy_descriptor_pool;
     create_descriptor_set_layout(vk::DescriptorSetLayoutCreateInfo<'_>) -> DescriptorSetLayout(vk::DescriptorSetLayout),
@@ -150,14 +151,40 @@ impl Objects {
         )?;
         // SAFETY: the image was just made from this device.
         let needed = unsafe { self.device.get_image_memory_requirements(image) };
-        let info = vk::MemoryAllocateInfo::default()
-            .allocation_size(needed.size)
-            .memory_type_index(memory_type(memory, needed.memory_type_bits));
-        let memory = self.allocate_memory(&info)?;
+        let memory = self.allocate(memory, &needed)?;
         // SAFETY: the memory is new, and was allocated with the image's size and type.
         unsafe { self.device.bind_image_memory(image, memory, 0) }
             .map_err(|result| VulkanError::new("vkBindImageMemory", result))?;
         Ok(image)
+    }
+
+    /// A buffer of uniforms with memory of its own, to be written by commands.
+    pub(super) fn create_uniform_buffer(
+        &mut self,
+        memory: &vk::PhysicalDeviceMemoryProperties,
+        size: u64,
+    ) -> Result<vk::Buffer, VulkanError> {
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        let buffer = self.create_buffer(&vk::BufferCreateInfo::default().size(size).usage(usage))?;
+        // SAFETY: the buffer was just made from this device.
+        let needed = unsafe { self.device.get_buffer_memory_requirements(buffer) };
+        let memory = self.allocate(memory, &needed)?;
+        // SAFETY: the memory is new, and was allocated with the buffer's size and type.
+        unsafe { self.device.bind_buffer_memory(buffer, memory, 0) }
+            .map_err(|result| VulkanError::new("vkBindBufferMemory", result))?;
+        Ok(buffer)
+    }
+
+    /// Memory on the device, where there is a type of that.
+    fn allocate(
+        &mut self,
+        memory: &vk::PhysicalDeviceMemoryProperties,
+        needed: &vk::MemoryRequirements,
+    ) -> Result<vk::DeviceMemory, VulkanError> {
+        let info = vk::MemoryAllocateInfo::default()
+            .allocation_size(needed.size)
+            .memory_type_index(memory_type(memory, needed.memory_type_bits));
+        self.allocate_memory(&info)
     }
 
     /// A set of descriptors from a pool that holds one set.

@@ -85,7 +85,8 @@ impl Passes {
         let map = map_kind(edges);
         let tile_pipelines = factory.pipelines(shaders::tiles(edges, variant), map)?;
         let spans_pipeline = factory.pipeline(shaders::spans(edges, variant), map, false)?;
-        let march = factory.pipelines(shaders::march(edges, variant, depth), PassKind::Target)?;
+        let march =
+            factory.pipelines(shaders::march(edges, variant, depth, options.history), PassKind::Target)?;
         let resolved =
             shaders::split(edges).map(|shader| factory.pipelines(shader, PassKind::Layers)).transpose()?;
         let samples = (edges == Edges::Multisample)

@@ -11,8 +11,11 @@ use crate::synthesis::Uniforms;
 /// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map, layers
 /// and the colour behind them, colour of the samples. Hard edges have no layers, and resolved sources have no samples.
 pub(super) const TEXTURES: usize = 7;
-/// The binding of the source's colour, which is filtered. All others are fetched as they are.
+/// The binding of the source's colour, which is filtered. All others but a history's are fetched as they are.
 const COLOR: usize = 1;
+/// The first of three bindings with a history: its depth, its colour, which is filtered, and the block of its strips.
+pub(super) const HISTORY: usize = 10;
+const HISTORY_COLOR: usize = HISTORY + 1;
 
 /// The layouts that all pipelines have.
 #[derive(Clone, Copy)]
@@ -22,8 +25,8 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    pub(super) fn new(objects: &mut Objects) -> Result<Layouts, VulkanError> {
-        let textures = texture_layout(objects)?;
+    pub(super) fn new(objects: &mut Objects, history: bool) -> Result<Layouts, VulkanError> {
+        let textures = texture_layout(objects, history)?;
         let layouts = [textures];
         // Every device has 128 bytes of push constants.
         let constants = [vk::PushConstantRange {
@@ -37,17 +40,27 @@ impl Layouts {
     }
 }
 
-fn texture_layout(objects: &mut Objects) -> Result<vk::DescriptorSetLayout, VulkanError> {
+fn texture_layout(objects: &mut Objects, history: bool) -> Result<vk::DescriptorSetLayout, VulkanError> {
     let nearest = [objects.create_sampler(&sampler(vk::Filter::NEAREST))?];
     let linear = [objects.create_sampler(&sampler(vk::Filter::LINEAR))?];
-    let bindings: [_; TEXTURES] = std::array::from_fn(|binding| {
+    let binding = |binding: usize, ty| {
         vk::DescriptorSetLayoutBinding::default()
             .binding(binding as u32)
-            .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+            .descriptor_type(ty)
             .descriptor_count(1)
             .stage_flags(vk::ShaderStageFlags::FRAGMENT)
-            .immutable_samplers(if binding == COLOR { &linear } else { &nearest })
-    });
+    };
+    let texture = |place: usize| {
+        let filtered = matches!(place, COLOR | HISTORY_COLOR);
+        binding(place, vk::DescriptorType::COMBINED_IMAGE_SAMPLER).immutable_samplers(if filtered {
+            &linear
+        } else {
+            &nearest
+        })
+    };
+    let strips = binding(HISTORY + 2, vk::DescriptorType::UNIFORM_BUFFER);
+    let own = [texture(HISTORY), texture(HISTORY_COLOR), strips];
+    let bindings: Vec<_> = (0..TEXTURES).map(texture).chain(own.into_iter().filter(|_| history)).collect();
     let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
     objects.create_descriptor_set_layout(&info)
 }

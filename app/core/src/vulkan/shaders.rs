@@ -44,17 +44,24 @@ pub(super) fn spans(edges: Edges, variant: GatherVariant) -> &'static [u8] {
     }
 }
 
-/// Returns the last pass.
-pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool) -> &'static [u8] {
-    match (edges, variant, depth) {
-        (Edges::Hard, GatherVariant::Software, false) => include_bytes!("spirv/march.spv"),
-        (Edges::Hard, GatherVariant::Software, true) => include_bytes!("spirv/march-depth.spv"),
-        (Edges::Hard, GatherVariant::ShortWay, false) => include_bytes!("spirv/march-short.spv"),
-        (Edges::Hard, GatherVariant::ShortWay, true) => include_bytes!("spirv/march-short-depth.spv"),
-        (Edges::Multisample, _, false) => include_bytes!("spirv/layer-march-multisample.spv"),
-        (Edges::Multisample, _, true) => include_bytes!("spirv/layer-march-multisample-depth.spv"),
-        (_, _, false) => include_bytes!("spirv/layer-march.spv"),
-        (_, _, true) => include_bytes!("spirv/layer-march-depth.spv"),
+/// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
+pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool, history: bool) -> &'static [u8] {
+    /// The four modules of a source's kind.
+    macro_rules! of {
+        ($name:literal) => {
+            match (depth, history) {
+                (false, false) => include_bytes!(concat!("spirv/", $name, ".spv")),
+                (true, false) => include_bytes!(concat!("spirv/", $name, "-depth.spv")),
+                (false, true) => include_bytes!(concat!("spirv/", $name, "-history.spv")),
+                (true, true) => include_bytes!(concat!("spirv/", $name, "-depth-history.spv")),
+            }
+        };
+    }
+    match (edges, variant) {
+        (Edges::Hard, GatherVariant::Software) => of!("march"),
+        (Edges::Hard, GatherVariant::ShortWay) => of!("march-short"),
+        (Edges::Multisample, _) => of!("layer-march-multisample"),
+        _ => of!("layer-march"),
     }
 }
 
@@ -72,16 +79,24 @@ mod tests {
     const SPANS: &str = "synthesis/gather/spans.frag";
     const SPLIT: &str = "synthesis/layers/split.frag";
     const TILES: &str = "synthesis/gather/tiles.frag";
-    const MODULES: [Module; 19] = [
+    const MODULES: [Module; 27] = [
         ("layer-march", LAYER_MARCH, &[]),
+        ("layer-march-history", LAYER_MARCH, &["HISTORY"]),
         ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),
+        ("layer-march-depth-history", LAYER_MARCH, &["WRITE_DEPTH", "HISTORY"]),
         ("layer-march-multisample", LAYER_MARCH, &["MULTISAMPLE"]),
+        ("layer-march-multisample-history", LAYER_MARCH, &["MULTISAMPLE", "HISTORY"]),
         ("layer-march-multisample-depth", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH"]),
+        ("layer-march-multisample-depth-history", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH", "HISTORY"]),
         ("layer-tiles", "synthesis/layers/tiles.frag", &[]),
         ("march", MARCH, &["TEXTURE_GATHER"]),
+        ("march-history", MARCH, &["TEXTURE_GATHER", "HISTORY"]),
         ("march-depth", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH"]),
+        ("march-depth-history", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH", "HISTORY"]),
         ("march-short", MARCH, &["TEXTURE_GATHER", "SHORT_WAY"]),
+        ("march-short-history", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "HISTORY"]),
         ("march-short-depth", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH"]),
+        ("march-short-depth-history", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH", "HISTORY"]),
         ("march-vertex", "synthesis/march.vert", &[]),
         ("screen", "screen.vert", &[]),
         ("spans", SPANS, &[]),

@@ -2,100 +2,18 @@
 
 use std::rc::Rc;
 
-use glam::{DVec3, Quat, Vec3};
+use glam::Quat;
 
-use crate::in_memory::OUTPUTS;
+use crate::in_memory::{Former, InMemory, OUTPUTS, SynthesizedImage};
 use crate::laws::{on_every_backend, positions, row};
 use crate::reference::gather_row;
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, View, Warp};
+use crate::sheets::{Picture, SHEETS, SIZE, eyes, in_strips, moved, project, render, unproject};
+use yoro::eyes::{DepthConvention, Eye, GuardBand, Pose, View, Warp};
 use yoro::synthesis::*;
-use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
+use yoro_gl::Context;
 
-const SIZE: [u32; 2] = [160, 48];
-
-/// An upright rectangle that faces along Z, in metres: left, right, bottom, top, z.
-type Sheet = [f64; 5];
-
-const WALL: Sheet = [-50.0, 50.0, -50.0, 50.0, -6.0];
-const SHEETS: [Sheet; 5] = [
-    WALL,
-    [-0.5, -0.2, -9.0, 9.0, -1.0],
-    [0.15, 0.4, -0.3, 0.05, -0.8],
-    [0.6, 1.2, -0.2, 0.5, -2.0],
-    [-1.6, -0.9, -0.5, 0.1, -3.0],
-];
-
-/// Colour and depth of a view, rows from the bottom.
-struct Picture {
-    rgba: Vec<u8>,
-    depth: Vec<f32>,
-}
-
-fn local(view: &View, world: DVec3) -> DVec3 {
-    view.pose.orientation.as_dquat().inverse() * (world - view.pose.position.as_dvec3())
-}
-
-/// Returns the pixel of a view, its middle at + 0.5, that shows a point, and the point's distance along the axis.
-fn project(view: &View, world: DVec3) -> ([f64; 2], f64) {
-    let (own, f) = (local(view, world), view.frustum);
-    let z = -own.z;
-    let at = |x: f64, low: f32, wide: f32, n: u32| (x / z - f64::from(low)) / f64::from(wide) * f64::from(n);
-    ([at(own.x, f.left, f.width(), view.size[0]), at(own.y, f.bottom, f.height(), view.size[1])], z)
-}
-
-/// Returns the point that a pixel of a view shows at a distance along the axis.
-fn unproject(view: &View, [x, y]: [f64; 2], z: f64) -> DVec3 {
-    let f = view.frustum;
-    let tangent = |at: f64, low: f32, wide: f32, n: u32| f64::from(low) + at / f64::from(n) * f64::from(wide);
-    let x = tangent(x, f.left, f.width(), view.size[0]);
-    let y = tangent(y, f.bottom, f.height(), view.size[1]);
-    view.pose.position.as_dvec3() + view.pose.orientation.as_dquat() * (DVec3::new(x, y, -1.0) * z)
-}
-
-/// Casts a ray for each pixel. Colours vary slowly, so that resampling them changes them little.
-fn render(view: &View, sheets: &[Sheet]) -> Picture {
-    let [w, h] = view.size;
-    let mut picture = Picture { rgba: Vec::new(), depth: Vec::new() };
-    for i in 0..w * h {
-        let pixel = [f64::from(i % w) + 0.5, f64::from(i / w) + 0.5];
-        let from = view.pose.position.as_dvec3();
-        let ray = unproject(view, pixel, 1.0) - from;
-        let hits = sheets.iter().enumerate().filter_map(|(n, [left, right, bottom, top, z])| {
-            let t = (z - from.z) / ray.z;
-            let at = from + t * ray;
-            let inside = t > 0.0 && (*left..*right).contains(&at.x) && (*bottom..*top).contains(&at.y);
-            inside.then_some((n, t, at))
-        });
-        let (n, _, at) = hits.min_by(|a, b| a.1.total_cmp(&b.1)).expect("a wall behind all");
-        let wave = |x: f64| (127.0 + 100.0 * x.sin()) as u8;
-        picture.rgba.extend([wave(1.5 * at.x + n as f64), wave(2.0 * at.y), 40 * n as u8, 255]);
-        picture.depth.push(view.depth.depth(-local(view, at).z as f32));
-    }
-    picture
-}
-
-fn eyes(head: Pose, dominant: Eye, ipd: f32, convention: DepthConvention) -> EyePair {
-    let depth = DepthRange { near: 0.3, far: 100.0, convention };
-    EyePair::parallel(head, Frustum::symmetric(0.5, 10.0 / 3.0), ipd, depth, SIZE, dominant)
-}
-
-/// A head that has moved and turned by some frames' worth.
-fn moved(frames: f32) -> Pose {
-    Pose {
-        position: frames * Vec3::new(0.008, -0.003, 0.01),
-        orientation: Quat::from_euler(glam::EulerRot::YXZ, 0.012 * frames, 0.004 * frames, -0.003 * frames),
-    }
-}
-
-/// A pipeline, and textures for it.
-struct Bench {
-    gl: Rc<Context>,
-    pipeline: Box<dyn Synthesis>,
-    target: RenderTarget,
-}
-
-/// A history in memory: the picture, its size, the relation.
-type Remembered<'a> = Option<(&'a Picture, [u32; 2], Strips)>;
+/// A pipeline with textures of its own.
+struct Bench(InMemory);
 
 impl Bench {
     fn new(
@@ -103,35 +21,18 @@ impl Bench {
         make: impl FnOnce(&SynthesisOptions) -> Box<dyn Synthesis>,
         history: bool,
     ) -> Bench {
-        let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
-        Bench {
-            gl: gl.clone(),
-            pipeline: make(&SynthesisOptions { history, ..SynthesisOptions::default() }),
-            target: RenderTarget::new(gl, SIZE, &formats, None).unwrap(),
-        }
+        Bench(InMemory::new(gl, make(&SynthesisOptions { history, ..SynthesisOptions::default() })))
     }
 
-    fn run(&mut self, source: &Picture, warp: &Warp, history: Remembered) -> (Vec<u8>, Vec<u32>) {
-        let texture = |size, format, bytes: &[u8]| {
-            let texture = Texture::new(&self.gl, size, format, Filter::Nearest).unwrap();
-            texture.upload(bytes);
-            texture
-        };
-        let upload = |size, picture: &Picture| {
-            let depth: Vec<u8> = picture.depth.iter().flat_map(|z| z.to_ne_bytes()).collect();
-            [texture(size, Format::Rgba8, &picture.rgba), texture(size, Format::R32F, &depth)]
-        };
-        let own = upload(warp.source_size, source);
-        let former = history.map(|(picture, size, strips)| (upload(size, picture), strips));
-        let history = former.as_ref().map(|([color, depth], strips)| History {
-            color: color.raw(),
-            depth: depth.raw(),
-            strips: *strips,
-        });
-        let source = Source { history, ..Source::new(own[0].raw(), own[1].raw()) };
-        self.pipeline.synthesize(source, warp, &Destination::whole(&self.target)).unwrap();
-        (self.target.read_rgba8(0, [0, 0], SIZE), self.target.read_u32(1, [0, 0], SIZE))
+    fn run(&mut self, source: &Picture, warp: &Warp, history: Option<Former>) -> (Vec<u8>, Vec<u32>) {
+        let SynthesizedImage { rgba, source_map } = self.0.recall(&source.rgba, &source.depth, warp, history);
+        (rgba, source_map)
     }
+}
+
+/// A picture as a history.
+fn former(picture: &Picture, size: [u32; 2], strips: Strips) -> Option<Former<'_>> {
+    Some(Former { rgba: &picture.rgba, depth: &picture.depth, size, strips })
 }
 
 /// Runs a body for each pipeline, made by a function of the options.
@@ -163,7 +64,7 @@ fn no_history_changes_no_bit() {
         let mut recalling = Bench::new(gl, make, true);
         assert_eq!(recalling.run(&source, &views.warp, None), plain, "{what}");
         let empty = Strips::new(&views.target, &[None; 3]);
-        assert_eq!(recalling.run(&source, &views.warp, Some((&source, SIZE, empty))), plain, "{what}");
+        assert_eq!(recalling.run(&source, &views.warp, former(&source, SIZE, empty)), plain, "{what}");
     });
 }
 
@@ -175,7 +76,7 @@ fn without_a_distance_nothing_is_recalled() {
         let views = p.synthesis(GuardBand::None).unwrap();
         let (source, other) = (render(&views.source, &SHEETS), render(&views.target, &SHEETS[..2]));
         let strips = Strips::new(&views.target, &[Some(views.target)]);
-        let (rgba, _) = Bench::new(gl, make, true).run(&source, &views.warp, Some((&other, SIZE, strips)));
+        let (rgba, _) = Bench::new(gl, make, true).run(&source, &views.warp, former(&other, SIZE, strips));
         assert_eq!(rgba, source.rgba, "{what}");
     });
 }
@@ -192,7 +93,7 @@ fn a_history_of_this_frame_is_the_truth() {
             let strips = Strips::new(&views.target, &[Some(views.target)]);
             let (plain, map) = Bench::new(gl, make, false).run(&source, &views.warp, None);
             let (rgba, _) =
-                Bench::new(gl, make, true).run(&source, &views.warp, Some((&truth, SIZE, strips)));
+                Bench::new(gl, make, true).run(&source, &views.warp, former(&truth, SIZE, strips));
             let off = |image: &[u8], i: usize| {
                 let pixels = image[i * 4..][..4].iter().zip(&truth.rgba[i * 4..][..4]);
                 pixels.map(|(a, b)| a.abs_diff(*b)).max().unwrap()
@@ -227,12 +128,12 @@ fn a_history_of_another_scene_changes_nothing() {
             let beyond = |i: &usize| !is_hole(map[*i]) || (20..140).contains(&(i % SIZE[0] as usize));
             (0..map.len()).filter(beyond).flat_map(|i| rgba[i * 4..][..4].to_vec()).collect()
         };
-        let got = recalling.run(&source, &views.warp, Some((&near, SIZE, strips)));
+        let got = recalling.run(&source, &views.warp, former(&near, SIZE, strips));
         assert!(inner(&got) == inner(&plain), "{what}: nearer than the foreground");
         // Looking the other way.
         let back = Pose { orientation: Quat::from_rotation_y(3.0), ..Pose::IDENTITY };
         let strips = Strips::new(&views.target, &[Some(View { pose: back, ..views.target })]);
-        let got = recalling.run(&source, &views.warp, Some((&near, SIZE, strips)));
+        let got = recalling.run(&source, &views.warp, former(&near, SIZE, strips));
         assert_eq!(got, plain, "{what}: behind the head");
     });
 }
@@ -280,14 +181,18 @@ impl Lookup<'_> {
         let (at, strip) = self.place(pixel, background)?;
         let texel = at[1] as usize * self.size[0] as usize + at[0] as usize;
         let view = self.strips[strip].as_ref()?;
-        let z = f64::from(view.depth.distance(self.picture.depth[texel]));
-        let (back, here) = project(self.target, unproject(view, at, z));
-        let off = ((back[0] - pixel[0]).powi(2) + (back[1] - pixel[1]).powi(2)).sqrt();
+        let stored = f64::from(view.depth.distance(self.picture.depth[texel]));
+        // Where the pixel's ray is at that distance from the strip's eye, which is linear along it.
+        let [first, second] = [1.0, 2.0].map(|z| project(view, unproject(self.target, pixel, z)).1);
+        let here = 1.0 + (stored - first) / (second - first);
+        let exact = project(view, unproject(self.target, pixel, here)).0;
+        let away = |i: usize| (exact[i] - at[i]) * f64::from(self.target.size[i]) / f64::from(self.size[i]);
+        let off = away(0).hypot(away(1));
         let pixels = |z: f64| ipd_pixels / z;
         let behind = front
             .is_none_or(|front| pixels(here) <= pixels(front) - 0.25 * (pixels(front) - pixels(background)));
         let hidden = seen(here).is_none_or(|nearest| pixels(nearest) > pixels(here) - 1.0);
-        (off < 1.0 && behind && hidden).then(|| self.place(pixel, here)).flatten().map(|(at, _)| at)
+        (off < 1.0 && behind && hidden).then_some(exact)
     }
 }
 
@@ -309,15 +214,7 @@ fn the_lookup_is_its_reference() {
                 let strips: Vec<Option<View>> = (0..5)
                     .map(|i| (i != 3).then(|| View { size, ..at(moved(i as f32 - 6.0)).target }))
                     .collect();
-                let mut picture = Picture { rgba: Vec::new(), depth: Vec::new() };
-                let rows = size[1].div_ceil(5);
-                for y in 0..size[1] {
-                    let strip = strips[(y / rows) as usize].unwrap_or(views.target);
-                    let whole = render(&View { size, ..strip }, &SHEETS);
-                    let own = (y * size[0]) as usize..((y + 1) * size[0]) as usize;
-                    picture.rgba.extend(&whole.rgba[own.start * 4..own.end * 4]);
-                    picture.depth.extend(&whole.depth[own]);
-                }
+                let picture = in_strips(&strips, &View { size, ..views.target });
                 let source = render(&views.source, &SHEETS);
                 let make = |options: &SynthesisOptions| -> Box<dyn Synthesis> {
                     Box::new(Gather::with_variant_of(gl, OUTPUTS, variant, options).unwrap())
@@ -325,7 +222,7 @@ fn the_lookup_is_its_reference() {
                 let (plain, map) = Bench::new(gl, make, false).run(&source, &views.warp, None);
                 let relation = Strips::new(&views.target, &strips);
                 let (rgba, _) =
-                    Bench::new(gl, make, true).run(&source, &views.warp, Some((&picture, size, relation)));
+                    Bench::new(gl, make, true).run(&source, &views.warp, former(&picture, size, relation));
                 let lookup = Lookup { target: &views.target, strips: &strips, picture: &picture, size };
                 is_its_reference(&lookup, &source, &views.warp, [&plain, &rgba], &map, &what);
             }

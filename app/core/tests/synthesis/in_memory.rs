@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use yoro::eyes::Warp;
-use yoro::synthesis::{Outputs, Source, Synthesis};
+use yoro::synthesis::{History, Outputs, Source, Strips, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 
 /// The outputs of a pipeline that is run in memory.
@@ -14,6 +14,15 @@ pub struct InMemory {
     gl: Rc<Context>,
     pipeline: Box<dyn Synthesis>,
     target: RenderTarget,
+}
+
+/// A history in memory, and its relation to the target.
+#[derive(Clone, Copy)]
+pub struct Former<'a> {
+    pub rgba: &'a [u8],
+    pub depth: &'a [f32],
+    pub size: [u32; 2],
+    pub strips: Strips,
 }
 
 /// The synthesized eye.
@@ -34,16 +43,38 @@ impl InMemory {
 
     /// Synthesizes one image from 4 bytes and one depth per pixel.
     pub fn run(&mut self, rgba: &[u8], depth: &[f32], warp: &Warp) -> SynthesizedImage {
-        let texture = |format, filter, bytes: &[u8]| {
-            let texture = Texture::new(&self.gl, warp.source_size, format, filter).unwrap();
+        self.recall(rgba, depth, warp, None)
+    }
+
+    /// The same with a history, for a pipeline with that.
+    pub fn recall(
+        &mut self,
+        rgba: &[u8],
+        depth: &[f32],
+        warp: &Warp,
+        history: Option<Former>,
+    ) -> SynthesizedImage {
+        let texture = |size, format, filter, bytes: &[u8]| {
+            let texture = Texture::new(&self.gl, size, format, filter).unwrap();
             texture.upload(bytes);
             texture
         };
-        let color = texture(Format::Rgba8, Filter::Linear, rgba);
-        let depth: Vec<u8> = depth.iter().flat_map(|depth| depth.to_ne_bytes()).collect();
-        let depth = texture(Format::R32F, Filter::Nearest, &depth);
+        let upload = |size, rgba, depth: &[f32]| {
+            let depth: Vec<u8> = depth.iter().flat_map(|depth| depth.to_ne_bytes()).collect();
+            [
+                texture(size, Format::Rgba8, Filter::Linear, rgba),
+                texture(size, Format::R32F, Filter::Nearest, &depth),
+            ]
+        };
+        let [color, depth] = upload(warp.source_size, rgba, depth);
+        let former = history.map(|former| (upload(former.size, former.rgba, former.depth), former.strips));
         self.target.resize(warp.target_size).unwrap();
-        let source = Source::new(color.raw(), depth.raw());
+        let history = former.as_ref().map(|([color, depth], strips)| History {
+            color: color.raw(),
+            depth: depth.raw(),
+            strips: *strips,
+        });
+        let source = Source { history, ..Source::new(color.raw(), depth.raw()) };
         self.pipeline.synthesize(source, warp, &Destination::whole(&self.target)).unwrap();
         SynthesizedImage {
             rgba: self.target.read_rgba8(0, [0, 0], warp.target_size),

@@ -7,6 +7,7 @@ mod in_memory;
 mod laws;
 mod parts;
 mod reference;
+mod sheets;
 mod state;
 
 use std::rc::Rc;

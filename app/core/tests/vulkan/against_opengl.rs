@@ -3,15 +3,17 @@
 
 #[path = "../synthesis/in_memory.rs"]
 mod in_memory;
+#[path = "../synthesis/sheets.rs"]
+mod sheets;
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use rand::{Rng, SeedableRng};
 
-use in_memory::{InMemory, SynthesizedImage};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::synthesis::{self, GatherVariant, Outputs, SourceMapEntry, SynthesisOptions};
+use in_memory::{Former, InMemory, SynthesizedImage};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, View, Warp};
+use yoro::synthesis::{self, Edges, GatherVariant, Outputs, SourceMapEntry, Strips, SynthesisOptions};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
 
@@ -118,6 +120,77 @@ impl Gl {
     pub fn run(&self, variant: usize, picture: &Picture) -> SynthesizedImage {
         let Picture { warp, rgba, depth } = picture;
         self.offline[variant].borrow_mut().run(rgba, depth, warp)
+    }
+}
+
+/// A rendered eye and a history of the other one, all rows from the bottom.
+pub struct RecalledScene {
+    pub what: String,
+    pub source: Picture,
+    pub target: View,
+    pub former: sheets::Picture,
+    pub former_size: [u32; 2],
+    /// From the bottom. There are as many from the top: they divide the rows.
+    pub strips: Vec<Option<View>>,
+}
+
+impl RecalledScene {
+    /// Of images whose row 0 is at the top.
+    pub fn strips_from_top(&self) -> Strips {
+        Strips::new(&self.target, &self.strips.iter().rev().copied().collect::<Vec<_>>())
+    }
+}
+
+/// Histories of a moving head, one strip of four missing, of the whole size and of half.
+pub fn recalled_scenes() -> Vec<RecalledScene> {
+    let of = |(dominant, convention, scale)| {
+        let at = |head| sheets::eyes(head, dominant, 0.063, convention).synthesis(GuardBand::None).unwrap();
+        let views = at(Pose::IDENTITY);
+        let size = sheets::SIZE.map(|n| n / scale);
+        let strip = |i: u32| (i != 2).then(|| View { size, ..at(sheets::moved(i as f32 - 5.0)).target });
+        let strips: Vec<_> = (0..4).map(strip).collect();
+        let sheets::Picture { rgba, depth } = sheets::render(&views.source, &sheets::SHEETS);
+        RecalledScene {
+            what: format!("{dominant:?} dominant, {convention:?}, 1/{scale}"),
+            source: Picture { warp: views.warp, rgba, depth },
+            target: views.target,
+            former: sheets::in_strips(&strips, &View { size, ..views.target }),
+            former_size: size,
+            strips,
+        }
+    };
+    [
+        (Eye::Right, DepthConvention::Standard, 1),
+        (Eye::Left, DepthConvention::Reversed, 1),
+        (Eye::Right, DepthConvention::Reversed, 2),
+    ]
+    .map(of)
+    .into()
+}
+
+impl Gl {
+    /// A pipeline that may have a history.
+    pub fn recalling(&self, edges: Edges, variant: usize) -> InMemory {
+        let gl = self.headless.gl();
+        let options = SynthesisOptions { edges, history: true, ..SynthesisOptions::default() };
+        let pipeline: Box<dyn synthesis::Synthesis> = match edges {
+            Edges::Hard => Box::new(
+                synthesis::Gather::with_variant_of(gl, in_memory::OUTPUTS, VARIANTS[variant], &options)
+                    .unwrap(),
+            ),
+            _ => synthesis::create(gl, &options, in_memory::OUTPUTS).unwrap(),
+        };
+        InMemory::new(gl, pipeline)
+    }
+}
+
+impl InMemory {
+    /// The other eye of a scene with its history, and without.
+    pub fn both(&mut self, scene: &RecalledScene) -> [Vec<u8>; 2] {
+        let RecalledScene { source: Picture { warp, rgba, depth }, former, former_size, .. } = scene;
+        let strips = Strips::new(&scene.target, &scene.strips);
+        let former = Former { rgba: &former.rgba, depth: &former.depth, size: *former_size, strips };
+        [Some(former), None].map(|history| self.recall(rgba, depth, warp, history).rgba)
     }
 }
 

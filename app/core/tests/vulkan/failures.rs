@@ -4,9 +4,11 @@ use std::ffi::{CStr, c_void};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
 
-use yoro::synthesis::Edges;
+use yoro::synthesis::{Edges, Strips};
 use yoro::vulkan::ash::{self, vk};
-use yoro::vulkan::{Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError};
+use yoro::vulkan::{
+    Frame, Gather, HistoryImages, Host, ImageState, Options, SourceImages, TargetImages, VulkanError,
+};
 
 use super::harness::{Gpu, Rendering, with_gpu};
 use super::{Setup, warps};
@@ -58,8 +60,14 @@ failing! {
     c"vkAllocateMemory" allocate_memory(
         device: vk::Device, info: *const vk::MemoryAllocateInfo<'_>, a: Callbacks<'_>, made: *mut vk::DeviceMemory
     );
+    c"vkBindBufferMemory" bind_buffer_memory(
+        device: vk::Device, buffer: vk::Buffer, memory: vk::DeviceMemory, offset: vk::DeviceSize
+    );
     c"vkBindImageMemory" bind_image_memory(
         device: vk::Device, image: vk::Image, memory: vk::DeviceMemory, offset: vk::DeviceSize
+    );
+    c"vkCreateBuffer" create_buffer(
+        device: vk::Device, info: *const vk::BufferCreateInfo<'_>, a: Callbacks<'_>, made: *mut vk::Buffer
     );
     c"vkCreateDescriptorPool" create_descriptor_pool(
         device: vk::Device, info: *const vk::DescriptorPoolCreateInfo<'_>, a: Callbacks<'_>,
@@ -112,9 +120,10 @@ fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     let samples = if edges == Edges::Multisample { 4 } else { 1 };
     let sample_color = gpu.multisampled(setup.color, warp.source_size, samples);
     let depth = gpu.multisampled(vk::Format::D32_SFLOAT, warp.source_size, samples);
+    let former = [setup.color, vk::Format::D32_SFLOAT].map(|format| gpu.image(format, [16, 16], 1));
     let target = gpu.image(setup.target, warp.target_size, 1);
     let (before, after) = (ImageState::DISCARDED, ImageState::SAMPLED);
-    let options = Options { timed_frames: 1, edges, ..setup.options(&[warp]) };
+    let options = Options { timed_frames: 1, edges, history: true, ..setup.options(&[warp]) };
     // SAFETY: valid handles; everything is executed before it is dropped.
     unsafe {
         let mut gather = Gather::new(host, &options)?;
@@ -123,13 +132,24 @@ fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
             depth: depth.layer(0, before, after),
             sample_color: (samples > 1).then(|| sample_color.layer(0, before, after)),
             size: warp.source_size,
+            history: Some(HistoryImages {
+                color: former[0].layer(0, before, after),
+                depth: former[1].layer(0, before, after),
+                size: [16, 16],
+            }),
         })?;
         let target = gather.register_target(&TargetImages {
             color: target.layer(0, before, after),
             depth: None,
             size: warp.target_size,
         })?;
-        let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+        let frame = Frame {
+            source,
+            source_origin: [0, 0],
+            target,
+            target_origin: [0, 0],
+            history: Some(Strips::NONE),
+        };
         gpu.run(|commands| gather.record(commands, &frame, &warp))?;
         gather.pass_times()?;
     }
@@ -226,6 +246,7 @@ fn a_format_that_the_device_lacks_is_refused() {
                 depth: depth.layer(0, sampled, sampled),
                 sample_color: None,
                 size: warp.source_size,
+                history: None,
             };
             gather.register_source(&source).unwrap();
             source.depth.format = vk::Format::D24_UNORM_S8_UINT;

@@ -3,6 +3,7 @@
 mod against_opengl;
 mod failures;
 mod harness;
+mod history;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::{Cell, RefCell};
@@ -18,7 +19,8 @@ use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp
 use yoro::synthesis::{self, Outputs, SynthesisOptions};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
-    Frame, Gather, GatherVariant, ImageState, Options, SourceImages, TargetImages, Use, Uses, VulkanError,
+    Frame, Gather, GatherVariant, HistoryImages, ImageState, Options, SourceImages, TargetImages, Use, Uses,
+    VulkanError,
 };
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Destination};
@@ -150,6 +152,7 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
                 depth: image(&depth, setup.source_layer, setup.states[1]),
                 sample_color: None,
                 size: source_image,
+                history: None,
             })
             .unwrap();
         let target_id = gather
@@ -161,7 +164,7 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
                 size: target_image,
             })
             .unwrap();
-        let frame = Frame { source, source_origin, target: target_id, target_origin };
+        let frame = Frame { source, source_origin, target: target_id, target_origin, history: None };
         gpu.run(|commands| gather.record(commands, &frame, warp).unwrap());
         gather.release_source(source);
         gather.release_target(target_id);
@@ -428,7 +431,13 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
                 });
                 let ids = images.each_ref().map(|(color, depth, target)| {
                     let [color, depth] = [color, depth].map(|image| image.layer(0, sampled, sampled));
-                    let source = SourceImages { color, depth, sample_color: None, size: warp.source_size };
+                    let source = SourceImages {
+                        color,
+                        depth,
+                        sample_color: None,
+                        size: warp.source_size,
+                        history: None,
+                    };
                     let color = target.layer(0, drawn, drawn);
                     let target = TargetImages { color, depth: None, size: warp.target_size };
                     (gather.register_source(&source).unwrap(), gather.register_target(&target).unwrap())
@@ -438,7 +447,13 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
                     // The second picture over the first, and the first again.
                     for (source, target) in [(0, 0), (1, 0), (0, 1), (1, 0)] {
                         let (source, target) = (ids[source].0, ids[target].1);
-                        let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+                        let frame = Frame {
+                            source,
+                            source_origin: [0, 0],
+                            target,
+                            target_origin: [0, 0],
+                            history: None,
+                        };
                         gather.record(commands, &frame, &warp).unwrap();
                     }
                     assert_eq!(allocations(), allocated, "recording allocates");
@@ -477,12 +492,13 @@ fn uses_differ_from_frame_to_frame() {
             let mut gather = Gather::new(&gpu.host(), &Setup::PLAIN.options(&[warp])).unwrap();
             // In no frame is one of them in the state of its registration.
             let [color, depth] = [&color, &depth].map(|image| image.layer(0, sampled, sampled));
-            let source = SourceImages { color, depth, sample_color: None, size: warp.source_size };
+            let source =
+                SourceImages { color, depth, sample_color: None, size: warp.source_size, history: None };
             let targets =
                 TargetImages { color: target.layer(0, drawn, drawn), depth: None, size: warp.target_size };
             let source = gather.register_source(&source).unwrap();
             let target = gather.register_target(&targets).unwrap();
-            let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+            let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None };
             let free = nothing(vk::ImageLayout::GENERAL);
             let source_depth = nothing(vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
             for [before, after, depth_after] in [[WRITTEN, free, source_depth], [free, READ, READ]] {
@@ -493,6 +509,8 @@ fn uses_differ_from_frame_to_frame() {
                     source_color: own,
                     source_depth: of_depth,
                     source_sample_color: own,
+                    history_color: own,
+                    history_depth: own,
                     target_color: own,
                     target_depth: own,
                 };
@@ -558,7 +576,11 @@ fn mistakes_are_refused() {
                 depth: sampled(&depth),
                 sample_color: None,
                 size: warp.source_size,
+                history: None,
             };
+            let former = HistoryImages { color: sampled(&color), depth: sampled(&depth), size: [w, h] };
+            let with_history = SourceImages { history: Some(former), ..source };
+            assert_eq!(gather.register_source(&with_history), Err(VulkanError::History));
             let no_depth = SourceImages { depth: sampled(&color), ..source };
             let refused = gather.register_source(&no_depth).unwrap_err();
             assert!(
@@ -572,7 +594,7 @@ fn mistakes_are_refused() {
 
             let source = gather.register_source(&source).unwrap();
             let target = gather.register_target(&target).unwrap();
-            let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] };
+            let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None };
             gpu.run(|commands| {
                 let mut record = |frame, warp: Warp| gather.record(commands, &frame, &warp).unwrap_err();
                 let wide = Warp { source_size: [w + 1, h], ..warp };

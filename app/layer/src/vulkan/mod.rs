@@ -174,6 +174,7 @@ impl Synthesizer {
                 depth: layer_image(job.depth, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT),
                 sample_color: None,
                 size: job.color.size,
+                history: None,
             })
         };
         let id = id.map_err(Reason::Synthesis)?;
@@ -275,7 +276,13 @@ impl synthesizer::Synthesizer for Synthesizer {
             let (source, target) = (self.source(job)?, self.target(job)?);
             self.begin(slot)?;
             let gather = made(&mut self.gather)?;
-            let frame = Frame { source, source_origin: job.source.origin, target, target_origin: [0, 0] };
+            let frame = Frame {
+                source,
+                source_origin: job.source.origin,
+                target,
+                target_origin: [0, 0],
+                history: None,
+            };
             gather.record(slot.commands, &frame, job.warp).map_err(Reason::Synthesis)?;
             self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
             self.submit(slot)?;

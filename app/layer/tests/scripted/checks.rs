@@ -118,12 +118,13 @@ pub fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habi
             depth: painted.depth().layer(0, READ, READ),
             sample_color: None,
             size: painted.picture.size,
+            history: None,
         };
         let source = gather.register_source(&source).unwrap();
         let color = target.layer(0, ImageState::DISCARDED, WRITTEN);
         let target = TargetImages { color, depth: None, size: plan.warp.target_size };
         let target = gather.register_target(&target).unwrap();
-        let frame = Frame { source, source_origin: [0; 2], target, target_origin: [0; 2] };
+        let frame = Frame { source, source_origin: [0; 2], target, target_origin: [0; 2], history: None };
         gpu.run(|commands| gather.record(commands, &frame, &plan.warp).unwrap());
     }
     let (want, got) = (target.read_rgba8(0, WRITTEN), seen.picture(habits.dominant().other().index()));
