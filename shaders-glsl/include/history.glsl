@@ -33,9 +33,9 @@ bool recall(vec2 pixel, float front, float origin, int row, inout vec4 color, in
     vec4 seen;
     int strip;
     for (int i = 0; i < 2; ++i) {
-        strip = clamp(int(guess.y / rows), 0, history_strips - 1);
+        strip = int(clamp(guess.y / rows, 0.0, float(history_strips - 1)));
         seen = to_history[strip] * vec4(pixel, depth, 1.0);
-        guess = seen.xy / seen.w;
+        guess = seen.w > 0.0 ? seen.xy / seen.w : guess;
     }
     bool inside = all(greaterThanEqual(guess, vec2(0.0))) && all(lessThan(guess, size));
     if (!(seen.w > 0.0 && inside && int(guess.y / rows) == strip)) {

@@ -84,32 +84,58 @@ impl Checks {
     }
 
     fn source(&self, source: &Source) -> Result<(), WgpuError> {
-        let filtered =
-            |features: TextureFormatFeatures| features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
-        self.format(source.color.texture().format(), "a source's colour", filtered)?;
-        let depth = source.depth.texture().format();
-        let is_float =
-            matches!(depth, TextureFormat::R32Float | TextureFormat::R16Unorm | TextureFormat::R16Float);
-        if !is_float && !depth.has_depth_aspect() {
-            return Err(WgpuError::Format { format: depth, role: "a source's depth" });
-        }
         let multisample = self.options.edges == Edges::Multisample;
         if source.sample_color.is_some() && !multisample {
             return Err(WgpuError::SampleColors);
         }
+        if source.history.is_some() && !self.options.history {
+            return Err(WgpuError::History);
+        }
         let samples = if multisample { self.options.samples } else { 1 };
-        let textures = [
-            ("a source's colour", Some(source.color), 1),
-            ("a source's depth", Some(source.depth), samples),
-            ("the colour of samples", source.sample_color, samples),
-        ];
-        for (what, view, samples) in textures {
-            let Some(view) = view else { continue };
-            check_texture(what, view, TextureUsages::TEXTURE_BINDING, samples, source.color)?;
-            if self.opengl && view.texture().depth_or_array_layers() > 1 {
-                let (what, instead) = ("a layer of a texture array", "a texture of one layer");
-                return Err(WgpuError::OpenGl { what, instead });
-            }
+        let roles = ["a source's colour", "a source's depth"];
+        self.sampled([source.color, source.depth], roles, samples)?;
+        if let Some(colors) = source.sample_color {
+            self.texture("the colour of samples", colors, samples, source.color)?;
+        }
+        if let Some(history) = &source.history {
+            let roles = ["a history's colour", "a history's depth"];
+            self.sampled([history.color, history.depth], roles, 1)?;
+        }
+        Ok(())
+    }
+
+    /// Checks colour that is filtered, and depth of one size.
+    fn sampled(
+        &self,
+        [color, depth]: [&TextureView; 2],
+        [color_role, role]: [&'static str; 2],
+        samples: u32,
+    ) -> Result<(), WgpuError> {
+        let filtered =
+            |features: TextureFormatFeatures| features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
+        self.format(color.texture().format(), color_role, filtered)?;
+        let format = depth.texture().format();
+        let is_float =
+            matches!(format, TextureFormat::R32Float | TextureFormat::R16Unorm | TextureFormat::R16Float);
+        if !is_float && !format.has_depth_aspect() {
+            return Err(WgpuError::Format { format, role });
+        }
+        self.texture(color_role, color, 1, color)?;
+        self.texture(role, depth, samples, color)
+    }
+
+    /// Checks a texture to read, beside a colour of its size.
+    fn texture(
+        &self,
+        what: &'static str,
+        view: &TextureView,
+        samples: u32,
+        color: &TextureView,
+    ) -> Result<(), WgpuError> {
+        check_texture(what, view, TextureUsages::TEXTURE_BINDING, samples, color)?;
+        if self.opengl && view.texture().depth_or_array_layers() > 1 {
+            let (what, instead) = ("a layer of a texture array", "a texture of one layer");
+            return Err(WgpuError::OpenGl { what, instead });
         }
         Ok(())
     }

@@ -2,13 +2,13 @@
 
 use wgpu::{CommandEncoder, Device, DeviceType, Queue, TextureView};
 use yoro::eyes::Warp;
-use yoro::synthesis::{Places, Uniforms, tiles};
+use yoro::synthesis::{Places, Strips, Uniforms, tiles};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
 use crate::passes::{Drawn, Groups, Passes};
 use crate::uniforms::UniformRing;
-use crate::{GatherVariant, Options, Source, Target, WgpuError};
+use crate::{GatherVariant, History, Options, Source, Target, WgpuError};
 
 /// The bindings of a source that was not used for so many calls are dropped, and with them its textures.
 const KEPT_CALLS: u64 = 32;
@@ -21,7 +21,9 @@ const KEPT_CALLS: u64 = 32;
 pub struct Gather {
     checks: Checks,
     passes: Passes,
-    uniforms: UniformRing,
+    uniforms: UniformRing<Uniforms>,
+    /// For sources that may have a history.
+    strips: Option<UniformRing<Strips>>,
     buffers: Option<Buffers>,
     kept: Vec<Kept>,
     calls: u64,
@@ -29,8 +31,8 @@ pub struct Gather {
 
 /// What was made for a source.
 struct Kept {
-    /// Colour, depth, and colour of the samples.
-    views: [Option<TextureView>; 3],
+    /// Colour, depth, colour of the samples; colour and depth of a history.
+    views: [Option<TextureView>; 5],
     groups: Groups,
     /// The number of the last call that used it.
     used: u64,
@@ -62,9 +64,14 @@ impl Gather {
         variant: GatherVariant,
     ) -> Result<Gather, WgpuError> {
         let checks = Checks::new(device, options)?;
-        let (passes, uniforms) =
-            made(device, || (Passes::new(device, options, variant), UniformRing::new(device)))?;
-        Ok(Gather { checks, passes, uniforms, buffers: None, kept: Vec::new(), calls: 0 })
+        let (passes, uniforms, strips) = made(device, || {
+            (
+                Passes::new(device, options, variant),
+                UniformRing::new(device, "yoro uniforms"),
+                options.history.then(|| UniformRing::new(device, "yoro strips")),
+            )
+        })?;
+        Ok(Gather { checks, passes, uniforms, strips, buffers: None, kept: Vec::new(), calls: 0 })
     }
 
     /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Gather::record`] does so when it
@@ -114,6 +121,10 @@ impl Gather {
             part: true,
         };
         let uniforms = self.uniforms.write(queue, &Uniforms::of_part(&warp.rows_from_top(), &places))?;
+        let turned =
+            |history: History| history.strips.rows_turned(warp.target_size[1], size(history.color)[1]);
+        let strips = source.history.map_or(Strips::NONE, turned);
+        let strips = self.strips.as_mut().map(|ring| ring.write(queue, &strips)).transpose()?;
         self.prepare(device, warp.source_size, warp.target_size)?;
         self.calls += 1;
         let index = self.bound(device, source);
@@ -128,19 +139,21 @@ impl Gather {
         };
         let sizes =
             [warp.source_size, tiles(warp.source_size), tiles([warp.target_size[0], warp.source_size[1]])];
-        self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, uniforms, &drawn);
+        self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, uniforms, strips, &drawn);
         Ok(())
     }
 
     /// Returns the place of a source's bindings among those that are kept.
     fn bound(&mut self, device: &Device, source: &Source) -> usize {
         let calls = self.calls;
-        let views = [Some(source.color), Some(source.depth), source.sample_color];
+        let former = source.history.map(|history| [history.color, history.depth]);
+        let [former_color, former_depth] = former.map_or([None; 2], |views| views.map(Some));
+        let views = [Some(source.color), Some(source.depth), source.sample_color, former_color, former_depth];
         self.kept.retain(|kept| kept.used + KEPT_CALLS >= calls);
         let found = self.kept.iter().position(|kept| kept.views.each_ref().map(Option::as_ref) == views);
         let index = found.unwrap_or(self.kept.len());
         if let (None, Some(buffers)) = (found, &self.buffers) {
-            let groups = self.passes.groups(device, source, buffers, &self.uniforms);
+            let groups = self.passes.groups(device, source, buffers, &self.uniforms, self.strips.as_ref());
             self.kept.push(Kept { views: views.map(|view| view.cloned()), groups, used: calls });
         }
         self.kept[index].used = calls;

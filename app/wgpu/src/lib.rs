@@ -39,7 +39,7 @@ mod uniforms;
 pub use wgpu;
 use wgpu::{TextureFormat, TextureUsages, TextureView};
 pub use yoro;
-use yoro::synthesis::Edges;
+use yoro::synthesis::{Edges, Strips};
 
 pub use gather::Gather;
 #[doc(hidden)]
@@ -130,6 +130,9 @@ pub enum WgpuError {
         /// Those of colour.
         color: [u32; 2],
     },
+    /// A source has a history, but [`Options::history`] is off.
+    #[error("a history is for pipelines made with one; set Options::history, or give none")]
+    History,
     /// A rectangle reaches beyond its image.
     #[error(
         "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
@@ -176,16 +179,19 @@ pub struct Options {
     pub edges: Edges,
     /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 4, or 2 where the device has that.
     pub samples: u32,
+    /// True if sources may have a history ([`Source::history`]).
+    pub history: bool,
 }
 
 impl Default for Options {
-    /// Rgba8Unorm without depth, hard edges.
+    /// Rgba8Unorm without depth, hard edges, no history.
     fn default() -> Options {
         Options {
             color_format: TextureFormat::Rgba8Unorm,
             depth_format: None,
             edges: Edges::Hard,
             samples: 4,
+            history: false,
         }
     }
 }
@@ -205,12 +211,29 @@ pub struct Source<'a> {
     pub sample_color: Option<&'a TextureView>,
     /// Upper left corner of the rendered rectangle in the textures, in pixels.
     pub origin: [u32; 2],
+    /// What the other eye has seen, for pipelines with [`Options::history`].
+    pub history: Option<History<'a>>,
+}
+
+/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there. Views of
+/// one layer and one mip level, the largest, of 2-D textures of one size, any, with the usage TEXTURE_BINDING.
+#[derive(Clone, Copy, Debug)]
+pub struct History<'a> {
+    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes afterwards. In
+    /// the encoding of the source's.
+    pub color: &'a TextureView,
+    /// Depth in one of the formats of [`Source::depth`], one value a pixel, with the planes and encoding of the source's.
+    pub depth: &'a TextureView,
+    /// The views of its strips, from the top on, as [`Strips::new`] returns them: its rows, which are counted from the bottom,
+    /// are turned inside.
+    pub strips: Strips,
 }
 
 impl<'a> Source<'a> {
-    /// Returns a source that begins at the upper left corner of two textures, without the colours of samples.
+    /// Returns a source that begins at the upper left corner of two textures, without the colours of samples or
+    /// a history.
     pub fn new(color: &'a TextureView, depth: &'a TextureView) -> Source<'a> {
-        Source { color, depth, sample_color: None, origin: [0, 0] }
+        Source { color, depth, sample_color: None, origin: [0, 0], history: None }
     }
 }
 

@@ -2,14 +2,14 @@
 
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor,
-    BindGroupLayoutEntry, BindingResource, BindingType, BufferBinding, BufferBindingType, ColorTargetState,
-    CommandEncoder, CompareFunction, DepthStencilState, Device, FilterMode, FragmentState, LoadOp,
-    Operations, PipelineLayoutDescriptor, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+    BindGroupLayoutEntry, BindingResource, BindingType, BufferBindingType, ColorTargetState, CommandEncoder,
+    CompareFunction, DepthStencilState, Device, FilterMode, FragmentState, LoadOp, Operations,
+    PipelineLayoutDescriptor, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
     RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, Sampler, SamplerBindingType,
     SamplerDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StoreOp,
     TextureFormat, TextureSampleType, TextureView, TextureViewDimension, VertexState,
 };
-use yoro::synthesis::Edges;
+use yoro::synthesis::{Edges, Strips, Uniforms};
 
 use crate::buffers::{Buffers, layer_formats, map_format};
 use crate::shaders::{self, GatherVariant};
@@ -32,7 +32,7 @@ pub(crate) struct Passes {
 /// A pipeline, and the bindings that its shaders read.
 struct Pass {
     label: &'static str,
-    bindings: &'static [u32],
+    bindings: Vec<u32>,
     layout: BindGroupLayout,
     pipeline: RenderPipeline,
 }
@@ -48,6 +48,9 @@ const SAMPLE_COLOR: u32 = 6;
 const UNIFORMS: u32 = 7;
 const NEAREST: u32 = 8;
 const LINEAR: u32 = 9;
+const HISTORY_DEPTH: u32 = 10;
+const HISTORY_COLOR: u32 = 11;
+const STRIPS: u32 = 12;
 
 /// What is bound in the passes for one source.
 pub(crate) struct Groups {
@@ -60,7 +63,7 @@ pub(crate) struct Groups {
 
 impl Passes {
     pub(crate) fn new(device: &Device, options: &Options, variant: GatherVariant) -> Passes {
-        let Options { color_format, depth_format, edges, samples } = *options;
+        let Options { color_format, depth_format, edges, samples, history } = *options;
         let module = |label, text: &'static str| {
             let source = ShaderSource::Wgsl(text.into());
             device.create_shader_module(ShaderModuleDescriptor { label: Some(label), source })
@@ -68,7 +71,8 @@ impl Passes {
         let screen = module("yoro screen", shaders::SCREEN);
         let march_vertex = module("yoro march", shaders::MARCH_VERTEX);
         let hard = edges == Edges::Hard;
-        let make = |label, text, bindings, formats: &[TextureFormat]| {
+        let make = |label, text, bindings: &[u32], formats: &[TextureFormat]| {
+            let bindings = bindings.to_vec();
             let pass = PassMaker { device, options, label, bindings };
             pass.make(&screen, &module(label, text), formats, None)
         };
@@ -81,6 +85,7 @@ impl Passes {
             (true, false) => &[DEPTH, COLOR, SPAN_MAP, UNIFORMS, LINEAR],
             (false, _) => &[COLOR, SPAN_MAP, LAYERS, BACKGROUND, UNIFORMS, LINEAR],
         };
+        let recall: &[u32] = if history { &[HISTORY_DEPTH, HISTORY_COLOR, STRIPS] } else { &[] };
         let sampler = |label, filter| {
             device.create_sampler(&SamplerDescriptor {
                 label: Some(label),
@@ -93,14 +98,15 @@ impl Passes {
             split: shaders::split(edges, samples)
                 .map(|text| make("yoro split", text, &[DEPTH, COLOR, UNIFORMS], &layers)),
             split_samples: (edges == Edges::Multisample).then(|| {
-                let bindings = &[DEPTH, SAMPLE_COLOR, UNIFORMS];
-                make("yoro split", shaders::split_samples(samples), bindings, &layers)
+                let bindings = [DEPTH, SAMPLE_COLOR, UNIFORMS];
+                make("yoro split", shaders::split_samples(samples), &bindings, &layers)
             }),
             tiles: make("yoro tiles", shaders::tiles(edges, variant), tile_bindings, &map),
             spans: make("yoro spans", shaders::spans(edges, variant), &[TILE_MAP, UNIFORMS], &map),
             march: {
-                let text = shaders::march(edges, variant, depth_format.is_some());
-                let pass = PassMaker { device, options, label: "yoro march", bindings: march_bindings };
+                let text = shaders::march(edges, variant, depth_format.is_some(), history);
+                let bindings = [march_bindings, recall].concat();
+                let pass = PassMaker { device, options, label: "yoro march", bindings };
                 pass.make(&march_vertex, &module("yoro march", text), &[color_format], depth_format)
             },
             nearest: sampler("yoro nearest", FilterMode::Nearest),
@@ -114,7 +120,8 @@ impl Passes {
         device: &Device,
         source: &Source,
         buffers: &Buffers,
-        uniforms: &UniformRing,
+        uniforms: &UniformRing<Uniforms>,
+        strips: Option<&UniformRing<Strips>>,
     ) -> Groups {
         let group = |pass: &Pass| {
             let resource = |&binding: &u32| {
@@ -127,17 +134,17 @@ impl Passes {
                     LAYERS => layer(0),
                     BACKGROUND => layer(1),
                     SAMPLE_COLOR => source.sample_color,
+                    // Without a history nothing is looked up there.
+                    HISTORY_DEPTH => source.history.map_or(Some(source.color), |history| Some(history.depth)),
+                    HISTORY_COLOR => source.history.map_or(Some(source.color), |history| Some(history.color)),
                     _ => None,
                 };
                 let resource = match (binding, texture) {
                     (_, Some(view)) => BindingResource::TextureView(view),
                     (NEAREST, _) => BindingResource::Sampler(&self.nearest),
                     (LINEAR, _) => BindingResource::Sampler(&self.linear),
-                    _ => BindingResource::Buffer(BufferBinding {
-                        buffer: &uniforms.buffer,
-                        offset: 0,
-                        size: Some(uniforms::SIZE),
-                    }),
+                    (STRIPS, _) => strips.map_or(uniforms.binding(), UniformRing::binding),
+                    _ => uniforms.binding(),
                 };
                 BindGroupEntry { binding, resource }
             };
@@ -180,21 +187,24 @@ impl Passes {
         buffers: &Buffers,
         [source_size, tile_size, span_size]: [[u32; 2]; 3],
         uniforms: u32,
+        strips: Option<u32>,
         target: &Drawn,
     ) {
         let all = |[width, height]: [u32; 2]| [0, 0, width, height];
         let split = self.split(groups.with_samples).zip(groups.split.as_ref());
         if let (Some((pass, group)), Some(layers)) = (split, &buffers.layers) {
             let colors = layers.each_ref().map(|view| Some(color(view, true)));
-            pass.record(encoder, group, uniforms, &colors, None, all(source_size));
+            pass.record(encoder, group, &[uniforms], &colors, None, all(source_size));
         }
         let tiles = [Some(color(&buffers.tiles, true))];
-        self.tiles.record(encoder, &groups.tiles, uniforms, &tiles, None, all(tile_size));
+        self.tiles.record(encoder, &groups.tiles, &[uniforms], &tiles, None, all(tile_size));
         let spans = [Some(color(&buffers.spans, true))];
-        self.spans.record(encoder, &groups.spans, uniforms, &spans, None, all(span_size));
+        self.spans.record(encoder, &groups.spans, &[uniforms], &spans, None, all(span_size));
         let colors = [Some(color(target.color, target.whole))];
         let depth = target.depth.map(|view| depth(view, target.whole));
-        self.march.record(encoder, &groups.march, uniforms, &colors, depth, target.area);
+        let places = [uniforms, strips.unwrap_or(0)];
+        let places = &places[..1 + usize::from(strips.is_some())];
+        self.march.record(encoder, &groups.march, places, &colors, depth, target.area);
     }
 }
 
@@ -221,7 +231,8 @@ impl Pass {
         &self,
         encoder: &mut CommandEncoder,
         group: &BindGroup,
-        uniforms: u32,
+        // Of the blocks in their buffers.
+        places: &[u32],
         colors: &[Option<RenderPassColorAttachment>],
         depth: Option<RenderPassDepthStencilAttachment>,
         [x, y, width, height]: [u32; 4],
@@ -235,7 +246,7 @@ impl Pass {
         pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
         pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, group, &[uniforms]);
+        pass.set_bind_group(0, group, places);
         pass.draw(0..3, 0..1);
     }
 }
@@ -245,7 +256,7 @@ struct PassMaker<'a> {
     device: &'a Device,
     options: &'a Options,
     label: &'static str,
-    bindings: &'static [u32],
+    bindings: Vec<u32>,
 }
 
 impl PassMaker<'_> {
@@ -256,7 +267,7 @@ impl PassMaker<'_> {
         formats: &[TextureFormat],
         depth_format: Option<TextureFormat>,
     ) -> Pass {
-        let PassMaker { device, label, bindings, .. } = *self;
+        let PassMaker { device, label, ref bindings, .. } = *self;
         let entries: Vec<_> = bindings.iter().map(|&binding| self.layout_entry(binding)).collect();
         let layout = device
             .create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
@@ -293,7 +304,7 @@ impl PassMaker<'_> {
             multiview_mask: None,
             cache: None,
         });
-        Pass { label, bindings, layout, pipeline }
+        Pass { label, bindings: bindings.clone(), layout, pipeline }
     }
 
     fn layout_entry(&self, binding: u32) -> BindGroupLayoutEntry {
@@ -306,15 +317,20 @@ impl PassMaker<'_> {
         };
         let ty = match binding {
             // What depth formats and float formats have in common.
-            DEPTH | SAMPLE_COLOR | BACKGROUND => texture(TextureSampleType::Float { filterable: false }),
-            COLOR => texture(TextureSampleType::Float { filterable: true }),
+            DEPTH | SAMPLE_COLOR | BACKGROUND | HISTORY_DEPTH => {
+                texture(TextureSampleType::Float { filterable: false })
+            }
+            COLOR | HISTORY_COLOR => texture(TextureSampleType::Float { filterable: true }),
             TILE_MAP | SPAN_MAP | LAYERS => texture(TextureSampleType::Uint),
             NEAREST => BindingType::Sampler(SamplerBindingType::NonFiltering),
             LINEAR => BindingType::Sampler(SamplerBindingType::Filtering),
             _ => BindingType::Buffer {
                 ty: BufferBindingType::Uniform,
                 has_dynamic_offset: true,
-                min_binding_size: Some(uniforms::SIZE),
+                min_binding_size: Some(match binding {
+                    STRIPS => uniforms::size::<Strips>(),
+                    _ => uniforms::size::<Uniforms>(),
+                }),
             },
         };
         let visibility =

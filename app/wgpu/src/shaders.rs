@@ -51,17 +51,24 @@ pub(crate) fn spans(edges: Edges, variant: GatherVariant) -> &'static str {
     }
 }
 
-/// Returns the last pass.
-pub(crate) fn march(edges: Edges, variant: GatherVariant, depth: bool) -> &'static str {
-    match (edges, variant, depth) {
-        (Edges::Hard, GatherVariant::Software, false) => include_str!("wgsl/march.wgsl"),
-        (Edges::Hard, GatherVariant::Software, true) => include_str!("wgsl/march-depth.wgsl"),
-        (Edges::Hard, GatherVariant::ShortWay, false) => include_str!("wgsl/march-short.wgsl"),
-        (Edges::Hard, GatherVariant::ShortWay, true) => include_str!("wgsl/march-short-depth.wgsl"),
-        (Edges::Multisample, _, false) => include_str!("wgsl/layer-march-multisample.wgsl"),
-        (Edges::Multisample, _, true) => include_str!("wgsl/layer-march-multisample-depth.wgsl"),
-        (_, _, false) => include_str!("wgsl/layer-march.wgsl"),
-        (_, _, true) => include_str!("wgsl/layer-march-depth.wgsl"),
+/// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
+pub(crate) fn march(edges: Edges, variant: GatherVariant, depth: bool, history: bool) -> &'static str {
+    /// The four modules of a source's kind.
+    macro_rules! of {
+        ($name:literal) => {
+            match (depth, history) {
+                (false, false) => include_str!(concat!("wgsl/", $name, ".wgsl")),
+                (true, false) => include_str!(concat!("wgsl/", $name, "-depth.wgsl")),
+                (false, true) => include_str!(concat!("wgsl/", $name, "-history.wgsl")),
+                (true, true) => include_str!(concat!("wgsl/", $name, "-depth-history.wgsl")),
+            }
+        };
+    }
+    match (edges, variant) {
+        (Edges::Hard, GatherVariant::Software) => of!("march"),
+        (Edges::Hard, GatherVariant::ShortWay) => of!("march-short"),
+        (Edges::Multisample, _) => of!("layer-march-multisample"),
+        _ => of!("layer-march"),
     }
 }
 

@@ -1,7 +1,11 @@
-//! The uniforms of several calls in one buffer.
+//! The blocks of several calls in one buffer.
 
-use wgpu::{Buffer, BufferDescriptor, BufferSize, BufferUsages, Device, Queue};
-use yoro::synthesis::Uniforms;
+use std::marker::PhantomData;
+
+use bytemuck::NoUninit;
+use wgpu::{
+    BindingResource, Buffer, BufferBinding, BufferDescriptor, BufferSize, BufferUsages, Device, Queue,
+};
 
 use crate::WgpuError;
 
@@ -9,36 +13,44 @@ use crate::WgpuError;
 /// submission begins, and must not be overwritten before.
 pub(crate) const CALLS: u64 = 64;
 
-/// Bytes of one call's uniforms.
-pub(crate) const SIZE: BufferSize =
-    BufferSize::new(size_of::<Uniforms>() as u64).expect("the block has members");
-
-/// A buffer whose places are used in turn.
-pub(crate) struct UniformRing {
-    pub(crate) buffer: Buffer,
-    stride: u64,
-    next: u64,
+/// The bytes of a block.
+pub(crate) const fn size<T>() -> BufferSize {
+    BufferSize::new(size_of::<T>() as u64).expect("the block has members")
 }
 
-impl UniformRing {
-    pub(crate) fn new(device: &Device) -> UniformRing {
+/// A buffer of blocks whose places are used in turn.
+pub(crate) struct UniformRing<T> {
+    buffer: Buffer,
+    stride: u64,
+    next: u64,
+    block: PhantomData<T>,
+}
+
+impl<T: NoUninit> UniformRing<T> {
+    pub(crate) fn new(device: &Device, label: &'static str) -> UniformRing<T> {
         let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
-        let stride = SIZE.get().next_multiple_of(alignment);
+        let stride = size::<T>().get().next_multiple_of(alignment);
         let buffer = device.create_buffer(&BufferDescriptor {
-            label: Some("yoro uniforms"),
+            label: Some(label),
             size: stride * CALLS,
             usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        UniformRing { buffer, stride, next: 0 }
+        UniformRing { buffer, stride, next: 0, block: PhantomData }
     }
 
-    /// Writes the uniforms of a call, and returns their place in the buffer.
-    pub(crate) fn write(&mut self, queue: &Queue, uniforms: &Uniforms) -> Result<u32, WgpuError> {
+    /// Writes the block of a call, and returns its place in the buffer.
+    pub(crate) fn write(&mut self, queue: &Queue, block: &T) -> Result<u32, WgpuError> {
         let offset = self.next % CALLS * self.stride;
-        let view = queue.write_buffer_with(&self.buffer, offset, SIZE);
-        view.ok_or(WgpuError::DeviceLost)?.copy_from_slice(bytemuck::bytes_of(uniforms));
+        let view = queue.write_buffer_with(&self.buffer, offset, size::<T>());
+        view.ok_or(WgpuError::DeviceLost)?.copy_from_slice(bytemuck::bytes_of(block));
         self.next += 1;
         Ok(offset as u32)
+    }
+
+    /// What a group binds of it.
+    pub(crate) fn binding(&self) -> BindingResource<'_> {
+        let buffer = &self.buffer;
+        BindingResource::Buffer(BufferBinding { buffer, offset: 0, size: Some(size::<T>()) })
     }
 }

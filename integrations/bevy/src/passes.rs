@@ -185,6 +185,7 @@ fn synthesize_opaque(
         depth_format: Some(CORE_3D_DEPTH_FORMAT),
         edges,
         samples: stereo.samples,
+        history: false,
     };
     let source = Source::new(source_color.main_texture_view(), source_depth.view());
     let target = Target { color: color_attachment.view, depth: Some(depth.view()), origin: [0, 0] };
@@ -229,6 +230,7 @@ impl Stereo {
             depth_format: None,
             edges,
             samples: self.samples,
+            history: false,
         };
         synthesis.record(&options, &Source::new(color, depth.view()), warp, target);
     }

@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
-use glam::Quat;
+use glam::{DVec3, Quat};
 
 use crate::in_memory::{Former, InMemory, OUTPUTS, SynthesizedImage};
 use crate::laws::{on_every_backend, positions, row};
 use crate::reference::gather_row;
-use crate::sheets::{Picture, SHEETS, SIZE, eyes, in_strips, moved, project, render, unproject};
+use crate::sheets::{Picture, SHEETS, SIZE, eyes, in_strips, local, moved, render, unproject};
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Pose, View, Warp};
 use yoro::synthesis::*;
 use yoro_gl::Context;
@@ -136,6 +136,14 @@ fn a_history_of_another_scene_changes_nothing() {
         let got = recalling.run(&source, &views.warp, former(&near, SIZE, strips));
         assert_eq!(got, plain, "{what}: behind the head");
     });
+}
+
+/// Returns the pixel of a view, its middle at + 0.5, that shows a point, and the point's distance along the axis.
+fn project(view: &View, world: DVec3) -> ([f64; 2], f64) {
+    let (own, f) = (local(view, world), view.frustum);
+    let z = -own.z;
+    let at = |x: f64, low: f32, wide: f32, n: u32| (x / z - f64::from(low)) / f64::from(wide) * f64::from(n);
+    ([at(own.x, f.left, f.width(), view.size[0]), at(own.y, f.bottom, f.height(), view.size[1])], z)
 }
 
 /// The look-up of a hole's pixel in f64: place in the history's image, fractional, where it shows the pixel's surface.

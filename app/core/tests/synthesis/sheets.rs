@@ -24,16 +24,9 @@ pub struct Picture {
     pub depth: Vec<f32>,
 }
 
-fn local(view: &View, world: DVec3) -> DVec3 {
+/// Returns a point in the space of a view's eye.
+pub fn local(view: &View, world: DVec3) -> DVec3 {
     view.pose.orientation.as_dquat().inverse() * (world - view.pose.position.as_dvec3())
-}
-
-/// Returns the pixel of a view, its middle at + 0.5, that shows a point, and the point's distance along the axis.
-pub fn project(view: &View, world: DVec3) -> ([f64; 2], f64) {
-    let (own, f) = (local(view, world), view.frustum);
-    let z = -own.z;
-    let at = |x: f64, low: f32, wide: f32, n: u32| (x / z - f64::from(low)) / f64::from(wide) * f64::from(n);
-    ([at(own.x, f.left, f.width(), view.size[0]), at(own.y, f.bottom, f.height(), view.size[1])], z)
 }
 
 /// Returns the point that a pixel of a view shows at a distance along the axis.

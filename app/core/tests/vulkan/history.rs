@@ -13,25 +13,25 @@ use yoro::vulkan::{
 fn what_is_recalled_is_what_opengl_recalls() {
     let (gl, scenes) = (Gl::new(), recalled_scenes());
     let warps: Vec<_> = scenes.iter().map(|scene| scene.source.warp).collect();
-    for (rendering, edges, variants) in [
-        (Rendering::RenderPasses, Edges::Hard, &VARIANTS[..]),
-        (Rendering::Core, Edges::Nearest, &VARIANTS[..1]),
+    for (rendering, edges, number) in [
+        (Rendering::RenderPasses, Edges::Hard, 0),
+        (Rendering::Core, Edges::Hard, 1),
+        (Rendering::RenderPasses, Edges::Nearest, 0),
     ] {
         with_gpu(rendering, |gpu| {
-            for (number, variant) in variants.iter().enumerate() {
-                let mut opengl = gl.recalling(edges, number);
-                let options = Options { edges, history: true, ..Setup::PLAIN.options(&warps) };
-                // SAFETY: valid handles; everything is executed before it is dropped.
-                let mut gather = unsafe { Gather::with_variant(&gpu.host(), &options, *variant).unwrap() };
-                for scene in &scenes {
-                    let what = format!("{edges:?}, {variant:?}, {}", scene.what);
-                    let [with, without] = synthesize(gpu, &mut gather, scene);
-                    let [want, plain] = opengl.both(scene);
-                    let changed = want.chunks(4).zip(plain.chunks(4)).filter(|(a, b)| a != b).count();
-                    assert!(changed > 100, "{what}: {changed} pixels are recalled");
-                    assert_equal(&with, &want, 4, number, &what);
-                    assert_equal(&without, &plain, 4, number, &format!("{what}, nothing"));
-                }
+            let mut opengl = gl.recalling(edges, number);
+            let options = Options { edges, history: true, ..Setup::PLAIN.options(&warps) };
+            // SAFETY: valid handles; everything is executed before it is dropped.
+            let mut gather =
+                unsafe { Gather::with_variant(&gpu.host(), &options, VARIANTS[number]).unwrap() };
+            for scene in &scenes {
+                let what = format!("{edges:?}, {:?}, {}", VARIANTS[number], scene.what);
+                let [with, without] = synthesize(gpu, &mut gather, scene);
+                let [want, plain] = opengl.both(scene);
+                let changed = want.chunks(4).zip(plain.chunks(4)).filter(|(a, b)| a != b).count();
+                assert!(changed > 100, "{what}: {changed} pixels are recalled");
+                assert_equal(&with, &want, 4, number, &what);
+                assert_equal(&without, &plain, 4, number, &format!("{what}, nothing"));
             }
         });
     }
@@ -94,8 +94,8 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, scene: &RecalledScene) -> [Vec<u8>
         let refused = Err(VulkanError::History);
         let with = frame(none, ids[0], strips);
         gpu.run(|commands| assert_eq!(gather.record(commands, &with, warp), refused));
-        [first, then, none].map(|id| gather.release_source(id));
-        ids.map(|id| gather.release_target(id));
+        [first, then, none].into_iter().for_each(|id| gather.release_source(id));
+        ids.into_iter().for_each(|id| gather.release_target(id));
     }
     targets.each_ref().map(|target| target.read_rgba8(0, READ))
 }

@@ -15,16 +15,24 @@ const LAYER_MARCH: &str = "synthesis/layers/march.frag";
 const SPANS: &str = "synthesis/gather/spans.frag";
 const SPLIT: &str = "synthesis/layers/split.frag";
 const TILES: &str = "synthesis/gather/tiles.frag";
-const MODULES: [Row; 21] = [
+const MODULES: [Row; 29] = [
     ("layer-march", LAYER_MARCH, &[]),
+    ("layer-march-history", LAYER_MARCH, &["HISTORY"]),
     ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),
+    ("layer-march-depth-history", LAYER_MARCH, &["WRITE_DEPTH", "HISTORY"]),
     ("layer-march-multisample", LAYER_MARCH, &["MULTISAMPLE"]),
+    ("layer-march-multisample-history", LAYER_MARCH, &["MULTISAMPLE", "HISTORY"]),
     ("layer-march-multisample-depth", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH"]),
+    ("layer-march-multisample-depth-history", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH", "HISTORY"]),
     ("layer-tiles", "synthesis/layers/tiles.frag", &[]),
     ("march", MARCH, &["TEXTURE_GATHER"]),
+    ("march-history", MARCH, &["TEXTURE_GATHER", "HISTORY"]),
     ("march-depth", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH"]),
+    ("march-depth-history", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH", "HISTORY"]),
     ("march-short", MARCH, &["TEXTURE_GATHER", "SHORT_WAY"]),
+    ("march-short-history", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "HISTORY"]),
     ("march-short-depth", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH"]),
+    ("march-short-depth-history", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH", "HISTORY"]),
     ("march-vertex", "synthesis/march.vert", &[]),
     ("screen", "screen.vert", &[]),
     ("spans", SPANS, &[]),
@@ -65,7 +73,7 @@ fn line_for_wgsl(line: &str, two_samples: bool) -> String {
         let declared = declared.trim_start_matches(" uniform ").trim_start_matches("highp ");
         let (kind, name) = declared.trim_end_matches(';').split_once(' ').unwrap();
         let texture = kind.replace("sampler", "texture");
-        let filter = if name == "color_map" { "linear" } else { "nearest" };
+        let filter = if matches!(name, "color_map" | "history_color") { "linear" } else { "nearest" };
         return format!(
             "layout(set = 0, binding = {binding}) uniform {texture} {name}_texture;\n\
              #define {name} {kind}({name}_texture, {filter}_sampler)"
@@ -99,14 +107,15 @@ fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
         .map_err(|error| anyhow!("{}", error.emit_to_string("")))
         .with_context(|| source.name)?;
     naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-    // GLSL's names: without the types of the arguments, and one for the block, which has none.
+    // GLSL's names: without the types of the arguments, and one for each block, which has none.
     for (_, function) in module.functions.iter_mut() {
         let name = function.name.take().unwrap_or_default();
         function.name = name.split('(').next().map(str::to_owned);
     }
     for (_, variable) in module.global_variables.iter_mut() {
         if variable.space == naga::AddressSpace::Uniform {
-            variable.name = Some("synthesis".to_owned());
+            let strips = variable.binding.is_some_and(|at| at.binding == 12);
+            variable.name = Some(if strips { "history" } else { "synthesis" }.to_owned());
         }
     }
     let info = validated(&module).with_context(|| source.name)?;

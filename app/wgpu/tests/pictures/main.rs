@@ -4,6 +4,7 @@
 mod against_opengl;
 mod edges;
 mod harness;
+mod history;
 
 use std::time::Instant;
 
@@ -14,9 +15,9 @@ use against_opengl::{
 };
 use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::synthesis::{self, Edges, Outputs, SynthesisOptions};
+use yoro::synthesis::{self, Edges, Outputs, Strips, SynthesisOptions};
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
-use yoro_wgpu::{Gather, GatherVariant, Options, Source, Target, WgpuError};
+use yoro_wgpu::{Gather, GatherVariant, History, Options, Source, Target, WgpuError};
 
 const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
 
@@ -400,8 +401,11 @@ fn mistakes_are_refused() {
                 target,
                 "a source's depth of 4 samples cannot be used; give a texture of 1",
             );
+            let former = History { color: &color, depth: &depth, strips: Strips::NONE };
+            let recalling = Source { history: Some(former), ..source };
             let samples = Source { sample_color: Some(&color), ..source };
             refused(samples, warp, target, "colour of samples is for edges of multisample");
+            refused(recalling, warp, target, "a history is for pipelines made with one");
             refused(at([1, 0]), warp, target, "a source of");
             refused(at([0, u32::MAX]), warp, target, "a source of");
             let source_size = |source_size| Warp { source_size, ..warp };
