@@ -76,6 +76,7 @@ pub unsafe extern "C" fn yoro_vk_register_source(
                     Some(source.sample_color.checked("sample_color", true)?)
                 },
                 size: [source.width, source.height],
+                history: None,
             };
             let id = vulkan.gather.register_source(&images)?.to_raw();
             if images.sample_color.is_some() {
@@ -197,6 +198,7 @@ pub unsafe extern "C" fn yoro_vk_record(
                 source_origin: [frame.source_x, frame.source_y],
                 target: TargetId::from_raw(frame.target),
                 target_origin: [frame.target_x, frame.target_y],
+                history: None,
             };
             match uses {
                 Some(uses) => vulkan.gather.record_with_uses(commands, &frame, &warp, &uses)?,

@@ -408,6 +408,7 @@ fn samples_that_vulkan_does_not_have_are_refused() {
                 depth: sampled(&depth),
                 sample_color: Some(sampled(&color)),
                 size,
+                history: None,
             };
             assert_eq!(gather.register_source(&images), Err(VulkanError::SampleColors));
         }

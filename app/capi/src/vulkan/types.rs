@@ -217,6 +217,7 @@ impl YoroVkInfo {
             max_target_size: [self.max_target_width, self.max_target_height],
             edges: edges(self.edges)?,
             samples: self.samples,
+            history: false,
             timed_frames: self.timed_frames,
             pipeline_cache: self.pipeline_cache,
         })
@@ -250,6 +251,8 @@ impl YoroVkUses {
             source_color: color,
             source_depth: self.source_depth.checked("depth", true)?,
             source_sample_color: or(has_samples, &self.source_sample_color, color, "sample_color", true)?,
+            history_color: color,
+            history_depth: color,
             target_color: self.target_color.checked("color", false)?,
             target_depth: or(writes_depth, &self.target_depth, color, "depth", false)?,
         })
