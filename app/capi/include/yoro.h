@@ -50,6 +50,11 @@
 #define YORO_GUARD_BAND 1.0
 
 /**
+ * The largest number of strips in a history.
+ */
+#define YORO_MOST_STRIPS 8
+
+/**
  * Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about a
  * second, chooses, and measures again when that may have changed.
  *
@@ -753,6 +758,66 @@ typedef struct {
 } YoroChoice;
 
 /**
+ * A history: an image of the synthesized eye that was really rendered, in strips of equally many rows, each in a frame of its
+ * own. All but the last have as many rows: the image's divided by the number of strips, rounded up.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroHistory).
+   */
+  uint32_t struct_size;
+  /**
+   * Number of strips, 1 to YORO_MOST_STRIPS.
+   */
+  uint32_t count;
+  /**
+   * From row 0 of the image on, the view of the whole image from which each was rendered: YoroViews' synthesized of that
+   * frame, in the size of the history, all of one size. NULL for a strip with nothing in it.
+   */
+  const YoroView *strips[YORO_MOST_STRIPS];
+  /**
+   * Distance of the near plane, as of the eyes: in metres, more than 0.
+   */
+  float near_z;
+  /**
+   * Distance of the far plane in metres; may be INFINITY.
+   */
+  float far_z;
+  /**
+   * The meaning of the depth buffers' values.
+   */
+  YoroDepth depth;
+  /**
+   * Order of rows in the images.
+   */
+  YoroRows rows;
+  /**
+   * Where the sentences of errors go.
+   */
+  YoroMessages messages;
+} YoroHistory;
+
+/**
+ * The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record. yoro_strips fills
+ * it. It can be copied and kept. It has the layout of the block `History` of the shader kit, in std140.
+ */
+typedef struct {
+  /**
+   * From a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth, column-major. Zeros
+   * for strips with nothing in them.
+   */
+  float to_history[YORO_MOST_STRIPS][16];
+  /**
+   * Number of strips.
+   */
+  uint32_t count;
+  /**
+   * Zero.
+   */
+  uint32_t reserved[3];
+} YoroStrips;
+
+/**
  * Bits for outputs besides colour, and for their encoding.
  */
 typedef uint32_t YoroOutputFlags;
@@ -873,6 +938,14 @@ typedef struct {
    * 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then. 0: no times.
    */
   uint32_t timed;
+  /**
+   * 1: sources may have a history (YoroGlImages). 0: none has.
+   */
+  uint32_t history;
+  /**
+   * Zero.
+   */
+  uint32_t reserved_too;
 } YoroGlInfo;
 
 /**
@@ -934,6 +1007,20 @@ typedef struct {
    * by glFramebufferTextureLayer.
    */
   uint32_t layer;
+  /**
+   * What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with the colour
+   * of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions show what is there. It
+   * holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
+   */
+  uint32_t history_color_texture;
+  /**
+   * The depth of that image, of its size, one value a pixel, with the planes and encoding of the source's.
+   */
+  uint32_t history_depth_texture;
+  /**
+   * The views of its strips; NULL: nothing is looked up.
+   */
+  const YoroStrips *strips;
 } YoroGlImages;
 
 #ifdef __cplusplus
@@ -1075,6 +1162,19 @@ YoroResult yoro_chooser_scene_changed(YoroChooser *chooser);
  * @pre chooser is alive, and no other thread uses it.
  */
 void yoro_chooser_destroy(YoroChooser *chooser);
+
+/**
+ * Computes where the strips of a history show the surfaces of a synthesized image.
+ *
+ * Call it from any thread, without a context. It allocates and keeps nothing.
+ *
+ * @param history     The strips.
+ * @param synthesized The image to synthesize: YoroViews' synthesized of this frame.
+ * @param strips      Filled in.
+ * @pre The pointers lead to structures, and `history` to one of the size that it states.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_strips(const YoroHistory *history, const YoroView *synthesized, YoroStrips *strips);
 
 /**
  * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
@@ -1240,9 +1340,9 @@ typedef struct {
    */
   uint32_t timed_frames;
   /**
-   * Zero.
+   * 1: sources may have a history (YoroVkSource). 0: none has.
    */
-  uint32_t reserved_too;
+  uint32_t history;
 } YoroVkInfo;
 
 /**
@@ -1325,6 +1425,24 @@ typedef struct {
    * VK_NULL_HANDLE if it does not exist any more, and for all other edges.
    */
   YoroVkImage sample_color;
+  /**
+   * Width of the history's images in pixels, any; 0 without a history.
+   */
+  uint32_t history_width;
+  /**
+   * Height of the history's images in pixels.
+   */
+  uint32_t history_height;
+  /**
+   * What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was really
+   * rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so nothing that is drawn
+   * over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
+   */
+  YoroVkImage history_color;
+  /**
+   * The depth of that image, one value a pixel, with the planes and encoding of the source's.
+   */
+  YoroVkImage history_depth;
 } YoroVkSource;
 
 /**
@@ -1415,6 +1533,14 @@ typedef struct {
    * Of the target's depth.
    */
   YoroVkUse target_depth;
+  /**
+   * Of the history's colour.
+   */
+  YoroVkUse history_color;
+  /**
+   * Of the history's depth.
+   */
+  YoroVkUse history_depth;
 } YoroVkUses;
 
 /**
@@ -1457,6 +1583,10 @@ typedef struct {
    * The uses of the images around this call, in place of those of their registration; may be NULL.
    */
   const YoroVkUses *uses;
+  /**
+   * The views of the history's strips, for sources with one; NULL: nothing is looked up.
+   */
+  const YoroStrips *strips;
 } YoroVkFrame;
 
 #ifdef __cplusplus

@@ -9,18 +9,21 @@ use std::rc::Rc;
 
 use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination, GlApi, PassTime, Profiling};
-use yoro::synthesis::{self, Edges, GlState, Outputs, Part, Source, Synthesis, SynthesisOptions};
+use yoro::synthesis::{
+    self, Edges, GlState, History, Outputs, Part, Source, Strips, Synthesis, SynthesisOptions,
+};
 
 use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
     write_bytes,
 };
+use crate::history::{YoroStrips, read_strips};
 use crate::result::{
     Failure, YORO_ERROR_DRIVER, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YoroMessages,
     YoroResult,
 };
 use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFlags, edges};
-use crate::versioned::{self, versioned};
+use crate::versioned::{self, check_reserved, versioned};
 use crate::views::YoroWarp;
 
 #[doc(hidden)]
@@ -74,6 +77,10 @@ pub struct YoroGlInfo {
     pub sources: YoroGlSourceFlags,
     /// 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then. 0: no times.
     pub timed: u32,
+    /// 1: sources may have a history (YoroGlImages). 0: none has.
+    pub history: u32,
+    /// Zero.
+    pub reserved_too: u32,
 }
 
 versioned!(YoroGlInfo since sources);
@@ -158,6 +165,14 @@ pub struct YoroGlImages {
     /// The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the framebuffer,
     /// by glFramebufferTextureLayer.
     pub layer: u32,
+    /// What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with the colour
+    /// of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions show what is there. It
+    /// holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
+    pub history_color_texture: u32,
+    /// The depth of that image, of its size, one value a pixel, with the planes and encoding of the source's.
+    pub history_depth_texture: u32,
+    /// The views of its strips; NULL: nothing is looked up.
+    pub strips: *const YoroStrips,
 }
 
 versioned!(YoroGlImages since source_x);
@@ -205,7 +220,8 @@ pub unsafe extern "C" fn yoro_gl_synthesize(
     unsafe {
         enter_gl(context, |gl| {
             let warp = gl.fitting(warp)?;
-            gl.synthesize(&warp, &versioned::read(images, "images")?)
+            let images = versioned::read(images, "images")?;
+            gl.synthesize(&warp, &images, read_strips(images.strips)?)
         })
     }
 }
@@ -254,7 +270,7 @@ impl Gl {
             }
         };
         let (outputs, edges) = (outputs(info.outputs)?, edges(info.edges)?);
-        for (flag, what) in [(info.check, "check"), (info.timed, "timed")] {
+        for (flag, what) in [(info.check, "check"), (info.timed, "timed"), (info.history, "history")] {
             if flag > 1 {
                 return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
             }
@@ -265,6 +281,7 @@ impl Gl {
                 info.sources
             )));
         }
+        check_reserved("info", &[info.reserved_too])?;
         let Some(loader) = info.loader else {
             return Err(Failure::new(YORO_ERROR_NULL, "loader is NULL: give eglGetProcAddress or its like"));
         };
@@ -275,7 +292,7 @@ impl Gl {
         let context = unsafe { Context::with_loader(entry_points::wrap(load)?, load)? };
         let has = |bit| info.sources & bit != 0;
         let (parts, layers) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
-        let options = SynthesisOptions { edges, gl_state, parts, layers, history: false };
+        let options = SynthesisOptions { edges, gl_state, parts, layers, history: info.history == 1 };
         let synthesis = synthesis::create(&context, &options, outputs)?;
         let timed = info.timed == 1;
         if timed {
@@ -313,7 +330,12 @@ impl Gl {
         Ok(warp)
     }
 
-    fn synthesize(&mut self, warp: &Warp, images: &YoroGlImages) -> Result<(), Failure> {
+    fn synthesize(
+        &mut self,
+        warp: &Warp,
+        images: &YoroGlImages,
+        strips: Option<Strips>,
+    ) -> Result<(), Failure> {
         let texture = |name: u32, what: &str| {
             let name = NonZeroU32::new(name).map(glow::NativeTexture);
             name.ok_or_else(|| Failure::value(format!("{what} is 0: give the name of a texture")))
@@ -332,7 +354,20 @@ impl Gl {
                 "layer is for YORO_GL_SOURCE_LAYERS only: set it to 0, or choose array textures",
             ));
         }
-        let source = Source { samples, part, layer: images.layer, ..Source::new(color, depth) };
+        let history = match strips {
+            Some(_) if !self.options.history => {
+                return Err(Failure::value(
+                    "strips are for contexts with history only: set them to NULL, or set history of YoroGlInfo",
+                ));
+            }
+            Some(strips) => Some(History {
+                color: texture(images.history_color_texture, "history_color_texture")?,
+                depth: texture(images.history_depth_texture, "history_depth_texture")?,
+                strips,
+            }),
+            None => None,
+        };
+        let source = Source { samples, part, layer: images.layer, history, ..Source::new(color, depth) };
         let limit = self.context.capabilities().max_texture_size;
         if images.x > limit || images.y > limit {
             return Err(Failure::value(format!(

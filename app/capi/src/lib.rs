@@ -22,6 +22,7 @@ mod matrices;
 mod context;
 
 mod choice;
+mod history;
 
 mod gl;
 
@@ -34,6 +35,7 @@ pub use choice::*;
 pub use context::*;
 pub use eyes::*;
 pub use gl::*;
+pub use history::*;
 pub use matrices::*;
 pub use result::*;
 pub use types::*;

@@ -3,10 +3,12 @@
 mod device;
 mod types;
 
+use yoro::synthesis::Strips;
 use yoro::vulkan::ash::vk;
-use yoro::vulkan::{Frame, SourceId, SourceImages, TargetId, TargetImages};
+use yoro::vulkan::{Frame, HistoryImages, SourceId, SourceImages, TargetId, TargetImages};
 
 use crate::context::{YoroContext, create, enter_as, write_bytes};
+use crate::history::read_strips;
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult};
 use crate::versioned::{self, Versioned, check_reserved};
 use crate::views::YoroWarp;
@@ -76,12 +78,21 @@ pub unsafe extern "C" fn yoro_vk_register_source(
                     Some(source.sample_color.checked("sample_color", true)?)
                 },
                 size: [source.width, source.height],
-                history: None,
+                history: if source.history_color.image == vk::Image::null() {
+                    None
+                } else {
+                    Some(HistoryImages {
+                        color: source.history_color.checked("history's colour", true)?,
+                        depth: source.history_depth.checked("history's depth", true)?,
+                        size: [source.history_width, source.history_height],
+                    })
+                },
             };
             let id = vulkan.gather.register_source(&images)?.to_raw();
             if images.sample_color.is_some() {
                 vulkan.with_samples.push(id);
             }
+            vulkan.with_history.extend(images.history.map(|history| (id, history.size[1])));
             Ok(id)
         })
     }
@@ -129,6 +140,7 @@ pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: Y
         enter_vulkan(context, |vulkan| {
             vulkan.gather.release_source(SourceId::from_raw(id));
             vulkan.with_samples.retain(|with| *with != id);
+            vulkan.with_history.retain(|(with, _)| *with != id);
             Ok(())
         })
     }
@@ -187,18 +199,24 @@ pub unsafe extern "C" fn yoro_vk_record(
             warp.row_offset = warp.target_size[1] as i32 - warp.source_size[1] as i32 - warp.row_offset;
             let frame = versioned::read(frame, "frame")?;
             check_reserved("frame", &[frame.reserved])?;
+            let former = vulkan.with_history.iter().find(|(with, _)| *with == frame.source);
+            let former = former.map(|(_, height)| *height);
+            // As the warp's.
+            let turned = |strips: Strips| strips.rows_turned(warp.target_size[1], former.unwrap_or_default());
+            let history = read_strips(frame.strips)?.map(turned);
             let uses = if frame.uses.is_null() {
                 None
             } else {
                 let has_samples = vulkan.with_samples.contains(&frame.source);
-                Some(versioned::read(frame.uses, "uses")?.checked(has_samples, vulkan.writes_depth)?)
+                let has = [has_samples, former.is_some()];
+                Some(versioned::read(frame.uses, "uses")?.checked(has, vulkan.writes_depth)?)
             };
             let frame = Frame {
                 source: SourceId::from_raw(frame.source),
                 source_origin: [frame.source_x, frame.source_y],
                 target: TargetId::from_raw(frame.target),
                 target_origin: [frame.target_x, frame.target_y],
-                history: None,
+                history,
             };
             match uses {
                 Some(uses) => vulkan.gather.record_with_uses(commands, &frame, &warp, &uses)?,

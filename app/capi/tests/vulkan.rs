@@ -262,6 +262,43 @@ fn uses_memory_and_times_are_those_of_the_core() {
     assert!(times.is_known == 1 && times.march_ns > 0 && times.split_ns < times.march_ns, "{times:?}");
 }
 
+#[test]
+fn a_history_needs_a_context_and_a_source_with_one() {
+    let Some(gpu) = Gpu::open() else { return };
+    let (source, _) = images(&gpu);
+    let former = YoroVkSource {
+        history_width: 256,
+        history_height: 128,
+        history_color: source.color,
+        history_depth: source.depth,
+        ..source
+    };
+    let mut strips = YoroStrips { to_history: [[0.0; 16]; YORO_MOST_STRIPS], count: 1, reserved: [0; 3] };
+    assert_eq!(create(&YoroVkInfo { history: 2, ..gpu.info() }), Err(YORO_ERROR_VALUE));
+    for history in [0, 1] {
+        let context = create(&YoroVkInfo { history, ..gpu.info() }).unwrap();
+        let with = if history == 1 { YORO_OK } else { YORO_ERROR_VALUE };
+        // SAFETY: live handles and whole structures.
+        unsafe {
+            let frame = registered(&gpu, context);
+            let mut id = 0;
+            assert_eq!(yoro_vk_register_source(context, &former, &mut id), with);
+            let mut no_size = former;
+            no_size.history_width = 0;
+            assert_eq!(yoro_vk_register_source(context, &no_size, &mut id), YORO_ERROR_VALUE);
+            let record = |frame: YoroVkFrame| yoro_vk_record(context, gpu.commands, &WARP, &frame);
+            assert_eq!(record(YoroVkFrame { strips: &strips, ..frame }), YORO_ERROR_VALUE);
+            if history == 1 {
+                assert_eq!(record(YoroVkFrame { source: id, strips: &strips, ..frame }), YORO_OK);
+                assert_eq!(record(YoroVkFrame { source: id, ..frame }), YORO_OK);
+                strips.count = 0;
+                assert_eq!(record(YoroVkFrame { source: id, strips: &strips, ..frame }), YORO_ERROR_VALUE);
+            }
+            assert_eq!(yoro_destroy(context), YORO_OK);
+        }
+    }
+}
+
 /// A program of the first version knows neither uses nor times.
 #[test]
 fn the_first_version_of_structures_is_taken() {
@@ -269,7 +306,7 @@ fn the_first_version_of_structures_is_taken() {
     // What `sizeof` was then.
     assert_eq!((offset_of!(YoroVkFrame, reserved), offset_of!(YoroVkInfo, timed_frames)), (28, 104));
     let Some(gpu) = Gpu::open() else { return };
-    let info = YoroVkInfo { struct_size: 104, timed_frames: 9, reserved_too: 9, ..gpu.info() };
+    let info = YoroVkInfo { struct_size: 104, timed_frames: 9, history: 9, ..gpu.info() };
     let context = create(&info).unwrap();
     let frame =
         YoroVkFrame { struct_size: 28, reserved: 9, uses: std::ptr::dangling(), ..registered(&gpu, context) };

@@ -38,6 +38,12 @@ pub(super) fn check_images(
     if let Some(samples) = source.samples {
         check_texture(context, samples, "sample_color_texture", &MULTISAMPLE, size, Level::is_color)?;
     }
+    if let Some(history) = source.history {
+        let own = Level::query(context, history.color, &SINGLE_SAMPLE).map_or(size, |level| level.size);
+        let (color, depth) = ("history_color_texture", "history_depth_texture");
+        check_texture(context, history.color, color, &SINGLE_SAMPLE, own, Level::is_color)?;
+        check_texture(context, history.depth, depth, &SINGLE_SAMPLE, own, Level::is_depth)?;
+    }
     check_framebuffer(context, outputs, source, target)
 }
 
@@ -67,6 +73,8 @@ fn check_framebuffer(
         (Some(source.color), "color_texture"),
         (Some(source.depth), "depth_texture"),
         (source.samples, "sample_color_texture"),
+        (source.history.map(|history| history.color), "history_color_texture"),
+        (source.history.map(|history| history.depth), "history_depth_texture"),
     ] {
         let attached = texture.map(Attachment::Texture);
         if attached == Some(framebuffer.color) || attached == Some(framebuffer.depth) {

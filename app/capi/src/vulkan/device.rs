@@ -17,6 +17,8 @@ pub(crate) struct Vulkan {
     pub(super) writes_depth: bool,
     /// Sources that have the colour of samples.
     pub(super) with_samples: Vec<u32>,
+    /// Sources that have a history, and its height.
+    pub(super) with_history: Vec<(u32, u32)>,
     instance: Instance,
     physical_device: vk::PhysicalDevice,
 }
@@ -35,12 +37,11 @@ impl Vulkan {
         if let Some((_, what)) = handles.into_iter().find(|(is_null, _)| *is_null) {
             return Err(null(what));
         }
-        check_reserved("info", &[info.reserved, info.reserved_too])?;
-        if info.dynamic_rendering > 1 {
-            return Err(Failure::value(format!(
-                "dynamic_rendering is {}: give 0 or 1",
-                info.dynamic_rendering
-            )));
+        check_reserved("info", &[info.reserved])?;
+        for (flag, what) in [(info.dynamic_rendering, "dynamic_rendering"), (info.history, "history")] {
+            if flag > 1 {
+                return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
+            }
         }
         check_format(info.color_format, "color_format")?;
         let writes_depth = info.depth_format != vk::Format::UNDEFINED;
@@ -90,8 +91,8 @@ impl Vulkan {
         let options = info.options()?;
         // SAFETY: the header asks for handles that are valid, belong together, and outlive the context.
         let gather = unsafe { Gather::new(&host, &options) }?;
-        let with_samples = Vec::new();
-        Ok(Vulkan { gather, writes_depth, with_samples, instance, physical_device: info.physical_device })
+        let (with_samples, with_history, physical_device) = (Vec::new(), Vec::new(), info.physical_device);
+        Ok(Vulkan { gather, writes_depth, with_samples, with_history, instance, physical_device })
     }
 }
 

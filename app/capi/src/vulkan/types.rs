@@ -5,6 +5,7 @@ use std::ffi::c_char;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{ImageState, LayerImage, Options, Use, Uses, VulkanError};
 
+use crate::history::YoroStrips;
 use crate::result::{
     Failure, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_MEMORY,
     YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED,
@@ -62,8 +63,8 @@ pub struct YoroVkInfo {
     /// For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0 for no
     /// times.
     pub timed_frames: u32,
-    /// Zero.
-    pub reserved_too: u32,
+    /// 1: sources may have a history (YoroVkSource). 0: none has.
+    pub history: u32,
 }
 
 versioned!(YoroVkInfo since timed_frames);
@@ -118,9 +119,19 @@ pub struct YoroVkSource {
     /// For YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
     /// VK_NULL_HANDLE if it does not exist any more, and for all other edges.
     pub sample_color: YoroVkImage,
+    /// Width of the history's images in pixels, any; 0 without a history.
+    pub history_width: u32,
+    /// Height of the history's images in pixels.
+    pub history_height: u32,
+    /// What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was really
+    /// rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so nothing that is drawn
+    /// over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
+    pub history_color: YoroVkImage,
+    /// The depth of that image, one value a pixel, with the planes and encoding of the source's.
+    pub history_depth: YoroVkImage,
 }
 
-versioned!(YoroVkSource);
+versioned!(YoroVkSource since history_width);
 
 /// Images to write.
 #[repr(C)]
@@ -169,6 +180,8 @@ pub struct YoroVkFrame {
     pub reserved: u32,
     /// The uses of the images around this call, in place of those of their registration; may be NULL.
     pub uses: *const YoroVkUses,
+    /// The views of the history's strips, for sources with one; NULL: nothing is looked up.
+    pub strips: *const YoroStrips,
 }
 
 versioned!(YoroVkFrame since reserved);
@@ -203,9 +216,13 @@ pub struct YoroVkUses {
     pub target_color: YoroVkUse,
     /// Of the target's depth.
     pub target_depth: YoroVkUse,
+    /// Of the history's colour.
+    pub history_color: YoroVkUse,
+    /// Of the history's depth.
+    pub history_depth: YoroVkUse,
 }
 
-versioned!(YoroVkUses);
+versioned!(YoroVkUses since history_color);
 
 impl YoroVkInfo {
     pub(super) fn options(&self) -> Result<Options, Failure> {
@@ -217,7 +234,7 @@ impl YoroVkInfo {
             max_target_size: [self.max_target_width, self.max_target_height],
             edges: edges(self.edges)?,
             samples: self.samples,
-            history: false,
+            history: self.history == 1,
             timed_frames: self.timed_frames,
             pipeline_cache: self.pipeline_cache,
         })
@@ -240,7 +257,11 @@ pub(super) fn check_format(format: vk::Format, what: &str) -> Result<(), Failure
 }
 
 impl YoroVkUses {
-    pub(super) fn checked(&self, has_samples: bool, writes_depth: bool) -> Result<Uses, Failure> {
+    pub(super) fn checked(
+        &self,
+        [has_samples, has_history]: [bool; 2],
+        writes_depth: bool,
+    ) -> Result<Uses, Failure> {
         check_reserved("uses", &[self.reserved])?;
         // What is not there is not looked at.
         let or = |is_there: bool, one: &YoroVkUse, other: Use, what, is_read| {
@@ -251,8 +272,8 @@ impl YoroVkUses {
             source_color: color,
             source_depth: self.source_depth.checked("depth", true)?,
             source_sample_color: or(has_samples, &self.source_sample_color, color, "sample_color", true)?,
-            history_color: color,
-            history_depth: color,
+            history_color: or(has_history, &self.history_color, color, "history's colour", true)?,
+            history_depth: or(has_history, &self.history_depth, color, "history's depth", true)?,
             target_color: self.target_color.checked("color", false)?,
             target_depth: or(writes_depth, &self.target_depth, color, "depth", false)?,
         })
@@ -310,7 +331,7 @@ impl From<VulkanError> for Failure {
             VulkanError::QueueFamily(_) | VulkanError::DynamicRendering | VulkanError::Samples(_) => {
                 YORO_ERROR_UNSUPPORTED
             }
-            VulkanError::SampleColors => YORO_ERROR_VALUE,
+            VulkanError::SampleColors | VulkanError::History => YORO_ERROR_VALUE,
             VulkanError::Size { size, .. } if size.contains(&0) => YORO_ERROR_VALUE,
             VulkanError::Size { .. } | VulkanError::Rectangle { .. } => YORO_ERROR_TOO_LARGE,
             VulkanError::NotRegistered => YORO_ERROR_NOT_REGISTERED,
