@@ -99,6 +99,7 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
         own += "//\n// Settings:\n";
         if source.ends_with("march.frag") {
             own += "// #define WRITE_DEPTH // The other eye's depth, too, to gl_FragDepth: for transparent objects.\n";
+            own += "// #define HISTORY // Disocclusions are looked up in a former image of the other eye: two textures and a block more.\n";
         }
         own += match macros.iter().any(|(name, _)| *name == "TEXTURE_GATHER") {
             true => "// #define SHORT_WAY // For GPUs, in all three passes: less work, the same picture.\n",

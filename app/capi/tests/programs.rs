@@ -8,6 +8,9 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
+use yoro::synthesis::Strips;
+
 /// Compilers with their language and its standard.
 const COMPILERS: [[&str; 3]; 4] =
     [["gcc", "c", "c11"], ["clang", "c", "c11"], ["g++", "c++", "c++17"], ["clang++", "c++", "c++17"]];
@@ -257,13 +260,72 @@ fn the_kits_shaders_for_vulkan_compile() {
     }
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
-    let settings: [&[&str]; 3] = [&[], &["-DWRITE_DEPTH"], &["-DWRITE_DEPTH", "-DSHORT_WAY"]];
+    let settings: [&[&str]; 4] =
+        [&[], &["-DWRITE_DEPTH"], &["-DWRITE_DEPTH", "-DSHORT_WAY"], &["-DHISTORY", "-DSHORT_WAY"]];
     for shader in ["screen.vert", "march.vert", "tiles.frag", "spans.frag", "march.frag"] {
         let settings = if shader.ends_with(".vert") { &settings[..1] } else { &settings[..] };
         for macros in settings {
             let mut command = Command::new(COMPILER);
             command.args(["-V", "-o"]).arg(kit.path().join("compiled")).args(*macros);
             run(command.arg(kit.path().join("vulkan").join(shader)));
+        }
+    }
+    // Those of OpenGL ES are compiled where they are drawn with, but for this.
+    let text = std::fs::read_to_string(kit.path().join("gles/march.frag")).unwrap();
+    let with_history = kit.path().join("history.frag");
+    std::fs::write(&with_history, text.replacen('\n', "\n#define HISTORY\n", 1)).unwrap();
+    run(Command::new(COMPILER).arg(with_history));
+}
+
+/// The kit's relation to a history is the core's, with rows from the bottom and from the top.
+#[test]
+fn the_kit_and_the_core_find_the_same_place_in_a_history() {
+    if !is_here("gcc") {
+        println!("SKIPPED: no gcc here");
+        return;
+    }
+    const TEXT: &str = "#include \"yoro_kit.h\"
+        #include <stdio.h>
+        int main(void) {
+          YoroKitEyes eyes = {{{-0.8f, 0.7f, 0.6f, -0.5f}, {-0.7f, 0.8f, 0.6f, -0.5f}}, 0.063f, 0.1f, 50, 0, 1, 320, 240, 1.0f, 0};
+          const YoroKitPose now = {{0, 0.0998334f, 0, 0.9950042f}, {1, 1.6f, -20}};
+          const YoroKitPose then = {{0.0499792f, 0, 0, 0.9987503f}, {1.02f, 1.55f, -20.03f}};
+          const YoroKitPose *strips[2] = {NULL, &then};
+          YoroKitStrips block;
+          int failed = yoro_kit_strips(&eyes, &now, strips, 9, 80, 60, &block);
+          for (eyes.rows_down = 0; eyes.rows_down < 2; ++eyes.rows_down) {
+            failed |= !yoro_kit_strips(&eyes, &now, strips, 2, 80, 60, &block) || block.history_strips != 2;
+            for (int strip = 0; strip < 2; ++strip)
+              for (int i = 0; i < 16; ++i) printf(\"%.9g\\n\", (double)block.to_history[strip][i]);
+          }
+          return failed;
+        }";
+    let kit = tempfile::tempdir().unwrap();
+    kit::write(kit.path()).unwrap();
+    let (text, program) = (kit.path().join("strips.c"), kit.path().join("strips"));
+    std::fs::write(&text, TEXT).unwrap();
+    run(Command::new("gcc").arg("-std=c99").args(WARNINGS).arg(&text).arg("-lm").arg("-o").arg(&program));
+    let output = Command::new(&program).output().unwrap();
+    assert!(output.status.success());
+    let numbers: Vec<f32> =
+        String::from_utf8(output.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect();
+    let view = |orientation: glam::Quat, position: [f32; 3], size| View {
+        pose: Pose { orientation, position: position.into() },
+        frustum: Frustum { left: -0.8, right: 0.7, bottom: -0.5, top: 0.6 },
+        depth: DepthRange { near: 0.1, far: 50.0, convention: DepthConvention::Standard },
+        size,
+    };
+    let now = view(glam::Quat::from_rotation_y(0.2), [1.0, 1.6, -20.0], [320, 240]);
+    let then = view(glam::Quat::from_rotation_x(0.1), [1.02, 1.55, -20.03], [80, 60]);
+    let core = Strips::new(&now, &[None, Some(then)]);
+    for (down, own) in numbers.chunks(32).enumerate() {
+        let expected = if down == 1 { core.rows_turned(240, 60) } else { core };
+        assert_eq!(own[..16], [0.0; 16]);
+        let own = glam::Mat4::from_cols_slice(&own[16..]);
+        for pixel in [[10.5, 20.5, 0.95], [200.5, 130.5, 0.99], [310.5, 230.5, 0.5]].map(glam::Vec3::from) {
+            let [got, want] = [own, expected.to_history[1]].map(|matrix| matrix.project_point3(pixel));
+            assert!((got - want).length() < 2e-3, "{pixel}: {got}, {want}");
+            assert!((own * pixel.extend(1.0)).w > 0.0);
         }
     }
 }
