@@ -346,6 +346,8 @@ mod tests {
             messages: YoroMessages { callback: Some(count), user: (&raw mut sentences).cast() },
             sources: 0,
             timed: 0,
+            history: 0,
+            reserved_too: 0,
         };
         let mut context = null_mut();
         // SAFETY: a context that is alive until the last line.
