@@ -26,6 +26,23 @@ struct Search {
     float rim_depth;
 };
 
+// Tiles that are always walked: skipping pays only where there are many.
+const float FIRST_TILES = 4.0;
+
+// From column `x` on, where a tile begins, the first one whose tile lands within a pixel of this one, or that of the
+// last tile before `end`. Beside the silhouettes of near surfaces that is hundreds of columns away. The far plane's
+// surface lands here from column `origin`.
+float next_candidate(float x, float end, float origin, int row) {
+    bool lands = false;
+    while (x + float(TILE.x) < end && !lands) {
+        uint moved = texelFetch(tile_map, ivec2(int(x), row) / TILE, 0).r;
+        vec2 at = x - origin + vec2(moved & 0xffffu, moved >> 16) / TILE_UNITS;
+        lands = at.x <= 1.0 && at.y + float(TILE.x) >= -1.0;
+        x += lands ? 0.0 : float(TILE.x);
+    }
+    return x;
+}
+
 // Moves the search to forward column x, where a tile begins.
 void leap(inout Search at, float x, float origin, int row) {
     at.column = source_column(int(x));

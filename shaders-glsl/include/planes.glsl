@@ -3,11 +3,20 @@
 // Tiles whose displacements lie on a plane. Depth-buffer values are affine on a plane, and so are displacements.
 //
 // A tile of the tile map holds its interval and, as floats, the displacement of its first pixel and what is added from one
-// forward column and from one row to the next; NO_PLANE in place of the second if its pixels are not on one plane.
+// forward column and from one row to the next. If its pixels are not on one plane there are NO_PLANE in place of the second,
+// and marks in place of the others: 16 bits for every two rows, bit i for columns i and i + 1 if in one of the rows these land
+// on one another, or tear, within rounding.
 
 // Largest distance in pixels of a displacement from its tile's plane.
 const float PLANAR = 1.0 / 16.0;
 const float NO_PLANE = 9.0;
+// Difference of two neighbours' displacements from which on their pair is marked.
+const float MARKED = 0.99;
+
+// Marks of four rows whose bits are in the order of the image's columns, the first ones last.
+uint in_place(uint marks) {
+    return mirrored ? marks >> 16 | marks << 16 : bitfieldReverse(marks);
+}
 
 // The tile at this forward column and row, and the column after it.
 uvec4 plane_tile(vec2 corner) {
@@ -20,18 +29,34 @@ uvec4 plane_tile(vec2 corner) {
     vec2 slope = (vec2(right, above) - first) / LAST;
     // Where the corners are not on one plane the interval is that of depth itself, which is tighter.
     slope = abs(law.y * (first - right - above + opposite)) <= 4.0 * PLANAR ? slope : vec2(0.0);
-    // Smallest and largest depth above the plane through the first pixel. Two by two texels a fetch, two rows a pass; of the
-    // pairs of columns the last overlaps the one before.
+    // Smallest and largest depth above the plane through the first pixel. Two by two texels a fetch, two rows a pass, in the
+    // order of the image's columns; of the pairs of columns the last overlaps the one before.
     vec4 low = vec4(1e9);
     vec4 high = vec4(-1e9);
     float plane = 0.0;
+    // A bit for each pair of neighbours in two rows: the first four rows, and all.
+    uint lower_marks = 0u;
+    uint marks = 0u;
+    float marked = MARKED / abs(law.y);
+    float begin = mirrored ? LAST.x - 1.0 : 0.0;
+    float sense = mirrored ? -1.0 : 1.0;
     // A loop that no compiler unrolls: all the fetches in flight at once would take most of the registers.
     for (float row = corner.y; row < corner.y + float(TILE.y); row += 2.0) {
+        lower_marks = row == corner.y + 4.0 ? marks : lower_marks;
+        vec2 before = vec2(0.0);
         for (int i = 0; i <= TILE.x; i += 2) {
-            float column = float(min(i, TILE.x - 1));
-            vec4 depths = depth_quad(vec2(corner.x + column, row)) - (plane + slope.x * column);
+            float column = begin + sense * float(min(i, TILE.x - 1));
+            vec4 quad = depth_quad(vec2(corner.x + column, row));
+            vec4 depths = quad - (plane + slope.x * column);
             low = min(low, depths);
             high = max(high, depths);
+            vec2 between = abs(quad.xw - before);
+            vec2 within = abs(quad.yz - quad.xw);
+            before = quad.yz;
+            if (i > 0 && i < TILE.x) {
+                marks = marks << 1 | uint(max(between.x, between.y) > marked);
+            }
+            marks = marks << 1 | uint(max(within.x, within.y) > marked);
         }
         plane += 2.0 * slope.y;
     }
@@ -49,5 +74,6 @@ uvec4 plane_tile(vec2 corner) {
     vec3 plane_law = vec3(displacement(0.5 * (least + most)), law.y * slope);
     // A surface whose columns land less than half a pixel apart, or MAX_STRETCH and more, is left to the search.
     bool planar = abs(law.y) * (most - least) <= 2.0 * PLANAR && abs(plane_law.y - 0.25) < 0.75;
-    return uvec4(pack_interval(min(a, b), max(a, b)), floatBitsToUint(planar ? plane_law : vec3(NO_PLANE)));
+    uvec3 rest = planar ? floatBitsToUint(plane_law) : uvec3(in_place(lower_marks), floatBitsToUint(NO_PLANE), in_place(marks));
+    return uvec4(pack_interval(min(a, b), max(a, b)), rest);
 }

@@ -5,12 +5,12 @@
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
 // fetched with linear filtering. With SHORT_WAY, where the pass before has found a law, the column is affine in the pixel;
 // nearly every other pixel ends within a few cheap steps here, and only those beside silhouettes continue in
-// include/four_columns.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the text: there all pixels take
+// include/segments.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the text: there all pixels take
 // the way of include/every_column.glsl.
 
 #include "include/march.glsl"
 #ifdef SHORT_WAY
-#include "include/four_columns.glsl"
+#include "include/segments.glsl"
 #else
 #include "include/every_column.glsl"
 #endif
@@ -26,7 +26,7 @@ int source_row() {
 
 #ifdef SHORT_WAY
 // Steps of the short way: as many as a wave should wait for.
-const float SHORT_STEPS = 4.0;
+const float SHORT_STEPS = 2.0;
 
 // Colour and surface of a pixel whose tile has a law.
 vec4 lawful(vec3 affine, out Surface surface) {
@@ -89,7 +89,7 @@ void main() {
 #endif
 #ifdef COUNT_TRIPS
     int ways = trips[0] | min(trips[2], 1) << 3 | trips[6] << 4 | trips[7] << 5;
-    color = vec4(ways, trips[1], min(trips[3], 15) | min(trips[5], 15) << 4, trips[4]) / 255.0;
+    color = vec4(ways, trips[1], trips[3], trips[4]) / 255.0;
 #endif
 #ifdef WRITE_DEPTH
     gl_FragDepth = surface.depth;

@@ -48,16 +48,20 @@ fn parts(table: &Table, gpu: &str) -> anyhow::Result<Vec<(u32, &'static str, Wor
     let of = |file: &str| format!("synthesis/gather/{file}.frag TEXTURE_GATHER SHORT_WAY");
     let (tile_lanes, tiles) = program::<1>(table, gpu, &of("tiles"))?;
     let (span_lanes, spans) = program::<3>(table, gpu, &of("spans"))?;
-    let (lanes, _) = program::<4>(table, gpu, &of("march"))?;
+    let (lanes, _) = program::<3>(table, gpu, &of("march"))?;
     // Each program has the parts of the one before, and one more: tests/src/programs.rs.
     let march = |parts: u32| format!("{} PARTS={parts}", of("march"));
     let (_, law) = program::<0>(table, gpu, &march(1))?;
     let (_, short) = program::<1>(table, gpu, &march(2))?;
-    let (_, walks) = program::<3>(table, gpu, &march(6))?;
-    let (_, events) = program::<3>(table, gpu, &march(14))?;
-    let (_, fill) = program::<3>(table, gpu, &march(30))?;
-    let (_, all) = program::<4>(table, gpu, &march(62))?;
-    // The loop over events and walks is the second one, that of four columns the last.
+    let (_, segments) = program::<2>(table, gpu, &march(6))?;
+    let (_, events) = program::<2>(table, gpu, &march(14))?;
+    let (_, fill) = program::<2>(table, gpu, &march(30))?;
+    let (_, all) = program::<3>(table, gpu, &march(62))?;
+    // The loop over segments is the second one, that to a crossing the last. Events are handled in two places: before the
+    // loop, too.
+    let event = minus(events.loops[1], segments.loops[1]);
+    let crossing = minus(all.outside, fill.outside);
+    let long = minus(minus(plus(events.outside, crossing), event), short.outside);
     Ok(vec![
         (tile_lanes, "tiles", tiles.outside),
         (tile_lanes, "tiles: two rows", tiles.loops[0]),
@@ -68,12 +72,11 @@ fn parts(table: &Table, gpu: &str) -> anyhow::Result<Vec<(u32, &'static str, Wor
         (lanes, "march: law", law.outside),
         (lanes, "march: short way", short.outside),
         (lanes, "march: short step", short.loops[0]),
-        (lanes, "march: long way", minus(events.outside, short.outside)),
-        (lanes, "march: walk", walks.loops[1]),
-        (lanes, "march: four columns", events.loops[2]),
-        (lanes, "march: event", minus(events.loops[1], walks.loops[1])),
+        (lanes, "march: long way", long),
+        (lanes, "march: segment", segments.loops[1]),
+        (lanes, "march: event", event),
         (lanes, "march: fill", minus(fill.total(), events.total())),
-        (lanes, "march: tile", plus(minus(all.loops[1], fill.loops[1]), all.loops[2])),
+        (lanes, "march: crossing", all.loops[2]),
     ])
 }
 

@@ -66,26 +66,24 @@ struct Trips {
     short: f64,
     /// 1 where a pixel goes the long way.
     goes_on: f64,
-    /// Steps of four columns.
-    steps: f64,
-    walks: f64,
+    segments: f64,
     events: f64,
-    tiles: f64,
+    /// Steps to a segment's crossing.
+    crossings: f64,
     holes: f64,
 }
 
 impl Trips {
-    fn of([ways, steps, events_and_walks, tiles]: [u8; 4]) -> Trips {
+    fn of([ways, segments, events, crossings]: [u8; 4]) -> Trips {
         let law = f64::from(ways >> 5 & 1);
         Trips {
             law,
             searches: 1.0 - law,
             short: f64::from(ways & 7),
             goes_on: f64::from(ways >> 4 & 1),
-            steps: steps.into(),
-            walks: f64::from(events_and_walks >> 4),
-            events: f64::from(events_and_walks & 15),
-            tiles: tiles.into(),
+            segments: segments.into(),
+            events: events.into(),
+            crossings: crossings.into(),
             holes: f64::from(ways >> 3 & 1),
         }
     }
@@ -96,10 +94,9 @@ impl Trips {
             searches: self.searches.max(other.searches),
             short: self.short.max(other.short),
             goes_on: self.goes_on.max(other.goes_on),
-            steps: self.steps.max(other.steps),
-            walks: self.walks.max(other.walks),
+            segments: self.segments.max(other.segments),
             events: self.events.max(other.events),
-            tiles: self.tiles.max(other.tiles),
+            crossings: self.crossings.max(other.crossings),
             holes: self.holes.max(other.holes),
         }
     }
@@ -169,10 +166,9 @@ impl Costs {
             ("march: short way", trips.searches),
             ("march: short step", trips.short),
             ("march: long way", trips.goes_on),
-            ("march: walk", trips.walks),
-            ("march: four columns", trips.steps),
+            ("march: segment", trips.segments),
             ("march: event", trips.events),
-            ("march: tile", trips.tiles),
+            ("march: crossing", trips.crossings),
             ("march: fill", trips.holes),
         ];
         runs.iter().fold(Work::default(), |sum, (part, times)| sum.plus(*times, self.part(part)))
@@ -329,7 +325,7 @@ impl Meter {
             (metric::TRIPS_WAVE, mean(waves.iter().map(|trips| trips.short))),
             (metric::GOES_ON_PIXEL, mean(each.iter().map(|trips| trips.goes_on))),
             (metric::GOES_ON_WAVE, mean(waves.iter().map(|trips| trips.goes_on))),
-            (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|trips| trips.steps))),
+            (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|trips| trips.segments))),
             (metric::SLOTS_TILES, tiles.slots),
             (metric::SLOTS_SPANS, spans.slots),
             (metric::SLOTS_MARCH, march.slots),
@@ -357,7 +353,7 @@ mod tests {
             for part in ["tiles", "tiles: two rows", "spans", "spans: tile", "spans: plane", "spans: joint"] {
                 assert!(costs.part(part).slots > 0.0, "{}: {part}", device.name);
             }
-            for part in ["short step", "long way", "walk", "four columns", "event", "tile", "fill"] {
+            for part in ["short step", "long way", "segment", "event", "crossing", "fill"] {
                 let slots = costs.part(&format!("march: {part}")).slots;
                 assert!((15.0..250.0).contains(&slots), "{}: {slots} slots of {part}", device.name);
             }
@@ -376,17 +372,16 @@ mod tests {
             (0..6).for_each(|x| set(x, y, [32, 0, 0, 0]));
         }
         set(0, 0, [3, 0, 0, 0]);
-        set(3, 2, [1 | 8 | 16, 9, 2 | 4 << 4, 7]);
+        set(3, 2, [1 | 8 | 16, 9, 2, 7]);
         set(5, 1, [2, 0, 0, 0]);
         let counts = Counts { pixels: &pixels, size: [6, 3] };
         let short = Trips { law: 1.0, searches: 1.0, short: 2.0, ..Trips::default() };
         let long = Trips {
             short: 3.0,
             goes_on: 1.0,
-            steps: 9.0,
-            walks: 4.0,
+            segments: 9.0,
             events: 2.0,
-            tiles: 7.0,
+            crossings: 7.0,
             holes: 1.0,
             ..short
         };
@@ -402,10 +397,9 @@ mod tests {
             ("march: short way", body(80.0, 3.0)),
             ("march: short step", body(20.0, 1.0)),
             ("march: long way", body(90.0, 2.0)),
-            ("march: walk", body(50.0, 1.0)),
-            ("march: four columns", body(60.0, 2.0)),
+            ("march: segment", body(60.0, 2.0)),
             ("march: event", body(40.0, 0.0)),
-            ("march: tile", body(70.0, 1.0)),
+            ("march: crossing", body(70.0, 1.0)),
             ("march: fill", body(75.0, 8.0)),
         ];
         let costs = Costs { lanes: 128, parts };
@@ -413,9 +407,8 @@ mod tests {
         assert_eq!(costs.march(lawful), body(30.0, 2.0));
         let short = Trips { searches: 1.0, short: 2.0, ..Trips::default() };
         assert_eq!(costs.march(short), body(80.0 + 40.0, 3.0 + 2.0));
-        let long =
-            Trips { goes_on: 1.0, steps: 3.0, walks: 2.0, events: 2.0, tiles: 1.0, holes: 1.0, ..short };
-        let slots = 80.0 + 40.0 + 90.0 + 180.0 + 100.0 + 80.0 + 70.0 + 75.0;
-        assert_eq!(costs.march(long), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 2.0 + 1.0 + 8.0));
+        let long = Trips { goes_on: 1.0, segments: 3.0, events: 2.0, crossings: 1.0, holes: 1.0, ..short };
+        let slots = 80.0 + 40.0 + 90.0 + 180.0 + 80.0 + 70.0 + 75.0;
+        assert_eq!(costs.march(long), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 1.0 + 8.0));
     }
 }

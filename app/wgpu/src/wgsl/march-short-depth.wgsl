@@ -6,6 +6,13 @@ struct Search {
     b: f32,
 }
 
+struct Beside {
+    edge: f32,
+    edge_depth: f32,
+    rim: f32,
+    rim_depth: f32,
+}
+
 struct Surface {
     source: f32,
     depth: f32,
@@ -304,554 +311,602 @@ fn search_at(x_4: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
     return Search(_e14, _e15, (_e16 + (_e19 * _e21)), ((_e24 + 1f) + (_e28 * _e30)));
 }
 
-fn are_events(a: ptr<function, vec4<f32>>, b: ptr<function, vec4<f32>>) -> vec4<bool> {
-    var landed: vec4<f32>;
+fn segment_end(x_5: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: ptr<function, bool>, shift_1: ptr<function, u32>) -> f32 {
+    var column: u32;
+    var within: u32;
+    var tile: vec4<u32>;
+    var marks: u32;
+    var local_4: u32;
 
-    let _e7 = (*b);
-    let _e10 = (*b);
-    landed = select(max(_e7, vec4(-1f)), vec4<f32>(-1000000000f, -1000000000f, -1000000000f, -1000000000f), (_e10 > vec4<f32>(0f, 0f, 0f, 0f)));
-    let _e13 = landed;
-    let _e14 = (*a);
-    let _e15 = (*a);
-    return (_e13 < select(_e14, vec4<f32>(-2000000000f, -2000000000f, -2000000000f, -2000000000f), (_e15 > vec4<f32>(0f, 0f, 0f, 0f))));
+    let _e18 = (*x_5);
+    column = u32(_e18);
+    let _e20 = column;
+    within = (_e20 % 16u);
+    let _e22 = column;
+    let _e25 = (*tile_row);
+    let _e27 = textureLoad(tile_map_texture, vec2<i32>(bitcast<i32>((_e22 / 16u)), _e25), 0i);
+    tile = _e27;
+    let _e28 = (*below_1);
+    if _e28 {
+        let _e30 = tile[1u];
+        local_4 = _e30;
+    } else {
+        let _e32 = tile[3u];
+        local_4 = _e32;
+    }
+    let _e33 = local_4;
+    let _e34 = (*shift_1);
+    let _e35 = within;
+    marks = (_e33 >> bitcast<u32>((_e34 + _e35)));
+    let _e40 = tile[2u];
+    let _e43 = marks;
+    marks = select(0u, _e43, (_e40 == bitcast<u32>(9f)));
+    let _e45 = (*x_5);
+    let _e46 = marks;
+    let _e47 = within;
+    return (_e45 + f32(firstTrailingBit((_e46 | (65536u >> bitcast<u32>(_e47))))));
 }
 
-fn walk(at_1: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<function, f32>) -> bool {
-    var met: vec4<bool>;
-    var x_5: f32;
-    var last: f32;
-    var depths_2: vec4<f32>;
-    var param_18: f32;
-    var param_19: f32;
-    var places: vec4<f32>;
-    var param_20: vec4<f32>;
-    var param_21: vec4<f32>;
-    var local_4: f32;
+fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
+    var jump: bool;
+    var torn: bool;
+    var rim: bool;
     var local_5: f32;
     var local_6: f32;
-    var param_22: f32;
-    var param_23: f32;
-    var phi_614_: bool;
+    var local_7: f32;
+    var farther: bool;
+    var local_8: f32;
+    var local_9: f32;
+    var phi_586_: bool;
+    var phi_587_: bool;
+    var phi_588_: bool;
+    var phi_635_: bool;
+    var phi_668_: bool;
 
-    met = vec4<bool>(false, false, false, false);
-    let _e30 = (*at_1).x;
-    x_5 = (_e30 - 4f);
-    let _e33 = (*at_1).a;
-    last = _e33;
-    loop {
-        let _e34 = x_5;
-        let _e36 = (*end);
-        let _e37 = ((_e34 + 4f) < _e36);
-        phi_614_ = _e37;
-        if _e37 {
-            let _e38 = met;
-            phi_614_ = !(any(_e38));
+    let _e19 = (*at_1).b;
+    jump = (_e19 > 0f);
+    let _e22 = (*at_1).b;
+    let _e24 = (*at_1).a;
+    torn = ((_e22 - _e24) >= 2f);
+    let _e28 = (*beside).rim;
+    let _e29 = (_e28 < 0f);
+    phi_588_ = _e29;
+    if _e29 {
+        let _e30 = jump;
+        let _e31 = !(_e30);
+        phi_587_ = _e31;
+        if !(_e31) {
+            let _e33 = torn;
+            phi_586_ = _e33;
+            if _e33 {
+                let _e35 = (*at_1).b;
+                phi_586_ = (_e35 < 1f);
+            }
+            let _e38 = phi_586_;
+            phi_587_ = _e38;
         }
-        let _e42 = phi_614_;
-        if _e42 {
-            let _e43 = x_5;
-            x_5 = (_e43 + 4f);
-            let _e45 = x_5;
-            param_18 = (_e45 + 1f);
-            let _e47 = depth_pair((&param_18));
-            let _e48 = x_5;
-            param_19 = (_e48 + 3f);
-            let _e50 = depth_pair((&param_19));
-            depths_2 = vec4<f32>(_e47.x, _e47.y, _e50.x, _e50.y);
-            let _e58 = synthesis.law[1u];
-            let _e59 = depths_2;
-            let _e61 = x_5;
-            let _e62 = (*origin_1);
-            places = ((_e59 * _e58) + (vec4((_e61 - _e62)) + vec4<f32>(1f, 2f, 3f, 4f)));
-            let _e67 = last;
-            let _e68 = places;
-            let _e69 = _e68.xyz;
-            param_20 = vec4<f32>(_e67, _e69.x, _e69.y, _e69.z);
-            let _e74 = places;
-            param_21 = _e74;
-            let _e75 = are_events((&param_20), (&param_21));
-            met = _e75;
-            let _e77 = places[3u];
-            last = _e77;
-            continue;
-        } else {
-            break;
-        }
+        let _e40 = phi_587_;
+        phi_588_ = _e40;
     }
-    let _e79 = met[0u];
-    if _e79 {
-        local_4 = 0f;
+    let _e42 = phi_588_;
+    rim = _e42;
+    let _e43 = rim;
+    if _e43 {
+        let _e45 = (*at_1).x;
+        let _e46 = jump;
+        local_5 = (_e45 + select(0f, 1f, _e46));
     } else {
-        let _e81 = met[1u];
-        if _e81 {
-            local_5 = 1f;
-        } else {
-            let _e83 = met[2u];
-            if _e83 {
-                local_6 = 2f;
-            } else {
-                let _e85 = met[3u];
-                local_6 = select(4f, 3f, _e85);
-            }
-            let _e87 = local_6;
-            local_5 = _e87;
-        }
-        let _e88 = local_5;
-        local_4 = _e88;
+        let _e50 = (*beside).rim;
+        local_5 = _e50;
     }
-    let _e89 = local_4;
-    let _e90 = x_5;
-    x_5 = (_e90 + _e89);
-    let _e92 = x_5;
-    let _e93 = (*end);
-    param_22 = min(_e92, _e93);
-    let _e95 = (*origin_1);
-    param_23 = _e95;
-    let _e96 = search_at((&param_22), (&param_23));
-    (*at_1) = _e96;
-    let _e97 = met;
-    let _e99 = x_5;
-    let _e100 = (*end);
-    return (any(_e97) && (_e99 < _e100));
+    let _e51 = local_5;
+    (*beside).rim = _e51;
+    let _e53 = rim;
+    if _e53 {
+        let _e54 = jump;
+        if _e54 {
+            let _e57 = (*at_1).depths[1u];
+            local_7 = _e57;
+        } else {
+            let _e60 = (*at_1).depths[0u];
+            local_7 = _e60;
+        }
+        let _e61 = local_7;
+        local_6 = _e61;
+    } else {
+        let _e63 = (*beside).rim_depth;
+        local_6 = _e63;
+    }
+    let _e64 = local_6;
+    (*beside).rim_depth = _e64;
+    let _e66 = jump;
+    phi_635_ = _e66;
+    if _e66 {
+        let _e69 = synthesis.law[1u];
+        let _e72 = (*at_1).depths[0u];
+        let _e74 = (*beside).edge_depth;
+        phi_635_ = ((_e69 * (_e72 - _e74)) < 0f);
+    }
+    let _e79 = phi_635_;
+    farther = _e79;
+    let _e80 = farther;
+    if _e80 {
+        let _e82 = (*at_1).x;
+        local_8 = _e82;
+    } else {
+        let _e84 = (*beside).edge;
+        local_8 = _e84;
+    }
+    let _e85 = local_8;
+    (*beside).edge = _e85;
+    let _e87 = farther;
+    if _e87 {
+        let _e90 = (*at_1).depths[0u];
+        local_9 = _e90;
+    } else {
+        let _e92 = (*beside).edge_depth;
+        local_9 = _e92;
+    }
+    let _e93 = local_9;
+    (*beside).edge_depth = _e93;
+    let _e95 = jump;
+    phi_668_ = _e95;
+    if _e95 {
+        let _e97 = (*at_1).a;
+        let _e99 = torn;
+        phi_668_ = ((_e97 > -0.5f) || !(_e99));
+    }
+    let _e103 = phi_668_;
+    return _e103;
 }
 
-fn next_candidate(x_6: ptr<function, f32>, end_1: ptr<function, f32>, origin_2: ptr<function, f32>, row_2: ptr<function, i32>) -> f32 {
-    var lands: bool;
-    var moved: u32;
-    var at_2: vec2<f32>;
-    var phi_462_: bool;
+fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
+    var phi_499_: bool;
+    var phi_500_: bool;
 
-    lands = false;
-    loop {
-        let _e19 = (*x_6);
-        let _e21 = (*end_1);
-        let _e23 = lands;
-        if (((_e19 + 16f) < _e21) && !(_e23)) {
-            let _e26 = (*x_6);
-            let _e28 = (*row_2);
-            let _e31 = textureLoad(tile_map_texture, (vec2<i32>(i32(_e26), _e28) / vec2<i32>(16i, 8i)), 0i);
-            moved = _e31.x;
-            let _e33 = (*x_6);
-            let _e34 = (*origin_2);
-            let _e36 = moved;
-            let _e39 = moved;
-            at_2 = (vec2((_e33 - _e34)) + (vec2<f32>(f32((_e36 & 65535u)), f32((_e39 >> bitcast<u32>(16i)))) / vec2(16f)));
-            let _e49 = at_2[0u];
-            let _e50 = (_e49 <= 1f);
-            phi_462_ = _e50;
-            if _e50 {
-                let _e52 = at_2[1u];
-                phi_462_ = ((_e52 + 16f) >= -1f);
-            }
-            let _e56 = phi_462_;
-            lands = _e56;
-            let _e57 = lands;
-            let _e59 = (*x_6);
-            (*x_6) = (_e59 + select(16f, 0f, _e57));
-            continue;
-        } else {
-            break;
-        }
-    }
-    let _e61 = (*x_6);
-    return _e61;
-}
-
-fn is_event(a_1: ptr<function, f32>, b_1: ptr<function, f32>) -> bool {
-    var phi_565_: bool;
-    var phi_566_: bool;
-
-    let _e4 = (*a_1);
+    let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_566_ = _e5;
+    phi_500_ = _e5;
     if _e5 {
-        let _e6 = (*b_1);
+        let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_565_ = _e7;
+        phi_499_ = _e7;
         if !(_e7) {
-            let _e9 = (*b_1);
-            let _e11 = (*a_1);
-            phi_565_ = (max(_e9, -1f) < _e11);
+            let _e9 = (*b);
+            let _e11 = (*a);
+            phi_499_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_565_;
-        phi_566_ = _e14;
+        let _e14 = phi_499_;
+        phi_500_ = _e14;
     }
-    let _e16 = phi_566_;
+    let _e16 = phi_500_;
     return _e16;
 }
 
-fn march(at_3: ptr<function, Search>, end_2: ptr<function, f32>, origin_3: ptr<function, f32>, row_3: ptr<function, i32>, surface: ptr<function, Surface>) -> vec4<f32> {
-    var edge_1: f32;
-    var edge_depth: f32;
-    var rim: f32;
-    var rim_depth: f32;
-    var param_24: f32;
-    var param_25: f32;
-    var stop: f32;
+fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<function, f32>, row_2: ptr<function, i32>, surface: ptr<function, Surface>) -> vec4<f32> {
+    var border: f32;
+    var outside: bool;
+    var beside_1: Beside;
+    var local_10: f32;
     var found: bool;
-    var met_1: bool;
+    var param_18: f32;
+    var param_19: f32;
+    var param_20: Beside;
+    var param_21: Search;
+    var x_6: f32;
+    var a_1: f32;
+    var tile_row_1: i32;
+    var below_2: bool;
+    var shift_2: u32;
+    var crosses: bool;
+    var param_22: f32;
+    var param_23: i32;
+    var param_24: bool;
+    var param_25: u32;
     var param_26: f32;
     var param_27: f32;
-    var jump: bool;
-    var torn: bool;
-    var beside: bool;
-    var nearest: bool;
-    var local_7: f32;
-    var local_8: f32;
-    var local_9: f32;
-    var farther: bool;
-    var local_10: f32;
-    var local_11: f32;
-    var local_12: f32;
     var param_28: f32;
     var param_29: f32;
-    var param_30: f32;
-    var param_31: i32;
+    var param_30: Beside;
+    var param_31: Search;
+    var local_11: f32;
+    var local_12: f32;
+    var last: f32;
+    var b_1: f32;
     var param_32: f32;
     var param_33: f32;
-    var param_34: Search;
-    var param_35: f32;
-    var param_36: f32;
-    var own: bool;
-    var x_7: f32;
+    var behind: bool;
     var local_13: f32;
-    var t: f32;
     var local_14: f32;
     var local_15: f32;
+    var local_16: f32;
+    var own: bool;
+    var local_17: f32;
+    var t: f32;
+    var local_18: f32;
+    var local_19: f32;
     var away_2: f32;
     var color_1: vec4<f32>;
-    var param_37: f32;
-    var param_38: f32;
-    var param_39: vec2<f32>;
-    var param_40: bool;
-    var param_41: vec4<f32>;
-    var param_42: f32;
+    var param_34: f32;
+    var param_35: f32;
+    var param_36: vec2<f32>;
+    var param_37: bool;
+    var param_38: vec4<f32>;
+    var param_39: f32;
+    var param_40: f32;
+    var param_41: f32;
+    var param_42: i32;
+    var coverage: f32;
     var param_43: f32;
     var param_44: f32;
-    var param_45: i32;
-    var coverage: f32;
-    var param_46: f32;
-    var param_47: f32;
-    var param_48: vec2<f32>;
-    var phi_782_: bool;
-    var phi_795_: bool;
-    var phi_796_: bool;
-    var phi_843_: bool;
-    var phi_886_: bool;
-    var phi_923_: bool;
-    var phi_951_: bool;
-    var phi_1001_: bool;
-    var phi_1017_: bool;
+    var param_45: vec2<f32>;
+    var phi_717_: bool;
+    var phi_724_: bool;
+    var phi_734_: bool;
+    var phi_804_: bool;
+    var phi_815_: bool;
+    var phi_825_: bool;
+    var phi_899_: bool;
+    var phi_949_: bool;
+    var phi_972_: bool;
+    var phi_1023_: bool;
+    var phi_1039_: bool;
 
-    edge_1 = -1f;
-    let _e74 = synthesis.law[1u];
-    edge_depth = select(1000000000f, -1000000000f, (_e74 < 0f));
-    rim = -1f;
-    rim_depth = 0f;
-    let _e78 = (*at_3).x;
-    if (_e78 <= 0f) {
-        param_24 = 0f;
-        let _e80 = (*origin_3);
-        param_25 = _e80;
-        let _e81 = search_at((&param_24), (&param_25));
-        (*at_3) = _e81;
-        let _e83 = (*at_3).a;
-        if (_e83 > 0f) {
-            edge_1 = 0f;
-            let _e87 = (*at_3).depths[0u];
-            edge_depth = _e87;
-            let _e89 = (*at_3).a;
-            let _e91 = (*end_2);
-            (*end_2) = select(_e91, 0f, (_e89 < 0.5f));
-        }
+    let _e79 = (*at_2).a;
+    let _e81 = (*at_2).x;
+    border = (_e79 - _e81);
+    let _e84 = (*at_2).x;
+    let _e86 = border;
+    outside = ((_e84 <= 0f) && (_e86 > 0f));
+    let _e89 = outside;
+    let _e90 = border;
+    let _e93 = (*end);
+    (*end) = select(_e93, 0f, (_e89 && (_e90 < 0.5f)));
+    let _e95 = outside;
+    beside_1.edge = select(-1f, 0f, _e95);
+    let _e98 = outside;
+    if _e98 {
+        let _e101 = (*at_2).depths[0u];
+        local_10 = _e101;
+    } else {
+        let _e104 = synthesis.law[1u];
+        local_10 = select(1000000000f, -1000000000f, (_e104 < 0f));
     }
-    let _e94 = (*at_3).x;
-    stop = ((floor((_e94 / 16f)) + 4f) * 16f);
+    let _e107 = local_10;
+    beside_1.edge_depth = _e107;
+    beside_1.rim = -1f;
+    beside_1.rim_depth = 0f;
     found = false;
-    let _e100 = (*at_3).a;
-    param_26 = _e100;
-    let _e102 = (*at_3).b;
-    param_27 = _e102;
-    let _e103 = is_event((&param_26), (&param_27));
-    met_1 = _e103;
+    phi_717_ = true;
+    if true {
+        let _e112 = (*at_2).x;
+        phi_717_ = (_e112 >= 0f);
+    }
+    let _e115 = phi_717_;
+    phi_724_ = _e115;
+    if _e115 {
+        let _e117 = (*at_2).x;
+        let _e118 = (*end);
+        phi_724_ = (_e117 < _e118);
+    }
+    let _e121 = phi_724_;
+    phi_734_ = _e121;
+    if _e121 {
+        let _e123 = (*at_2).a;
+        param_18 = _e123;
+        let _e125 = (*at_2).b;
+        param_19 = _e125;
+        let _e126 = is_event((&param_18), (&param_19));
+        phi_734_ = _e126;
+    }
+    let _e128 = phi_734_;
+    if _e128 {
+        let _e129 = beside_1;
+        param_20 = _e129;
+        let _e130 = (*at_2);
+        param_21 = _e130;
+        let _e131 = meet((&param_20), (&param_21));
+        let _e132 = param_20;
+        beside_1 = _e132;
+        found = _e131;
+    }
+    let _e134 = (*at_2).x;
+    x_6 = max((_e134 + 1f), 0f);
+    let _e138 = (*at_2).b;
+    let _e139 = x_6;
+    let _e141 = (*at_2).x;
+    a_1 = (_e138 + ((_e139 - _e141) - 1f));
+    let _e145 = (*row_2);
+    tile_row_1 = (_e145 / 8i);
+    let _e147 = (*row_2);
+    below_2 = ((_e147 & 4i) == 0i);
+    let _e150 = (*row_2);
+    shift_2 = (bitcast<u32>((_e150 & 2i)) << bitcast<u32>(3i));
+    crosses = false;
     loop {
-        let _e105 = (*at_3).x;
-        let _e106 = (*end_2);
-        let _e108 = found;
-        if ((_e105 < _e106) && !(_e108)) {
-            let _e111 = met_1;
-            if (true && _e111) {
-                let _e114 = (*at_3).b;
-                jump = (_e114 > 0f);
-                let _e117 = (*at_3).b;
-                let _e119 = (*at_3).a;
-                torn = ((_e117 - _e119) >= 2f);
-                let _e122 = jump;
-                phi_782_ = _e122;
-                if _e122 {
-                    let _e124 = (*at_3).a;
-                    let _e126 = torn;
-                    phi_782_ = ((_e124 > -0.5f) || !(_e126));
-                }
-                let _e130 = phi_782_;
-                found = _e130;
-                let _e131 = jump;
-                let _e132 = !(_e131);
-                phi_796_ = _e132;
-                if !(_e132) {
-                    let _e134 = torn;
-                    phi_795_ = _e134;
-                    if _e134 {
-                        let _e136 = (*at_3).b;
-                        phi_795_ = (_e136 < 1f);
-                    }
-                    let _e139 = phi_795_;
-                    phi_796_ = _e139;
-                }
-                let _e141 = phi_796_;
-                beside = _e141;
-                let _e142 = beside;
-                let _e143 = rim;
-                nearest = (_e142 && (_e143 < 0f));
-                let _e146 = nearest;
-                if _e146 {
-                    let _e148 = (*at_3).x;
-                    let _e149 = jump;
-                    local_7 = (_e148 + select(0f, 1f, _e149));
-                } else {
-                    let _e152 = rim;
-                    local_7 = _e152;
-                }
-                let _e153 = local_7;
-                rim = _e153;
-                let _e154 = nearest;
-                if _e154 {
-                    let _e155 = jump;
-                    if _e155 {
-                        let _e158 = (*at_3).depths[1u];
-                        local_9 = _e158;
-                    } else {
-                        let _e161 = (*at_3).depths[0u];
-                        local_9 = _e161;
-                    }
-                    let _e162 = local_9;
-                    local_8 = _e162;
-                } else {
-                    let _e163 = rim_depth;
-                    local_8 = _e163;
-                }
-                let _e164 = local_8;
-                rim_depth = _e164;
-                let _e165 = jump;
-                phi_843_ = _e165;
-                if _e165 {
-                    let _e168 = synthesis.law[1u];
-                    let _e171 = (*at_3).depths[0u];
-                    let _e172 = edge_depth;
-                    phi_843_ = ((_e168 * (_e171 - _e172)) < 0f);
-                }
-                let _e177 = phi_843_;
-                farther = _e177;
-                let _e178 = farther;
-                if _e178 {
-                    let _e180 = (*at_3).x;
-                    local_10 = _e180;
-                } else {
-                    let _e181 = edge_1;
-                    local_10 = _e181;
-                }
-                let _e182 = local_10;
-                edge_1 = _e182;
-                let _e183 = farther;
-                if _e183 {
-                    let _e186 = (*at_3).depths[0u];
-                    local_11 = _e186;
-                } else {
-                    let _e187 = edge_depth;
-                    local_11 = _e187;
-                }
-                let _e188 = local_11;
-                edge_depth = _e188;
-                let _e189 = found;
-                let _e192 = (*at_3).x;
-                (*at_3).x = (_e192 + select(1f, 0f, _e189));
-                let _e195 = found;
-                if _e195 {
-                    let _e197 = (*at_3).a;
-                    local_12 = _e197;
-                } else {
-                    let _e199 = (*at_3).b;
-                    local_12 = _e199;
-                }
-                let _e200 = local_12;
-                (*at_3).a = _e200;
+        let _e155 = x_6;
+        let _e156 = (*end);
+        let _e158 = found;
+        if ((_e155 <= _e156) && !(_e158)) {
+            let _e161 = x_6;
+            param_22 = _e161;
+            let _e162 = tile_row_1;
+            param_23 = _e162;
+            let _e163 = below_2;
+            param_24 = _e163;
+            let _e164 = shift_2;
+            param_25 = _e164;
+            let _e165 = segment_end((&param_22), (&param_23), (&param_24), (&param_25));
+            let _e166 = (*end);
+            param_26 = min(_e165, _e166);
+            let _e168 = (*origin_1);
+            param_27 = _e168;
+            let _e169 = search_at((&param_26), (&param_27));
+            (*at_2) = _e169;
+            let _e170 = a_1;
+            let _e171 = (_e170 <= 0f);
+            phi_804_ = _e171;
+            if _e171 {
+                let _e173 = (*at_2).a;
+                phi_804_ = (_e173 > 0f);
+            }
+            let _e176 = phi_804_;
+            crosses = _e176;
+            let _e177 = crosses;
+            found = _e177;
+            let _e178 = crosses;
+            let _e180 = (true && !(_e178));
+            phi_815_ = _e180;
+            if _e180 {
+                let _e182 = (*at_2).x;
+                let _e183 = (*end);
+                phi_815_ = (_e182 < _e183);
+            }
+            let _e186 = phi_815_;
+            phi_825_ = _e186;
+            if _e186 {
+                let _e188 = (*at_2).a;
+                param_28 = _e188;
+                let _e190 = (*at_2).b;
+                param_29 = _e190;
+                let _e191 = is_event((&param_28), (&param_29));
+                phi_825_ = _e191;
+            }
+            let _e193 = phi_825_;
+            if _e193 {
+                let _e194 = beside_1;
+                param_30 = _e194;
+                let _e195 = (*at_2);
+                param_31 = _e195;
+                let _e196 = meet((&param_30), (&param_31));
+                let _e197 = param_30;
+                beside_1 = _e197;
+                found = _e196;
+            }
+            let _e198 = found;
+            if _e198 {
+                let _e199 = x_6;
+                local_11 = _e199;
             } else {
-                phi_886_ = true;
-                if true {
-                    let _e203 = (*at_3).x;
-                    let _e204 = stop;
-                    phi_886_ = (_e203 >= _e204);
-                }
-                let _e207 = phi_886_;
-                if _e207 {
-                    let _e208 = (*origin_3);
-                    let _e210 = synthesis.farthest;
-                    let _e212 = stop;
-                    param_28 = _e212;
-                    let _e213 = (*end_2);
-                    param_29 = _e213;
-                    param_30 = (_e208 - _e210);
-                    let _e214 = (*row_3);
-                    param_31 = _e214;
-                    let _e215 = next_candidate((&param_28), (&param_29), (&param_30), (&param_31));
-                    param_32 = _e215;
-                    let _e216 = (*origin_3);
-                    param_33 = _e216;
-                    let _e217 = search_at((&param_32), (&param_33));
-                    (*at_3) = _e217;
-                    let _e219 = (*at_3).x;
-                    stop = (_e219 + 16f);
-                }
+                let _e201 = (*at_2).x;
+                local_11 = (_e201 + 1f);
             }
-            let _e221 = found;
-            let _e222 = !(_e221);
-            phi_923_ = _e222;
-            if _e222 {
-                let _e223 = stop;
-                let _e224 = (*end_2);
-                let _e226 = (*at_3);
-                param_34 = _e226;
-                param_35 = min(_e223, _e224);
-                let _e227 = (*origin_3);
-                param_36 = _e227;
-                let _e228 = walk((&param_34), (&param_35), (&param_36));
-                let _e229 = param_34;
-                (*at_3) = _e229;
-                phi_923_ = _e228;
+            let _e203 = local_11;
+            x_6 = _e203;
+            let _e204 = found;
+            if _e204 {
+                let _e205 = a_1;
+                local_12 = _e205;
+            } else {
+                let _e207 = (*at_2).b;
+                local_12 = _e207;
             }
-            let _e231 = phi_923_;
-            met_1 = _e231;
+            let _e208 = local_12;
+            a_1 = _e208;
             continue;
         } else {
             break;
         }
     }
-    let _e232 = found;
-    let _e233 = edge_1;
-    own = (_e232 || (_e233 < 0f));
-    let _e236 = own;
-    if _e236 {
-        let _e238 = (*at_3).x;
-        let _e239 = (*end_2);
-        local_13 = min(_e238, _e239);
-    } else {
-        let _e241 = edge_1;
-        local_13 = _e241;
-    }
-    let _e242 = local_13;
-    x_7 = _e242;
-    let _e243 = found;
-    phi_951_ = _e243;
-    if _e243 {
-        let _e245 = (*at_3).b;
-        let _e247 = (*at_3).a;
-        phi_951_ = ((_e245 - _e247) < 2f);
-    }
-    let _e251 = phi_951_;
-    if _e251 {
-        let _e253 = (*at_3).a;
-        let _e256 = (*at_3).b;
-        let _e258 = (*at_3).a;
-        local_14 = (-(_e253) / (_e256 - _e258));
-    } else {
-        local_14 = 0f;
-    }
-    let _e261 = local_14;
-    t = _e261;
-    let _e262 = x_7;
-    let _e263 = t;
-    (*surface).source = (_e262 + _e263);
-    let _e266 = own;
-    if _e266 {
-        let _e269 = (*at_3).depths[0u];
-        let _e272 = (*at_3).depths[1u];
-        let _e273 = t;
-        local_15 = mix(_e269, _e272, _e273);
-    } else {
-        let _e275 = edge_depth;
-        local_15 = _e275;
-    }
-    let _e276 = local_15;
-    (*surface).depth = _e276;
-    let _e278 = x_7;
-    let _e279 = (*origin_3);
-    let _e283 = synthesis.law[1u];
-    let _e285 = (*surface).depth;
-    away_2 = ((_e278 - _e279) + (_e283 * _e285));
-    let _e288 = found;
-    let _e289 = !(_e288);
-    phi_1001_ = _e289;
-    if _e289 {
-        let _e290 = away_2;
-        phi_1001_ = (abs(_e290) >= 0.5f);
-    }
-    let _e294 = phi_1001_;
-    (*surface).hole = _e294;
-    let _e297 = (*surface).source;
-    param_37 = _e297;
-    let _e298 = column_at((&param_37));
-    param_38 = 0f;
-    let _e299 = row_at((&param_38));
-    param_39 = vec2<f32>(_e298, _e299);
-    let _e301 = color_sample((&param_39));
-    color_1 = _e301;
-    phi_1017_ = true;
-    if true {
-        let _e303 = (*surface).hole;
-        phi_1017_ = _e303;
-    }
-    let _e305 = phi_1017_;
-    if _e305 {
-        param_40 = true;
-        let _e306 = color_1;
-        param_41 = _e306;
-        let _e307 = away_2;
-        param_42 = _e307;
-        let _e308 = x_7;
-        param_43 = _e308;
-        let _e310 = (*surface).depth;
-        param_44 = _e310;
-        let _e311 = (*row_3);
-        param_45 = _e311;
-        let _e312 = fill_hole((&param_40), (&param_41), (&param_42), (&param_43), (&param_44), (&param_45));
-        color_1 = _e312;
-    }
-    let _e313 = rim;
-    if (_e313 >= 0f) {
-        let _e315 = rim;
-        let _e316 = (*origin_3);
-        let _e320 = synthesis.law[1u];
-        let _e321 = rim_depth;
-        coverage = (1f - abs(((_e315 - _e316) + (_e320 * _e321))));
-        let _e326 = color_1;
-        let _e327 = rim;
-        param_46 = _e327;
-        let _e328 = column_at((&param_46));
-        param_47 = 0f;
-        let _e329 = row_at((&param_47));
-        param_48 = vec2<f32>(_e328, _e329);
-        let _e331 = color_sample((&param_48));
-        let _e332 = coverage;
-        color_1 = mix(_e326, _e331, vec4(_e332));
-        let _e335 = coverage;
-        if (_e335 >= 0.5f) {
-            let _e337 = rim;
-            let _e338 = rim_depth;
-            (*surface) = Surface(_e337, _e338, false);
+    let _e210 = (*at_2).x;
+    last = _e210;
+    let _e212 = (*at_2).a;
+    b_1 = _e212;
+    loop {
+        let _e213 = crosses;
+        let _e215 = x_6;
+        let _e216 = last;
+        if ((true && _e213) && (_e215 < _e216)) {
+            let _e219 = x_6;
+            let _e220 = last;
+            let _e221 = x_6;
+            let _e223 = a_1;
+            let _e225 = a_1;
+            let _e226 = b_1;
+            let _e231 = x_6;
+            let _e232 = last;
+            param_32 = clamp(floor((_e219 + (((_e220 - _e221) * _e223) / (_e225 - _e226)))), _e231, (_e232 - 1f));
+            let _e235 = (*origin_1);
+            param_33 = _e235;
+            let _e236 = search_at((&param_32), (&param_33));
+            (*at_2) = _e236;
+            let _e238 = (*at_2).a;
+            let _e239 = (_e238 > 0f);
+            phi_899_ = _e239;
+            if !(_e239) {
+                let _e242 = (*at_2).b;
+                phi_899_ = (_e242 <= 0f);
+            }
+            let _e245 = phi_899_;
+            crosses = _e245;
+            let _e247 = (*at_2).a;
+            behind = (_e247 > 0f);
+            let _e249 = behind;
+            if _e249 {
+                let _e250 = x_6;
+                local_13 = _e250;
+            } else {
+                let _e252 = (*at_2).x;
+                local_13 = (_e252 + 1f);
+            }
+            let _e254 = local_13;
+            x_6 = _e254;
+            let _e255 = behind;
+            if _e255 {
+                let _e256 = a_1;
+                local_14 = _e256;
+            } else {
+                let _e258 = (*at_2).b;
+                local_14 = _e258;
+            }
+            let _e259 = local_14;
+            a_1 = _e259;
+            let _e260 = behind;
+            if _e260 {
+                let _e262 = (*at_2).x;
+                local_15 = _e262;
+            } else {
+                let _e263 = last;
+                local_15 = _e263;
+            }
+            let _e264 = local_15;
+            last = _e264;
+            let _e265 = behind;
+            if _e265 {
+                let _e267 = (*at_2).a;
+                local_16 = _e267;
+            } else {
+                let _e268 = b_1;
+                local_16 = _e268;
+            }
+            let _e269 = local_16;
+            b_1 = _e269;
+            continue;
+        } else {
+            break;
         }
     }
-    let _e340 = color_1;
-    return _e340;
+    let _e270 = found;
+    phi_949_ = _e270;
+    if !(_e270) {
+        let _e273 = beside_1.edge;
+        phi_949_ = (_e273 < 0f);
+    }
+    let _e276 = phi_949_;
+    own = _e276;
+    let _e277 = own;
+    if _e277 {
+        let _e279 = (*at_2).x;
+        let _e280 = (*end);
+        local_17 = min(_e279, _e280);
+    } else {
+        let _e283 = beside_1.edge;
+        local_17 = _e283;
+    }
+    let _e284 = local_17;
+    x_6 = _e284;
+    let _e285 = found;
+    phi_972_ = _e285;
+    if _e285 {
+        let _e287 = (*at_2).b;
+        let _e289 = (*at_2).a;
+        phi_972_ = ((_e287 - _e289) < 2f);
+    }
+    let _e293 = phi_972_;
+    if _e293 {
+        let _e295 = (*at_2).a;
+        let _e298 = (*at_2).b;
+        let _e300 = (*at_2).a;
+        local_18 = (-(_e295) / (_e298 - _e300));
+    } else {
+        local_18 = 0f;
+    }
+    let _e303 = local_18;
+    t = _e303;
+    let _e304 = x_6;
+    let _e305 = t;
+    (*surface).source = (_e304 + _e305);
+    let _e308 = own;
+    if _e308 {
+        let _e311 = (*at_2).depths[0u];
+        let _e314 = (*at_2).depths[1u];
+        let _e315 = t;
+        local_19 = mix(_e311, _e314, _e315);
+    } else {
+        let _e318 = beside_1.edge_depth;
+        local_19 = _e318;
+    }
+    let _e319 = local_19;
+    (*surface).depth = _e319;
+    let _e321 = x_6;
+    let _e322 = (*origin_1);
+    let _e326 = synthesis.law[1u];
+    let _e328 = (*surface).depth;
+    away_2 = ((_e321 - _e322) + (_e326 * _e328));
+    let _e331 = found;
+    let _e332 = !(_e331);
+    phi_1023_ = _e332;
+    if _e332 {
+        let _e333 = away_2;
+        phi_1023_ = (abs(_e333) >= 0.5f);
+    }
+    let _e337 = phi_1023_;
+    (*surface).hole = _e337;
+    let _e340 = (*surface).source;
+    param_34 = _e340;
+    let _e341 = column_at((&param_34));
+    param_35 = 0f;
+    let _e342 = row_at((&param_35));
+    param_36 = vec2<f32>(_e341, _e342);
+    let _e344 = color_sample((&param_36));
+    color_1 = _e344;
+    phi_1039_ = true;
+    if true {
+        let _e346 = (*surface).hole;
+        phi_1039_ = _e346;
+    }
+    let _e348 = phi_1039_;
+    if _e348 {
+        param_37 = true;
+        let _e349 = color_1;
+        param_38 = _e349;
+        let _e350 = away_2;
+        param_39 = _e350;
+        let _e351 = x_6;
+        param_40 = _e351;
+        let _e353 = (*surface).depth;
+        param_41 = _e353;
+        let _e354 = (*row_2);
+        param_42 = _e354;
+        let _e355 = fill_hole((&param_37), (&param_38), (&param_39), (&param_40), (&param_41), (&param_42));
+        color_1 = _e355;
+    }
+    let _e357 = beside_1.rim;
+    if (_e357 >= 0f) {
+        let _e360 = beside_1.rim;
+        let _e361 = (*origin_1);
+        let _e365 = synthesis.law[1u];
+        let _e367 = beside_1.rim_depth;
+        coverage = (1f - abs(((_e360 - _e361) + (_e365 * _e367))));
+        let _e372 = color_1;
+        let _e374 = beside_1.rim;
+        param_43 = _e374;
+        let _e375 = column_at((&param_43));
+        param_44 = 0f;
+        let _e376 = row_at((&param_44));
+        param_45 = vec2<f32>(_e375, _e376);
+        let _e378 = color_sample((&param_45));
+        let _e379 = coverage;
+        color_1 = mix(_e372, _e378, vec4(_e379));
+        let _e382 = coverage;
+        if (_e382 >= 0.5f) {
+            let _e385 = beside_1.rim;
+            let _e387 = beside_1.rim_depth;
+            (*surface) = Surface(_e385, _e387, false);
+        }
+    }
+    let _e389 = color_1;
+    return _e389;
 }
 
 fn source_row() -> i32 {
@@ -863,183 +918,183 @@ fn source_row() -> i32 {
 
 fn span_steps(span: ptr<function, u32>) -> f32 {
     var steps: u32;
-    var local_16: f32;
+    var local_20: f32;
 
     let _e5 = (*span);
     steps = (_e5 & 1023u);
     let _e7 = steps;
     if (_e7 == 1023u) {
-        local_16 = 1000000000f;
+        local_20 = 1000000000f;
     } else {
         let _e9 = steps;
-        local_16 = f32(_e9);
+        local_20 = f32(_e9);
     }
-    let _e11 = local_16;
+    let _e11 = local_20;
     return _e11;
 }
 
 fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> vec4<f32> {
-    var origin_4: f32;
-    var at_4: Search;
-    var param_49: f32;
-    var param_50: f32;
-    var end_3: f32;
-    var param_51: u32;
+    var origin_2: f32;
+    var at_3: Search;
+    var param_46: f32;
+    var param_47: f32;
+    var end_1: f32;
+    var param_48: u32;
     var limit: f32;
     var next: f32;
-    var param_52: f32;
-    var param_53: f32;
-    var param_54: vec2<f32>;
+    var param_49: f32;
+    var param_50: f32;
+    var param_51: vec2<f32>;
     var stretch: f32;
     var t_1: f32;
     var seen: vec4<f32>;
-    var param_55: f32;
-    var param_56: f32;
-    var param_57: vec2<f32>;
+    var param_52: f32;
+    var param_53: f32;
+    var param_54: vec2<f32>;
     var middle: f32;
     var done: bool;
-    var param_58: Search;
-    var param_59: f32;
-    var param_60: f32;
-    var param_61: i32;
-    var param_62: Surface;
-    var phi_1192_: bool;
-    var phi_1201_: bool;
-    var phi_1284_: bool;
-    var phi_1297_: bool;
+    var param_55: Search;
+    var param_56: f32;
+    var param_57: f32;
+    var param_58: i32;
+    var param_59: Surface;
+    var phi_1221_: bool;
+    var phi_1230_: bool;
+    var phi_1313_: bool;
+    var phi_1326_: bool;
 
-    let _e41 = synthesis.origins[0u];
-    let _e43 = gl_FragCoord_1[0u];
-    let _e47 = synthesis.origins[1u];
-    origin_4 = ((_e41 * _e43) + _e47);
-    let _e49 = origin_4;
-    let _e51 = synthesis.farthest;
-    let _e53 = (*span_1);
-    param_49 = floor(((_e49 - _e51) - bitcast<f32>(_e53)));
-    let _e57 = origin_4;
-    param_50 = _e57;
-    let _e58 = search_at((&param_49), (&param_50));
-    at_4 = _e58;
-    let _e60 = at_4.x;
-    let _e62 = (*span_1);
-    param_51 = _e62;
-    let _e63 = span_steps((&param_51));
-    let _e67 = synthesis.source_size[0u];
-    end_3 = min((max(_e60, 0f) + _e63), f32((_e67 - 1i)));
-    let _e72 = at_4.x;
-    let _e74 = end_3;
-    limit = min((_e72 + 4f), _e74);
+    let _e40 = synthesis.origins[0u];
+    let _e42 = gl_FragCoord_1[0u];
+    let _e46 = synthesis.origins[1u];
+    origin_2 = ((_e40 * _e42) + _e46);
+    let _e48 = origin_2;
+    let _e50 = synthesis.farthest;
+    let _e52 = (*span_1);
+    param_46 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
+    let _e56 = origin_2;
+    param_47 = _e56;
+    let _e57 = search_at((&param_46), (&param_47));
+    at_3 = _e57;
+    let _e59 = at_3.x;
+    let _e61 = (*span_1);
+    param_48 = _e61;
+    let _e62 = span_steps((&param_48));
+    let _e66 = synthesis.source_size[0u];
+    end_1 = min((max(_e59, 0f) + _e62), f32((_e66 - 1i)));
+    let _e71 = at_3.x;
+    let _e73 = end_1;
+    limit = min((_e71 + 2f), _e73);
     loop {
-        let _e77 = at_4.x;
-        let _e78 = limit;
-        let _e79 = (_e77 < _e78);
-        phi_1192_ = _e79;
-        if _e79 {
-            let _e81 = at_4.b;
-            phi_1192_ = (_e81 <= 0f);
+        let _e76 = at_3.x;
+        let _e77 = limit;
+        let _e78 = (_e76 < _e77);
+        phi_1221_ = _e78;
+        if _e78 {
+            let _e80 = at_3.b;
+            phi_1221_ = (_e80 <= 0f);
         }
-        let _e84 = phi_1192_;
-        phi_1201_ = _e84;
-        if _e84 {
-            let _e86 = at_4.b;
-            let _e89 = at_4.a;
-            phi_1201_ = (max(_e86, -1f) >= _e89);
+        let _e83 = phi_1221_;
+        phi_1230_ = _e83;
+        if _e83 {
+            let _e85 = at_3.b;
+            let _e88 = at_3.a;
+            phi_1230_ = (max(_e85, -1f) >= _e88);
         }
-        let _e92 = phi_1201_;
-        if _e92 {
-            let _e94 = at_4.x;
-            param_52 = (_e94 + 2f);
-            let _e96 = column_at((&param_52));
-            param_53 = 0f;
-            let _e97 = row_at((&param_53));
-            param_54 = vec2<f32>(_e96, _e97);
-            let _e99 = depth_sample((&param_54));
-            next = _e99;
-            let _e102 = at_4.depths[1u];
-            let _e103 = next;
-            at_4.depths = vec2<f32>(_e102, _e103);
-            let _e107 = at_4.b;
-            at_4.a = _e107;
-            let _e110 = at_4.x;
-            let _e112 = origin_4;
-            let _e116 = synthesis.law[1u];
-            let _e117 = next;
-            at_4.b = (((_e110 + 2f) - _e112) + (_e116 * _e117));
+        let _e91 = phi_1230_;
+        if _e91 {
+            let _e93 = at_3.x;
+            param_49 = (_e93 + 2f);
+            let _e95 = column_at((&param_49));
+            param_50 = 0f;
+            let _e96 = row_at((&param_50));
+            param_51 = vec2<f32>(_e95, _e96);
+            let _e98 = depth_sample((&param_51));
+            next = _e98;
+            let _e101 = at_3.depths[1u];
+            let _e102 = next;
+            at_3.depths = vec2<f32>(_e101, _e102);
+            let _e106 = at_3.b;
+            at_3.a = _e106;
+            let _e109 = at_3.x;
+            let _e111 = origin_2;
+            let _e115 = synthesis.law[1u];
+            let _e116 = next;
+            at_3.b = (((_e109 + 2f) - _e111) + (_e115 * _e116));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e122 = at_4.x;
-            at_4.x = (_e122 + 1f);
+            let _e121 = at_3.x;
+            at_3.x = (_e121 + 1f);
         }
     }
-    let _e126 = at_4.b;
-    let _e128 = at_4.a;
-    stretch = (_e126 - _e128);
-    let _e131 = at_4.a;
-    let _e133 = stretch;
-    t_1 = (-(_e131) / _e133);
-    let _e136 = at_4.x;
-    let _e137 = t_1;
-    let _e141 = at_4.depths[0u];
-    let _e144 = at_4.depths[1u];
-    let _e145 = t_1;
-    (*surface_1) = Surface((_e136 + _e137), mix(_e141, _e144, _e145), false);
-    let _e149 = (*surface_1).source;
-    param_55 = _e149;
-    let _e150 = column_at((&param_55));
-    param_56 = 0f;
-    let _e151 = row_at((&param_56));
-    param_57 = vec2<f32>(_e150, _e151);
-    let _e153 = color_sample((&param_57));
-    seen = _e153;
-    let _e156 = synthesis.source_size[0u];
-    middle = (0.5f * f32((_e156 - 1i)));
-    let _e161 = at_4.a;
-    let _e162 = (_e161 <= 0f);
-    phi_1284_ = _e162;
-    if _e162 {
-        let _e164 = at_4.b;
-        phi_1284_ = (_e164 > 0f);
+    let _e125 = at_3.b;
+    let _e127 = at_3.a;
+    stretch = (_e125 - _e127);
+    let _e130 = at_3.a;
+    let _e132 = stretch;
+    t_1 = (-(_e130) / _e132);
+    let _e135 = at_3.x;
+    let _e136 = t_1;
+    let _e140 = at_3.depths[0u];
+    let _e143 = at_3.depths[1u];
+    let _e144 = t_1;
+    (*surface_1) = Surface((_e135 + _e136), mix(_e140, _e143, _e144), false);
+    let _e148 = (*surface_1).source;
+    param_52 = _e148;
+    let _e149 = column_at((&param_52));
+    param_53 = 0f;
+    let _e150 = row_at((&param_53));
+    param_54 = vec2<f32>(_e149, _e150);
+    let _e152 = color_sample((&param_54));
+    seen = _e152;
+    let _e155 = synthesis.source_size[0u];
+    middle = (0.5f * f32((_e155 - 1i)));
+    let _e160 = at_3.a;
+    let _e161 = (_e160 <= 0f);
+    phi_1313_ = _e161;
+    if _e161 {
+        let _e163 = at_3.b;
+        phi_1313_ = (_e163 > 0f);
     }
-    let _e167 = phi_1284_;
-    let _e168 = stretch;
-    let _e170 = (_e167 && (_e168 < 2f));
-    phi_1297_ = _e170;
-    if _e170 {
-        let _e172 = (*surface_1).source;
-        let _e173 = middle;
-        let _e176 = middle;
-        phi_1297_ = (abs((_e172 - _e173)) <= _e176);
+    let _e166 = phi_1313_;
+    let _e167 = stretch;
+    let _e169 = (_e166 && (_e167 < 2f));
+    phi_1326_ = _e169;
+    if _e169 {
+        let _e171 = (*surface_1).source;
+        let _e172 = middle;
+        let _e175 = middle;
+        phi_1326_ = (abs((_e171 - _e172)) <= _e175);
     }
-    let _e179 = phi_1297_;
-    done = _e179;
-    let _e180 = done;
-    if (true && !(_e180)) {
-        let _e183 = source_row();
-        let _e184 = at_4;
-        param_58 = _e184;
-        let _e185 = end_3;
-        param_59 = _e185;
-        let _e186 = origin_4;
-        param_60 = _e186;
-        param_61 = _e183;
-        let _e187 = march((&param_58), (&param_59), (&param_60), (&param_61), (&param_62));
-        let _e188 = param_62;
-        (*surface_1) = _e188;
-        seen = _e187;
+    let _e178 = phi_1326_;
+    done = _e178;
+    let _e179 = done;
+    if (true && !(_e179)) {
+        let _e182 = source_row();
+        let _e183 = at_3;
+        param_55 = _e183;
+        let _e184 = end_1;
+        param_56 = _e184;
+        let _e185 = origin_2;
+        param_57 = _e185;
+        param_58 = _e182;
+        let _e186 = march((&param_55), (&param_56), (&param_57), (&param_58), (&param_59));
+        let _e187 = param_59;
+        (*surface_1) = _e187;
+        seen = _e186;
     }
-    let _e189 = seen;
-    return _e189;
+    let _e188 = seen;
+    return _e188;
 }
 
 fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
     var place_2: f32;
-    var depths_3: vec2<f32>;
-    var param_63: f32;
-    var param_64: f32;
-    var param_65: vec2<f32>;
+    var depths_2: vec2<f32>;
+    var param_60: f32;
+    var param_61: f32;
+    var param_62: vec2<f32>;
 
     let _e17 = (*affine)[0u];
     let _e19 = (*affine)[1u];
@@ -1053,19 +1108,19 @@ fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -
     let _e42 = synthesis.source_size[0u];
     (*surface_2).source = clamp((((_e30 - _e33) / _e37) - 0.5f), 0f, f32((_e42 - 1i)));
     let _e48 = (*surface_2).source;
-    param_63 = floor(_e48);
-    let _e50 = depth_pair((&param_63));
-    depths_3 = _e50;
-    let _e52 = depths_3[0u];
-    let _e54 = depths_3[1u];
+    param_60 = floor(_e48);
+    let _e50 = depth_pair((&param_60));
+    depths_2 = _e50;
+    let _e52 = depths_2[0u];
+    let _e54 = depths_2[1u];
     let _e56 = (*surface_2).source;
     (*surface_2).depth = mix(_e52, _e54, fract(_e56));
     (*surface_2).hole = false;
     let _e61 = place_2;
-    param_64 = 0f;
-    let _e62 = row_at((&param_64));
-    param_65 = vec2<f32>(_e61, _e62);
-    let _e64 = color_sample((&param_65));
+    param_61 = 0f;
+    let _e62 = row_at((&param_61));
+    param_62 = vec2<f32>(_e61, _e62);
+    let _e64 = color_sample((&param_62));
     return _e64;
 }
 
@@ -1087,33 +1142,33 @@ fn pixel_span() -> vec4<u32> {
 fn main_1() {
     var span_2: vec4<u32>;
     var surface_3: Surface;
-    var param_66: vec3<f32>;
-    var param_67: Surface;
-    var param_68: u32;
-    var param_69: Surface;
-    var phi_1325_: bool;
+    var param_63: vec3<f32>;
+    var param_64: Surface;
+    var param_65: u32;
+    var param_66: Surface;
+    var phi_1353_: bool;
 
     let _e11 = pixel_span();
     span_2 = _e11;
-    phi_1325_ = true;
+    phi_1353_ = true;
     if true {
         let _e13 = span_2[1u];
-        phi_1325_ = (_e13 != 0u);
+        phi_1353_ = (_e13 != 0u);
     }
-    let _e16 = phi_1325_;
+    let _e16 = phi_1353_;
     if _e16 {
         let _e17 = span_2;
-        param_66 = bitcast<vec3<f32>>(_e17.xyz);
-        let _e20 = lawful((&param_66), (&param_67));
-        let _e21 = param_67;
+        param_63 = bitcast<vec3<f32>>(_e17.xyz);
+        let _e20 = lawful((&param_63), (&param_64));
+        let _e21 = param_64;
         surface_3 = _e21;
         color_2 = _e20;
     } else {
         if true {
             let _e23 = span_2[0u];
-            param_68 = _e23;
-            let _e24 = searched((&param_68), (&param_69));
-            let _e25 = param_69;
+            param_65 = _e23;
+            let _e24 = searched((&param_65), (&param_66));
+            let _e25 = param_66;
             surface_3 = _e25;
             color_2 = _e24;
         } else {

@@ -42,6 +42,22 @@ fn pack_interval(low: ptr<function, f32>, high: ptr<function, f32>) -> u32 {
     return (u32(_e24) | (u32(_e26) << bitcast<u32>(16i)));
 }
 
+fn in_place(marks: ptr<function, u32>) -> u32 {
+    var local: u32;
+
+    let _e6 = synthesis.mirrored;
+    if (_e6 != 0u) {
+        let _e8 = (*marks);
+        let _e11 = (*marks);
+        local = ((_e8 >> bitcast<u32>(16i)) | (_e11 << bitcast<u32>(16i)));
+    } else {
+        let _e15 = (*marks);
+        local = reverseBits(_e15);
+    }
+    let _e17 = local;
+    return _e17;
+}
+
 fn displacement(depth: ptr<function, f32>) -> f32 {
     let _e6 = synthesis.law[0u];
     let _e9 = synthesis.law[1u];
@@ -52,27 +68,27 @@ fn displacement(depth: ptr<function, f32>) -> f32 {
 fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     var last: vec2<f32>;
     var at: vec2<f32>;
-    var local: vec2<f32>;
+    var local_1: vec2<f32>;
     var row: f32;
-    var local_1: f32;
+    var local_2: f32;
     var quad: vec4<f32>;
-    var local_2: vec4<f32>;
     var local_3: vec4<f32>;
     var local_4: vec4<f32>;
-    var phi_187_: bool;
-    var phi_219_: bool;
+    var local_5: vec4<f32>;
+    var phi_192_: bool;
+    var phi_224_: bool;
 
     let _e21 = synthesis.source_size;
     last = vec2<f32>((_e21 - vec2(2i)));
     if true {
         let _e25 = (*corner);
         let _e26 = last;
-        local = clamp(_e25, vec2<f32>(0f, 0f), max(_e26, vec2<f32>(0f, 0f)));
+        local_1 = clamp(_e25, vec2<f32>(0f, 0f), max(_e26, vec2<f32>(0f, 0f)));
     } else {
         let _e29 = (*corner);
-        local = _e29;
+        local_1 = _e29;
     }
-    let _e30 = local;
+    let _e30 = local_1;
     at = _e30;
     let _e32 = at[1u];
     row = (_e32 + 1f);
@@ -80,13 +96,13 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
         let _e36 = synthesis.source_origin[1u];
         let _e38 = row;
         let _e42 = synthesis.texel[1u];
-        local_1 = ((f32(_e36) + _e38) * _e42);
+        local_2 = ((f32(_e36) + _e38) * _e42);
     } else {
         let _e44 = row;
         let _e47 = synthesis.source_size[1u];
-        local_1 = (_e44 / f32(_e47));
+        local_2 = (_e44 / f32(_e47));
     }
-    let _e50 = local_1;
+    let _e50 = local_2;
     row = _e50;
     let _e53 = synthesis.columns[0u];
     let _e55 = at[0u];
@@ -98,46 +114,46 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
         let _e66 = (*corner)[0u];
         let _e68 = last[0u];
         let _e69 = (_e66 <= _e68);
-        phi_187_ = _e69;
+        phi_192_ = _e69;
         if !(_e69) {
             let _e73 = synthesis.source_size[0u];
-            phi_187_ = (_e73 == 1i);
+            phi_192_ = (_e73 == 1i);
         }
-        let _e76 = phi_187_;
+        let _e76 = phi_192_;
         if _e76 {
             let _e77 = quad;
-            local_2 = _e77;
+            local_3 = _e77;
         } else {
             let _e79 = synthesis.mirrored;
             if (_e79 != 0u) {
                 let _e81 = quad;
-                local_3 = _e81.xxww;
+                local_4 = _e81.xxww;
             } else {
                 let _e83 = quad;
-                local_3 = _e83.yyzz;
+                local_4 = _e83.yyzz;
             }
-            let _e85 = local_3;
-            local_2 = _e85;
+            let _e85 = local_4;
+            local_3 = _e85;
         }
-        let _e86 = local_2;
+        let _e86 = local_3;
         quad = _e86;
         let _e88 = (*corner)[1u];
         let _e90 = last[1u];
         let _e91 = (_e88 <= _e90);
-        phi_219_ = _e91;
+        phi_224_ = _e91;
         if !(_e91) {
             let _e95 = synthesis.source_size[1u];
-            phi_219_ = (_e95 == 1i);
+            phi_224_ = (_e95 == 1i);
         }
-        let _e98 = phi_219_;
+        let _e98 = phi_224_;
         if _e98 {
             let _e99 = quad;
-            local_4 = _e99;
+            local_5 = _e99;
         } else {
             let _e100 = quad;
-            local_4 = _e100.xyyx;
+            local_5 = _e100.xyyx;
         }
-        let _e102 = local_4;
+        let _e102 = local_5;
         quad = _e102;
     }
     let _e103 = quad;
@@ -151,17 +167,17 @@ fn depth_sample(place: ptr<function, vec2<f32>>) -> f32 {
 }
 
 fn place_of(at_1: ptr<function, vec2<f32>>) -> vec2<f32> {
-    var local_5: vec2<f32>;
+    var local_6: vec2<f32>;
 
     if true {
         let _e8 = (*at_1);
         let _e10 = synthesis.source_size;
-        local_5 = clamp(_e8, vec2<f32>(0.5f, 0.5f), (vec2<f32>(_e10) - vec2(0.5f)));
+        local_6 = clamp(_e8, vec2<f32>(0.5f, 0.5f), (vec2<f32>(_e10) - vec2(0.5f)));
     } else {
         let _e15 = (*at_1);
-        local_5 = _e15;
+        local_6 = _e15;
     }
-    let _e16 = local_5;
+    let _e16 = local_6;
     (*at_1) = _e16;
     let _e19 = synthesis.columns[0u];
     let _e21 = (*at_1)[0u];
@@ -190,11 +206,20 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var low_1: vec4<f32>;
     var high_1: vec4<f32>;
     var plane: f32;
+    var lower_marks: u32;
+    var marks_1: u32;
+    var marked: f32;
+    var begin: f32;
+    var sense: f32;
     var row_1: f32;
+    var before: vec2<f32>;
     var i: i32;
     var column: f32;
-    var depths: vec4<f32>;
+    var quad_1: vec4<f32>;
     var param_8: vec2<f32>;
+    var depths: vec4<f32>;
+    var between: vec2<f32>;
+    var within: vec2<f32>;
     var second: vec4<f32>;
     var least: f32;
     var most: f32;
@@ -206,179 +231,236 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var plane_law: vec3<f32>;
     var param_11: f32;
     var planar: bool;
-    var param_12: f32;
-    var param_13: f32;
-    var phi_502_: bool;
+    var rest: vec3<u32>;
+    var local_7: vec3<u32>;
+    var param_12: u32;
+    var param_13: u32;
+    var param_14: f32;
+    var param_15: f32;
+    var phi_604_: bool;
 
-    let _e60 = (*corner_1);
-    middle = (_e60 + vec2(0.5f));
-    let _e63 = middle;
-    param = _e63;
-    let _e64 = place_of((&param));
-    param_1 = _e64;
-    let _e65 = depth_sample((&param_1));
-    first = _e65;
-    let _e66 = middle;
-    param_2 = (_e66 + vec2<f32>(16f, 0f));
-    let _e68 = place_of((&param_2));
-    param_3 = _e68;
-    let _e69 = depth_sample((&param_3));
-    right = _e69;
-    let _e70 = middle;
-    param_4 = (_e70 + vec2<f32>(0f, 7f));
-    let _e72 = place_of((&param_4));
-    param_5 = _e72;
-    let _e73 = depth_sample((&param_5));
-    above = _e73;
-    let _e74 = middle;
-    param_6 = (_e74 + vec2<f32>(16f, 7f));
-    let _e76 = place_of((&param_6));
-    param_7 = _e76;
-    let _e77 = depth_sample((&param_7));
-    opposite = _e77;
-    let _e78 = right;
-    let _e79 = above;
-    let _e81 = first;
-    slope = ((vec2<f32>(_e78, _e79) - vec2(_e81)) / vec2<f32>(16f, 7f));
-    let _e87 = synthesis.law[1u];
-    let _e88 = first;
-    let _e89 = right;
-    let _e91 = above;
-    let _e93 = opposite;
-    let _e98 = slope;
-    slope = select(vec2<f32>(0f, 0f), _e98, vec2((abs((_e87 * (((_e88 - _e89) - _e91) + _e93))) <= 0.25f)));
+    let _e79 = (*corner_1);
+    middle = (_e79 + vec2(0.5f));
+    let _e82 = middle;
+    param = _e82;
+    let _e83 = place_of((&param));
+    param_1 = _e83;
+    let _e84 = depth_sample((&param_1));
+    first = _e84;
+    let _e85 = middle;
+    param_2 = (_e85 + vec2<f32>(16f, 0f));
+    let _e87 = place_of((&param_2));
+    param_3 = _e87;
+    let _e88 = depth_sample((&param_3));
+    right = _e88;
+    let _e89 = middle;
+    param_4 = (_e89 + vec2<f32>(0f, 7f));
+    let _e91 = place_of((&param_4));
+    param_5 = _e91;
+    let _e92 = depth_sample((&param_5));
+    above = _e92;
+    let _e93 = middle;
+    param_6 = (_e93 + vec2<f32>(16f, 7f));
+    let _e95 = place_of((&param_6));
+    param_7 = _e95;
+    let _e96 = depth_sample((&param_7));
+    opposite = _e96;
+    let _e97 = right;
+    let _e98 = above;
+    let _e100 = first;
+    slope = ((vec2<f32>(_e97, _e98) - vec2(_e100)) / vec2<f32>(16f, 7f));
+    let _e106 = synthesis.law[1u];
+    let _e107 = first;
+    let _e108 = right;
+    let _e110 = above;
+    let _e112 = opposite;
+    let _e117 = slope;
+    slope = select(vec2<f32>(0f, 0f), _e117, vec2((abs((_e106 * (((_e107 - _e108) - _e110) + _e112))) <= 0.25f)));
     low_1 = vec4<f32>(1000000000f, 1000000000f, 1000000000f, 1000000000f);
     high_1 = vec4<f32>(-1000000000f, -1000000000f, -1000000000f, -1000000000f);
     plane = 0f;
-    let _e102 = (*corner_1)[1u];
-    row_1 = _e102;
+    lower_marks = 0u;
+    marks_1 = 0u;
+    let _e122 = synthesis.law[1u];
+    marked = (0.99f / abs(_e122));
+    let _e126 = synthesis.mirrored;
+    begin = select(0f, 15f, (_e126 != 0u));
+    let _e130 = synthesis.mirrored;
+    sense = select(1f, -1f, (_e130 != 0u));
+    let _e134 = (*corner_1)[1u];
+    row_1 = _e134;
     loop {
-        let _e103 = row_1;
-        let _e105 = (*corner_1)[1u];
-        if (_e103 < (_e105 + 8f)) {
+        let _e135 = row_1;
+        let _e137 = (*corner_1)[1u];
+        if (_e135 < (_e137 + 8f)) {
+            let _e140 = row_1;
+            let _e142 = (*corner_1)[1u];
+            let _e145 = marks_1;
+            let _e146 = lower_marks;
+            lower_marks = select(_e146, _e145, (_e140 == (_e142 + 4f)));
+            before = vec2<f32>(0f, 0f);
             i = 0i;
             loop {
-                let _e108 = i;
-                if (_e108 <= 16i) {
-                    let _e110 = i;
-                    column = f32(min(_e110, 15i));
-                    let _e114 = (*corner_1)[0u];
-                    let _e115 = column;
-                    let _e117 = row_1;
-                    param_8 = vec2<f32>((_e114 + _e115), _e117);
-                    let _e119 = depth_quad((&param_8));
-                    let _e120 = plane;
-                    let _e122 = slope[0u];
-                    let _e123 = column;
-                    depths = (_e119 - vec4((_e120 + (_e122 * _e123))));
-                    let _e128 = low_1;
-                    let _e129 = depths;
-                    low_1 = min(_e128, _e129);
-                    let _e131 = high_1;
-                    let _e132 = depths;
-                    high_1 = max(_e131, _e132);
+                let _e148 = i;
+                if (_e148 <= 16i) {
+                    let _e150 = begin;
+                    let _e151 = sense;
+                    let _e152 = i;
+                    column = (_e150 + (_e151 * f32(min(_e152, 15i))));
+                    let _e158 = (*corner_1)[0u];
+                    let _e159 = column;
+                    let _e161 = row_1;
+                    param_8 = vec2<f32>((_e158 + _e159), _e161);
+                    let _e163 = depth_quad((&param_8));
+                    quad_1 = _e163;
+                    let _e164 = quad_1;
+                    let _e165 = plane;
+                    let _e167 = slope[0u];
+                    let _e168 = column;
+                    depths = (_e164 - vec4((_e165 + (_e167 * _e168))));
+                    let _e173 = low_1;
+                    let _e174 = depths;
+                    low_1 = min(_e173, _e174);
+                    let _e176 = high_1;
+                    let _e177 = depths;
+                    high_1 = max(_e176, _e177);
+                    let _e179 = quad_1;
+                    let _e181 = before;
+                    between = abs((_e179.xw - _e181));
+                    let _e184 = quad_1;
+                    let _e186 = quad_1;
+                    within = abs((_e184.yz - _e186.xw));
+                    let _e190 = quad_1;
+                    before = _e190.yz;
+                    let _e192 = i;
+                    let _e194 = i;
+                    if ((_e192 > 0i) && (_e194 < 16i)) {
+                        let _e197 = marks_1;
+                        let _e201 = between[0u];
+                        let _e203 = between[1u];
+                        let _e205 = marked;
+                        marks_1 = ((_e197 << bitcast<u32>(1i)) | select(0u, 1u, (max(_e201, _e203) > _e205)));
+                    }
+                    let _e209 = marks_1;
+                    let _e213 = within[0u];
+                    let _e215 = within[1u];
+                    let _e217 = marked;
+                    marks_1 = ((_e209 << bitcast<u32>(1i)) | select(0u, 1u, (max(_e213, _e215) > _e217)));
                     continue;
                 } else {
                     break;
                 }
                 continuing {
-                    let _e134 = i;
-                    i = (_e134 + 2i);
+                    let _e221 = i;
+                    i = (_e221 + 2i);
                 }
             }
-            let _e137 = slope[1u];
-            let _e139 = plane;
-            plane = (_e139 + (2f * _e137));
+            let _e224 = slope[1u];
+            let _e226 = plane;
+            plane = (_e226 + (2f * _e224));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e141 = row_1;
-            row_1 = (_e141 + 2f);
+            let _e228 = row_1;
+            row_1 = (_e228 + 2f);
         }
     }
-    let _e144 = slope[0u];
-    let _e146 = synthesis.mirrored;
-    let _e152 = slope[1u];
-    second = ((select(vec4<f32>(0f, 1f, 1f, 0f), vec4<f32>(1f, 0f, 0f, 1f), vec4((_e146 != 0u))) * _e144) + (vec4<f32>(1f, 1f, 0f, 0f) * _e152));
-    let _e155 = second;
-    let _e156 = low_1;
-    low_1 = (_e156 - _e155);
-    let _e158 = second;
-    let _e159 = high_1;
-    high_1 = (_e159 - _e158);
-    let _e161 = low_1;
-    let _e163 = low_1;
-    let _e165 = min(_e161.xy, _e163.zw);
-    low_1[0u] = _e165.x;
-    low_1[1u] = _e165.y;
-    let _e170 = high_1;
-    let _e172 = high_1;
-    let _e174 = max(_e170.xy, _e172.zw);
-    high_1[0u] = _e174.x;
-    high_1[1u] = _e174.y;
-    let _e180 = low_1[0u];
-    let _e182 = low_1[1u];
-    least = min(_e180, _e182);
-    let _e185 = high_1[0u];
-    let _e187 = high_1[1u];
-    most = max(_e185, _e187);
-    let _e189 = slope;
-    rise = (_e189 * vec2<f32>(16f, 7f));
-    let _e191 = least;
-    let _e193 = rise[0u];
-    let _e197 = rise[1u];
-    param_9 = ((_e191 + min(_e193, 0f)) + min(_e197, 0f));
-    let _e200 = displacement((&param_9));
-    a = _e200;
-    let _e201 = most;
-    let _e203 = rise[0u];
-    let _e207 = rise[1u];
-    param_10 = ((_e201 + max(_e203, 0f)) + max(_e207, 0f));
-    let _e210 = displacement((&param_10));
-    b = _e210;
-    let _e211 = least;
-    let _e212 = most;
-    param_11 = (0.5f * (_e211 + _e212));
-    let _e215 = displacement((&param_11));
-    let _e218 = synthesis.law[1u];
-    let _e219 = slope;
-    let _e220 = (_e219 * _e218);
-    plane_law = vec3<f32>(_e215, _e220.x, _e220.y);
-    let _e226 = synthesis.law[1u];
-    let _e228 = most;
-    let _e229 = least;
-    let _e232 = ((abs(_e226) * (_e228 - _e229)) <= 0.125f);
-    phi_502_ = _e232;
-    if _e232 {
-        let _e234 = plane_law[1u];
-        phi_502_ = (abs((_e234 - 0.25f)) < 0.75f);
+    let _e231 = slope[0u];
+    let _e233 = synthesis.mirrored;
+    let _e239 = slope[1u];
+    second = ((select(vec4<f32>(0f, 1f, 1f, 0f), vec4<f32>(1f, 0f, 0f, 1f), vec4((_e233 != 0u))) * _e231) + (vec4<f32>(1f, 1f, 0f, 0f) * _e239));
+    let _e242 = second;
+    let _e243 = low_1;
+    low_1 = (_e243 - _e242);
+    let _e245 = second;
+    let _e246 = high_1;
+    high_1 = (_e246 - _e245);
+    let _e248 = low_1;
+    let _e250 = low_1;
+    let _e252 = min(_e248.xy, _e250.zw);
+    low_1[0u] = _e252.x;
+    low_1[1u] = _e252.y;
+    let _e257 = high_1;
+    let _e259 = high_1;
+    let _e261 = max(_e257.xy, _e259.zw);
+    high_1[0u] = _e261.x;
+    high_1[1u] = _e261.y;
+    let _e267 = low_1[0u];
+    let _e269 = low_1[1u];
+    least = min(_e267, _e269);
+    let _e272 = high_1[0u];
+    let _e274 = high_1[1u];
+    most = max(_e272, _e274);
+    let _e276 = slope;
+    rise = (_e276 * vec2<f32>(16f, 7f));
+    let _e278 = least;
+    let _e280 = rise[0u];
+    let _e284 = rise[1u];
+    param_9 = ((_e278 + min(_e280, 0f)) + min(_e284, 0f));
+    let _e287 = displacement((&param_9));
+    a = _e287;
+    let _e288 = most;
+    let _e290 = rise[0u];
+    let _e294 = rise[1u];
+    param_10 = ((_e288 + max(_e290, 0f)) + max(_e294, 0f));
+    let _e297 = displacement((&param_10));
+    b = _e297;
+    let _e298 = least;
+    let _e299 = most;
+    param_11 = (0.5f * (_e298 + _e299));
+    let _e302 = displacement((&param_11));
+    let _e305 = synthesis.law[1u];
+    let _e306 = slope;
+    let _e307 = (_e306 * _e305);
+    plane_law = vec3<f32>(_e302, _e307.x, _e307.y);
+    let _e313 = synthesis.law[1u];
+    let _e315 = most;
+    let _e316 = least;
+    let _e319 = ((abs(_e313) * (_e315 - _e316)) <= 0.125f);
+    phi_604_ = _e319;
+    if _e319 {
+        let _e321 = plane_law[1u];
+        phi_604_ = (abs((_e321 - 0.25f)) < 0.75f);
     }
-    let _e239 = phi_502_;
-    planar = _e239;
-    let _e240 = a;
-    let _e241 = b;
-    let _e243 = a;
-    let _e244 = b;
-    param_12 = min(_e240, _e241);
-    param_13 = max(_e243, _e244);
-    let _e246 = pack_interval((&param_12), (&param_13));
-    let _e247 = planar;
-    let _e248 = plane_law;
-    let _e251 = bitcast<vec3<u32>>(select(vec3<f32>(9f, 9f, 9f), _e248, vec3(_e247)));
-    return vec4<u32>(_e246, _e251.x, _e251.y, _e251.z);
+    let _e326 = phi_604_;
+    planar = _e326;
+    let _e327 = planar;
+    if _e327 {
+        let _e328 = plane_law;
+        local_7 = bitcast<vec3<u32>>(_e328);
+    } else {
+        let _e330 = lower_marks;
+        param_12 = _e330;
+        let _e331 = in_place((&param_12));
+        let _e333 = marks_1;
+        param_13 = _e333;
+        let _e334 = in_place((&param_13));
+        local_7 = vec3<u32>(_e331, bitcast<u32>(9f), _e334);
+    }
+    let _e336 = local_7;
+    rest = _e336;
+    let _e337 = a;
+    let _e338 = b;
+    let _e340 = a;
+    let _e341 = b;
+    param_14 = min(_e337, _e338);
+    param_15 = max(_e340, _e341);
+    let _e343 = pack_interval((&param_14), (&param_15));
+    let _e344 = rest;
+    return vec4<u32>(_e343, _e344.x, _e344.y, _e344.z);
 }
 
 fn main_1() {
     var corner_2: vec2<f32>;
-    var param_14: vec2<f32>;
+    var param_16: vec2<f32>;
 
     let _e6 = gl_FragCoord_1;
     corner_2 = ((_e6.xy - vec2(0.5f)) * vec2<f32>(16f, 8f));
     let _e11 = corner_2;
-    param_14 = _e11;
-    let _e12 = plane_tile((&param_14));
+    param_16 = _e11;
+    let _e12 = plane_tile((&param_16));
     tile = _e12;
     return;
 }

@@ -107,8 +107,7 @@ impl Gather {
     }
 
     /// Compiles the variant for GPUs with counts in place of colours. Red: steps of the short way (low three bits), then one
-    /// bit each for a hole, for the long way, and for a law. Green: steps of four columns. Blue: events and walks, at most 15
-    /// each, walks in the high bits. Alpha: tiles passed over.
+    /// bit each for a hole, for the long way, and for a law. Green: segments. Blue: events. Alpha: steps to a segment's crossing.
     ///
     /// # Errors
     /// Those of [`Gather::with_variant`].

@@ -92,7 +92,7 @@ pub const TRIPS_WAVE: &str = "trips_wave";
 pub const GOES_ON_PIXEL: &str = "goes_on_pixel";
 /// Share of the waves of which a pixel does.
 pub const GOES_ON_WAVE: &str = "goes_on_wave";
-/// Steps of four columns that the march takes on its long way, for a wave.
+/// Segments that the march takes on its long way, for a wave.
 pub const LONG_TRIPS_WAVE: &str = "long_trips_wave";
 /// Estimated issue slots for each pixel of the first pass of `gather`.
 pub const SLOTS_TILES: &str = "slots_tiles";

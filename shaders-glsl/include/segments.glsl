@@ -1,0 +1,173 @@
+#include "include/march.glsl"
+#include "include/planes.glsl"
+
+// The search of a fragment over segments, for GPUs: from each marked pair of columns to the next (include/planes.glsl), or to
+// the next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns beyond the
+// borders repeat them.
+
+// For measuring, the parts of the text to compile; everywhere else, all.
+#ifndef PARTS
+#define PARTS 63
+#endif
+const int LAW = 1;
+const int SHORT = 2;
+const int LONG = 4;
+const int EVENTS = 8;
+const int FILL = 16;
+const int CROSSING = 32;
+
+// How far the search is: at forward columns x and x + 1, their depths, and where they land, relative to the pixel.
+struct Search {
+    float x;
+    vec2 depths;
+    float a;
+    float b;
+};
+
+// Depths of forward columns x and x + 1 of the fragment's row.
+vec2 depth_pair(float x) {
+    if (PART) {
+        float row = row_at(0.0);
+        return vec2(depth_sample(vec2(column_at(x), row)), depth_sample(vec2(column_at(x + 1.0), row)));
+    }
+    // A quarter of a column past the middle of x, fetches of four texels take x and x + 1; a quarter of a row past the row's
+    // middle, they take its row and the one above.
+    vec4 quad = textureGather(depth_map, TEXTURE_PLACE(vec2(columns.x * (x + 1.25) + columns.y, row_at(0.25))));
+    return mirrored ? quad.zw : quad.wz;
+}
+
+Search search_at(float x, float origin) {
+    vec2 depths = depth_pair(x);
+    float shift = x - origin;
+    return Search(x, depths, shift + law.y * depths.x, shift + 1.0 + law.y * depths.y);
+}
+
+// True if the pair of columns that land at a and b crosses the pixel, or has a silhouette within a pixel left of it.
+bool is_event(float a, float b) {
+    return a <= 0.0 && (b > 0.0 || max(b, -1.0) < a);
+}
+
+// The end of the segment that begins at forward column x: the first column of a marked pair, or where the tile ends.
+// `below` and `shift` are where the row's marks are in its tile.
+float segment_end(float x, int tile_row, bool below, uint shift) {
+    uint column = uint(x);
+    uint within = column % uint(TILE.x);
+    uvec4 tile = texelFetch(tile_map, ivec2(column / uint(TILE.x), tile_row), 0);
+    uint marks = (below ? tile.y : tile.w) >> (shift + within);
+    marks = tile.z == floatBitsToUint(NO_PLANE) ? marks : 0u;
+    return x + float(findLSB(marks | 0x10000u >> within));
+}
+
+// What a search has found so far beside the pixel.
+struct Beside {
+    // Column and depth of the hole's background; a negative column for none.
+    float edge;
+    float edge_depth;
+#ifdef HISTORY
+    // law.y * depth of the foreground beside it.
+    float front;
+#endif
+    // The nearest silhouette.
+    float rim;
+    float rim_depth;
+};
+
+// Takes an event into account. Returns true if the pair is the visible surface.
+bool meet(inout Beside beside, Search at) {
+    COUNT_TRIP(3)
+    bool jump = at.b > 0.0;
+    bool torn = at.b - at.a >= MAX_STRETCH;
+    bool rim = beside.rim < 0.0 && (!jump || (torn && at.b < 1.0));
+    beside.rim = rim ? at.x + (jump ? 1.0 : 0.0) : beside.rim;
+    beside.rim_depth = rim ? (jump ? at.depths.y : at.depths.x) : beside.rim_depth;
+    bool farther = jump && law.y * (at.depths.x - beside.edge_depth) < 0.0;
+#ifdef HISTORY
+    beside.front = farther ? law.y * at.depths.y : beside.front;
+#endif
+    beside.edge = farther ? at.x : beside.edge;
+    beside.edge_depth = farther ? at.depths.x : beside.edge_depth;
+    return jump && (at.a > -0.5 || !torn);
+}
+
+// Colour and surface of a pixel, from where the short way has ended.
+//
+// A silhouette that crosses the pixel is blended over what lies behind. Where the row jumps over the pixel from a
+// farther to a nearer surface there is a disocclusion: the farthest such jump is remembered and the hole is
+// filled from its background side.
+vec4 march(Search at, float end, float origin, int row, out Surface surface) {
+    // Left of everything the border of the image is the background.
+    float border = at.a - at.x;
+    bool outside = at.x <= 0.0 && border > 0.0;
+    end = outside && border < 0.5 ? 0.0 : end;
+    Beside beside;
+    beside.edge = outside ? 0.0 : -1.0;
+    beside.edge_depth = outside ? at.depths.x : law.y < 0.0 ? -1e9 : 1e9;
+#ifdef HISTORY
+    beside.front = 1e9;
+#endif
+    beside.rim = -1.0;
+    beside.rim_depth = 0.0;
+    bool found = false;
+    if ((PARTS & EVENTS) != 0 && at.x >= 0.0 && at.x < end && is_event(at.a, at.b)) {
+        found = meet(beside, at);
+    }
+    // A segment's first column, and where it lands.
+    float x = max(at.x + 1.0, 0.0);
+    float a = at.b + (x - at.x - 1.0);
+    int tile_row = row / TILE.y;
+    bool below = (row & 4) == 0;
+    uint shift = uint(row & 2) << 3;
+    bool crosses = false;
+    while (x <= end && !found) {
+        COUNT_TRIP(1)
+        at = search_at(min(segment_end(x, tile_row, below, shift), end), origin);
+        crosses = a <= 0.0 && at.a > 0.0;
+        found = crosses;
+        if ((PARTS & EVENTS) != 0 && !crosses && at.x < end && is_event(at.a, at.b)) {
+            found = meet(beside, at);
+        }
+        // Past the pair.
+        x = found ? x : at.x + 1.0;
+        a = found ? a : at.b;
+    }
+    // The pair of the segment that crosses the pixel.
+    float last = at.x;
+    float b = at.a;
+    while ((PARTS & CROSSING) != 0 && crosses && x < last) {
+        COUNT_TRIP(4)
+        at = search_at(clamp(floor(x + (last - x) * a / (a - b)), x, last - 1.0), origin);
+        crosses = at.a > 0.0 || at.b <= 0.0;
+        bool behind = at.a > 0.0;
+        x = behind ? x : at.x + 1.0;
+        a = behind ? a : at.b;
+        last = behind ? at.x : last;
+        b = behind ? at.a : b;
+    }
+    // Where nothing is found: the hole's edge, or the last column right of everything.
+    bool own = found || beside.edge < 0.0;
+    x = own ? min(at.x, end) : beside.edge;
+    float t = found && at.b - at.a < MAX_STRETCH ? -at.a / (at.b - at.a) : 0.0;
+    surface.source = x + t;
+    surface.depth = own ? mix(at.depths.x, at.depths.y, t) : beside.edge_depth;
+    float away = x - origin + law.y * surface.depth;
+    surface.hole = !found && abs(away) >= 0.5;
+    vec4 color = color_sample(vec2(column_at(surface.source), row_at(0.0)));
+#ifdef HISTORY
+    bool recalled = surface.hole && recall(gl_FragCoord.xy - vec2(target_origin), beside.front, origin, row, color, surface.depth);
+    if ((PARTS & FILL) != 0 && surface.hole && !recalled) {
+#else
+    if ((PARTS & FILL) != 0 && surface.hole) {
+#endif
+        color = fill_hole(true, color, away, x, surface.depth, row);
+    }
+    // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
+    // it covers on average.
+    if (beside.rim >= 0.0) {
+        float coverage = 1.0 - abs(beside.rim - origin + law.y * beside.rim_depth);
+        color = mix(color, color_sample(vec2(column_at(beside.rim), row_at(0.0))), coverage);
+        if (coverage >= 0.5) {
+            surface = Surface(beside.rim, beside.rim_depth, false);
+        }
+    }
+    return color;
+}
