@@ -205,8 +205,7 @@ fn near_surfaces_are_found_in_few_steps() {
             let counting = Box::new(Gather::counting(gl).unwrap());
             let counts = InMemory::new(gl, counting).run(&rgba, &depth, &warp);
             let most = counts.rgba.chunks_exact(4).map(|pixel| pixel[1]).max().unwrap();
-            // Four columns a step. Four tiles at first, and then those of the box's silhouettes: where they are slanted, two
-            // for each.
+            // A tile a step at most, and a step for each mark.
             assert!(boxes > 1 || (1..=8 * 4).contains(&most), "{most} steps past a single box");
         }
     });

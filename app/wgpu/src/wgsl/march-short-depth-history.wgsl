@@ -6,6 +6,14 @@ struct Search {
     b: f32,
 }
 
+struct Beside {
+    edge: f32,
+    edge_depth: f32,
+    front: f32,
+    rim: f32,
+    rim_depth: f32,
+}
+
 struct Surface {
     source: f32,
     depth: f32,
@@ -333,10 +341,10 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     var i_2: i32;
     var texel: vec2<i32>;
     var local_5: vec2<f32>;
-    var phi_572_: bool;
-    var phi_587_: bool;
-    var phi_717_: bool;
-    var phi_795_: bool;
+    var phi_567_: bool;
+    var phi_582_: bool;
+    var phi_712_: bool;
+    var phi_790_: bool;
 
     let _e60 = textureDimensions(history_depth_texture, 0i);
     size = vec2<f32>(vec2<i32>(_e60));
@@ -385,25 +393,25 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     }
     let _e117 = guess;
     let _e119 = all((_e117 >= vec2<f32>(0f, 0f)));
-    phi_572_ = _e119;
+    phi_567_ = _e119;
     if _e119 {
         let _e120 = guess;
         let _e121 = size;
-        phi_572_ = all((_e120 < _e121));
+        phi_567_ = all((_e120 < _e121));
     }
-    let _e125 = phi_572_;
+    let _e125 = phi_567_;
     inside = _e125;
     let _e127 = seen[3u];
     let _e129 = inside;
     let _e130 = ((_e127 > 0f) && _e129);
-    phi_587_ = _e130;
+    phi_582_ = _e130;
     if _e130 {
         let _e132 = guess[1u];
         let _e133 = rows;
         let _e136 = strip;
-        phi_587_ = (i32((_e132 / _e133)) == _e136);
+        phi_582_ = (i32((_e132 / _e133)) == _e136);
     }
-    let _e139 = phi_587_;
+    let _e139 = phi_582_;
     if !(_e139) {
         return false;
     }
@@ -468,13 +476,13 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     let _e232 = (*depth_1);
     behind = (_e226 <= (_e227 - (0.25f * (_e228 - (_e231 * _e232)))));
     let _e238 = outside;
-    phi_717_ = _e238;
+    phi_712_ = _e238;
     if !(_e238) {
         let _e240 = before;
         let _e241 = nearness;
-        phi_717_ = (_e240 > (_e241 - 1f));
+        phi_712_ = (_e240 > (_e241 - 1f));
     }
-    let _e245 = phi_717_;
+    let _e245 = phi_712_;
     hidden = _e245;
     let _e246 = same;
     let _e247 = behind;
@@ -507,15 +515,15 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
             let _e289 = most;
             texel = min((_e281 + vec2<i32>((_e282 & 1i), (_e284 >> bitcast<u32>(1i)))), vec2<i32>(_e289));
             let _e292 = whole;
-            phi_795_ = _e292;
+            phi_790_ = _e292;
             if _e292 {
                 let _e295 = synthesis.law[1u];
                 let _e296 = texel;
                 let _e297 = textureLoad(history_depth_texture, _e296, 0i);
                 let _e299 = stored;
-                phi_795_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
+                phi_790_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
             }
-            let _e305 = phi_795_;
+            let _e305 = phi_790_;
             whole = _e305;
             continue;
         } else {
@@ -614,602 +622,649 @@ fn search_at(x_7: ptr<function, f32>, origin_1: ptr<function, f32>) -> Search {
     return Search(_e14, _e15, (_e16 + (_e19 * _e21)), ((_e24 + 1f) + (_e28 * _e30)));
 }
 
-fn are_events(a: ptr<function, vec4<f32>>, b: ptr<function, vec4<f32>>) -> vec4<bool> {
-    var landed: vec4<f32>;
+fn segment_end(x_8: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: ptr<function, bool>, shift_1: ptr<function, u32>) -> f32 {
+    var column_2: u32;
+    var within: u32;
+    var tile: vec4<u32>;
+    var marks: u32;
+    var local_7: u32;
 
-    let _e7 = (*b);
-    let _e10 = (*b);
-    landed = select(max(_e7, vec4(-1f)), vec4<f32>(-1000000000f, -1000000000f, -1000000000f, -1000000000f), (_e10 > vec4<f32>(0f, 0f, 0f, 0f)));
-    let _e13 = landed;
-    let _e14 = (*a);
-    let _e15 = (*a);
-    return (_e13 < select(_e14, vec4<f32>(-2000000000f, -2000000000f, -2000000000f, -2000000000f), (_e15 > vec4<f32>(0f, 0f, 0f, 0f))));
+    let _e18 = (*x_8);
+    column_2 = u32(_e18);
+    let _e20 = column_2;
+    within = (_e20 % 16u);
+    let _e22 = column_2;
+    let _e25 = (*tile_row);
+    let _e27 = textureLoad(tile_map_texture, vec2<i32>(bitcast<i32>((_e22 / 16u)), _e25), 0i);
+    tile = _e27;
+    let _e28 = (*below_1);
+    if _e28 {
+        let _e30 = tile[1u];
+        local_7 = _e30;
+    } else {
+        let _e32 = tile[3u];
+        local_7 = _e32;
+    }
+    let _e33 = local_7;
+    let _e34 = (*shift_1);
+    let _e35 = within;
+    marks = (_e33 >> bitcast<u32>((_e34 + _e35)));
+    let _e40 = tile[2u];
+    let _e43 = marks;
+    marks = select(0u, _e43, (_e40 == bitcast<u32>(9f)));
+    let _e45 = (*x_8);
+    let _e46 = marks;
+    let _e47 = within;
+    return (_e45 + f32(firstTrailingBit((_e46 | (65536u >> bitcast<u32>(_e47))))));
 }
 
-fn walk(at_1: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<function, f32>) -> bool {
-    var met: vec4<bool>;
-    var x_8: f32;
-    var last_1: f32;
-    var depths_2: vec4<f32>;
-    var param_28: f32;
-    var param_29: f32;
-    var places: vec4<f32>;
-    var param_30: vec4<f32>;
-    var param_31: vec4<f32>;
-    var local_7: f32;
+fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
+    var jump: bool;
+    var torn: bool;
+    var rim: bool;
     var local_8: f32;
     var local_9: f32;
-    var param_32: f32;
-    var param_33: f32;
-    var phi_1023_: bool;
+    var local_10: f32;
+    var farther_1: bool;
+    var local_11: f32;
+    var local_12: f32;
+    var local_13: f32;
+    var phi_994_: bool;
+    var phi_995_: bool;
+    var phi_996_: bool;
+    var phi_1043_: bool;
+    var phi_1090_: bool;
 
-    met = vec4<bool>(false, false, false, false);
-    let _e30 = (*at_1).x;
-    x_8 = (_e30 - 4f);
-    let _e33 = (*at_1).a;
-    last_1 = _e33;
-    loop {
-        let _e34 = x_8;
-        let _e36 = (*end);
-        let _e37 = ((_e34 + 4f) < _e36);
-        phi_1023_ = _e37;
-        if _e37 {
-            let _e38 = met;
-            phi_1023_ = !(any(_e38));
+    let _e20 = (*at_1).b;
+    jump = (_e20 > 0f);
+    let _e23 = (*at_1).b;
+    let _e25 = (*at_1).a;
+    torn = ((_e23 - _e25) >= 2f);
+    let _e29 = (*beside).rim;
+    let _e30 = (_e29 < 0f);
+    phi_996_ = _e30;
+    if _e30 {
+        let _e31 = jump;
+        let _e32 = !(_e31);
+        phi_995_ = _e32;
+        if !(_e32) {
+            let _e34 = torn;
+            phi_994_ = _e34;
+            if _e34 {
+                let _e36 = (*at_1).b;
+                phi_994_ = (_e36 < 1f);
+            }
+            let _e39 = phi_994_;
+            phi_995_ = _e39;
         }
-        let _e42 = phi_1023_;
-        if _e42 {
-            let _e43 = x_8;
-            x_8 = (_e43 + 4f);
-            let _e45 = x_8;
-            param_28 = (_e45 + 1f);
-            let _e47 = depth_pair((&param_28));
-            let _e48 = x_8;
-            param_29 = (_e48 + 3f);
-            let _e50 = depth_pair((&param_29));
-            depths_2 = vec4<f32>(_e47.x, _e47.y, _e50.x, _e50.y);
-            let _e58 = synthesis.law[1u];
-            let _e59 = depths_2;
-            let _e61 = x_8;
-            let _e62 = (*origin_2);
-            places = ((_e59 * _e58) + (vec4((_e61 - _e62)) + vec4<f32>(1f, 2f, 3f, 4f)));
-            let _e67 = last_1;
-            let _e68 = places;
-            let _e69 = _e68.xyz;
-            param_30 = vec4<f32>(_e67, _e69.x, _e69.y, _e69.z);
-            let _e74 = places;
-            param_31 = _e74;
-            let _e75 = are_events((&param_30), (&param_31));
-            met = _e75;
-            let _e77 = places[3u];
-            last_1 = _e77;
-            continue;
-        } else {
-            break;
-        }
+        let _e41 = phi_995_;
+        phi_996_ = _e41;
     }
-    let _e79 = met[0u];
-    if _e79 {
-        local_7 = 0f;
+    let _e43 = phi_996_;
+    rim = _e43;
+    let _e44 = rim;
+    if _e44 {
+        let _e46 = (*at_1).x;
+        let _e47 = jump;
+        local_8 = (_e46 + select(0f, 1f, _e47));
     } else {
-        let _e81 = met[1u];
-        if _e81 {
-            local_8 = 1f;
-        } else {
-            let _e83 = met[2u];
-            if _e83 {
-                local_9 = 2f;
-            } else {
-                let _e85 = met[3u];
-                local_9 = select(4f, 3f, _e85);
-            }
-            let _e87 = local_9;
-            local_8 = _e87;
-        }
-        let _e88 = local_8;
-        local_7 = _e88;
+        let _e51 = (*beside).rim;
+        local_8 = _e51;
     }
-    let _e89 = local_7;
-    let _e90 = x_8;
-    x_8 = (_e90 + _e89);
-    let _e92 = x_8;
-    let _e93 = (*end);
-    param_32 = min(_e92, _e93);
-    let _e95 = (*origin_2);
-    param_33 = _e95;
-    let _e96 = search_at((&param_32), (&param_33));
-    (*at_1) = _e96;
-    let _e97 = met;
-    let _e99 = x_8;
-    let _e100 = (*end);
-    return (any(_e97) && (_e99 < _e100));
+    let _e52 = local_8;
+    (*beside).rim = _e52;
+    let _e54 = rim;
+    if _e54 {
+        let _e55 = jump;
+        if _e55 {
+            let _e58 = (*at_1).depths[1u];
+            local_10 = _e58;
+        } else {
+            let _e61 = (*at_1).depths[0u];
+            local_10 = _e61;
+        }
+        let _e62 = local_10;
+        local_9 = _e62;
+    } else {
+        let _e64 = (*beside).rim_depth;
+        local_9 = _e64;
+    }
+    let _e65 = local_9;
+    (*beside).rim_depth = _e65;
+    let _e67 = jump;
+    phi_1043_ = _e67;
+    if _e67 {
+        let _e70 = synthesis.law[1u];
+        let _e73 = (*at_1).depths[0u];
+        let _e75 = (*beside).edge_depth;
+        phi_1043_ = ((_e70 * (_e73 - _e75)) < 0f);
+    }
+    let _e80 = phi_1043_;
+    farther_1 = _e80;
+    let _e81 = farther_1;
+    if _e81 {
+        let _e84 = synthesis.law[1u];
+        let _e87 = (*at_1).depths[1u];
+        local_11 = (_e84 * _e87);
+    } else {
+        let _e90 = (*beside).front;
+        local_11 = _e90;
+    }
+    let _e91 = local_11;
+    (*beside).front = _e91;
+    let _e93 = farther_1;
+    if _e93 {
+        let _e95 = (*at_1).x;
+        local_12 = _e95;
+    } else {
+        let _e97 = (*beside).edge;
+        local_12 = _e97;
+    }
+    let _e98 = local_12;
+    (*beside).edge = _e98;
+    let _e100 = farther_1;
+    if _e100 {
+        let _e103 = (*at_1).depths[0u];
+        local_13 = _e103;
+    } else {
+        let _e105 = (*beside).edge_depth;
+        local_13 = _e105;
+    }
+    let _e106 = local_13;
+    (*beside).edge_depth = _e106;
+    let _e108 = jump;
+    phi_1090_ = _e108;
+    if _e108 {
+        let _e110 = (*at_1).a;
+        let _e112 = torn;
+        phi_1090_ = ((_e110 > -0.5f) || !(_e112));
+    }
+    let _e116 = phi_1090_;
+    return _e116;
 }
 
-fn next_candidate(x_9: ptr<function, f32>, end_1: ptr<function, f32>, origin_3: ptr<function, f32>, row_6: ptr<function, i32>) -> f32 {
-    var lands: bool;
-    var moved: u32;
-    var at_2: vec2<f32>;
-    var phi_872_: bool;
+fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
+    var phi_909_: bool;
+    var phi_910_: bool;
 
-    lands = false;
-    loop {
-        let _e19 = (*x_9);
-        let _e21 = (*end_1);
-        let _e23 = lands;
-        if (((_e19 + 16f) < _e21) && !(_e23)) {
-            let _e26 = (*x_9);
-            let _e28 = (*row_6);
-            let _e31 = textureLoad(tile_map_texture, (vec2<i32>(i32(_e26), _e28) / vec2<i32>(16i, 8i)), 0i);
-            moved = _e31.x;
-            let _e33 = (*x_9);
-            let _e34 = (*origin_3);
-            let _e36 = moved;
-            let _e39 = moved;
-            at_2 = (vec2((_e33 - _e34)) + (vec2<f32>(f32((_e36 & 65535u)), f32((_e39 >> bitcast<u32>(16i)))) / vec2(16f)));
-            let _e49 = at_2[0u];
-            let _e50 = (_e49 <= 1f);
-            phi_872_ = _e50;
-            if _e50 {
-                let _e52 = at_2[1u];
-                phi_872_ = ((_e52 + 16f) >= -1f);
-            }
-            let _e56 = phi_872_;
-            lands = _e56;
-            let _e57 = lands;
-            let _e59 = (*x_9);
-            (*x_9) = (_e59 + select(16f, 0f, _e57));
-            continue;
-        } else {
-            break;
-        }
-    }
-    let _e61 = (*x_9);
-    return _e61;
-}
-
-fn is_event(a_1: ptr<function, f32>, b_1: ptr<function, f32>) -> bool {
-    var phi_974_: bool;
-    var phi_975_: bool;
-
-    let _e4 = (*a_1);
+    let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_975_ = _e5;
+    phi_910_ = _e5;
     if _e5 {
-        let _e6 = (*b_1);
+        let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_974_ = _e7;
+        phi_909_ = _e7;
         if !(_e7) {
-            let _e9 = (*b_1);
-            let _e11 = (*a_1);
-            phi_974_ = (max(_e9, -1f) < _e11);
+            let _e9 = (*b);
+            let _e11 = (*a);
+            phi_909_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_974_;
-        phi_975_ = _e14;
+        let _e14 = phi_909_;
+        phi_910_ = _e14;
     }
-    let _e16 = phi_975_;
+    let _e16 = phi_910_;
     return _e16;
 }
 
-fn march(at_3: ptr<function, Search>, end_2: ptr<function, f32>, origin_4: ptr<function, f32>, row_7: ptr<function, i32>, surface: ptr<function, Surface>) -> vec4<f32> {
-    var edge_1: f32;
-    var edge_depth: f32;
-    var front_1: f32;
-    var rim: f32;
-    var rim_depth: f32;
-    var param_34: f32;
-    var param_35: f32;
-    var stop: f32;
+fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<function, f32>, row_6: ptr<function, i32>, surface: ptr<function, Surface>) -> vec4<f32> {
+    var border: f32;
+    var outside_1: bool;
+    var beside_1: Beside;
+    var local_14: f32;
     var found: bool;
-    var met_1: bool;
+    var param_28: f32;
+    var param_29: f32;
+    var param_30: Beside;
+    var param_31: Search;
+    var x_9: f32;
+    var a_1: f32;
+    var tile_row_1: i32;
+    var below_2: bool;
+    var shift_2: u32;
+    var crosses: bool;
+    var param_32: f32;
+    var param_33: i32;
+    var param_34: bool;
+    var param_35: u32;
     var param_36: f32;
     var param_37: f32;
-    var jump: bool;
-    var torn: bool;
-    var beside: bool;
-    var nearest: bool;
-    var local_10: f32;
-    var local_11: f32;
-    var local_12: f32;
-    var farther_1: bool;
-    var local_13: f32;
-    var local_14: f32;
-    var local_15: f32;
-    var local_16: f32;
     var param_38: f32;
     var param_39: f32;
-    var param_40: f32;
-    var param_41: i32;
+    var param_40: Beside;
+    var param_41: Search;
+    var local_15: f32;
+    var local_16: f32;
+    var last_1: f32;
+    var b_1: f32;
     var param_42: f32;
     var param_43: f32;
-    var param_44: Search;
-    var param_45: f32;
-    var param_46: f32;
-    var own: bool;
-    var x_10: f32;
+    var behind_1: bool;
     var local_17: f32;
-    var t: f32;
     var local_18: f32;
     var local_19: f32;
+    var local_20: f32;
+    var own: bool;
+    var local_21: f32;
+    var t: f32;
+    var local_22: f32;
+    var local_23: f32;
     var away_2: f32;
     var color_2: vec4<f32>;
-    var param_47: f32;
-    var param_48: f32;
-    var param_49: vec2<f32>;
+    var param_44: f32;
+    var param_45: f32;
+    var param_46: vec2<f32>;
     var recalled: bool;
-    var param_50: vec2<f32>;
-    var param_51: f32;
+    var param_47: vec2<f32>;
+    var param_48: f32;
+    var param_49: f32;
+    var param_50: i32;
+    var param_51: vec4<f32>;
     var param_52: f32;
-    var param_53: i32;
+    var param_53: bool;
     var param_54: vec4<f32>;
     var param_55: f32;
-    var param_56: bool;
-    var param_57: vec4<f32>;
-    var param_58: f32;
+    var param_56: f32;
+    var param_57: f32;
+    var param_58: i32;
+    var coverage: f32;
     var param_59: f32;
     var param_60: f32;
-    var param_61: i32;
-    var coverage: f32;
-    var param_62: f32;
-    var param_63: f32;
-    var param_64: vec2<f32>;
-    var phi_1190_: bool;
-    var phi_1203_: bool;
-    var phi_1204_: bool;
-    var phi_1251_: bool;
-    var phi_1306_: bool;
-    var phi_1343_: bool;
-    var phi_1371_: bool;
-    var phi_1421_: bool;
-    var phi_1461_: bool;
-    var phi_1466_: bool;
+    var param_61: vec2<f32>;
+    var phi_1139_: bool;
+    var phi_1146_: bool;
+    var phi_1156_: bool;
+    var phi_1225_: bool;
+    var phi_1236_: bool;
+    var phi_1246_: bool;
+    var phi_1320_: bool;
+    var phi_1370_: bool;
+    var phi_1393_: bool;
+    var phi_1444_: bool;
+    var phi_1485_: bool;
+    var phi_1490_: bool;
 
-    edge_1 = -1f;
-    let _e84 = synthesis.law[1u];
-    edge_depth = select(1000000000f, -1000000000f, (_e84 < 0f));
-    front_1 = 1000000000f;
-    rim = -1f;
-    rim_depth = 0f;
-    let _e88 = (*at_3).x;
-    if (_e88 <= 0f) {
-        param_34 = 0f;
-        let _e90 = (*origin_4);
-        param_35 = _e90;
-        let _e91 = search_at((&param_34), (&param_35));
-        (*at_3) = _e91;
-        let _e93 = (*at_3).a;
-        if (_e93 > 0f) {
-            edge_1 = 0f;
-            let _e97 = (*at_3).depths[0u];
-            edge_depth = _e97;
-            let _e99 = (*at_3).a;
-            let _e101 = (*end_2);
-            (*end_2) = select(_e101, 0f, (_e99 < 0.5f));
-        }
+    let _e87 = (*at_2).a;
+    let _e89 = (*at_2).x;
+    border = (_e87 - _e89);
+    let _e92 = (*at_2).x;
+    let _e94 = border;
+    outside_1 = ((_e92 <= 0f) && (_e94 > 0f));
+    let _e97 = outside_1;
+    let _e98 = border;
+    let _e101 = (*end);
+    (*end) = select(_e101, 0f, (_e97 && (_e98 < 0.5f)));
+    let _e103 = outside_1;
+    beside_1.edge = select(-1f, 0f, _e103);
+    let _e106 = outside_1;
+    if _e106 {
+        let _e109 = (*at_2).depths[0u];
+        local_14 = _e109;
+    } else {
+        let _e112 = synthesis.law[1u];
+        local_14 = select(1000000000f, -1000000000f, (_e112 < 0f));
     }
-    let _e104 = (*at_3).x;
-    stop = ((floor((_e104 / 16f)) + 4f) * 16f);
+    let _e115 = local_14;
+    beside_1.edge_depth = _e115;
+    beside_1.front = 1000000000f;
+    beside_1.rim = -1f;
+    beside_1.rim_depth = 0f;
     found = false;
-    let _e110 = (*at_3).a;
-    param_36 = _e110;
-    let _e112 = (*at_3).b;
-    param_37 = _e112;
-    let _e113 = is_event((&param_36), (&param_37));
-    met_1 = _e113;
+    phi_1139_ = true;
+    if true {
+        let _e121 = (*at_2).x;
+        phi_1139_ = (_e121 >= 0f);
+    }
+    let _e124 = phi_1139_;
+    phi_1146_ = _e124;
+    if _e124 {
+        let _e126 = (*at_2).x;
+        let _e127 = (*end);
+        phi_1146_ = (_e126 < _e127);
+    }
+    let _e130 = phi_1146_;
+    phi_1156_ = _e130;
+    if _e130 {
+        let _e132 = (*at_2).a;
+        param_28 = _e132;
+        let _e134 = (*at_2).b;
+        param_29 = _e134;
+        let _e135 = is_event((&param_28), (&param_29));
+        phi_1156_ = _e135;
+    }
+    let _e137 = phi_1156_;
+    if _e137 {
+        let _e138 = beside_1;
+        param_30 = _e138;
+        let _e139 = (*at_2);
+        param_31 = _e139;
+        let _e140 = meet((&param_30), (&param_31));
+        let _e141 = param_30;
+        beside_1 = _e141;
+        found = _e140;
+    }
+    let _e143 = (*at_2).x;
+    x_9 = max((_e143 + 1f), 0f);
+    let _e147 = (*at_2).b;
+    let _e148 = x_9;
+    let _e150 = (*at_2).x;
+    a_1 = (_e147 + ((_e148 - _e150) - 1f));
+    let _e154 = (*row_6);
+    tile_row_1 = (_e154 / 8i);
+    let _e156 = (*row_6);
+    below_2 = ((_e156 & 4i) == 0i);
+    let _e159 = (*row_6);
+    shift_2 = (bitcast<u32>((_e159 & 2i)) << bitcast<u32>(3i));
+    crosses = false;
     loop {
-        let _e115 = (*at_3).x;
-        let _e116 = (*end_2);
-        let _e118 = found;
-        if ((_e115 < _e116) && !(_e118)) {
-            let _e121 = met_1;
-            if (true && _e121) {
-                let _e124 = (*at_3).b;
-                jump = (_e124 > 0f);
-                let _e127 = (*at_3).b;
-                let _e129 = (*at_3).a;
-                torn = ((_e127 - _e129) >= 2f);
-                let _e132 = jump;
-                phi_1190_ = _e132;
-                if _e132 {
-                    let _e134 = (*at_3).a;
-                    let _e136 = torn;
-                    phi_1190_ = ((_e134 > -0.5f) || !(_e136));
-                }
-                let _e140 = phi_1190_;
-                found = _e140;
-                let _e141 = jump;
-                let _e142 = !(_e141);
-                phi_1204_ = _e142;
-                if !(_e142) {
-                    let _e144 = torn;
-                    phi_1203_ = _e144;
-                    if _e144 {
-                        let _e146 = (*at_3).b;
-                        phi_1203_ = (_e146 < 1f);
-                    }
-                    let _e149 = phi_1203_;
-                    phi_1204_ = _e149;
-                }
-                let _e151 = phi_1204_;
-                beside = _e151;
-                let _e152 = beside;
-                let _e153 = rim;
-                nearest = (_e152 && (_e153 < 0f));
-                let _e156 = nearest;
-                if _e156 {
-                    let _e158 = (*at_3).x;
-                    let _e159 = jump;
-                    local_10 = (_e158 + select(0f, 1f, _e159));
-                } else {
-                    let _e162 = rim;
-                    local_10 = _e162;
-                }
-                let _e163 = local_10;
-                rim = _e163;
-                let _e164 = nearest;
-                if _e164 {
-                    let _e165 = jump;
-                    if _e165 {
-                        let _e168 = (*at_3).depths[1u];
-                        local_12 = _e168;
-                    } else {
-                        let _e171 = (*at_3).depths[0u];
-                        local_12 = _e171;
-                    }
-                    let _e172 = local_12;
-                    local_11 = _e172;
-                } else {
-                    let _e173 = rim_depth;
-                    local_11 = _e173;
-                }
-                let _e174 = local_11;
-                rim_depth = _e174;
-                let _e175 = jump;
-                phi_1251_ = _e175;
-                if _e175 {
-                    let _e178 = synthesis.law[1u];
-                    let _e181 = (*at_3).depths[0u];
-                    let _e182 = edge_depth;
-                    phi_1251_ = ((_e178 * (_e181 - _e182)) < 0f);
-                }
-                let _e187 = phi_1251_;
-                farther_1 = _e187;
-                let _e188 = farther_1;
-                if _e188 {
-                    let _e191 = synthesis.law[1u];
-                    let _e194 = (*at_3).depths[1u];
-                    local_13 = (_e191 * _e194);
-                } else {
-                    let _e196 = front_1;
-                    local_13 = _e196;
-                }
-                let _e197 = local_13;
-                front_1 = _e197;
-                let _e198 = farther_1;
-                if _e198 {
-                    let _e200 = (*at_3).x;
-                    local_14 = _e200;
-                } else {
-                    let _e201 = edge_1;
-                    local_14 = _e201;
-                }
-                let _e202 = local_14;
-                edge_1 = _e202;
-                let _e203 = farther_1;
-                if _e203 {
-                    let _e206 = (*at_3).depths[0u];
-                    local_15 = _e206;
-                } else {
-                    let _e207 = edge_depth;
-                    local_15 = _e207;
-                }
-                let _e208 = local_15;
-                edge_depth = _e208;
-                let _e209 = found;
-                let _e212 = (*at_3).x;
-                (*at_3).x = (_e212 + select(1f, 0f, _e209));
-                let _e215 = found;
-                if _e215 {
-                    let _e217 = (*at_3).a;
-                    local_16 = _e217;
-                } else {
-                    let _e219 = (*at_3).b;
-                    local_16 = _e219;
-                }
-                let _e220 = local_16;
-                (*at_3).a = _e220;
+        let _e164 = x_9;
+        let _e165 = (*end);
+        let _e167 = found;
+        if ((_e164 <= _e165) && !(_e167)) {
+            let _e170 = x_9;
+            param_32 = _e170;
+            let _e171 = tile_row_1;
+            param_33 = _e171;
+            let _e172 = below_2;
+            param_34 = _e172;
+            let _e173 = shift_2;
+            param_35 = _e173;
+            let _e174 = segment_end((&param_32), (&param_33), (&param_34), (&param_35));
+            let _e175 = (*end);
+            param_36 = min(_e174, _e175);
+            let _e177 = (*origin_2);
+            param_37 = _e177;
+            let _e178 = search_at((&param_36), (&param_37));
+            (*at_2) = _e178;
+            let _e179 = a_1;
+            let _e180 = (_e179 <= 0f);
+            phi_1225_ = _e180;
+            if _e180 {
+                let _e182 = (*at_2).a;
+                phi_1225_ = (_e182 > 0f);
+            }
+            let _e185 = phi_1225_;
+            crosses = _e185;
+            let _e186 = crosses;
+            found = _e186;
+            let _e187 = crosses;
+            let _e189 = (true && !(_e187));
+            phi_1236_ = _e189;
+            if _e189 {
+                let _e191 = (*at_2).x;
+                let _e192 = (*end);
+                phi_1236_ = (_e191 < _e192);
+            }
+            let _e195 = phi_1236_;
+            phi_1246_ = _e195;
+            if _e195 {
+                let _e197 = (*at_2).a;
+                param_38 = _e197;
+                let _e199 = (*at_2).b;
+                param_39 = _e199;
+                let _e200 = is_event((&param_38), (&param_39));
+                phi_1246_ = _e200;
+            }
+            let _e202 = phi_1246_;
+            if _e202 {
+                let _e203 = beside_1;
+                param_40 = _e203;
+                let _e204 = (*at_2);
+                param_41 = _e204;
+                let _e205 = meet((&param_40), (&param_41));
+                let _e206 = param_40;
+                beside_1 = _e206;
+                found = _e205;
+            }
+            let _e207 = found;
+            if _e207 {
+                let _e208 = x_9;
+                local_15 = _e208;
             } else {
-                phi_1306_ = true;
-                if true {
-                    let _e223 = (*at_3).x;
-                    let _e224 = stop;
-                    phi_1306_ = (_e223 >= _e224);
-                }
-                let _e227 = phi_1306_;
-                if _e227 {
-                    let _e228 = (*origin_4);
-                    let _e230 = synthesis.farthest;
-                    let _e232 = stop;
-                    param_38 = _e232;
-                    let _e233 = (*end_2);
-                    param_39 = _e233;
-                    param_40 = (_e228 - _e230);
-                    let _e234 = (*row_7);
-                    param_41 = _e234;
-                    let _e235 = next_candidate((&param_38), (&param_39), (&param_40), (&param_41));
-                    param_42 = _e235;
-                    let _e236 = (*origin_4);
-                    param_43 = _e236;
-                    let _e237 = search_at((&param_42), (&param_43));
-                    (*at_3) = _e237;
-                    let _e239 = (*at_3).x;
-                    stop = (_e239 + 16f);
-                }
+                let _e210 = (*at_2).x;
+                local_15 = (_e210 + 1f);
             }
-            let _e241 = found;
-            let _e242 = !(_e241);
-            phi_1343_ = _e242;
-            if _e242 {
-                let _e243 = stop;
-                let _e244 = (*end_2);
-                let _e246 = (*at_3);
-                param_44 = _e246;
-                param_45 = min(_e243, _e244);
-                let _e247 = (*origin_4);
-                param_46 = _e247;
-                let _e248 = walk((&param_44), (&param_45), (&param_46));
-                let _e249 = param_44;
-                (*at_3) = _e249;
-                phi_1343_ = _e248;
+            let _e212 = local_15;
+            x_9 = _e212;
+            let _e213 = found;
+            if _e213 {
+                let _e214 = a_1;
+                local_16 = _e214;
+            } else {
+                let _e216 = (*at_2).b;
+                local_16 = _e216;
             }
-            let _e251 = phi_1343_;
-            met_1 = _e251;
+            let _e217 = local_16;
+            a_1 = _e217;
             continue;
         } else {
             break;
         }
     }
-    let _e252 = found;
-    let _e253 = edge_1;
-    own = (_e252 || (_e253 < 0f));
-    let _e256 = own;
-    if _e256 {
-        let _e258 = (*at_3).x;
-        let _e259 = (*end_2);
-        local_17 = min(_e258, _e259);
-    } else {
-        let _e261 = edge_1;
-        local_17 = _e261;
-    }
-    let _e262 = local_17;
-    x_10 = _e262;
-    let _e263 = found;
-    phi_1371_ = _e263;
-    if _e263 {
-        let _e265 = (*at_3).b;
-        let _e267 = (*at_3).a;
-        phi_1371_ = ((_e265 - _e267) < 2f);
-    }
-    let _e271 = phi_1371_;
-    if _e271 {
-        let _e273 = (*at_3).a;
-        let _e276 = (*at_3).b;
-        let _e278 = (*at_3).a;
-        local_18 = (-(_e273) / (_e276 - _e278));
-    } else {
-        local_18 = 0f;
-    }
-    let _e281 = local_18;
-    t = _e281;
-    let _e282 = x_10;
-    let _e283 = t;
-    (*surface).source = (_e282 + _e283);
-    let _e286 = own;
-    if _e286 {
-        let _e289 = (*at_3).depths[0u];
-        let _e292 = (*at_3).depths[1u];
-        let _e293 = t;
-        local_19 = mix(_e289, _e292, _e293);
-    } else {
-        let _e295 = edge_depth;
-        local_19 = _e295;
-    }
-    let _e296 = local_19;
-    (*surface).depth = _e296;
-    let _e298 = x_10;
-    let _e299 = (*origin_4);
-    let _e303 = synthesis.law[1u];
-    let _e305 = (*surface).depth;
-    away_2 = ((_e298 - _e299) + (_e303 * _e305));
-    let _e308 = found;
-    let _e309 = !(_e308);
-    phi_1421_ = _e309;
-    if _e309 {
-        let _e310 = away_2;
-        phi_1421_ = (abs(_e310) >= 0.5f);
-    }
-    let _e314 = phi_1421_;
-    (*surface).hole = _e314;
-    let _e317 = (*surface).source;
-    param_47 = _e317;
-    let _e318 = column_at((&param_47));
-    param_48 = 0f;
-    let _e319 = row_at((&param_48));
-    param_49 = vec2<f32>(_e318, _e319);
-    let _e321 = color_sample((&param_49));
-    color_2 = _e321;
-    let _e323 = (*surface).hole;
-    phi_1461_ = _e323;
-    if _e323 {
-        let _e324 = gl_FragCoord_1;
-        let _e327 = synthesis.target_origin;
-        param_50 = (_e324.xy - vec2<f32>(_e327));
-        let _e330 = front_1;
-        param_51 = _e330;
-        let _e331 = (*origin_4);
-        param_52 = _e331;
-        let _e332 = (*row_7);
-        param_53 = _e332;
-        let _e333 = color_2;
-        param_54 = _e333;
-        let _e335 = (*surface).depth;
-        param_55 = _e335;
-        let _e336 = recall((&param_50), (&param_51), (&param_52), (&param_53), (&param_54), (&param_55));
-        let _e337 = param_54;
-        color_2 = _e337;
-        let _e338 = param_55;
-        (*surface).depth = _e338;
-        phi_1461_ = _e336;
-    }
-    let _e341 = phi_1461_;
-    recalled = _e341;
-    phi_1466_ = true;
-    if true {
-        let _e343 = (*surface).hole;
-        phi_1466_ = _e343;
-    }
-    let _e345 = phi_1466_;
-    let _e346 = recalled;
-    if (_e345 && !(_e346)) {
-        param_56 = true;
-        let _e349 = color_2;
-        param_57 = _e349;
-        let _e350 = away_2;
-        param_58 = _e350;
-        let _e351 = x_10;
-        param_59 = _e351;
-        let _e353 = (*surface).depth;
-        param_60 = _e353;
-        let _e354 = (*row_7);
-        param_61 = _e354;
-        let _e355 = fill_hole((&param_56), (&param_57), (&param_58), (&param_59), (&param_60), (&param_61));
-        color_2 = _e355;
-    }
-    let _e356 = rim;
-    if (_e356 >= 0f) {
-        let _e358 = rim;
-        let _e359 = (*origin_4);
-        let _e363 = synthesis.law[1u];
-        let _e364 = rim_depth;
-        coverage = (1f - abs(((_e358 - _e359) + (_e363 * _e364))));
-        let _e369 = color_2;
-        let _e370 = rim;
-        param_62 = _e370;
-        let _e371 = column_at((&param_62));
-        param_63 = 0f;
-        let _e372 = row_at((&param_63));
-        param_64 = vec2<f32>(_e371, _e372);
-        let _e374 = color_sample((&param_64));
-        let _e375 = coverage;
-        color_2 = mix(_e369, _e374, vec4(_e375));
-        let _e378 = coverage;
-        if (_e378 >= 0.5f) {
-            let _e380 = rim;
-            let _e381 = rim_depth;
-            (*surface) = Surface(_e380, _e381, false);
+    let _e219 = (*at_2).x;
+    last_1 = _e219;
+    let _e221 = (*at_2).a;
+    b_1 = _e221;
+    loop {
+        let _e222 = crosses;
+        let _e224 = x_9;
+        let _e225 = last_1;
+        if ((true && _e222) && (_e224 < _e225)) {
+            let _e228 = x_9;
+            let _e229 = last_1;
+            let _e230 = x_9;
+            let _e232 = a_1;
+            let _e234 = a_1;
+            let _e235 = b_1;
+            let _e240 = x_9;
+            let _e241 = last_1;
+            param_42 = clamp(floor((_e228 + (((_e229 - _e230) * _e232) / (_e234 - _e235)))), _e240, (_e241 - 1f));
+            let _e244 = (*origin_2);
+            param_43 = _e244;
+            let _e245 = search_at((&param_42), (&param_43));
+            (*at_2) = _e245;
+            let _e247 = (*at_2).a;
+            let _e248 = (_e247 > 0f);
+            phi_1320_ = _e248;
+            if !(_e248) {
+                let _e251 = (*at_2).b;
+                phi_1320_ = (_e251 <= 0f);
+            }
+            let _e254 = phi_1320_;
+            crosses = _e254;
+            let _e256 = (*at_2).a;
+            behind_1 = (_e256 > 0f);
+            let _e258 = behind_1;
+            if _e258 {
+                let _e259 = x_9;
+                local_17 = _e259;
+            } else {
+                let _e261 = (*at_2).x;
+                local_17 = (_e261 + 1f);
+            }
+            let _e263 = local_17;
+            x_9 = _e263;
+            let _e264 = behind_1;
+            if _e264 {
+                let _e265 = a_1;
+                local_18 = _e265;
+            } else {
+                let _e267 = (*at_2).b;
+                local_18 = _e267;
+            }
+            let _e268 = local_18;
+            a_1 = _e268;
+            let _e269 = behind_1;
+            if _e269 {
+                let _e271 = (*at_2).x;
+                local_19 = _e271;
+            } else {
+                let _e272 = last_1;
+                local_19 = _e272;
+            }
+            let _e273 = local_19;
+            last_1 = _e273;
+            let _e274 = behind_1;
+            if _e274 {
+                let _e276 = (*at_2).a;
+                local_20 = _e276;
+            } else {
+                let _e277 = b_1;
+                local_20 = _e277;
+            }
+            let _e278 = local_20;
+            b_1 = _e278;
+            continue;
+        } else {
+            break;
         }
     }
-    let _e383 = color_2;
-    return _e383;
+    let _e279 = found;
+    phi_1370_ = _e279;
+    if !(_e279) {
+        let _e282 = beside_1.edge;
+        phi_1370_ = (_e282 < 0f);
+    }
+    let _e285 = phi_1370_;
+    own = _e285;
+    let _e286 = own;
+    if _e286 {
+        let _e288 = (*at_2).x;
+        let _e289 = (*end);
+        local_21 = min(_e288, _e289);
+    } else {
+        let _e292 = beside_1.edge;
+        local_21 = _e292;
+    }
+    let _e293 = local_21;
+    x_9 = _e293;
+    let _e294 = found;
+    phi_1393_ = _e294;
+    if _e294 {
+        let _e296 = (*at_2).b;
+        let _e298 = (*at_2).a;
+        phi_1393_ = ((_e296 - _e298) < 2f);
+    }
+    let _e302 = phi_1393_;
+    if _e302 {
+        let _e304 = (*at_2).a;
+        let _e307 = (*at_2).b;
+        let _e309 = (*at_2).a;
+        local_22 = (-(_e304) / (_e307 - _e309));
+    } else {
+        local_22 = 0f;
+    }
+    let _e312 = local_22;
+    t = _e312;
+    let _e313 = x_9;
+    let _e314 = t;
+    (*surface).source = (_e313 + _e314);
+    let _e317 = own;
+    if _e317 {
+        let _e320 = (*at_2).depths[0u];
+        let _e323 = (*at_2).depths[1u];
+        let _e324 = t;
+        local_23 = mix(_e320, _e323, _e324);
+    } else {
+        let _e327 = beside_1.edge_depth;
+        local_23 = _e327;
+    }
+    let _e328 = local_23;
+    (*surface).depth = _e328;
+    let _e330 = x_9;
+    let _e331 = (*origin_2);
+    let _e335 = synthesis.law[1u];
+    let _e337 = (*surface).depth;
+    away_2 = ((_e330 - _e331) + (_e335 * _e337));
+    let _e340 = found;
+    let _e341 = !(_e340);
+    phi_1444_ = _e341;
+    if _e341 {
+        let _e342 = away_2;
+        phi_1444_ = (abs(_e342) >= 0.5f);
+    }
+    let _e346 = phi_1444_;
+    (*surface).hole = _e346;
+    let _e349 = (*surface).source;
+    param_44 = _e349;
+    let _e350 = column_at((&param_44));
+    param_45 = 0f;
+    let _e351 = row_at((&param_45));
+    param_46 = vec2<f32>(_e350, _e351);
+    let _e353 = color_sample((&param_46));
+    color_2 = _e353;
+    let _e355 = (*surface).hole;
+    phi_1485_ = _e355;
+    if _e355 {
+        let _e356 = gl_FragCoord_1;
+        let _e359 = synthesis.target_origin;
+        param_47 = (_e356.xy - vec2<f32>(_e359));
+        let _e363 = beside_1.front;
+        param_48 = _e363;
+        let _e364 = (*origin_2);
+        param_49 = _e364;
+        let _e365 = (*row_6);
+        param_50 = _e365;
+        let _e366 = color_2;
+        param_51 = _e366;
+        let _e368 = (*surface).depth;
+        param_52 = _e368;
+        let _e369 = recall((&param_47), (&param_48), (&param_49), (&param_50), (&param_51), (&param_52));
+        let _e370 = param_51;
+        color_2 = _e370;
+        let _e371 = param_52;
+        (*surface).depth = _e371;
+        phi_1485_ = _e369;
+    }
+    let _e374 = phi_1485_;
+    recalled = _e374;
+    phi_1490_ = true;
+    if true {
+        let _e376 = (*surface).hole;
+        phi_1490_ = _e376;
+    }
+    let _e378 = phi_1490_;
+    let _e379 = recalled;
+    if (_e378 && !(_e379)) {
+        param_53 = true;
+        let _e382 = color_2;
+        param_54 = _e382;
+        let _e383 = away_2;
+        param_55 = _e383;
+        let _e384 = x_9;
+        param_56 = _e384;
+        let _e386 = (*surface).depth;
+        param_57 = _e386;
+        let _e387 = (*row_6);
+        param_58 = _e387;
+        let _e388 = fill_hole((&param_53), (&param_54), (&param_55), (&param_56), (&param_57), (&param_58));
+        color_2 = _e388;
+    }
+    let _e390 = beside_1.rim;
+    if (_e390 >= 0f) {
+        let _e393 = beside_1.rim;
+        let _e394 = (*origin_2);
+        let _e398 = synthesis.law[1u];
+        let _e400 = beside_1.rim_depth;
+        coverage = (1f - abs(((_e393 - _e394) + (_e398 * _e400))));
+        let _e405 = color_2;
+        let _e407 = beside_1.rim;
+        param_59 = _e407;
+        let _e408 = column_at((&param_59));
+        param_60 = 0f;
+        let _e409 = row_at((&param_60));
+        param_61 = vec2<f32>(_e408, _e409);
+        let _e411 = color_sample((&param_61));
+        let _e412 = coverage;
+        color_2 = mix(_e405, _e411, vec4(_e412));
+        let _e415 = coverage;
+        if (_e415 >= 0.5f) {
+            let _e418 = beside_1.rim;
+            let _e420 = beside_1.rim_depth;
+            (*surface) = Surface(_e418, _e420, false);
+        }
+    }
+    let _e422 = color_2;
+    return _e422;
 }
 
 fn source_row() -> i32 {
@@ -1221,183 +1276,183 @@ fn source_row() -> i32 {
 
 fn span_steps(span: ptr<function, u32>) -> f32 {
     var steps: u32;
-    var local_20: f32;
+    var local_24: f32;
 
     let _e5 = (*span);
     steps = (_e5 & 1023u);
     let _e7 = steps;
     if (_e7 == 1023u) {
-        local_20 = 1000000000f;
+        local_24 = 1000000000f;
     } else {
         let _e9 = steps;
-        local_20 = f32(_e9);
+        local_24 = f32(_e9);
     }
-    let _e11 = local_20;
+    let _e11 = local_24;
     return _e11;
 }
 
 fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> vec4<f32> {
-    var origin_5: f32;
-    var at_4: Search;
-    var param_65: f32;
-    var param_66: f32;
-    var end_3: f32;
-    var param_67: u32;
+    var origin_3: f32;
+    var at_3: Search;
+    var param_62: f32;
+    var param_63: f32;
+    var end_1: f32;
+    var param_64: u32;
     var limit: f32;
     var next: f32;
-    var param_68: f32;
-    var param_69: f32;
-    var param_70: vec2<f32>;
+    var param_65: f32;
+    var param_66: f32;
+    var param_67: vec2<f32>;
     var stretch: f32;
     var t_1: f32;
     var seen_1: vec4<f32>;
-    var param_71: f32;
-    var param_72: f32;
-    var param_73: vec2<f32>;
+    var param_68: f32;
+    var param_69: f32;
+    var param_70: vec2<f32>;
     var middle: f32;
     var done: bool;
-    var param_74: Search;
-    var param_75: f32;
-    var param_76: f32;
-    var param_77: i32;
-    var param_78: Surface;
-    var phi_1644_: bool;
-    var phi_1653_: bool;
-    var phi_1736_: bool;
-    var phi_1749_: bool;
+    var param_71: Search;
+    var param_72: f32;
+    var param_73: f32;
+    var param_74: i32;
+    var param_75: Surface;
+    var phi_1675_: bool;
+    var phi_1684_: bool;
+    var phi_1767_: bool;
+    var phi_1780_: bool;
 
-    let _e41 = synthesis.origins[0u];
-    let _e43 = gl_FragCoord_1[0u];
-    let _e47 = synthesis.origins[1u];
-    origin_5 = ((_e41 * _e43) + _e47);
-    let _e49 = origin_5;
-    let _e51 = synthesis.farthest;
-    let _e53 = (*span_1);
-    param_65 = floor(((_e49 - _e51) - bitcast<f32>(_e53)));
-    let _e57 = origin_5;
-    param_66 = _e57;
-    let _e58 = search_at((&param_65), (&param_66));
-    at_4 = _e58;
-    let _e60 = at_4.x;
-    let _e62 = (*span_1);
-    param_67 = _e62;
-    let _e63 = span_steps((&param_67));
-    let _e67 = synthesis.source_size[0u];
-    end_3 = min((max(_e60, 0f) + _e63), f32((_e67 - 1i)));
-    let _e72 = at_4.x;
-    let _e74 = end_3;
-    limit = min((_e72 + 4f), _e74);
+    let _e40 = synthesis.origins[0u];
+    let _e42 = gl_FragCoord_1[0u];
+    let _e46 = synthesis.origins[1u];
+    origin_3 = ((_e40 * _e42) + _e46);
+    let _e48 = origin_3;
+    let _e50 = synthesis.farthest;
+    let _e52 = (*span_1);
+    param_62 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
+    let _e56 = origin_3;
+    param_63 = _e56;
+    let _e57 = search_at((&param_62), (&param_63));
+    at_3 = _e57;
+    let _e59 = at_3.x;
+    let _e61 = (*span_1);
+    param_64 = _e61;
+    let _e62 = span_steps((&param_64));
+    let _e66 = synthesis.source_size[0u];
+    end_1 = min((max(_e59, 0f) + _e62), f32((_e66 - 1i)));
+    let _e71 = at_3.x;
+    let _e73 = end_1;
+    limit = min((_e71 + 2f), _e73);
     loop {
-        let _e77 = at_4.x;
-        let _e78 = limit;
-        let _e79 = (_e77 < _e78);
-        phi_1644_ = _e79;
-        if _e79 {
-            let _e81 = at_4.b;
-            phi_1644_ = (_e81 <= 0f);
+        let _e76 = at_3.x;
+        let _e77 = limit;
+        let _e78 = (_e76 < _e77);
+        phi_1675_ = _e78;
+        if _e78 {
+            let _e80 = at_3.b;
+            phi_1675_ = (_e80 <= 0f);
         }
-        let _e84 = phi_1644_;
-        phi_1653_ = _e84;
-        if _e84 {
-            let _e86 = at_4.b;
-            let _e89 = at_4.a;
-            phi_1653_ = (max(_e86, -1f) >= _e89);
+        let _e83 = phi_1675_;
+        phi_1684_ = _e83;
+        if _e83 {
+            let _e85 = at_3.b;
+            let _e88 = at_3.a;
+            phi_1684_ = (max(_e85, -1f) >= _e88);
         }
-        let _e92 = phi_1653_;
-        if _e92 {
-            let _e94 = at_4.x;
-            param_68 = (_e94 + 2f);
-            let _e96 = column_at((&param_68));
-            param_69 = 0f;
-            let _e97 = row_at((&param_69));
-            param_70 = vec2<f32>(_e96, _e97);
-            let _e99 = depth_sample((&param_70));
-            next = _e99;
-            let _e102 = at_4.depths[1u];
-            let _e103 = next;
-            at_4.depths = vec2<f32>(_e102, _e103);
-            let _e107 = at_4.b;
-            at_4.a = _e107;
-            let _e110 = at_4.x;
-            let _e112 = origin_5;
-            let _e116 = synthesis.law[1u];
-            let _e117 = next;
-            at_4.b = (((_e110 + 2f) - _e112) + (_e116 * _e117));
+        let _e91 = phi_1684_;
+        if _e91 {
+            let _e93 = at_3.x;
+            param_65 = (_e93 + 2f);
+            let _e95 = column_at((&param_65));
+            param_66 = 0f;
+            let _e96 = row_at((&param_66));
+            param_67 = vec2<f32>(_e95, _e96);
+            let _e98 = depth_sample((&param_67));
+            next = _e98;
+            let _e101 = at_3.depths[1u];
+            let _e102 = next;
+            at_3.depths = vec2<f32>(_e101, _e102);
+            let _e106 = at_3.b;
+            at_3.a = _e106;
+            let _e109 = at_3.x;
+            let _e111 = origin_3;
+            let _e115 = synthesis.law[1u];
+            let _e116 = next;
+            at_3.b = (((_e109 + 2f) - _e111) + (_e115 * _e116));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e122 = at_4.x;
-            at_4.x = (_e122 + 1f);
+            let _e121 = at_3.x;
+            at_3.x = (_e121 + 1f);
         }
     }
-    let _e126 = at_4.b;
-    let _e128 = at_4.a;
-    stretch = (_e126 - _e128);
-    let _e131 = at_4.a;
-    let _e133 = stretch;
-    t_1 = (-(_e131) / _e133);
-    let _e136 = at_4.x;
-    let _e137 = t_1;
-    let _e141 = at_4.depths[0u];
-    let _e144 = at_4.depths[1u];
-    let _e145 = t_1;
-    (*surface_1) = Surface((_e136 + _e137), mix(_e141, _e144, _e145), false);
-    let _e149 = (*surface_1).source;
-    param_71 = _e149;
-    let _e150 = column_at((&param_71));
-    param_72 = 0f;
-    let _e151 = row_at((&param_72));
-    param_73 = vec2<f32>(_e150, _e151);
-    let _e153 = color_sample((&param_73));
-    seen_1 = _e153;
-    let _e156 = synthesis.source_size[0u];
-    middle = (0.5f * f32((_e156 - 1i)));
-    let _e161 = at_4.a;
-    let _e162 = (_e161 <= 0f);
-    phi_1736_ = _e162;
-    if _e162 {
-        let _e164 = at_4.b;
-        phi_1736_ = (_e164 > 0f);
+    let _e125 = at_3.b;
+    let _e127 = at_3.a;
+    stretch = (_e125 - _e127);
+    let _e130 = at_3.a;
+    let _e132 = stretch;
+    t_1 = (-(_e130) / _e132);
+    let _e135 = at_3.x;
+    let _e136 = t_1;
+    let _e140 = at_3.depths[0u];
+    let _e143 = at_3.depths[1u];
+    let _e144 = t_1;
+    (*surface_1) = Surface((_e135 + _e136), mix(_e140, _e143, _e144), false);
+    let _e148 = (*surface_1).source;
+    param_68 = _e148;
+    let _e149 = column_at((&param_68));
+    param_69 = 0f;
+    let _e150 = row_at((&param_69));
+    param_70 = vec2<f32>(_e149, _e150);
+    let _e152 = color_sample((&param_70));
+    seen_1 = _e152;
+    let _e155 = synthesis.source_size[0u];
+    middle = (0.5f * f32((_e155 - 1i)));
+    let _e160 = at_3.a;
+    let _e161 = (_e160 <= 0f);
+    phi_1767_ = _e161;
+    if _e161 {
+        let _e163 = at_3.b;
+        phi_1767_ = (_e163 > 0f);
     }
-    let _e167 = phi_1736_;
-    let _e168 = stretch;
-    let _e170 = (_e167 && (_e168 < 2f));
-    phi_1749_ = _e170;
-    if _e170 {
-        let _e172 = (*surface_1).source;
-        let _e173 = middle;
-        let _e176 = middle;
-        phi_1749_ = (abs((_e172 - _e173)) <= _e176);
+    let _e166 = phi_1767_;
+    let _e167 = stretch;
+    let _e169 = (_e166 && (_e167 < 2f));
+    phi_1780_ = _e169;
+    if _e169 {
+        let _e171 = (*surface_1).source;
+        let _e172 = middle;
+        let _e175 = middle;
+        phi_1780_ = (abs((_e171 - _e172)) <= _e175);
     }
-    let _e179 = phi_1749_;
-    done = _e179;
-    let _e180 = done;
-    if (true && !(_e180)) {
-        let _e183 = source_row();
-        let _e184 = at_4;
-        param_74 = _e184;
-        let _e185 = end_3;
-        param_75 = _e185;
-        let _e186 = origin_5;
-        param_76 = _e186;
-        param_77 = _e183;
-        let _e187 = march((&param_74), (&param_75), (&param_76), (&param_77), (&param_78));
-        let _e188 = param_78;
-        (*surface_1) = _e188;
-        seen_1 = _e187;
+    let _e178 = phi_1780_;
+    done = _e178;
+    let _e179 = done;
+    if (true && !(_e179)) {
+        let _e182 = source_row();
+        let _e183 = at_3;
+        param_71 = _e183;
+        let _e184 = end_1;
+        param_72 = _e184;
+        let _e185 = origin_3;
+        param_73 = _e185;
+        param_74 = _e182;
+        let _e186 = march((&param_71), (&param_72), (&param_73), (&param_74), (&param_75));
+        let _e187 = param_75;
+        (*surface_1) = _e187;
+        seen_1 = _e186;
     }
-    let _e189 = seen_1;
-    return _e189;
+    let _e188 = seen_1;
+    return _e188;
 }
 
 fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
     var place_3: f32;
-    var depths_3: vec2<f32>;
-    var param_79: f32;
-    var param_80: f32;
-    var param_81: vec2<f32>;
+    var depths_2: vec2<f32>;
+    var param_76: f32;
+    var param_77: f32;
+    var param_78: vec2<f32>;
 
     let _e17 = (*affine)[0u];
     let _e19 = (*affine)[1u];
@@ -1411,19 +1466,19 @@ fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -
     let _e42 = synthesis.source_size[0u];
     (*surface_2).source = clamp((((_e30 - _e33) / _e37) - 0.5f), 0f, f32((_e42 - 1i)));
     let _e48 = (*surface_2).source;
-    param_79 = floor(_e48);
-    let _e50 = depth_pair((&param_79));
-    depths_3 = _e50;
-    let _e52 = depths_3[0u];
-    let _e54 = depths_3[1u];
+    param_76 = floor(_e48);
+    let _e50 = depth_pair((&param_76));
+    depths_2 = _e50;
+    let _e52 = depths_2[0u];
+    let _e54 = depths_2[1u];
     let _e56 = (*surface_2).source;
     (*surface_2).depth = mix(_e52, _e54, fract(_e56));
     (*surface_2).hole = false;
     let _e61 = place_3;
-    param_80 = 0f;
-    let _e62 = row_at((&param_80));
-    param_81 = vec2<f32>(_e61, _e62);
-    let _e64 = color_sample((&param_81));
+    param_77 = 0f;
+    let _e62 = row_at((&param_77));
+    param_78 = vec2<f32>(_e61, _e62);
+    let _e64 = color_sample((&param_78));
     return _e64;
 }
 
@@ -1445,33 +1500,33 @@ fn pixel_span() -> vec4<u32> {
 fn main_1() {
     var span_2: vec4<u32>;
     var surface_3: Surface;
-    var param_82: vec3<f32>;
-    var param_83: Surface;
-    var param_84: u32;
-    var param_85: Surface;
-    var phi_1777_: bool;
+    var param_79: vec3<f32>;
+    var param_80: Surface;
+    var param_81: u32;
+    var param_82: Surface;
+    var phi_1807_: bool;
 
     let _e11 = pixel_span();
     span_2 = _e11;
-    phi_1777_ = true;
+    phi_1807_ = true;
     if true {
         let _e13 = span_2[1u];
-        phi_1777_ = (_e13 != 0u);
+        phi_1807_ = (_e13 != 0u);
     }
-    let _e16 = phi_1777_;
+    let _e16 = phi_1807_;
     if _e16 {
         let _e17 = span_2;
-        param_82 = bitcast<vec3<f32>>(_e17.xyz);
-        let _e20 = lawful((&param_82), (&param_83));
-        let _e21 = param_83;
+        param_79 = bitcast<vec3<f32>>(_e17.xyz);
+        let _e20 = lawful((&param_79), (&param_80));
+        let _e21 = param_80;
         surface_3 = _e21;
         color_3 = _e20;
     } else {
         if true {
             let _e23 = span_2[0u];
-            param_84 = _e23;
-            let _e24 = searched((&param_84), (&param_85));
-            let _e25 = param_85;
+            param_81 = _e23;
+            let _e24 = searched((&param_81), (&param_82));
+            let _e25 = param_82;
             surface_3 = _e25;
             color_3 = _e24;
         } else {
