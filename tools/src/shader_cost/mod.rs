@@ -79,7 +79,7 @@ const EXCEPTIONS: [Exception; 5] = [
 
 const LAYERS_HISTORY: &str = "synthesis/layers/march.frag HISTORY";
 
-const LOOK_UP: &str = "both poses' matrices on top of the layers; neither is a default";
+const LOOK_UP: &str = "the strip's matrix on top of the layers; neither is a default";
 
 const BOTH_OUTPUTS: &str =
     "two registers too many, with both depth and the source map, which no viewer asks for";
