@@ -12,13 +12,14 @@ use std::time::{Duration, Instant};
 use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
 use yoro_context::android::{Window, WindowError};
 use yoro_gl::{Context, Destination};
-use yoro_lenses::{MotionSample, Screen};
+use yoro_lenses::{MotionSample, Rotation, Screen};
 use yoro_protocol::DisplayKind;
 use yoro_protocol::telemetry::DeviceState;
 use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
 use yoro_viewer::{Action, Cardboard, Event, FrameReport, FrameTiming, Viewer, ViewerError};
 
-use crate::configuration::Configuration;
+use crate::camera::{REFUSED, Scan};
+use crate::configuration::{self, Configuration};
 use crate::device::Device;
 use crate::display::{Display, DisplayError};
 use crate::input::Input;
@@ -77,6 +78,10 @@ struct Activity {
     device: Option<Device>,
     input: Input,
     performance: Performance,
+    /// The camera while it looks for a viewer's code.
+    scan: Option<Scan>,
+    /// True from asking for the camera to the answer.
+    is_asking: bool,
     /// GPU time of a frame some frames ago, if measured.
     gpu_time: Duration,
     /// A buffer for the samples of a frame.
@@ -114,6 +119,8 @@ impl Activity {
             device: None,
             input: Input::default(),
             performance: Performance::new(),
+            scan: None,
+            is_asking: false,
             gpu_time: Duration::ZERO,
             samples: Vec::new(),
             is_display_chosen: false,
@@ -225,11 +232,18 @@ impl Activity {
             cardboard.resume();
         }
         self.java.hide_system_bars();
+        if std::mem::take(&mut self.is_asking) {
+            self.begin_scan();
+        }
     }
 
     fn pause(&mut self) {
         self.is_resumed = false;
         self.device = None;
+        // Android takes the camera from applications that are not in front.
+        if self.scan.take().is_some() {
+            self.say("The camera was given back: touch the tile again.");
+        }
         self.input.cancel();
         if let Some(pulse) = self.pulse {
             pulse.pause();
@@ -242,10 +256,50 @@ impl Activity {
     /// Ends an activity that was started by hand when the user leaves it: only a new one sees what other applications share.
     /// A device that goes to sleep is not left.
     fn leave(&mut self) {
-        if self.configuration.is_by_hand() && !self.display.is_headset() && self.java.is_awake() {
+        let is_left = !self.is_asking && self.java.is_awake();
+        if self.configuration.is_by_hand() && !self.display.is_headset() && is_left {
             self.configuration.leave(self.display.viewer());
             self.finish();
         }
+    }
+
+    /// Lets the camera look for a viewer's code, if it may.
+    fn begin_scan(&mut self) {
+        if self.java.may_use_camera() {
+            log::info!("the camera looks for a viewer's code");
+            let is_upside_down = self.screen.rotation() == Rotation::LandscapeRight;
+            self.scan = Some(Scan::begin(is_upside_down));
+        } else {
+            self.say(REFUSED);
+        }
+    }
+
+    /// Says a sentence on the start screen.
+    fn say(&mut self, sentence: &str) {
+        log::info!("{sentence}");
+        if let Some(cardboard) = self.display.cardboard_mut() {
+            cardboard.viewer_mut().show_start_screen(sentence);
+        }
+    }
+
+    /// Shows what the camera sees, and takes the viewer that it finds.
+    fn follow_scan(&mut self) {
+        let (Some(scan), Display::Cardboard(cardboard)) = (&self.scan, &mut self.display) else { return };
+        let sentence = match scan.outcome() {
+            Some(Ok(uri)) => {
+                log::info!("scanned: the viewer {uri}");
+                configuration::choose_viewer(cardboard, &uri)
+            }
+            Some(Err(sentence)) => sentence,
+            None => {
+                if let Some(picture) = scan.picture() {
+                    cardboard.viewer_mut().show_camera(&picture);
+                }
+                return;
+            }
+        };
+        self.scan = None;
+        self.say(&sentence);
     }
 
     /// Drops everything on the GPU while the activity is in the background; it is made again with the next window.
@@ -318,8 +372,10 @@ impl Activity {
         };
         let window = self.window.insert(window);
         let gl = context(&mut self.gl, window)?;
+        self.configuration.check_pictures(gl);
         let mut viewer = self.configuration.make_viewer(Viewer::new)?;
         viewer.attach(gl.clone())?;
+        self.configuration.greet(&mut viewer);
         let options = Options { android: Some(android) };
         let headset = Headset::open(found, &*window, gl, viewer, options)?;
         self.display = Display::Headset(Box::new(headset));
@@ -355,6 +411,7 @@ impl Activity {
 
     /// Finishes a frame, on any display.
     fn after_frame(&mut self, report: &FrameReport) {
+        self.configuration.take_shared(&mut self.display);
         if let Some(viewer) = self.display.viewer_mut()
             && self.configuration.keep(viewer)
         {
@@ -440,10 +497,11 @@ impl Activity {
             }
         }
         let Some(cardboard) = self.display.cardboard_mut() else { return };
-        if !cardboard.is_attached()
-            && let Err(error) = cardboard.attach(gl)
-        {
-            return self.fail(error.to_string());
+        if !cardboard.is_attached() {
+            self.configuration.check_pictures(&gl);
+            if let Err(error) = cardboard.attach(gl) {
+                return self.fail(error.to_string());
+            }
         }
         self.ask_performance();
     }
@@ -535,28 +593,33 @@ impl Activity {
         }
     }
 
-    /// Draws one frame, for the refresh that has just begun.
-    fn frame(&mut self, refresh: Option<Refresh>) -> Result<(), DisplayError> {
-        let Some(screen) = self.screen() else { return Ok(()) };
-        let (Display::Cardboard(cardboard), Some(window)) = (&mut self.display, &self.window) else {
-            return Ok(());
-        };
+    /// Does what the user wants.
+    fn take_events(&mut self, screen: Screen) -> Result<(), ViewerError> {
+        let Display::Cardboard(cardboard) = &mut self.display else { return Ok(()) };
         cardboard.resize(screen)?;
+        let mut wants_scan = false;
         for event in self.input.events.drain(..) {
+            let was_start_screen = cardboard.viewer().is_start_screen();
             let done = match event {
                 Event::Tap => match cardboard.touch(self.input.touched) {
                     Ok(None) => cardboard.event(event),
                     done => done.map(Option::unwrap_or_default),
                 },
-                _ if cardboard.viewer().is_start_screen() => continue,
+                _ if was_start_screen => continue,
                 _ => cardboard.event(event),
             };
+            if was_start_screen {
+                // Whatever is touched, the camera is no longer wanted, or wanted anew.
+                self.scan = None;
+            }
             match done {
                 Ok(Action::Nothing) => {}
                 Ok(action) => {
                     log::info!("{action}");
-                    if action == Action::ShareLog {
-                        self.java.share(results::recent());
+                    match action {
+                        Action::ShareLog => self.java.share(results::recent()),
+                        Action::Scan(is_on) => wants_scan = is_on,
+                        _ => {}
                     }
                 }
                 Err(error) => log::error!("{error}"),
@@ -566,6 +629,23 @@ impl Activity {
         if is_bright != std::mem::replace(&mut self.is_bright, is_bright) {
             self.java.raise_brightness(is_bright);
         }
+        if wants_scan && self.java.may_use_camera() {
+            self.begin_scan();
+        } else if wants_scan {
+            self.is_asking = true;
+            self.java.ask_for_camera();
+        }
+        Ok(())
+    }
+
+    /// Draws one frame, for the refresh that has just begun.
+    fn frame(&mut self, refresh: Option<Refresh>) -> Result<(), DisplayError> {
+        let Some(screen) = self.screen() else { return Ok(()) };
+        self.take_events(screen)?;
+        self.follow_scan();
+        let (Display::Cardboard(cardboard), Some(window)) = (&mut self.display, &self.window) else {
+            return Ok(());
+        };
         let begin = now_ns();
         let refresh_hz = self.screen.refresh_hz;
         let period_ns = (1e9 / f64::from(if refresh_hz > 0.0 { refresh_hz } else { USUAL_HZ })) as i64;

@@ -13,7 +13,9 @@ bind_java_type! {
         WindowManager => android.view.WindowManager,
     },
     methods {
+        fn check_self_permission(name: JString) -> jint,
         fn finish(),
+        fn request_permissions(names: JString[], code: jint),
         fn start_activity(intent: Intent),
         fn get_application_context() -> android.content.Context,
         fn get_content_resolver() -> ContentResolver,

@@ -1,19 +1,23 @@
 //! The settings in use, and their sources.
 
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use android_activity::AndroidApp;
+use yoro_gl::Context;
 use yoro_protocol::Settings;
 use yoro_scenes::BUILTINS;
 use yoro_viewer::{Cardboard, Viewer, ViewerError, list_scenes};
 
 use crate::display::Display;
 use crate::game_loop::GameLoop;
-use crate::java::{Given, Java};
+use crate::java::Java;
+use crate::pictures;
 use crate::results;
 use crate::settings::{self, Pair, Sources};
-use crate::shared::{self, Shared};
+use crate::shared::{self, Reading, Shared};
 use crate::system;
+use crate::writer::Writer;
 
 /// What the menu has changed, in the application's own folder.
 const MENU_FILE_NAME: &str = "settings-user";
@@ -24,15 +28,18 @@ pub struct Configuration {
     /// The settings that the sources gave last.
     settings: Settings,
     folders: Vec<PathBuf>,
-    /// The file of the menu's settings.
+    /// The file of the menu's settings, and its thread once something was written.
     menu_file: Option<PathBuf>,
+    writer: Option<Writer>,
+    /// True until the user was told what there is to see: nothing was ever kept.
+    is_first_start: bool,
     /// The mistakes in the settings when they were last read.
     mistakes: Vec<String>,
     game_loop: Option<GameLoop>,
     /// True if a scenario was asked for that there is not: the activity has nothing to do.
     pub is_unknown_scenario: bool,
-    /// What another application shares, or why it is of no use.
-    shared: Option<Result<Shared, String>>,
+    /// What another application shares, as long as it is being read.
+    reading: Option<Reading>,
 }
 
 impl Configuration {
@@ -52,18 +59,12 @@ impl Configuration {
         if let Some(scenes) = folders.first() {
             shared::remove_unfinished(scenes);
         }
-        let shared = java.given().map(|given| match given {
-            Given::Text(text) => shared::viewer_in_text(&text),
-            Given::File(file, name) => match folders.first() {
-                Some(folder) => shared::read(file, &name, folder),
-                None => Err("There is no folder for what is shared: make room, and share it again.".into()),
-            },
-            Given::Closed => {
-                Err("The shared file cannot be opened: share it from another application.".into())
-            }
+        let reading = java.is_given().then(|| {
+            let java = java.clone();
+            Reading::begin(folders.first().cloned(), move || java.given())
         });
         // Extras of a shared intent are not settings.
-        let mut extras = if shared.is_some() { Vec::new() } else { java.extras() };
+        let mut extras = if reading.is_some() { Vec::new() } else { java.extras() };
         let scenario = java.scenario();
         let game_loop = scenario.and_then(|scenario| GameLoop::new(scenario, extras.clone()));
         if let Some(scenario) = scenario {
@@ -80,23 +81,14 @@ impl Configuration {
         let folder = app.internal_data_path().filter(|_| scenario.is_none());
         let menu_file = folder.map(|folder| folder.join(MENU_FILE_NAME));
         let menu = menu_file.as_ref().and_then(|file| std::fs::read(file).ok());
-        let mut sources = Sources {
+        let is_first_start = menu.is_none();
+        let sources = Sources {
             menu: menu.map_or_else(Vec::new, |bytes| settings::restore(&bytes)),
             file: external.map(|folder| folder.join(settings::FILE_NAME)),
             extras,
             properties: settings::properties(system::property),
             saved: Vec::new(),
         };
-        match &shared {
-            Some(Ok(Shared::Scene(name))) => {
-                log::info!("shared: the model {name}");
-                let pairs = [("scene", name.as_str()), ("viewpoint", "0")];
-                sources.keep(pairs.map(|(key, value)| (key.to_owned(), value.to_owned())));
-            }
-            Some(Ok(Shared::Viewer(uri))) => log::info!("shared: the viewer {uri}"),
-            Some(Err(mistake)) => log::warn!("shared: {mistake}"),
-            None => {}
-        }
         let is_unknown_scenario = scenario.is_some() && game_loop.is_none();
         let (settings, mistakes) = (Settings::default(), Vec::new());
         Configuration {
@@ -104,10 +96,12 @@ impl Configuration {
             settings,
             folders,
             menu_file,
+            writer: None,
+            is_first_start,
             mistakes,
             game_loop,
             is_unknown_scenario,
-            shared,
+            reading,
         }
     }
 
@@ -116,27 +110,76 @@ impl Configuration {
         self.game_loop.is_none() && self.sources.is_by_hand()
     }
 
-    /// Begins as a start by hand does: takes what was shared, and shows the start screen where there is something to say,
-    /// or no viewer was chosen yet. Does nothing for a start by a computer.
+    /// Explains what is seen if a person has started the application by hand, and for the first time.
+    pub fn greet(&mut self, viewer: &mut Viewer) {
+        if self.is_by_hand() && std::mem::take(&mut self.is_first_start) {
+            viewer.explain();
+            self.write_menu_file();
+        }
+    }
+
+    /// Begins as a start by hand on a phone does: shows the start screen while something shared is being read, or if no viewer
+    /// was chosen yet. Does nothing for a start by a computer.
     pub fn begin(&mut self, cardboard: &mut Cardboard) {
         if !self.is_by_hand() {
             return;
         }
+        self.greet(cardboard.viewer_mut());
         cardboard.viewer_mut().offer_start_screen();
-        let message = match self.shared.take() {
-            Some(Ok(Shared::Viewer(uri))) => match cardboard.choose_viewer(&uri) {
-                Ok(()) => "This is your viewer now. Touch Start.".into(),
-                Err(error) => error.to_string(),
-            },
-            // It is kept when the user leaves: a model that no memory has room for would end every start.
-            Some(Ok(Shared::Scene(name))) => {
-                format!("The model {name} was opened: touch Start to stand in it.")
-            }
-            Some(Err(mistake)) => mistake,
+        let message = match &mut self.reading {
+            Some(reading) => reading.news().unwrap_or_default(),
             None if self.sources.has_viewer() => return,
             None => String::new(),
         };
         log::info!("{}", cardboard.viewer_mut().show_start_screen(&message));
+    }
+
+    /// Takes what was shared once it is read.
+    pub fn take_shared(&mut self, display: &mut Display) {
+        let Some(reading) = &mut self.reading else { return };
+        let Some(read) = reading.poll() else {
+            if let Some(cardboard) = display.cardboard_mut().filter(|c| c.viewer().is_start_screen())
+                && let Some(news) = reading.news()
+            {
+                cardboard.viewer_mut().show_start_screen(&news);
+            }
+            return;
+        };
+        self.reading = None;
+        let message = match read {
+            Ok(Shared::Viewer(uri)) => {
+                log::info!("shared: the viewer {uri}");
+                match display.cardboard_mut() {
+                    Some(cardboard) => choose_viewer(cardboard, &uri),
+                    None => String::new(),
+                }
+            }
+            // It is kept when the user leaves: a model that no memory has room for would end every start.
+            Ok(Shared::Scene(name)) => {
+                log::info!("shared: the model {name}");
+                let pairs = [("scene", name.as_str()), ("viewpoint", "0")];
+                self.sources.keep(pairs.map(|(key, value)| (key.to_owned(), value.to_owned())));
+                let settings = self.resolve();
+                self.apply(settings, display);
+                format!("The model {name} was opened: touch Start to stand in it.")
+            }
+            Err(mistake) => {
+                log::warn!("shared: {mistake}");
+                mistake
+            }
+        };
+        if self.is_by_hand()
+            && let Some(cardboard) = display.cardboard_mut()
+        {
+            log::info!("{}", cardboard.viewer_mut().show_start_screen(&message));
+        }
+    }
+
+    /// Compares pictures, if a game loop is to do so.
+    pub fn check_pictures(&self, gl: &Rc<Context>) {
+        if self.game_loop.as_ref().is_some_and(GameLoop::checks_pictures) {
+            pictures::check(gl).iter().for_each(|pictures| log::info!("{pictures}"));
+        }
     }
 
     /// Goes to the next step of a game loop, and returns its settings; none after the last, and without a game loop.
@@ -185,19 +228,14 @@ impl Configuration {
         let changes = self.changes(viewer);
         self.sources.keep(changes);
         self.write_menu_file();
+        // Waits: the process may be ended at any time from now on, and the next start reads the file.
+        self.writer = None;
     }
 
-    fn write_menu_file(&self) {
+    fn write_menu_file(&mut self) {
         let Some(file) = self.menu_file.as_ref().filter(|_| !self.sources.is_named_run()) else { return };
-        let new = file.with_extension("new");
-        let written = std::fs::write(&new, settings::save(&self.sources.menu))
-            .and_then(|()| std::fs::rename(&new, file));
-        if let Err(error) = written {
-            log::warn!(
-                "{} cannot be written ({error}): the menu's settings are lost at the end",
-                file.display()
-            );
-        }
+        let writer = self.writer.get_or_insert_with(|| Writer::new(file.clone()));
+        writer.write(settings::save(&self.sources.menu));
     }
 
     /// Returns the settings from outside; each mistake is logged once.
@@ -279,5 +317,13 @@ impl Configuration {
             }
             Err(error) => log::warn!("{error}; the settings stay as they were"),
         }
+    }
+}
+
+/// Chooses a viewer by its URI, and returns the sentence for the user.
+pub fn choose_viewer(cardboard: &mut Cardboard, uri: &str) -> String {
+    match cardboard.choose_viewer(uri) {
+        Ok(()) => "This is your viewer now. Touch Start.".into(),
+        Err(error) => error.to_string(),
     }
 }

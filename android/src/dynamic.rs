@@ -1,16 +1,22 @@
-//! Functions of libandroid that not every version of Android has.
+//! Functions that are found by name: those of libandroid that not every version of Android has, and whole libraries that are
+//! rarely used.
 
 use std::ffi::{CStr, c_void};
 use std::mem;
 
-/// libandroid, which is loaded anyway and never unloaded.
+/// One of Android's own libraries, which is never unloaded.
 pub struct Library(*mut c_void);
 
 impl Library {
-    /// Opens libandroid.
-    pub fn open() -> Library {
-        // SAFETY: a name that ends in zero; the library is a part of every process with an activity.
-        Library(unsafe { libc::dlopen(c"libandroid.so".as_ptr(), libc::RTLD_NOW) })
+    /// Opens a library by its name; without it, it has no functions.
+    pub fn open(name: &CStr) -> Library {
+        // SAFETY: a name that ends in zero; Android's libraries may be loaded on any thread.
+        Library(unsafe { libc::dlopen(name.as_ptr(), libc::RTLD_NOW) })
+    }
+
+    /// Opens libandroid, which every process with an activity has.
+    pub fn android() -> Library {
+        Library::open(c"libandroid.so")
     }
 
     /// Returns a function by its name; none if this Android does not have it.

@@ -55,6 +55,11 @@ impl GameLoop {
         own.map(|(key, value)| (key.to_owned(), value)).into_iter().chain(self.extras.clone()).collect()
     }
 
+    /// True if pictures are to be compared.
+    pub fn checks_pictures(&self) -> bool {
+        self.scenario == 1
+    }
+
     /// Goes to the next step; false after the last.
     pub fn advance(&mut self) -> bool {
         let has_next = self.step + 1 < self.steps.len();

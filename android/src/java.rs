@@ -18,6 +18,7 @@ use crate::bindings::{
     Activity, BatteryManager, Cursor, DisplayMetrics as Metrics, Intent, IntentFilter, PowerManager, Toast,
     Uri,
 };
+use crate::shared::Given;
 
 /// `BatteryManager.BATTERY_PROPERTY_*`.
 #[derive(Clone, Copy, Debug)]
@@ -52,16 +53,10 @@ pub struct BatteryIntent {
 
 /// `Intent.FLAG_ACTIVITY_LAUNCHED_FROM_HISTORY`.
 const LAUNCHED_FROM_HISTORY: i32 = 0x0010_0000;
-
-/// What another application gives to the activity with the intent that starts it.
-pub enum Given {
-    /// A text, or an address.
-    Text(String),
-    /// A file, open, and its name.
-    File(File, String),
-    /// A file that its owner does not let yoro read.
-    Closed,
-}
+const CAMERA: &str = "android.permission.CAMERA";
+/// The actions by which other applications share.
+const SEND: &str = "android.intent.action.SEND";
+const VIEW: &str = "android.intent.action.VIEW";
 
 /// The display that the activity is on.
 #[derive(Clone, Copy, Debug)]
@@ -201,21 +196,28 @@ impl Java {
         extras.unwrap_or_default()
     }
 
-    /// Returns what another application shares by the intent that started the activity; none for any other start. What is
-    /// shared while the activity lives does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
-    pub fn given(&self) -> Option<Given> {
-        let given = self.ask("the shared", |env, activity| {
+    /// True if another application shares something by the intent that started the activity. What is shared while the activity
+    /// lives does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
+    pub fn is_given(&self) -> bool {
+        let is_given = self.ask("the shared", |env, activity| {
             let intent = activity.get_intent(env)?;
             // Begun again from the list of recent applications, the activity has the intent of its first start.
             if intent.is_null() || intent.get_flags(env)? & LAUNCHED_FROM_HISTORY != 0 {
-                return Ok(None);
+                return Ok(false);
             }
             let action = intent.get_action(env)?;
-            if action.is_null() {
-                return Ok(None);
-            }
-            let uri = match action.try_to_string(env)?.as_str() {
-                "android.intent.action.SEND" => {
+            Ok(!action.is_null() && [SEND, VIEW].contains(&action.try_to_string(env)?.as_str()))
+        });
+        is_given.unwrap_or_default()
+    }
+
+    /// Returns what another application shares, where [`Java::is_given`]. The owner of a file may take its time.
+    pub fn given(&self) -> Given {
+        let given = self.ask("the shared", |env, activity| {
+            let intent = activity.get_intent(env)?;
+            let action = intent.get_action(env)?.try_to_string(env)?;
+            let uri = match action.as_str() {
+                SEND => {
                     // A picture may come with words besides.
                     let name = JString::new(env, "android.intent.extra.STREAM")?;
                     let stream = intent.get_parcelable_extra(env, &name)?;
@@ -227,8 +229,7 @@ impl Java {
                     }
                     env.cast_local::<Uri>(stream)?
                 }
-                "android.intent.action.VIEW" => intent.get_data(env)?,
-                _ => return Ok(None),
+                _ => intent.get_data(env)?,
             };
             if uri.is_null() {
                 return Ok(None);
@@ -249,13 +250,34 @@ impl Java {
             env.exception_clear();
             Ok(Some(file.map_or(Given::Closed, |file| Given::File(file, shown.unwrap_or(last)))))
         });
-        given.flatten()
+        given.flatten().unwrap_or(Given::Closed)
+    }
+
+    /// True if the user lets yoro use the camera.
+    pub fn may_use_camera(&self) -> bool {
+        const GRANTED: i32 = 0;
+        let answer = self.ask("the permission", |env, activity| {
+            let name = JString::new(env, CAMERA)?;
+            activity.check_self_permission(env, &name)
+        });
+        answer == Some(GRANTED)
+    }
+
+    /// Asks the user whether yoro may use the camera. The answer is there when the activity is in front again; Android gives it
+    /// without a question where the user has refused twice.
+    pub fn ask_for_camera(&self) {
+        self.on_main_thread("the permission", |env, activity| {
+            let names = env.new_object_type_array::<JString>(1, JString::null())?;
+            let name = JString::new(env, CAMERA)?;
+            names.set_element(env, 0, &name)?;
+            activity.request_permissions(env, &names, 1)
+        });
     }
 
     /// Lets the user give a text to another application. An intent takes half a megabyte at most.
     pub fn share(&self, shared: String) {
         self.on_main_thread("sharing", move |env, activity| {
-            let action = JString::new(env, "android.intent.action.SEND")?;
+            let action = JString::new(env, SEND)?;
             let intent = Intent::new(env, &action)?;
             let kind = JString::new(env, "text/plain")?;
             intent.set_type(env, &kind)?;

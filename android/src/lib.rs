@@ -9,16 +9,24 @@ mod game_loop;
 #[cfg(any(target_os = "android", test))]
 mod pace;
 #[cfg(any(target_os = "android", test))]
+mod pictures;
+#[cfg(any(target_os = "android", test))]
 mod press;
+#[cfg(any(target_os = "android", test))]
+mod scan;
 #[cfg(any(target_os = "android", test))]
 mod settings;
 #[cfg(any(target_os = "android", test))]
 mod shared;
+#[cfg(any(target_os = "android", test))]
+mod writer;
 
 #[cfg(target_os = "android")]
 mod activity;
 #[cfg(target_os = "android")]
 mod bindings;
+#[cfg(target_os = "android")]
+mod camera;
 #[cfg(target_os = "android")]
 mod configuration;
 #[cfg(target_os = "android")]

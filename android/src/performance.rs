@@ -33,7 +33,13 @@ pub struct Performance {
 impl Performance {
     /// Asks for nothing yet.
     pub fn new() -> Performance {
-        Performance { android: Library::open(), first_hz: None, rate_hz: None, sustained: None, hints: None }
+        Performance {
+            android: Library::android(),
+            first_hz: None,
+            rate_hz: None,
+            sustained: None,
+            hints: None,
+        }
     }
 
     /// Forgets the request made with the window before.

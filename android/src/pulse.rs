@@ -194,7 +194,7 @@ struct Vsync {
 
 impl Choreographer {
     fn of_thread() -> Option<Choreographer> {
-        let android = Library::open();
+        let android = Library::android();
         // SAFETY: the types are those of <android/choreographer.h>; the thread has a looper.
         unsafe {
             let get: GetInstance = android.function(c"AChoreographer_getInstance")?;

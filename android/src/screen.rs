@@ -24,6 +24,11 @@ impl ScreenState {
         self.metrics.as_ref().map_or(0.0, |metrics| dpi(metrics)[0])
     }
 
+    /// Returns the picture's rotation.
+    pub fn rotation(&self) -> Rotation {
+        self.metrics.as_ref().map_or_else(Rotation::default, |metrics| rotation(metrics.rotation))
+    }
+
     /// Returns the screen of a window of this size.
     pub fn of_window(&mut self, size: [u32; 2], java: &Java) -> Screen {
         if std::mem::take(&mut self.is_stale) {
@@ -32,11 +37,8 @@ impl ScreenState {
                 self.refresh_hz = metrics.refresh_hz;
             }
         }
-        let (dpi, rotation) = match &self.metrics {
-            Some(metrics) => (dpi(metrics), rotation(metrics.rotation)),
-            None => ([0.0; 2], Rotation::default()),
-        };
-        Screen { size, dpi, rotation }
+        let dpi = self.metrics.as_ref().map_or([0.0; 2], dpi);
+        Screen { size, dpi, rotation: self.rotation() }
     }
 }
 

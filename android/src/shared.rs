@@ -1,8 +1,12 @@
 //! What another application shares with yoro: a viewer's code as a text or as a picture, or a model.
 
 use std::fs::File;
-use std::io::{Read as _, Seek as _, SeekFrom};
-use std::path::Path;
+use std::io::{self, Read, Seek as _, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::sync::{Arc, Weak};
+use std::thread;
 
 use yoro_lenses::{ViewerParams, read_qr};
 
@@ -16,6 +20,16 @@ const LONGEST: u32 = 2048;
 /// The first bytes of a GLB file.
 const GLB: &[u8] = b"glTF";
 
+/// What another application gives to the activity with the intent that starts it.
+pub enum Given {
+    /// A text, or an address.
+    Text(String),
+    /// A file, open, and its name.
+    File(File, String),
+    /// A file that its owner does not let yoro read.
+    Closed,
+}
+
 /// What was shared, ready for use.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shared {
@@ -23,6 +37,78 @@ pub enum Shared {
     Viewer(String),
     /// The file name of a model that is in the folder for scenes now.
     Scene(String),
+}
+
+/// A thread that reads what was shared: its owner may be slow, and a model large.
+pub struct Reading {
+    outcome: Receiver<Result<Shared, String>>,
+    /// The bytes read so far; the thread gives up once nobody holds this.
+    bytes: Arc<AtomicU64>,
+    /// The megabytes that the user was told last.
+    told: Option<u64>,
+}
+
+impl Reading {
+    /// Begins: `open` asks the owner, and a model goes into a folder.
+    pub fn begin(folder: Option<PathBuf>, open: impl FnOnce() -> Given + Send + 'static) -> Reading {
+        let (sender, outcome) = mpsc::channel();
+        let bytes = Arc::new(AtomicU64::new(0));
+        let progress = Arc::downgrade(&bytes);
+        let work = move || {
+            let read = match (open(), folder) {
+                (Given::Text(text), _) => viewer_in_text(&text),
+                (Given::File(file, name), Some(folder)) => read(file, &name, &folder, &progress),
+                (Given::File(..), None) => {
+                    Err("There is no folder for what is shared: make room, and share it again.".into())
+                }
+                (Given::Closed, _) => {
+                    Err("The shared file cannot be opened: share it from another application.".into())
+                }
+            };
+            // The activity may be gone.
+            _ = sender.send(read);
+        };
+        if let Err(error) = thread::Builder::new().name("yoro-shared".into()).spawn(work) {
+            log::warn!("no thread for what was shared: {error}");
+        }
+        Reading { outcome, bytes, told: None }
+    }
+
+    /// Returns what was shared once it was read, or why it is of no use.
+    pub fn poll(&self) -> Option<Result<Shared, String>> {
+        match self.outcome.try_recv() {
+            Ok(read) => Some(read),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err("It was not read: share it again.".into())),
+        }
+    }
+
+    /// Returns a sentence for as long as it lasts; none if it is the one before.
+    pub fn news(&mut self) -> Option<String> {
+        let megabytes = self.bytes.load(Ordering::Relaxed) >> 20;
+        if self.told.replace(megabytes) == Some(megabytes) {
+            return None;
+        }
+        Some(match megabytes {
+            0 => "What was shared is being read.".into(),
+            _ => format!("What was shared is being read: {megabytes} MB."),
+        })
+    }
+}
+
+/// A file whose bytes are counted while somebody waits for them.
+struct Counted<R> {
+    from: R,
+    bytes: Weak<AtomicU64>,
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let bytes = self.bytes.upgrade().ok_or_else(|| io::Error::other("yoro was left"))?;
+        let count = self.from.read(buffer)?;
+        bytes.fetch_add(count as u64, Ordering::Relaxed);
+        Ok(count)
+    }
 }
 
 /// The longest address that a viewer's code leads to, in bytes.
@@ -43,8 +129,7 @@ pub fn viewer_in_text(text: &str) -> Result<Shared, String> {
         })
     };
     let found = words().find(is_viewer).or_else(|| words().find(is_address));
-    let word =
-        found.ok_or("The shared text has no address: share the address that the viewer's code leads to.")?;
+    let word = found.ok_or("That has no address: share the address that the viewer's code leads to.")?;
     if word.len() > MAX_ADDRESS || !is_viewer(&word) {
         return Err(format!(
             "{} may be a shortened address: open it in the browser, and share the address that it leads to.",
@@ -61,15 +146,16 @@ pub fn viewer_in_text(text: &str) -> Result<Shared, String> {
 ///
 /// # Errors
 /// A sentence with the remedy.
-pub fn read(mut file: File, name: &str, folder: &Path) -> Result<Shared, String> {
-    let failed = |error: std::io::Error| format!("The shared file cannot be read ({error}): share it again.");
+fn read(mut file: File, name: &str, folder: &Path, bytes: &Weak<AtomicU64>) -> Result<Shared, String> {
+    let failed = |error: io::Error| format!("The shared file cannot be read ({error}): share it again.");
     let mut head = Vec::new();
     (&mut file).take(GLB.len() as u64).read_to_end(&mut head).map_err(failed)?;
     // Not every provider gives a file that can be rewound.
-    let mut rest: Box<dyn std::io::Read> = match file.seek(SeekFrom::Start(0)) {
+    let rest: Box<dyn Read> = match file.seek(SeekFrom::Start(0)) {
         Ok(_) => Box::new(file),
-        Err(_) => Box::new(std::io::Cursor::new(head.clone()).chain(file)),
+        Err(_) => Box::new(io::Cursor::new(head.clone()).chain(file)),
     };
+    let mut rest = Counted { from: rest, bytes: bytes.clone() };
     if head == GLB {
         return keep(&mut rest, name, folder);
     }
@@ -77,7 +163,7 @@ pub fn read(mut file: File, name: &str, folder: &Path) -> Result<Shared, String>
     rest.take(MAX_PICTURE).read_to_end(&mut bytes).map_err(failed)?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(MAX_PIXELS);
-    let picture = image::ImageReader::new(std::io::Cursor::new(&bytes))
+    let picture = image::ImageReader::new(io::Cursor::new(&bytes))
         .with_guessed_format()
         .map_err(image::ImageError::IoError)
         .and_then(|mut reader| {
@@ -114,16 +200,16 @@ pub fn remove_unfinished(folder: &Path) {
 }
 
 /// Copies a model into a folder.
-fn keep(from: &mut dyn std::io::Read, name: &str, folder: &Path) -> Result<Shared, String> {
+fn keep(from: &mut dyn Read, name: &str, folder: &Path) -> Result<Shared, String> {
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '-' };
     let stem: String = stem.chars().take(60).map(plain).collect();
     let stem = if stem.is_empty() { "shared".into() } else { stem };
     let (path, new) = (folder.join(format!("{stem}.glb")), folder.join(format!("{stem}.new")));
     let copied = (|| {
-        let length = std::io::copy(&mut from.take(MAX_MODEL + 1), &mut File::create(&new)?)?;
+        let length = io::copy(&mut from.take(MAX_MODEL + 1), &mut File::create(&new)?)?;
         if length > MAX_MODEL {
-            return Err(std::io::Error::other("it is larger than 1 GiB"));
+            return Err(io::Error::other("it is larger than 1 GiB"));
         }
         std::fs::rename(&new, &path)
     })();
@@ -164,10 +250,11 @@ mod tests {
     #[test]
     fn files_are_told_apart_by_their_content() {
         let folder = tempfile::tempdir().unwrap();
+        let waits = Arc::new(AtomicU64::new(0));
         let read = |content: &[u8], name: &str| {
             let path = folder.path().join("shared");
             std::fs::write(&path, content).unwrap();
-            read(File::open(path).unwrap(), name, folder.path())
+            read(File::open(path).unwrap(), name, folder.path(), &Arc::downgrade(&waits))
         };
         let code = QrCode::new(URI).unwrap();
         let (modules, colors) = (code.width() as u32, code.to_colors());
@@ -192,8 +279,34 @@ mod tests {
         assert!(!folder.path().join("room.new").exists() && folder.path().join("shared").exists());
         assert_eq!(read(b"glTF and more", "../my room!.glb"), Ok(Shared::Scene("my-room-.glb".into())));
         assert_eq!(std::fs::read(folder.path().join("my-room-.glb")).unwrap(), b"glTF and more");
-        let mistake =
-            super::read(File::open(folder.path().join("my-room-.glb")).unwrap(), "a", Path::new("/nowhere"));
+        let room = || File::open(folder.path().join("my-room-.glb")).unwrap();
+        let mistake = super::read(room(), "a", Path::new("/nowhere"), &Arc::downgrade(&waits));
         assert!(mistake.unwrap_err().contains("cannot be kept"));
+        let left = super::read(room(), "a", folder.path(), &Weak::new());
+        assert!(left.unwrap_err().contains("yoro was left"));
+        assert!(!folder.path().join("a.glb").exists() && !folder.path().join("a.new").exists());
+    }
+
+    #[test]
+    fn a_slow_owner_is_waited_for_on_a_thread() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shared");
+        std::fs::write(&path, [GLB, &vec![0; 3 << 20]].concat()).unwrap();
+        let (answer, asked) = mpsc::channel();
+        let file = File::open(path).unwrap();
+        let mut reading = Reading::begin(Some(folder.path().to_owned()), move || {
+            asked.recv().unwrap();
+            Given::File(file, "room.glb".into())
+        });
+        assert_eq!((reading.poll(), reading.news().is_some(), reading.news()), (None, true, None));
+        answer.send(()).unwrap();
+        let read = std::iter::repeat_with(thread::yield_now).find_map(|()| reading.poll());
+        assert_eq!(read, Some(Ok(Shared::Scene("room.glb".into()))));
+        assert_eq!(reading.news().as_deref(), Some("What was shared is being read: 3 MB."));
+        for given in [Given::Text("hello".into()), Given::Closed] {
+            let reading = Reading::begin(None, || given);
+            let read = std::iter::repeat_with(thread::yield_now).find_map(|()| reading.poll());
+            assert!(matches!(read, Some(Err(_))), "{read:?}");
+        }
     }
 }

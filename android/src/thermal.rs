@@ -83,7 +83,7 @@ impl Thermal {
 
 impl Service {
     fn acquire() -> Option<Service> {
-        let android = Library::open();
+        let android = Library::android();
         // SAFETY: the types are those of <android/thermal.h>.
         unsafe {
             let acquire: Acquire = android.function(c"AThermal_acquireManager")?;

@@ -18,7 +18,7 @@ use yoro_lab::picture;
 use yoro_lab::picture::eye_image;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
-    At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
+    Aim, At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
 };
 use yoro_protocol::Settings;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
@@ -363,6 +363,45 @@ fn controllers_switch_methods() {
     let methods: Vec<&str> =
         summary["methods"].as_array().unwrap().iter().map(|m| m["method"].as_str().unwrap()).collect();
     assert_eq!(methods, ["auto", "yoro", "auto"]);
+}
+
+/// The menu's panel as a layer of its own, a tile chosen by a controller's ray, and another one by the left hand's.
+#[test]
+fn a_ray_chooses_from_the_menu() {
+    let input =
+        |frame, path: &str, value| Input { frame, path: format!("/user/hand/{path}"), value: [value, 0.0] };
+    // From a hand at the right hip to the tile for the viewpoint, and from the left one to the tile for the figures.
+    let aim = |frame, is_left, yaw_degrees, pitch_degrees| Aim { frame, is_left, yaw_degrees, pitch_degrees };
+    let script = Script {
+        inputs: vec![
+            input(10, "right/input/a/click", 1.0),
+            input(90, "right/input/a/click", 0.0),
+            input(100, "right/input/trigger/value", 1.0),
+            input(104, "right/input/trigger/value", 0.0),
+            input(130, "left/input/x/click", 1.0),
+            input(134, "left/input/x/click", 0.0),
+        ],
+        aims: vec![
+            aim(0, false, 0.0, -80.0),
+            aim(92, false, -2.12, 10.70),
+            aim(110, false, 0.0, -80.0),
+            aim(120, true, 8.03, 1.0),
+        ],
+        eyes: [ScriptEye { size: [320, 320], ..ScriptEye::default() }; 2],
+        events: vec![event(At::Frame(150), What::Exit)],
+        pictures: Some(Pictures { folder: PathBuf::new(), from: 0 }),
+        ..Script::default()
+    };
+    let simulated = Simulated::new(&script);
+    let run = simulated.succeed("");
+    let said: Vec<&str> =
+        run.stderr.lines().filter_map(|line| line.split_once("menu: ")).map(|(_, said)| said).collect();
+    assert_eq!(said, ["open", "viewpoint=1", "hud=true"], "{}", run.stderr);
+    if let Some(folder) = std::env::var_os("YORO_KEEP") {
+        for name in ["view-0.png", "quad-0.png"] {
+            fs::copy(simulated.path(name), Path::new(&folder).join(name)).unwrap();
+        }
+    }
 }
 
 #[test]

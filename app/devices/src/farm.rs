@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use yoro_files::{self as files, FileError};
-use yoro_protocol::telemetry::{LOG_TAG, Line};
+use yoro_protocol::telemetry::{LOG_TAG, Line, Pictures};
 
 use crate::capture::{CaptureError, DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
 use crate::log::{self, Kind, SIMULATED_MARK};
@@ -135,8 +135,16 @@ fn runs(bytes: &[u8]) -> BTreeSet<String> {
     lines(bytes).filter_map(run).filter(is_name).collect()
 }
 
+/// Returns the pictures of the pipeline that a step is about.
+fn pictures(text: &str, run: &str) -> Option<Pictures> {
+    let Kind::Entry(entry) = log::parse(text) else { return None };
+    let read: Pictures = (entry.tag == LOG_TAG).then_some(entry.message)?.parse().ok()?;
+    run.strip_prefix("loop-1-").is_some_and(|pipeline| pipeline == read.pipeline).then_some(read)
+}
+
 /// The lines of a step.
 struct Step {
+    pictures: Option<Pictures>,
     reading: Reading,
     samples: Vec<Sample>,
     log: Vec<u8>,
@@ -147,11 +155,13 @@ struct Step {
 impl Step {
     fn read(bytes: &[u8], run: &str) -> Step {
         let (reading, samples) = (Reading::new(Some(run.into())), Vec::new());
-        let mut step = Step { reading, samples, log: Vec::new(), is_whole: false, simulated: false };
+        let mut step =
+            Step { pictures: None, reading, samples, log: Vec::new(), is_whole: false, simulated: false };
         let mut is_last = false;
         for line in lines(bytes) {
             let text = log::text(line);
             step.simulated |= text.starts_with(SIMULATED_MARK);
+            step.pictures = pictures(&text, run).or(step.pictures);
             match step.reading.line(&text, None) {
                 LineContent::Sample(sample) => {
                     step.samples.push(*sample);
@@ -180,6 +190,9 @@ impl Step {
         if self.samples.iter().all(|sample| sample.current_ma.is_none() || sample.plugged.is_none()) {
             let detail = "a farm's devices hang on chargers, and the log does not say otherwise".into();
             faults.push(Fault { kind: FaultKind::PluggedIn, at_s: None, detail });
+        }
+        if let Some(pictures) = self.pictures.filter(|pictures| !pictures.passed()) {
+            faults.push(Fault { kind: FaultKind::Pictures, at_s: None, detail: pictures.to_string() });
         }
         let scene = self.reading.methods().first().map_or("unknown", |(_, scene)| scene);
         let info = RunInfo {
@@ -244,6 +257,13 @@ mod tests {
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, text).unwrap();
         };
+        let pictures =
+            "pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=12.71dB,least=30.00dB,passed=false";
+        let step = line(1, "yoro", "60.0").replace("run=loop-2-yoro", "run=loop-1-gather");
+        put(
+            "pilot/husky-34-en-landscape/game_loop_results/results_scenario_1.json",
+            &format!("{pictures}\n{step}\nv=1,summary=1,t=1.0s\n"),
+        );
         let mut results = String::from("yoro 0.1.0 starts\ngame loop: scenario 2\n");
         for (step, method) in ["conventional", "yoro"].iter().enumerate() {
             let second = |t: u32| line(65 * step as u32 + t, method, ["40.0", "59.0"][step]) + "\n";
@@ -262,12 +282,23 @@ mod tests {
         let out = folder.path().join("captures");
         let runs = read(&folder.path().join("pilot"), &out).unwrap();
         let names: Vec<_> = runs.iter().map(|run| (&*run.device.model, &*run.method)).collect();
-        let expected =
-            [("Google Pixel 6", "yoro"), ("husky", "conventional"), ("husky", "mono"), ("husky", "yoro")];
+        let expected = [
+            ("Google Pixel 6", "yoro"),
+            ("husky", "loop-1-gather"),
+            ("husky", "conventional"),
+            ("husky", "mono"),
+            ("husky", "yoro"),
+        ];
         assert_eq!(names, expected);
+        let about = |run: &RunInfo| {
+            let fault = run.faults.iter().find(|fault| fault.kind == FaultKind::Pictures);
+            fault.map(|fault| fault.detail.clone())
+        };
+        let faults: Vec<_> = runs.iter().map(about).collect();
+        assert_eq!(faults, [None, Some(pictures.to_owned()), None, None, None]);
         assert_eq!(runs[1].device.android, "API 34");
         let is_whole = |run: &RunInfo| run.outcome == Outcome::Complete;
-        assert_eq!(runs.iter().map(is_whole).collect::<Vec<_>>(), [false, true, false, true]);
+        assert_eq!(runs.iter().map(is_whole).collect::<Vec<_>>(), [false, true, true, false, true]);
         assert!(runs.iter().all(|run| run.faults.iter().any(|fault| fault.kind == FaultKind::PluggedIn)));
         let whole = capture::read(&out.join("husky-34-en-landscape/loop-2-yoro")).unwrap();
         assert_eq!(

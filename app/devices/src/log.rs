@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use yoro_protocol::telemetry::{LOG_TAG, Rating};
+use yoro_protocol::telemetry::{LOG_TAG, Pictures, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";
@@ -64,7 +64,7 @@ pub fn parse(line: &str) -> Kind<'_> {
 
 /// Returns the tag of a line that is only a message.
 fn raw_tag(line: &str) -> Option<&'static str> {
-    if line.starts_with("v=") || Rating::is_line(line) {
+    if line.starts_with("v=") || Rating::is_line(line) || Pictures::is_line(line) {
         Some(LOG_TAG)
     } else if line.starts_with("FPS=") {
         Some(VRAPI_TAG)

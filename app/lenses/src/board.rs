@@ -22,6 +22,11 @@ const TILE: [usize; 2] = [TILE_COLUMNS * CELL[0] + 2 * INSET, 2 * CELL[1] + 2 * 
 /// Three rows of tiles leave room for four lines above them, two for seven.
 const SIZE: [usize; 2] = [ROW * (TILE[0] + GAP) + GAP, 4 * CELL[1] + 2 * INSET + 3 * (TILE[1] + GAP)];
 
+/// What a camera sees, in pixels, and the characters of the heading's lines whose place it takes: the heading's right part.
+const PICTURE: [usize; 2] = [256, 192];
+/// See [`PICTURE`].
+pub const PICTURE_COLUMNS: usize = (PICTURE[0] + INSET).div_ceil(CELL[0]);
+
 /// Distance of the panel in metres, and its width in degrees.
 const DISTANCE: f32 = 2.0;
 const WIDTH_DEGREES: f32 = 40.0;
@@ -128,6 +133,8 @@ pub struct Board {
     gl: Rc<Context>,
     program: Program,
     texture: Texture,
+    /// What a camera sees.
+    picture: Texture,
     /// Cross and gear.
     signs: [Texture; 2],
     letters: Letters,
@@ -139,6 +146,9 @@ pub struct Board {
 impl Board {
     /// The panel's size in pixels.
     pub const SIZE: [u32; 2] = [SIZE[0] as u32, SIZE[1] as u32];
+
+    /// The size of a camera's picture in pixels.
+    pub const PICTURE: [u32; 2] = [PICTURE[0] as u32, PICTURE[1] as u32];
 
     /// Makes an empty panel.
     ///
@@ -155,6 +165,7 @@ impl Board {
             gl: gl.clone(),
             program: Program::new(gl, ShaderSource::Screen("viewer/menu.frag"), &[])?,
             texture: Texture::new(gl, Board::SIZE, Format::R8, Filter::Linear)?,
+            picture: Texture::new(gl, Board::PICTURE, Format::R8, Filter::Linear)?,
             letters: Letters::new(),
             pixels: vec![0; SIZE[0] * SIZE[1]],
             rows: Vec::with_capacity(SIZE[0] * SIZE[1]),
@@ -171,6 +182,11 @@ impl Board {
             self.pixels.chunks_exact(SIZE[0]).rev().for_each(|row| self.rows.extend_from_slice(row));
             self.texture.upload(&self.rows);
         }
+    }
+
+    /// Changes the camera's picture: luma, rows from the bottom.
+    pub fn set_picture(&mut self, luma: &[u8]) {
+        self.picture.upload(luma);
     }
 
     /// Draws the panel at a place in the scene into the images of both eyes, with a dot at `pointer`.
@@ -198,13 +214,21 @@ impl Board {
         });
     }
 
-    /// Draws the panel flat, as large as a window allows.
-    pub fn draw_flat(&self, window: &Destination) {
+    /// Draws the panel flat, as large as a window allows, with or without the camera's picture in its upper right corner.
+    pub fn draw_flat(&self, window: &Destination, has_picture: bool) {
         let ([x, y], size) = flat_place(window.size);
         let origin = [window.origin[0] + x, window.origin[1] + y];
         self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
         self.gl.fill(window.origin, window.size, [f32::from(GROUND) / 255.0; 4]);
         self.draw(None, &Destination { origin, size, ..*window });
+        if has_picture {
+            let scaled = |n: usize| (n as u64 * u64::from(size[0]) / SIZE[0] as u64) as u32;
+            let [width, height] = PICTURE.map(scaled);
+            let at = [size[0] - width - scaled(INSET), size[1] - height - scaled(INSET)];
+            let origin = [origin[0] + at[0], origin[1] + at[1]];
+            let to = Destination { origin, size: [width, height], ..*window };
+            self.gl.pass("menu", || self.run(&self.picture, onto(&to), None, &to));
+        }
     }
 
     /// Draws a cross into the upper left corner of a window and a gear into the upper right one, `side` pixels wide.

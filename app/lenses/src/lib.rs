@@ -15,11 +15,12 @@ mod qr;
 mod text;
 
 pub use board::{
-    Board, HEADING_COLUMNS, ROW, TILE_COLUMNS, Tiles, board_hit, board_metres, board_pose, flat_hit, tile_at,
+    Board, HEADING_COLUMNS, PICTURE_COLUMNS, ROW, TILE_COLUMNS, Tiles, board_hit, board_metres, board_pose,
+    flat_hit, tile_at,
 };
 pub use head::{HeadTracker, MotionSample, neck_offset};
 pub use hud::{COLUMNS, Content, Hud, Panel, Placement};
 pub use lens::LensPass;
 pub use optics::{Optics, Rotation, Screen};
 pub use params::{ParamsError, VerticalAlignment, ViewerParams};
-pub use qr::read_qr;
+pub use qr::{read_qr, read_qr_in_luma};

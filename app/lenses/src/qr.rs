@@ -4,13 +4,16 @@ use rqrr::PreparedImage;
 
 /// Returns the text of the first QR code that can be read in a picture, RGBA with rows from the top; none without one.
 pub fn read_qr(rgba: &[u8], width: usize) -> Option<String> {
-    let height = rgba.len().checked_div(4 * width)?;
-    let gray = |x: usize, y: usize| {
-        let [r, g, b, _] = *rgba[4 * (y * width + x)..].first_chunk()?;
-        Some(((2 * u16::from(r) + 5 * u16::from(g) + u16::from(b)) / 8) as u8)
-    };
-    let mut image =
-        PreparedImage::prepare_from_greyscale(width, height, |x, y| gray(x, y).unwrap_or_default());
+    let (pixels, _) = rgba.as_chunks::<4>();
+    let luma = |&[r, g, b, _]: &[u8; 4]| ((2 * u16::from(r) + 5 * u16::from(g) + u16::from(b)) / 8) as u8;
+    read_qr_in_luma(&pixels.iter().map(luma).collect::<Vec<u8>>(), width)
+}
+
+/// Returns the text of the first QR code that can be read in a picture, a byte a pixel with rows from the top; none without
+/// one.
+pub fn read_qr_in_luma(luma: &[u8], width: usize) -> Option<String> {
+    let height = luma.len().checked_div(width)?;
+    let mut image = PreparedImage::prepare_from_greyscale(width, height, |x, y| luma[y * width + x]);
     image.detect_grids().iter().find_map(|grid| Some(grid.decode().ok()?.1))
 }
 

@@ -6,7 +6,7 @@ use yoro_lenses::COLUMNS;
 use yoro_protocol::telemetry::Line;
 use yoro_render::stereo::Auto;
 
-/// How long a message stays in view, in nanoseconds.
+/// How long a line of a message stays in view, in nanoseconds.
 const MESSAGE_NS: i64 = 2_000_000_000;
 
 /// The application's state that the HUD shows.
@@ -39,9 +39,11 @@ impl Caption {
         Caption { is_shown, message: String::new(), message_until_ns: 0, text }
     }
 
-    /// Shows a message for two seconds, also where the HUD is hidden; an empty one takes away the one before.
+    /// Shows a message for two seconds a line, also where the HUD is hidden; one of several lines takes the HUD's place. An
+    /// empty one takes away the one before.
     pub fn announce(&mut self, message: String, now_ns: i64) {
-        self.message_until_ns = if message.is_empty() { 0 } else { now_ns + MESSAGE_NS };
+        let lines = message.lines().count() as i64;
+        self.message_until_ns = if message.is_empty() { 0 } else { now_ns + lines * MESSAGE_NS };
         self.message = message;
     }
 
@@ -69,6 +71,9 @@ impl Caption {
         let message = self.has_message(now_ns).then_some(self.message.as_str());
         let text = &mut self.text;
         text.clear();
+        if let (None, Some(message)) = (status.loading, message.filter(|message| message.contains('\n'))) {
+            return text.push_str(message);
+        }
         let mut write = || -> fmt::Result {
             if let Some(Line { fps: Some(fps), frame_ms: Some(ms), refresh_hz, .. }) = status.frames {
                 write!(text, "{fps:.0}")?;
@@ -159,5 +164,9 @@ mod tests {
         assert_eq!(caption.text(), "mono \nrecentered");
         caption.announce(String::new(), 1);
         assert!(!caption.is_in_view(1));
+        caption.announce("one\ntwo".into(), 1);
+        caption.write_status(&Status { method: "mono", ..Status::default() }, 2 * MESSAGE_NS);
+        assert_eq!(caption.text(), "one\ntwo");
+        assert!(caption.is_in_view(2 * MESSAGE_NS) && !caption.is_in_view(2 * MESSAGE_NS + 1));
     }
 }

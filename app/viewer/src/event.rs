@@ -45,6 +45,8 @@ pub enum Action {
     StartScreen(bool),
     /// The user wants to give the log to another application: that is for the platform to do.
     ShareLog,
+    /// The user wants the phone's camera to look for a viewer's code, or no longer: that is for the platform to do.
+    Scan(bool),
     /// The distance between the eyes.
     Ipd(Ipd),
     /// True if the HUD is shown.
@@ -73,6 +75,7 @@ impl fmt::Display for Action {
                 write!(f, "start screen: {}", if *is_shown { "shown" } else { "left" })
             }
             Action::ShareLog => f.write_str("the log is shared"),
+            Action::Scan(is_on) => write!(f, "scan: {}", if *is_on { "on" } else { "off" }),
             Action::Ipd(ipd) => write!(f, "ipd: {:.3} m", ipd.metres()),
             Action::Hud(is_shown) => write!(f, "HUD: {}", if *is_shown { "on" } else { "off" }),
             Action::Viewpoint(n) => write!(f, "viewpoint: {n}"),

@@ -109,11 +109,16 @@ impl Menu {
     }
 
     /// The user looks somewhere: opens the menu if that was down for long enough, and returns the tile that has been looked
-    /// at for long enough.
-    pub fn look(&mut self, head: Pose, now_ns: i64) -> Look {
+    /// at for long enough. A ray along the -Z of one of `rays` that meets the panel points in place of the head, and chooses by
+    /// the trigger alone.
+    pub fn look(&mut self, head: Pose, rays: [Option<Pose>; 2], now_ns: i64) -> Look {
         self.head = Some(head);
         let Some(board) = &self.board else { return self.look_down(head, now_ns) };
-        self.hit = board_hit(board, &head);
+        let by_ray = rays.iter().flatten().find_map(|ray| board_hit(board, ray));
+        self.hit = by_ray.or_else(|| board_hit(board, &head));
+        if by_ray.is_some() {
+            (self.since_ns, self.is_spent) = (now_ns, false);
+        }
         let tile = self
             .hit
             .and_then(|at| tile_at(at, Item::ALL.len()))
@@ -192,23 +197,23 @@ mod tests {
     #[test]
     fn a_tile_is_chosen_once_by_looking_at_it() {
         let mut menu = Menu::default();
-        menu.look(head(0.0, 0.0), 0);
+        menu.look(head(0.0, 0.0), [None; 2], 0);
         menu.open();
         // The upper left tile.
         let at = head(15.0, 2.0);
-        assert_eq!(menu.look(at, 0), Look::Nothing);
+        assert_eq!(menu.look(at, [None; 2], 0), Look::Nothing);
         assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
-        assert_eq!(menu.look(at, 1499 * MS), Look::Nothing);
+        assert_eq!(menu.look(at, [None; 2], 1499 * MS), Look::Nothing);
         assert!(menu.tiles.pointed.unwrap().1 > 0.9);
-        assert!(matches!(menu.look(at, 1500 * MS), Look::Choose((Item::Recenter, _))));
-        assert_eq!(menu.look(at, 9000 * MS), Look::Nothing);
+        assert!(matches!(menu.look(at, [None; 2], 1500 * MS), Look::Choose((Item::Recenter, _))));
+        assert_eq!(menu.look(at, [None; 2], 9000 * MS), Look::Nothing);
         // Away and back.
-        menu.look(head(60.0, 0.0), 9100 * MS);
+        menu.look(head(60.0, 0.0), [None; 2], 9100 * MS);
         assert_eq!((menu.pointed(), menu.hit()), (None, None));
-        menu.look(at, 9200 * MS);
-        assert!(matches!(menu.look(at, 10_700 * MS), Look::Choose(_)));
+        menu.look(at, [None; 2], 9200 * MS);
+        assert!(matches!(menu.look(at, [None; 2], 10_700 * MS), Look::Choose(_)));
         // Another tile.
-        menu.look(head(-15.0, 2.0), 11_000 * MS);
+        menu.look(head(-15.0, 2.0), [None; 2], 11_000 * MS);
         assert_eq!(menu.pointed().unwrap().0, Item::Method);
     }
 
@@ -216,31 +221,57 @@ mod tests {
     fn looking_down_opens_it_once_at_the_horizon() {
         let mut menu = Menu::default();
         let down = head(90.0, -85.0);
-        assert_eq!(menu.look(down, 0), Look::Nothing);
-        assert_eq!(menu.look(head(90.0, -20.0), 900 * MS), Look::Nothing);
-        assert_eq!(menu.look(down, 1000 * MS), Look::Nothing);
-        assert_eq!(menu.look(down, 2000 * MS), Look::Open);
+        assert_eq!(menu.look(down, [None; 2], 0), Look::Nothing);
+        assert_eq!(menu.look(head(90.0, -20.0), [None; 2], 900 * MS), Look::Nothing);
+        assert_eq!(menu.look(down, [None; 2], 1000 * MS), Look::Nothing);
+        assert_eq!(menu.look(down, [None; 2], 2000 * MS), Look::Open);
         let board = menu.board().unwrap();
         assert!(board.position.abs_diff_eq(Vec3::new(-2.0, 0.0, 0.0), 1e-3), "{}", board.position);
         menu.close();
-        assert_eq!(menu.look(down, 9000 * MS), Look::Nothing);
+        assert_eq!(menu.look(down, [None; 2], 9000 * MS), Look::Nothing);
     }
 
     #[test]
     fn comparing_lasts_as_long_as_it_is_asked_for() {
         let mut menu = Menu::default();
-        menu.look(head(0.0, 0.0), 0);
+        menu.look(head(0.0, 0.0), [None; 2], 0);
         menu.open();
         let at = head(4.0, -8.0);
-        menu.look(at, 0);
+        menu.look(at, [None; 2], 0);
         assert_eq!(menu.pointed().unwrap().0, Item::Compare);
         menu.press(true);
         assert!(menu.is_comparing());
         menu.press(false);
         assert!(!menu.is_comparing());
-        menu.look(at, 1500 * MS);
+        menu.look(at, [None; 2], 1500 * MS);
         assert!(menu.is_comparing());
-        menu.look(head(15.0, 2.0), 1600 * MS);
+        menu.look(head(15.0, 2.0), [None; 2], 1600 * MS);
         assert!(!menu.is_comparing());
+    }
+
+    #[test]
+    fn a_ray_points_in_place_of_the_head_and_never_chooses_by_itself() {
+        let mut menu = Menu::default();
+        menu.look(head(0.0, 0.0), [None; 2], 0);
+        menu.open();
+        // A hand at the right of the body; its ray meets the tile that the head would see at the upper left.
+        let hand = Vec3::new(0.2, -0.3, -0.2);
+        let target = 2.0 * head(15.0, 2.0).forward();
+        let ray = Pose {
+            position: hand,
+            orientation: Quat::from_rotation_arc(Vec3::NEG_Z, (target - hand).normalize()),
+        };
+        let gaze = head(-15.0, 2.0);
+        menu.look(gaze, [Some(ray), None], 0);
+        assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
+        assert_eq!(menu.look(gaze, [Some(ray), None], 9000 * MS), Look::Nothing);
+        // Past the panel: the head points again, from now on.
+        let past = Pose { orientation: Quat::IDENTITY, position: Vec3::new(3.0, 0.0, 0.0) };
+        assert_eq!(menu.look(gaze, [None, Some(past)], 9100 * MS), Look::Nothing);
+        assert_eq!(menu.pointed().unwrap().0, Item::Method);
+        assert!(matches!(menu.look(gaze, [None, Some(past)], 10_600 * MS), Look::Choose((Item::Method, _))));
+        // The second of two hands.
+        menu.look(gaze, [Some(past), Some(ray)], 10_700 * MS);
+        assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
     }
 }

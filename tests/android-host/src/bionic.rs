@@ -361,6 +361,11 @@ unsafe extern "C" fn nanosleep(time: *const libc::timespec, _rest: *mut libc::ti
     0
 }
 
+/// Waits for a time in seconds.
+pub fn sleep(seconds: f64) {
+    sleep_until(host().clock.now() + (seconds * 1e9) as u64);
+}
+
 extern "C" fn usleep(microseconds: c_uint) -> c_int {
     sleep_until(host().clock.now() + u64::from(microseconds) * 1000);
     0
@@ -570,7 +575,9 @@ unsafe extern "C" fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_v
     let host = host();
     let found = match handle as usize {
         SELF => host.library.get().and_then(|library| library.symbol(&name)),
-        index @ 1..=8 => exports::find(System::ALL[index - 1], &name, host.device.sdk),
+        index if (1..=System::ALL.len()).contains(&index) => {
+            exports::find(System::ALL[index - 1], &name, host.device.sdk)
+        }
         // RTLD_DEFAULT of 64-bit Android: the libraries that the application's needs, here all of them.
         0 => [System::C, System::M, System::Dl, System::Log, System::Android, System::Egl]
             .into_iter()

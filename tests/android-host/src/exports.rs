@@ -22,12 +22,26 @@ pub enum System {
     GlesV2,
     /// libGLESv3.so
     GlesV3,
+    /// libcamera2ndk.so
+    Camera,
+    /// libmediandk.so
+    Media,
 }
 
 impl System {
     /// All libraries.
-    pub const ALL: [Self; 8] =
-        [Self::C, Self::M, Self::Dl, Self::Log, Self::Android, Self::Egl, Self::GlesV2, Self::GlesV3];
+    pub const ALL: [Self; 10] = [
+        Self::C,
+        Self::M,
+        Self::Dl,
+        Self::Log,
+        Self::Android,
+        Self::Egl,
+        Self::GlesV2,
+        Self::GlesV3,
+        Self::Camera,
+        Self::Media,
+    ];
 
     /// Returns the file name, as in DT_NEEDED and `dlopen`.
     pub fn name(self) -> &'static str {
@@ -40,6 +54,8 @@ impl System {
             Self::Egl => "libEGL.so",
             Self::GlesV2 => "libGLESv2.so",
             Self::GlesV3 => "libGLESv3.so",
+            Self::Camera => "libcamera2ndk.so",
+            Self::Media => "libmediandk.so",
         }
     }
 
@@ -82,6 +98,7 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
             crate::bionic::exports(),
             crate::android::activity::exports(),
             crate::android::assets::exports(),
+            crate::android::camera::exports(),
             crate::android::choreographer::exports(),
             crate::android::configuration::exports(),
             crate::android::input::exports(),

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::android::activity::Directories;
 use crate::android::assets::Assets;
+use crate::android::camera::Camera;
 use crate::android::input::InputCounts;
 use crate::android::log::Log;
 use crate::android::sensors::Sensors;
@@ -44,6 +45,8 @@ pub struct Host {
     pub log: Log,
     /// AAssetManager.
     pub assets: Assets,
+    /// The camera.
+    pub camera: Camera,
     /// AInputQueue.
     pub input: InputCounts,
     /// ASensorManager.
@@ -141,6 +144,7 @@ impl Host {
             frames: Frames::new(),
             log: Log::new(verbose),
             assets,
+            camera: Camera::new(&device),
             input: InputCounts::default(),
             sensors: Sensors::new(&device),
             thermal_listeners: ThermalListeners::default(),

@@ -171,6 +171,9 @@ impl Player {
             Step::Battery(battery) => self.battery(Some(battery.clone())),
             Step::BatteryMissing => self.battery(None),
             Step::Thermal(thermal) => self.thermal(thermal),
+            Step::Camera(picture) => self.host.camera.see(picture.clone()),
+            Step::CameraLost => self.host.camera.take(),
+            Step::Permission(is_allowed) => self.answer(*is_allowed),
             Step::Share(share) => *lock(&self.host.shared[0]) = Some(share.clone()),
             Step::Property { name, value } => {
                 lock(&self.host.properties).insert(name.clone(), value.clone());
@@ -466,6 +469,17 @@ impl Player {
                 self.frames(1);
             }
         }
+    }
+
+    /// The user answers the question for a permission, which stands before the activity.
+    fn answer(&mut self, is_allowed: bool) {
+        self.wait("the question for a permission", |host| host.camera.is_asked.load(Ordering::Acquire));
+        self.focus(false);
+        self.step(&Step::Pause);
+        self.host.camera.is_asked.store(false, Ordering::Release);
+        self.host.camera.is_allowed.store(is_allowed, Ordering::Release);
+        self.step(&Step::Resume);
+        self.focus(true);
     }
 
     fn finish_asked(&self) -> bool {

@@ -124,6 +124,8 @@ pub struct Device {
     pub game_loop: Option<GameLoop>,
     /// Text files in the application's external folder, by relative path.
     pub files: BTreeMap<String, String>,
+    /// The picture that the camera sees; absent for a device without one.
+    pub camera: Option<PathBuf>,
     /// A headset: a runtime broker names the simulated OpenXR runtime. Without it no broker answers.
     pub openxr: Option<OpenXr>,
 }
@@ -181,6 +183,7 @@ impl Default for Device {
             extras: BTreeMap::new(),
             game_loop: None,
             files: BTreeMap::new(),
+            camera: None,
             openxr: None,
         }
     }
@@ -392,6 +395,12 @@ pub enum Step {
     BatteryMissing,
     /// The thermal state is another; listeners are called.
     Thermal(Thermal),
+    /// The camera sees another picture.
+    Camera(PathBuf),
+    /// Another application takes the camera, which is open.
+    CameraLost,
+    /// The user answers the question whether the application may use the camera.
+    Permission(bool),
     /// Another application shares something: the intent of the next `create`.
     Share(Share),
     /// A system property has a new value.
@@ -441,6 +450,8 @@ pub struct Share {
     pub text: Option<String>,
     /// The file that the content resolver opens.
     pub file: Option<PathBuf>,
+    /// Virtual seconds that its owner takes to open it.
+    pub after: f64,
     /// By `ACTION_VIEW` and the intent's data; otherwise by `ACTION_SEND` and its extras.
     pub view: bool,
 }

@@ -12,7 +12,7 @@ use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lab::metrics::{Channels, psnr};
 use yoro_lenses::{Rotation, Screen};
 use yoro_protocol::Settings;
-use yoro_protocol::telemetry::Line;
+use yoro_protocol::telemetry::{self, Line};
 use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};
 
 use yoro_android_host::summary::Summary;
@@ -690,12 +690,18 @@ fn game_loops_write_their_results_and_end() {
             return;
         };
         run.assert_clean();
+        let pictures: Vec<telemetry::Pictures> =
+            run.summary.log_of("YORO").filter_map(|line| line.parse().ok()).collect();
+        assert_eq!(pictures.len(), if scenario == 1 { 2 } else { 0 });
+        assert!(pictures.iter().all(telemetry::Pictures::passed), "{pictures:?}");
     }
     let captures = yoro_devices::farm::read(&lab, &folder.path().join("captures")).unwrap();
     let methods: Vec<&str> = captures.iter().map(|capture| capture.method.as_str()).collect();
     assert_eq!(methods, ["loop-1-gather", "loop-1-paper", "conventional", "mono", "yoro", "loop-3-yoro"]);
     for capture in captures {
         assert_eq!(capture.outcome, yoro_devices::capture::Outcome::Complete, "{capture:?}");
+        let kinds: Vec<_> = capture.faults.iter().map(|fault| fault.kind).collect();
+        assert!(!kinds.contains(&yoro_devices::capture::FaultKind::Pictures), "{capture:?}");
         assert!(capture.device.simulated && capture.duration_s >= 3.0, "{capture:?}");
     }
 
@@ -708,24 +714,32 @@ fn game_loops_write_their_results_and_end() {
     assert!(run.summary.log_of("YORO").any(|text| text.starts_with("there is no scenario 4")));
 }
 
-/// What a person does first, on a phone without a computer: chooses the viewer by a picture of its code, looks at another
-/// scene, compares, and finds it all again at the next start. Then the phone stands upright, and more is shared.
-#[test]
-fn a_first_start_by_hand() {
-    const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";
-    let folder = tempfile::tempdir().unwrap();
-    let file = |name: &str| folder.path().join(name);
-    let code = qrcode::QrCode::new(URI).unwrap();
+/// Saves a picture of a QR code as a camera sees it.
+fn save_code(text: &str, path: &Path) {
+    let code = qrcode::QrCode::new(text).unwrap();
     let (modules, colors) = (code.width() as u32, code.to_colors());
     image::GrayImage::from_fn(7 * (modules + 8), 7 * (modules + 8), |x, y| {
         let [x, y] = [x, y].map(|n| (n / 7).wrapping_sub(4));
         let is_dark = x < modules && y < modules && colors[(y * modules + x) as usize] == qrcode::Color::Dark;
         image::Luma([if is_dark { 30 } else { 220 }])
     })
-    .save(file("code.png"))
+    .save(path)
     .unwrap();
-    std::fs::write(file("my room.glb"), triangle()).unwrap();
+}
 
+/// Steps until a line is in the log.
+fn wait(text: &str) -> String {
+    format!("{{ wait-log = {{ text = {text:?}, frames = 6000 }} }}")
+}
+
+/// A touch in the middle of a tile of the start screen: columns, and two rows.
+fn tile(column: u32, row: u32) -> String {
+    let y = [0.635, 0.823][row as usize];
+    format!("{{ tap = {{ x = {}, y = {y} }} }}", 0.125 + 0.25 * f64::from(column))
+}
+
+/// A device that a person starts by hand: the settings of all tests are in its file.
+fn by_hand(keys: &str) -> String {
     let toml: String = SETTINGS
         .iter()
         .map(|(key, value)| match value.parse::<toml::Value>() {
@@ -733,13 +747,22 @@ fn a_first_start_by_hand() {
             Err(_) => format!("{key} = \"{value}\"\n"),
         })
         .collect();
-    let device = format!("[device.files]\n\"yoro.toml\" = {toml:?}");
-    // The middles of the start screen's tiles: columns, and two rows.
-    let tile = |column: u32, row: u32| {
-        let y = [0.635, 0.823][row as usize];
-        format!("{{ tap = {{ x = {}, y = {y} }} }}", 0.125 + 0.25 * f64::from(column))
-    };
-    let wait = |text: &str| format!("{{ wait-log = {{ text = {text:?}, frames = 2000 }} }}");
+    format!("[device]\n{keys}\n[device.files]\n\"yoro.toml\" = {toml:?}")
+}
+
+/// What a person does first, on a phone without a computer: chooses the viewer by the code before the camera, looks at another
+/// scene, compares, and finds it all again at the next start. Then the phone stands upright, and things are shared.
+#[test]
+fn a_first_start_by_hand() {
+    const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    save_code(URI, Path::new(&file("code.png")));
+    save_code("https://goo.gl/abc", Path::new(&file("short.png")));
+    image::GrayImage::from_pixel(640, 480, image::Luma([150])).save(file("wall.png")).unwrap();
+    std::fs::write(file("my room.glb"), triangle()).unwrap();
+
+    let device = by_hand(&format!("camera = {:?}", file("wall.png")));
     // An activity that is left asks for its end, so that the next one sees what is shared.
     let leave = r#""unfocus", "pause", "window-lost", "stop", { wait-finish = { frames = 1 } }, "quit""#;
     let share =
@@ -747,23 +770,41 @@ fn a_first_start_by_hand() {
     let look = |yaw: f64, pitch: f64| {
         format!("{{ head = {{ yaw = {yaw}, pitch = {pitch}, seconds = 0.3 }} }}, {{ seconds = 1.7 }}")
     };
+    let see = |name: &str| format!("{{ camera = {:?} }}", file(name));
+    let capture = |name: &str| format!("{{ frames = 2 }}, {{ capture = {name:?} }}");
     let steps = [
         "\"launch\"".to_owned(),
         wait("start screen: shown"),
-        "{ frames = 2 }, { capture = \"first.png\" }".into(),
+        capture("first.png"),
+        // The user refuses, and changes their mind.
         tile(0, 1),
-        "{ frames = 2 }, { capture = \"another.png\" }".into(),
+        "{ permission = false }".into(),
+        wait("yoro may not use the camera"),
+        capture("refused.png"),
+        tile(0, 1),
+        "{ permission = true }".into(),
+        wait("the camera gives pictures of 640 x 480"),
+        "{ seconds = 0.5 }".into(),
+        "\"camera-lost\"".into(),
+        wait("The camera was lost"),
+        see("short.png"),
+        tile(0, 1),
+        wait("https://goo.gl/abc may be a shortened address"),
+        see("wall.png"),
+        tile(0, 1),
+        wait("the camera gives pictures"),
+        "{ seconds = 0.5 }".into(),
+        see("code.png"),
+        wait(&format!("scanned: the viewer {URI}")),
+        capture("chosen.png"),
         tile(1, 1),
         wait("the log is shared"),
-        // A picture with words besides, which are none of a viewer.
-        share("text = \"My viewer\", file", &file("code.png").display().to_string()),
-        wait(&format!("shared: the viewer {URI}")),
-        wait("start screen: shown"),
-        "{ frames = 2 }, { capture = \"chosen.png\" }".into(),
         tile(3, 1),
         wait("start screen: left"),
         READY.into(),
-        "{ seconds = 2.5 }, { capture = \"eyes.png\" }, { long-press = {} }".into(),
+        "{ seconds = 1 }".into(),
+        capture("explained.png"),
+        "{ seconds = 8 }, { capture = \"eyes.png\" }, { long-press = {} }".into(),
         wait("menu: open"),
         look(5.0, 2.0),
         wait("menu: scene="),
@@ -773,16 +814,23 @@ fn a_first_start_by_hand() {
         look(15.0, 40.0),
         "{ frames = 2 }, \"quit\", \"launch\"".into(),
         wait("triangles"),
-        "{ seconds = 0.5 }, { capture = \"again.png\" }, { head = { roll = 90, seconds = 0.5 } }".into(),
+        // Upright in the hand, leaning back; lying on a side is not.
+        "{ head = { roll = 90, seconds = 0.5 } }, { seconds = 2 }".into(),
+        capture("again.png"),
+        "{ head = { pitch = -30, roll = -90, seconds = 0.5 } }".into(),
         wait("start screen: shown"),
         "{ frames = 2 }".into(),
         share("text", "Look: https://goo.gl/abc"),
         wait("shared: https://goo.gl/abc may be a shortened address"),
-        "{ frames = 2 }, { capture = \"shortened.png\" }".into(),
-        format!(
-            "\"quit\", {{ share = {{ file = {:?}, view = true }} }}, \"launch\"",
-            file("my room.glb").display().to_string()
-        ),
+        capture("shortened.png"),
+        // A picture with words besides, which are none of a viewer.
+        share("text = \"My viewer\", file", &file("code.png")),
+        wait(&format!("shared: the viewer {URI}")),
+        // An owner who takes three seconds.
+        format!("\"quit\", {{ share = {{ file = {:?}, view = true, after = 3.0 }} }}, \"launch\"", file("my room.glb")),
+        wait("start screen: shown"),
+        capture("reading.png"),
+        "{ seconds = 1 }".into(),
         wait("shared: the model my-room"),
         tile(3, 1),
         wait("my-room: 1 triangles"),
@@ -791,6 +839,8 @@ fn a_first_start_by_hand() {
     let Some(run) = play("first-start", &device, &steps.join(", ")) else { return };
     run.assert_clean();
     assert_eq!(run.summary.jni_invented, Default::default());
+    let left: Vec<_> = run.summary.marks.last().unwrap().ndk_objects.iter().filter(|(_, n)| **n != 0).collect();
+    assert!(!left.iter().any(|(kind, _)| kind.contains("camera") || kind.contains("image")), "{left:?}");
     let log: Vec<&str> = run.summary.log_of("YORO").collect();
     let settings: Vec<&&str> = log.iter().filter(|line| line.starts_with("settings: ")).collect();
     let chosen = format!("viewer=\"{URI}\"");
@@ -799,11 +849,15 @@ fn a_first_start_by_hand() {
     let starts = settings.iter().filter(|line| line.contains(&format!("scene=\"{scene}\""))).count();
     assert!(starts >= 2, "{settings:#?}");
     assert!(settings.last().unwrap().contains("scene=\"my-room.glb\""), "{settings:#?}");
-    for what in ["brightness 1", "brightness -1", "another application"] {
+    for what in ["brightness 1", "brightness -1", "another application", "a permission"] {
         assert!(run.summary.requests.contains_key(what), "{what}: {:?}", run.summary.requests);
     }
-    let [first, another, chosen] = ["first.png", "another.png", "chosen.png"].map(|name| run.picture(name));
-    assert!(first != another && chosen != first && run.picture("shortened.png") != chosen);
+    let pictures = ["first.png", "refused.png", "chosen.png", "shortened.png", "reading.png"];
+    let pictures = pictures.map(|name| run.picture(name));
+    for (i, picture) in pictures.iter().enumerate() {
+        assert!(!pictures[..i].contains(picture), "picture {i} is one before: {}", run.folder());
+    }
+    assert!(run.picture("explained.png") != run.picture("eyes.png"));
 
     // What the eyes see is what the desktop draws for this viewer, but for the corners.
     let (eyes, mut expected) = (run.picture("eyes.png"), desktop(&[("viewer", URI)], None));
@@ -818,6 +872,21 @@ fn a_first_start_by_hand() {
         "{own:.1} dB, {other:.1} dB for the v2 viewer: {}",
         run.folder()
     );
+}
+
+#[test]
+fn without_a_camera_the_start_screen_says_so() {
+    let steps = [
+        "\"launch\"".to_owned(),
+        wait("start screen: shown"),
+        "{ frames = 2 }".into(),
+        tile(0, 1),
+        "{ permission = true }".into(),
+        wait("This device has no camera that yoro can use"),
+        "{ frames = 2 }, \"quit\"".into(),
+    ];
+    let Some(run) = play("no-camera", &by_hand(""), &steps.join(", ")) else { return };
+    run.assert_clean();
 }
 
 /// A GLB file with one triangle.

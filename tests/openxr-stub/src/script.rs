@@ -52,6 +52,8 @@ pub struct Script {
     pub profile: Option<String>,
     /// The input of the controllers.
     pub inputs: Vec<Input>,
+    /// The rays of the controllers; a hand without one is not tracked.
+    pub aims: Vec<Aim>,
     /// True if there is a visibility mask: triangles that hide the outer upper corners of the views.
     pub visibility_mask: bool,
     /// True if no context is current after any call that may change it, as with some runtimes.
@@ -173,6 +175,20 @@ pub struct Input {
     pub value: [f32; 2],
 }
 
+/// The direction of a controller from a frame on, relative to the head: a hand is held beside and below it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Aim {
+    /// The first frame.
+    pub frame: u32,
+    /// True for the left hand.
+    pub is_left: bool,
+    /// The turn to the left.
+    pub yaw_degrees: f32,
+    /// The turn upwards.
+    pub pitch_degrees: f32,
+}
+
 /// The destination of pictures. `view-0.png` is the left eye's last image; `quad-0.png` is that of the first quad
 /// layer, with alpha.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -210,6 +226,7 @@ impl Default for Script {
             faults: Vec::new(),
             profile: Some("/interaction_profiles/oculus/touch_controller".into()),
             inputs: Vec::new(),
+            aims: Vec::new(),
             visibility_mask: false,
             unbind_context: false,
             acquires_ahead: false,
@@ -253,6 +270,12 @@ impl Script {
     /// Returns the length of the views' quaternions in a frame.
     pub(crate) fn quaternion_length(&self, frame: u32) -> f32 {
         self.quaternion_lengths.iter().find(|(odd, _)| *odd == frame).map_or(1.0, |(_, length)| *length)
+    }
+
+    /// Returns the ray of a hand in a frame.
+    pub(crate) fn aim(&self, is_left: bool, frame: u32) -> Option<&Aim> {
+        let past = self.aims.iter().filter(|aim| aim.is_left == is_left && aim.frame <= frame);
+        past.max_by_key(|aim| aim.frame)
     }
 
     /// Returns the value of a controller's part in a frame.

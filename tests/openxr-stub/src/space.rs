@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use openxr_sys as sys;
 use sys::{Handle, Result as Code};
 
+use crate::script::Aim;
 use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, found};
 
 /// A rotation, then a translation: from a space to its parent.
@@ -16,8 +17,8 @@ pub struct Space {
 
 enum Kind {
     Reference(sys::ReferenceSpaceType),
-    /// A controller's: left or right.
-    Hand(f32),
+    /// A controller's; true for the left hand's.
+    Hand(bool),
 }
 
 pub fn compose(a: Pose, b: Pose) -> Pose {
@@ -53,6 +54,10 @@ impl World {
     pub fn space_pose(&mut self, space: sys::Space) -> Result<Pose, Refusal> {
         let head = self.head();
         let position = Vec3::from(self.script.position);
+        let turn = self.aim(space).map_or(Quat::IDENTITY, |aim| {
+            Quat::from_rotation_y(aim.yaw_degrees.to_radians())
+                * Quat::from_rotation_x(aim.pitch_degrees.to_radians())
+        });
         let instance = self.current()?;
         let local = Quat::from_rotation_y(instance.local_yaw);
         let known = instance.spaces.get(&space.into_raw());
@@ -62,9 +67,25 @@ impl World {
             Kind::Reference(sys::ReferenceSpaceType::LOCAL) => (local, position),
             Kind::Reference(sys::ReferenceSpaceType::LOCAL_FLOOR) => (local, position.with_y(0.0)),
             Kind::Reference(_) => (Quat::IDENTITY, Vec3::ZERO),
-            Kind::Hand(side) => compose(head, (Quat::IDENTITY, Vec3::new(0.2 * side, -0.3, -0.4))),
+            Kind::Hand(is_left) => {
+                let side = if is_left { -0.2 } else { 0.2 };
+                compose(head, (turn, Vec3::new(side, -0.3, -0.2)))
+            }
         };
         Ok(compose(origin, known.offset))
+    }
+
+    fn is_hand(&self, space: sys::Space) -> bool {
+        let known = self.instance.as_ref().and_then(|instance| instance.spaces.get(&space.into_raw()));
+        known.is_some_and(|space| matches!(space.kind, Kind::Hand(_)))
+    }
+
+    /// Returns the ray of a controller's space; none for other spaces and for hands that are not tracked.
+    fn aim(&self, space: sys::Space) -> Option<&Aim> {
+        match self.instance.as_ref()?.spaces.get(&space.into_raw())?.kind {
+            Kind::Hand(is_left) => self.script.aim(is_left, self.frame()),
+            Kind::Reference(_) => None,
+        }
     }
 
     fn reference_spaces(&mut self) -> Result<Vec<sys::ReferenceSpaceType>, Refusal> {
@@ -126,7 +147,7 @@ pub fn create_action_space(
     let instance = world.current()?;
     instance.actions.check(info.action)?;
     let left = instance.path(info.subaction_path).is_some_and(|path| path.contains("left"));
-    let space = world.add_space(Kind::Hand(if left { -1.0 } else { 1.0 }), offset)?;
+    let space = world.add_space(Kind::Hand(left), offset)?;
     *out = space;
     DONE
 }
@@ -147,12 +168,16 @@ pub fn locate_space(
 ) -> Answer {
     world.its_session()?;
     forbid_if(time.as_nanos() <= 0, Code::ERROR_TIME_INVALID, "the time is not positive")?;
+    let is_lost = world.is_hand(space) && world.aim(space).is_none();
     let (space, base) = (world.space_pose(space)?, world.space_pose(base)?);
     out.location_flags = sys::SpaceLocationFlags::ORIENTATION_VALID
         | sys::SpaceLocationFlags::POSITION_VALID
         | sys::SpaceLocationFlags::ORIENTATION_TRACKED
         | sys::SpaceLocationFlags::POSITION_TRACKED;
     out.pose = raw_pose(compose(inverse(base), space));
+    if is_lost {
+        out.location_flags = sys::SpaceLocationFlags::EMPTY;
+    }
     world.success()
 }
 

@@ -3,42 +3,24 @@
 use std::rc::Rc;
 
 use image::{Rgb, RgbImage};
-use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
+use yoro::eyes::Eye;
 use yoro_context::Headless;
 use yoro_gl::Context;
-use yoro_render::stereo::{self, Method, Pipeline, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_render::stereo::{Pipeline, stills};
 use yoro_tests::{backends, golden};
 
-const SIZE: [u32; 2] = [256, 256];
+const SIZE: u32 = 256;
 
 /// Both eyes, left first, of a built-in scene's first viewpoint; the right one is rendered.
 fn render(gl: &Rc<Context>, name: &str, pipelines: &[Pipeline]) -> anyhow::Result<Vec<[RgbImage; 2]>> {
     let scene = yoro_scenes::build(name, yoro_scenes::DEFAULT_SEED)?;
-    let head = scene.viewpoints[0].pose();
-    let frustum = Frustum::symmetric(60f32.to_radians(), 1.0);
-    let pair = EyePair::parallel(head, frustum, 0.063, DepthRange::PAPER, SIZE, Eye::Right);
-    let settings = RenderSettings::default();
-    let scene = GpuScene::upload(gl, scene)?;
-    let mut renderer = Renderer::new(gl, &settings, &scene)?;
-    let mut frame = StereoFrame::new(gl, SIZE)?;
-    pipelines
-        .iter()
-        .map(|&pipeline| {
-            // Never two real renders, however near everything is.
-            let options = StereoOptions { policy: None, ..StereoOptions::of_pipeline(pipeline) };
-            let mut method = stereo::create(gl, Method::Yoro, &settings, &options)?;
-            method.render(&mut renderer, &scene, &pair, &mut frame)?;
-            Ok(Eye::BOTH.map(|eye| read(&frame, eye)))
-        })
-        .collect()
+    let frames = stills(gl, scene, pipelines, SIZE)?;
+    Ok(frames.into_iter().map(|both| both.map(|rgba| image(&rgba))).collect())
 }
 
-fn read(frame: &StereoFrame, eye: Eye) -> RgbImage {
-    let [w, h] = SIZE;
-    let rgba = frame.eye(eye).read_rgba8(0, [0, 0], SIZE);
-    RgbImage::from_fn(w, h, |x, y| {
-        let i = (((h - 1 - y) * w + x) * 4) as usize;
+fn image(rgba: &[u8]) -> RgbImage {
+    RgbImage::from_fn(SIZE, SIZE, |x, y| {
+        let i = (((SIZE - 1 - y) * SIZE + x) * 4) as usize;
         Rgb([rgba[i], rgba[i + 1], rgba[i + 2]])
     })
 }

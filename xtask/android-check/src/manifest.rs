@@ -13,8 +13,8 @@ use super::report::Report;
 
 const PACKAGE: &str = "io.github.yoro";
 const LIBRARY: &str = "yoro_android";
-/// Permissions that the application asks for: OpenXR runtimes may want to be asked.
-const PERMISSIONS: &str = "org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
+/// Permissions that the application asks for: the camera reads a viewer's code, and OpenXR runtimes may want to be asked.
+const PERMISSIONS: &str = "android.permission.CAMERA org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
 /// Headsets by Meta that it has to be made for by name, and all, for those that do not know the later names.
 const DEVICES: [&str; 2] = ["all", "quest3"];
 /// Everything that may change while the activity goes on: locale, touchscreen, keyboard, keyboardHidden, navigation,
@@ -105,11 +105,16 @@ const SCREEN: [Rule<'_>; 4] = [
     ),
     rule("application", &[("android:theme", ANY)], "a title bar would be in the picture"),
 ];
-const OPTIONAL: [Rule<'_>; 1] = [rule(
-    "uses-feature",
-    &[(NAME, "android.hardware.vr.headtracking"), (REQUIRED, "false")],
-    "devices without it would be shut out",
-)];
+const OPTIONAL: [Rule<'_>; 3] = [
+    optional(&[(NAME, "android.hardware.vr.headtracking"), (REQUIRED, "false")]),
+    // The permission for the camera requires these two where nothing is said.
+    optional(&[(NAME, "android.hardware.camera"), (REQUIRED, "false")]),
+    optional(&[(NAME, "android.hardware.camera.autofocus"), (REQUIRED, "false")]),
+];
+
+const fn optional<'a>(attributes: &'a [(&'a str, &'a str)]) -> Rule<'a> {
+    rule("uses-feature", attributes, "devices without it would be shut out")
+}
 
 /// An element of the manifest with its attributes; values are texts without quotes, `true`, `false`, or numbers like `0x1d`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -364,11 +369,12 @@ mod tests {
             ("(type 0x11)0x30000", "(type 0x11)0x30001", "OpenGL ES"),
             (
                 "E: application ",
-                "E: uses-permission (line=1)\n A: android:name(0x01010003)=\"android.permission.CAMERA\"\n E: application ",
+                "E: uses-permission (line=1)\n A: android:name(0x01010003)=\"android.permission.RECORD_AUDIO\"\n E: application ",
                 "permissions",
             ),
             ("A: android:required(0x0101028e)=(type 0x12)0x0", "", "optional"),
             ("\"android.hardware.vr.headtracking\"", "\"android.hardware.other\"", "optional"),
+            ("\"android.hardware.camera\"", "\"android.hardware.other\"", "optional"),
             ("\"android.app.NativeActivity\"", "\"android.app.Activity\"", "activity"),
             ("exported(0x01010010)=(type 0x12)0xffffffff", "exported(0x01010010)=(type 0x12)0x0", "launcher"),
             ("android.intent.category.LAUNCHER", "android.intent.category.HOME", "launcher"),

@@ -165,6 +165,8 @@ pub enum FaultKind {
     NotPinned,
     /// The display did not keep the requested refresh rate.
     RefreshRate,
+    /// The device's pictures differ from the stored ones, or its driver cannot make them.
+    Pictures,
 }
 
 /// Something that went wrong in a run.

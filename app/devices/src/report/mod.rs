@@ -374,5 +374,6 @@ fn fault_name(kind: FaultKind) -> &'static str {
         FaultKind::ImplausiblePower => "implausible power",
         FaultKind::NotPinned => "not pinned",
         FaultKind::RefreshRate => "refresh rate",
+        FaultKind::Pictures => "pictures",
     }
 }

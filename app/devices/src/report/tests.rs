@@ -301,6 +301,7 @@ fn worthless_runs_are_left_out_with_the_reason() {
         FaultKind::ImplausiblePower,
         FaultKind::NotPinned,
         FaultKind::RefreshRate,
+        FaultKind::Pictures,
     ] {
         let mut capture = whole();
         capture.info.faults.push(fault(kind));

@@ -21,6 +21,7 @@ mod readback;
 mod reprojected;
 mod shading_reprojection;
 mod single_pass;
+mod still;
 mod substitute;
 mod synthesized;
 #[cfg(test)]
@@ -45,6 +46,7 @@ pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 use reprojected::Reprojected;
 use shading_reprojection::ShadingReprojection;
 use single_pass::{DeferredPair, SinglePass};
+pub use still::stills;
 pub use substitute::Substitute;
 use synthesized::Synthesized;
 

@@ -278,7 +278,7 @@ impl Cardboard {
     /// See [`Viewer::render_eyes`].
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         let up = self.tracker.head_from_world(0.0) * Vec3::Y;
-        if self.viewer.tilt(up.x, timing.now_ns) {
+        if self.viewer.tilt(up, self.screen.rotation, timing.now_ns) {
             log::info!("{}", Action::StartScreen(true));
         }
         if self.viewer.is_start_screen() {
@@ -286,7 +286,7 @@ impl Cardboard {
         }
         self.viewer.begin(timing);
         let head = self.head(timing).0;
-        let action = self.viewer.look(relative(head))?;
+        let action = self.viewer.look(relative(head), [None; 2])?;
         if action != Action::Nothing {
             log::info!("{action}");
         }

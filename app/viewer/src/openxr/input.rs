@@ -7,12 +7,15 @@
 //! | stick left, right | thumbstick | | method before, next method |
 //! | stick up, down | thumbstick | | next scene, next viewpoint |
 //! | squeeze and stick | grip and thumbstick | | the eyes a millimetre further apart or closer |
+//! | aim | aim | aim | in the menu: the tile that is pointed at |
 
 use glam::Vec2;
 use openxr as xr;
 
 use super::error::{XrError, call};
+use super::session::to_pose;
 use crate::event::Event;
+use yoro::eyes::Pose;
 
 /// A button that is held longer means something else, in nanoseconds.
 const LONG_NS: i64 = 600_000_000;
@@ -113,8 +116,14 @@ impl Memory {
     }
 }
 
+/// The hands, the right one first: where both point at the menu, it counts.
+const HANDS: [&str; 2] = ["/user/hand/right", "/user/hand/left"];
+
 /// The controllers of a session.
 pub(super) struct Input {
+    /// The rays of the hands, and their action.
+    aims: [xr::Space; 2],
+    _aim: xr::Action<xr::Posef>,
     select: xr::Action<bool>,
     menu: xr::Action<bool>,
     squeeze: xr::Action<bool>,
@@ -134,6 +143,8 @@ impl Input {
         let squeeze = flag("squeeze", "Change the distance between the eyes")?;
         let stick = call("xrCreateAction", set.create_action::<xr::Vector2f>("stick", "Choose", &[]))?;
         let path = |text: &str| call("xrStringToPath", instance.string_to_path(text));
+        let hands = [path(HANDS[0])?, path(HANDS[1])?];
+        let aim = call("xrCreateAction", set.create_action::<xr::Posef>("aim", "Point", &hands))?;
         let suggest = |profile: &str, buttons: &[(&xr::Action<bool>, &str)], sticks: &[&str]| {
             let mut bindings = Vec::new();
             for (action, input) in buttons {
@@ -141,6 +152,9 @@ impl Input {
             }
             for input in sticks {
                 bindings.push(xr::Binding::new(&stick, path(input)?));
+            }
+            for hand in HANDS {
+                bindings.push(xr::Binding::new(&aim, path(&format!("{hand}/input/aim/pose"))?));
             }
             call(
                 "xrSuggestInteractionProfileBindings",
@@ -186,7 +200,22 @@ impl Input {
             }
         }
         call("xrAttachSessionActionSets", session.attach_action_sets(&[&set]))?;
-        Ok(Input { select, menu, squeeze, stick, set, memory: Memory::default() })
+        let ray = |hand| call("xrCreateActionSpace", aim.create_space(session, hand, xr::Posef::IDENTITY));
+        let aims = [ray(hands[0])?, ray(hands[1])?];
+        Ok(Input { aims, _aim: aim, select, menu, squeeze, stick, set, memory: Memory::default() })
+    }
+
+    /// Returns the rays of the hands in a space, each along its pose's -Z; none for a hand that is not tracked.
+    pub fn rays(&self, base: &xr::Space, time: xr::Time) -> Result<[Option<Pose>; 2], XrError> {
+        let mut rays = [None; 2];
+        for (ray, aim) in rays.iter_mut().zip(&self.aims) {
+            let place = call("xrLocateSpace", aim.locate(base, time))?;
+            let flags = xr::SpaceLocationFlags::POSITION_VALID | xr::SpaceLocationFlags::ORIENTATION_VALID;
+            if place.location_flags.contains(flags) {
+                *ray = to_pose(&place.pose);
+            }
+        }
+        Ok(rays)
     }
 
     /// Reads the controls, and adds the user's actions to `events`.

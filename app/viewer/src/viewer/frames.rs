@@ -23,9 +23,10 @@ impl Viewer {
         self.now_ns = timing.now_ns;
         self.refresh_hz = timing.refresh_hz;
         self.poll_scene();
-        if self.start.is_hint_due && self.scene.is_shown() {
-            self.start.is_hint_due = false;
-            self.caption.announce("Hold: the menu".into(), self.now_ns);
+        if self.scene.is_shown()
+            && let Some(text) = std::mem::take(&mut self.start.hint).text(self.made_up_eye())
+        {
+            self.caption.announce(text, self.now_ns);
         }
     }
 

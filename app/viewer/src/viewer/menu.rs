@@ -14,18 +14,18 @@ const QUALITIES: [(&str, f32, bool, u32); 3] =
     [("saving", 0.7, true, 2), ("balanced", 1.0, false, 4), ("best", 1.4, false, 4)];
 
 impl Viewer {
-    /// Says where the head is, relative to the viewpoint. Opens the menu when the user has looked down for a second, and
-    /// returns what was chosen by looking.
+    /// Says where the head is, relative to the viewpoint, and the rays of controllers, each along its pose's -Z. Opens the menu
+    /// when the user has looked down for a second, and returns what was chosen by looking.
     ///
     /// # Errors
     /// See [`Viewer::event`].
-    pub fn look(&mut self, head: Pose) -> Result<Action, ViewerError> {
+    pub fn look(&mut self, head: Pose, rays: [Option<Pose>; 2]) -> Result<Action, ViewerError> {
         if self.stats.question().is_some() {
             self.menu.close();
             return Ok(Action::Nothing);
         }
         let before = self.menu.pointed();
-        let action = match self.menu.look(head, self.now_ns) {
+        let action = match self.menu.look(head, rays, self.now_ns) {
             Look::Nothing => {
                 let is_viewer = |choice: Option<Choice>| matches!(choice, Some((Item::Lenses, _)));
                 if is_viewer(self.menu.pointed()) != is_viewer(before) {
@@ -232,6 +232,11 @@ impl Viewer {
                 _ => "Look at a tile for 1.5 s, or tap. Hold: recenter.",
             }
         );
+    }
+
+    /// True while the menu is open, in view or not.
+    pub fn is_menu_open(&self) -> bool {
+        self.menu.board().is_some()
     }
 
     /// The place of the menu's panel relative to the viewpoint, while it is in view.

@@ -1,12 +1,12 @@
 //! The start screen: does what is touched on it, and draws it; the viewers to choose from.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::Viewer;
 use crate::event::Action;
-use crate::start::{OTHER, Tile, VIEWERS};
+use crate::start::{Hint, OTHER, Tile, VIEWERS};
 use yoro_gl::Destination;
-use yoro_lenses::{ViewerParams, tile_at};
+use yoro_lenses::{Rotation, ViewerParams, tile_at};
 
 /// The viewers that are always there, and what they are called.
 const BUILTIN: [&str; 2] = ["v1", "v2"];
@@ -35,6 +35,7 @@ impl Viewer {
         }
         self.menu.close();
         self.start.show(message);
+        self.start.is_scanning = false;
         self.write_start_screen();
         Action::StartScreen(true)
     }
@@ -46,14 +47,17 @@ impl Viewer {
             None => Some(Tile::Start),
         };
         self.start.message.clear();
+        let was_scanning = std::mem::take(&mut self.start.is_scanning);
         let action = match tile {
             Some(Tile::Viewer(i)) => match self.viewers().get(i) {
                 Some(viewer) => self.choose_viewer(&viewer.clone()),
                 None => Action::Nothing,
             },
-            Some(Tile::Other) => {
+            Some(Tile::Scan) if was_scanning => Action::Scan(false),
+            // Where there is no camera, or it may not be used.
+            Some(Tile::Scan) => {
                 OTHER.clone_into(&mut self.start.message);
-                Action::Nothing
+                Action::Scan(true)
             }
             Some(Tile::Log) => Action::ShareLog,
             Some(Tile::Reset) => self.reset(),
@@ -70,10 +74,30 @@ impl Viewer {
         action
     }
 
-    /// Notes how far the picture's horizontal points up, -1 to 1, at a time. True if the start screen has come into view.
-    pub(crate) fn tilt(&mut self, sideways: f32, now_ns: i64) -> bool {
+    /// Explains what is seen once the scene is in view.
+    pub fn explain(&mut self) {
+        self.start.hint = Hint::Explanation;
+    }
+
+    /// True while the start screen shows what the phone's camera sees.
+    pub fn is_scanning(&self) -> bool {
+        self.start.is_scanning
+    }
+
+    /// Shows on the start screen what the phone's camera sees: luma of [`Board::PICTURE`] pixels, rows from the bottom.
+    pub fn show_camera(&mut self, picture: &[u8]) {
+        if !std::mem::replace(&mut self.start.is_scanning, true) {
+            self.write_start_screen();
+        }
+        if let Some(attached) = &mut self.attached {
+            attached.board.set_picture(picture);
+        }
+    }
+
+    /// Notes which way is up in the picture at a time. True if the start screen has come into view.
+    pub(crate) fn tilt(&mut self, up: Vec3, rotation: Rotation, now_ns: i64) -> bool {
         self.now_ns = now_ns;
-        let is_upright = self.start.tilt(sideways, now_ns);
+        let is_upright = self.start.tilt(up, rotation, now_ns);
         if is_upright {
             self.show_start_screen("");
         }
@@ -133,7 +157,7 @@ impl Viewer {
     pub(crate) fn draw_start_screen(&mut self, window: &Destination) {
         let Some(attached) = &mut self.attached else { return };
         attached.board.set(&self.start.tiles);
-        attached.board.draw_flat(window);
+        attached.board.draw_flat(window, self.start.is_scanning);
         // No frame of the session: its times are nobody's.
         attached.pass_times.clear();
         attached.gl.end_timed_frame(&mut attached.pass_times);

@@ -526,9 +526,17 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     assert_eq!(run.viewer.viewer().settings().viewer, URI);
     run.frame();
     let chosen = run.image();
-    assert_eq!(run.viewer.touch(tile(0, 1)).unwrap(), Some(Action::Nothing));
+    assert_eq!(run.viewer.touch(tile(0, 1)).unwrap(), Some(Action::Scan(true)));
     run.frame();
-    assert!(shown != chosen && run.image() != chosen, "it says how to get another viewer");
+    let other = run.image();
+    assert!(shown != chosen && other != chosen, "it says how to get another viewer");
+    let picture: Vec<u8> = (0..Board::PICTURE[0] * Board::PICTURE[1]).map(|i| (i % 251) as u8).collect();
+    run.viewer.viewer_mut().show_camera(&picture);
+    assert!(run.viewer.viewer().is_scanning());
+    run.frame();
+    assert!(run.image() != other, "what the camera sees");
+    assert_eq!(run.viewer.touch(tile(0, 1)).unwrap(), Some(Action::Scan(false)));
+    assert!(!run.viewer.viewer().is_scanning());
     assert_eq!(run.viewer.touch(tile(1, 1)).unwrap(), Some(Action::ShareLog));
     assert_eq!(run.viewer.touch(Some([160.0, 1.0])).unwrap(), Some(Action::Nothing));
     assert_eq!(run.viewer.touch(tile(3, 1)).unwrap(), Some(Action::StartScreen(false)));
@@ -546,7 +554,7 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
         run.viewer.viewer().is_start_screen()
     };
     assert!(!stand(&mut run, Vec3::X, 30));
-    assert!(stand(&mut run, Vec3::Y, 200));
+    assert!(stand(&mut run, Vec3::new(0.0, 0.87, 0.5), 200));
     assert_eq!(run.viewer.touch(None).unwrap(), Some(Action::StartScreen(false)), "a key starts");
     drop(run);
     assert_eq!((gl.object_count(), gl.take_errors()), (0, None));

@@ -1,7 +1,8 @@
-//! libandroid.so and liblog.so.
+//! libandroid.so, liblog.so, and what there is of libcamera2ndk.so and libmediandk.so.
 
 pub mod activity;
 pub mod assets;
+pub mod camera;
 pub mod choreographer;
 pub mod configuration;
 pub mod input;

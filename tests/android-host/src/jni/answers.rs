@@ -13,6 +13,7 @@ use crate::script::Battery;
 
 /// `Integer.MIN_VALUE` and `Long.MIN_VALUE` are BatteryManager's words for "unsupported".
 const UNSUPPORTED: i32 = i32::MIN;
+const CAMERA: &str = "android.permission.CAMERA";
 
 /// Returns the answer to a call; none if the method is not known.
 pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<Value> {
@@ -96,6 +97,24 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         }
         "startActivity" => {
             host.request("another application");
+            Value::Void
+        }
+        "checkSelfPermission" => {
+            let is_allowed = text(0)? == CAMERA && host.camera.is_allowed.load(Ordering::Acquire);
+            Value::Int(if is_allowed { 0 } else { -1 })
+        }
+        "requestPermissions" => {
+            let asked = match arguments.first() {
+                Some(Value::Object(Some(names))) => match &names.data {
+                    Data::Array(names) => {
+                        lock(names).iter().flatten().any(|name| name.text() == Some(CAMERA))
+                    }
+                    _ => false,
+                },
+                _ => false,
+            };
+            host.request("a permission");
+            host.camera.is_asked.store(asked, Ordering::Release);
             Value::Void
         }
         "isInteractive" => Value::Boolean(true),
@@ -191,6 +210,8 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
                 file.write_all(b"--------- simulated Android host\n").ok()?;
                 Some(file)
             } else {
+                let after = lock(&host.shared[1]).as_ref().map_or(0.0, |shared| shared.after);
+                crate::bionic::sleep(after);
                 std::fs::File::open(path).ok()
             };
             let descriptor =

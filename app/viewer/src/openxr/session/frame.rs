@@ -38,7 +38,12 @@ impl Session {
         viewer.set_native_ipd(Ipd::nearest((native.poses[1].position - native.poses[0].position).length()));
         let shown = self.align(viewer, native);
         let head = Pose { position: shown.middle(), orientation: shown.poses[0].orientation };
-        if let Some(action) = self.told(viewer.look(head)).filter(|action| *action != Action::Nothing) {
+        let rays = match &self.input {
+            Some(input) if viewer.is_menu_open() => input.rays(&self.spaces.ahead, time)?,
+            _ => [None; 2],
+        };
+        let looked = viewer.look(head, rays);
+        if let Some(action) = self.told(looked).filter(|action| *action != Action::Nothing) {
             log::info!("{action}");
             self.recenter |= action == Action::Recenter;
         }

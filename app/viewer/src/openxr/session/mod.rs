@@ -7,4 +7,5 @@ mod open;
 mod state;
 mod step;
 
+pub(super) use eyes::to_pose;
 pub(super) use state::{Progress, Session};

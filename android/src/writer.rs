@@ -1,0 +1,77 @@
+//! A small file that is written on a thread: flash memory takes its time, and a frame has none.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Sender};
+use std::thread::{self, JoinHandle};
+
+/// The thread, until this is dropped, which waits for what was last written.
+pub struct Writer {
+    contents: Option<Sender<Vec<u8>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Writer {
+    /// Starts the thread of a file.
+    pub fn new(file: PathBuf) -> Writer {
+        let (contents, queue) = mpsc::channel::<Vec<u8>>();
+        let work = move || {
+            while let Ok(first) = queue.recv() {
+                // Only the newest counts.
+                let content = queue.try_iter().last().unwrap_or(first);
+                if let Err(error) = write(&file, &content) {
+                    let file = file.display();
+                    log::warn!("{file} cannot be written ({error}): the menu's settings are lost at the end");
+                }
+            }
+        };
+        let thread = thread::Builder::new()
+            .name("yoro-settings".into())
+            .spawn(work)
+            .inspect_err(|error| log::warn!("no thread for the menu's settings ({error}): they are lost"))
+            .ok();
+        Writer { contents: Some(contents), thread }
+    }
+
+    /// Lets the thread replace the file's content.
+    pub fn write(&self, content: Vec<u8>) {
+        if let Some(contents) = &self.contents {
+            // Without a thread, the log has said so.
+            _ = contents.send(content);
+        }
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        self.contents = None;
+        if let Some(thread) = self.thread.take() {
+            _ = thread.join();
+        }
+    }
+}
+
+/// Replaces a file at once: whoever reads it sees the content before or this one.
+fn write(file: &Path, content: &[u8]) -> io::Result<()> {
+    let new = file.with_extension("new");
+    std::fs::write(&new, content).and_then(|()| std::fs::rename(&new, file))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_content_is_in_the_file_when_the_writer_is_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("settings");
+        let writer = Writer::new(file.clone());
+        (0..100).for_each(|n: u32| writer.write(n.to_string().into_bytes()));
+        drop(writer);
+        assert_eq!(std::fs::read(&file).unwrap(), b"99");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        // No folder: a sentence in the log, and nothing else.
+        let nowhere = Writer::new(folder.path().join("a/b"));
+        nowhere.write(Vec::new());
+    }
+}

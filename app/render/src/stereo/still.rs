@@ -1,0 +1,37 @@
+//! Both eyes of a scene at rest: what a driver's pictures are compared with stored ones by.
+
+use std::rc::Rc;
+
+use super::{Method, Pipeline, StereoError, StereoFrame, StereoOptions, create};
+use crate::render::{GpuScene, RenderSettings, Renderer};
+use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
+use yoro_gl::Context;
+use yoro_scene::Scene;
+
+/// Renders the right eye of a scene's first viewpoint, synthesizes the left one by each pipeline, and returns both, left first:
+/// RGBA with rows from the bottom, `size` squared pixels with 60 degrees to see. Every pipeline has the default settings.
+///
+/// # Errors
+/// [`StereoError`]: the driver refuses the scene, a shader or an image.
+pub fn stills(
+    gl: &Rc<Context>,
+    scene: Scene,
+    pipelines: &[Pipeline],
+    size: u32,
+) -> Result<Vec<[Vec<u8>; 2]>, StereoError> {
+    let (head, size) = (scene.viewpoints[0].pose(), [size; 2]);
+    let frustum = Frustum::symmetric(60f32.to_radians(), 1.0);
+    let pair = EyePair::parallel(head, frustum, 0.063, DepthRange::PAPER, size, Eye::Right);
+    let settings = RenderSettings::default();
+    let scene = GpuScene::upload(gl, scene)?;
+    let mut renderer = Renderer::new(gl, &settings, &scene)?;
+    let mut frame = StereoFrame::new(gl, size)?;
+    let mut both = |&pipeline: &Pipeline| {
+        // Never two real renders, however near everything is.
+        let options = StereoOptions { policy: None, ..StereoOptions::of_pipeline(pipeline) };
+        let mut method = create(gl, Method::Yoro, &settings, &options)?;
+        method.render(&mut renderer, &scene, &pair, &mut frame)?;
+        Ok(Eye::BOTH.map(|eye| frame.eye(eye).read_rgba8(0, [0, 0], size)))
+    };
+    pipelines.iter().map(&mut both).collect()
+}
