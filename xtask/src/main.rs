@@ -62,12 +62,15 @@ enum Task {
         /// Pack this libopenxr_loader.so into the APK; at most one for each processor
         #[arg(long = "openxr-loader", value_name = "FILE")]
         openxr_loaders: Vec<PathBuf>,
+        /// Make an application bundle (.aab) for a store, too
+        #[arg(long)]
+        bundle: bool,
     },
     /// Print what builds the Android application, what is missing, and how to get it
     Doctor,
-    /// Check that Android will install and start an APK
+    /// Check that Android will install and start an APK, or what a store makes of a bundle
     CheckApk {
-        /// The APK
+        /// The APK or the bundle
         file: PathBuf,
     },
     /// Pack the C library into target/package: with pkg-config and CMake files for Linux, as an AAR for
@@ -131,8 +134,8 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Test { filters, packages, bless, jobs } => {
             testing::test(&testing::Options { filters, packages, bless, jobs })?;
         }
-        Task::Apk { release, yes, openxr_loaders } => {
-            android::apk(&android::Options { release, yes, openxr_loaders })?;
+        Task::Apk { release, yes, openxr_loaders, bundle } => {
+            android::apk(&android::Options { release, yes, openxr_loaders, bundle })?;
         }
         Task::Doctor => {
             let (text, complete) = android::doctor()?;

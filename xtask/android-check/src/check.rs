@@ -9,7 +9,7 @@ use yoro_tools::ndk::sdk;
 use crate::archive::Archive;
 use crate::public::Public;
 use crate::report::Report;
-use crate::{library, manifest, signature};
+use crate::{bundle, library, manifest, signature};
 
 /// A release with its built-in scenes is smaller than this, in bytes.
 const SIZE_LIMIT: u64 = 8_000_000;
@@ -25,6 +25,9 @@ pub fn check(path: &Path) -> anyhow::Result<Report> {
     let archive = Archive::read(&bytes).with_context(|| {
         format!("{shown} is damaged or no APK: build it anew by `cargo xtask apk --release`")
     })?;
+    if bundle::is_bundle(|name| archive.has(name)) {
+        return check_bundle(path);
+    }
     if !archive.has("AndroidManifest.xml") {
         bail!("{shown} is an archive without AndroidManifest.xml, and so no APK: name the .apk file");
     }
@@ -37,11 +40,31 @@ pub fn check(path: &Path) -> anyhow::Result<Report> {
     manifest.check(&archive, &mut report);
     signature::check(path, &mut report)?;
     archive.check(manifest.unpacks_libraries(), &mut report);
-    let public = Public::of(sdk::folder("ANDROID_NDK_ROOT").as_deref());
-    for (name, content) in archive.libraries() {
-        library::check(name, content, &public, &mut report)?;
+    check_libraries(&archive, &mut report)?;
+    Ok(report)
+}
+
+/// Checks a bundle: its layout, and the APK that it becomes, but for signature and alignment, which are the store's.
+fn check_bundle(path: &Path) -> anyhow::Result<Report> {
+    let mut report = Report::default();
+    let apk = path.with_extension("checked.apk");
+    bundle::check(path, &apk, &mut report)?;
+    let manifest = manifest::Manifest::read(&apk)?;
+    let archive = Archive::read(&fs::read(&apk).context("aapt2 has written no APK")?)?;
+    manifest.check(&archive, &mut report);
+    check_libraries(&archive, &mut report)?;
+    for left in [apk.with_extension("proto.apk"), apk] {
+        fs::remove_file(&left).with_context(|| format!("{} cannot be removed", left.display()))?;
     }
     Ok(report)
+}
+
+fn check_libraries(archive: &Archive, report: &mut Report) -> anyhow::Result<()> {
+    let public = Public::of(sdk::folder("ANDROID_NDK_ROOT").as_deref());
+    for (name, content) in archive.libraries() {
+        library::check(name, content, &public, report)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
-//! Archives and libraries for Android. `check APK` checks that Android will install and start it, `loader LIBRARY` prints
+//! Archives and libraries for Android. `check APK` checks that Android will install and start it, and a bundle (.aab) too;
+//! `bundle APK AAB` makes a bundle of an APK, `loader LIBRARY` prints
 //! the processor that an OpenXR loader is for, and `pack AAR FOLDER` packs the files of a folder.
 //!
 //! A program of its own, so that only those who build for Android wait for its dependencies.
 
 mod archive;
+mod bundle;
 mod check;
 mod library;
 mod loader;
@@ -34,11 +36,15 @@ fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
             let report = check::check(Path::new(apk))?;
             (report.to_string(), report.passed())
         }
+        ["bundle", apk, bundle] => {
+            bundle::make(Path::new(apk), Path::new(bundle))?;
+            (String::new(), true)
+        }
         ["loader", library] => (loader::abi(Path::new(library))?.to_owned(), true),
         ["pack", packed, folder] => {
             archive::pack(Path::new(folder), Path::new(packed))?;
             (String::new(), true)
         }
-        _ => bail!("usage: check APK, loader LIBRARY, or pack AAR FOLDER"),
+        _ => bail!("usage: check APK, bundle APK AAB, loader LIBRARY, or pack AAR FOLDER"),
     })
 }

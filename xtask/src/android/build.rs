@@ -15,7 +15,7 @@ use super::cargo_apk;
 use super::check;
 use super::keystore::Keystore;
 use super::loader::Loaders;
-use super::pack::pack;
+use super::pack::{pack, sign};
 use super::toolchain::{self, Surroundings, Toolchain};
 
 /// `apk_name` of android/Cargo.toml.
@@ -30,7 +30,23 @@ pub struct Options {
     pub yes: bool,
     /// OpenXR loaders that the APK is to carry: at most one for each processor.
     pub openxr_loaders: Vec<PathBuf>,
+    /// Make a bundle for a store of the APK, too.
+    pub bundle: bool,
 }
+
+/// A bundle is signed as a jar, and apksigner does so where it need not look for a manifest.
+const JAR: [&str; 10] = [
+    "--min-sdk-version",
+    "29",
+    "--v1-signing-enabled",
+    "true",
+    "--v2-signing-enabled",
+    "false",
+    "--v3-signing-enabled",
+    "false",
+    "--v4-signing-enabled",
+    "false",
+];
 
 /// Builds, signs and checks the APK, and returns its path.
 ///
@@ -88,7 +104,14 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let content = fs::read(&built).with_context(|| format!("{} cannot be read", built.display()))?;
     write(&apk, content)?;
 
-    let passed = check::check(&apk)?;
+    let mut passed = check::check(&apk)?;
+    if options.bundle {
+        let bundle = apk.with_extension("aab");
+        check::bundle(&apk, &bundle)?;
+        sign(&bundle, &keystore, &JAR)?;
+        println!("{}", bundle.display());
+        passed &= check::check(&bundle)?;
+    }
     if options.release && keystore.debug {
         println!(
             "signed with this machine's debug key, because CARGO_APK_RELEASE_KEYSTORE is not set: good for \

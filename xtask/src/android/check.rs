@@ -45,6 +45,15 @@ pub fn loader_abi(file: &Path) -> anyhow::Result<String> {
     Ok(run(&[&"loader", &absolute_path(file)?])?.0)
 }
 
+/// Makes a bundle, not signed, of an APK.
+///
+/// # Errors
+/// When aapt2 is missing or refuses the APK, or the bundle cannot be written.
+pub fn bundle(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
+    run(&[&"bundle", &absolute_path(apk)?, &absolute_path(bundle)?])?;
+    Ok(())
+}
+
 /// Packs the files of a folder as an AAR.
 ///
 /// # Errors

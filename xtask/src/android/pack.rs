@@ -47,12 +47,17 @@ pub fn pack(
     run(&mut package)?;
     run(tool("aapt")?.arg("add").arg(&unaligned).args(libraries(&at(&format!("{name}.apk")))?))?;
     run(tool("zipalign")?.args(["-f", "4"]).arg(&unaligned).arg(&finished))?;
-    let mut sign = tool("apksigner")?;
-    sign.arg("sign").arg("--ks").arg(&keystore.path);
+    sign(&finished, keystore, &[])?;
+    Ok(finished)
+}
+
+/// Signs an APK; with other arguments, something else.
+pub fn sign(file: &Path, keystore: &Keystore, arguments: &[&str]) -> anyhow::Result<()> {
+    let mut sign = Command::new(build_tool("apksigner")?);
+    sign.arg("sign").arg("--ks").arg(&keystore.path).args(arguments);
     // Passed through the environment: every user of this machine can read arguments.
     sign.args(["--ks-pass", "env:YORO_KEYSTORE_PASSWORD"]).env("YORO_KEYSTORE_PASSWORD", &keystore.password);
-    run(sign.arg(&finished))?;
-    Ok(finished)
+    run(sign.arg(file)).map(drop)
 }
 
 /// The libraries in an APK, by their paths in it.

@@ -86,7 +86,12 @@ static ITEMS: [Item; 10] = [
         users: &[("yoro-android-host", "")],
         fetch: || android::ready_for_tests().map(|()| PathBuf::new()),
         build: Some(|| {
-            android::apk(&android::Options { release: true, yes: true, openxr_loaders: Vec::new() })
+            android::apk(&android::Options {
+                release: true,
+                yes: true,
+                openxr_loaders: Vec::new(),
+                bundle: false,
+            })
         }),
     },
     Item {

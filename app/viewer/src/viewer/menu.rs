@@ -228,7 +228,7 @@ impl Viewer {
              Figures: frames a second, a frame's ms, degrees C.\n\
              {}",
             match self.menu.pointed() {
-                Some((Item::Lenses, _)) => "Another viewer: share its code with yoro.",
+                Some((Item::Lenses, _)) => "Another viewer: scan its code on the start screen.",
                 _ => "Look at a tile for 1.5 s, or tap. Hold: recenter.",
             }
         );
