@@ -144,10 +144,10 @@ pub fn check(bundle: &Path, apk: &Path, report: &mut Report) -> anyhow::Result<(
     );
     let strange: Vec<String> = archive
         .file_names()
+        .filter_map(|name| name.ok().map(std::borrow::Cow::into_owned))
         .filter(|name| {
-            !["base/", "META-INF/"].iter().any(|folder| name.starts_with(folder)) && *name != CONFIG
+            !["base/", "META-INF/"].iter().any(|folder| name.starts_with(folder)) && name != CONFIG
         })
-        .map(str::to_owned)
         .collect();
     let problem = (!strange.is_empty()).then(|| format!("bundletool refuses {}", strange.join(" ")));
     report.row("modules", "base", problem);
