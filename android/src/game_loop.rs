@@ -81,6 +81,7 @@ mod tests {
             let extras = extras.map(|(key, value)| (key.to_owned(), value.to_owned())).to_vec();
             let mut game_loop = GameLoop::new(scenario, extras).unwrap();
             let mut runs = Vec::new();
+            assert_eq!(game_loop.checks_pictures(), scenario == 1);
             loop {
                 let pairs = game_loop.settings();
                 let pairs = pairs.iter().map(|(key, value)| format!("{key}={value}"));

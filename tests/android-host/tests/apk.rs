@@ -827,7 +827,10 @@ fn a_first_start_by_hand() {
         share("text = \"My viewer\", file", &file("code.png")),
         wait(&format!("shared: the viewer {URI}")),
         // An owner who takes three seconds.
-        format!("\"quit\", {{ share = {{ file = {:?}, view = true, after = 3.0 }} }}, \"launch\"", file("my room.glb")),
+        format!(
+            "\"quit\", {{ share = {{ file = {:?}, view = true, after = 3.0 }} }}, \"launch\"",
+            file("my room.glb")
+        ),
         wait("start screen: shown"),
         capture("reading.png"),
         "{ seconds = 1 }".into(),
@@ -839,7 +842,8 @@ fn a_first_start_by_hand() {
     let Some(run) = play("first-start", &device, &steps.join(", ")) else { return };
     run.assert_clean();
     assert_eq!(run.summary.jni_invented, Default::default());
-    let left: Vec<_> = run.summary.marks.last().unwrap().ndk_objects.iter().filter(|(_, n)| **n != 0).collect();
+    let left: Vec<_> =
+        run.summary.marks.last().unwrap().ndk_objects.iter().filter(|(_, n)| **n != 0).collect();
     assert!(!left.iter().any(|(kind, _)| kind.contains("camera") || kind.contains("image")), "{left:?}");
     let log: Vec<&str> = run.summary.log_of("YORO").collect();
     let settings: Vec<&&str> = log.iter().filter(|line| line.starts_with("settings: ")).collect();
