@@ -94,6 +94,9 @@ enum Task {
     },
     /// Build the page, which shows every method in a browser's WebGL 2, as files for any static host
     Web {
+        /// Build the example of yoro-wgpu for browsers with WebGPU instead
+        #[arg(long, conflicts_with = "out")]
+        wgpu: bool,
         /// Then serve it to browsers on this machine and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
         #[arg(long)]
         serve: bool,
@@ -157,8 +160,13 @@ fn perform(task: Task) -> anyhow::Result<bool> {
             godot::project()?;
         }
         Task::Godot { task: godot::Task::Test } => godot::test()?,
-        Task::Web { serve, as_built, port, out } => {
-            let folder = if as_built { web::built()? } else { web::build()? };
+        Task::Web { wgpu, serve, as_built, port, out } => {
+            let folder = match (wgpu, as_built) {
+                (false, false) => web::build()?,
+                (false, true) => web::built()?,
+                (true, false) => web::build_example()?,
+                (true, true) => web::built_example()?,
+            };
             if let Some(out) = out {
                 web::publish(&folder, &out)?;
             }

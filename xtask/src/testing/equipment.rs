@@ -26,15 +26,20 @@ struct Item {
     build: Option<fn() -> anyhow::Result<PathBuf>>,
 }
 
-static ITEMS: [Item; 10] = [
+static ITEMS: [Item; 11] = [
     Item {
         what: "the page",
         variable: "WEB",
         users: &[("yoro-app", "web::")],
-        fetch: || {
-            if web::can_be_built() { Ok(PathBuf::new()) } else { bail!("no Rust can compile for browsers") }
-        },
+        fetch: page_can_be_built,
         build: Some(|| web::build().and_then(|_| Ok(std::env::current_exe()?))),
+    },
+    Item {
+        what: "the example of yoro-wgpu for browsers",
+        variable: "WGPU_WEB",
+        users: &[("yoro-wgpu", "the_example_in_a_browser")],
+        fetch: page_can_be_built,
+        build: Some(|| web::build_example().and_then(|_| Ok(std::env::current_exe()?))),
     },
     Item {
         what: "the WebXR emulator",
@@ -109,6 +114,10 @@ static ITEMS: [Item; 10] = [
         build: Some(arm64::build_host),
     },
 ];
+
+fn page_can_be_built() -> anyhow::Result<PathBuf> {
+    if web::can_be_built() { Ok(PathBuf::new()) } else { bail!("no Rust can compile for browsers") }
+}
 
 impl Item {
     fn is_for(&self, package: &str, test: &str) -> bool {

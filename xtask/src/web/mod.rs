@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 use yoro_tools::cargo::{self, announce};
-use yoro_tools::folders::{remove, target_folder};
+use yoro_tools::folders::{copy, remove, root, target_folder};
 use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
 
 pub use npm::{check_types, emulator};
@@ -19,7 +19,8 @@ pub use serve::serve;
 pub use site::publish;
 
 const TRIPLE: &str = "wasm32-unknown-unknown";
-const MODULE: &str = "yoro_web";
+/// The example of yoro-wgpu.
+const EXAMPLE: &str = "offscreen";
 /// The most bytes that a first visit may transfer: phones load it over the air.
 const BUDGET: u64 = 1_200_000;
 
@@ -28,10 +29,44 @@ const BUDGET: u64 = 1_200_000;
 /// # Errors
 /// When it is not built.
 pub fn built() -> anyhow::Result<PathBuf> {
-    let folder = target_folder()?.join("web");
+    as_built("web", "cargo xtask web")
+}
+
+/// Returns the folder of the built example of yoro-wgpu.
+///
+/// # Errors
+/// When it is not built.
+pub fn built_example() -> anyhow::Result<PathBuf> {
+    as_built("web-wgpu", "cargo xtask web --wgpu")
+}
+
+fn as_built(name: &str, command: &str) -> anyhow::Result<PathBuf> {
+    let folder = target_folder()?.join(name);
     if !folder.join("index.html").is_file() {
-        bail!("{} has no page: run cargo xtask web", folder.display());
+        bail!("{} has no page: run {command}", folder.display());
     }
+    Ok(folder)
+}
+
+/// Builds the example of yoro-wgpu for browsers with WebGPU, and returns its folder, `target/web-wgpu`.
+///
+/// # Errors
+/// When something is missing or does not compile.
+pub fn build_example() -> anyhow::Result<PathBuf> {
+    let start = Instant::now();
+    let module = compile(&["--package", "yoro-wgpu", "--example", EXAMPLE], &format!("examples/{EXAMPLE}"))?;
+    let page = root().join("app/wgpu/examples").join(EXAMPLE);
+    let folder = target_folder()?.join("web-wgpu");
+    remove(&folder)?;
+    let Sizes { transferred, .. } = bind(&module, &folder, &page)?;
+    for name in ["page.js", "index.html"] {
+        copy(&page.join(name), &folder.join(name))?;
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    println!(
+        "{}: the module has {transferred} bytes as transferred (brotli), in {seconds:.0} s",
+        folder.display()
+    );
     Ok(folder)
 }
 
@@ -42,11 +77,11 @@ pub fn built() -> anyhow::Result<PathBuf> {
 pub fn build() -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;
-    // Its profile has the name of the page's folder.
-    let module = compile(&target.join("wasm"))?;
+    let module = compile(&["--package", "yoro-web"], "yoro_web")?;
     let (folder, unfinished) = (target.join("web"), target.join("web.part"));
     remove(&unfinished)?;
-    let Sizes { module, transferred, visit } = bind(&module, &unfinished.join(site::VERSION))?;
+    let Sizes { module, transferred, visit } =
+        bind(&module, &unfinished.join(site::VERSION), &site::sources())?;
     site::assemble(&unfinished)?;
     remove(&folder)?;
     fs::rename(&unfinished, &folder).with_context(|| format!("{} cannot be written", folder.display()))?;
@@ -67,17 +102,19 @@ pub fn can_be_built() -> bool {
     Rust::for_target(TRIPLE).is_some_and(|(rust, _)| rust.wasm_linker().is_some())
 }
 
-/// Compiles the module, and returns its file.
-fn compile(target: &Path) -> anyhow::Result<PathBuf> {
+/// Compiles a module, and returns its file.
+fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
+    // Its profile has the name of the page's folder.
+    let target = target_folder()?.join("wasm");
     let (rust, with_std) = Rust::for_target(TRIPLE).with_context(|| {
         format!(
             "no Rust can compile for browsers: rustup target add {TRIPLE}, or rustup component add rust-src, or \
              apt-get install rustc-web cargo-web rust-web-src"
         )
     })?;
-    let arguments = ["build", "--package", "yoro-web", "--profile", "web", "--target", TRIPLE];
+    let arguments = [&["build", "--profile", "web", "--target", TRIPLE], what].concat();
     let mut command = rust.cargo()?;
-    command.args(arguments).env("CARGO_TARGET_DIR", target);
+    command.args(&arguments).env("CARGO_TARGET_DIR", &target);
     if with_std {
         build_std(&mut command, Panic::Abort);
     }
@@ -86,9 +123,9 @@ fn compile(target: &Path) -> anyhow::Result<PathBuf> {
     command.env("CARGO_ENCODED_RUSTFLAGS", anonymous_paths().unwrap_or_default());
     announce(&arguments);
     if !command.status().context("cargo cannot be started")?.success() {
-        bail!("the page's module does not compile: see above");
+        bail!("the module does not compile: see above");
     }
-    Ok(target.join(TRIPLE).join("web").join(MODULE).with_extension("wasm"))
+    Ok(target.join(TRIPLE).join("web").join(name).with_extension("wasm"))
 }
 
 /// The page's sizes in bytes.
@@ -100,10 +137,10 @@ struct Sizes {
     visit: u64,
 }
 
-/// Makes the module ready for browsers.
-fn bind(module: &Path, folder: &Path) -> anyhow::Result<Sizes> {
+/// Makes a module ready for browsers, for a page whose sources are in this folder.
+fn bind(module: &Path, folder: &Path, page: &Path) -> anyhow::Result<Sizes> {
     let mut command = cargo::program("yoro-web-bindgen")?;
-    let output = command.arg(module).arg(folder).arg(site::sources()).stderr(Stdio::inherit()).output();
+    let output = command.arg(module).arg(folder).arg(page).stderr(Stdio::inherit()).output();
     let output = output.context("yoro-web-bindgen cannot be started")?;
     if !output.status.success() {
         bail!("the module cannot be made ready for browsers: see above");

@@ -3,8 +3,7 @@
 //!
 //! `cargo run -p yoro-wgpu --example offscreen` writes `out/wgpu.png`, left and right eye side by side, the left one
 //! synthesized, and prints how near it is to the left eye as it really is. `WGPU_BACKEND=gl` chooses another back end.
-
-use std::path::Path;
+//! `cargo xtask web --wgpu --serve` shows the same in a browser with WebGPU.
 
 use anyhow::{Context as _, Result};
 use image::{Rgb, RgbImage};
@@ -18,69 +17,122 @@ const SIZE: [u32; 2] = [768, 768];
 const COLOR: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 
+#[cfg(not(target_arch = "wasm32"))]
 fn main() -> Result<()> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))
-        .context("no GPU is here, and no driver without one: install a Vulkan driver")?;
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        required_limits: wgpu::Limits::downlevel_defaults(),
-        ..Default::default()
-    }))?;
-    let engine = Engine::new(device, queue);
-
-    // Where the eyes are, and what the depth buffer means. With OpenXR, poses and frusta are those of the two views.
-    let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
-    let head = Pose { position: [0.0, 1.6, 2.0].into(), ..Pose::IDENTITY };
-    let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
-    let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
-    let views = pair.synthesis(GuardBand::Distance(0.7))?;
-
-    // Once: pipelines for the format of the other eye's texture.
-    let options = Options { color_format: COLOR, ..Options::default() };
-    let mut gather = Gather::new(&engine.device, &options)?;
-
-    // The engine's textures: the view to render is wider than the eye, by the guard band.
-    let used = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
-    let color = engine.texture(COLOR, views.source.size, used);
-    let depth = engine.texture(DEPTH, views.source.size, used);
-    let left = engine.texture(COLOR, views.target.size, used);
-    let [color_view, depth_view, left_view] =
-        [&color, &depth, &left].map(|texture| texture.create_view(&Default::default()));
-
-    // Each frame, in the engine's own command encoder.
-    let mut encoder = engine.device.create_command_encoder(&Default::default());
-    engine.render(&mut encoder, &views.source, &color_view, &depth_view);
-    let (source, target) = (Source::new(&color_view, &depth_view), Target::new(&left_view));
-    gather.record(&engine.device, &engine.queue, &mut encoder, &source, &views.warp, &target)?;
-    engine.queue.submit([encoder.finish()]);
-
-    // The rendered eye's own image is the part of the source that starts at this corner.
-    let right = engine.picture(&color, views.dominant_crop_from_top())?;
-    let left = engine.picture(&left, [0, 0])?;
-    save(&left, &right)?;
-    println!("left eye synthesized on {}, right eye rendered", adapter.get_info().name);
-
-    // Worth doing once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
-    let truth = engine.rendered_target(&views)?;
-    println!(
-        "against the left eye rendered: {:.2} dB; the right eye in its place: {:.2} dB",
-        psnr(&left, &truth),
-        psnr(&right, &truth)
-    );
+    let stereo = pollster::block_on(Stereo::draw(&instance()))?;
+    let path = std::path::Path::new("out/wgpu.png");
+    std::fs::create_dir_all("out")?;
+    let unfinished = path.with_extension("tmp");
+    stereo.side_by_side().save_with_format(&unfinished, image::ImageFormat::Png)?;
+    std::fs::rename(unfinished, path)?;
+    println!("{}\n{}", path.display(), stereo.sentence());
     Ok(())
 }
 
-fn save(left: &RgbImage, right: &RgbImage) -> Result<()> {
-    let path = Path::new("out/wgpu.png");
-    let mut both = RgbImage::new(2 * SIZE[0], SIZE[1]);
-    image::imageops::replace(&mut both, left, 0, 0);
-    image::imageops::replace(&mut both, right, i64::from(SIZE[0]), 0);
-    std::fs::create_dir_all("out")?;
-    let unfinished = path.with_extension("tmp");
-    both.save_with_format(&unfinished, image::ImageFormat::Png)?;
-    std::fs::rename(unfinished, path)?;
-    println!("{}", path.display());
-    Ok(())
+#[cfg(target_arch = "wasm32")]
+fn main() {
+    #[wasm_bindgen::prelude::wasm_bindgen]
+    extern "C" {
+        /// Shows a picture and a sentence on the page.
+        fn show(width: u32, rgba: &[u8], sentence: &str);
+    }
+    wasm_bindgen_futures::spawn_local(async {
+        match Stereo::draw(&instance()).await {
+            Ok(stereo) => {
+                let rgba = image::DynamicImage::from(stereo.side_by_side()).into_rgba8();
+                show(rgba.width(), &rgba, &stereo.sentence());
+            }
+            Err(error) => show(0, &[], &format!("{error:#}")),
+        }
+    });
+}
+
+fn instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
+}
+
+/// What is drawn.
+pub struct Stereo {
+    /// The name of the GPU.
+    pub device: String,
+    /// The synthesized eye.
+    pub left: RgbImage,
+    /// The rendered eye.
+    pub right: RgbImage,
+    /// The synthesized eye as it really is.
+    pub truth: RgbImage,
+}
+
+impl Stereo {
+    /// Draws both eyes.
+    ///
+    /// # Errors
+    /// When there is no GPU and no driver without one, and what wgpu and yoro refuse.
+    pub async fn draw(instance: &wgpu::Instance) -> Result<Stereo> {
+        let adapter = instance.request_adapter(&Default::default()).await.context(
+            "wgpu finds no GPU, and no driver that does without: install one, or take a browser with WebGPU",
+        )?;
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                required_limits: wgpu::Limits::downlevel_defaults(),
+                ..Default::default()
+            })
+            .await?;
+        let engine = Engine::new(device, queue);
+
+        // Where the eyes are, and what the depth buffer means. With OpenXR, poses and frusta are those of the two views.
+        let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
+        let head = Pose { position: [0.0, 1.6, 2.0].into(), ..Pose::IDENTITY };
+        let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
+        let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
+        let views = pair.synthesis(GuardBand::Distance(0.7))?;
+
+        // Once: pipelines for the format of the other eye's texture.
+        let options = Options { color_format: COLOR, ..Options::default() };
+        let mut gather = Gather::new(&engine.device, &options)?;
+
+        // The engine's textures: the view to render is wider than the eye, by the guard band.
+        let used =
+            TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+        let color = engine.texture(COLOR, views.source.size, used);
+        let depth = engine.texture(DEPTH, views.source.size, used);
+        let left = engine.texture(COLOR, views.target.size, used);
+        let [color_view, depth_view, left_view] =
+            [&color, &depth, &left].map(|texture| texture.create_view(&Default::default()));
+
+        // Each frame, in the engine's own command encoder.
+        let mut encoder = engine.device.create_command_encoder(&Default::default());
+        engine.render(&mut encoder, &views.source, &color_view, &depth_view);
+        let (source, target) = (Source::new(&color_view, &depth_view), Target::new(&left_view));
+        gather.record(&engine.device, &engine.queue, &mut encoder, &source, &views.warp, &target)?;
+        engine.queue.submit([encoder.finish()]);
+
+        // The rendered eye's own image is the part of the source that starts at this corner.
+        let right = engine.picture(&color, views.dominant_crop_from_top()).await?;
+        let left = engine.picture(&left, [0, 0]).await?;
+        // Worth doing once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
+        let truth = engine.rendered_target(&views).await?;
+        Ok(Stereo { device: adapter.get_info().name, left, right, truth })
+    }
+
+    /// Returns the left eye beside the right one.
+    pub fn side_by_side(&self) -> RgbImage {
+        let mut both = RgbImage::new(2 * SIZE[0], SIZE[1]);
+        image::imageops::replace(&mut both, &self.left, 0, 0);
+        image::imageops::replace(&mut both, &self.right, i64::from(SIZE[0]), 0);
+        both
+    }
+
+    /// Says how near the synthesized eye is to the truth.
+    fn sentence(&self) -> String {
+        format!(
+            "left eye synthesized on {}, right eye rendered; against the left eye rendered: {:.2} dB; the right eye in \
+             its place: {:.2} dB",
+            self.device,
+            psnr(&self.left, &self.truth),
+            psnr(&self.right, &self.truth)
+        )
+    }
 }
 
 /// Peak signal to noise ratio over red, green and blue in decibels.
@@ -198,7 +250,7 @@ impl Engine {
     }
 
     /// The synthesized eye as it really is.
-    fn rendered_target(&self, views: &SynthesisViews) -> Result<RgbImage> {
+    async fn rendered_target(&self, views: &SynthesisViews) -> Result<RgbImage> {
         let used = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
         let color = self.texture(COLOR, views.target.size, used);
         let depth = self.texture(DEPTH, views.target.size, TextureUsages::RENDER_ATTACHMENT);
@@ -206,11 +258,11 @@ impl Engine {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         self.render(&mut encoder, &views.target, &into, &depth);
         self.queue.submit([encoder.finish()]);
-        self.picture(&color, [0, 0])
+        self.picture(&color, [0, 0]).await
     }
 
     /// The part of a texture that starts at a corner.
-    fn picture(&self, texture: &wgpu::Texture, [left, top]: [u32; 2]) -> Result<RgbImage> {
+    async fn picture(&self, texture: &wgpu::Texture, [left, top]: [u32; 2]) -> Result<RgbImage> {
         let pitch = (4 * texture.width()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -224,9 +276,11 @@ impl Engine {
         let into = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
         self.queue.submit([encoder.finish()]);
-        // An error would show when the range is asked for.
-        buffer.slice(..).map_async(wgpu::MapMode::Read, drop);
+        let (sender, mapped) = futures_channel::oneshot::channel();
+        buffer.slice(..).map_async(wgpu::MapMode::Read, |result| drop(sender.send(result)));
+        // Browsers go on by themselves.
         self.device.poll(wgpu::PollType::wait_indefinitely())?;
+        mapped.await??;
         let bytes = buffer.slice(..).get_mapped_range();
         Ok(RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
             let i = ((y + top) * pitch + (x + left) * 4) as usize;

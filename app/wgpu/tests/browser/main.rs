@@ -1,5 +1,5 @@
 //! A browser's own compiler takes all modules, and its WebGPU draws OpenGL's picture with them. The page has the passes in
-//! JavaScript: the module's Rust code is not in it.
+//! JavaScript. The example is the crate itself, compiled for browsers.
 
 #[path = "../../../core/tests/vulkan/against_opengl.rs"]
 #[expect(dead_code, reason = "shared with tests that use all of it")]
@@ -7,24 +7,31 @@ mod against_opengl;
 #[path = "../../../../tests/program/browser.rs"]
 #[expect(dead_code, reason = "shared with the program's tests, which use all of it")]
 mod browser;
+#[path = "../../examples/offscreen/main.rs"]
+#[expect(dead_code, reason = "the test does without what saves the picture")]
+mod offscreen;
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::io::{BufRead as _, BufReader};
 use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::{env, fs};
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
 use against_opengl::{Gl, Picture, assert_equal, picture, warps};
 use browser::Browser;
 use yoro::synthesis::{Places, Uniforms, tiles};
+use yoro_wgpu::wgpu;
+
+/// Chromium's WebGPU on the CPU.
+const WEBGPU: [&str; 2] = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"];
 
 #[test]
 fn a_browsers_webgpu_draws_opengls_picture() {
-    let Some(mut browser) =
-        Browser::start_with(&["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"])
-    else {
-        return;
-    };
+    let Some(mut browser) = Browser::start_with(&WEBGPU) else { return };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = fs::read_dir(folder.join("src/wgsl")).unwrap().map(|entry| entry.unwrap().path());
     let modules: BTreeMap<String, String> = files
@@ -60,4 +67,57 @@ fn a_browsers_webgpu_draws_opengls_picture() {
         let got: Vec<u8> = serde_json::from_value(got["rgba"].clone()).unwrap();
         assert_equal(&got, &want, 4, 0, &format!("{warp:?}"));
     }
+}
+
+/// A program that is ended when this is dropped.
+struct Server(Child);
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn the_example_in_a_browser_draws_opengls_picture() {
+    let Some(xtask) = env::var_os("YORO_TEST_WGPU_WEB") else {
+        let without = env::var_os("YORO_TEST_WITHOUT_WGPU_WEB").is_some();
+        assert!(without, "run `cargo xtask test the_example_in_a`, or set YORO_TEST_WITHOUT_WGPU_WEB=1");
+        return eprintln!("LEFT OUT: the example was not built for browsers");
+    };
+    let Some(mut browser) = Browser::start_with(&WEBGPU) else { return };
+    let mut command = Command::new(xtask);
+    command.args(["web", "--wgpu", "--serve", "--as-built", "--port", "0"]);
+    let mut server = Server(command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap());
+    let lines = BufReader::new(server.0.stdout.take().unwrap()).lines();
+    let address = lines
+        .map_while(Result::ok)
+        .find_map(|line| line.split_whitespace().find(|word| word.starts_with("http://")).map(str::to_owned));
+    let address = address.expect("the server says where it is");
+    browser.allow(&address);
+    browser.go(&address);
+    if browser.evaluate("(async () => !await navigator.gpu?.requestAdapter())()") == json!(true) {
+        return println!("LEFT OUT: this browser has no WebGPU");
+    }
+    let says = browser.evaluate(
+        "new Promise((done) => { const look = () => { const text = document.querySelector('p').textContent; \
+         text ? done(text) : setTimeout(look, 50); }; look(); })",
+    );
+    println!("{says}");
+    let picture = browser.evaluate("document.querySelector('canvas').toDataURL('image/png').split(',')[1]");
+    let png = STANDARD.decode(picture.as_str().unwrap()).unwrap();
+    let got = image::load_from_memory(&png).unwrap().into_rgb8();
+
+    let descriptor = wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::GL,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    };
+    let want = pollster::block_on(offscreen::Stereo::draw(&wgpu::Instance::new(descriptor))).unwrap();
+    let want = want.side_by_side();
+    assert_eq!(got.dimensions(), want.dimensions(), "{says}");
+    let differ =
+        got.pixels().zip(want.pixels()).filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 1)).count();
+    println!("{differ} of {} pixels differ", got.pixels().len());
+    assert!(differ * 4000 <= got.pixels().len(), "{says}: {differ} of {} pixels differ", got.pixels().len());
 }
