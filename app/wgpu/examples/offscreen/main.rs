@@ -53,7 +53,7 @@ fn instance() -> wgpu::Instance {
 
 /// What is drawn.
 pub struct Stereo {
-    /// The name of the GPU.
+    /// The back end, and the name of the GPU where it tells.
     pub device: String,
     /// The synthesized eye.
     pub left: RgbImage,
@@ -112,7 +112,9 @@ impl Stereo {
         let left = engine.picture(&left, [0, 0]).await?;
         // Worth doing once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
         let truth = engine.rendered_target(&views).await?;
-        Ok(Stereo { device: adapter.get_info().name, left, right, truth })
+        let info = adapter.get_info();
+        let device = format!("{:?} {}", info.backend, info.name).trim_end().to_owned();
+        Ok(Stereo { device, left, right, truth })
     }
 
     /// Returns the left eye beside the right one.

@@ -14,7 +14,7 @@ globalThis.show = (width, rgba, sentence) => {
 };
 
 if (navigator.gpu) {
-  start().catch((error) => say(String(error)));
+  start({ module_or_path: "offscreen_bg.wasm" }).catch((error) => say(String(error)));
 } else {
   say("This browser has no WebGPU.");
 }

@@ -104,7 +104,6 @@ fn the_example_in_a_browser_draws_opengls_picture() {
         "new Promise((done) => { const look = () => { const text = document.querySelector('p').textContent; \
          text ? done(text) : setTimeout(look, 50); }; look(); })",
     );
-    println!("{says}");
     let picture = browser.evaluate("document.querySelector('canvas').toDataURL('image/png').split(',')[1]");
     let png = STANDARD.decode(picture.as_str().unwrap()).unwrap();
     let got = image::load_from_memory(&png).unwrap().into_rgb8();
@@ -114,10 +113,14 @@ fn the_example_in_a_browser_draws_opengls_picture() {
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     };
     let want = pollster::block_on(offscreen::Stereo::draw(&wgpu::Instance::new(descriptor))).unwrap();
+    // The room's own rays are rounded differently, too: the rendered eye differs in pixels at edges.
     let want = want.side_by_side();
     assert_eq!(got.dimensions(), want.dimensions(), "{says}");
-    let differ =
-        got.pixels().zip(want.pixels()).filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 1)).count();
-    println!("{differ} of {} pixels differ", got.pixels().len());
-    assert!(differ * 4000 <= got.pixels().len(), "{says}: {differ} of {} pixels differ", got.pixels().len());
+    let mut differ = [0, 0];
+    for ((x, _, a), b) in got.enumerate_pixels().zip(want.pixels()) {
+        differ[usize::from(x >= got.width() / 2)] += u32::from((0..3).any(|i| a[i].abs_diff(b[i]) > 1));
+    }
+    let says = format!("{says}: left and right {differ:?} pixels of {:?} differ", got.dimensions());
+    println!("{says}");
+    assert!((differ[0] + differ[1]) * 4000 <= got.width() * got.height(), "{says}");
 }
