@@ -113,7 +113,8 @@ fn the_example_in_a_browser_draws_opengls_picture() {
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     };
     let want = pollster::block_on(offscreen::Stereo::draw(&wgpu::Instance::new(descriptor))).unwrap();
-    // The room's own rays are rounded differently, too: the rendered eye differs in pixels at edges.
+    // The room itself is rounded differently here and there: the rendered eye differs in some pixels at edges, and its
+    // depth moves edges of the synthesized one.
     let want = want.side_by_side();
     assert_eq!(got.dimensions(), want.dimensions(), "{says}");
     let mut differ = [0, 0];
@@ -122,5 +123,6 @@ fn the_example_in_a_browser_draws_opengls_picture() {
     }
     let says = format!("{says}: left and right {differ:?} pixels of {:?} differ", got.dimensions());
     println!("{says}");
-    assert!((differ[0] + differ[1]) * 4000 <= got.width() * got.height(), "{says}");
+    let pixels = got.width() * got.height() / 2;
+    assert!(differ[0] * 1000 <= pixels && differ[1] * 4000 <= pixels, "{says}");
 }
