@@ -1,9 +1,5 @@
 #[vertex]
-#version 450
-void main() {
-    vec2 corner = vec2(float((gl_VertexIndex << 1) & 2), float(gl_VertexIndex & 2));
-    gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
-}
+#include "res://addons/yoro/shaders/triangle.glslinc"
 
 #[fragment]
 #version 450
