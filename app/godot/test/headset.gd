@@ -99,6 +99,15 @@ func _ready() -> void:
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
 	await _case("swapped")
 	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
+	interface.render_target_size_multiplier = 0.5
+	# Everything but the sky, and then nothing, is nearer.
+	for limit: float in [50.0, 0.3]:
+		camera.near_limit = limit
+		for i in 40:
+			if camera.trouble().contains("near") == (limit > 1.0):
+				break
+			await _frames(1)
+		print("fact near within %s m: %s" % [limit, camera.trouble().contains("near")])
 	interface.render_target_size_multiplier = 1.5
 	await _case("resized")
 	# The head moves again; nobody looks at the pictures.

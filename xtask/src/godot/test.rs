@@ -49,7 +49,12 @@ const SCENES: [Scene; 2] = [
         headset: true,
         cases: &[("plain", "left"), ("msaa", "left"), ("swapped", "right"), ("resized", "left")],
         floor: (35.0, 0.975),
-        facts: &["fact views 2", "fact trouble \n"],
+        facts: &[
+            "fact views 2",
+            "fact near within 50.0 m: true",
+            "fact near within 0.3 m: false",
+            "fact trouble \n",
+        ],
     },
 ];
 /// The same image to both eyes is farther away by so many dB.
@@ -210,7 +215,8 @@ mod tests {
 
     #[test]
     fn a_late_pose_and_a_silent_scene_are_faults() {
-        let said = "fact views 2\nfact trouble \nfact lag 0.0000001 rad, 0.0000020 m\nfact done\n";
+        let said = "fact views 2\nfact near within 50.0 m: true\nfact near within 0.3 m: false\n\
+                    fact trouble \nfact lag 0.0000001 rad, 0.0000020 m\nfact done\n";
         assert_eq!(lag(said), Some(0.000_002));
         assert!(missing(&SCENES[1], said).is_empty());
         assert_eq!(missing(&SCENES[1], &said.replace("0.0000001", "0.03")).len(), 1);

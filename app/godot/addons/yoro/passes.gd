@@ -3,7 +3,7 @@
 class_name YoroPasses
 extends RefCounted
 
-const _SHADERS: PackedStringArray = ["tiles", "spans", "march", "nearest", "put"]
+const _SHADERS: PackedStringArray = ["tiles", "spans", "march", "nearest", "put", "grid"]
 ## Binding 1 is a picture that is interpolated; all others are read texel by texel.
 const _INTERPOLATED := 1
 
