@@ -1,0 +1,311 @@
+use serde::{Deserialize, Serialize};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, Frustum, Pose, View};
+
+/// The version of the messages. Other versions are refused.
+pub const VERSION: u16 = 1;
+
+/// What a viewer must know to be served: 128 random bits.
+pub type Token = [u8; 16];
+
+/// A head is no farther from the origin than this, in metres.
+const FARTHEST: f32 = 1e5;
+/// No side of a frustum is farther from its axis than this tangent: that of 80 degrees.
+const STEEPEST: f32 = 5.671;
+/// Sides of pictures in pixels.
+const SIDES: std::ops::RangeInclusive<u16> = 16..=4096;
+
+/// An eye's pose and frustum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sight {
+    /// Pose in the world.
+    pub pose: Pose,
+    /// Frustum.
+    pub frustum: Frustum,
+}
+
+impl Sight {
+    /// Returns the view with this size in pixels and depth uniform in 1/z, 1 at `nearest` to 0 at `farthest` metres.
+    pub fn view(&self, size: [u16; 2], [nearest, farthest]: [f32; 2]) -> View {
+        let depth = DepthRange { near: nearest, far: farthest, convention: DepthConvention::Reversed };
+        View { pose: self.pose, frustum: self.frustum, depth, size: size.map(u32::from) }
+    }
+
+    fn is_valid(&self) -> bool {
+        let Sight { pose, frustum: f } = self;
+        // In this form NaN fails, too.
+        let sides = [f.left, f.right, f.bottom, f.top].iter().all(|side| side.abs() <= STEEPEST);
+        let place = pose.position.to_array().iter().all(|n| n.abs() <= FARTHEST);
+        let turned = (pose.orientation.length_squared() - 1.0).abs() < 1e-2;
+        sides && place && turned && f.width() > 1e-3 && f.height() > 1e-3
+    }
+}
+
+/// What a viewer shows, and so what the server is to render for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wish {
+    /// Milliseconds of the viewer's clock. The frame that is rendered for it brings them back.
+    pub time: f64,
+    /// Left and right eye at the newest pose of the head.
+    pub eyes: [Sight; 2],
+    /// The eye to render.
+    pub dominant: Eye,
+    /// Width and height of each eye in pixels.
+    pub size: [u16; 2],
+}
+
+/// A message to the server.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum FromViewer {
+    /// The first message.
+    Hello {
+        /// [`VERSION`].
+        version: u16,
+        /// The token of the link.
+        token: Token,
+    },
+    /// The head has moved, or time has passed.
+    Wish(Wish),
+    /// The frame of this number was decoded.
+    Decoded(u32),
+    /// Frames cannot be decoded: the next one is to be an intra frame.
+    Intra,
+}
+
+/// What the two halves of a frame's picture show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Content {
+    /// An eye on the left, wider than the eye that was wished for, and its depth as luma on the right: 255 at the first distance
+    /// in metres to 0 at the second, uniform in 1/z.
+    Depth(Sight, [f32; 2]),
+    /// Both eyes.
+    Eyes([Sight; 2]),
+}
+
+/// What stands before a frame's H.264.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameHeader {
+    /// [`Wish::time`] of the wish that it was rendered for.
+    pub time: f64,
+    /// What is in it.
+    pub content: Content,
+    /// Width and height of each half in pixels.
+    pub size: [u16; 2],
+    /// Milliseconds that it took to render.
+    pub render_ms: f32,
+    /// Milliseconds that it took to code.
+    pub code_ms: f32,
+    /// H.264's quantizer.
+    pub quantizer: u8,
+}
+
+/// Why a viewer is not served.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Refusal {
+    /// The token is another one.
+    Token,
+    /// Another viewer is being served.
+    Busy,
+    /// The viewer speaks another version.
+    Version,
+}
+
+/// A message to the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FromServer<'a> {
+    /// The answer to a hello: the head's first pose.
+    Welcome(Pose),
+    /// The answer to a hello that is not accepted, and the last message.
+    Refused(Refusal),
+    /// A frame.
+    Frame {
+        /// Consecutive from 0.
+        number: u32,
+        /// True if it can be decoded without others.
+        intra: bool,
+        /// What it shows.
+        header: FrameHeader,
+        /// H.264 in the format of Annex B.
+        data: &'a [u8],
+    },
+}
+
+impl FromViewer {
+    /// Returns the message's bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        bytes_of(self)
+    }
+
+    /// Reads a message; none for anything that a viewer does not send, or that has numbers out of bounds.
+    pub fn read(bytes: &[u8]) -> Option<FromViewer> {
+        let message = exact(bytes)?;
+        let valid = match &message {
+            FromViewer::Wish(wish) => {
+                let sizes = wish.size.iter().all(|side| SIDES.contains(side));
+                wish.time.is_finite() && sizes && wish.eyes.iter().all(Sight::is_valid)
+            }
+            _ => true,
+        };
+        valid.then_some(message)
+    }
+}
+
+// The first byte of messages to the viewer.
+const WELCOME: u8 = 0;
+const REFUSED: u8 = 1;
+const FRAME: u8 = 2;
+/// Bytes before a frame's header: [`FRAME`], 1 for an intra frame, the header's length (16 bits), the number (32 bits), all
+/// little-endian. A decoder needs no more of a frame than these.
+const PREFIX: usize = 8;
+
+impl<'a> FromServer<'a> {
+    /// Returns the message's bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        match self {
+            FromServer::Welcome(pose) => [vec![WELCOME], bytes_of(pose)].concat(),
+            FromServer::Refused(refusal) => [vec![REFUSED], bytes_of(refusal)].concat(),
+            FromServer::Frame { number, intra, header, data } => {
+                let header = bytes_of(header);
+                let mut bytes = vec![FRAME, u8::from(*intra)];
+                bytes.extend((header.len() as u16).to_le_bytes());
+                bytes.extend(number.to_le_bytes());
+                bytes.extend(header);
+                bytes.extend(*data);
+                bytes
+            }
+        }
+    }
+
+    /// Reads a message; none for anything that a server does not send, or that has numbers out of bounds.
+    pub fn read(bytes: &'a [u8]) -> Option<FromServer<'a>> {
+        match bytes.split_first()? {
+            (&WELCOME, rest) => {
+                let pose = exact(rest)?;
+                let frustum = Frustum::symmetric(1.0, 1.0);
+                Sight { pose, frustum }.is_valid().then_some(FromServer::Welcome(pose))
+            }
+            (&REFUSED, rest) => exact(rest).map(FromServer::Refused),
+            (&FRAME, _) => {
+                let (&[_, intra, low, high, number @ ..], rest) = bytes.split_first_chunk::<PREFIX>()?;
+                let length = usize::from(u16::from_le_bytes([low, high]));
+                let (header, data) = rest.split_at_checked(length)?;
+                let header: FrameHeader = exact(header)?;
+                let content = match header.content {
+                    Content::Depth(sight, [near, far]) => {
+                        sight.is_valid() && 1e-4 <= near && near < far && far <= 1e6
+                    }
+                    Content::Eyes(eyes) => eyes.iter().all(Sight::is_valid),
+                };
+                let valid = content && intra < 2 && header.size.iter().all(|side| SIDES.contains(side));
+                let number = u32::from_le_bytes(number);
+                valid.then_some(FromServer::Frame { number, intra: intra == 1, header, data })
+            }
+            _ => None,
+        }
+    }
+}
+
+fn bytes_of(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_allocvec(value).expect("numbers have bytes")
+}
+
+/// Reads a value that takes all of the bytes.
+fn exact<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Option<T> {
+    let (value, rest) = postcard::take_from_bytes(bytes).ok()?;
+    rest.is_empty().then_some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use yoro::eyes::Pose;
+
+    const SIGHT: Sight =
+        Sight { pose: Pose::IDENTITY, frustum: Frustum { left: -1.0, right: 0.9, bottom: -0.8, top: 0.7 } };
+    const WISH: Wish = Wish { time: 12.5, eyes: [SIGHT; 2], dominant: Eye::Right, size: [640, 480] };
+    const HEADER: FrameHeader = FrameHeader {
+        time: 12.5,
+        content: Content::Depth(SIGHT, [0.5, 40.0]),
+        size: [700, 500],
+        render_ms: 3.0,
+        code_ms: 4.0,
+        quantizer: 24,
+    };
+
+    fn up() -> Vec<FromViewer> {
+        let hello = FromViewer::Hello { version: VERSION, token: [7; 16] };
+        vec![hello, FromViewer::Wish(WISH), FromViewer::Decoded(9), FromViewer::Intra]
+    }
+
+    fn down() -> Vec<FromServer<'static>> {
+        let eyes = FrameHeader { content: Content::Eyes([SIGHT; 2]), ..HEADER };
+        let frame =
+            |header| FromServer::Frame { number: 70_000, intra: true, header, data: &[0, 0, 0, 1, 9] };
+        let refused = FromServer::Refused(Refusal::Busy);
+        vec![FromServer::Welcome(Pose::IDENTITY), refused, frame(HEADER), frame(eyes)]
+    }
+
+    #[test]
+    fn messages_come_back_from_their_bytes_and_from_no_fewer() {
+        for message in up() {
+            let bytes = message.to_bytes();
+            assert_eq!(FromViewer::read(&bytes), Some(message));
+            assert!((0..bytes.len()).all(|length| FromViewer::read(&bytes[..length]).is_none()));
+            assert_eq!(FromViewer::read(&[bytes, vec![0]].concat()), None, "longer than the message");
+        }
+        for message in down() {
+            let bytes = message.to_bytes();
+            assert_eq!(FromServer::read(&bytes), Some(message));
+            let needed =
+                if matches!(message, FromServer::Frame { .. }) { bytes.len() - 5 } else { bytes.len() };
+            assert!((0..needed).all(|length| FromServer::read(&bytes[..length]).is_none()));
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_bounds_are_refused() {
+        let wish = |change: fn(&mut Wish)| {
+            let mut wish = WISH;
+            change(&mut wish);
+            FromViewer::read(&FromViewer::Wish(wish).to_bytes())
+        };
+        assert!(wish(|_| {}).is_some());
+        assert_eq!(wish(|wish| wish.time = f64::NAN), None);
+        assert_eq!(wish(|wish| wish.size[1] = 0), None);
+        assert_eq!(wish(|wish| wish.size[0] = 5000), None);
+        assert_eq!(wish(|wish| wish.eyes[1].pose.position.x = f32::INFINITY), None);
+        assert_eq!(wish(|wish| wish.eyes[0].pose.orientation.w = 0.5), None);
+        assert_eq!(wish(|wish| wish.eyes[0].frustum.right = -1.0), None);
+        let frame = |header| {
+            let bytes = FromServer::Frame { number: 0, intra: false, header, data: &[] }.to_bytes();
+            FromServer::read(&bytes).is_some()
+        };
+        assert!(frame(HEADER));
+        assert!(!frame(FrameHeader { content: Content::Depth(SIGHT, [2.0, 1.0]), ..HEADER }));
+        assert!(!frame(FrameHeader { size: [0, 5], ..HEADER }));
+    }
+
+    proptest! {
+        /// Nothing that comes over a network is more than a message or none.
+        #[test]
+        fn any_bytes_are_read_without_a_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+            let _ = (FromViewer::read(&bytes), FromServer::read(&bytes));
+        }
+
+        #[test]
+        fn damaged_messages_are_read_without_a_panic(
+            which in 0usize..4, damage in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..4),
+        ) {
+            for mut bytes in [up()[which].to_bytes(), down()[which].to_bytes()] {
+                for (at, byte) in &damage {
+                    let at = at % bytes.len();
+                    bytes[at] = *byte;
+                }
+                if let Some(FromViewer::Wish(wish)) = FromViewer::read(&bytes) {
+                    prop_assert!(wish.eyes.iter().all(Sight::is_valid));
+                }
+                let _ = FromServer::read(&bytes);
+            }
+        }
+    }
+}

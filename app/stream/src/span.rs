@@ -1,0 +1,46 @@
+/// The distances that the 8 bits of depth are spread over. They change at intra frames only, as a change moves all values.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DepthSpan(Option<[f32; 2]>);
+
+/// The span reaches further than what is seen, by this factor at its near end and its square at the far one, where a step is
+/// long.
+const ROOM: f32 = 1.25;
+/// A span whose near end is closer by more than this factor wastes steps.
+const WASTE: f32 = 3.0;
+
+impl DepthSpan {
+    /// Returns the span for a frame that shows surfaces from `nearest` to `farthest` metres; with true if it is a new one,
+    /// and the frame must be an intra frame. A frame without surfaces keeps the span.
+    pub fn fit(&mut self, nearest: f32, farthest: f32) -> ([f32; 2], bool) {
+        let [near, far] = self.0.unwrap_or([f32::INFINITY, 0.0]);
+        let seen = nearest <= farthest;
+        // What is beyond the far end is shown there: nobody sees it move, if the end is far enough.
+        let fits = near <= nearest && nearest <= near * WASTE * ROOM && farthest <= far * 2.0;
+        if self.0.is_some() && (fits || !seen) {
+            return ([near, far], false);
+        }
+        let new =
+            if seen { [nearest / ROOM, (farthest * ROOM * ROOM).max(nearest * 2.0)] } else { [1.0, 100.0] };
+        self.0 = Some(new);
+        (new, true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_span_changes_when_something_comes_near_or_all_goes_far() {
+        let mut span = DepthSpan::default();
+        let (first, new) = span.fit(1.0, 20.0);
+        assert!(new && first[0] < 1.0 && first[1] > 20.0);
+        for (nearest, farthest) in [(0.9, 20.0), (1.1, 25.0), (2.5, 3.0), (f32::INFINITY, 0.0)] {
+            assert_eq!(span.fit(nearest, farthest), (first, false));
+        }
+        let (nearer, new) = span.fit(0.5, 20.0);
+        assert!(new && nearer[0] < 0.5);
+        assert!(span.fit(5.0, 20.0).1, "steps are not wasted on what is not there");
+        assert!(span.fit(5.0, 90.0).1);
+    }
+}
