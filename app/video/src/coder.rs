@@ -3,6 +3,7 @@ use openh264::encoder::{
     BitRate, Complexity, EncoderConfig, FrameRate, IntraFramePeriod, QpRange, RateControlMode, VuiConfig,
 };
 use openh264::formats::{YUVSlices, YUVSource};
+use openh264_sys2::{ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, SEncParamExt};
 
 use crate::{Planes, VideoError};
 
@@ -16,23 +17,9 @@ impl Encoder {
     /// [`VideoError::Coder`].
     pub fn new(quantizer: u8, frame_rate: f32) -> Result<Encoder, VideoError> {
         // Quality is what is asked for, so the quantizer is held and the rate is what comes of it: of the encoder's
-        // modes this one moves the quantizer within its range only, and never skips a frame for it. One thread, so
-        // that a repeated run gives the same bytes.
-        let config = EncoderConfig::new()
-            .rate_control_mode(RateControlMode::Bufferbased)
-            .qp(QpRange::new(quantizer, quantizer))
-            .bitrate(BitRate::from_bps(100_000_000))
-            .max_frame_rate(FrameRate::from_hz(frame_rate))
-            .intra_frame_period(IntraFramePeriod::auto())
-            .complexity(Complexity::Medium)
-            .skip_frames(false)
-            .scene_change_detect(false)
-            .adaptive_quantization(false)
-            .background_detection(false)
-            .num_threads(1)
-            .vui(VuiConfig::bt601().full_range(true));
-        let encoder = openh264::encoder::Encoder::with_api_config(OpenH264API::from_source(), config);
-        Ok(Encoder(encoder.map_err(|error| coder("the encoder does not start", &error))?))
+        // modes this one moves the quantizer within its range only, and never skips a frame for it.
+        let config = config(RateControlMode::Bufferbased, frame_rate).qp(QpRange::new(quantizer, quantizer));
+        Ok(Encoder(start(config)?))
     }
 
     /// Makes the next picture an intra frame, from which players can start.
@@ -45,13 +32,96 @@ impl Encoder {
     /// # Errors
     /// [`VideoError::Coder`] for a picture that is too large, or of another size than the one before.
     pub fn encode(&mut self, picture: &Planes) -> Result<Vec<u8>, VideoError> {
-        let [w, h] = picture.size;
-        let planes = (&picture.planes[0][..], &picture.planes[1][..], &picture.planes[2][..]);
-        let slices = YUVSlices::new(planes, (w, h), (w, w / 2, w / 2));
-        let bits =
-            self.0.encode(&slices).map_err(|error| coder(&format!("cannot code {w}x{h} pixels"), &error))?;
-        Ok(bits.to_vec())
+        encode(&mut self.0, picture)
     }
+}
+
+/// An H.264 encoder whose quantizer and size may change from picture to picture.
+pub struct LiveEncoder {
+    encoder: openh264::encoder::Encoder,
+    quantizer: u8,
+    size: [usize; 2],
+}
+
+impl LiveEncoder {
+    /// Starts for at most `frame_rate` pictures a second.
+    ///
+    /// # Errors
+    /// [`VideoError::Coder`].
+    pub fn new(frame_rate: f32) -> Result<LiveEncoder, VideoError> {
+        let encoder = start(config(RateControlMode::Off, frame_rate))?;
+        Ok(LiveEncoder { encoder, quantizer: 0, size: [0, 0] })
+    }
+
+    /// Returns the next picture in the format of Annex B, coded with `quantizer` (QP, 0 to 51), and true if it is an intra
+    /// frame: if `intra`, or if its size is another one.
+    ///
+    /// # Errors
+    /// [`VideoError::Coder`] for a picture that is too large.
+    pub fn encode(
+        &mut self,
+        picture: &Planes,
+        quantizer: u8,
+        intra: bool,
+    ) -> Result<(Vec<u8>, bool), VideoError> {
+        let resized = self.size != picture.size;
+        if resized {
+            // A quantizer can be set only once the encoder has a size, which the first picture gives it.
+            encode(&mut self.encoder, picture)?;
+        }
+        if resized || self.quantizer != quantizer {
+            self.set_quantizer(quantizer)?;
+        }
+        if resized || intra {
+            self.encoder.force_intra_frame();
+        }
+        (self.size, self.quantizer) = (picture.size, quantizer);
+        Ok((encode(&mut self.encoder, picture)?, resized || intra))
+    }
+
+    fn set_quantizer(&mut self, quantizer: u8) -> Result<(), VideoError> {
+        let mut parameters = SEncParamExt::default();
+        let pointer = &raw mut parameters;
+        // SAFETY: the encoder has been initialized by a picture; this option reads and writes one `SEncParamExt`, in which only
+        // the layer's quantizer is changed, that no other part of the wrapper relies on.
+        let failed = unsafe {
+            let api = self.encoder.raw_api();
+            let got = api.get_option(ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, pointer.cast());
+            (*pointer).sSpatialLayers[0].iDLayerQp = quantizer.into();
+            got != 0 || api.set_option(ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, pointer.cast()) != 0
+        };
+        if failed { Err(VideoError::Coder("the encoder refuses a quantizer".into())) } else { Ok(()) }
+    }
+}
+
+fn config(mode: RateControlMode, frame_rate: f32) -> EncoderConfig {
+    // One thread, so that a repeated run gives the same bytes.
+    EncoderConfig::new()
+        .rate_control_mode(mode)
+        .bitrate(BitRate::from_bps(100_000_000))
+        .max_frame_rate(FrameRate::from_hz(frame_rate))
+        .intra_frame_period(IntraFramePeriod::auto())
+        .complexity(Complexity::Medium)
+        .skip_frames(false)
+        .scene_change_detect(false)
+        .adaptive_quantization(false)
+        .background_detection(false)
+        .num_threads(1)
+        .vui(VuiConfig::bt601().full_range(true))
+}
+
+fn start(config: EncoderConfig) -> Result<openh264::encoder::Encoder, VideoError> {
+    let encoder = openh264::encoder::Encoder::with_api_config(OpenH264API::from_source(), config);
+    encoder.map_err(|error| coder("the encoder does not start", &error))
+}
+
+fn encode(encoder: &mut openh264::encoder::Encoder, picture: &Planes) -> Result<Vec<u8>, VideoError> {
+    let [w, h] = picture.size;
+    let planes = (&picture.planes[0][..], &picture.planes[1][..], &picture.planes[2][..]);
+    let slices = YUVSlices::new(planes, (w, h), (w, w / 2, w / 2));
+    let bits =
+        encoder.encode(&slices).map_err(|error| coder(&format!("cannot code {w}x{h} pixels"), &error))?;
+    Ok(bits.to_vec())
 }
 
 /// An H.264 decoder.
@@ -153,5 +223,34 @@ mod tests {
         assert!(fine.0 > middle.0 && middle.0 > coarse.0, "{fine:?} {middle:?} {coarse:?}");
         assert!(fine.1 > middle.1 && middle.1 > coarse.1, "{fine:?} {middle:?} {coarse:?}");
         assert_eq!(run(32), middle);
+    }
+
+    #[test]
+    fn quantizer_and_size_change_while_it_runs() {
+        let picture = |size: u32, t: u32| {
+            let noise = |x: u32, y: u32| ((x * 7 + t) ^ (y * 13)) as u8;
+            Planes::of_rgb(&RgbImage::from_fn(size, size, |x, y| Rgb([noise(x, y), noise(y, x), 90])))
+        };
+        let (mut encoder, mut decoder) = (LiveEncoder::new(30.0).unwrap(), Decoder::new().unwrap());
+        let mut run = |size, quantizer, intra| {
+            let mut sums = (0, 0.0, false);
+            for t in 0..4 {
+                let planes = picture(size, t);
+                let (coded, is_intra) = encoder.encode(&planes, quantizer, intra && t == 0).unwrap();
+                let decoded = decoder.decode(&coded).unwrap();
+                assert_eq!(decoded.size, planes.size);
+                sums.0 += coded.len();
+                sums.1 += psnr(&decoded.planes[0], &planes.planes[0]) / 4.0;
+                // A sequence's parameters stand before each intra frame.
+                assert_eq!(coded[4] & 31 == 7, is_intra);
+                sums.2 |= is_intra;
+            }
+            sums
+        };
+        let (fine, coarse, again) = (run(64, 16, false), run(64, 40, false), run(64, 16, false));
+        assert!(fine.0 > 2 * coarse.0 && again.0 > 2 * coarse.0, "{fine:?} {coarse:?} {again:?}");
+        assert!(fine.1 > coarse.1 + 6.0 && again.1 > coarse.1 + 6.0, "{fine:?} {coarse:?} {again:?}");
+        assert_eq!([fine.2, coarse.2, again.2], [true, false, false], "a new quantizer needs no intra frame");
+        assert!(run(64, 16, true).2 && run(48, 16, false).2);
     }
 }

@@ -9,8 +9,8 @@ mod file;
 mod planes;
 mod rgbd;
 
-pub use coder::{Decoder, Encoder};
+pub use coder::{Decoder, Encoder, LiveEncoder};
 pub use error::VideoError;
 pub use file::{Format, Reader, write};
 pub use planes::Planes;
-pub use rgbd::{DEPTH_BOX, Rgbd};
+pub use rgbd::{DEPTH_BOX, Rgbd, depth_luma};

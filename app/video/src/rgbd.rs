@@ -74,9 +74,14 @@ impl Rgbd {
     }
 
     fn quantize(&self, distance: f32) -> u8 {
-        let [inverse, near, far] = [distance, self.nearest, self.farthest].map(f32::recip);
-        ((inverse - far) / (near - far) * 255.0).round().clamp(0.0, 255.0) as u8
+        depth_luma(distance, [self.nearest, self.farthest])
     }
+}
+
+/// Returns the luma that stands for a distance in metres: uniform in 1/z, 255 at the nearest to 0 at the farthest.
+pub fn depth_luma(distance: f32, span: [f32; 2]) -> u8 {
+    let [near, far] = span.map(f32::recip);
+    ((distance.recip() - far) / (near - far) * 255.0).round().clamp(0.0, 255.0) as u8
 }
 
 #[cfg(test)]
