@@ -13,7 +13,7 @@ use yoro::eyes::{DepthConvention, DepthRange, EyePair, EyesError, GuardBand, Syn
 use yoro::synthesis::Edges;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_render::stereo::{Offline, PipelineOptions};
-use yoro_render::{Fxaa, GpuScene, Renderer, ViewTargets};
+use yoro_render::{Fxaa, GpuScene, PreparedScene, Renderer, ViewTargets};
 
 /// The error when an image group cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -169,6 +169,19 @@ impl GroupRenderer {
         let (color, depth) = (picture::rgb_image(&color, views.source.size), self.depth.read());
         let depth = depth_image(&depth, views.source.size);
         Ok(SourceImage { views, color, depth, depth_range: pair.depth })
+    }
+
+    /// Renders any view. Returns its colour and its depth.
+    ///
+    /// # Errors
+    /// [`GlError`] beyond the driver's limits.
+    pub fn render_one(
+        &mut self,
+        prepared: &mut PreparedScene,
+        view: &View,
+    ) -> Result<(RgbImage, DepthImage), GlError> {
+        let color = self.render_view(&mut prepared.renderer, &prepared.scene, view)?;
+        Ok((picture::rgb_image(&color, view.size), depth_image(&self.depth.read(), view.size)))
     }
 
     /// Returns RGBA of one view, rows from the bottom, and leaves its depth in `self.depth`.

@@ -69,6 +69,7 @@ suites! {
     History "history" "Quality, flicker and frame time with what the other eye has seen, as the head moves",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
     Bandwidth "bandwidth" "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path",
+    Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs that need not be here",
 }
 
@@ -94,6 +95,8 @@ pub enum Measure {
     Reprojection(Displaced),
     /// Coded sequences along a piece of the camera path.
     Bandwidth,
+    /// A stream whose frames are shown a number of frames later, at 72 frames a second.
+    Stream(usize),
     /// An estimate for a GPU that need not be here.
     Executed(Device),
     /// The same of whole frames, for several.
@@ -160,6 +163,9 @@ impl Job {
         if self.measure == Measure::Bandwidth {
             return bandwidth::steps(self.frames, &self.bandwidth);
         }
+        if let Measure::Stream(_) = self.measure {
+            return (self.frames * 2 * STREAM_QUANTIZERS.len()) as u64;
+        }
         if let Measure::Executed(_) | Measure::Reprojection(_) = self.measure {
             return self.frames as u64;
         }
@@ -219,6 +225,14 @@ const FLICKER_FRAMES: [usize; 2] = [12, 4];
 const HISTORY_SCENES: [&str; 6] = ["talk", "street", "stage", "conference", "atrium", "voxel"];
 /// Frames of the suite `history`.
 const HISTORY_FRAMES: [usize; 2] = [24, 4];
+/// Scenes of the suite `stream`.
+const STREAM_SCENES: [&str; 3] = ["talk", "street", "atrium"];
+/// Frames by which it shows frames late, at 72 a second: at rest, and after 28 and 69 ms.
+const STREAM_DELAYS: [usize; 3] = [0, 2, 5];
+/// H.264's quantizers in it.
+pub(super) const STREAM_QUANTIZERS: [u8; 3] = [20, 26, 32];
+/// Frames of the suite `stream`.
+const STREAM_FRAMES: [usize; 2] = [8, 3];
 /// Frames of the suite `guard-band`.
 const GUARD_BAND_FRAMES: [usize; 2] = [36, 6];
 
@@ -332,6 +346,16 @@ impl Choices {
                 )
             }
             Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
+            Suite::Stream => {
+                let scenes = if self.quick { &QUICK_SCENES[..] } else { &STREAM_SCENES };
+                plan(Measure::Stream(0), Vec::new()).over(self.scenes(scenes), STREAM_DELAYS, |job, late| {
+                    // Modes take part, not methods.
+                    job.contenders.clear();
+                    job.measure = Measure::Stream(late);
+                    job.setting.label = Some(format!("{late} late"));
+                    job.frames = STREAM_FRAMES[usize::from(self.quick)];
+                })
+            }
             Suite::ShaderCost if self.whole_frames => plan(
                 Measure::WholeFrames,
                 vec![Contender::CONVENTIONAL],

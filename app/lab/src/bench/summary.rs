@@ -11,7 +11,7 @@ use yoro_figures::stats::{self, median, unique};
 /// A column: heading, metric, decimals, how its values become one.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
-const COLUMNS: [Column; 18] = [
+const COLUMNS: [Column; 19] = [
     ("frame ms", metric::FRAME_MS, 1, median),
     ("CPU ms", metric::CPU_MS, 1, median),
     ("GPU ms", metric::GPU_MS, 2, median),
@@ -28,6 +28,7 @@ const COLUMNS: [Column; 18] = [
     ("fetch ms", metric::FETCH_MS, 2, mean),
     ("memory ms", metric::MEMORY_MS, 2, mean),
     ("kbit/s", bandwidth::metric::KBIT_S, 0, mean),
+    ("saved %", metric::SAVED, 1, mean),
     ("dominant", bandwidth::metric::PSNR_DOMINANT, 2, mean),
     ("other dB", bandwidth::metric::PSNR_OTHER, 2, mean),
 ];

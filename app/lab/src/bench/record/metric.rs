@@ -19,6 +19,8 @@ pub const MEMORY_MIB: &str = "memory_mib";
 
 /// PSNR of red, green and blue in dB; null for identical images.
 pub const PSNR: &str = "psnr";
+/// Bits that a stream saves over two eyes at the same quantizer, in per cent; one value.
+pub const SAVED: &str = "saved";
 /// PSNR of luma in dB.
 pub const PSNR_LUMA: &str = "psnr_luma";
 /// SSIM, gaussian 11x11, mean of red, green and blue.

@@ -4,6 +4,7 @@ mod frames;
 mod patchers;
 mod reprojection;
 mod sequences;
+mod stream;
 mod whole_frames;
 
 use std::rc::Rc;
@@ -108,6 +109,7 @@ impl<'a> Runner<'a> {
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
             Measure::Bandwidth => self.bandwidth(job, &mut prepared),
+            Measure::Stream(late) => self.stream(job, late, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
             Measure::WholeFrames => self.whole_frames(job, &mut prepared),
         };
@@ -140,6 +142,7 @@ impl<'a> Runner<'a> {
             | Measure::GuardBand
             | Measure::History(_)
             | Measure::Reprojection(Displaced::Late(..))
+            | Measure::Stream(_)
             | Measure::Bandwidth => Views::along_path(job, prepared, views::STEP)?.first(),
         };
         BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))

@@ -1,0 +1,110 @@
+//! A stream's bits and what is seen of it, some frames later.
+
+use super::Runner;
+use crate::bench::bandwidth::metric::KBIT_S;
+use crate::bench::motion::Motion;
+use crate::bench::record::{Measurement, Record, metric};
+use crate::bench::suite::{Job, STREAM_QUANTIZERS};
+use crate::bench::views::{HEADSET_RATE, Views};
+use crate::dataset::{GroupOptions, GroupRenderer};
+use crate::metrics::{Channels, SsimWindow, psnr, ssim};
+use crate::streaming::{Mode, Picture, Receiver, Stage};
+use image::RgbImage;
+use yoro::eyes::{Eye, EyePair};
+use yoro_files::interrupt;
+use yoro_render::PreparedScene;
+use yoro_stream::{Sight, Wish};
+use yoro_video::{Decoder, LiveEncoder};
+
+const MODES: [(Mode, &str); 2] = [(Mode::Eyes, "two eyes, rotation"), (Mode::Depth, "one eye and depth")];
+
+impl Runner<'_> {
+    /// Codes a walking head's frames by both modes at each quantizer, and measures both eyes at the poses that the head has
+    /// some frames later.
+    pub(super) fn stream(
+        &mut self,
+        job: &Job,
+        late: usize,
+        prepared: &mut PreparedScene,
+    ) -> anyhow::Result<()> {
+        self.bar.set_message(job.setting.to_string());
+        let all = Job { frames: job.frames + late, ..job.clone() };
+        let views = Views::of_motion(&all, prepared, Motion::Walk)?.split_at_last(all.frames)[1].clone();
+        let [_, shown] = views.clone().split_at_last(job.frames);
+        let (then, now) = (&views.pairs[..job.frames], &shown.pairs);
+        let mut groups =
+            GroupRenderer::new(self.gl, &GroupOptions { anti_aliasing: true, ..GroupOptions::default() })?;
+        let mut eye = |prepared: &mut PreparedScene, pair: &EyePair, eye| -> anyhow::Result<RgbImage> {
+            interrupt::check()?;
+            Ok(groups.render_one(prepared, &pair.view(eye))?.0)
+        };
+        let mut same = Measurement::new(&job.setting, "same image, not coded", 0);
+        let mut truths = Vec::new();
+        for (then, now) in then.iter().zip(now) {
+            let truth = [eye(prepared, now, Eye::Left)?, eye(prepared, now, Eye::Right)?];
+            let image = eye(prepared, then, then.dominant)?;
+            measure(&mut same, &[image.clone(), image], &truth)?;
+            truths.push(truth);
+        }
+        let mut measurements = vec![same];
+        let mut receiver = Receiver::new(self.gl)?;
+        let pictures = MODES.map(|(mode, _)| pictures(self.gl, mode, then, prepared));
+        for quantizer in STREAM_QUANTIZERS {
+            let mut rates = Vec::new();
+            for ((_, name), pictures) in MODES.iter().zip(&pictures) {
+                let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
+                let mut measurement = Measurement::new(&job.setting, &format!("{name}, QP {quantizer}"), 0);
+                let (mut encoder, mut decoder) = (LiveEncoder::new(HEADSET_RATE as f32)?, Decoder::new()?);
+                let mut bytes = 0;
+                for (i, picture) in pictures.iter().enumerate() {
+                    interrupt::check()?;
+                    let (bits, intra) = encoder.encode(&picture.planes, quantizer, picture.new_span)?;
+                    // A stream begins once.
+                    bytes += if i == 0 { 0 } else { bits.len() };
+                    anyhow::ensure!(i == 0 || !intra, "the distances change within the sequence");
+                    let decoded = decoder.decode(&bits)?;
+                    let eyes = receiver.eyes(&decoded, &picture.content, picture.size, &now[i])?;
+                    measure(&mut measurement, &eyes, &truths[i])?;
+                    self.bar.inc(1);
+                }
+                let rate = bytes as f64 * 8e-3 * HEADSET_RATE / (pictures.len() - 1) as f64;
+                measurement.push(KBIT_S, rate);
+                rates.push(rate);
+                if let [two, one] = rates[..] {
+                    measurement.push(metric::SAVED, (1.0 - one / two) * 100.0);
+                }
+                measurements.push(measurement);
+            }
+        }
+        self.finish_round(job, 0, vec![Record::Scene(shown.facts(job, prepared))], measurements)
+    }
+}
+
+fn pictures(
+    gl: &std::rc::Rc<yoro_gl::Context>,
+    mode: Mode,
+    pairs: &[EyePair],
+    prepared: &mut PreparedScene,
+) -> anyhow::Result<Vec<Picture>> {
+    let mut stage = Stage::new(gl, mode)?;
+    let wish = |pair: &EyePair| Wish {
+        time: 0.0,
+        eyes: [0, 1].map(|i| Sight { pose: pair.poses[i], frustum: pair.frusta[i] }),
+        dominant: pair.dominant,
+        size: pair.size.map(|n| n as u16),
+    };
+    pairs.iter().map(|pair| Ok(stage.picture(prepared, &wish(pair))?)).collect()
+}
+
+/// Notes the mean of both eyes.
+fn measure(to: &mut Measurement, eyes: &[RgbImage; 2], truth: &[RgbImage; 2]) -> anyhow::Result<()> {
+    let (mut sums, pairs) = ([0.0; 2], eyes.iter().zip(truth));
+    for (eye, truth) in pairs {
+        // Equal images have no finite PSNR, and count as hardly distorted ones.
+        sums[0] += psnr(eye, truth, Channels::Rgb)?.0.min(60.0);
+        sums[1] += ssim(eye, truth, SsimWindow::Gaussian11, Channels::Rgb)?;
+    }
+    to.push(metric::PSNR, sums[0] / 2.0);
+    to.push(metric::SSIM, sums[1] / 2.0);
+    Ok(())
+}
