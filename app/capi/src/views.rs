@@ -167,7 +167,7 @@ pub(crate) fn views(mut pair: EyePair, guard: GuardBand, down: bool) -> Result<Y
     if down {
         pair.frusta = pair.frusta.map(mirrored);
     }
-    let views = pair.synthesis(guard)?;
+    let views = pair.synthesis_views(guard)?;
     let image = |view: &View| {
         let frustum = if down { mirrored(view.frustum) } else { view.frustum };
         YoroView {

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
 
     // Returns an error, one sentence, for eyes that are not parallel, for instance.
-    let views = pair.synthesis(GuardBand::Distance(0.7))?;
+    let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
 
     // The view to render is wider than the eye, by the guard band: size and frustum come from `views.source`.
     let source = engine.create_image(views.source.size)?;

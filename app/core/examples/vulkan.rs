@@ -27,7 +27,7 @@ fn main() -> Result<()> {
     let head = Pose { position: Vec3::new(0.0, 1.6, 2.0), ..Pose::IDENTITY };
     let pair =
         EyePair::parallel(head, Frustum::symmetric(75f32.to_radians(), 1.0), 0.063, depth, SIZE, Eye::Right);
-    let views = pair.synthesis(GuardBand::Distance(0.7))?;
+    let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
 
     // The engine's images: the view to render is wider than the eye, by the guard band.
     let source = Picture::new(&views.source);

@@ -23,7 +23,7 @@
 //!
 //! // Each frame: two eyes around the head, one of which the engine renders, a little wider.
 //! let eyes = EyeOptions { ipd: 0.064, depth: DepthRange::PAPER, ..EyeOptions::default() }.pair(Pose::IDENTITY);
-//! let views = eyes.synthesis(GuardBand::Distance(1.0))?;
+//! let views = eyes.synthesis_views(GuardBand::Distance(1.0))?;
 //! let source: Source = render(&views.source);
 //! let target = Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: views.target.size };
 //! pipeline.synthesize(source, &views.warp, &target)?;

@@ -138,7 +138,7 @@ impl GroupRenderer {
         scene: &GpuScene,
         pair: &EyePair,
     ) -> Result<ImageGroup, GroupError> {
-        let views = pair.synthesis(self.options.guard_band)?;
+        let views = pair.synthesis_views(self.options.guard_band)?;
         let truth = self.render_view(renderer, scene, &views.target)?;
         let source = self.render_view(renderer, scene, &views.source)?;
         let depth = self.depth.read();
@@ -164,7 +164,7 @@ impl GroupRenderer {
         scene: &GpuScene,
         pair: &EyePair,
     ) -> Result<SourceImage, GroupError> {
-        let views = pair.synthesis(self.options.guard_band)?;
+        let views = pair.synthesis_views(self.options.guard_band)?;
         let color = self.render_view(renderer, scene, &views.source)?;
         let (color, depth) = (picture::rgb_image(&color, views.source.size), self.depth.read());
         let depth = depth_image(&depth, views.source.size);

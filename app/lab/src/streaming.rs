@@ -85,7 +85,8 @@ impl Stage {
             return Ok(Picture { planes, content, size: size(&views[0]), new_span: false });
         }
         // Eyes that are not parallel have no band of their own.
-        let own = pair.synthesis(GuardBand::Distance(NEAREST)).map_or(pair.view(pair.dominant), |v| v.source);
+        let own =
+            pair.synthesis_views(GuardBand::Distance(NEAREST)).map_or(pair.view(pair.dominant), |v| v.source);
         let view = guarded(&own, MOTION)?;
         let (color, depth) = self.groups.render_one(prepared, &view)?;
         let far = view.depth.clear_value();

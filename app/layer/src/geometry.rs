@@ -110,11 +110,11 @@ impl Offer {
             EyePair { size, ..eyes }
         };
         let eyes = sized(even);
-        let (eyes, views) = match eyes.synthesis(guard_band) {
+        let (eyes, views) = match eyes.synthesis_views(guard_band) {
             Ok(views) => (eyes, views),
             Err(error @ (EyesError::Canted { .. } | EyesError::OffAxis { .. })) => {
                 let eyes = sized(own.parallelized().ok_or(error)?);
-                (eyes, eyes.synthesis(guard_band)?)
+                (eyes, eyes.synthesis_views(guard_band)?)
             }
             Err(error) => return Err(error),
         };
@@ -244,7 +244,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
         Eye::Left => crop.origin[0].saturating_sub(beyond(left - first)),
         Eye::Right => (size[0] - part[0] - crop.origin[0]).saturating_sub(beyond(first - left)),
     };
-    let views = pair.synthesis(GuardBand::Pixels(guard.min(GuardBand::MAX_PIXELS)))?;
+    let views = pair.synthesis_views(GuardBand::Pixels(guard.min(GuardBand::MAX_PIXELS)))?;
     let inside = views.dominant_crop_from_top();
     let origin = crop.origin[0].checked_sub(inside[0]).zip(crop.origin[1].checked_sub(inside[1]));
     let fits = |origin: &(u32, u32)| {
@@ -292,7 +292,7 @@ mod tests {
     }
 
     fn expected(offer: &Offer, depth: DepthRange) -> SynthesisViews {
-        EyePair { depth, ..offer.eyes }.synthesis(GuardBand::Distance(0.5)).unwrap()
+        EyePair { depth, ..offer.eyes }.synthesis_views(GuardBand::Distance(0.5)).unwrap()
     }
 
     fn close(a: &Warp, b: &Warp) {

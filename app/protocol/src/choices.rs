@@ -268,7 +268,7 @@ named! {
 
 impl Method {
     /// True if the method shows pixels of one eye to the other, which needs eyes that look in the same direction
-    /// ([`yoro::eyes::EyePair::synthesis`]).
+    /// ([`yoro::eyes::EyePair::synthesis_views`]).
     pub fn needs_aligned_eyes(self) -> bool {
         matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Yoro)
     }

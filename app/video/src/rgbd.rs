@@ -38,7 +38,7 @@ impl Rgbd {
     /// # Errors
     /// [`EyesError`] where the numbers make no pair of eyes.
     pub fn views(&self) -> Result<SynthesisViews, EyesError> {
-        self.pair().synthesis(GuardBand::Pixels(self.guard_columns))
+        self.pair().synthesis_views(GuardBand::Pixels(self.guard_columns))
     }
 
     /// Returns the two eyes, with the head at the origin.

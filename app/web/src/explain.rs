@@ -111,7 +111,7 @@ mod tests {
     fn a_row_is_explained() {
         let pair =
             EyeOptions { size: [8, 1], ..EyeOptions::default() }.pair(Pose::look_at(Vec3::ZERO, Vec3::NEG_Z));
-        let views = pair.synthesis(GuardBand::None).unwrap();
+        let views = pair.synthesis_views(GuardBand::None).unwrap();
         // A picture all infinitely far but for one near pixel, and its other eye with one hole.
         let color: Vec<u8> = (0..8).flat_map(|x| [x * 10, 200, 7, 0]).collect();
         let depth: Vec<u8> =

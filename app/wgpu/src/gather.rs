@@ -139,7 +139,7 @@ impl Gather {
         };
         let sizes =
             [warp.source_size, tiles(warp.source_size), tiles([warp.target_size[0], warp.source_size[1]])];
-        self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, uniforms, strips, &drawn);
+        self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, (uniforms, strips), &drawn);
         Ok(())
     }
 

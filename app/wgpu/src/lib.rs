@@ -5,7 +5,7 @@
 //! [`Warp`](yoro::eyes::Warp). wgpu is part of the interface, and is handed on as [`wgpu`].
 //!
 //! Images have wgpu's own orientation, row 0 at the top. Give the warp as
-//! [`EyePair::synthesis`](yoro::eyes::EyePair::synthesis) returns it: its rows, which are counted from the bottom, are turned
+//! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the bottom, are turned
 //! inside. [`SynthesisViews::dominant_crop_from_top`](yoro::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
 //! dominant eye's own image in the source.
 //!

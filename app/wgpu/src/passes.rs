@@ -179,15 +179,15 @@ pub(crate) struct Drawn<'a> {
 }
 
 impl Passes {
-    /// Records all passes for a source of this size in pixels; the sizes of the maps are in tiles.
+    /// Records all passes for a source of this size in pixels; the sizes of the maps are in tiles. Uniforms and strips are offsets
+    /// in their buffers.
     pub(crate) fn record(
         &self,
         encoder: &mut CommandEncoder,
         groups: &Groups,
         buffers: &Buffers,
         [source_size, tile_size, span_size]: [[u32; 2]; 3],
-        uniforms: u32,
-        strips: Option<u32>,
+        (uniforms, strips): (u32, Option<u32>),
         target: &Drawn,
     ) {
         let all = |[width, height]: [u32; 2]| [0, 0, width, height];

@@ -175,7 +175,7 @@ impl Views {
             return Ok(Views::rendered(pair));
         }
         let dominant = pair.dominant;
-        let views = pair.synthesis(guard)?;
+        let views = pair.synthesis_views(guard)?;
         let crop = views.dominant_crop_from_top();
         Ok(Views { source: views.source, target: views.target, crop, dominant, warp: Some(views.warp) })
     }

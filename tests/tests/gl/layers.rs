@@ -601,7 +601,7 @@ fn agrees(gl: &Rc<Context>, given: Given, dominant: Eye, convention: DepthConven
     let depth = DepthRange { near: 0.3, far: 100.0, convention };
     let frustum = Frustum::symmetric(1.2, 3.0);
     let eyes = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
-    let warp = eyes.synthesis(guard).unwrap().warp;
+    let warp = eyes.synthesis_views(guard).unwrap().warp;
     let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
     let (rgba, map) = synthesized(gl, &samples, given, &warp);
     let (pixels, range) = forward(&samples, &warp);

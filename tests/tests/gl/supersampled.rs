@@ -114,7 +114,7 @@ fn counted(samples: &Samples, warp: &Warp) -> [f64; 3] {
 fn measure(gl: &Rc<Context>, name: &str) -> anyhow::Result<Vec<(&'static str, [f64; 2])>> {
     let group = large(gl, name)?;
     let eyes = EyeOptions { size: [SIZE; 2], ..EyeOptions::default() };
-    let warp = eyes.pair(Pose::IDENTITY).synthesis(GuardBand::None)?.warp;
+    let warp = eyes.pair(Pose::IDENTITY).synthesis_views(GuardBand::None)?.warp;
     let samples = samples(&group);
     let truth = resolved(&group.truth);
     let [split, layers, colors] = counted(&samples, &warp);

@@ -330,7 +330,7 @@ fn vulkan_equals_opengl_for_anti_aliased_sources() {
                     let depth = DepthRange { near: 0.3, far: 100.0, convention };
                     let frustum = Frustum::symmetric(1.2, 3.0);
                     let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
-                    let warp = pair.synthesis(GuardBand::Pixels(21)).unwrap().warp;
+                    let warp = pair.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
                     let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
                     let want = on_opengl(headless.gl(), &samples, given.0, given.1, &warp);
                     // Maps that just hold the source, and larger ones.
@@ -370,7 +370,7 @@ fn depth_that_a_render_pass_resolved_gives_the_same_picture() {
             let depth = DepthRange { near: 0.3, far: 100.0, convention };
             let frustum = Frustum::symmetric(1.2, 3.0);
             let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], Eye::Right);
-            let warp = pair.synthesis(GuardBand::Pixels(21)).unwrap().warp;
+            let warp = pair.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
             let samples = picture(warp.source_size, depth, false);
             let drawn = Drawn::new(gpu, &samples, Some(mode));
             let (_, resolved) = drawn.resolved.as_ref().unwrap();

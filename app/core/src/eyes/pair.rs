@@ -160,7 +160,7 @@ impl EyePair {
     ///
     /// # Errors
     /// [`EyesError`] if pixels do not move along rows only, or move too far.
-    pub fn synthesis(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
+    pub fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
         Eye::BOTH.iter().try_for_each(|&eye| self.view(eye).check())?;
         if !guard.is_possible() {
             return Err(EyesError::GuardBand(guard));
@@ -265,7 +265,7 @@ impl EyePair {
     }
 }
 
-/// Result of [`EyePair::synthesis`].
+/// Result of [`EyePair::synthesis_views`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SynthesisViews {
     /// The view to render: the dominant eye, widened.
@@ -311,7 +311,7 @@ mod tests {
     }
 
     fn law_agrees_with_matrices(pair: &EyePair, guard: GuardBand) {
-        let views = pair.synthesis(guard).unwrap();
+        let views = pair.synthesis_views(guard).unwrap();
         for (i, z) in [0.5f32, 0.9, 2.0, 7.0, 30.0, 500.0].into_iter().enumerate() {
             let local = Vec3::new((i as f32 * 0.13 - 0.3) * z, (0.2 - i as f32 * 0.09) * z, -z);
             let p = pair.poses[0].position + pair.poses[0].orientation * local;
@@ -343,7 +343,7 @@ mod tests {
         let mut p = pair(Eye::Right);
         p.frusta[0] = Frustum::from_fov(-0.9, 0.7, 0.75, -0.8);
         p.frusta[1] = Frustum::from_fov(-0.7, 0.9, 0.75, -0.8);
-        let v = p.synthesis(GuardBand::Pixels(10)).unwrap();
+        let v = p.synthesis_views(GuardBand::Pixels(10)).unwrap();
         let d = v.source.frustum.width() / v.source.size[0] as f32;
         assert!((v.source.frustum.left + v.dominant_crop[0] as f32 * d - p.frusta[1].left).abs() < 1e-5);
         assert!(v.source.frustum.left + 10.0 * d <= p.frusta[0].left + 1e-5);
@@ -356,7 +356,7 @@ mod tests {
         let rows = p.frusta[1].height() / p.size[1] as f32;
         p.frusta[0].top += 3.0 * rows;
         p.frusta[0].bottom += 3.0 * rows;
-        let v = p.synthesis(GuardBand::None).unwrap();
+        let v = p.synthesis_views(GuardBand::None).unwrap();
         assert_eq!((v.source.size[1], v.dominant_crop[1], v.dominant_crop_from_top()[1]), (515, 0, 3));
     }
 
@@ -364,7 +364,7 @@ mod tests {
     fn the_guard_band_reaches_its_distance() {
         for dominant in Eye::BOTH {
             let p = pair(dominant);
-            let v = p.synthesis(GuardBand::Distance(0.5)).unwrap();
+            let v = p.synthesis_views(GuardBand::Distance(0.5)).unwrap();
             let depth = p.depth.depth(0.5) as f64;
             // The outer column of the target must have its source inside the image.
             let x = match dominant.other() {
@@ -380,21 +380,21 @@ mod tests {
     fn unsuitable_pairs_are_refused() {
         let mut p = pair(Eye::Left);
         p.poses[0].orientation *= Quat::from_rotation_y(0.087);
-        let e = p.synthesis(GuardBand::None).unwrap_err();
+        let e = p.synthesis_views(GuardBand::None).unwrap_err();
         assert!(matches!(e, EyesError::Canted { degrees } if (degrees - 5.0).abs() < 0.1), "{e}");
         let mut p = pair(Eye::Left);
         p.poses[0].position.y += 0.01;
-        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::OffAxis { .. })));
+        assert!(matches!(p.synthesis_views(GuardBand::None), Err(EyesError::OffAxis { .. })));
         let mut p = pair(Eye::Left);
         p.poses.swap(0, 1);
-        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Swapped { .. })));
+        assert!(matches!(p.synthesis_views(GuardBand::None), Err(EyesError::Swapped { .. })));
         let mut p = pair(Eye::Left);
         p.frusta[0] = Frustum::symmetric(1.0, 1.0);
-        assert!(matches!(p.synthesis(GuardBand::None), Err(EyesError::Density { .. })));
+        assert!(matches!(p.synthesis_views(GuardBand::None), Err(EyesError::Density { .. })));
         p.depth.near = 0.0;
-        assert_eq!(p.synthesis(GuardBand::None), Err(EyesError::Planes));
+        assert_eq!(p.synthesis_views(GuardBand::None), Err(EyesError::Planes));
         let p = EyePair { size: [512, 0], ..pair(Eye::Left) };
-        assert_eq!(p.synthesis(GuardBand::None), Err(EyesError::NoPixels));
+        assert_eq!(p.synthesis_views(GuardBand::None), Err(EyesError::NoPixels));
     }
 
     #[test]
@@ -407,10 +407,10 @@ mod tests {
                 let head = Pose { position, orientation };
                 let far = EyePair::parallel(head, own.frusta[0], 0.064, own.depth, own.size, Eye::Right);
                 let warp =
-                    far.synthesis(GuardBand::None).unwrap_or_else(|e| panic!("{distance} m: {e}")).warp;
+                    far.synthesis_views(GuardBand::None).unwrap_or_else(|e| panic!("{distance} m: {e}")).warp;
                 let near =
                     EyePair::parallel(Pose::IDENTITY, own.frusta[0], 0.064, own.depth, own.size, Eye::Right);
-                let expected = near.synthesis(GuardBand::None).unwrap().warp;
+                let expected = near.synthesis_views(GuardBand::None).unwrap().warp;
                 let rounding = f64::from(distance * f32::EPSILON / 0.064);
                 assert!((warp.law.scale / expected.law.scale - 1.0).abs() < rounding + 1e-5, "{distance} m");
             }
@@ -420,7 +420,10 @@ mod tests {
             let mut off = pair(Eye::Right);
             off.poses.iter_mut().for_each(|pose| pose.position.x += distance);
             off.poses[0].position.y += 0.001;
-            assert!(matches!(off.synthesis(GuardBand::None), Err(EyesError::OffAxis { .. })), "{distance} m");
+            assert!(
+                matches!(off.synthesis_views(GuardBand::None), Err(EyesError::OffAxis { .. })),
+                "{distance} m"
+            );
         }
     }
 
@@ -432,24 +435,24 @@ mod tests {
         let shifted =
             |rows: f32| Frustum { bottom: own.bottom + rows * row, top: own.top + rows * row, ..own };
         p.frusta[1] = shifted(3.0);
-        assert_eq!(p.synthesis(GuardBand::None).unwrap().warp.row_offset, 0);
+        assert_eq!(p.synthesis_views(GuardBand::None).unwrap().warp.row_offset, 0);
         p.frusta[1] = shifted(2.4);
-        let error = p.synthesis(GuardBand::None).unwrap_err();
+        let error = p.synthesis_views(GuardBand::None).unwrap_err();
         assert!(matches!(error, EyesError::Rows { rows } if (rows - 2.4).abs() < 0.01), "{error}");
-        p.evened().synthesis(GuardBand::None).unwrap();
+        p.evened().synthesis_views(GuardBand::None).unwrap();
     }
 
     #[test]
     fn guard_bands_out_of_range_are_refused() {
         let bands = [0.0, -1.0, f32::NAN, f32::INFINITY].map(GuardBand::Distance);
         for band in bands.into_iter().chain([GuardBand::Pixels(1025), GuardBand::Pixels(u32::MAX)]) {
-            let error = pair(Eye::Left).synthesis(band).unwrap_err();
+            let error = pair(Eye::Left).synthesis_views(band).unwrap_err();
             assert!(matches!(error, EyesError::GuardBand(_)), "{band:?}: {error}");
         }
         for band in [GuardBand::Distance(0.05), GuardBand::Distance(1000.0), GuardBand::Pixels(1024)] {
-            pair(Eye::Left).synthesis(band).unwrap();
+            pair(Eye::Left).synthesis_views(band).unwrap();
         }
-        let error = pair(Eye::Left).synthesis(GuardBand::Distance(1e-30)).unwrap_err();
+        let error = pair(Eye::Left).synthesis_views(GuardBand::Distance(1e-30)).unwrap_err();
         assert!(matches!(error, EyesError::TooLarge { .. }), "{error}");
     }
 
@@ -470,7 +473,7 @@ mod tests {
         for (i, (spoil, error)) in spoilt.into_iter().enumerate() {
             let mut p = pair(Eye::Right);
             spoil(&mut p);
-            assert_eq!(p.synthesis(GuardBand::None), Err(error), "case {i}");
+            assert_eq!(p.synthesis_views(GuardBand::None), Err(error), "case {i}");
         }
     }
 
@@ -480,7 +483,7 @@ mod tests {
         apart.frusta = [0.0, -2000.0].map(|left| Frustum { left, right: left + 1.0, bottom: -0.5, top: 0.5 });
         let huge = EyePair { size: [u32::MAX; 2], ..pair(Eye::Right) };
         for eyes in [apart, huge] {
-            let error = eyes.synthesis(GuardBand::Distance(0.05)).unwrap_err();
+            let error = eyes.synthesis_views(GuardBand::Distance(0.05)).unwrap_err();
             assert!(matches!(error, EyesError::TooLarge { .. }), "{error}");
         }
     }
@@ -492,7 +495,8 @@ mod tests {
             depth: DepthRange { near: 0.3 * unit, far: 100.0 * unit, ..DepthRange::PAPER },
             ..EyeOptions::default()
         };
-        let warp = |unit| pair(unit).pair(Pose::IDENTITY).synthesis(GuardBand::Distance(unit)).unwrap().warp;
+        let warp =
+            |unit| pair(unit).pair(Pose::IDENTITY).synthesis_views(GuardBand::Distance(unit)).unwrap().warp;
         let metres = warp(1.0);
         // Giants in metres, people in centimetres and in millimetres, mice.
         for unit in [0.01, 0.1, 30.0, 100.0, 1000.0] {
@@ -502,7 +506,7 @@ mod tests {
             assert!(a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{unit}: {a:?}, {b:?}");
             let mut off_axis = pair(unit).pair(Pose::IDENTITY);
             off_axis.poses[0].position.y += 0.001 * unit;
-            let refused = off_axis.synthesis(GuardBand::None);
+            let refused = off_axis.synthesis_views(GuardBand::None);
             assert!(matches!(refused, Err(EyesError::OffAxis { .. })), "{unit}: {refused:?}");
         }
     }
@@ -515,7 +519,7 @@ mod tests {
         };
         for dominant in Eye::BOTH {
             let synthesis = |eyes: EyePair| {
-                EyePair { dominant, ..eyes }.synthesis(GuardBand::None).map(|views| views.warp)
+                EyePair { dominant, ..eyes }.synthesis_views(GuardBand::None).map(|views| views.warp)
             };
             synthesis(pair(8192, 0.3, 0.063)).unwrap();
             let error = synthesis(pair(8192, 0.05, 0.063)).unwrap_err();
@@ -536,9 +540,9 @@ mod tests {
     fn evened_eyes_contain_the_eyes_and_can_be_synthesized() {
         let mut eyes = pair(Eye::Right);
         eyes.frusta = [Frustum::from_fov(-0.9, 0.7, 0.75, -0.8), Frustum::from_fov(-0.5, 0.8, 0.7, -0.81)];
-        assert!(matches!(eyes.synthesis(GuardBand::None), Err(EyesError::Density { .. })));
+        assert!(matches!(eyes.synthesis_views(GuardBand::None), Err(EyesError::Density { .. })));
         let even = eyes.evened();
-        even.synthesis(GuardBand::None).unwrap();
+        even.synthesis_views(GuardBand::None).unwrap();
         for (grown, own) in even.frusta.iter().zip(&eyes.frusta) {
             assert!(grown.left <= own.left + 1e-6 && grown.right >= own.right - 1e-6, "{grown:?}");
             assert!(grown.bottom <= own.bottom && grown.top >= own.top, "{grown:?}");
@@ -555,9 +559,9 @@ mod tests {
             pose.position = head * Vec3::new(-side * 0.032, 0.0, 0.0);
             pose.orientation = head * Quat::from_rotation_y(side * 5f32.to_radians());
         }
-        assert!(matches!(eyes.synthesis(GuardBand::None), Err(EyesError::Canted { .. })));
+        assert!(matches!(eyes.synthesis_views(GuardBand::None), Err(EyesError::Canted { .. })));
         let parallel = eyes.parallelized().unwrap();
-        parallel.synthesis(GuardBand::None).unwrap();
+        parallel.synthesis_views(GuardBand::None).unwrap();
         assert!(
             (parallel.ipd() - 0.064).abs() < 1e-6 && parallel.poses[0].position == eyes.poses[0].position
         );

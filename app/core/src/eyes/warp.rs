@@ -71,7 +71,7 @@ impl Warp {
     }
 
     /// Checks that the shaders can store all displacements that land in the target. Those of
-    /// [`EyePair::synthesis`](super::EyePair::synthesis) are checked.
+    /// [`EyePair::synthesis_views`](super::EyePair::synthesis_views) are checked.
     ///
     /// # Errors
     /// [`EyesError::Displacement`], also for numbers that are not finite.

@@ -6,7 +6,7 @@
 //! submits nothing and waits for nothing.
 //!
 //! Source and target images have Vulkan's own orientation, row 0 at the top. Give the [`Warp`](crate::eyes::Warp) as
-//! [`EyePair::synthesis`](crate::eyes::EyePair::synthesis) returns it: its rows, which are counted from the bottom, are
+//! [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the bottom, are
 //! turned inside. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in that orientation.
 //! [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
 //! dominant eye's own image in it.

@@ -293,7 +293,7 @@ fn parallel_eyes_are_those_of_gather() {
             (3, Eye::Left, DepthConvention::Standard),
         ] {
             let eyes: EyePair = pair([150, 60], dominant, 0.063, convention);
-            let views = eyes.synthesis(GuardBand::Pixels(9)).unwrap();
+            let views = eyes.synthesis_views(GuardBand::Pixels(9)).unwrap();
             let (rgba, depth) = scene(views.source.size, eyes.depth, seed);
             let gather = Box::new(Gather::with_variant(gl, super::OUTPUTS, GatherVariant::Plain).unwrap());
             let want = super::InMemory::new(gl, gather).run(&rgba, &depth, &views.warp).rgba;

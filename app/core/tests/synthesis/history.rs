@@ -58,7 +58,7 @@ fn is_hole(entry: u32) -> bool {
 fn no_history_changes_no_bit() {
     for_each_pipeline(|gl, what, make| {
         let p = eyes(Pose::IDENTITY, Eye::Right, 0.063, DepthConvention::Standard);
-        let views = p.synthesis(GuardBand::None).unwrap();
+        let views = p.synthesis_views(GuardBand::None).unwrap();
         let source = render(&views.source, &SHEETS);
         let plain = Bench::new(gl, make, false).run(&source, &views.warp, None);
         let mut recalling = Bench::new(gl, make, true);
@@ -73,7 +73,7 @@ fn no_history_changes_no_bit() {
 fn without_a_distance_nothing_is_recalled() {
     for_each_pipeline(|gl, what, make| {
         let p = eyes(Pose::IDENTITY, Eye::Left, 0.0, DepthConvention::Reversed);
-        let views = p.synthesis(GuardBand::None).unwrap();
+        let views = p.synthesis_views(GuardBand::None).unwrap();
         let (source, other) = (render(&views.source, &SHEETS), render(&views.target, &SHEETS[..2]));
         let strips = Strips::new(&views.target, &[Some(views.target)]);
         let (rgba, _) = Bench::new(gl, make, true).run(&source, &views.warp, former(&other, SIZE, strips));
@@ -87,7 +87,7 @@ fn a_history_of_this_frame_is_the_truth() {
     for_each_pipeline(|gl, what, make| {
         for dominant in Eye::BOTH {
             let p = eyes(moved(3.0), dominant, 0.063, DepthConvention::Standard);
-            let views = p.synthesis(GuardBand::None).unwrap();
+            let views = p.synthesis_views(GuardBand::None).unwrap();
             let source = render(&views.source, &SHEETS);
             let truth = render(&views.target, &SHEETS);
             let strips = Strips::new(&views.target, &[Some(views.target)]);
@@ -117,7 +117,7 @@ fn a_history_of_this_frame_is_the_truth() {
 fn a_history_of_another_scene_changes_nothing() {
     for_each_pipeline(|gl, what, make| {
         let p = eyes(Pose::IDENTITY, Eye::Right, 0.063, DepthConvention::Reversed);
-        let views = p.synthesis(GuardBand::None).unwrap();
+        let views = p.synthesis_views(GuardBand::None).unwrap();
         let source = render(&views.source, &SHEETS);
         let plain = Bench::new(gl, make, false).run(&source, &views.warp, None);
         let mut recalling = Bench::new(gl, make, true);
@@ -214,8 +214,9 @@ fn the_lookup_is_its_reference() {
                 (Eye::Right, DepthConvention::Reversed, 2),
             ] {
                 let what = format!("{variant:?}, {dominant:?} dominant, {convention:?}, 1/{scale}");
-                let at =
-                    |head: Pose| eyes(head, dominant, 0.063, convention).synthesis(GuardBand::None).unwrap();
+                let at = |head: Pose| {
+                    eyes(head, dominant, 0.063, convention).synthesis_views(GuardBand::None).unwrap()
+                };
                 let views = at(Pose::IDENTITY);
                 let size = SIZE.map(|n| n / scale);
                 // One of five strips is missing.

@@ -126,7 +126,7 @@ pub fn ipd_zero_is_the_identity(subjects: &[Subject]) {
         for subject in subjects {
             for dominant in Eye::BOTH {
                 let p = pair([96, 33], dominant, 0.0, DepthConvention::Standard);
-                let warp = p.synthesis(GuardBand::Pixels(5)).unwrap();
+                let warp = p.synthesis_views(GuardBand::Pixels(5)).unwrap();
                 let (rgba, depth) = scene(warp.warp.source_size, p.depth, 9);
                 let result = subject.in_memory(gl).run(&rgba, &depth, &warp.warp);
                 for y in 0..33 {
@@ -146,7 +146,7 @@ pub fn a_plane_shifts_by_its_disparity(subjects: &[Subject]) {
                 // Depth such that f_px * IPD / z is 7 pixels exactly.
                 let p = pair([128, 16], dominant, 0.063, DepthConvention::Reversed);
                 let z = p.focal_length_pixels() * 0.063 / 7.0;
-                let warp = p.synthesis(GuardBand::None).unwrap().warp;
+                let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
                 let (rgba, _) = scene(warp.source_size, p.depth, 10);
                 let depth = vec![p.depth.depth(z); 128 * 16];
                 let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
@@ -181,7 +181,7 @@ pub fn dominant_left_is_the_mirror_of_dominant_right(subjects: &[Subject]) {
             let depth_flipped: Vec<f32> =
                 depth.chunks_exact(w).flat_map(|r| r.iter().rev().copied()).collect();
             let mut pipeline = subject.in_memory(gl);
-            let warp = |p: EyePair| p.synthesis(GuardBand::None).unwrap().warp;
+            let warp = |p: EyePair| p.synthesis_views(GuardBand::None).unwrap().warp;
             let a = pipeline.run(&rgba, &depth, &warp(right));
             let b = pipeline.run(&flip(&rgba), &depth_flipped, &warp(left));
             let different = a.rgba.iter().zip(&flip(&b.rgba)).filter(|(a, b)| a.abs_diff(**b) > 1).count();
@@ -194,7 +194,7 @@ pub fn a_repeated_run_is_bit_identical(subjects: &[Subject]) {
     on_every_backend(|gl| {
         for subject in subjects {
             let p = pair([200, 50], Eye::Right, 0.07, DepthConvention::Standard);
-            let warp = p.synthesis(GuardBand::None).unwrap().warp;
+            let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
             let (rgba, depth) = scene(p.size, p.depth, 12);
             let first = subject.in_memory(gl).run(&rgba, &depth, &warp);
             let mut again = subject.in_memory(gl);
@@ -214,7 +214,7 @@ pub fn a_hole_takes_nothing_nearer_than_its_background(subjects: &[Subject]) {
             for dominant in Eye::BOTH {
                 let [w, h] = [160usize, 40];
                 let p = pair([w as u32, h as u32], dominant, 0.063, DepthConvention::Standard);
-                let warp = p.synthesis(GuardBand::None).unwrap().warp;
+                let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
                 let square = |i: usize| (60..100).contains(&(i % w)) && (10..30).contains(&(i / w));
                 let depth: Vec<f32> =
                     (0..w * h).map(|i| p.depth.depth(if square(i) { 0.6 } else { 8.0 })).collect();
@@ -258,7 +258,8 @@ pub fn asymmetric_frusta_agree_with_the_symmetric_view(subjects: &[Subject]) {
             let mut q = p;
             q.size = [140, 40];
             q.frusta = [Frustum { right: 0.8 - 20.0 * d, ..wide }, Frustum { left: -0.8 + 20.0 * d, ..wide }];
-            let (wp, wq) = (p.synthesis(GuardBand::None).unwrap(), q.synthesis(GuardBand::None).unwrap());
+            let (wp, wq) =
+                (p.synthesis_views(GuardBand::None).unwrap(), q.synthesis_views(GuardBand::None).unwrap());
             assert_eq!(wq.warp.source_size, [160, 40], "the union");
             assert_eq!(wq.dominant_crop, [20, 0]);
             let (rgba, depth) = scene(wp.warp.source_size, p.depth, 14);
@@ -305,7 +306,7 @@ pub fn depth_that_is_no_number_ends(subjects: &[Subject]) {
         for subject in subjects {
             for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
                 let p = pair([96, 24], Eye::Right, 0.063, convention);
-                let warp = p.synthesis(GuardBand::None).unwrap().warp;
+                let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
                 let (rgba, whole) = scene(p.size, p.depth, 15);
                 let mut pipeline = subject.in_memory(gl);
                 let want = pipeline.run(&rgba, &whole, &warp);

@@ -68,7 +68,7 @@ fn agrees_with_reference(gl: &Rc<Context>, kind: GatherVariant, reference: Refer
         (4, Eye::Left, DepthConvention::Reversed, GuardBand::None),
     ] {
         let p = pair([150, 40], dominant, 0.063, convention);
-        let warp = p.synthesis(guard).unwrap().warp;
+        let warp = p.synthesis_views(guard).unwrap().warp;
         let (rgba, depth) = scene(warp.source_size, p.depth, seed);
         let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
         let what = format!("{subject:?}, case {seed}");
@@ -188,7 +188,7 @@ fn near_surfaces_are_found_in_few_steps() {
         ] {
             let depth = DepthRange { near: 0.05, far: 100.0, convention };
             let p = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, size, dominant);
-            let warp = p.synthesis(GuardBand::Distance(1.0)).unwrap().warp;
+            let warp = p.synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
             let (rgba, depth) = near_boxes(warp.source_size, p.depth, seed, boxes);
             let results = GatherVariant::ALL.map(|v| (v, variant(v).in_memory(gl).run(&rgba, &depth, &warp)));
             let of_all_columns = |(variant, _): &&(_, _)| *variant == GatherVariant::Software;
@@ -220,7 +220,7 @@ fn tiles_with_laws_are_their_reference() {
             [(Eye::Right, DepthConvention::Standard), (Eye::Left, DepthConvention::Reversed)]
         {
             let p = pair([203, 77], dominant, 0.6, convention);
-            let warp = p.synthesis(GuardBand::Pixels(21)).unwrap().warp;
+            let warp = p.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
             let warp = Warp { target_size: [203, 90], row_offset: 5, ..warp };
             let [w, h] = warp.source_size.map(|n| n as usize);
             // In 1 / metres, which are affine on a plane.
@@ -247,7 +247,7 @@ fn surfaces_that_move_beyond_the_image_hide_nothing() {
         for dominant in Eye::BOTH {
             let depth = DepthRange { near: 0.3, ..DepthRange::PAPER };
             let p = EyePair { depth, ..pair([150, 40], dominant, 60.0, DepthConvention::Standard) };
-            let warp = p.synthesis(GuardBand::None).unwrap().warp;
+            let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
             assert!(warp.law.scale.abs() > Warp::MAX_DISPLACEMENT);
             let metres = |i: u32| match (i % 150, i / 150) {
                 (40..60, 5..20) => 0.31,

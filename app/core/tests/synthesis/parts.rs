@@ -26,7 +26,7 @@ struct Picture {
 impl Picture {
     fn new(size: [u32; 2], dominant: Eye, seed: u64) -> Picture {
         let eyes = pair(size, dominant, 0.063, DepthConvention::Reversed);
-        let warp = eyes.synthesis(GuardBand::Pixels(9)).unwrap().warp;
+        let warp = eyes.synthesis_views(GuardBand::Pixels(9)).unwrap().warp;
         let (rgba, depth) = scene(warp.source_size, eyes.depth, seed);
         Picture { warp, rgba, depth: depth.iter().flat_map(|z| z.to_ne_bytes()).collect() }
     }

@@ -22,7 +22,7 @@ pub fn ways() -> [SynthesisOptions; 3] {
 
 pub fn warp(size: [u32; 2]) -> Warp {
     let eyes = pair(size, Eye::Right, 0.063, DepthConvention::Standard);
-    eyes.synthesis(GuardBand::Pixels(9)).unwrap().warp
+    eyes.synthesis_views(GuardBand::Pixels(9)).unwrap().warp
 }
 
 /// The objects that an engine lends: textures without filters of their own use, one of them to be compared, and a target.
@@ -601,7 +601,7 @@ fn srgb_is_encoded_where_asked_for() {
         for options in ways() {
             let mut lent = Lent::new(gl, [64, 16], Format::Srgb8Alpha8);
             lent.warp = pair([64, 16], Eye::Right, 0.0, DepthConvention::Standard)
-                .synthesis(GuardBand::Pixels(9))
+                .synthesis_views(GuardBand::Pixels(9))
                 .unwrap()
                 .warp;
             let hostile = Hostile::new(gl);

@@ -144,7 +144,8 @@ impl RecalledScene {
 /// Histories of a moving head, one strip of four missing, of the whole size and of half.
 pub fn recalled_scenes() -> Vec<RecalledScene> {
     let of = |(dominant, convention, scale)| {
-        let at = |head| sheets::eyes(head, dominant, 0.063, convention).synthesis(GuardBand::None).unwrap();
+        let at =
+            |head| sheets::eyes(head, dominant, 0.063, convention).synthesis_views(GuardBand::None).unwrap();
         let views = at(Pose::IDENTITY);
         let size = sheets::SIZE.map(|n| n / scale);
         let strip = |i: u32| (i != 2).then(|| View { size, ..at(sheets::moved(i as f32 - 5.0)).target });
@@ -214,7 +215,8 @@ pub fn warps() -> Vec<(Warp, DepthRange)> {
     for (i, range) in ranges().into_iter().enumerate() {
         let dominant = Eye::BOTH[i % 2];
         for eye in [dominant, dominant.other()] {
-            let views = eyes([150, 41], eye, range).synthesis(GuardBand::Pixels(13 * i as u32)).unwrap();
+            let views =
+                eyes([150, 41], eye, range).synthesis_views(GuardBand::Pixels(13 * i as u32)).unwrap();
             warps.push((views.warp, range));
         }
         let whole = warps[warps.len() - 1].0;

@@ -273,7 +273,7 @@ fn every_format_is_taken() {
             ];
             let sources = [&depth[..], &[vk::Format::R16_UNORM]].concat();
             let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
-            let warp = eyes([150, 41], Eye::Left, range).synthesis(GuardBand::Pixels(9)).unwrap().warp;
+            let warp = eyes([150, 41], Eye::Left, range).synthesis_views(GuardBand::Pixels(9)).unwrap().warp;
             for (i, format) in sources.into_iter().enumerate() {
                 if !gpu.has(format, vk::FormatFeatureFlags::SAMPLED_IMAGE) {
                     println!("SKIPPED: {} has no {format:?}", gpu.name());
@@ -645,7 +645,7 @@ fn cost_of_the_passes() {
     context.set_profiling(gl::Profiling::Finish);
     with_gpu(Rendering::Core, |gpu| {
         let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
-        let warp = eyes([1024; 2], Eye::Right, range).synthesis(GuardBand::Distance(1.0)).unwrap().warp;
+        let warp = eyes([1024; 2], Eye::Right, range).synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
         let picture = picture(&warp, range, 1);
         let options = Options { timed_frames: 1, ..Setup::PLAIN.options(&[warp]) };
         let mut times: [Vec<[f64; 3]>; 2] = Default::default();

@@ -240,7 +240,7 @@ impl<S: Synthesis> Counting<S> {
         prepared: &mut PreparedScene,
         pair: &EyePair,
     ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
-        let views = pair.synthesis(GuardBand::Distance(1.0))?;
+        let views = pair.synthesis_views(GuardBand::Distance(1.0))?;
         let PreparedScene { renderer, scene } = prepared;
         let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
         self.counts.resize(pair.size)?;

@@ -37,7 +37,7 @@ impl HoleFinder {
     /// # Errors
     /// [`StereoError`] for eyes that cannot be synthesized, or when GL refuses.
     pub fn find(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> Result<Vec<bool>, StereoError> {
-        let views = pair.synthesis(GuardBand::None)?;
+        let views = pair.synthesis_views(GuardBand::None)?;
         let PreparedScene { renderer, scene } = prepared;
         let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
         self.map.resize(pair.size)?;

@@ -101,7 +101,7 @@ pub fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habi
         size: [width, height],
         dominant: habits.dominant(),
     };
-    let plan = eyes.synthesis(GuardBand::Pixels(16)).unwrap();
+    let plan = eyes.synthesis_views(GuardBand::Pixels(16)).unwrap();
     assert_eq!(plan.source.size, painted.picture.size, "{what}");
     let options = Options {
         color_format: habits.formats[0],

@@ -233,7 +233,7 @@ mod tests {
     /// The border of a right eye that is rendered with a band of 56 columns on its left; or of a left eye, mirrored.
     fn border(head: Pose, dominant: Eye) -> Border {
         let pair = EyeOptions { dominant, ..EyeOptions::default() }.pair(head);
-        Border::new(&pair, &pair.synthesis(GuardBand::Distance(1.0)).unwrap())
+        Border::new(&pair, &pair.synthesis_views(GuardBand::Distance(1.0)).unwrap())
     }
 
     fn at(head: Pose) -> Border {
@@ -280,7 +280,7 @@ mod tests {
             [(DepthConvention::Standard, 100.0), (DepthConvention::Reversed, f32::INFINITY)]
         {
             pair.depth = DepthRange { near: 0.1, far, convention };
-            let border = Border::new(&pair, &pair.synthesis(GuardBand::Distance(1.0)).unwrap());
+            let border = Border::new(&pair, &pair.synthesis_views(GuardBand::Distance(1.0)).unwrap());
             let beyond = border.beyond + border.far;
             assert!((beyond - 0.1 * border.focal_length).abs() < 1.1, "{border:?}");
             let seen =

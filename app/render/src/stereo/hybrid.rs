@@ -86,7 +86,7 @@ pub(super) struct Fields {
 impl Fields {
     /// Splits a frame, unless nothing of the scene is far: then all is near.
     fn new(pair: &EyePair, threshold: f32, scene: &GpuScene) -> Result<Fields, EyesError> {
-        let union = pair.synthesis(GuardBand::None)?.source;
+        let union = pair.synthesis_views(GuardBand::None)?.source;
         let view = View { pose: Pose { position: pair.middle(), ..union.pose }, ..union };
         let mut split = Split::new(pair, threshold);
         if !split.far.is_some_and(|slice| scene.is_seen(&view, slice)) {
@@ -307,7 +307,7 @@ mod tests {
         let split = Split::new(&pair, 1.0);
         let z = split.near.unwrap()[1];
         assert!((z - 55.87).abs() < 0.01, "{z}");
-        let law = pair.synthesis(GuardBand::None).unwrap().warp.law;
+        let law = pair.synthesis_views(GuardBand::None).unwrap().warp.law;
         assert!((law.displacement(pair.depth.depth(z) as f64) - 1.0).abs() < 1e-2);
         assert_eq!(split.far, Some([OVERLAP * z, 1000.0]));
         assert_eq!(Split::new(&pair, 0.01), Split { near: Some([0.3, 1000.0]), far: None });
@@ -328,7 +328,7 @@ mod tests {
             );
             pair.frusta[0] = Frustum::from_fov(-0.9, 0.73, 0.75, -0.8);
             pair.frusta[1] = Frustum::from_fov(-0.73, 0.9, 0.75, -0.8);
-            let views = pair.synthesis(GuardBand::None).unwrap();
+            let views = pair.synthesis_views(GuardBand::None).unwrap();
             let far = views.source;
             let crops = crops(&pair, &far);
             assert_eq!(crops[dominant.index()].to_array(), views.dominant_crop.map(|n| n as i32));

@@ -27,7 +27,7 @@ impl<R: RendererOfKind> FrameMethod for Mono<R> {
     fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
         let Frame { renderer, scene, pair, .. } = frame;
         let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..**pair };
-        let views = here.synthesis(GuardBand::None)?;
+        let views = here.synthesis_views(GuardBand::None)?;
         let wants_depth = Eye::BOTH.iter().any(|eye| frame.wants_depth(*eye));
         renderer.render_all(&mut self.targets, scene, &views.source, wants_depth)?;
         let color = self.targets.color();

@@ -78,7 +78,7 @@ impl<R: ViewRenderer> Reprojected<R> {
             GuardBand::Distance(metres) | GuardBand::Auto(metres) => metres,
             GuardBand::None | GuardBand::Pixels(_) => NEAREST,
         };
-        let both = pair.synthesis(self.guard_band)?.source;
+        let both = pair.synthesis_views(self.guard_band)?.source;
         Ok(self.motion.guarded(&both, nearest)?.view)
     }
 

@@ -90,7 +90,7 @@ impl FrameMethod for ShadingReprojection {
     fn render_frame(&mut self, frame: &Frame<DeferredRenderer>) -> Result<(), StereoError> {
         let Frame { renderer, scene, pair, .. } = frame;
         // The law for the dominant eye's own image instead of one with both frusta: what is outside is shaded.
-        let views = pair.synthesis(GuardBand::None)?;
+        let views = pair.synthesis_views(GuardBand::None)?;
         let [left, bottom] = views.dominant_crop;
         let law = DisparityLaw { offset: views.warp.law.offset + f64::from(left), ..views.warp.law };
         let row_offset = views.warp.row_offset + bottom as i32;

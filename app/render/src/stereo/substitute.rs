@@ -13,7 +13,7 @@ pub struct Substitute(Option<Box<dyn StereoMethod>>);
 impl Substitute {
     /// Returns the reason why a method cannot use a pair of eyes, if so.
     pub fn reason(method: Method, pair: &EyePair) -> Option<EyesError> {
-        if method.needs_aligned_eyes() { pair.synthesis(GuardBand::None).err() } else { None }
+        if method.needs_aligned_eyes() { pair.synthesis_views(GuardBand::None).err() } else { None }
     }
 
     /// Returns the substitute, made by `create` if it is needed for the first time.

@@ -231,7 +231,7 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
     fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
         let pair = frame.pair;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
-        let views = pair.synthesis(self.options.guard_band)?;
+        let views = pair.synthesis_views(self.options.guard_band)?;
         if self.render_both(frame, &views)? {
             return Ok(());
         }

@@ -632,7 +632,7 @@ fn undrawn_samples_are_seen_by_neither_eye() {
     for dominant in Eye::BOTH {
         for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
             let pair = pair(dominant, convention);
-            let views = pair.synthesis(GuardBand::Distance(0.2)).unwrap();
+            let views = pair.synthesis_views(GuardBand::Distance(0.2)).unwrap();
             let of = |columns| of_columns(gl, (&renderer, &scene), &pair, &views, columns);
             let whole = of(None);
             // The columns that the nearest post may move in from beside, and a soft edge.

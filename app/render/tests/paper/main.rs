@@ -35,7 +35,7 @@ fn paper_is_its_reference() {
             [(5, Eye::Right, true), (6, Eye::Left, true), (7, Eye::Right, false), (8, Eye::Left, false)]
         {
             let p = pair([150, 40], dominant, 0.063, DepthConvention::Standard);
-            let warp = p.synthesis(GuardBand::Pixels(9)).unwrap().warp;
+            let warp = p.synthesis_views(GuardBand::Pixels(9)).unwrap().warp;
             let (rgba, depth) = scene(warp.source_size, p.depth, seed);
             let paper = PaperOptions { strict, linear_interpolation: false, ..Default::default() };
             let result = subject(paper).in_memory(gl).run(&rgba, &depth, &warp);
@@ -76,7 +76,7 @@ fn imbuffer_scales_cover_every_pixel_and_keep_a_plane() {
             for linear_interpolation in [false, true] {
                 let paper = PaperOptions { imbuffer, linear_interpolation, ..Default::default() };
                 let p = pair([w, h], Eye::Right, 0.063, DepthConvention::Standard);
-                let warp = p.synthesis(GuardBand::None).unwrap().warp;
+                let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
                 let z = p.focal_length_pixels() * 0.063 / 6.0;
                 let rgba: Vec<u8> = (0..w * h).flat_map(|i| [(i % w) as u8, 128, 7, 255]).collect();
                 let depth = vec![p.depth.depth(z); (w * h) as usize];

@@ -66,7 +66,7 @@ impl Why {
 fn explain(gl: &Rc<Context>, page: &mut Page, pair: &EyePair) -> Result<Option<Explanation>, StereoError> {
     let settings = page.settings;
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..settings.stereo_options() };
-    let views = pair.synthesis(match options.guard_band {
+    let views = pair.synthesis_views(match options.guard_band {
         GuardBand::Auto(distance) => GuardBand::Distance(distance),
         band => band,
     })?;

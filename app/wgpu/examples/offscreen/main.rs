@@ -85,7 +85,7 @@ impl Stereo {
         let head = Pose { position: [0.0, 1.6, 2.0].into(), ..Pose::IDENTITY };
         let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
         let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
-        let views = pair.synthesis(GuardBand::Distance(0.7))?;
+        let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
 
         // Once: pipelines for the format of the other eye's texture.
         let options = Options { color_format: COLOR, ..Options::default() };

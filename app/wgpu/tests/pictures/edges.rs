@@ -75,7 +75,7 @@ fn wanted() -> Vec<Wanted> {
         let depth = DepthRange { near: 0.3, far: 100.0, convention };
         let frustum = Frustum::symmetric(1.2, 3.0);
         let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
-        let warp = pair.synthesis(GuardBand::Pixels(21)).unwrap().warp;
+        let warp = pair.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
         let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
         let [rgba, map] = on_opengl(headless.gl(), &samples, given, &warp);
         let source_map = bytemuck::cast_slice(&map).to_vec();

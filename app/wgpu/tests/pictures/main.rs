@@ -205,7 +205,7 @@ fn every_format_is_taken() {
     ];
     let sources = [&depth[..], &[TextureFormat::R16Unorm, TextureFormat::R32Float]].concat();
     let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
-    let warp = eyes([150, 41], Eye::Left, range).synthesis(GuardBand::Pixels(9)).unwrap().warp;
+    let warp = eyes([150, 41], Eye::Left, range).synthesis_views(GuardBand::Pixels(9)).unwrap().warp;
     let gl = Gl::new();
     let exact = picture(&warp, range, 70);
     let mut rounded = picture(&warp, range, 70);
@@ -457,7 +457,7 @@ fn cost_of_the_passes() {
         return println!("LEFT OUT: wgpu on Vulkan");
     }
     let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
-    let warp = eyes([1024; 2], Eye::Right, range).synthesis(GuardBand::Distance(1.0)).unwrap().warp;
+    let warp = eyes([1024; 2], Eye::Right, range).synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
     let picture = picture(&warp, range, 1);
     let gl = Gl::new();
     let (textures, into) = gl_images(gl.headless.gl(), &picture, yoro_gl::Format::Rgba8);

@@ -243,7 +243,7 @@ impl Shower {
             (eyes.size[0] as f32 * wide.width() / narrow.width()).ceil() as u32,
             (eyes.size[1] as f32 * wide.height() / narrow.height()).ceil() as u32,
         ];
-        let views = parallel.synthesis(GuardBand::Distance(NEAREST))?;
+        let views = parallel.synthesis_views(GuardBand::Distance(NEAREST))?;
         let (_, image) = self.render(prepared, &views.source)?;
         self.parallel.resize(views.target.size)?;
         self.gather.synthesize(image, &views.warp, &Destination::whole(&self.parallel))?;

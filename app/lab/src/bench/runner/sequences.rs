@@ -192,7 +192,7 @@ impl Runner<'_> {
 /// The columns at the outer border of the eye that is not dominant for which surfaces at half a metre need a guard band:
 /// the widest that is measured.
 fn border(image: &RgbImage, pair: &EyePair) -> anyhow::Result<RgbImage> {
-    let width = pair.synthesis(Band::HalfMetre.guard_band())?.guard_columns.min(image.width());
+    let width = pair.synthesis_views(Band::HalfMetre.guard_band())?.guard_columns.min(image.width());
     let left = match pair.dominant.other() {
         Eye::Left => 0,
         Eye::Right => image.width() - width,

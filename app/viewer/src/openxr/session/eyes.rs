@@ -62,8 +62,8 @@ impl Session {
                 .into_iter()
                 .fold(1.0, f32::max)
         };
-        let aligned =
-            aligned.filter(|eyes| growth(eyes) <= MOST_GROWTH && eyes.synthesis(GuardBand::None).is_ok());
+        let aligned = aligned
+            .filter(|eyes| growth(eyes) <= MOST_GROWTH && eyes.synthesis_views(GuardBand::None).is_ok());
         let kind = std::mem::discriminant::<EyesError>;
         if reason.as_ref().map(kind) != self.realigned.as_ref().map(kind) {
             if let (Some(eyes), Some(reason)) = (&aligned, &reason) {
