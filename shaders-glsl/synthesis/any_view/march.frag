@@ -188,7 +188,10 @@ void main() {
             bool fold = behind && max(b, -1.0) < a;
             if (!has_rim && (fold || (jump && torn && b < 1.0))) {
                 has_rim = true;
-                rim = fold ? before : here;
+                rim = here;
+                if (fold) {
+                    rim = before;
+                }
             }
             if (jump && (!has_edge || line.law * (before.depth - edge.depth) < 0.0)) {
                 has_edge = true;
@@ -202,7 +205,10 @@ void main() {
     if (found) {
         color = mix(color_of(line, before), color_of(line, here), t);
     } else {
-        Sample fill = has_edge ? edge : here;
+        Sample fill = here;
+        if (has_edge) {
+            fill = edge;
+        }
         depth = fill.depth;
         float away = landing(line, fill.index, depth);
         color = abs(away) >= 0.5 ? fill_beside(line, fill, away) : color_of(line, fill);
