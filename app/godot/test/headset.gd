@@ -100,14 +100,16 @@ func _ready() -> void:
 	await _case("swapped")
 	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
 	interface.render_target_size_multiplier = 0.5
-	# Everything but the sky, and then nothing, is nearer.
-	for limit: float in [50.0, 0.3]:
-		camera.near_limit = limit
-		for i in 40:
-			if camera.trouble().contains("near") == (limit > 1.0):
-				break
-			await _frames(1)
-		print("fact near within %s m: %s" % [limit, camera.trouble().contains("near")])
+	var was := hold.at
+	# An arm's length from the wall, past its right end: a fifth, two fifths and most of the view are near, and back again.
+	var near: Array[bool] = []
+	for x: float in [4.70, 4.55, 4.35, 4.55, 4.70]:
+		hold.at = Transform3D(Basis(), Vector3(x, 1.5, -5.6))
+		await _frames(8)
+		near.append(camera.trouble().contains("near"))
+		print("near at %.2f m: %.2f of the view" % [x, camera._nearness.share])
+	print("fact near %s" % [near])
+	hold.at = was
 	interface.render_target_size_multiplier = 1.5
 	await _case("resized")
 	# The head moves again; nobody looks at the pictures.

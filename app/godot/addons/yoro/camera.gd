@@ -32,9 +32,10 @@ const SHOWN_EXCEPT := {
 }
 ## A script sees the last frame's eyes, and those of this frame may differ by rounding.
 const _PARALLEL := 1e-3
-## The shares of the view: so much near makes Godot render both eyes, and so little ends it.
-const _NEAR := 0.5
-const _FAR := 0.4
+## From this share of the view on that is near, Godot renders both eyes, and does so until less than the second is: yoro's
+## NearFieldPolicy.
+const _SWITCH_ON := 0.5
+const _SWITCH_OFF := 0.35
 
 ## How the eyes are made. Can be changed at any time.
 @export var mode := Mode.ONE_VIEW
@@ -52,9 +53,9 @@ const _FAR := 0.4
 	set(value):
 		stereo_layers = value
 		update_configuration_warnings()
-## Where more than half of the view is nearer than this, in metres, Godot renders both eyes, until less than two fifths are: so
-## near, much of the other eye is invented. 0 is never. Measured with a headset only.
-@export_range(0.0, 2.0, 0.05, "or_greater", "suffix:m") var near_limit := 0.3
+## While half of the view is nearer than this, in metres, Godot renders both eyes, until less than 35 % of it are: so near, much
+## of the other eye would be invented. 0 is never. With a headset only.
+@export_range(0.0, 2.0, 0.05, "or_greater", "suffix:m") var near_limit := 0.4
 ## Shows what the synthesis does.
 @export var debug_view := DebugView.NONE
 ## Shows both eyes side by side when there is no headset.
@@ -232,7 +233,7 @@ func _is_near() -> bool:
 		_nearness.synthesized = true
 		return false
 	_nearness.depth_limit = YoroNearness.depth_at(near_limit, near, far)
-	var is_near := _nearness.share > (_NEAR if _nearness.synthesized else _FAR)
+	var is_near := _nearness.share >= (_SWITCH_ON if _nearness.synthesized else _SWITCH_OFF)
 	if _nearness.synthesized == is_near:
 		_nearness.synthesized = not is_near
 	return is_near

@@ -50,10 +50,13 @@ func _render_callback(_type: int, data: RenderData) -> void:
 	push.encode_float(0, float(size.x) / POINTS)
 	push.encode_float(4, float(size.y) / POINTS)
 	passes.draw("grid", [_grid], [_synthesis.rendered_depth if synthesized else buffers.get_depth_layer(0, false)], push)
-	# The function holds this object until it is called.
-	_is_read = passes.device.texture_get_data_async(_grid, 0, func(bytes: PackedByteArray) -> void:
-		_is_read = false
-		var count := 0
-		for depth in bytes.to_float32_array():
-			count += int(depth > depth_limit)
-		share = float(count) / (POINTS * POINTS)) == OK
+	_is_read = passes.device.texture_get_data_async(_grid, 0, _count) == OK
+
+
+## A function of this object, which does not keep it: what is still being read when the program ends is dropped.
+func _count(bytes: PackedByteArray) -> void:
+	_is_read = false
+	var count := 0
+	for depth in bytes.to_float32_array():
+		count += int(depth > depth_limit)
+	share = float(count) / (POINTS * POINTS)
