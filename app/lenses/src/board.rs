@@ -200,17 +200,17 @@ impl Board {
         self.gl.pass("menu", || {
             self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
             for eye in Eye::BOTH {
-                self.run(&self.texture, to_panel(board, pair, eye), pointer, &eyes[eye.index()]);
+                self.run(&self.texture, to_panel(board, pair, eye), pointer, false, &eyes[eye.index()]);
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
         });
     }
 
-    /// Fills an image of the panel's size; colour is not multiplied by alpha.
-    pub fn draw(&self, pointer: Option<Vec2>, to: &Destination) {
+    /// Fills an image of the panel's size with linear colour, which is not multiplied by alpha: for a compositor.
+    pub fn draw_linear(&self, pointer: Option<Vec2>, to: &Destination) {
         self.gl.pass("menu", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
-            self.run(&self.texture, onto(to), pointer, to);
+            self.run(&self.texture, onto(to), pointer, true, to);
         });
     }
 
@@ -220,14 +220,18 @@ impl Board {
         let origin = [window.origin[0] + x, window.origin[1] + y];
         self.gl.bind_framebuffer(window.framebuffer, window.origin, window.size);
         self.gl.fill(window.origin, window.size, [f32::from(GROUND) / 255.0; 4]);
-        self.draw(None, &Destination { origin, size, ..*window });
+        let panel = Destination { origin, size, ..*window };
+        self.gl.pass("menu", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            self.run(&self.texture, onto(&panel), None, false, &panel);
+        });
         if has_picture {
             let scaled = |n: usize| (n as u64 * u64::from(size[0]) / SIZE[0] as u64) as u32;
             let [width, height] = PICTURE.map(scaled);
             let at = [size[0] - width - scaled(INSET), size[1] - height - scaled(INSET)];
             let origin = [origin[0] + at[0], origin[1] + at[1]];
             let to = Destination { origin, size: [width, height], ..*window };
-            self.gl.pass("menu", || self.run(&self.picture, onto(&to), None, &to));
+            self.gl.pass("menu", || self.run(&self.picture, onto(&to), None, false, &to));
         }
     }
 
@@ -238,13 +242,21 @@ impl Board {
             for (sign, right) in self.signs.iter().zip([0, window.size[0].saturating_sub(side)]) {
                 let y = window.origin[1] + window.size[1].saturating_sub(side);
                 let to = Destination { origin: [window.origin[0] + right, y], size: [side; 2], ..*window };
-                self.run(sign, onto(&to), None, &to);
+                self.run(sign, onto(&to), None, false, &to);
             }
             self.gl.set_raster_state(&RasterState::SCREEN);
         });
     }
 
-    fn run(&self, texture: &Texture, to_panel: Mat3, pointer: Option<Vec2>, to: &Destination) {
+    /// Draws brightness on a plane, `to_linear` or display-referred.
+    fn run(
+        &self,
+        texture: &Texture,
+        to_panel: Mat3,
+        pointer: Option<Vec2>,
+        to_linear: bool,
+        to: &Destination,
+    ) {
         let radius = DISTANCE * (DOT_DEGREES.to_radians() / 2.0).tan();
         self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
         self.program
@@ -252,6 +264,7 @@ impl Board {
             .texture("panel", 0, texture.raw())
             .set("to_panel", to_panel)
             .set("origin", Vec2::new(to.origin[0] as f32, to.origin[1] as f32))
+            .set("to_linear", to_linear)
             .set("pointer", pointer.unwrap_or(Vec2::splat(-9.0)))
             .set("dot_radius", radius / Vec2::from(board_metres()));
         self.gl.draw_screen();

@@ -253,10 +253,10 @@ impl Viewer {
         attached.board.draw_into_eyes(&board_pose, self.menu.hit(), pair, eyes);
     }
 
-    /// Fills an image of [`Board::SIZE`](yoro_lenses::Board::SIZE) with the menu.
+    /// Fills a compositor's image of [`Board::SIZE`](yoro_lenses::Board::SIZE) with the menu.
     pub fn draw_menu_image(&mut self, to: &Destination) {
         let Some(attached) = &mut self.attached else { return };
         attached.board.set(&self.menu.tiles);
-        attached.board.draw(self.menu.hit(), to);
+        attached.board.draw_linear(self.menu.hit(), to);
     }
 }
