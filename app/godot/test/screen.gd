@@ -21,8 +21,11 @@ func _ready() -> void:
 	glass.layers = camera.stereo_layers
 	await _case("plain")
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
-	await _case("swapped")
+	await _case("swapped", ["ONE_VIEW"])
 	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
+	camera.synthesis().short_way = false
+	await _case("every", ["ONE_VIEW"])
+	camera.synthesis().short_way = true
 	camera.ipd_scale = 0.0
 	await _case("ipd0")
 	camera.ipd_scale = 1.0
@@ -33,22 +36,18 @@ func _ready() -> void:
 	room.environment.environment.glow_bloom = 0.3
 	await _case("glow")
 	room.environment.environment.glow_enabled = false
-	# What is shown follows the environment within a tenth of a second.
-	await _frames(9)
-	camera.synthesis().short_way = false
-	await _case("every")
-	camera.synthesis().short_way = true
 	get_window().size = Vector2i(800, 300)
+	# What is shown follows the environment within eight frames.
+	await _frames(9)
 	await _case("resized")
 	for view: int in [YoroCamera3D.DebugView.HOLES, YoroCamera3D.DebugView.DISPARITY, YoroCamera3D.DebugView.MADE_EYE]:
 		camera.debug_view = view as YoroCamera3D.DebugView
 		await _frames(2)
 		_save("debug-%d" % view)
 	camera.debug_view = YoroCamera3D.DebugView.NONE
-	# As it was at first, after everything above.
+	# As large as at first, after everything above.
 	get_window().size = Vector2i(1024, 512)
-	await _frames(4)
-	_save("again")
+	await _frames(2)
 	camera.preview_without_headset = false
 	await _frames(3)
 	print("fact preview %s" % [camera.preview() == null])
@@ -61,11 +60,11 @@ func _frames(count: int) -> void:
 		await RenderingServer.frame_post_draw
 
 
-## Both eyes with one view and with both, switched while running.
-func _case(name: String) -> void:
-	for mode: String in ["BOTH_VIEWS", "ONE_VIEW"]:
+## Both eyes with both views and with one, switched while running.
+func _case(name: String, modes: Array[String] = ["BOTH_VIEWS", "ONE_VIEW"]) -> void:
+	for mode in modes:
 		camera.mode = YoroCamera3D.Mode[mode]
-		await _frames(9 if name == "glow" else 3)
+		await _frames(9 if name == "glow" and mode == "ONE_VIEW" else 2)
 		_save("%s-%s" % [name, mode.to_lower()])
 
 

@@ -16,23 +16,31 @@ pub struct Quality {
     pub ssim: f64,
 }
 
-/// Returns for each case the synthesized eye and the rendered one, against what Godot draws for the synthesized eye. A case is
-/// its name and the eye that is synthesized.
+/// A case of a scene: its pictures' name, the eye that is synthesized, and the case with Godot's pictures of the same view.
+pub type Case = [&'static str; 3];
+
+/// Returns for each case the synthesized eye and the rendered one, against what Godot draws for the synthesized eye.
 ///
 /// # Errors
 /// When a picture is missing.
 pub fn compare(
     yoro: &mut dyn FnMut() -> Command,
     folder: &Path,
-    cases: &[(&str, &str)],
+    cases: &[Case],
 ) -> anyhow::Result<Vec<[Quality; 2]>> {
     let place = |kind: &str, case: &str| folder.join("compared").join(kind).join(format!("{case}.png"));
-    for (case, made) in cases {
+    for [case, made, godot] in cases {
         let other = if *made == "left" { "right" } else { "left" };
-        for (kind, mode, eye) in
-            [("made", "one_view", *made), ("same", "both_views", other), ("truth", "both_views", *made)]
-        {
-            copy(&folder.join(format!("{case}-{mode}-{eye}.png")), &place(kind, case))?;
+        for (kind, of, mode, eye) in [
+            ("made", case, "one_view", *made),
+            ("truth", godot, "both_views", *made),
+            // Godot's eyes are as far from each other in either direction.
+            ("same", godot, "both_views", other),
+        ] {
+            if kind == "same" && case != godot {
+                continue;
+            }
+            copy(&folder.join(format!("{of}-{mode}-{eye}.png")), &place(kind, case))?;
         }
     }
     let mut told = ["made", "same"].into_iter().map(|kind| {
@@ -51,9 +59,9 @@ pub fn compare(
     let (made, same) = (made?, same?);
     cases
         .iter()
-        .map(|(case, _)| {
-            let find = |told| quality(told, case).with_context(|| format!("{case} was not compared"));
-            Ok([find(&made)?, find(&same)?])
+        .map(|[case, _, godot]| {
+            let find = |told, case| quality(told, case).with_context(|| format!("{case} was not compared"));
+            Ok([find(&made, case)?, find(&same, godot)?])
         })
         .collect()
 }

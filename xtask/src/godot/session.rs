@@ -57,10 +57,13 @@ impl Session {
             .args(arguments)
             .env("DISPLAY", &self.display)
             .env("XDG_RUNTIME_DIR", folder)
-            .env("XDG_DATA_HOME", folder)
-            .env("XDG_CONFIG_HOME", folder)
             // Compiled shaders are the same in all runs.
-            .env("XDG_CACHE_HOME", folder.with_file_name("cache"))
+            .envs(
+                ["XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME"]
+                    .map(|it| (it, folder.with_file_name("cache"))),
+            )
+            // Lavapipe: most shaders are drawn with for a few frames, less than optimizing them takes.
+            .env("GALLIVM_PERF", "nopt")
             .stdin(Stdio::null())
             .stdout(file.try_clone()?)
             .stderr(file)

@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 use yoro_tools::cargo;
 use yoro_tools::folders::{make_parent, remove, target_folder};
 
-use super::pictures::{Quality, compare};
+use super::pictures::{Case, Quality, compare};
 use super::project;
 use super::session::Session;
 
@@ -16,11 +16,11 @@ const RENDERERS: [&str; 2] = ["mobile", "forward_plus"];
 /// No run takes longer, on two busy processor cores.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// A scene of the project, and the pictures that it writes: the case, and the eye that is synthesized.
+/// A scene of the project, and the pictures that it writes.
 struct Scene {
     name: &'static str,
     headset: bool,
-    cases: &'static [(&'static str, &'static str)],
+    cases: &'static [Case],
     /// The synthesized eye is not farther from Godot's own: PSNR in dB, SSIM.
     floor: (f64, f64),
     /// What it says when all is well, by its beginning.
@@ -32,13 +32,13 @@ const SCENES: [Scene; 2] = [
         name: "screen",
         headset: false,
         cases: &[
-            ("plain", "left"),
-            ("swapped", "right"),
-            ("ipd0", "left"),
-            ("msaa", "left"),
-            ("glow", "left"),
-            ("every", "left"),
-            ("resized", "left"),
+            ["plain", "left", "plain"],
+            ["swapped", "right", "plain"],
+            ["every", "left", "plain"],
+            ["ipd0", "left", "ipd0"],
+            ["msaa", "left", "msaa"],
+            ["glow", "left", "glow"],
+            ["resized", "left", "resized"],
         ],
         // With 32 pixels for a pattern's square, 75 degrees high: less than in the headset.
         floor: (32.5, 0.975),
@@ -47,7 +47,12 @@ const SCENES: [Scene; 2] = [
     Scene {
         name: "headset",
         headset: true,
-        cases: &[("plain", "left"), ("msaa", "left"), ("swapped", "right"), ("resized", "left")],
+        cases: &[
+            ["plain", "left", "plain"],
+            ["msaa", "left", "msaa"],
+            ["swapped", "right", "plain"],
+            ["resized", "left", "resized"],
+        ],
         floor: (35.0, 0.975),
         facts: &[
             "fact views 2",
@@ -102,7 +107,7 @@ pub fn test() -> anyhow::Result<()> {
             found.extend(missing(scene, &printed));
             match compare(&mut || Command::new(&program), &run, scene.cases) {
                 Ok(figures) => {
-                    for ((case, _), [made, same]) in scene.cases.iter().zip(figures) {
+                    for ([case, ..], [made, same]) in scene.cases.iter().zip(figures) {
                         println!(
                             "{what} {case}: {:.2} dB, SSIM {:.4}; the same image to both eyes {:.2} dB, {:.4}",
                             made.psnr, made.ssim, same.psnr, same.ssim
