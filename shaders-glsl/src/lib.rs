@@ -91,6 +91,7 @@ static FILES: &[(&str, &str)] = embed![
     "synthesis/layers/split.frag",
     "synthesis/layers/tiles.frag",
     "synthesis/march.vert",
+    "viewer/decoded.frag",
     "viewer/hud.frag",
     "viewer/lens.frag",
     "viewer/lens.vert",

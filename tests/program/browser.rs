@@ -24,8 +24,8 @@ pub struct Browser {
     session: Option<String>,
     last_id: u64,
     loads: usize,
-    /// The address, beside files, from which pages may load.
-    server: Option<String>,
+    /// The addresses, beside files, from which pages may load.
+    servers: Vec<String>,
     /// The warnings, and everything that scripts wrote to the console.
     console: Vec<String>,
     /// The exceptions of scripts, and the files that the page could not load.
@@ -82,7 +82,7 @@ impl Browser {
             session: None,
             last_id: 0,
             loads: 0,
-            server: None,
+            servers: Vec::new(),
             console: Vec::new(),
             errors: Vec::new(),
             _profile: profile,
@@ -132,7 +132,7 @@ impl Browser {
             Some("Network.requestWillBeSent") => {
                 let url = parameters["request"]["url"].as_str().unwrap_or_default();
                 let own = ["file://", "data:", "about:", "blob:"].iter().any(|start| url.starts_with(start))
-                    || self.server.as_ref().is_some_and(|server| url.starts_with(server));
+                    || self.servers.iter().any(|server| url.starts_with(server));
                 if !own {
                     self.errors.push(format!("the page asks for {url}"));
                 }
@@ -149,7 +149,7 @@ impl Browser {
 
     /// Lets pages load from an address, too.
     pub fn allow(&mut self, server: &str) {
-        self.server = Some(server.to_owned());
+        self.servers.push(server.to_owned());
     }
 
     /// Runs a script in each page before its own.

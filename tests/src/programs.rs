@@ -183,6 +183,7 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
         let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
         Program::new(gl, source, &defines)?;
     }
+    Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?;
     Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
     Program::new(gl, ShaderSource::Screen("viewer/menu.frag"), &[])?;
     for define in [None, Some("ANAGLYPH"), Some("DIFFERENCE"), Some("WITH_DEPTH"), Some("PACKED_DEPTH")] {

@@ -6,6 +6,7 @@
 //! files.
 
 pub mod decoder;
+pub mod http;
 mod input;
 pub mod interrupt;
 

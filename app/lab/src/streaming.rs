@@ -107,7 +107,7 @@ fn wish_views(pair: &EyePair) -> [View; 2] {
     yoro::eyes::Eye::BOTH.map(|eye| pair.view(eye))
 }
 
-/// Makes eyes of a stream's pictures, as a viewer does.
+/// Makes eyes of a stream's pictures, as the page does.
 pub struct Receiver {
     gl: Rc<Context>,
     any_view: AnyView,

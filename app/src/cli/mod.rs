@@ -19,6 +19,7 @@ pub mod render;
 pub mod report;
 pub mod run;
 pub mod scenes;
+pub mod serve;
 pub mod settings;
 pub mod study;
 pub mod synthesize;

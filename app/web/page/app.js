@@ -39,6 +39,8 @@ export const app = {
   source: null,
   /** The source that is being loaded. @type {Source | null} */
   wanted: null,
+  /** A stream's state, once it has begun. @type {{frames: number, there: boolean, losses: number} | null} */
+  stream: null,
   /** The module's facts about the scene; null for pictures. */
   facts: null,
   /** The built-in scenes: `{name, title, kiloTriangles}`. */

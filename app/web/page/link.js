@@ -2,7 +2,7 @@
 
 export const defaults = {
   scene: 'prototype', viewpoint: 0, method: 'auto', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 63,
-  dominant: 'right', display: 'divider', divider: 50, scale: 1, at: null,
+  dominant: 'right', display: 'divider', divider: 50, scale: 1, at: null, stream: null,
 };
 
 /** The anti-aliasing that each renderer has, its default first. */

@@ -63,6 +63,10 @@ function followLink({ newURL }) {
   clear();
   // The address may have been written over since it changed: settings are kept after a short delay.
   readAddress(new URL(newURL).hash);
+  if (app.settings.stream) {
+    location.reload();
+    return;
+  }
   const here = app.wanted ?? app.source;
   if (here?.builtin !== app.settings.scene) showSource({ builtin: app.settings.scene }, { keepPlace: true });
   else if (app.page) {
@@ -80,6 +84,11 @@ function lost(event) {
 }
 
 function restored() {
+  // A stream begins again with the page.
+  if (app.stream) {
+    location.reload();
+    return;
+  }
   if (!attach()) return;
   clear();
   apply();
@@ -151,7 +160,8 @@ export async function start() {
   offerPhone();
   offerHeadset();
   watchWhy();
-  await showSource({ builtin: app.settings.scene }, { keepPlace: true });
+  if (app.settings.stream) (await import('./stream.js')).follow(app.settings.stream);
+  else await showSource({ builtin: app.settings.scene }, { keepPlace: true });
   app.ready = true;
   // Loaded once, the page works without a network, where browsers allow that: over https and on this machine. What is kept
   // for that is fetched once more, which is not to delay the first picture.

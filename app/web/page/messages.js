@@ -25,11 +25,13 @@ export function clear() {
 /**
  * True if nobody else draws and a scene is shown; says otherwise what is missing.
  * @param {string} need a sentence: what needs a scene
+ * @param {boolean} streams true if a stream will do
  */
-export function isFree(need) {
+export function isFree(need, streams = false) {
+  const shown = Boolean(app.page && (app.facts || (streams && app.stream)));
   if (app.busy) say(app.busy.end);
-  else if (!app.facts || !app.page) say(`${need} a scene: choose one of the list.`);
-  return Boolean(!app.busy && app.facts && app.page);
+  else if (!shown) say(`${need} a scene: choose one of the list.`);
+  return !app.busy && shown;
 }
 
 /**

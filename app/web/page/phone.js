@@ -149,7 +149,7 @@ export function offerPhone() {
     element('phone-width').value = localStorage.getItem('screen') ?? '140';
   } catch { /* The fields keep what they have. */ }
   element('phone').addEventListener('click', async () => {
-    if (!isFree('A viewer shows') || !checkFields()) return;
+    if (!isFree('A viewer shows', true) || !checkFields()) return;
     clear();
     const sensors = askForSensors();
     const full = element('stage').requestFullscreen?.({ navigationUI: 'hide' });

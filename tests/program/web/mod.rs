@@ -4,6 +4,7 @@ mod files;
 mod headset;
 mod measure;
 mod methods;
+mod stream;
 mod visit;
 mod visitor;
 

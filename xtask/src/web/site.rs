@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::Context as _;
+use yoro_files::http::POLICY;
 use yoro_tools::folders::{self, copy, root};
 
 /// The name that stands for the version in the page's sources.
@@ -27,10 +28,7 @@ const LASTING: [&str; 8] = [
     "example.mtl",
 ];
 /// The scripts that the page does not load as modules of its own.
-const SEPARATE: [&str; 2] = ["boot.js", "worker.js"];
-/// The content policy that the page works under.
-pub const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
-
+const SEPARATE: [&str; 4] = ["boot.js", "worker.js", "stream.js", "stream-worker.js"];
 /// Returns the folder of the page's sources.
 pub fn sources() -> PathBuf {
     root().join("app/web/page")
@@ -95,7 +93,9 @@ fn fill(text: &str, version: &str, names: &[String], source: Option<&str>) -> St
     let scripts = names.iter().filter(|name| name.ends_with(".js") && !SEPARATE.contains(&name.as_str()));
     let modules: Vec<String> =
         scripts.map(|name| format!("<link rel=\"modulepreload\" href=\"{VERSION}/{name}\">")).collect();
-    let list: Vec<String> = names.iter().map(|name| format!("'{VERSION}/{name}'")).collect();
+    // A stream has no use without a network.
+    let kept = names.iter().filter(|name| !name.starts_with("stream"));
+    let list: Vec<String> = kept.map(|name| format!("'{VERSION}/{name}'")).collect();
     let source = source.map_or_else(String::new, |source| format!("<a href=\"{source}\">Source</a>"));
     text.replace("<!-- MODULES -->", &modules.join("\n"))
         .replace("/* FILES */", &list.join(", "))

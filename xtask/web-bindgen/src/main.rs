@@ -12,6 +12,8 @@ use wasm_bindgen_cli_support::Bindgen;
 
 /// What a first visit loads besides the module.
 const TEXTS: [&str; 5] = ["css", "html", "js", "svg", "webmanifest"];
+/// What only a visit to a stream loads.
+const LATER: [&str; 2] = ["stream.js", "stream-worker.js"];
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();
@@ -39,7 +41,8 @@ fn texts(folder: &Path) -> anyhow::Result<usize> {
     let mut sum = 0;
     for entry in fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))? {
         let path = entry?.path();
-        if path.extension().is_some_and(|kind| TEXTS.iter().any(|text| kind == *text)) {
+        let later = path.file_name().is_some_and(|name| LATER.iter().any(|later| name == *later));
+        if !later && path.extension().is_some_and(|kind| TEXTS.iter().any(|text| kind == *text)) {
             sum += compressed(&path)?;
         }
     }

@@ -6,6 +6,8 @@ mod phone;
 mod picture_show;
 mod scene_show;
 mod show;
+mod stream;
+mod stream_show;
 mod why;
 mod work;
 mod xr;
@@ -25,6 +27,7 @@ use self::error::sentence;
 use self::picture_show::PictureShow;
 use self::scene_show::SceneShow;
 use self::show::{Layout, Show};
+use self::stream_show::StreamShow;
 use crate::pictures::{PictureOptions, PicturePair};
 use crate::psnr::psnr;
 use crate::settings::{Display, Settings};
@@ -36,6 +39,7 @@ enum Content {
     Empty,
     Scene(Box<SceneShow>),
     Pictures(Box<PictureShow>),
+    Stream(Box<StreamShow>),
 }
 
 /// Everything that lives in the canvas's context.
@@ -268,6 +272,10 @@ impl Page {
             let size = self.settings.display.part([width, height]);
             scene.render(&self.gl, &self.settings, self.walker.pose(), size).map_err(sentence)?;
         }
+        if let Content::Stream(stream) = &mut self.content {
+            let size = self.settings.display.part([width, height]);
+            stream.draw(&self.settings.pair(self.walker.pose(), size)).map_err(sentence)?;
+        }
         self.show(width, height, divider);
         Ok(())
     }
@@ -331,6 +339,13 @@ impl Page {
             self.show.eyes(display, &scene.frame, dominant, scene.real_image(&self.settings), &layout);
             return;
         }
+        if let Content::Stream(stream) = &self.content {
+            // There is no real image to compare with: the divider has nothing on its left.
+            let size = display.part(canvas);
+            let layout = Layout { origin: [0, 0], size, step: size[0], divider: 0 };
+            self.show.eyes(display, &stream.frame, dominant, None, &layout);
+            return;
+        }
         self.gl.bind_framebuffer(None, [0, 0], canvas);
         self.gl.clear(None);
         if let Content::Pictures(pictures) = &self.content {
@@ -367,6 +382,7 @@ impl Page {
             Content::Empty => return Vec::new(),
             Content::Scene(scene) => &scene.frame,
             Content::Pictures(pictures) => &pictures.frame,
+            Content::Stream(stream) => &stream.frame,
         };
         let target = frame.eye(Eye::BOTH[eye.min(1)]);
         target.read_rgba8(0, [0, 0], target.size())
@@ -384,6 +400,7 @@ impl Page {
             Content::Empty => return Err(JsError::new("There is no picture to save.")),
             Content::Pictures(pictures) => (read(&pictures.frame), pictures.size()),
             Content::Scene(scene) => (read(&scene.frame), scene.frame.eye(Eye::Left).size()),
+            Content::Stream(stream) => (read(&stream.frame), stream.frame.eye(Eye::Left).size()),
         };
         wiggle(eyes, size, width).map_err(sentence)
     }
@@ -399,7 +416,7 @@ impl Page {
     fn auto(&self) -> Option<&Auto> {
         match &self.content {
             Content::Scene(scene) => scene.auto(),
-            Content::Empty | Content::Pictures(_) => None,
+            _ => None,
         }
     }
 
@@ -413,7 +430,7 @@ impl Page {
     fn scene(&mut self) -> Option<&mut SceneShow> {
         match &mut self.content {
             Content::Scene(scene) => Some(scene),
-            Content::Empty | Content::Pictures(_) => None,
+            _ => None,
         }
     }
 }

@@ -7,9 +7,9 @@ use yoro_gl::Destination;
 use yoro_lenses::{LensPass, Optics, neck_offset, read_qr};
 use yoro_render::stereo::StereoFrame;
 
-use super::Page;
 use super::error::sentence;
 use super::scene_show::SceneShow;
+use super::{Content, Page};
 use crate::sensors::{Head, find_viewer, orientation};
 
 /// The widths and heights of screens, in metres.
@@ -97,11 +97,21 @@ impl Phone {
             size: full.map(|n| ((n * scale.clamp(0.1, 1.0)) as u32).clamp(16, 4096)),
             dominant: page.settings.dominant,
         };
-        let Some(SceneShow { prepared, method, .. }) = page.scene() else { return Ok(()) };
-        method
-            .method()
-            .render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame)
-            .map_err(sentence)?;
+        match &mut page.content {
+            Content::Scene(scene) => {
+                let SceneShow { prepared, method, .. } = &mut **scene;
+                method
+                    .method()
+                    .render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame)
+                    .map_err(sentence)?;
+            }
+            Content::Stream(stream) => {
+                self.frame.resize(pair.size).map_err(sentence)?;
+                let to = Eye::BOTH.map(|eye| Destination::whole(self.frame.eye(eye)));
+                stream.render(&pair, &to).map_err(sentence)?;
+            }
+            _ => return Ok(()),
+        }
         let window = Destination { framebuffer: None, origin: [0, 0], size: [width, height] };
         self.lens.run(self.frame.images(), Quat::IDENTITY, &window);
         Ok(())

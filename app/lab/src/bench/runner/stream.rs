@@ -53,7 +53,7 @@ impl Runner<'_> {
             let mut rates = Vec::new();
             for ((_, name), pictures) in MODES.iter().zip(&pictures) {
                 let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
-                let mut measurement = Measurement::new(&job.setting, &format!("{name}, QP {quantizer}"), 0);
+                let mut measurement = Measurement::new(&job.setting, format!("{name}, QP {quantizer}"), 0);
                 let (mut encoder, mut decoder) = (LiveEncoder::new(HEADSET_RATE as f32)?, Decoder::new()?);
                 let mut bytes = 0;
                 for (i, picture) in pictures.iter().enumerate() {

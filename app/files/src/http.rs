@@ -1,0 +1,118 @@
+//! A folder's files over HTTP, for browsers on this machine or in its network.
+
+use std::fs;
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::{Component, Path, PathBuf};
+use std::time::Duration;
+
+/// The content policy of what is served.
+pub const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
+
+/// The longest line of a request that is read, in bytes.
+const MAX_LINE: u64 = 8 << 10;
+/// The most lines of a request that are read.
+const MAX_LINES: usize = 100;
+
+/// A request without its body.
+pub struct Request(Vec<String>);
+
+impl Request {
+    /// Reads a request; waits ten seconds at most for each part of it.
+    ///
+    /// # Errors
+    /// When the connection fails, and for a request that is too long.
+    pub fn read(stream: &TcpStream) -> io::Result<Request> {
+        stream.set_read_timeout(Some(Duration::from_secs(10)))?;
+        let mut reader = BufReader::new(stream.try_clone()?);
+        let mut lines = Vec::new();
+        while lines.len() < MAX_LINES {
+            let mut line = String::new();
+            (&mut reader).take(MAX_LINE).read_line(&mut line)?;
+            match line.trim_end() {
+                "" => return Ok(Request(lines)),
+                line => lines.push(line.to_owned()),
+            }
+        }
+        Err(io::ErrorKind::InvalidData.into())
+    }
+
+    /// Returns what is asked for, with its query.
+    pub fn target(&self) -> Option<&str> {
+        self.0.first()?.split(' ').nth(1)
+    }
+
+    /// Returns the value of a header.
+    pub fn header(&self, name: &str) -> Option<&str> {
+        let headers = self.0.iter().skip(1).filter_map(|line| line.split_once(':'));
+        headers.into_iter().find(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value.trim())
+    }
+
+    fn method(&self) -> Option<&str> {
+        self.0.first()?.split(' ').next()
+    }
+}
+
+/// Answers a request for a file of a folder.
+///
+/// # Errors
+/// When the connection fails.
+pub fn answer(mut stream: &TcpStream, request: &Request, folder: &Path) -> io::Result<()> {
+    let found = match (request.method(), request.target()) {
+        (Some("GET" | "HEAD"), Some(target)) => file(folder, target),
+        _ => None,
+    };
+    let (status, kind, body) = match found.and_then(|path| Some((kind(&path), fs::read(path).ok()?))) {
+        Some((kind, body)) => ("200 OK", kind, body),
+        None => ("404 Not Found", "text/plain", b"There is no such file.\n".to_vec()),
+    };
+    write!(
+        stream,
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-cache\r\n\
+         Content-Security-Policy: {POLICY}\r\nConnection: close\r\n\r\n",
+        body.len()
+    )?;
+    if request.method() != Some("HEAD") {
+        stream.write_all(&body)?;
+    }
+    stream.flush()
+}
+
+/// Returns the file that a request's target names; none outside of the folder.
+fn file(folder: &Path, target: &str) -> Option<PathBuf> {
+    let path = Path::new(target.split(['?', '#']).next()?.trim_start_matches('/'));
+    let inside = path.components().all(|component| matches!(component, Component::Normal(_)));
+    let path = folder.join(path);
+    inside.then(|| if path.is_dir() { path.join("index.html") } else { path })
+}
+
+/// The content type of a file: browsers run nothing without one.
+fn kind(path: &Path) -> &'static str {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("html") => "text/html; charset=utf-8",
+        Some("css") => "text/css; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("wasm") => "application/wasm",
+        Some("svg") => "image/svg+xml",
+        Some("jpg") => "image/jpeg",
+        Some("webmanifest") => "application/manifest+json",
+        _ => "application/octet-stream",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_outside_of_the_folder_is_served() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        assert_eq!(file(at, "/").unwrap(), at.join("index.html"));
+        assert_eq!(file(at, "/a/b.js?x=/../..").unwrap(), at.join("a/b.js"));
+        for outside in ["/../secret", "/a/../../secret", "/./../x"] {
+            assert_eq!(file(at, outside), None, "{outside}");
+        }
+        assert_eq!(kind(Path::new("yoro_web_bg.wasm")), "application/wasm");
+    }
+}

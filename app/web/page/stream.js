@@ -1,0 +1,124 @@
+// A stream from a server: connects, hands frames to the module, tells the server where the head is, and shows figures.
+
+import { app, element } from './app.js';
+import { apply, offerOrbit } from './choices.js';
+import { changed, startLoop } from './drawing.js';
+import { clear, loading, say } from './messages.js';
+import { sentence } from './sentence.js';
+
+/** Milliseconds from one wish to the next. */
+const TICK = 1000 / 60;
+/** Milliseconds from one line of figures to the next. */
+const LINE = 1000;
+
+let worker = null;
+let isThere = false;
+/** Since the last line of figures. */
+let sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
+let last = null;
+let timers = [];
+
+/** Follows the stream of a token, from the server that the page comes from. @param {string} token */
+export function follow(token) {
+  const hello = app.page.streamHello(token);
+  if (!hello) {
+    say('The link’s token is not whole: open the link that the server prints.');
+    return;
+  }
+  if (!('VideoDecoder' in globalThis)) {
+    say(isSecureContext
+      ? 'This browser has no WebCodecs, which decode the stream: update it, or use another one.'
+      : 'Browsers decode a stream only over https, or from an address on this machine (localhost).');
+    return;
+  }
+  loading('Waiting for the stream');
+  element('where').textContent = 'The eye comes from the server, which gets to know where your head is.';
+  const begin = { address: `${location.origin.replace(/^http/, 'ws')}/stream`, hello };
+  worker = new Worker(new URL('stream-worker.js', import.meta.url), { type: 'module' });
+  worker.onmessage = ({ data }) => {
+    try {
+      receive(data);
+    } catch (error) {
+      say(sentence(error));
+    }
+  };
+  worker.postMessage({ begin });
+  timers = [setInterval(wish, TICK), setInterval(figures, LINE)];
+  // Nobody sees a hidden page: another one may have the stream.
+  document.addEventListener('visibilitychange', () => worker?.postMessage(document.hidden ? { end: true } : { begin }));
+}
+
+/** Ends the stream: something else is shown. */
+function stop() {
+  worker.terminate();
+  timers.forEach(clearInterval);
+  worker = null;
+  app.stream = null;
+  app.settings.stream = null;
+}
+
+function receive({ answer, lost, fault, head, planes, bytes, skipped }) {
+  if (!app.page || app.source) {
+    if (app.source) stop();
+    return;
+  }
+  if (answer) welcome(answer);
+  if (fault) say(fault);
+  if (lost && isThere) {
+    isThere = false;
+    Object.assign(app.stream, { there: false, losses: app.stream.losses + 1 });
+    say('The connection to the server is lost; it is tried again each second.');
+  }
+  if (!head) return;
+  try {
+    const [decoded, [time, render, code, quantizer, width, height]] = app.page.streamFrame(head, planes);
+    const latency = performance.now() - time;
+    worker.postMessage({ send: decoded });
+    sums.frames += 1;
+    sums.bytes += bytes;
+    sums.skipped += skipped;
+    sums.latency += latency;
+    last = { render, code, quantizer, width, height };
+    app.stream.frames += 1;
+    if (!app.busy) changed();
+  } finally {
+    worker.postMessage({ free: true });
+  }
+}
+
+function welcome(answer) {
+  try {
+    app.page.streamBegin(answer);
+  } catch (error) {
+    loading(null);
+    say(sentence(error));
+    return;
+  }
+  clear();
+  loading(null);
+  isThere = true;
+  app.stream ??= { frames: 0, there: true, losses: 0 };
+  app.stream.there = true;
+  Object.assign(app, { source: null, facts: null });
+  app.settings.scene = null;
+  offerOrbit();
+  apply();
+  startLoop();
+}
+
+/** Asks for the eyes as they were made last. */
+function wish() {
+  if (!isThere || !app.page || app.source) return;
+  const message = app.page.streamWish(performance.now());
+  if (message) worker.postMessage({ send: message });
+}
+
+function figures() {
+  if (!isThere || !last) return;
+  const { frames, bytes, skipped, latency } = sums;
+  sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
+  element('facts').textContent = frames
+    ? `Stream: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
+      + `(rendered in ${last.render.toFixed(0)}, coded in ${last.code.toFixed(0)}), ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
+    : 'Stream: no frames.';
+}

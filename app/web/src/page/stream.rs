@@ -1,0 +1,76 @@
+//! The interface for JavaScript to a stream. JavaScript has the connection and the decoder.
+
+use js_sys::{Array, Uint8Array};
+use wasm_bindgen::prelude::*;
+use yoro_stream::{FromServer, FromViewer, Refusal, VERSION};
+
+use super::error::sentence;
+use super::stream_show::StreamShow;
+use super::{Content, Page};
+use crate::walker::Walker;
+
+#[wasm_bindgen]
+impl Page {
+    /// Returns the message with which a viewer begins; none for a token that is not 32 hexadecimal digits.
+    #[wasm_bindgen(js_name = streamHello)]
+    pub fn stream_hello(&self, token: &str) -> Option<Vec<u8>> {
+        let digits = token.len() == 32 && token.bytes().all(|digit| digit.is_ascii_hexdigit());
+        let token = digits.then(|| u128::from_str_radix(token, 16).ok()).flatten()?.to_be_bytes();
+        Some(FromViewer::Hello { version: VERSION, token }.to_bytes())
+    }
+
+    /// Takes the first answer of a server, and shows its stream from now on, from the head's first pose; one that goes on
+    /// after a connection was lost keeps the head where it is.
+    ///
+    /// # Errors
+    /// Why the server refuses, as a sentence.
+    #[wasm_bindgen(js_name = streamBegin)]
+    pub fn stream_begin(&mut self, answer: &[u8]) -> Result<(), JsError> {
+        let refused = match FromServer::read(answer) {
+            Some(FromServer::Welcome(head)) => {
+                if !matches!(self.content, Content::Stream(_)) {
+                    self.content = Content::Empty;
+                    self.content = Content::Stream(Box::new(StreamShow::new(&self.gl).map_err(sentence)?));
+                    self.walker = Walker::new(head);
+                    self.orbit(false);
+                }
+                return Ok(());
+            }
+            Some(FromServer::Refused(Refusal::Busy)) => "Another page shows the stream: close it.",
+            Some(FromServer::Refused(Refusal::Token)) => {
+                "The server has been started again: open the link that it prints now."
+            }
+            _ => "The server has another version of yoro: reload the page.",
+        };
+        Err(JsError::new(refused))
+    }
+
+    /// Takes a frame, whose H.264 may be left out, with its decoded picture. Returns the message that confirms it, and six
+    /// numbers: when the pose that it was rendered for was sent, by `performance.now()`; the ms to render and to code it; its
+    /// quantizer; width and height of each half.
+    ///
+    /// # Errors
+    /// A sentence, for a frame that cannot be understood.
+    #[wasm_bindgen(js_name = streamFrame)]
+    pub fn stream_frame(&mut self, frame: &[u8], planes: &[u8]) -> Result<Array, JsError> {
+        let Content::Stream(stream) = &mut self.content else { return Ok(Array::new()) };
+        let Some(FromServer::Frame { number, header, .. }) = FromServer::read(frame) else {
+            return Err(JsError::new("A frame of the stream cannot be understood."));
+        };
+        if !stream.take(header, planes).map_err(sentence)? {
+            return Err(JsError::new("A picture of the stream has another size than its frame tells."));
+        }
+        let decoded = Uint8Array::from(&FromViewer::Decoded(number).to_bytes()[..]);
+        let [width, height] = header.size.map(f64::from);
+        let (render, code) = (f64::from(header.render_ms), f64::from(header.code_ms));
+        let facts = [header.time, render, code, f64::from(header.quantizer), width, height];
+        Ok(Array::of2(&decoded, &facts.into_iter().map(JsValue::from).collect::<Array>()))
+    }
+
+    /// Returns the message that asks for the newest eyes at a time of `performance.now()`; none before any were drawn.
+    #[wasm_bindgen(js_name = streamWish)]
+    pub fn stream_wish(&self, time: f64) -> Option<Vec<u8>> {
+        let Content::Stream(stream) = &self.content else { return None };
+        stream.wish(time)
+    }
+}

@@ -1,0 +1,17 @@
+// One half of a decoded video picture as colour: BT.601 in full range, 4:2:0, rows from the top.
+
+uniform sampler2D luma;
+uniform sampler2D blue;     // colour differences, of half the width and height
+uniform sampler2D red;
+uniform int first_column;   // of the half, in pixels
+uniform int height;         // of the picture's part that is shown, in pixels
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    ivec2 at = ivec2(int(gl_FragCoord.x) + first_column, height - 1 - int(gl_FragCoord.y));
+    float y = texelFetch(luma, at, 0).r;
+    vec2 difference = vec2(texelFetch(blue, at / 2, 0).r, texelFetch(red, at / 2, 0).r) - 128.0 / 255.0;
+    vec3 color = y + vec3(1.402 * difference.y, -0.344136 * difference.x - 0.714136 * difference.y, 1.772 * difference.x);
+    out_color = vec4(color, 1.0);
+}
