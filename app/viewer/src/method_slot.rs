@@ -273,7 +273,7 @@ impl MethodSlot {
         Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
     }
 
-    /// Returns [`StereoMethod::guard_band`]; `None` while both eyes are rendered in the method's place.
+    /// Returns `StereoMethod::guard_band`; `None` while both eyes are rendered in the method's place.
     pub fn guard_band(&mut self) -> Option<GuardBandUse> {
         self.made.as_mut().filter(|_| self.unfit.is_none())?.method().guard_band()
     }
