@@ -22,9 +22,9 @@ const TILE: [usize; 2] = [TILE_COLUMNS * CELL[0] + 2 * INSET, 2 * CELL[1] + 2 * 
 /// Three rows of tiles leave room for four lines above them, two for seven.
 const SIZE: [usize; 2] = [ROW * (TILE[0] + GAP) + GAP, 4 * CELL[1] + 2 * INSET + 3 * (TILE[1] + GAP)];
 
-/// What a camera sees, in pixels, and the characters of the heading's lines whose place it takes: the heading's right part.
+/// What a camera sees, in pixels: in the heading's right part.
 const PICTURE: [usize; 2] = [256, 192];
-/// See [`PICTURE`].
+/// The characters at the end of the heading's lines whose place a camera's picture takes.
 pub const PICTURE_COLUMNS: usize = (PICTURE[0] + INSET).div_ceil(CELL[0]);
 
 /// Distance of the panel in metres, and its width in degrees.
