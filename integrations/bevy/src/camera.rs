@@ -18,7 +18,7 @@ use yoro_wgpu::yoro::eyes::{
 use crate::StereoMode;
 use crate::plan::{Plan, Rendering};
 use crate::projection::EyeProjection;
-use crate::shared::ShareSystems;
+use crate::shared::{OtherCamera, ShareSystems};
 
 /// One of the two eyes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
@@ -179,14 +179,6 @@ impl Views {
         let crop = views.dominant_crop_from_top();
         Ok(Views { source: views.source, target: views.target, crop, dominant, warp: Some(views.warp) })
     }
-}
-
-/// On a stereo camera: the camera of its other eye.
-#[derive(Component, Clone, Copy)]
-pub(crate) struct OtherCamera {
-    pub(crate) entity: Entity,
-    /// False if it draws only what is not synthesized.
-    pub(crate) rendered: bool,
 }
 
 /// On a camera that shows both eyes: the stereo camera.

@@ -37,10 +37,10 @@ use yoro_wgpu::Target;
 use yoro_wgpu::yoro::eyes::{self, EyePair, Frustum, Pose};
 use yoro_wgpu::yoro::glam;
 
-use crate::camera::{Eyes, OtherCamera, Parts, Views, Wanted, bevy_transform, guard_band, reversed};
+use crate::camera::{Eyes, Parts, Views, Wanted, bevy_transform, guard_band, reversed};
 use crate::passes::{Stereo, Synthesis};
 use crate::projection::clip_from_view;
-use crate::shared::ShareSystems;
+use crate::shared::{OtherCamera, ShareSystems};
 use crate::{Eye, StereoMode};
 
 /// Stereo in the headset from this `Camera3d`. The runtime's views say where the eyes are and what they see; the camera's

@@ -19,8 +19,9 @@ use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderSystems};
 use yoro_wgpu::yoro::eyes::{Eye, Warp};
 use yoro_wgpu::{Gather, Options, Source, Target, WgpuError, wgpu};
 
-use crate::camera::{Eyes, OtherCamera, Screen, Views};
+use crate::camera::{Eyes, Screen, Views};
 use crate::plan::Plan;
+use crate::shared::OtherCamera;
 
 pub(crate) fn build(app: &mut App) {
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };

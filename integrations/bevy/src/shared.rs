@@ -16,7 +16,13 @@ use bevy::prelude::*;
 use bevy::render::camera::MipBias;
 use bevy::render::view::ColorGrading;
 
-use crate::camera::OtherCamera;
+/// On a stereo camera: the camera of its other eye.
+#[derive(Component, Clone, Copy)]
+pub(crate) struct OtherCamera {
+    pub(crate) entity: Entity,
+    /// False if it draws only what is not synthesized.
+    pub(crate) rendered: bool,
+}
 
 /// Components that both eyes' cameras have.
 pub trait ShareComponent {
