@@ -11,8 +11,8 @@ use yoro::eyes::{
     minimum_object_distance,
 };
 use yoro_protocol::Ipd;
-use yoro_scene::Viewpoint;
 use yoro_scene::path::FARTHEST;
+use yoro_scene::{Scene, Viewpoint};
 use yoro_scenes::BUILTINS;
 
 /// The eyes and what they see of the world.
@@ -86,6 +86,13 @@ impl EyeArgs {
             full_overlap_distance(self.ipd.metres(), fov_x)
         )
     }
+}
+
+/// Returns the head's pose at a scene's viewpoint, counted from 0.
+pub fn scene_pose(scene: &Scene, pose: usize) -> anyhow::Result<Pose> {
+    let count = scene.viewpoints.len();
+    ensure!(pose < count, "--pose {pose} does not exist: {} has poses 0 to {}", scene.name, count - 1);
+    Ok(scene.viewpoints[pose].pose())
 }
 
 /// Returns the viewpoint of `--position` and `--target`.

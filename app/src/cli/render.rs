@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Instant;
 
-use anyhow::ensure;
 use glam::Vec3;
 use image::RgbImage;
 use serde::Serialize;
@@ -180,17 +179,7 @@ fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let heads = match (eyes::viewpoint(args.position, args.target), args.frames) {
         (Some(viewpoint), _) => vec![viewpoint.pose()],
         (None, Some(n)) => path.poses(n as usize),
-        (None, None) => {
-            let count = scene.viewpoints.len();
-            ensure!(
-                args.pose < count,
-                "--pose {} does not exist: {} has poses 0 to {}",
-                args.pose,
-                scene.name,
-                count - 1
-            );
-            vec![scene.viewpoints[args.pose].pose()]
-        }
+        (None, None) => vec![eyes::scene_pose(&scene, args.pose)?],
     };
     let options = args.stereo.options();
     log::info!("{options:?}");

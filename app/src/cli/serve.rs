@@ -16,6 +16,7 @@ use tungstenite::{Message, WebSocket};
 
 use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
+use crate::cli::eyes;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
 use yoro::eyes::Pose;
@@ -86,15 +87,7 @@ impl Subcommand for ServeArgs {
 fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let settings = args.renderer.render_settings()?;
     let scene = yoro_scenes::load(&args.scene, yoro_scenes::DEFAULT_SEED, None)?;
-    let Some(viewpoint) = scene.viewpoints.get(args.pose) else {
-        bail!(
-            "--pose {} does not exist: {} has poses 0 to {}",
-            args.pose,
-            scene.name,
-            scene.viewpoints.len() - 1
-        )
-    };
-    let home = viewpoint.pose();
+    let home = eyes::scene_pose(&scene, args.pose)?;
     let folder = match &args.page {
         Some(folder) => folder.clone(),
         None => std::env::current_exe()?.ancestors().nth(2).unwrap_or("".as_ref()).join("web"),
@@ -123,8 +116,8 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     std::fs::File::open("/dev/urandom")
         .and_then(|mut random| io::Read::read_exact(&mut random, &mut token))
         .context("/dev/urandom gives no random numbers")?;
-    let (visitors, rooms) = mpsc::channel();
-    let door = Arc::new(Door {
+    let (clients, admitted) = mpsc::channel();
+    let access = Arc::new(Access {
         token,
         hosts: ["localhost", "127.0.0.1"].map(|name| format!("{name}:{port}")),
         folder,
@@ -138,23 +131,23 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         u128::from_be_bytes(token)
     );
     io::stdout().flush()?;
-    let opener = door.clone();
+    let opener = access.clone();
     thread::spawn(move || {
         for stream in listener.incoming().flatten() {
-            let (door, visitors) = (opener.clone(), visitors.clone());
+            let (access, clients) = (opener.clone(), clients.clone());
             // A browser keeps some connections open without asking for anything.
             thread::spawn(move || {
-                if let Err(error) = door.admit(stream, &visitors) {
-                    log::info!("a visitor is not served: {error}");
+                if let Err(error) = access.admit(stream, &clients) {
+                    log::info!("a client is not served: {error}");
                 }
             });
         }
     });
-    server.serve(&rooms, &door)
+    server.serve(&admitted, &access)
 }
 
-/// Decides who comes in.
-struct Door {
+/// Admits clients: pages of this server that have the token, one at a time.
+struct Access {
     token: Token,
     /// The names of this server, as browsers call it.
     hosts: [String; 2],
@@ -164,9 +157,9 @@ struct Door {
     busy: AtomicBool,
 }
 
-impl Door {
+impl Access {
     /// Answers a connection: with a file, or, for a page of this server with the token, by letting it in.
-    fn admit(&self, stream: TcpStream, visitors: &mpsc::Sender<TcpStream>) -> anyhow::Result<()> {
+    fn admit(&self, stream: TcpStream, clients: &mpsc::Sender<TcpStream>) -> anyhow::Result<()> {
         let request = Request::read(&stream)?;
         if request.target() != Some("/stream") {
             return Ok(http::answer(&stream, &request, &self.folder)?);
@@ -208,7 +201,7 @@ impl Door {
             bail!("{refusal:?}");
         }
         let welcomed = socket.send(Message::binary(FromServer::Welcome(self.home).to_bytes()));
-        if welcomed.is_err() || visitors.send(socket.into_inner()).is_err() {
+        if welcomed.is_err() || clients.send(socket.into_inner()).is_err() {
             self.busy.store(false, Ordering::SeqCst);
         }
         Ok(welcomed?)
@@ -244,16 +237,16 @@ struct Server {
 
 impl Server {
     /// Serves one viewer after the other until Ctrl-C.
-    fn serve(&mut self, rooms: &Receiver<TcpStream>, door: &Door) -> anyhow::Result<()> {
+    fn serve(&mut self, admitted: &Receiver<TcpStream>, access: &Access) -> anyhow::Result<()> {
         loop {
             interrupt::check()?;
-            match rooms.recv_timeout(Duration::from_millis(100)) {
+            match admitted.recv_timeout(Duration::from_millis(100)) {
                 Ok(socket) => {
                     println!("a viewer has come");
                     let ended = self.session(&socket);
                     // Its listener ends, too.
                     let _ = socket.shutdown(Shutdown::Both);
-                    door.busy.store(false, Ordering::SeqCst);
+                    access.busy.store(false, Ordering::SeqCst);
                     interrupt::check()?;
                     println!(
                         "the viewer has gone{}",
