@@ -28,7 +28,14 @@ pub(crate) fn build(app: &mut App) {
     render
         .init_resource::<Pipelines>()
         .add_systems(ExtractSchedule, extract)
-        .add_systems(Render, leave_out_opaque.in_set(RenderSystems::PhaseSort))
+        .add_systems(
+            Render,
+            leave_out_opaque
+                .in_set(RenderSystems::Prepare)
+                // The texture for transmission is made for views that have all phases.
+                .after(RenderSystems::PrepareResources)
+                .before(RenderSystems::PrepareResourcesBatchPhases),
+        )
         .add_systems(
             Core3d,
             synthesize_opaque

@@ -3,13 +3,16 @@
 #[path = "../examples/support/mod.rs"]
 mod support;
 
+use bevy::anti_alias::taa::TemporalAntiAliasing;
+use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Exposure, Hdr};
 use bevy::core_pipeline::tonemapping::DebandDither;
+use bevy::pbr::{DistanceFog, FogFalloff, ScreenSpaceAmbientOcclusion};
 use bevy::post_process::bloom::Bloom;
 use bevy::prelude::*;
 use bevy_yoro::{Eye, StereoCamera, StereoMode};
 use image::RgbImage;
-use support::{Glass, halves, into_image, picture, psnr, target, viewpoint};
+use support::{Glass, halves, into_image, picture, psnr, ssim, target, viewpoint};
 
 const SIZE: [u32; 2] = [640, 320];
 
@@ -44,31 +47,75 @@ impl Stage {
 
     /// Checks the synthesized eye in both modes against the rendered one, by at least these values in dB, and returns the
     /// values. The rendered eye must be the same with and without synthesis, and the other one nearer to the truth than the
-    /// rendered one in its place.
+    /// rendered one in its place. Pictures of all modes are written beside the test.
     fn check(&mut self, what: &str, at_least: [f64; 2]) -> [f64; 2] {
-        let truth = halves(&self.in_mode(StereoMode::Rendered));
+        let truth = self.in_mode(StereoMode::Rendered);
+        save(&truth, what, StereoMode::Rendered);
+        let truth = halves(&truth);
         let (dominant, other) = match self.stereo().dominant {
             Eye::Left => (0, 1),
             Eye::Right => (1, 0),
         };
-        let same = psnr(&truth[dominant], &truth[other]);
+        let same = [psnr, ssim].map(|metric| metric(&truth[dominant], &truth[other]));
         let modes = [StereoMode::Opaque, StereoMode::Finished];
         let values = modes.map(|mode| {
-            let made = halves(&self.in_mode(mode));
+            let made = self.in_mode(mode);
+            save(&made, what, mode);
+            let made = halves(&made);
             let kept = psnr(&made[dominant], &truth[dominant]);
             assert!(kept > 45.0, "{what}, {mode:?}: the rendered eye changed, {kept:.2} dB");
-            psnr(&made[other], &truth[other])
+            [psnr, ssim].map(|metric| metric(&made[other], &truth[other]))
         });
-        println!("{what}: {values:.2?} dB, the rendered eye in its place {same:.2} dB");
-        for (value, least) in values.into_iter().zip(at_least) {
-            assert!(value >= least, "{what}: {value:.2} dB, {least} expected");
+        let text = |[psnr, ssim]: [f64; 2]| format!("{psnr:.2} / {ssim:.4}");
+        let [opaque, finished] = values.map(text);
+        println!("{what}: Opaque {opaque}, Finished {finished}, the rendered eye in its place {}", text(same));
+        for ([psnr, ssim], least) in values.into_iter().zip(at_least) {
+            assert!(psnr >= least, "{what}: {psnr:.2} dB, {least} expected");
             assert!(
-                value > same + 5.0,
-                "{what}: {value:.2} dB, {same:.2} dB for the rendered eye in its place"
+                psnr > same[0] + 5.0 && ssim > same[1],
+                "{what}: {psnr:.2} dB / {ssim:.4}, {same:.4?} for the rendered eye in its place"
             );
         }
-        values
+        values.map(|[psnr, _]| psnr)
     }
+
+    /// Checks that the finished image is synthesized with temporal anti-aliasing, and that both eyes are rendered where opaque
+    /// surfaces should be.
+    fn check_temporal_anti_aliasing(&mut self) {
+        let settled = |stage: &mut Stage, mode| {
+            stage.in_mode(mode);
+            for _ in 0..3 {
+                stage.picture();
+            }
+            let picture = stage.picture();
+            save(&picture, "temporal", mode);
+            halves(&picture)
+        };
+        let [left, right] = settled(self, StereoMode::Rendered);
+        let rendered = settled(self, StereoMode::Opaque);
+        let kept = psnr(&rendered[0], &left);
+        assert!(kept > 40.0, "Opaque with temporal anti-aliasing does not render both eyes: {kept:.2} dB");
+        let finished = settled(self, StereoMode::Finished);
+        let [same, value] = [&right, &finished[0]].map(|eye| (psnr(eye, &left), ssim(eye, &left)));
+        println!("temporal anti-aliasing: Finished {value:.4?}, the rendered eye in its place {same:.4?}");
+        assert!(value.0 > same.0 + 5.0 && value.1 > same.1, "{value:.4?}, {same:.4?} for the rendered eye");
+    }
+
+    /// Runs `check` with a new camera that has these components, too.
+    fn with(&mut self, components: impl Bundle, check: impl FnOnce(&mut Stage)) {
+        self.app.world_mut().despawn(self.camera);
+        self.camera = spawn(&mut self.app, &self.image);
+        // Occlusion is seen in ambient light alone.
+        let light = AmbientLight { brightness: 1500.0, ..default() };
+        self.app.world_mut().entity_mut(self.camera).insert((light, components));
+        check(self);
+    }
+}
+
+/// Writes a picture of this mode.
+fn save(picture: &RgbImage, what: &str, mode: StereoMode) {
+    let name = format!("{what} {mode:?}.png").to_lowercase().replace(' ', "-");
+    picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
 }
 
 fn spawn(app: &mut App, image: &Handle<Image>) -> Entity {
@@ -123,6 +170,67 @@ fn hdr_and_samples_are_synthesized_where_they_can_be() {
     let truth = stage.in_mode(StereoMode::Rendered);
     let value = psnr(&stage.in_mode(StereoMode::Opaque), &truth);
     assert!(value > 60.0, "4 samples with Hdr are not rendered twice: {value:.2} dB");
+}
+
+/// The features of Bevy that the README's table tells of.
+#[test]
+fn features_of_bevy_work_in_both_modes() {
+    let mut stage = Stage::new();
+    let mut plain = RgbImage::default();
+    stage.with((), |stage| plain = stage.picture());
+    stage.with(ScreenSpaceAmbientOcclusion::default(), |stage| {
+        let change = psnr(&stage.picture(), &plain);
+        assert!(change < 45.0, "no occlusion is seen: {change:.2} dB");
+        stage.check("occlusion", [30.0, 28.0]);
+    });
+    let falloff = FogFalloff::Linear { start: 2.0, end: 9.0 };
+    stage.with(DistanceFog { color: Color::srgb(0.6, 0.65, 0.7), falloff, ..default() }, |stage| {
+        assert!(psnr(&stage.picture(), &plain) < 30.0, "no fog is seen");
+        stage.check("fog", [30.0, 28.0]);
+    });
+    stage.with(TemporalAntiAliasing::default(), |stage| stage.check_temporal_anti_aliasing());
+    // A cube that cameras of layer 1 see.
+    let mesh = stage.app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(0.4));
+    let red = StandardMaterial::from_color(Color::srgb(0.9, 0.05, 0.05));
+    let red = stage.app.world_mut().resource_mut::<Assets<StandardMaterial>>().add(red);
+    let at = Transform::from_xyz(0.3, 1.5, 0.4);
+    let cube = stage.app.world_mut().spawn((Mesh3d(mesh), MeshMaterial3d(red), at, RenderLayers::layer(1))).id();
+    stage.with((), |stage| assert_eq!(stage.picture(), plain, "a camera of layer 0 does not see the cube"));
+    stage.with(RenderLayers::from_layers(&[0, 1]), |stage| {
+        for (eye, plain) in halves(&stage.picture()).iter().zip(&halves(&plain)) {
+            assert!(psnr(eye, plain) < 40.0, "the cube is in both eyes");
+        }
+        stage.check("layers", [30.0, 28.0]);
+    });
+    stage.app.world_mut().despawn(cube);
+
+    // Glass that shows what is behind it.
+    let mut materials = stage.app.world_mut().resource_mut::<Assets<StandardMaterial>>();
+    let clear = materials.add(StandardMaterial {
+        base_color: Color::srgb(0.8, 0.95, 0.85),
+        specular_transmission: 0.9,
+        thickness: 0.2,
+        ior: 1.3,
+        perceptual_roughness: 0.1,
+        ..default()
+    });
+    let mut glass = stage.app.world_mut().query_filtered::<&mut MeshMaterial3d<StandardMaterial>, With<Glass>>();
+    let blended = glass.single(stage.app.world()).unwrap().clone();
+    *glass.single_mut(stage.app.world_mut()).unwrap() = MeshMaterial3d(clear);
+    stage.with((), |stage| {
+        stage.check("transmission", [30.0, 27.0]);
+    });
+    *glass.single_mut(stage.app.world_mut()).unwrap() = blended;
+
+    // Lines near and far.
+    stage.app.add_systems(Update, |mut gizmos: Gizmos| {
+        gizmos.sphere(Isometry3d::from_translation(Vec3::new(0.2, 1.4, 0.8)), 0.3, Color::WHITE);
+        gizmos.line(Vec3::new(-2.0, 0.2, -5.0), Vec3::new(2.0, 2.5, -5.0), Color::srgb(1.0, 1.0, 0.0));
+    });
+    stage.with((), |stage| {
+        assert!(psnr(&stage.picture(), &plain) < 40.0, "no lines are seen");
+        stage.check("gizmos", [30.0, 25.0]);
+    });
 }
 
 #[test]

@@ -195,6 +195,13 @@ pub fn psnr(image: &RgbImage, truth: &RgbImage) -> f64 {
     10.0 * (255f64.powi(2) * truth.len() as f64 / squares.sum::<f64>()).log10()
 }
 
+/// Returns the structural similarity in grey.
+pub fn ssim(image: &RgbImage, truth: &RgbImage) -> f64 {
+    let [image, truth] = [image, truth].map(image::imageops::grayscale);
+    let algorithm = image_compare::Algorithm::MSSIMSimple;
+    image_compare::gray_similarity_structure(&algorithm, &image, &truth).expect("pictures of one size").score
+}
+
 /// Returns the target for an image.
 pub fn into_image(image: &Handle<Image>) -> RenderTarget {
     RenderTarget::Image(image.clone().into())
