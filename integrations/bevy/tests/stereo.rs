@@ -68,7 +68,10 @@ impl Stage {
         });
         let text = |[psnr, ssim]: [f64; 2]| format!("{psnr:.2} / {ssim:.4}");
         let [opaque, finished] = values.map(text);
-        println!("{what}: Opaque {opaque}, Finished {finished}, the rendered eye in its place {}", text(same));
+        println!(
+            "{what}: Opaque {opaque}, Finished {finished}, the rendered eye in its place {}",
+            text(same)
+        );
         for ([psnr, ssim], least) in values.into_iter().zip(at_least) {
             assert!(psnr >= least, "{what}: {psnr:.2} dB, {least} expected");
             assert!(
@@ -194,7 +197,8 @@ fn features_of_bevy_work_in_both_modes() {
     let red = StandardMaterial::from_color(Color::srgb(0.9, 0.05, 0.05));
     let red = stage.app.world_mut().resource_mut::<Assets<StandardMaterial>>().add(red);
     let at = Transform::from_xyz(0.3, 1.5, 0.4);
-    let cube = stage.app.world_mut().spawn((Mesh3d(mesh), MeshMaterial3d(red), at, RenderLayers::layer(1))).id();
+    let cube =
+        stage.app.world_mut().spawn((Mesh3d(mesh), MeshMaterial3d(red), at, RenderLayers::layer(1))).id();
     stage.with((), |stage| assert_eq!(stage.picture(), plain, "a camera of layer 0 does not see the cube"));
     stage.with(RenderLayers::from_layers(&[0, 1]), |stage| {
         for (eye, plain) in halves(&stage.picture()).iter().zip(&halves(&plain)) {
@@ -214,7 +218,8 @@ fn features_of_bevy_work_in_both_modes() {
         perceptual_roughness: 0.1,
         ..default()
     });
-    let mut glass = stage.app.world_mut().query_filtered::<&mut MeshMaterial3d<StandardMaterial>, With<Glass>>();
+    let mut glass =
+        stage.app.world_mut().query_filtered::<&mut MeshMaterial3d<StandardMaterial>, With<Glass>>();
     let blended = glass.single(stage.app.world()).unwrap().clone();
     *glass.single_mut(stage.app.world_mut()).unwrap() = MeshMaterial3d(clear);
     stage.with((), |stage| {
