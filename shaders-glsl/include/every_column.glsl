@@ -64,16 +64,12 @@ void walk(inout Search at, float end, float origin, int row) {
         at.shift += 1.0;
         at.next = depth_texel(at.column, row);
         at.b = at.shift + law.y * at.next;
-        bool before = at.a <= 0.0;
-        bool jump = before && at.b > 0.0;
-        bool torn = at.b - at.a >= MAX_STRETCH;
-        at.found = jump && (at.a > -0.5 || !torn);
-        bool fold = before && max(at.b, -1.0) < at.a;
-        bool beside = fold || (jump && torn && at.b < 1.0);
-        bool nearest = beside && at.rim < 0;
+        at.found = is_seen(at.a, at.b);
+        bool fold = folds(at.a, at.b);
+        bool nearest = has_rim(at.a, at.b) && at.rim < 0;
         at.rim = nearest ? (fold ? here : at.column) : at.rim;
         at.rim_depth = nearest ? (fold ? at.depth : at.next) : at.rim_depth;
-        bool farther = jump && law.y * (at.depth - at.edge_depth) < 0.0;
+        bool farther = jumps(at.a, at.b) && law.y * (at.depth - at.edge_depth) < 0.0;
         at.edge = farther ? here : at.edge;
         at.edge_depth = farther ? at.depth : at.edge_depth;
 #ifdef HISTORY
@@ -123,7 +119,7 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     bool own = at.found || at.edge < 0;
     column = own ? at.column : at.edge;
     x = float(source_column(column));
-    float t = at.b - at.a < MAX_STRETCH ? -at.a / (at.b - at.a) : 0.0;
+    float t = is_torn(at.a, at.b) ? 0.0 : -at.a / (at.b - at.a);
     t = at.found ? t : 1.0;
     surface.source = x - 1.0 + t;
     surface.depth = mix(at.depth, own ? at.next : at.edge_depth, t);

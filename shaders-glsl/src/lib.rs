@@ -17,6 +17,7 @@ macro_rules! embed {
 
 /// Sorted by path.
 static FILES: &[(&str, &str)] = embed![
+    "include/any_view.glsl",
     "include/color.glsl",
     "include/every_column.glsl",
     "include/extensions.glsl",
@@ -26,6 +27,7 @@ static FILES: &[(&str, &str)] = embed![
     "include/history.glsl",
     "include/imbuffer.glsl",
     "include/ink.glsl",
+    "include/interface.glsl",
     "include/laws.glsl",
     "include/layers.glsl",
     "include/march.glsl",
@@ -37,6 +39,8 @@ static FILES: &[(&str, &str)] = embed![
     "include/role.glsl",
     "include/segments.glsl",
     "include/shade.glsl",
+    "include/silhouettes.glsl",
+    "include/source.glsl",
     "include/span.glsl",
     "include/surface.glsl",
     "include/tiles.glsl",

@@ -3,24 +3,13 @@
 // plane's place to the far plane's, past the tiles that hold no depth of the ray.
 //
 // A surface at inverse distance s from the source, seen at the target pixel p, lies at the source pixel
-// `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity, `homography * p`, and e the epipole in homogeneous
-// pixels. This is affine in s, and so in the stored depth. The rules for surfaces, silhouettes and holes are those of gather
+// `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity and e the epipole in homogeneous pixels. This is affine
+// in s, and so in the stored depth. The rules for surfaces, silhouettes and holes are those of gather
 // (include/every_column.glsl, include/fill.glsl), with samples along the segment in place of a row's columns.
 
-#include "include/tiles.glsl"
+#include "include/any_view.glsl"
 
 TEXTURE(2) uniform highp usampler2D tile_map;
-
-// From a target pixel to the source pixel of its ray at infinity, both homogeneous.
-uniform mat3 homography;
-// Place of the target's eye in the source image, homogeneous: its third component is the distance moved forwards.
-uniform vec3 epipole;
-// Inverse distance from stored depth, `law.x + law.y * depth`: of the source, and of the target.
-uniform vec2 source_law;
-uniform vec2 target_law;
-// Stored depth of the nearest surface that can be seen, and of the far plane.
-uniform float nearest;
-uniform float far_depth;
 
 layout(location = 0) out vec4 color;
 
@@ -106,11 +95,11 @@ bool lands(Segment line, float index, float beside, float steps) {
 // The colour of a disocclusion: that of the background next to it, from five samples side by side, as `fill_hole`.
 vec4 fill_beside(Segment line, Sample edge, float away) {
     float last = last_indices(line).y;
-    float spread = 0.5 * clamp(abs(away), 1.0, 12.0);
+    float spread = fill_spread(away);
     vec4 sum = 2.0 * color_of(line, edge);
     float weights = 2.0;
     for (int i = -2; i <= 2; ++i) {
-        float beside = clamp(round(edge.beside) + roundEven(float(i) * spread), 0.0, last);
+        float beside = clamp(floor(edge.beside + 0.5) + roundEven(float(i) * spread), 0.0, last);
         Sample tap = Sample(edge.index, beside, depth_of(line, edge.index, beside));
         float weight = i != 0 && line.law * (tap.depth - edge.depth) <= 1.0 ? 1.0 : 0.0;
         sum += weight * color_of(line, tap);
@@ -119,18 +108,19 @@ vec4 fill_beside(Segment line, Sample edge, float away) {
     return sum / weights;
 }
 
-// The target's stored depth of a surface with this one in the source, on a ray with this third component of `homography * p`.
+// The target's stored depth of a surface with this one in the source, on a ray with this third component in the source.
 float target_depth(float depth, float scale) {
     float inverse = source_law.x + source_law.y * depth;
-    float seen = inverse * scale / (1.0 - inverse * epipole.z);
+    float seen = inverse * scale / (1.0 - inverse * to_source_w.w);
     return clamp((seen - target_law.x) / target_law.y, 0.0, 1.0);
 }
 
 void main() {
-    vec3 ray = homography * vec3(gl_FragCoord.xy - vec2(target_origin), 1.0);
+    vec3 pixel = vec3(gl_FragCoord.xy - vec2(target_origin), 1.0);
+    vec3 ray = vec3(dot(to_source_x.xyz, pixel), dot(to_source_y.xyz, pixel), dot(to_source_w.xyz, pixel));
     vec2 infinity = ray.xy / ray.z;
     // Pixels per unit of inverse distance.
-    vec2 parallax = epipole.xy - epipole.z * infinity;
+    vec2 parallax = vec2(to_source_x.w, to_source_y.w) - to_source_w.w * infinity;
     vec2 far = infinity + (source_law.x + source_law.y * far_depth) * parallax - 0.5;
     vec2 moved = source_law.y * parallax;
     Segment line;
@@ -164,7 +154,7 @@ void main() {
     Sample edge = here;
     left = outside && b < 0.5 ? 0.0 : left;
     // The nearest silhouette beside the pixel.
-    bool has_rim = false;
+    bool rimmed = false;
     Sample rim = here;
     while (left > 0.0 && !found) {
         float beside = clamp(beside_at(line, here.index), 0.0, last.y);
@@ -181,26 +171,22 @@ void main() {
             before = here;
             here = sample_at(line, before.index + line.sense);
             b = landing(line, here.index, here.depth);
-            bool behind = a <= 0.0;
-            bool jump = behind && b > 0.0;
-            bool torn = b - a >= MAX_STRETCH;
-            found = jump && (a > -0.5 || !torn);
-            bool fold = behind && max(b, -1.0) < a;
-            if (!has_rim && (fold || (jump && torn && b < 1.0))) {
-                has_rim = true;
+            found = is_seen(a, b);
+            if (!rimmed && has_rim(a, b)) {
+                rimmed = true;
                 rim = here;
-                if (fold) {
+                if (folds(a, b)) {
                     rim = before;
                 }
             }
-            if (jump && (!has_edge || line.law * (before.depth - edge.depth) < 0.0)) {
+            if (jumps(a, b) && (!has_edge || line.law * (before.depth - edge.depth) < 0.0)) {
                 has_edge = true;
                 edge = before;
             }
         }
     }
     // Where nothing is found: the hole's edge, or the last sample beyond everything.
-    float t = b - a < MAX_STRETCH ? -a / (b - a) : 0.0;
+    float t = is_torn(a, b) ? 0.0 : -a / (b - a);
     float depth = mix(before.depth, here.depth, t);
     if (found) {
         color = mix(color_of(line, before), color_of(line, here), t);
@@ -213,7 +199,7 @@ void main() {
         float away = landing(line, fill.index, depth);
         color = abs(away) >= 0.5 ? fill_beside(line, fill, away) : color_of(line, fill);
     }
-    if (has_rim) {
+    if (rimmed) {
         float coverage = 1.0 - abs(landing(line, rim.index, rim.depth));
         color = mix(color, color_of(line, rim), coverage);
         depth = coverage >= 0.5 ? rim.depth : depth;

@@ -2,7 +2,7 @@
 // Any view, pass 1: smallest and largest stored depth of each source tile and of the pixels around it: one below, and two above, where
 // a sample beyond the tile has its second pixel.
 
-#include "include/tiles.glsl"
+#include "include/any_view.glsl"
 
 // Bits of the smallest and of the largest depth.
 layout(location = 0) out uvec4 tile;

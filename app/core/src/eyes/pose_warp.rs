@@ -9,7 +9,7 @@ use super::{DepthConvention, EyesError, View};
 /// The point at inverse distance k from the target's eye, along its viewing axis, that the target shows at the pixel p lies
 /// in the source at the pixel `homography * p + k * epipole`: homogeneous pixels, counted from the lower left corner, with
 /// the third component `source distance / target distance` (Hartley and Zisserman, Multiple View Geometry, equation 9.7).
-/// On OpenGL, `synthesis::AnyView` draws the target.
+/// `synthesis::AnyView` draws the target on OpenGL, `vulkan::AnyView` on Vulkan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseWarp {
     /// Size of the source in pixels.
@@ -92,6 +92,16 @@ impl PoseWarp {
         PoseWarp { epipole: DVec3::ZERO, ..*self }
     }
 
+    /// Returns the warp for images whose rows are counted from the top: what those graphics interfaces use inside.
+    #[doc(hidden)]
+    pub fn rows_from_top(&self) -> PoseWarp {
+        let turn = |size: [u32; 2]| {
+            DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::new(0.0, f64::from(size[1]), 1.0))
+        };
+        let (source, target) = (turn(self.source_size), turn(self.target_size));
+        PoseWarp { homography: source * self.homography * target, epipole: source * self.epipole, ..*self }
+    }
+
     /// Returns the source pixel of a surface that the target shows at a pixel, for the inverse of its distance from the
     /// target's eye. Pixels count from the lower left corner and have their middles at +0.5.
     pub fn source_pixel(&self, target: DVec2, inverse_distance: f64) -> DVec2 {
@@ -128,6 +138,14 @@ pub struct GuardedView {
     pub view: View,
     /// Lower left corner, in pixels of the wider view, of the original one.
     pub crop: [u32; 2],
+}
+
+impl GuardedView {
+    /// Returns the upper left corner of the original view of this size, in pixels of the wider one, for images whose row 0 is at
+    /// the top.
+    pub fn crop_from_top(&self, original: [u32; 2]) -> [u32; 2] {
+        [self.crop[0], self.view.size[1].saturating_sub(self.crop[1] + original[1])]
+    }
 }
 
 impl HeadMotion {
@@ -217,10 +235,15 @@ mod tests {
             let local = Vec3::new(0.2 * z, -0.1 * z, -z);
             let moved = target.pose.position - source.pose.position;
             let seen = base.inverse() * (moved + target.pose.orientation * local);
-            let got = warp.source_pixel(project(&target, local), 1.0 / f64::from(z));
-            assert!((got - project(&source, seen)).length() < 2e-3, "{got}");
+            let (there, here, k) = (project(&source, seen), project(&target, local), 1.0 / f64::from(z));
+            let got = warp.source_pixel(here, k);
+            assert!((got - there).length() < 2e-3, "{got}");
+            let from_top = warp.rows_from_top().source_pixel(DVec2::new(here.x, 500.0 - here.y), k);
+            let turned = DVec2::new(there.x, 480.0 - there.y);
+            assert!((from_top - turned).length() < 2e-3, "{from_top}");
         }
-        assert_eq!(PoseWarp::new(&source, &source).unwrap().homography, DMat3::IDENTITY);
+        let still = PoseWarp::new(&source, &source).unwrap();
+        assert_eq!((still.homography, still.rows_from_top().homography), (DMat3::IDENTITY, DMat3::IDENTITY));
         let behind = view(Vec3::ZERO, base * Quat::from_rotation_y(1.5));
         assert_eq!(PoseWarp::new(&source, &behind), Err(EyesError::Apart));
         let beyond = source.pose.translated_local(Vec3::NEG_Z * (source.depth.far + 1.0));
@@ -232,6 +255,8 @@ mod tests {
     #[test]
     fn the_guard_band_holds_what_motion_brings_in_and_little_more() {
         let own = view(Vec3::ZERO, Quat::IDENTITY);
+        let crop = |crop| GuardedView { view: View { size: [90, 80], ..own }, crop };
+        assert_eq!(crop([7, 11]).crop_from_top([50, 60]), [7, 9]);
         let large = HeadMotion { rotation: 0.99, translation: 0.99 };
         assert_eq!(large.guarded(&own, 1.0), Err(EyesError::Apart));
         let motion = HeadMotion { rotation: 0.08, translation: 0.03 };

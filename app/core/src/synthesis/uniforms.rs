@@ -4,9 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{IVec2, Vec2, Vec4};
 
 use super::forward::ForwardLaw;
-use crate::eyes::Warp;
+use crate::eyes::{PoseWarp, Warp};
 
-/// Columns and rows of a tile; `include/tiles.glsl`.
+/// Columns and rows of a tile; `include/source.glsl`.
 const TILE: [u32; 2] = [16, 8];
 
 /// Returns the number of tiles of an image, in columns and rows.
@@ -16,21 +16,18 @@ pub fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
 }
 
 macro_rules! uniforms {
-    ($($(#[doc = $doc:literal])* $name:ident: $ty:ty = $glsl:literal,)*) => {
-        /// All uniforms of the synthesis passes except textures, with the layout of a std140 block:
-        /// `include/uniforms.glsl` of `yoro-shaders`. "Forward" columns are counted from the left for a synthesized
-        /// left eye and from the right for a right eye. Rows are counted from row 0: from the bottom in OpenGL, from
-        /// the top in Vulkan.
+    ($(#[doc = $about:literal])* $block:ident { $($(#[doc = $doc:literal])* $name:ident: $ty:ty = $glsl:literal,)* }) => {
+        $(#[doc = $about])*
         #[repr(C)]
         #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-        pub struct Uniforms {
+        pub struct $block {
             $($(#[doc = $doc])* pub $name: $ty,)*
         }
 
-        impl Uniforms {
+        impl $block {
             /// Name, GLSL type and offset in bytes of each member.
             pub const LAYOUT: &[(&str, &str, usize)] =
-                &[$((stringify!($name), $glsl, std::mem::offset_of!(Uniforms, $name)),)*];
+                &[$((stringify!($name), $glsl, std::mem::offset_of!($block, $name)),)*];
 
             /// Sets the uniforms that the program has. The program must be current.
             #[cfg(feature = "gl")]
@@ -42,39 +39,84 @@ macro_rules! uniforms {
 }
 
 uniforms! {
-    /// Size of the source in pixels.
-    source_size: IVec2 = "ivec2",
-    /// Size of the target in pixels.
-    target_size: IVec2 = "ivec2",
-    /// Displacement in pixels, in forward columns: `law.x + law.y * depth`.
-    law: Vec2 = "vec2",
-    /// 1 if forward columns are counted from the right.
-    mirrored: u32 = "bool",
-    /// Target row minus source row.
-    row_offset: i32 = "int",
-    /// Corner of the target in its framebuffer or image.
-    target_origin: IVec2 = "ivec2",
-    /// Displacement of the far plane in pixels.
-    far_displacement: f32 = "float",
-    /// Displacement of the near plane in pixels.
-    near_displacement: f32 = "float",
-    /// Texture coordinate of the source at forward column x: `columns.x * x + columns.y`.
-    columns: Vec2 = "vec2",
-    /// Source column that lands at a fragment by the offset of the displacement alone: `origins.x * gl_FragCoord.x + origins.y`.
-    origins: Vec2 = "vec2",
-    /// Place of a fragment's span in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`. A texture
-    /// coordinate; in tiles if the source is a part of its image.
-    span_place: Vec4 = "vec4",
-    /// Texture coordinate of a fragment's source row: `rows.x * gl_FragCoord.y + rows.y`.
-    rows: Vec2 = "vec2",
-    /// Middle of a fragment's source row: `gl_FragCoord.y - first_row`.
-    first_row: f32 = "float",
-    /// Displacement of the far plane beyond the law's offset, in pixels, plus a hundredth of a pixel for rounding.
-    farthest: f32 = "float",
-    /// Corner of the source in its image, if it is a part of it.
-    source_origin: IVec2 = "ivec2",
-    /// One pixel of the source's image in texture coordinates, if the source is a part of it.
-    texel: Vec2 = "vec2",
+    /// All uniforms of the synthesis passes for parallel eyes except textures, with the layout of a std140 block:
+    /// `include/uniforms.glsl` of `yoro-shaders`. "Forward" columns are counted from the left for a synthesized
+    /// left eye and from the right for a right eye. Rows are counted from row 0: from the bottom in OpenGL, from
+    /// the top in Vulkan.
+    Uniforms {
+        /// Size of the source in pixels.
+        source_size: IVec2 = "ivec2",
+        /// Size of the target in pixels.
+        target_size: IVec2 = "ivec2",
+        /// Displacement in pixels, in forward columns: `law.x + law.y * depth`.
+        law: Vec2 = "vec2",
+        /// 1 if forward columns are counted from the right.
+        mirrored: u32 = "bool",
+        /// Target row minus source row.
+        row_offset: i32 = "int",
+        /// Corner of the target in its framebuffer or image.
+        target_origin: IVec2 = "ivec2",
+        /// Displacement of the far plane in pixels.
+        far_displacement: f32 = "float",
+        /// Displacement of the near plane in pixels.
+        near_displacement: f32 = "float",
+        /// Texture coordinate of the source at forward column x: `columns.x * x + columns.y`.
+        columns: Vec2 = "vec2",
+        /// Source column that lands at a fragment by the offset of the displacement alone: `origins.x * gl_FragCoord.x + origins.y`.
+        origins: Vec2 = "vec2",
+        /// Place of a fragment's span in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`. A texture
+        /// coordinate; in tiles if the source is a part of its image.
+        span_place: Vec4 = "vec4",
+        /// Texture coordinate of a fragment's source row: `rows.x * gl_FragCoord.y + rows.y`.
+        rows: Vec2 = "vec2",
+        /// Middle of a fragment's source row: `gl_FragCoord.y - first_row`.
+        first_row: f32 = "float",
+        /// Displacement of the far plane beyond the law's offset, in pixels, plus a hundredth of a pixel for rounding.
+        farthest: f32 = "float",
+        /// Corner of the source in its image, if it is a part of it.
+        source_origin: IVec2 = "ivec2",
+        /// One pixel of the source's image in texture coordinates, if the source is a part of it.
+        texel: Vec2 = "vec2",
+    }
+}
+
+uniforms! {
+    /// All uniforms of the passes for any view except textures, with the layout of a std140 block: `include/any_view.glsl` of
+    /// `yoro-shaders`. Rows are counted from row 0, as in [`Uniforms`].
+    PoseUniforms {
+        /// Size of the source in pixels.
+        source_size: IVec2 = "ivec2",
+        /// Corner of the target in its framebuffer or image.
+        target_origin: IVec2 = "ivec2",
+        /// First row of the homography from target to source, and first component of the epipole ([`PoseWarp`]).
+        to_source_x: Vec4 = "vec4",
+        /// Second row, and second component.
+        to_source_y: Vec4 = "vec4",
+        /// Third row, and third component.
+        to_source_w: Vec4 = "vec4",
+        /// The source's `1 / distance = source_law.x + source_law.y * depth`.
+        source_law: Vec2 = "vec2",
+        /// The same of the target.
+        target_law: Vec2 = "vec2",
+        /// Stored depth, in the source, of the nearest surface that the target may show.
+        nearest: f32 = "float",
+        /// Stored depth of the source's far plane.
+        far_depth: f32 = "float",
+        /// Corner of the source in its image.
+        source_origin: IVec2 = "ivec2",
+        /// One pixel of the source's image in texture coordinates.
+        texel: Vec2 = "vec2",
+        /// Nothing: blocks have multiples of 16 bytes.
+        padding: Vec2 = "vec2",
+    }
+}
+
+fn size(size: [u32; 2]) -> IVec2 {
+    IVec2::from(size.map(|n| n as i32))
+}
+
+fn pair(x: f64, y: f64) -> Vec2 {
+    Vec2::new(x as f32, y as f32)
 }
 
 /// The places of source and target in their images.
@@ -104,8 +146,6 @@ impl Uniforms {
     #[doc(hidden)]
     pub fn of_part(warp: &Warp, places: &Places) -> Uniforms {
         let law = ForwardLaw::new(warp);
-        let size = |s: [u32; 2]| IVec2::from(s.map(|n| n as i32));
-        let pair = |x: f64, y: f64| Vec2::new(x as f32, y as f32);
         let [image_width, image_height] = places.image_size.map(f64::from);
         let [source_left, source_row] = places.source_origin.map(f64::from);
         let [left, row] = places.target_origin.map(f64::from);
@@ -151,6 +191,71 @@ impl Uniforms {
     }
 }
 
+impl PoseUniforms {
+    /// Returns the uniforms for these places.
+    #[doc(hidden)]
+    pub fn new(warp: &PoseWarp, places: &Places) -> PoseUniforms {
+        let row = |i: usize| warp.homography.row(i).extend(warp.epipole[i]).as_vec4();
+        let [image_width, image_height] = places.image_size.map(f64::from);
+        let law = |[c, m]: [f64; 2]| pair(c, m);
+        PoseUniforms {
+            source_size: size(warp.source_size),
+            target_origin: size(places.target_origin),
+            to_source_x: row(0),
+            to_source_y: row(1),
+            to_source_w: row(2),
+            source_law: law(warp.source_law),
+            target_law: law(warp.target_law),
+            nearest: warp.nearest as f32,
+            far_depth: warp.far_depth as f32,
+            source_origin: size(places.source_origin),
+            texel: pair(1.0 / image_width, 1.0 / image_height),
+            padding: Vec2::ZERO,
+        }
+    }
+}
+
+/// A kind of warp, and what the interfaces besides OpenGL need of it to record its passes.
+#[doc(hidden)]
+pub trait WarpKind: Copy {
+    /// The block of the passes' uniforms.
+    type Uniforms: Pod;
+    /// True for any view: the pipeline has no spans, and takes hard edges without a history.
+    const ANY_VIEW: bool;
+
+    /// Width and height of the source and of the target in pixels.
+    fn sizes(&self) -> [[u32; 2]; 2];
+
+    /// The uniforms for images whose rows are counted from the top.
+    fn uniforms_from_top(&self, places: &Places) -> Self::Uniforms;
+}
+
+impl WarpKind for Warp {
+    type Uniforms = Uniforms;
+    const ANY_VIEW: bool = false;
+
+    fn sizes(&self) -> [[u32; 2]; 2] {
+        [self.source_size, self.target_size]
+    }
+
+    fn uniforms_from_top(&self, places: &Places) -> Uniforms {
+        Uniforms::of_part(&self.rows_from_top(), places)
+    }
+}
+
+impl WarpKind for PoseWarp {
+    type Uniforms = PoseUniforms;
+    const ANY_VIEW: bool = true;
+
+    fn sizes(&self) -> [[u32; 2]; 2] {
+        [self.source_size, self.target_size]
+    }
+
+    fn uniforms_from_top(&self, places: &Places) -> PoseUniforms {
+        PoseUniforms::new(&self.rows_from_top(), places)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -165,31 +270,38 @@ mod tests {
         }
     }
 
-    /// The block's members in the shader's text: type and name.
-    fn declared() -> Vec<(String, String)> {
-        let text = yoro_shaders::assemble("include/uniforms.glsl", "310 es", &[]).unwrap().text;
+    /// A block: the file that declares it, its layout and its size.
+    type Block = (&'static str, &'static [(&'static str, &'static str, usize)], usize);
+
+    const BLOCKS: [Block; 2] = [
+        ("include/uniforms.glsl", Uniforms::LAYOUT, size_of::<Uniforms>()),
+        ("include/any_view.glsl", PoseUniforms::LAYOUT, size_of::<PoseUniforms>()),
+    ];
+
+    /// A block's members in the shader's text: type and name.
+    fn declared(file: &str) -> Vec<(String, String)> {
+        let text = yoro_shaders::assemble(file, "310 es", &[]).unwrap().text;
         let members = text.lines().filter_map(|line| line.strip_prefix("UNIFORM ")?.strip_suffix(';'));
         members.map(|member| member.split_once(' ').unwrap()).map(|(a, b)| (a.into(), b.into())).collect()
     }
 
     #[test]
     fn the_layout_is_std140() {
-        let mut end: usize = 0;
-        let mut expected = Vec::new();
-        for (glsl, name) in declared() {
-            let [alignment, size] = std140(&glsl);
-            let offset = end.next_multiple_of(alignment);
-            end = offset + size;
-            expected.push((name, glsl, offset));
+        for (file, layout, bytes) in BLOCKS {
+            let mut end: usize = 0;
+            let mut expected = Vec::new();
+            for (glsl, name) in declared(file) {
+                let [alignment, size] = std140(&glsl);
+                let offset = end.next_multiple_of(alignment);
+                end = offset + size;
+                expected.push((name, glsl, offset));
+            }
+            let members = layout.iter().filter(|(name, ..)| *name != "padding");
+            let members: Vec<_> = members.map(|&(n, t, o)| (n.to_owned(), t.to_owned(), o)).collect();
+            assert_eq!(members, expected, "{file}");
+            assert_eq!(bytes, end.next_multiple_of(16), "{file}");
+            assert!(bytes <= 128, "every Vulkan device has 128 bytes of push constants, some no more");
         }
-        let layout: Vec<_> =
-            Uniforms::LAYOUT.iter().map(|&(n, t, o)| (n.to_owned(), t.to_owned(), o)).collect();
-        assert_eq!(layout, expected);
-        assert_eq!(size_of::<Uniforms>(), end.next_multiple_of(16));
-        assert!(
-            size_of::<Uniforms>() <= 128,
-            "every Vulkan device has 128 bytes of push constants, some no more"
-        );
     }
 
     #[test]
@@ -197,9 +309,9 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
         // Not in the published package.
         let Ok(document) = std::fs::read_to_string(path) else { return };
-        for (name, glsl, offset) in Uniforms::LAYOUT {
+        for (name, glsl, offset) in BLOCKS.iter().flat_map(|(_, layout, _)| *layout) {
             let row = format!("| {offset} | `{name}` | {glsl} |");
-            assert!(document.contains(&row), "docs/library.md has no row {row}");
+            assert!(*name == "padding" || document.contains(&row), "docs/library.md has no row {row}");
         }
     }
 }

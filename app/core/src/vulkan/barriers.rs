@@ -59,7 +59,7 @@ impl Barriers {
             let or = |stages: vk::PipelineStageFlags, none| if stages.is_empty() { none } else { stages };
             let before = or(self.before, vk::PipelineStageFlags::TOP_OF_PIPE);
             let after = or(self.after, vk::PipelineStageFlags::BOTTOM_OF_PIPE);
-            // SAFETY: `Commands::new` asks for a recording buffer and live images. `Gather::record` asks that the
+            // SAFETY: `Commands::new` asks for a recording buffer and live images. `Pipeline::record` asks that the
             // images are in their states `before` when the commands are executed.
             unsafe {
                 commands.device.cmd_pipeline_barrier(commands.buffer, before, after, none, &[], &[], list);

@@ -3,9 +3,10 @@
 use std::ffi::CStr;
 
 use ash::{ext, vk};
+use bytemuck::NoUninit;
 
 use super::Host;
-use crate::synthesis::{Strips, Uniforms};
+use crate::synthesis::Strips;
 
 /// The stages that have the uniforms.
 pub(super) const UNIFORM_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -44,7 +45,12 @@ impl<'a> Commands<'a> {
     }
 
     /// Gives the following draws their textures and uniforms.
-    pub(super) fn bind(&self, layout: vk::PipelineLayout, textures: vk::DescriptorSet, uniforms: &Uniforms) {
+    pub(super) fn bind(
+        &self,
+        layout: vk::PipelineLayout,
+        textures: vk::DescriptorSet,
+        uniforms: &impl NoUninit,
+    ) {
         let (point, stages) = (vk::PipelineBindPoint::GRAPHICS, UNIFORM_STAGES);
         // SAFETY: `Commands::new` asks for a recording buffer and live handles. The layout has one set, and as many
         // push constants as the uniforms have bytes.

@@ -121,12 +121,12 @@ impl Source {
         let intermediate =
             |attachments: &Attachments, i| texture(attachments.color(i), ImageState::SAMPLED.layout);
         let layers = |i| passes.layers().map(|layers| intermediate(&layers.attachments, i));
-        // The shaders of these edges read none of those that are None.
+        // The shaders of these passes read none of those that are None.
         let textures = [
             Some(depth),
             Some(color),
             Some(intermediate(&passes.tiles.map.attachments, 0)),
-            Some(intermediate(&passes.spans.map.attachments, 0)),
+            passes.spans.as_ref().map(|spans| intermediate(&spans.map.attachments, 0)),
             layers(0),
             layers(1),
             samples,

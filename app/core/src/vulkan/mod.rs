@@ -1,9 +1,9 @@
-//! The gather pipeline on Vulkan: recorded into the caller's command buffer.
+//! Synthesis on Vulkan: recorded into the caller's command buffer.
 //!
-//! [`Gather`] has the passes of [`crate::synthesis::Gather`] and, for anti-aliased sources, of
-//! [`crate::synthesis::Layers`], from the same shaders. Everything is allocated and compiled in [`Gather::new`],
-//! [`Gather::register_source`] and [`Gather::register_target`]; [`Gather::record`] only records: it allocates nothing,
-//! submits nothing and waits for nothing.
+//! [`Gather`] has the passes of `synthesis::Gather` and, for anti-aliased sources, of `synthesis::Layers`, from the same shaders;
+//! [`AnyView`] those of `synthesis::AnyView`, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the warp. Both are a
+//! [`Pipeline`]. Everything is allocated and compiled in [`Pipeline::new`], [`Pipeline::register_source`] and
+//! [`Pipeline::register_target`]; [`Pipeline::record`] only records: it allocates nothing, submits nothing and waits for nothing.
 //!
 //! Source and target images have Vulkan's own orientation, row 0 at the top. Give the [`Warp`](crate::eyes::Warp) as
 //! [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the bottom, are
@@ -56,10 +56,10 @@ mod adapter;
 mod barriers;
 mod commands;
 mod formats;
-mod gather;
 mod images;
 mod objects;
 mod passes;
+mod pipeline;
 mod pipelines;
 mod shaders;
 mod targets;
@@ -70,7 +70,7 @@ use ash::vk;
 
 use crate::synthesis::{Edges, Strips};
 
-pub use gather::Gather;
+pub use pipeline::{AnyView, Gather, Pipeline};
 #[doc(hidden)]
 pub use shaders::GatherVariant;
 
@@ -150,6 +150,9 @@ pub enum VulkanError {
         "a history is for pipelines made with one, of sources registered with its images; give both, or none"
     )]
     History,
+    /// [`AnyView`] was asked for other edges than [`Edges::Hard`], or for a history.
+    #[error("any view is synthesized from hard edges, without a history; choose these")]
+    AnyView,
     /// A rectangle reaches beyond its image.
     #[error(
         "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
@@ -226,7 +229,7 @@ pub struct Options {
     pub samples: u32,
     /// True if sources may have a history ([`SourceImages::history`]).
     pub history: bool,
-    /// The number of frames after which [`Gather::pass_times`] returns the times of one: at least the frames in flight. 0
+    /// The number of frames after which [`Pipeline::pass_times`] returns the times of one: at least the frames in flight. 0
     /// for no times.
     pub timed_frames: u32,
     /// A pipeline cache, or null.
@@ -234,10 +237,19 @@ pub struct Options {
 }
 
 impl Options {
-    /// Returns the bytes of the intermediate buffers' texels, which [`Gather::buffer_bytes`] will return: to plan with before
-    /// there are pipelines. Drivers add padding.
+    /// Returns the bytes of the intermediate buffers' texels of a [`Gather`] with these options: to plan with before there are
+    /// pipelines. Drivers add padding.
     pub fn buffer_bytes(&self) -> u64 {
-        passes::buffers(self).map(|(kind, size)| kind.bytes(self, size)).sum()
+        self.bytes(false)
+    }
+
+    /// Returns the same of an [`AnyView`].
+    pub fn any_view_buffer_bytes(&self) -> u64 {
+        self.bytes(true)
+    }
+
+    fn bytes(&self, any_view: bool) -> u64 {
+        passes::buffers(self, any_view).map(|(kind, size)| kind.bytes(self, size)).sum()
     }
 }
 
@@ -324,7 +336,7 @@ pub struct LayerImage {
     pub format: vk::Format,
     /// The layer of the image, 0 for an image with one layer.
     pub layer: u32,
-    /// Its use before [`Gather::record`].
+    /// Its use before [`Pipeline::record`].
     pub before: ImageState,
     /// Its use afterwards, for which it is made ready.
     pub after: ImageState,
@@ -397,7 +409,7 @@ macro_rules! raw_ids {
 
 raw_ids!(SourceId, TargetId);
 
-/// The images and places of one call of [`Gather::record`]. Sizes are those of the warp.
+/// The images and places of one call of [`Pipeline::record`]. Sizes are those of the warp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The images to read.
@@ -422,7 +434,7 @@ pub struct Use {
     pub after: ImageState,
 }
 
-/// The uses of all images in one call ([`Gather::record_with_uses`]). Those of images that are not registered do not matter.
+/// The uses of all images in one call ([`Pipeline::record_with_uses`]). Those of images that are not registered do not matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Uses {
     /// Of [`SourceImages::color`].
@@ -441,14 +453,14 @@ pub struct Uses {
     pub target_depth: Use,
 }
 
-/// GPU times of one frame's passes ([`Gather::pass_times`]).
+/// GPU times of one frame's passes ([`Pipeline::pass_times`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassTimes {
     /// The split of the source into layers; 0 with [`Edges::Hard`].
     pub split: std::time::Duration,
     /// The bounds of the displacements in each tile.
     pub tiles: std::time::Duration,
-    /// The columns to search for each tile of the target.
+    /// The columns to search for each tile of the target; 0 of [`AnyView`].
     pub spans: std::time::Duration,
     /// The search, which writes the target.
     pub march: std::time::Duration,

@@ -8,7 +8,7 @@ use super::barriers::Barriers;
 use super::commands::Commands;
 use super::objects::Objects;
 use super::pipelines::{PipelineFactory, Pipelines};
-use super::shaders::{self, GatherVariant};
+use super::shaders::{self, Kind};
 use super::targets::{Attachments, Intermediate, PassKind, Rendering};
 use super::timer::{Stamp, Timer};
 use super::{ImageState, Options, VulkanError};
@@ -20,7 +20,8 @@ pub(super) struct Passes {
     /// None for hard edges.
     pub(super) split: Option<SplitPass>,
     pub(super) tiles: TilesPass,
-    pub(super) spans: SpansPass,
+    /// None for any view.
+    pub(super) spans: Option<SpansPass>,
     pub(super) march: MarchPass,
 }
 
@@ -45,10 +46,11 @@ pub(super) struct SpansPass {
 }
 
 /// The kinds and sizes of the intermediate buffers that [`Passes::new`] makes.
-pub(super) fn buffers(options: &Options) -> impl Iterator<Item = (PassKind, [u32; 2])> {
+pub(super) fn buffers(options: &Options, any_view: bool) -> impl Iterator<Item = (PassKind, [u32; 2])> {
     let layers = (options.edges != Edges::Hard).then_some((PassKind::Layers, options.max_source_size));
     let map = map_kind(options.edges);
-    map_sizes(options).map(|size| (map, size)).into_iter().chain(layers)
+    let maps = if any_view { 1 } else { 2 };
+    map_sizes(options).map(|size| (map, size)).into_iter().take(maps).chain(layers)
 }
 
 /// The kind of the maps of tiles and of spans.
@@ -75,18 +77,21 @@ impl Passes {
         layout: vk::PipelineLayout,
         memory: &vk::PhysicalDeviceMemoryProperties,
         options: &Options,
-        variant: GatherVariant,
+        kind: Kind,
     ) -> Result<Passes, VulkanError> {
         // SAFETY: the shader modules of pipelines that are complete are not used by any command.
         let shaders = unsafe { Objects::new(objects.device()) };
-        let mut factory = PipelineFactory { objects, shaders, rendering: &rendering, layout, options };
+        let march_vertex = shaders::march_vertex(kind);
+        let mut factory =
+            PipelineFactory { objects, shaders, rendering: &rendering, layout, options, march_vertex };
         let edges = options.edges;
         let depth = options.depth_format.is_some();
         let map = map_kind(edges);
-        let tile_pipelines = factory.pipelines(shaders::tiles(edges, variant), map)?;
-        let spans_pipeline = factory.pipeline(shaders::spans(edges, variant), map, false)?;
+        let tile_pipelines = factory.pipelines(shaders::tiles(edges, kind), map)?;
+        let spans_pipeline =
+            shaders::spans(edges, kind).map(|shader| factory.pipeline(shader, map, false)).transpose()?;
         let march =
-            factory.pipelines(shaders::march(edges, variant, depth, options.history), PassKind::Target)?;
+            factory.pipelines(shaders::march(edges, kind, depth, options.history), PassKind::Target)?;
         let resolved =
             shaders::split(edges).map(|shader| factory.pipelines(shader, PassKind::Layers)).transpose()?;
         let samples = (edges == Edges::Multisample)
@@ -98,7 +103,10 @@ impl Passes {
             |kind, size| Intermediate::new(objects, &rendering, memory, kind, options, size);
         let [tile_size, span_size] = map_sizes(options);
         let tile_map = intermediate(map, tile_size)?;
-        let span_map = intermediate(map, span_size)?;
+        let spans = match spans_pipeline {
+            Some(pipeline) => Some(SpansPass { pipeline, map: intermediate(map, span_size)? }),
+            None => None,
+        };
         let split = match resolved {
             Some(resolved) => {
                 let layers = intermediate(PassKind::Layers, options.max_source_size)?;
@@ -110,7 +118,7 @@ impl Passes {
             rendering,
             split,
             tiles: TilesPass { pipelines: tile_pipelines, map: tile_map },
-            spans: SpansPass { pipeline: spans_pipeline, map: span_map },
+            spans,
             march: MarchPass { pipelines: march },
         })
     }
@@ -121,7 +129,8 @@ impl Passes {
     }
 
     pub(super) fn intermediates(&self) -> impl Iterator<Item = &Intermediate> {
-        [self.layers(), Some(&self.tiles.map), Some(&self.spans.map)].into_iter().flatten()
+        let spans = self.spans.as_ref().map(|spans| &spans.map);
+        [self.layers(), Some(&self.tiles.map), spans].into_iter().flatten()
     }
 }
 

@@ -6,7 +6,6 @@ use super::commands::UNIFORM_STAGES;
 use super::objects::Objects;
 use super::targets::{PassKind, Rendering};
 use super::{Options, VulkanError, shaders};
-use crate::synthesis::Uniforms;
 
 /// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map, layers
 /// and the colour behind them, colour of the samples. Hard edges have no layers, and resolved sources have no samples.
@@ -25,15 +24,13 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    pub(super) fn new(objects: &mut Objects, history: bool) -> Result<Layouts, VulkanError> {
+    /// Layouts for passes with so many bytes of uniforms.
+    pub(super) fn new(objects: &mut Objects, uniforms: usize, history: bool) -> Result<Layouts, VulkanError> {
         let textures = texture_layout(objects, history)?;
         let layouts = [textures];
         // Every device has 128 bytes of push constants.
-        let constants = [vk::PushConstantRange {
-            stage_flags: UNIFORM_STAGES,
-            offset: 0,
-            size: size_of::<Uniforms>() as u32,
-        }];
+        let constants =
+            [vk::PushConstantRange { stage_flags: UNIFORM_STAGES, offset: 0, size: uniforms as u32 }];
         let info =
             vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(&constants);
         Ok(Layouts { textures, pipeline: objects.create_pipeline_layout(&info)? })
@@ -98,6 +95,8 @@ pub(super) struct PipelineFactory<'a> {
     pub(super) rendering: &'a Rendering,
     pub(super) layout: vk::PipelineLayout,
     pub(super) options: &'a Options,
+    /// The vertex shader of the pass that draws the target.
+    pub(super) march_vertex: &'static [u8],
 }
 
 impl PipelineFactory<'_> {
@@ -116,7 +115,7 @@ impl PipelineFactory<'_> {
         part: bool,
     ) -> Result<vk::Pipeline, VulkanError> {
         let vertex = match kind {
-            PassKind::Target => shaders::MARCH_VERTEX,
+            PassKind::Target => self.march_vertex,
             _ => shaders::SCREEN,
         };
         let vertex = self.shaders.create_shader(vertex)?;

@@ -2,6 +2,15 @@
 
 use crate::synthesis::Edges;
 
+/// The passes of a kind of warp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Those between parallel eyes.
+    Gather(GatherVariant),
+    /// Those of any view.
+    AnyView,
+}
+
 /// The kind of device that the shaders are written for; see [`crate::synthesis::GatherVariant`].
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +22,6 @@ pub enum GatherVariant {
 }
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
-pub(super) const MARCH_VERTEX: &[u8] = include_bytes!("spirv/march-vertex.spv");
 /// The first pass for depth and colour of all samples.
 pub(super) const SPLIT_SAMPLES: &[u8] = include_bytes!("spirv/split-samples.spv");
 
@@ -28,24 +36,34 @@ pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
 }
 
 /// Returns the pass that finds the bounds of tiles.
-pub(super) fn tiles(edges: Edges, variant: GatherVariant) -> &'static [u8] {
-    match (edges, variant) {
-        (Edges::Hard, GatherVariant::Software) => include_bytes!("spirv/tiles.spv"),
-        (Edges::Hard, GatherVariant::ShortWay) => include_bytes!("spirv/tiles-short.spv"),
+pub(super) fn tiles(edges: Edges, kind: Kind) -> &'static [u8] {
+    match (edges, kind) {
+        (_, Kind::AnyView) => include_bytes!("spirv/any-view-tiles.spv"),
+        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => include_bytes!("spirv/tiles.spv"),
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_bytes!("spirv/tiles-short.spv"),
         _ => include_bytes!("spirv/layer-tiles.spv"),
     }
 }
 
-/// Returns the pass that finds what each tile of the target has to search.
-pub(super) fn spans(edges: Edges, variant: GatherVariant) -> &'static [u8] {
-    match (edges, variant) {
-        (Edges::Hard, GatherVariant::ShortWay) => include_bytes!("spirv/spans-short.spv"),
-        _ => include_bytes!("spirv/spans.spv"),
+/// Returns the pass that finds what each tile of the target has to search; None for any view.
+pub(super) fn spans(edges: Edges, kind: Kind) -> Option<&'static [u8]> {
+    match (edges, kind) {
+        (_, Kind::AnyView) => None,
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => Some(include_bytes!("spirv/spans-short.spv")),
+        _ => Some(include_bytes!("spirv/spans.spv")),
+    }
+}
+
+/// Returns the vertex shader of the last pass.
+pub(super) fn march_vertex(kind: Kind) -> &'static [u8] {
+    match kind {
+        Kind::Gather(_) => include_bytes!("spirv/march-vertex.spv"),
+        Kind::AnyView => SCREEN,
     }
 }
 
 /// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
-pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool, history: bool) -> &'static [u8] {
+pub(super) fn march(edges: Edges, kind: Kind, depth: bool, history: bool) -> &'static [u8] {
     /// The four modules of a source's kind.
     macro_rules! of {
         ($name:literal) => {
@@ -57,9 +75,11 @@ pub(super) fn march(edges: Edges, variant: GatherVariant, depth: bool, history: 
             }
         };
     }
-    match (edges, variant) {
-        (Edges::Hard, GatherVariant::Software) => of!("march"),
-        (Edges::Hard, GatherVariant::ShortWay) => of!("march-short"),
+    match (edges, kind) {
+        (_, Kind::AnyView) if depth => include_bytes!("spirv/any-view-march-depth.spv"),
+        (_, Kind::AnyView) => include_bytes!("spirv/any-view-march.spv"),
+        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => of!("march"),
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => of!("march-short"),
         (Edges::Multisample, _) => of!("layer-march-multisample"),
         _ => of!("layer-march"),
     }
@@ -79,7 +99,11 @@ mod tests {
     const SPANS: &str = "synthesis/gather/spans.frag";
     const SPLIT: &str = "synthesis/layers/split.frag";
     const TILES: &str = "synthesis/gather/tiles.frag";
-    const MODULES: [Module; 27] = [
+    const ANY_VIEW: &str = "synthesis/any_view/march.frag";
+    const MODULES: [Module; 30] = [
+        ("any-view-march", ANY_VIEW, &[]),
+        ("any-view-march-depth", ANY_VIEW, &["WRITE_DEPTH"]),
+        ("any-view-tiles", "synthesis/any_view/tiles.frag", &[]),
         ("layer-march", LAYER_MARCH, &[]),
         ("layer-march-history", LAYER_MARCH, &["HISTORY"]),
         ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),

@@ -1,71 +1,18 @@
 //! The pipeline for any view against its f64 reference, its laws, and gather where both apply.
 
-use std::rc::Rc;
-
-use glam::{DVec2, Quat, Vec3};
+use glam::{DVec2, Vec3};
 
 use super::laws::{on_every_backend, pair, scene};
-use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, Pose, PoseWarp, View};
+use super::posed::{MOTIONS, moved, run};
+use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, PoseWarp, View};
 use yoro::synthesis::*;
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
-
-/// The synthesized view: RGBA, 8 bits each, and stored depth.
-#[derive(Debug, PartialEq)]
-struct Image {
-    rgba: Vec<u8>,
-    depth: Vec<f32>,
-}
-
-/// Synthesizes from images in memory, the source being a part of larger textures if `part` has its corner and their size.
-fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: Option<Part>) -> Image {
-    let size = part.map_or(warp.source_size, |part| part.image_size);
-    let texture = |format, bytes: &[u8]| {
-        let texture = Texture::new(gl, size, format, Filter::Nearest).unwrap();
-        texture.upload(bytes);
-        texture
-    };
-    let color = texture(Format::Rgba8, rgba);
-    let depth = texture(Format::R32F, bytemuck::cast_slice(depth));
-    let options = SynthesisOptions { parts: part.is_some(), ..SynthesisOptions::default() };
-    let outputs = Outputs { depth: true, ..Outputs::default() };
-    let mut pipeline = AnyView::new(gl, &options, outputs).unwrap();
-    let formats = [(Format::Rgba8, Filter::Nearest)];
-    // Not in a corner, where all places would be equal.
-    let size = warp.target_size;
-    let target = RenderTarget::new(gl, size.map(|n| n + 7), &formats, Some(Format::Depth32F)).unwrap();
-    let place = Destination { framebuffer: Some(target.raw()), origin: [3, 5], size };
-    let source = Source { part, ..Source::new(color.raw(), depth.raw()) };
-    pipeline.synthesize(source, warp, &place).unwrap();
-    // Depth is read back as a colour.
-    let copy = RenderTarget::new(gl, target.size(), &[(Format::Rgba32F, Filter::Nearest)], None).unwrap();
-    let program =
-        yoro_gl::Program::new(gl, yoro_gl::ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
-    copy.overwrite();
-    program.bind().texture("source", 0, target.depth().raw());
-    gl.draw_screen();
-    let depth = copy.read_rgba32f(0, [3, 5], size).into_iter().map(|texel| texel[0]).collect();
-    Image { rgba: target.read_rgba8(0, [3, 5], size), depth }
-}
+use yoro_gl::GlError;
 
 /// A view of `size`, and one moved and turned against it.
-fn views(size: [u32; 2], moved: Vec3, turn: [f32; 3], convention: DepthConvention) -> [View; 2] {
+fn views(size: [u32; 2], way: Vec3, turn: [f32; 3], convention: DepthConvention) -> [View; 2] {
     let source = pair(size, Eye::Left, 0.0, convention).view(Eye::Left);
-    let [yaw, pitch, roll] = turn;
-    let orientation = Quat::from_euler(glam::EulerRot::YXZ, yaw, pitch, roll);
-    let pose = Pose { position: source.pose.position + moved, orientation };
-    [source, View { pose, ..source }]
+    [source, moved(&source, (way, turn))]
 }
-
-/// Motions: to a side, up, askew, forwards, backwards, turned alone, everything at once.
-const MOTIONS: [(Vec3, [f32; 3]); 7] = [
-    (Vec3::new(0.06, 0.0, 0.0), [0.0; 3]),
-    (Vec3::new(0.0, -0.05, 0.0), [0.0; 3]),
-    (Vec3::new(-0.03, 0.04, 0.0), [0.0; 3]),
-    (Vec3::new(0.0, 0.0, -0.2), [0.0; 3]),
-    (Vec3::new(0.01, 0.0, 0.1), [0.0; 3]),
-    (Vec3::ZERO, [0.05, -0.03, 0.1]),
-    (Vec3::new(0.03, -0.02, -0.06), [-0.04, 0.02, -0.05]),
-];
 
 /// The march in f64, over all samples of the segment: the colour of a target pixel, and its stored depth.
 fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64; 4], f64) {
@@ -166,9 +113,9 @@ fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64
 #[test]
 fn any_view_is_its_reference() {
     on_every_backend(|gl| {
-        for (seed, (moved, turn)) in MOTIONS.into_iter().enumerate() {
+        for (seed, (way, turn)) in MOTIONS.into_iter().enumerate() {
             let convention = [DepthConvention::Standard, DepthConvention::Reversed][seed % 2];
-            let [source, target] = views([97, 71], moved, turn, convention);
+            let [source, target] = views([97, 71], way, turn, convention);
             let target = View { size: [90, 75], ..target };
             let warp = PoseWarp::new(&source, &target).unwrap();
             let (rgba, depth) = scene(source.size, source.depth, seed as u64);
@@ -188,7 +135,7 @@ fn any_view_is_its_reference() {
                 }
             }
             // Positions within rounding of a decision may go either way.
-            assert!(different <= 90 * 75 / 500, "{moved} {turn:?}: {different} pixels differ");
+            assert!(different <= 90 * 75 / 500, "{way} {turn:?}: {different} pixels differ");
         }
     });
 }
@@ -225,8 +172,8 @@ fn plane(view: &View, s: [f64; 3]) -> (Vec<u8>, Vec<f32>) {
 #[test]
 fn a_plane_moves_exactly() {
     on_every_backend(|gl| {
-        for (n, (moved, turn)) in MOTIONS.into_iter().enumerate() {
-            let [source, target] = views([140, 120], moved, turn, DepthConvention::Standard);
+        for (n, (way, turn)) in MOTIONS.into_iter().enumerate() {
+            let [source, target] = views([140, 120], way, turn, DepthConvention::Standard);
             let warp = PoseWarp::new(&source, &target).unwrap();
             for s in [[0.0, 0.0, 0.5], [0.002, -0.004, 0.8]] {
                 let (rgba, depth) = plane(&source, s);
@@ -261,8 +208,8 @@ fn a_plane_moves_exactly() {
 #[test]
 fn forward_and_back_is_the_same_picture() {
     on_every_backend(|gl| {
-        for (n, (moved, turn)) in MOTIONS.into_iter().enumerate() {
-            let [source, target] = views([140, 120], moved, turn, DepthConvention::Reversed);
+        for (n, (way, turn)) in MOTIONS.into_iter().enumerate() {
+            let [source, target] = views([140, 120], way, turn, DepthConvention::Reversed);
             let (rgba, depth) = plane(&source, [0.002, -0.001, 0.6]);
             let there = run(gl, &rgba, &depth, &PoseWarp::new(&source, &target).unwrap(), None);
             let back = run(gl, &there.rgba, &there.depth, &PoseWarp::new(&target, &source).unwrap(), None);
@@ -315,8 +262,8 @@ fn parallel_eyes_are_those_of_gather() {
 #[test]
 fn a_part_is_what_the_whole_would_be() {
     on_every_backend(|gl| {
-        for (moved, turn) in MOTIONS {
-            let [source, target] = views([61, 45], moved, turn, DepthConvention::Standard);
+        for (way, turn) in MOTIONS {
+            let [source, target] = views([61, 45], way, turn, DepthConvention::Standard);
             let warp = PoseWarp::new(&source, &target).unwrap();
             let (rgba, depth) = scene(source.size, source.depth, 7);
             let whole = run(gl, &rgba, &depth, &warp, None);
@@ -329,8 +276,8 @@ fn a_part_is_what_the_whole_would_be() {
             }
             let got = run(gl, &around, &depths, &warp, Some(part));
             // A filter's fraction may round the other way.
-            assert!(got.rgba.iter().zip(&whole.rgba).all(|(a, b)| a.abs_diff(*b) <= 2), "{moved} {turn:?}");
-            assert_eq!(got.depth, whole.depth, "{moved} {turn:?}");
+            assert!(got.rgba.iter().zip(&whole.rgba).all(|(a, b)| a.abs_diff(*b) <= 2), "{way} {turn:?}");
+            assert_eq!(got.depth, whole.depth, "{way} {turn:?}");
         }
     });
 }

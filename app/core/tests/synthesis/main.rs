@@ -6,6 +6,7 @@ mod host;
 mod in_memory;
 mod laws;
 mod parts;
+mod posed;
 mod reference;
 mod sheets;
 mod state;

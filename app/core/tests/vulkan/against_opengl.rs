@@ -3,6 +3,8 @@
 
 #[path = "../synthesis/in_memory.rs"]
 mod in_memory;
+#[path = "../synthesis/posed.rs"]
+mod posed;
 #[path = "../synthesis/sheets.rs"]
 mod sheets;
 
@@ -12,8 +14,10 @@ use std::rc::Rc;
 use rand::{Rng, SeedableRng};
 
 use in_memory::{Former, InMemory, SynthesizedImage};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, View, Warp};
-use yoro::synthesis::{self, Edges, GatherVariant, Outputs, SourceMapEntry, Strips, SynthesisOptions};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, PoseWarp, View, Warp};
+use yoro::synthesis::{
+    self, Edges, GatherVariant, Outputs, SourceMapEntry, Strips, SynthesisOptions, WarpKind,
+};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
 
@@ -21,16 +25,16 @@ use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
 const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
 
 /// A rendered eye, rows from the bottom.
-pub struct Picture {
-    pub warp: Warp,
+pub struct Picture<W = Warp> {
+    pub warp: W,
     pub rgba: Vec<u8>,
     pub depth: Vec<f32>,
 }
 
 /// A slanted wall with boxes and wires before it, in colours that differ from pixel to pixel but smoothly enough for an
 /// error of position to be one of colour in the same measure.
-pub fn picture(warp: &Warp, range: DepthRange, seed: u64) -> Picture {
-    let [w, h] = warp.source_size.map(|n| n as usize);
+pub fn picture<W: WarpKind>(warp: &W, range: DepthRange, seed: u64) -> Picture<W> {
+    let [w, h] = warp.sizes()[0].map(|n| n as usize);
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
     let mut z: Vec<f32> =
         (0..w * h).map(|i| 4.0 + 3.0 * (i % w) as f32 / w as f32 + 0.01 * (i / w) as f32).collect();
@@ -193,6 +197,31 @@ impl InMemory {
         let former = Former { rgba: &former.rgba, depth: &former.depth, size: *former_size, strips };
         [Some(former), None].map(|history| self.recall(rgba, depth, warp, history).rgba)
     }
+}
+
+/// Warps to poses of a moving head, in all depth ranges, with targets of another size than the source.
+pub fn pose_warps() -> Vec<(PoseWarp, DepthRange)> {
+    let ranges = ranges().into_iter().cycle();
+    let of = |(motion, range)| {
+        let source = eyes([97, 71], Eye::Left, range).view(Eye::Left);
+        let target = View { size: [90, 75], ..posed::moved(&source, motion) };
+        (PoseWarp::new(&source, &target).unwrap(), range)
+    };
+    posed::MOTIONS.into_iter().zip(ranges).map(of).collect()
+}
+
+impl Gl {
+    /// Any view on OpenGL ES, with its depth.
+    pub fn any_view(&self, picture: &Picture<PoseWarp>) -> posed::Image {
+        posed::run(self.headless.gl(), &picture.rgba, &picture.depth, &picture.warp, None)
+    }
+}
+
+/// Checks that stored depth is as good as equal, as [`assert_equal`] does for colours.
+pub fn assert_depth_equal(got: &[f32], want: &[f32], what: &str) {
+    assert_eq!(got.len(), want.len());
+    let different = got.iter().zip(want).filter(|(a, b)| (**a - **b).abs() > 4e-5).count();
+    assert!(different * 4000 <= got.len(), "{what}: depth of {different} of {} pixels differs", got.len());
 }
 
 /// The largest difference of a channel, by the number of a variant. The two APIs count rows from opposite ends, so that tiles

@@ -5,7 +5,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;
 
-use yoro::eyes::Warp;
+use yoro::synthesis::WarpKind;
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Host, ImageState, LayerImage};
 
@@ -564,9 +564,8 @@ pub fn flipped(bytes: &[u8], row: usize) -> Vec<u8> {
 }
 
 /// The largest sizes of several warps.
-pub fn largest(warps: &[Warp]) -> [[u32; 2]; 2] {
-    let most = |size: fn(&Warp) -> [u32; 2]| {
-        [0, 1].map(|i| warps.iter().map(|warp| size(warp)[i]).max().unwrap_or(1))
-    };
-    [most(|warp| warp.source_size), most(|warp| warp.target_size)]
+pub fn largest(warps: &[impl WarpKind]) -> [[u32; 2]; 2] {
+    let most =
+        |image: usize| [0, 1].map(|i| warps.iter().map(|warp| warp.sizes()[image][i]).max().unwrap_or(1));
+    [0, 1].map(most)
 }

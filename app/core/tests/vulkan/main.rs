@@ -1,6 +1,7 @@
 //! Pictures of the Vulkan passes equal those of the OpenGL passes, under the validation layer.
 
 mod against_opengl;
+mod any_view;
 mod failures;
 mod harness;
 mod history;
@@ -16,11 +17,11 @@ use against_opengl::{
 };
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::synthesis::{self, Outputs, SynthesisOptions};
+use yoro::synthesis::{self, Outputs, SynthesisOptions, WarpKind};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
-    Frame, Gather, GatherVariant, HistoryImages, ImageState, Options, SourceImages, TargetImages, Use, Uses,
-    VulkanError,
+    AnyView, Frame, Gather, GatherVariant, HistoryImages, ImageState, Options, Pipeline, SourceImages,
+    TargetImages, Use, Uses, VulkanError,
 };
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Destination};
@@ -88,7 +89,7 @@ impl Setup {
         target_before: WRITTEN,
     };
 
-    fn options(&self, warps: &[Warp]) -> Options {
+    fn options(&self, warps: &[impl WarpKind]) -> Options {
         let [max_source_size, max_target_size] = largest(warps);
         Options {
             color_format: self.target,
@@ -106,14 +107,20 @@ struct Result {
 }
 
 /// Synthesizes a picture with images around it that hold something else.
-fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) -> Result {
+fn synthesize<W: WarpKind>(
+    gpu: &Gpu,
+    pipeline: &mut Pipeline<W>,
+    setup: &Setup,
+    picture: &Picture<W>,
+) -> Result {
     let warp = &picture.warp;
+    let [source_size, target_size] = warp.sizes();
     let sum = |[a, b]: [[u32; 2]; 2], size: [u32; 2]| [0, 1].map(|i| a[i] + size[i] + b[i]);
-    let source_image = sum(setup.source_margins, warp.source_size);
-    let target_image = sum(setup.target_margins, warp.target_size);
+    let source_image = sum(setup.source_margins, source_size);
+    let target_image = sum(setup.target_margins, target_size);
     let pixels = |size: [u32; 2]| size[0] as usize * size[1] as usize;
     let [source_origin, target_origin] = [setup.source_margins[0], setup.target_margins[0]];
-    let width = warp.source_size[0] as usize;
+    let width = source_size[0] as usize;
 
     let color = gpu.image(setup.color, source_image, 2);
     let depth = gpu.image(setup.depth, source_image, 2);
@@ -146,7 +153,7 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
 
     // SAFETY: images that live until everything is executed, in the states that are told.
     unsafe {
-        let source = gather
+        let source = pipeline
             .register_source(&SourceImages {
                 color: image(&color, setup.source_layer, setup.states[0]),
                 depth: image(&depth, setup.source_layer, setup.states[1]),
@@ -155,7 +162,7 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
                 history: None,
             })
             .unwrap();
-        let target_id = gather
+        let target_id = pipeline
             .register_target(&TargetImages {
                 color: image(&target, setup.target_layer, [setup.target_before, READ]),
                 depth: target_depth
@@ -165,13 +172,13 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
             })
             .unwrap();
         let frame = Frame { source, source_origin, target: target_id, target_origin, history: None };
-        gpu.run(|commands| gather.record(commands, &frame, warp).unwrap());
-        gather.release_source(source);
-        gather.release_target(target_id);
+        gpu.run(|commands| pipeline.record(commands, &frame, warp).unwrap());
+        pipeline.release_source(source);
+        pipeline.release_target(target_id);
     }
     let after = target.read_rgba8(setup.target_layer, READ);
-    let rgba = cut(&after, target_image, target_origin, warp.target_size, 4);
-    let width = warp.target_size[0] as usize;
+    let rgba = cut(&after, target_image, target_origin, target_size, 4);
+    let width = target_size[0] as usize;
     let outside = pasted(before, target_image, target_origin, &rgba, width);
     assert!(outside == after, "pixels outside of the target's rectangle have changed: {setup:?}");
     // The layout is what was asked for: the validation layer looks.
@@ -180,7 +187,7 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
     }
     let depth = target_depth.map(|depth| {
         let all = depth.read_depth(setup.target_layer, READ);
-        cut(&all, target_image, target_origin, warp.target_size, 1)
+        cut(&all, target_image, target_origin, target_size, 1)
     });
     Result { rgba, depth }
 }
@@ -536,6 +543,12 @@ fn the_memory_is_known_before() {
                 assert_eq!(options.buffer_bytes(), gather.buffer_bytes(), "{options:?}");
             }
         }
+        let (max_source_size, max_target_size) = sizes;
+        let options = Options { max_source_size, max_target_size, ..Options::default() };
+        // SAFETY: the device outlives it.
+        let any_view = unsafe { AnyView::new(&gpu.host(), &options).unwrap() };
+        assert_eq!(options.any_view_buffer_bytes(), 16 * 19 * 25);
+        assert_eq!(any_view.buffer_bytes(), 16 * 19 * 25);
     });
 }
 
@@ -559,6 +572,12 @@ fn mistakes_are_refused() {
             }
             let color = Options { depth_format: Some(vk::Format::R8G8B8A8_UNORM), ..options };
             assert!(matches!(make(&color), Some(VulkanError::Format { .. })));
+            for other in [
+                Options { edges: synthesis::Edges::Nearest, ..options },
+                Options { history: true, ..options },
+            ] {
+                assert_eq!(AnyView::new(&gpu.host(), &other).err(), Some(VulkanError::AnyView));
+            }
             let family = Gather::new(&yoro::vulkan::Host { queue_family: 77, ..gpu.host() }, &options);
             assert_eq!(family.err(), Some(VulkanError::QueueFamily(77)));
             let dynamic =

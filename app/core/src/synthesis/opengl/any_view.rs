@@ -2,11 +2,10 @@
 
 use std::rc::Rc;
 
-use glam::{IVec2, Vec2};
-
 use super::preserve::preserve;
-use super::{Edges, GlState, Outputs, Part, Source, SynthesisOptions, draw_target, tiles};
+use super::{Edges, GlState, Outputs, Source, SynthesisOptions, draw_target, tiles};
 use crate::eyes::PoseWarp;
+use crate::synthesis::PoseUniforms;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
 /// View synthesis for a target in any pose near the source's: tile bounds, march. Where both views are parallel eyes on a
@@ -97,21 +96,8 @@ impl AnyView {
         } else {
             program.texture("depth_map", 0, source.depth).texture("color_map", 1, source.color);
         }
-        let whole = Part { origin: [0, 0], image_size: warp.source_size };
-        let part = source.part.filter(|_| self.options.parts).unwrap_or(whole);
-        let pixels = |n: [u32; 2]| IVec2::from(n.map(|n| n as i32));
-        let law = |law: [f64; 2]| Vec2::from(law.map(|n| n as f32));
-        program
-            .set("source_size", pixels(warp.source_size))
-            .set("source_origin", pixels(part.origin))
-            .set("texel", Vec2::from(part.image_size.map(|n| 1.0 / n as f32)))
-            .set("target_origin", pixels(target.origin))
-            .set("homography", warp.homography.as_mat3())
-            .set("epipole", warp.epipole.as_vec3())
-            .set("source_law", law(warp.source_law))
-            .set("target_law", law(warp.target_law))
-            .set("nearest", warp.nearest as f32)
-            .set("far_depth", warp.far_depth as f32);
+        let places = source.places(warp.source_size, target, self.options.parts);
+        PoseUniforms::new(warp, &places).set(program);
     }
 }
 

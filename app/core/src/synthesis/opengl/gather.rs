@@ -155,7 +155,7 @@ impl Synthesis for Gather {
         self.gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
         let gl = &self.gl;
         let [tile_size, span_size] = map_sizes(warp);
-        let uniforms = Uniforms::of_part(warp, &source.places(warp, target, self.options.parts));
+        let uniforms = Uniforms::of_part(warp, &source.places(warp.source_size, target, self.options.parts));
         let set_source = if self.options.layers { set_source_layer } else { set_source };
         gl.pass("gather tiles", || {
             self.tile_map.bind_part(tile_size);

@@ -184,7 +184,7 @@ impl Synthesis for Layers {
         self.gl.begin_synthesis(DRAW_BUFFERS, self.outputs.srgb);
         let gl = &self.gl;
         let [tile_size, span_size] = map_sizes(warp);
-        let uniforms = Uniforms::of_part(warp, &source.places(warp, target, self.options.parts));
+        let uniforms = Uniforms::of_part(warp, &source.places(warp.source_size, target, self.options.parts));
         gl.pass("layers split", || {
             self.layers.bind_part(warp.source_size);
             self.bind_split(source, &uniforms);

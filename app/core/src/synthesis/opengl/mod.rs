@@ -91,9 +91,9 @@ impl Source {
         Source { color, depth, samples: None, part: None, layer: 0, history: None }
     }
 
-    /// Returns the place of the source of a warp in its textures.
-    fn places(&self, warp: &Warp, target: &Destination, part: bool) -> Places {
-        let whole = Part { origin: [0, 0], image_size: warp.source_size };
+    /// Returns the place of a source of this size in its textures.
+    fn places(&self, size: [u32; 2], target: &Destination, part: bool) -> Places {
+        let whole = Part { origin: [0, 0], image_size: size };
         let Part { origin, image_size } = self.part.filter(|_| part).unwrap_or(whole);
         Places { source_origin: origin, image_size, target_origin: target.origin, part }
     }

@@ -1,5 +1,6 @@
-//! Synthesis of the other eye, recorded into the caller's command buffer.
+//! Synthesis, recorded into the caller's command buffer.
 
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 use ash::vk;
@@ -11,22 +12,29 @@ use super::images::{self, Source, Target};
 use super::objects::Objects;
 use super::passes::{Passes, Recorder};
 use super::pipelines::Layouts;
-use super::shaders::GatherVariant;
+use super::shaders::{GatherVariant, Kind};
 use super::targets::Rendering;
 use super::timer::{Stamp, Timer};
 use super::{
     Frame, Host, ImageState, Options, PassTimes, SourceId, SourceImages, TargetId, TargetImages, Uses,
     VulkanError,
 };
-use crate::eyes::Warp;
-use crate::synthesis::{Places, Strips, Uniforms, tiles};
+use crate::eyes::{PoseWarp, Warp};
+use crate::synthesis::{Edges, Places, Strips, WarpKind, tiles};
 
-/// The passes of [`crate::synthesis::Gather`]: tile bounds, tile spans, march. For anti-aliased sources those of
-/// [`crate::synthesis::Layers`], with the split into layers before them.
+/// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources those of `synthesis::Layers`, with
+/// the split into layers before them.
+pub type Gather = Pipeline<Warp>;
+
+/// The passes of `synthesis::AnyView`: tile bounds, march. It draws a view in any pose near the source's, of sources with
+/// [`Edges::Hard`] and without a history.
+pub type AnyView = Pipeline<PoseWarp>;
+
+/// The passes of a kind of warp: [`Gather`] or [`AnyView`].
 ///
 /// Call its methods from one thread at a time. All frames share the intermediate buffers, which barriers guard: the
 /// commands must be executed in the order of their recording, by queues of one family, one after the other.
-pub struct Gather {
+pub struct Pipeline<W> {
     adapter: Adapter,
     device: Arc<ash::Device>,
     options: Options,
@@ -40,31 +48,12 @@ pub struct Gather {
     targets: Vec<Target>,
     /// The id that was given out last.
     last_id: u32,
+    warp: PhantomData<W>,
     // Last: destroyed after the objects of sources and targets.
     _objects: Objects,
 }
 
 impl Gather {
-    /// Makes everything that does not depend on the images: pipelines and intermediate buffers.
-    ///
-    /// # Errors
-    /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::Samples`], [`VulkanError::QueueFamily`] and
-    /// [`VulkanError::DynamicRendering`] for what the device cannot do; errors of Vulkan's commands.
-    ///
-    /// # Safety
-    /// The host's handles are valid, belong together and outlive the returned value. When that is dropped, no command
-    /// that it has recorded is pending.
-    pub unsafe fn new(host: &Host, options: &Options) -> Result<Gather, VulkanError> {
-        // SAFETY: the caller's handles are valid and belong together.
-        let adapter = unsafe { Adapter::new(host) };
-        let variant = match adapter.properties.device_type {
-            vk::PhysicalDeviceType::CPU => GatherVariant::Software,
-            _ => GatherVariant::ShortWay,
-        };
-        // SAFETY: the contract of this function is the same.
-        unsafe { Gather::with_variant(host, options, variant) }
-    }
-
     /// Does what [`Gather::new`] does on another kind of device: for tests of shaders that this device would not use.
     ///
     /// # Errors
@@ -78,6 +67,40 @@ impl Gather {
         options: &Options,
         variant: GatherVariant,
     ) -> Result<Gather, VulkanError> {
+        // SAFETY: the contract of this function is the same.
+        unsafe { Gather::of_kind(host, options, Kind::Gather(variant)) }
+    }
+}
+
+impl<W: WarpKind> Pipeline<W> {
+    /// Makes everything that does not depend on the images: pipelines and intermediate buffers.
+    ///
+    /// # Errors
+    /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::Samples`], [`VulkanError::QueueFamily`] and
+    /// [`VulkanError::DynamicRendering`] for what the device cannot do; [`VulkanError::AnyView`] for what [`AnyView`] cannot;
+    /// errors of Vulkan's commands.
+    ///
+    /// # Safety
+    /// The host's handles are valid, belong together and outlive the returned value. When that is dropped, no command
+    /// that it has recorded is pending.
+    pub unsafe fn new(host: &Host, options: &Options) -> Result<Pipeline<W>, VulkanError> {
+        // SAFETY: the caller's handles are valid and belong together.
+        let adapter = unsafe { Adapter::new(host) };
+        let kind = match adapter.properties.device_type {
+            _ if W::ANY_VIEW => Kind::AnyView,
+            vk::PhysicalDeviceType::CPU => Kind::Gather(GatherVariant::Software),
+            _ => Kind::Gather(GatherVariant::ShortWay),
+        };
+        // SAFETY: the contract of this function is the same.
+        unsafe { Pipeline::of_kind(host, options, kind) }
+    }
+
+    /// # Safety
+    /// As [`Pipeline::new`].
+    unsafe fn of_kind(host: &Host, options: &Options, kind: Kind) -> Result<Pipeline<W>, VulkanError> {
+        if W::ANY_VIEW && (options.edges != Edges::Hard || options.history) {
+            return Err(VulkanError::AnyView);
+        }
         // SAFETY: the caller's handles are valid and belong together.
         let adapter = unsafe { Adapter::new(host) };
         let family = adapter.graphics_family(host.queue_family)?;
@@ -89,15 +112,15 @@ impl Gather {
         let mut objects = unsafe { Objects::new(&device) };
         // SAFETY: the caller's handles are valid and belong together.
         let rendering = unsafe { Rendering::new(host, &mut objects, options)? };
-        let layouts = Layouts::new(&mut objects, options.history)?;
+        let layouts = Layouts::new(&mut objects, size_of::<W::Uniforms>(), options.history)?;
         let memory = adapter.memory();
-        let passes = Passes::new(&mut objects, rendering, layouts.pipeline, &memory, options, variant)?;
+        let passes = Passes::new(&mut objects, rendering, layouts.pipeline, &memory, options, kind)?;
         let bytes = size_of::<Strips>() as u64;
         let strips = options.history.then(|| objects.create_uniform_buffer(&memory, bytes)).transpose()?;
         let timer = Timer::new(&mut objects, options.timed_frames, &family, &adapter.properties.limits)?;
         // SAFETY: the caller's handles are valid and belong together.
         let labels = unsafe { Labels::new(host) };
-        Ok(Gather {
+        Ok(Pipeline {
             adapter,
             device,
             options: *options,
@@ -109,6 +132,7 @@ impl Gather {
             sources: Vec::new(),
             targets: Vec::new(),
             last_id: 0,
+            warp: PhantomData,
             _objects: objects,
         })
     }
@@ -187,25 +211,25 @@ impl Gather {
         &mut self,
         commands: vk::CommandBuffer,
         frame: &Frame,
-        warp: &Warp,
+        warp: &W,
     ) -> Result<(), VulkanError> {
         // SAFETY: the contract is the same.
         unsafe { self.record_passes(commands, frame, warp, None) }
     }
 
-    /// Does what [`Gather::record`] does for images whose uses before and after differ from frame to frame. A source is
+    /// Does what [`Pipeline::record`] does for images whose uses before and after differ from frame to frame. A source is
     /// still sampled in the layout that its [`LayerImage::before`](super::LayerImage::before) asks for.
     ///
     /// # Errors
-    /// Those of [`Gather::record`].
+    /// Those of [`Pipeline::record`].
     ///
     /// # Safety
-    /// Those of [`Gather::record`], with the states of `uses`.
+    /// Those of [`Pipeline::record`], with the states of `uses`.
     pub unsafe fn record_with_uses(
         &mut self,
         commands: vk::CommandBuffer,
         frame: &Frame,
-        warp: &Warp,
+        warp: &W,
         uses: &Uses,
     ) -> Result<(), VulkanError> {
         // SAFETY: the contract is the same.
@@ -213,23 +237,23 @@ impl Gather {
     }
 
     /// # Safety
-    /// As [`Gather::record_with_uses`], or [`Gather::record`].
+    /// As [`Pipeline::record_with_uses`], or [`Pipeline::record`].
     unsafe fn record_passes(
         &mut self,
         commands: vk::CommandBuffer,
         frame: &Frame,
-        warp: &Warp,
+        warp: &W,
         uses: Option<&Uses>,
     ) -> Result<(), VulkanError> {
         let (source, target) = self.registered(frame)?;
-        self.check_frame(frame, warp, source, target)?;
+        let [source_size, target_size] = warp.sizes();
+        self.check_frame(frame, warp.sizes(), source, target)?;
 
-        let warp = warp.rows_from_top();
-        let tile_size = tiles(warp.source_size);
-        let span_size = tiles([warp.target_size[0], warp.source_size[1]]);
-        let part = warp.source_size != source.images.size
+        let tile_size = tiles(source_size);
+        let span_size = tiles([target_size[0], source_size[1]]);
+        let part = source_size != source.images.size
             || tile_size != self.passes.tiles.map.size
-            || span_size != self.passes.spans.map.size;
+            || self.passes.spans.as_ref().is_some_and(|spans| span_size != spans.map.size);
         let places = Places {
             source_origin: frame.source_origin,
             image_size: source.images.size,
@@ -248,19 +272,21 @@ impl Gather {
         self.acquire_images(&commands, source, target, uses);
         if let Some(buffer) = self.strips {
             let former = source.images.history.map_or(0, |history| history.size[1]);
-            let turned = frame.history.map(|strips| strips.rows_turned(warp.target_size[1], former));
+            let turned = frame.history.map(|strips| strips.rows_turned(target_size[1], former));
             commands.write_strips(buffer, &turned.unwrap_or(Strips::NONE));
         }
-        commands.bind(self.layouts.pipeline, source.textures, &Uniforms::of_part(&warp, &places));
+        commands.bind(self.layouts.pipeline, source.textures, &warp.uniforms_from_top(&places));
         if let Some(split) = &passes.split {
-            split.record(&recorder, warp.source_size, source.images.sample_color.is_some());
+            split.record(&recorder, source_size, source.images.sample_color.is_some());
         }
         recorder.stamp(Stamp::Split);
         passes.tiles.record(&recorder, tile_size);
         recorder.stamp(Stamp::Tiles);
-        passes.spans.record(&recorder, span_size);
+        if let Some(spans) = &passes.spans {
+            spans.record(&recorder, span_size);
+        }
         recorder.stamp(Stamp::Spans);
-        passes.march.record(&recorder, &target.attachments, frame.target_origin, warp.target_size);
+        passes.march.record(&recorder, &target.attachments, frame.target_origin, target_size);
         recorder.stamp(Stamp::March);
         release_images(&commands, source, target, uses);
 
@@ -279,17 +305,17 @@ impl Gather {
     fn check_frame(
         &self,
         frame: &Frame,
-        warp: &Warp,
+        [source_size, target_size]: [[u32; 2]; 2],
         source: &Source,
         target: &Target,
     ) -> Result<(), VulkanError> {
         if frame.history.is_some() && source.images.history.is_none() {
             return Err(VulkanError::History);
         }
-        check_size("a source", warp.source_size, self.options.max_source_size)?;
-        check_size("a target", warp.target_size, self.options.max_target_size)?;
-        check_rectangle("a source", frame.source_origin, warp.source_size, source.images.size)?;
-        check_rectangle("a target", frame.target_origin, warp.target_size, target.images.size)
+        check_size("a source", source_size, self.options.max_source_size)?;
+        check_size("a target", target_size, self.options.max_target_size)?;
+        check_rectangle("a source", frame.source_origin, source_size, source.images.size)?;
+        check_rectangle("a target", frame.target_origin, target_size, target.images.size)
     }
 
     /// Brings all images to the states that the passes need.
@@ -312,7 +338,7 @@ impl Gather {
     }
 
     /// Returns the times of the passes in the frame that was recorded [`Options::timed_frames`] calls of
-    /// [`Gather::record`] ago. Call it before the next frame takes that place. Does not wait.
+    /// [`Pipeline::record`] ago. Call it before the next frame takes that place. Does not wait.
     ///
     /// None before there are so many frames, and where the queue family or the options give no times.
     ///
