@@ -35,7 +35,8 @@ pub(crate) struct Buffers {
     source_size: [u32; 2],
     target_size: [u32; 2],
     pub(crate) tiles: TextureView,
-    pub(crate) spans: TextureView,
+    /// None for any view.
+    pub(crate) spans: Option<TextureView>,
     /// None for hard edges.
     pub(crate) layers: Option<[TextureView; 2]>,
 }
@@ -55,6 +56,7 @@ impl Buffers {
     pub(crate) fn new(
         device: &Device,
         options: &Options,
+        any_view: bool,
         (source_size, target_size): ([u32; 2], [u32; 2]),
     ) -> Buffers {
         let map = map_format(options.edges);
@@ -65,11 +67,12 @@ impl Buffers {
                 texture(device, "yoro background", background, source_size),
             ]
         };
+        let spans = || texture(device, "yoro spans", map, tiles([target_size[0], source_size[1]]));
         Buffers {
             source_size,
             target_size,
             tiles: texture(device, "yoro tiles", map, tiles(source_size)),
-            spans: texture(device, "yoro spans", map, tiles([target_size[0], source_size[1]])),
+            spans: (!any_view).then(spans),
             layers: (options.edges != Edges::Hard).then(layers),
         }
     }
@@ -80,7 +83,8 @@ impl Buffers {
             let (texture, texel) = (view.texture(), view.texture().format().block_copy_size(None));
             u64::from(texture.width()) * u64::from(texture.height()) * u64::from(texel.unwrap_or(0))
         };
-        [&self.tiles, &self.spans].into_iter().chain(self.layers.iter().flatten()).map(bytes).sum()
+        let maps = [Some(&self.tiles), self.spans.as_ref()].into_iter().flatten();
+        maps.chain(self.layers.iter().flatten()).map(bytes).sum()
     }
 }
 

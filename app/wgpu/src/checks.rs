@@ -4,7 +4,6 @@ use wgpu::{
     Backend, Device, Features, TextureFormat, TextureFormatFeatureFlags, TextureFormatFeatures,
     TextureSampleType, TextureUsages, TextureView,
 };
-use yoro::eyes::Warp;
 use yoro::synthesis::Edges;
 
 use crate::{Options, Source, Target, WgpuError};
@@ -74,13 +73,18 @@ impl Checks {
     }
 
     /// Checks everything that is given to one call.
-    pub(crate) fn frame(&self, source: &Source, warp: &Warp, target: &Target) -> Result<(), WgpuError> {
-        check_size("a source", warp.source_size, self.limit)?;
-        check_size("a target", warp.target_size, self.limit)?;
+    pub(crate) fn frame(
+        &self,
+        source: &Source,
+        [source_size, target_size]: [[u32; 2]; 2],
+        target: &Target,
+    ) -> Result<(), WgpuError> {
+        check_size("a source", source_size, self.limit)?;
+        check_size("a target", target_size, self.limit)?;
         self.source(source)?;
         self.target(target)?;
-        check_rectangle("a source", source.origin, warp.source_size, size(source.color))?;
-        check_rectangle("a target", target.origin, warp.target_size, size(target.color))
+        check_rectangle("a source", source.origin, source_size, size(source.color))?;
+        check_rectangle("a target", target.origin, target_size, size(target.color))
     }
 
     fn source(&self, source: &Source) -> Result<(), WgpuError> {

@@ -2,7 +2,8 @@
 //!
 //! [`Gather`] takes colour and depth of one eye as views of textures, and draws the other eye: the counterpart of
 //! `yoro::vulkan`, from the same shaders. [`yoro::eyes`] says which view to render, and gives the
-//! [`Warp`](yoro::eyes::Warp). wgpu is part of the interface, and is handed on as [`wgpu`].
+//! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp): it draws a view in
+//! any pose near that of the source. wgpu is part of the interface, and is handed on as [`wgpu`].
 //!
 //! Images have wgpu's own orientation, row 0 at the top. Give the warp as
 //! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the bottom, are turned
@@ -31,8 +32,8 @@
 
 mod buffers;
 mod checks;
-mod gather;
 mod passes;
+mod pipeline;
 mod shaders;
 mod uniforms;
 
@@ -41,7 +42,7 @@ use wgpu::{TextureFormat, TextureUsages, TextureView};
 pub use yoro;
 use yoro::synthesis::{Edges, Strips};
 
-pub use gather::Gather;
+pub use pipeline::{AnyView, Gather, Pipeline};
 #[doc(hidden)]
 pub use shaders::GatherVariant;
 
@@ -133,6 +134,9 @@ pub enum WgpuError {
     /// A source has a history, but [`Options::history`] is off.
     #[error("a history is for pipelines made with one; set Options::history, or give none")]
     History,
+    /// [`AnyView`] was asked for other edges than [`Edges::Hard`], or for a history.
+    #[error("any view is synthesized from hard edges, without a history; choose these")]
+    AnyView,
     /// A rectangle reaches beyond its image.
     #[error(
         "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",

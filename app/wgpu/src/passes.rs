@@ -1,18 +1,19 @@
 //! The fragment passes of the pipeline, in the order of their recording.
 
+use bytemuck::NoUninit;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor,
-    BindGroupLayoutEntry, BindingResource, BindingType, BufferBindingType, ColorTargetState, CommandEncoder,
-    CompareFunction, DepthStencilState, Device, FilterMode, FragmentState, LoadOp, Operations,
-    PipelineLayoutDescriptor, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+    BindGroupLayoutEntry, BindingResource, BindingType, BufferBindingType, BufferSize, ColorTargetState,
+    CommandEncoder, CompareFunction, DepthStencilState, Device, FilterMode, FragmentState, LoadOp,
+    Operations, PipelineLayoutDescriptor, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
     RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, Sampler, SamplerBindingType,
     SamplerDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StoreOp,
     TextureFormat, TextureSampleType, TextureView, TextureViewDimension, VertexState,
 };
-use yoro::synthesis::{Edges, Strips, Uniforms};
+use yoro::synthesis::{Edges, Strips};
 
 use crate::buffers::{Buffers, layer_formats, map_format};
-use crate::shaders::{self, GatherVariant};
+use crate::shaders::{self, GatherVariant, Kind};
 use crate::uniforms::{self, UniformRing};
 use crate::{Options, Source};
 
@@ -23,7 +24,8 @@ pub(crate) struct Passes {
     /// For sources with the samples' colours.
     split_samples: Option<Pass>,
     tiles: Pass,
-    spans: Pass,
+    /// None for any view.
+    spans: Option<Pass>,
     march: Pass,
     nearest: Sampler,
     linear: Sampler,
@@ -56,33 +58,36 @@ const STRIPS: u32 = 12;
 pub(crate) struct Groups {
     split: Option<BindGroup>,
     tiles: BindGroup,
-    spans: BindGroup,
+    spans: Option<BindGroup>,
     march: BindGroup,
     with_samples: bool,
 }
 
 impl Passes {
-    pub(crate) fn new(device: &Device, options: &Options, variant: GatherVariant) -> Passes {
+    /// `uniforms` is the size of the passes' block.
+    pub(crate) fn new(device: &Device, options: &Options, kind: Kind, uniforms: BufferSize) -> Passes {
         let Options { color_format, depth_format, edges, samples, history } = *options;
         let module = |label, text: &'static str| {
             let source = ShaderSource::Wgsl(text.into());
             device.create_shader_module(ShaderModuleDescriptor { label: Some(label), source })
         };
         let screen = module("yoro screen", shaders::SCREEN);
-        let march_vertex = module("yoro march", shaders::MARCH_VERTEX);
+        let march_vertex = module("yoro march", shaders::march_vertex(kind));
         let hard = edges == Edges::Hard;
         let make = |label, text, bindings: &[u32], formats: &[TextureFormat]| {
             let bindings = bindings.to_vec();
-            let pass = PassMaker { device, options, label, bindings };
+            let pass = PassMaker { device, options, uniforms, label, bindings };
             pass.make(&screen, &module(label, text), formats, None)
         };
         let map = [map_format(edges)];
         let layers = layer_formats(color_format);
-        let short = variant == GatherVariant::ShortWay;
         let tile_bindings: &[u32] = if hard { &[DEPTH, UNIFORMS, NEAREST] } else { &[LAYERS, UNIFORMS] };
-        let march_bindings: &[u32] = match (hard, short) {
-            (true, true) => &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR],
-            (true, false) => &[DEPTH, COLOR, SPAN_MAP, UNIFORMS, LINEAR],
+        let march_bindings: &[u32] = match (hard, kind) {
+            (_, Kind::AnyView) => &[DEPTH, COLOR, TILE_MAP, UNIFORMS, LINEAR],
+            (true, Kind::Gather(GatherVariant::ShortWay)) => {
+                &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR]
+            }
+            (true, _) => &[DEPTH, COLOR, SPAN_MAP, UNIFORMS, LINEAR],
             (false, _) => &[COLOR, SPAN_MAP, LAYERS, BACKGROUND, UNIFORMS, LINEAR],
         };
         let recall: &[u32] = if history { &[HISTORY_DEPTH, HISTORY_COLOR, STRIPS] } else { &[] };
@@ -101,12 +106,13 @@ impl Passes {
                 let bindings = [DEPTH, SAMPLE_COLOR, UNIFORMS];
                 make("yoro split", shaders::split_samples(samples), &bindings, &layers)
             }),
-            tiles: make("yoro tiles", shaders::tiles(edges, variant), tile_bindings, &map),
-            spans: make("yoro spans", shaders::spans(edges, variant), &[TILE_MAP, UNIFORMS], &map),
+            tiles: make("yoro tiles", shaders::tiles(edges, kind), tile_bindings, &map),
+            spans: shaders::spans(edges, kind)
+                .map(|text| make("yoro spans", text, &[TILE_MAP, UNIFORMS], &map)),
             march: {
-                let text = shaders::march(edges, variant, depth_format.is_some(), history);
+                let text = shaders::march(edges, kind, depth_format.is_some(), history);
                 let bindings = [march_bindings, recall].concat();
-                let pass = PassMaker { device, options, label: "yoro march", bindings };
+                let pass = PassMaker { device, options, uniforms, label: "yoro march", bindings };
                 pass.make(&march_vertex, &module("yoro march", text), &[color_format], depth_format)
             },
             nearest: sampler("yoro nearest", FilterMode::Nearest),
@@ -120,7 +126,7 @@ impl Passes {
         device: &Device,
         source: &Source,
         buffers: &Buffers,
-        uniforms: &UniformRing<Uniforms>,
+        uniforms: &UniformRing<impl NoUninit>,
         strips: Option<&UniformRing<Strips>>,
     ) -> Groups {
         let group = |pass: &Pass| {
@@ -130,7 +136,7 @@ impl Passes {
                     DEPTH => Some(source.depth),
                     COLOR => Some(source.color),
                     TILE_MAP => Some(&buffers.tiles),
-                    SPAN_MAP => Some(&buffers.spans),
+                    SPAN_MAP => buffers.spans.as_ref(),
                     LAYERS => layer(0),
                     BACKGROUND => layer(1),
                     SAMPLE_COLOR => source.sample_color,
@@ -156,7 +162,7 @@ impl Passes {
         Groups {
             split: self.split(with_samples).map(group),
             tiles: group(&self.tiles),
-            spans: group(&self.spans),
+            spans: self.spans.as_ref().map(group),
             march: group(&self.march),
             with_samples,
         }
@@ -198,8 +204,10 @@ impl Passes {
         }
         let tiles = [Some(color(&buffers.tiles, true))];
         self.tiles.record(encoder, &groups.tiles, &[uniforms], &tiles, None, all(tile_size));
-        let spans = [Some(color(&buffers.spans, true))];
-        self.spans.record(encoder, &groups.spans, &[uniforms], &spans, None, all(span_size));
+        let spans = self.spans.as_ref().zip(groups.spans.as_ref());
+        if let (Some((pass, group)), Some(map)) = (spans, &buffers.spans) {
+            pass.record(encoder, group, &[uniforms], &[Some(color(map, true))], None, all(span_size));
+        }
         let colors = [Some(color(target.color, target.whole))];
         let depth = target.depth.map(|view| depth(view, target.whole));
         let places = [uniforms, strips.unwrap_or(0)];
@@ -255,6 +263,8 @@ impl Pass {
 struct PassMaker<'a> {
     device: &'a Device,
     options: &'a Options,
+    /// Bytes of the passes' block.
+    uniforms: BufferSize,
     label: &'static str,
     bindings: Vec<u32>,
 }
@@ -329,7 +339,7 @@ impl PassMaker<'_> {
                 has_dynamic_offset: true,
                 min_binding_size: Some(match binding {
                     STRIPS => uniforms::size::<Strips>(),
-                    _ => uniforms::size::<Uniforms>(),
+                    _ => self.uniforms,
                 }),
             },
         };

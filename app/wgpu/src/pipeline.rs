@@ -1,27 +1,35 @@
-//! Synthesis of the other eye, recorded into the caller's command encoder.
+//! Synthesis, recorded into the caller's command encoder.
 
 use wgpu::{CommandEncoder, Device, DeviceType, Queue, TextureView};
-use yoro::eyes::Warp;
-use yoro::synthesis::{Places, Strips, Uniforms, tiles};
+use yoro::eyes::{PoseWarp, Warp};
+use yoro::synthesis::{Edges, Places, Strips, WarpKind, tiles};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
 use crate::passes::{Drawn, Groups, Passes};
-use crate::uniforms::UniformRing;
+use crate::shaders::Kind;
+use crate::uniforms::{self, UniformRing};
 use crate::{GatherVariant, History, Options, Source, Target, WgpuError};
 
 /// The bindings of a source that was not used for so many calls are dropped, and with them its textures.
 const KEPT_CALLS: u64 = 32;
 
-/// The passes of synthesis: tile bounds, tile spans, march. For anti-aliased sources there is a split into layers before
+/// The passes between parallel eyes: tile bounds, tile spans, march. For anti-aliased sources there is a split into layers before
 /// them.
+pub type Gather = Pipeline<Warp>;
+
+/// The passes of any view: tile bounds, march. It draws a view in any pose near the source's, of sources with [`Edges::Hard`] and
+/// without a history.
+pub type AnyView = Pipeline<PoseWarp>;
+
+/// The passes of a kind of warp: [`Gather`] or [`AnyView`].
 ///
 /// All calls share the intermediate buffers: submit what they have recorded to one queue. Up to 64 calls may be recorded
 /// before the first of them is submitted.
-pub struct Gather {
+pub struct Pipeline<W: WarpKind> {
     checks: Checks,
     passes: Passes,
-    uniforms: UniformRing<Uniforms>,
+    uniforms: UniformRing<W::Uniforms>,
     /// For sources that may have a history.
     strips: Option<UniformRing<Strips>>,
     buffers: Option<Buffers>,
@@ -39,20 +47,6 @@ struct Kept {
 }
 
 impl Gather {
-    /// Makes everything that does not depend on the textures: the pipelines.
-    ///
-    /// # Errors
-    /// [`WgpuError::Format`], [`WgpuError::SampleCount`] and [`WgpuError::OpenGl`] for what the device cannot do,
-    /// [`WgpuError::Refused`] for whatever else it refuses. In a browser the device's handler of uncaptured errors is told of
-    /// such things.
-    pub fn new(device: &Device, options: &Options) -> Result<Gather, WgpuError> {
-        let variant = match device.adapter_info().device_type {
-            DeviceType::Cpu => GatherVariant::Software,
-            _ => GatherVariant::ShortWay,
-        };
-        Gather::with_variant(device, options, variant)
-    }
-
     /// Does what [`Gather::new`] does on another kind of device: for tests of shaders that this device would not use.
     ///
     /// # Errors
@@ -63,18 +57,42 @@ impl Gather {
         options: &Options,
         variant: GatherVariant,
     ) -> Result<Gather, WgpuError> {
+        Gather::of_kind(device, options, Kind::Gather(variant))
+    }
+}
+
+impl<W: WarpKind> Pipeline<W> {
+    /// Makes everything that does not depend on the textures: the pipelines.
+    ///
+    /// # Errors
+    /// [`WgpuError::Format`], [`WgpuError::SampleCount`] and [`WgpuError::OpenGl`] for what the device cannot do,
+    /// [`WgpuError::AnyView`] for what [`AnyView`] cannot, [`WgpuError::Refused`] for whatever else wgpu refuses. In a browser
+    /// the device's handler of uncaptured errors is told of such things.
+    pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
+        let kind = match device.adapter_info().device_type {
+            _ if W::ANY_VIEW => Kind::AnyView,
+            DeviceType::Cpu => Kind::Gather(GatherVariant::Software),
+            _ => Kind::Gather(GatherVariant::ShortWay),
+        };
+        Pipeline::of_kind(device, options, kind)
+    }
+
+    fn of_kind(device: &Device, options: &Options, kind: Kind) -> Result<Pipeline<W>, WgpuError> {
+        if W::ANY_VIEW && (options.edges != Edges::Hard || options.history) {
+            return Err(WgpuError::AnyView);
+        }
         let checks = Checks::new(device, options)?;
         let (passes, uniforms, strips) = made(device, || {
             (
-                Passes::new(device, options, variant),
+                Passes::new(device, options, kind, uniforms::size::<W::Uniforms>()),
                 UniformRing::new(device, "yoro uniforms"),
                 options.history.then(|| UniformRing::new(device, "yoro strips")),
             )
         })?;
-        Ok(Gather { checks, passes, uniforms, strips, buffers: None, kept: Vec::new(), calls: 0 })
+        Ok(Pipeline { checks, passes, uniforms, strips, buffers: None, kept: Vec::new(), calls: 0 })
     }
 
-    /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Gather::record`] does so when it
+    /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Pipeline::record`] does so when it
     /// meets a size that is larger than all before; called beforehand, no frame has to.
     ///
     /// # Errors
@@ -90,7 +108,7 @@ impl Gather {
             Some(buffers) => buffers.grown(max_source_size, max_target_size),
             None => (max_source_size, max_target_size),
         };
-        self.buffers = Some(made(device, || Buffers::new(device, &self.checks.options, sizes))?);
+        self.buffers = Some(made(device, || Buffers::new(device, &self.checks.options, W::ANY_VIEW, sizes))?);
         // They bind the buffers.
         self.kept.clear();
         Ok(())
@@ -110,35 +128,34 @@ impl Gather {
         queue: &Queue,
         encoder: &mut CommandEncoder,
         source: &Source,
-        warp: &Warp,
+        warp: &W,
         target: &Target,
     ) -> Result<(), WgpuError> {
-        self.checks.frame(source, warp, target)?;
+        let [source_size, target_size] = warp.sizes();
+        self.checks.frame(source, warp.sizes(), target)?;
         let places = Places {
             source_origin: source.origin,
             image_size: size(source.color),
             target_origin: target.origin,
             part: true,
         };
-        let uniforms = self.uniforms.write(queue, &Uniforms::of_part(&warp.rows_from_top(), &places))?;
-        let turned =
-            |history: History| history.strips.rows_turned(warp.target_size[1], size(history.color)[1]);
+        let uniforms = self.uniforms.write(queue, &warp.uniforms_from_top(&places))?;
+        let turned = |history: History| history.strips.rows_turned(target_size[1], size(history.color)[1]);
         let strips = source.history.map_or(Strips::NONE, turned);
         let strips = self.strips.as_mut().map(|ring| ring.write(queue, &strips)).transpose()?;
-        self.prepare(device, warp.source_size, warp.target_size)?;
+        self.prepare(device, source_size, target_size)?;
         self.calls += 1;
         let index = self.bound(device, source);
         let Some(buffers) = &self.buffers else { return Ok(()) };
 
-        let [[x, y], [width, height]] = [target.origin, warp.target_size];
+        let [[x, y], [width, height]] = [target.origin, target_size];
         let drawn = Drawn {
             color: target.color,
             depth: target.depth,
             area: [x, y, width, height],
-            whole: size(target.color) == warp.target_size,
+            whole: size(target.color) == target_size,
         };
-        let sizes =
-            [warp.source_size, tiles(warp.source_size), tiles([warp.target_size[0], warp.source_size[1]])];
+        let sizes = [source_size, tiles(source_size), tiles([target_size[0], source_size[1]])];
         self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, (uniforms, strips), &drawn);
         Ok(())
     }

@@ -2,6 +2,15 @@
 
 use yoro::synthesis::Edges;
 
+/// The passes of a kind of warp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Those between parallel eyes.
+    Gather(GatherVariant),
+    /// Those of any view.
+    AnyView,
+}
+
 /// The kind of device that the shaders are written for.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +22,6 @@ pub enum GatherVariant {
 }
 
 pub(crate) const SCREEN: &str = include_str!("wgsl/screen.wgsl");
-pub(crate) const MARCH_VERTEX: &str = include_str!("wgsl/march-vertex.wgsl");
 
 /// Returns the first pass for resolved colour; None for hard edges.
 pub(crate) fn split(edges: Edges, samples: u32) -> Option<&'static str> {
@@ -35,24 +43,34 @@ pub(crate) fn split_samples(samples: u32) -> &'static str {
 }
 
 /// Returns the pass that finds the bounds of tiles.
-pub(crate) fn tiles(edges: Edges, variant: GatherVariant) -> &'static str {
-    match (edges, variant) {
-        (Edges::Hard, GatherVariant::Software) => include_str!("wgsl/tiles.wgsl"),
-        (Edges::Hard, GatherVariant::ShortWay) => include_str!("wgsl/tiles-short.wgsl"),
+pub(crate) fn tiles(edges: Edges, kind: Kind) -> &'static str {
+    match (edges, kind) {
+        (_, Kind::AnyView) => include_str!("wgsl/any-view-tiles.wgsl"),
+        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => include_str!("wgsl/tiles.wgsl"),
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_str!("wgsl/tiles-short.wgsl"),
         _ => include_str!("wgsl/layer-tiles.wgsl"),
     }
 }
 
-/// Returns the pass that finds what each tile of the target has to search.
-pub(crate) fn spans(edges: Edges, variant: GatherVariant) -> &'static str {
-    match (edges, variant) {
-        (Edges::Hard, GatherVariant::ShortWay) => include_str!("wgsl/spans-short.wgsl"),
-        _ => include_str!("wgsl/spans.wgsl"),
+/// Returns the pass that finds what each tile of the target has to search; None for any view.
+pub(crate) fn spans(edges: Edges, kind: Kind) -> Option<&'static str> {
+    match (edges, kind) {
+        (_, Kind::AnyView) => None,
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => Some(include_str!("wgsl/spans-short.wgsl")),
+        _ => Some(include_str!("wgsl/spans.wgsl")),
+    }
+}
+
+/// Returns the vertex shader of the last pass.
+pub(crate) fn march_vertex(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Gather(_) => include_str!("wgsl/march-vertex.wgsl"),
+        Kind::AnyView => SCREEN,
     }
 }
 
 /// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
-pub(crate) fn march(edges: Edges, variant: GatherVariant, depth: bool, history: bool) -> &'static str {
+pub(crate) fn march(edges: Edges, kind: Kind, depth: bool, history: bool) -> &'static str {
     /// The four modules of a source's kind.
     macro_rules! of {
         ($name:literal) => {
@@ -64,9 +82,11 @@ pub(crate) fn march(edges: Edges, variant: GatherVariant, depth: bool, history: 
             }
         };
     }
-    match (edges, variant) {
-        (Edges::Hard, GatherVariant::Software) => of!("march"),
-        (Edges::Hard, GatherVariant::ShortWay) => of!("march-short"),
+    match (edges, kind) {
+        (_, Kind::AnyView) if depth => include_str!("wgsl/any-view-march-depth.wgsl"),
+        (_, Kind::AnyView) => include_str!("wgsl/any-view-march.wgsl"),
+        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => of!("march"),
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => of!("march-short"),
         (Edges::Multisample, _) => of!("layer-march-multisample"),
         _ => of!("layer-march"),
     }

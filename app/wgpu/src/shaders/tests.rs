@@ -15,7 +15,11 @@ const LAYER_MARCH: &str = "synthesis/layers/march.frag";
 const SPANS: &str = "synthesis/gather/spans.frag";
 const SPLIT: &str = "synthesis/layers/split.frag";
 const TILES: &str = "synthesis/gather/tiles.frag";
-const MODULES: [Row; 29] = [
+const ANY_VIEW: &str = "synthesis/any_view/march.frag";
+const MODULES: [Row; 32] = [
+    ("any-view-march", ANY_VIEW, &[]),
+    ("any-view-march-depth", ANY_VIEW, &["WRITE_DEPTH"]),
+    ("any-view-tiles", "synthesis/any_view/tiles.frag", &[]),
     ("layer-march", LAYER_MARCH, &[]),
     ("layer-march-history", LAYER_MARCH, &["HISTORY"]),
     ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),

@@ -112,127 +112,135 @@ fn source_column(x: ptr<function, i32>) -> i32 {
     return _e15;
 }
 
-fn fill_hole(hole: ptr<function, bool>, color: ptr<function, vec4<f32>>, away: ptr<function, f32>, x_1: ptr<function, f32>, depth: ptr<function, f32>, row_1: ptr<function, i32>) -> vec4<f32> {
+fn fill_spread(away: ptr<function, f32>) -> f32 {
+    let _e4 = (*away);
+    return (0.5f * clamp(abs(_e4), 1f, 12f));
+}
+
+fn fill_hole(hole: ptr<function, bool>, color: ptr<function, vec4<f32>>, away_1: ptr<function, f32>, x_1: ptr<function, f32>, depth: ptr<function, f32>, row_1: ptr<function, i32>) -> vec4<f32> {
     var spread: f32;
+    var param_1: f32;
     var sum: vec4<f32>;
     var weights: f32;
     var edge: i32;
-    var param_1: i32;
+    var param_2: i32;
     var i: i32;
     var distance_: f32;
     var below: vec2<i32>;
     var above: vec2<i32>;
     var depths: vec2<f32>;
-    var param_2: i32;
     var param_3: i32;
     var param_4: i32;
     var param_5: i32;
+    var param_6: i32;
     var below_color: vec4<f32>;
-    var param_6: vec2<i32>;
-    var above_color: vec4<f32>;
     var param_7: vec2<i32>;
+    var above_color: vec4<f32>;
+    var param_8: vec2<i32>;
     var weight: vec2<f32>;
 
-    let _e39 = (*away);
-    spread = (0.5f * clamp(abs(_e39), 1f, 12f));
-    let _e43 = (*color);
-    sum = (_e43 * 2f);
+    let _e37 = (*away_1);
+    param_1 = _e37;
+    let _e38 = fill_spread((&param_1));
+    spread = _e38;
+    let _e39 = (*color);
+    sum = (_e39 * 2f);
     weights = 2f;
-    let _e45 = (*x_1);
-    param_1 = i32(_e45);
-    let _e47 = source_column((&param_1));
-    edge = _e47;
-    let _e48 = (*hole);
-    i = select(3i, 1i, _e48);
+    let _e41 = (*x_1);
+    param_2 = i32(_e41);
+    let _e43 = source_column((&param_2));
+    edge = _e43;
+    let _e44 = (*hole);
+    i = select(3i, 1i, _e44);
     loop {
-        let _e50 = i;
-        if (_e50 <= 2i) {
-            let _e52 = i;
-            let _e54 = spread;
-            distance_ = round((f32(_e52) * _e54));
-            let _e57 = edge;
-            let _e58 = (*row_1);
-            let _e59 = distance_;
-            below = vec2<i32>(_e57, max((_e58 - i32(_e59)), 0i));
-            let _e64 = edge;
-            let _e65 = (*row_1);
-            let _e66 = distance_;
-            let _e71 = synthesis.source_size[1u];
-            above = vec2<i32>(_e64, min((_e65 + i32(_e66)), (_e71 - 1i)));
-            let _e76 = below[0u];
-            param_2 = _e76;
-            let _e78 = below[1u];
-            param_3 = _e78;
-            let _e79 = depth_texel((&param_2), (&param_3));
-            let _e81 = above[0u];
-            param_4 = _e81;
-            let _e83 = above[1u];
-            param_5 = _e83;
-            let _e84 = depth_texel((&param_4), (&param_5));
-            depths = vec2<f32>(_e79, _e84);
-            let _e86 = below;
-            param_6 = _e86;
-            let _e87 = in_image((&param_6));
-            let _e88 = textureLoad(color_map_texture, _e87, 0i);
-            below_color = _e88;
-            let _e89 = above;
-            param_7 = _e89;
-            let _e90 = in_image((&param_7));
-            let _e91 = textureLoad(color_map_texture, _e90, 0i);
-            above_color = _e91;
-            let _e94 = synthesis.law[1u];
-            let _e95 = depths;
-            let _e96 = (*depth);
-            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e95 - vec2(_e96)) * _e94) <= vec2<f32>(1f, 1f)));
-            let _e103 = weight[0u];
-            let _e104 = below_color;
-            let _e107 = weight[1u];
-            let _e108 = above_color;
-            let _e111 = sum;
-            sum = (_e111 + ((_e104 * _e103) + (_e108 * _e107)));
-            let _e114 = weight[0u];
-            let _e116 = weight[1u];
-            let _e118 = weights;
-            weights = (_e118 + (_e114 + _e116));
+        let _e46 = i;
+        if (_e46 <= 2i) {
+            let _e48 = i;
+            let _e50 = spread;
+            distance_ = round((f32(_e48) * _e50));
+            let _e53 = edge;
+            let _e54 = (*row_1);
+            let _e55 = distance_;
+            below = vec2<i32>(_e53, max((_e54 - i32(_e55)), 0i));
+            let _e60 = edge;
+            let _e61 = (*row_1);
+            let _e62 = distance_;
+            let _e67 = synthesis.source_size[1u];
+            above = vec2<i32>(_e60, min((_e61 + i32(_e62)), (_e67 - 1i)));
+            let _e72 = below[0u];
+            param_3 = _e72;
+            let _e74 = below[1u];
+            param_4 = _e74;
+            let _e75 = depth_texel((&param_3), (&param_4));
+            let _e77 = above[0u];
+            param_5 = _e77;
+            let _e79 = above[1u];
+            param_6 = _e79;
+            let _e80 = depth_texel((&param_5), (&param_6));
+            depths = vec2<f32>(_e75, _e80);
+            let _e82 = below;
+            param_7 = _e82;
+            let _e83 = in_image((&param_7));
+            let _e84 = textureLoad(color_map_texture, _e83, 0i);
+            below_color = _e84;
+            let _e85 = above;
+            param_8 = _e85;
+            let _e86 = in_image((&param_8));
+            let _e87 = textureLoad(color_map_texture, _e86, 0i);
+            above_color = _e87;
+            let _e90 = synthesis.law[1u];
+            let _e91 = depths;
+            let _e92 = (*depth);
+            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e91 - vec2(_e92)) * _e90) <= vec2<f32>(1f, 1f)));
+            let _e99 = weight[0u];
+            let _e100 = below_color;
+            let _e103 = weight[1u];
+            let _e104 = above_color;
+            let _e107 = sum;
+            sum = (_e107 + ((_e100 * _e99) + (_e104 * _e103)));
+            let _e110 = weight[0u];
+            let _e112 = weight[1u];
+            let _e114 = weights;
+            weights = (_e114 + (_e110 + _e112));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e120 = i;
-            i = (_e120 + 1i);
+            let _e116 = i;
+            i = (_e116 + 1i);
         }
     }
-    let _e122 = sum;
-    let _e123 = weights;
-    return (_e122 / vec4(_e123));
+    let _e118 = sum;
+    let _e119 = weights;
+    return (_e118 / vec4(_e119));
 }
 
 fn depth_at(x_2: ptr<function, i32>, row_2: ptr<function, i32>) -> f32 {
-    var param_8: i32;
     var param_9: i32;
     var param_10: i32;
+    var param_11: i32;
 
     let _e5 = (*x_2);
-    param_8 = _e5;
-    let _e6 = source_column((&param_8));
-    param_9 = _e6;
+    param_9 = _e5;
+    let _e6 = source_column((&param_9));
+    param_10 = _e6;
     let _e7 = (*row_2);
-    param_10 = _e7;
-    let _e8 = depth_texel((&param_9), (&param_10));
+    param_11 = _e7;
+    let _e8 = depth_texel((&param_10), (&param_11));
     return _e8;
 }
 
 fn nearness_at(x_3: ptr<function, i32>, row_3: ptr<function, i32>) -> f32 {
-    var param_11: i32;
     var param_12: i32;
+    var param_13: i32;
 
     let _e8 = synthesis.law[1u];
     let _e9 = (*x_3);
-    param_11 = _e9;
+    param_12 = _e9;
     let _e10 = (*row_3);
-    param_12 = _e10;
-    let _e11 = depth_at((&param_11), (&param_12));
+    param_13 = _e10;
+    let _e11 = depth_at((&param_12), (&param_13));
     return (_e8 * _e11);
 }
 
@@ -257,10 +265,10 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     var outside: bool;
     var x_4: i32;
     var before: f32;
-    var param_13: i32;
     var param_14: i32;
     var param_15: i32;
     var param_16: i32;
+    var param_17: i32;
     var same: bool;
     var behind: bool;
     var hidden: bool;
@@ -271,10 +279,10 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     var i_2: i32;
     var texel: vec2<i32>;
     var local_3: vec2<f32>;
-    var phi_501_: bool;
-    var phi_516_: bool;
-    var phi_646_: bool;
-    var phi_724_: bool;
+    var phi_606_: bool;
+    var phi_621_: bool;
+    var phi_751_: bool;
+    var phi_829_: bool;
 
     let _e60 = textureDimensions(history_depth_texture, 0i);
     size = vec2<f32>(vec2<i32>(_e60));
@@ -323,25 +331,25 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     }
     let _e117 = guess;
     let _e119 = all((_e117 >= vec2<f32>(0f, 0f)));
-    phi_501_ = _e119;
+    phi_606_ = _e119;
     if _e119 {
         let _e120 = guess;
         let _e121 = size;
-        phi_501_ = all((_e120 < _e121));
+        phi_606_ = all((_e120 < _e121));
     }
-    let _e125 = phi_501_;
+    let _e125 = phi_606_;
     inside = _e125;
     let _e127 = seen[3u];
     let _e129 = inside;
     let _e130 = ((_e127 > 0f) && _e129);
-    phi_516_ = _e130;
+    phi_621_ = _e130;
     if _e130 {
         let _e132 = guess[1u];
         let _e133 = rows;
         let _e136 = strip;
-        phi_516_ = (i32((_e132 / _e133)) == _e136);
+        phi_621_ = (i32((_e132 / _e133)) == _e136);
     }
-    let _e139 = phi_516_;
+    let _e139 = phi_621_;
     if !(_e139) {
         return false;
     }
@@ -384,16 +392,16 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     let _e201 = last;
     x_4 = i32(clamp(_e200, 0f, max((_e201 - 1f), 0f)));
     let _e206 = x_4;
-    param_13 = _e206;
+    param_14 = _e206;
     let _e207 = (*row_4);
-    param_14 = _e207;
-    let _e208 = nearness_at((&param_13), (&param_14));
+    param_15 = _e207;
+    let _e208 = nearness_at((&param_14), (&param_15));
     let _e209 = x_4;
     let _e213 = synthesis.source_size[0u];
-    param_15 = min((_e209 + 1i), (_e213 - 1i));
+    param_16 = min((_e209 + 1i), (_e213 - 1i));
     let _e216 = (*row_4);
-    param_16 = _e216;
-    let _e217 = nearness_at((&param_15), (&param_16));
+    param_17 = _e216;
+    let _e217 = nearness_at((&param_16), (&param_17));
     before = max(_e208, _e217);
     let _e219 = place;
     let _e220 = guess;
@@ -406,13 +414,13 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     let _e232 = (*depth_1);
     behind = (_e226 <= (_e227 - (0.25f * (_e228 - (_e231 * _e232)))));
     let _e238 = outside;
-    phi_646_ = _e238;
+    phi_751_ = _e238;
     if !(_e238) {
         let _e240 = before;
         let _e241 = nearness;
-        phi_646_ = (_e240 > (_e241 - 1f));
+        phi_751_ = (_e240 > (_e241 - 1f));
     }
-    let _e245 = phi_646_;
+    let _e245 = phi_751_;
     hidden = _e245;
     let _e246 = same;
     let _e247 = behind;
@@ -445,15 +453,15 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
             let _e289 = most;
             texel = min((_e281 + vec2<i32>((_e282 & 1i), (_e284 >> bitcast<u32>(1i)))), vec2<i32>(_e289));
             let _e292 = whole;
-            phi_724_ = _e292;
+            phi_829_ = _e292;
             if _e292 {
                 let _e295 = synthesis.law[1u];
                 let _e296 = texel;
                 let _e297 = textureLoad(history_depth_texture, _e296, 0i);
                 let _e299 = stored;
-                phi_724_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
+                phi_829_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
             }
-            let _e305 = phi_724_;
+            let _e305 = phi_829_;
             whole = _e305;
             continue;
         } else {
@@ -518,204 +526,275 @@ fn color_at(x_5: ptr<function, f32>, row_5: ptr<function, i32>) -> vec4<f32> {
     return _e47;
 }
 
+fn is_torn(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
+    let _e3 = (*b);
+    let _e4 = (*a);
+    return ((_e3 - _e4) >= 2f);
+}
+
+fn jumps(a_1: ptr<function, f32>, b_1: ptr<function, f32>) -> bool {
+    let _e3 = (*a_1);
+    let _e5 = (*b_1);
+    return ((_e3 <= 0f) && (_e5 > 0f));
+}
+
+fn folds(a_2: ptr<function, f32>, b_2: ptr<function, f32>) -> bool {
+    var phi_168_: bool;
+
+    let _e4 = (*a_2);
+    let _e5 = (_e4 <= 0f);
+    phi_168_ = _e5;
+    if _e5 {
+        let _e6 = (*b_2);
+        let _e8 = (*a_2);
+        phi_168_ = (max(_e6, -1f) < _e8);
+    }
+    let _e11 = phi_168_;
+    return _e11;
+}
+
+fn has_rim(a_3: ptr<function, f32>, b_3: ptr<function, f32>) -> bool {
+    var param_18: f32;
+    var param_19: f32;
+    var param_20: f32;
+    var param_21: f32;
+    var param_22: f32;
+    var param_23: f32;
+    var phi_191_: bool;
+    var phi_196_: bool;
+
+    let _e9 = (*a_3);
+    param_18 = _e9;
+    let _e10 = (*b_3);
+    param_19 = _e10;
+    let _e11 = folds((&param_18), (&param_19));
+    phi_196_ = _e11;
+    if !(_e11) {
+        let _e13 = (*a_3);
+        param_20 = _e13;
+        let _e14 = (*b_3);
+        param_21 = _e14;
+        let _e15 = jumps((&param_20), (&param_21));
+        phi_191_ = _e15;
+        if _e15 {
+            let _e16 = (*a_3);
+            param_22 = _e16;
+            let _e17 = (*b_3);
+            param_23 = _e17;
+            let _e18 = is_torn((&param_22), (&param_23));
+            phi_191_ = _e18;
+        }
+        let _e20 = phi_191_;
+        let _e21 = (*b_3);
+        phi_196_ = (_e20 && (_e21 < 1f));
+    }
+    let _e25 = phi_196_;
+    return _e25;
+}
+
+fn is_seen(a_4: ptr<function, f32>, b_4: ptr<function, f32>) -> bool {
+    var param_24: f32;
+    var param_25: f32;
+    var param_26: f32;
+    var param_27: f32;
+    var phi_155_: bool;
+    var phi_156_: bool;
+
+    let _e7 = (*a_4);
+    param_24 = _e7;
+    let _e8 = (*b_4);
+    param_25 = _e8;
+    let _e9 = jumps((&param_24), (&param_25));
+    phi_156_ = _e9;
+    if _e9 {
+        let _e10 = (*a_4);
+        let _e11 = (_e10 > -0.5f);
+        phi_155_ = _e11;
+        if !(_e11) {
+            let _e13 = (*a_4);
+            param_26 = _e13;
+            let _e14 = (*b_4);
+            param_27 = _e14;
+            let _e15 = is_torn((&param_26), (&param_27));
+            phi_155_ = !(_e15);
+        }
+        let _e18 = phi_155_;
+        phi_156_ = _e18;
+    }
+    let _e20 = phi_156_;
+    return _e20;
+}
+
 fn walk(at_1: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<function, f32>, row_6: ptr<function, i32>) {
     var limit: f32;
     var step_: i32;
     var here_1: i32;
-    var param_17: i32;
-    var param_18: i32;
-    var before_1: bool;
-    var jump: bool;
-    var torn: bool;
+    var param_28: i32;
+    var param_29: i32;
+    var param_30: f32;
+    var param_31: f32;
     var fold: bool;
-    var beside: bool;
+    var param_32: f32;
+    var param_33: f32;
     var nearest: bool;
+    var param_34: f32;
+    var param_35: f32;
     var local_6: i32;
     var local_7: i32;
     var local_8: f32;
     var local_9: f32;
     var farther_1: bool;
+    var param_36: f32;
+    var param_37: f32;
     var local_10: i32;
     var local_11: f32;
     var local_12: f32;
-    var phi_774_: bool;
-    var phi_821_: bool;
-    var phi_839_: bool;
-    var phi_852_: bool;
-    var phi_866_: bool;
-    var phi_867_: bool;
-    var phi_876_: bool;
-    var phi_928_: bool;
+    var phi_879_: bool;
+    var phi_945_: bool;
+    var phi_1003_: bool;
 
-    let _e35 = (*end);
-    let _e36 = (*origin_1);
-    limit = ((_e35 - _e36) - 0.5f);
-    let _e40 = synthesis.mirrored;
-    step_ = select(1i, -1i, (_e40 != 0u));
+    let _e36 = (*end);
+    let _e37 = (*origin_1);
+    limit = ((_e36 - _e37) - 0.5f);
+    let _e41 = synthesis.mirrored;
+    step_ = select(1i, -1i, (_e41 != 0u));
     loop {
-        let _e44 = (*at_1).shift;
-        let _e45 = limit;
-        let _e46 = (_e44 < _e45);
-        phi_774_ = _e46;
-        if _e46 {
-            let _e48 = (*at_1).found;
-            phi_774_ = !(_e48);
+        let _e45 = (*at_1).shift;
+        let _e46 = limit;
+        let _e47 = (_e45 < _e46);
+        phi_879_ = _e47;
+        if _e47 {
+            let _e49 = (*at_1).found;
+            phi_879_ = !(_e49);
         }
-        let _e51 = phi_774_;
-        if _e51 {
-            let _e53 = (*at_1).b;
-            (*at_1).a = _e53;
-            let _e56 = (*at_1).next;
-            (*at_1).depth = _e56;
-            let _e59 = (*at_1).column;
-            here_1 = _e59;
-            let _e60 = step_;
-            let _e62 = (*at_1).column;
-            (*at_1).column = (_e62 + _e60);
-            let _e66 = (*at_1).shift;
-            (*at_1).shift = (_e66 + 1f);
-            let _e70 = (*at_1).column;
-            param_17 = _e70;
-            let _e71 = (*row_6);
-            param_18 = _e71;
-            let _e72 = depth_texel((&param_17), (&param_18));
-            (*at_1).next = _e72;
-            let _e75 = (*at_1).shift;
-            let _e78 = synthesis.law[1u];
-            let _e80 = (*at_1).next;
-            (*at_1).b = (_e75 + (_e78 * _e80));
-            let _e85 = (*at_1).a;
-            before_1 = (_e85 <= 0f);
-            let _e87 = before_1;
-            phi_821_ = _e87;
-            if _e87 {
-                let _e89 = (*at_1).b;
-                phi_821_ = (_e89 > 0f);
-            }
-            let _e92 = phi_821_;
-            jump = _e92;
+        let _e52 = phi_879_;
+        if _e52 {
+            let _e54 = (*at_1).b;
+            (*at_1).a = _e54;
+            let _e57 = (*at_1).next;
+            (*at_1).depth = _e57;
+            let _e60 = (*at_1).column;
+            here_1 = _e60;
+            let _e61 = step_;
+            let _e63 = (*at_1).column;
+            (*at_1).column = (_e63 + _e61);
+            let _e67 = (*at_1).shift;
+            (*at_1).shift = (_e67 + 1f);
+            let _e71 = (*at_1).column;
+            param_28 = _e71;
+            let _e72 = (*row_6);
+            param_29 = _e72;
+            let _e73 = depth_texel((&param_28), (&param_29));
+            (*at_1).next = _e73;
+            let _e76 = (*at_1).shift;
+            let _e79 = synthesis.law[1u];
+            let _e81 = (*at_1).next;
+            (*at_1).b = (_e76 + (_e79 * _e81));
+            let _e86 = (*at_1).a;
+            param_30 = _e86;
+            let _e88 = (*at_1).b;
+            param_31 = _e88;
+            let _e89 = is_seen((&param_30), (&param_31));
+            (*at_1).found = _e89;
+            let _e92 = (*at_1).a;
+            param_32 = _e92;
             let _e94 = (*at_1).b;
-            let _e96 = (*at_1).a;
-            torn = ((_e94 - _e96) >= 2f);
-            let _e99 = jump;
-            phi_839_ = _e99;
-            if _e99 {
-                let _e101 = (*at_1).a;
-                let _e103 = torn;
-                phi_839_ = ((_e101 > -0.5f) || !(_e103));
+            param_33 = _e94;
+            let _e95 = folds((&param_32), (&param_33));
+            fold = _e95;
+            let _e97 = (*at_1).a;
+            param_34 = _e97;
+            let _e99 = (*at_1).b;
+            param_35 = _e99;
+            let _e100 = has_rim((&param_34), (&param_35));
+            phi_945_ = _e100;
+            if _e100 {
+                let _e102 = (*at_1).rim;
+                phi_945_ = (_e102 < 0i);
             }
-            let _e107 = phi_839_;
-            (*at_1).found = _e107;
-            let _e109 = before_1;
-            phi_852_ = _e109;
-            if _e109 {
-                let _e111 = (*at_1).b;
-                let _e114 = (*at_1).a;
-                phi_852_ = (max(_e111, -1f) < _e114);
-            }
-            let _e117 = phi_852_;
-            fold = _e117;
-            let _e118 = fold;
-            phi_867_ = _e118;
-            if !(_e118) {
-                let _e120 = jump;
-                let _e121 = torn;
-                let _e122 = (_e120 && _e121);
-                phi_866_ = _e122;
-                if _e122 {
-                    let _e124 = (*at_1).b;
-                    phi_866_ = (_e124 < 1f);
-                }
-                let _e127 = phi_866_;
-                phi_867_ = _e127;
-            }
-            let _e129 = phi_867_;
-            beside = _e129;
-            let _e130 = beside;
-            phi_876_ = _e130;
-            if _e130 {
-                let _e132 = (*at_1).rim;
-                phi_876_ = (_e132 < 0i);
-            }
-            let _e135 = phi_876_;
-            nearest = _e135;
-            let _e136 = nearest;
-            if _e136 {
-                let _e137 = fold;
-                if _e137 {
-                    let _e138 = here_1;
-                    local_7 = _e138;
+            let _e105 = phi_945_;
+            nearest = _e105;
+            let _e106 = nearest;
+            if _e106 {
+                let _e107 = fold;
+                if _e107 {
+                    let _e108 = here_1;
+                    local_7 = _e108;
                 } else {
-                    let _e140 = (*at_1).column;
-                    local_7 = _e140;
+                    let _e110 = (*at_1).column;
+                    local_7 = _e110;
                 }
-                let _e141 = local_7;
-                local_6 = _e141;
+                let _e111 = local_7;
+                local_6 = _e111;
             } else {
-                let _e143 = (*at_1).rim;
-                local_6 = _e143;
+                let _e113 = (*at_1).rim;
+                local_6 = _e113;
             }
-            let _e144 = local_6;
-            (*at_1).rim = _e144;
-            let _e146 = nearest;
-            if _e146 {
-                let _e147 = fold;
-                if _e147 {
-                    let _e149 = (*at_1).depth;
-                    local_9 = _e149;
+            let _e114 = local_6;
+            (*at_1).rim = _e114;
+            let _e116 = nearest;
+            if _e116 {
+                let _e117 = fold;
+                if _e117 {
+                    let _e119 = (*at_1).depth;
+                    local_9 = _e119;
                 } else {
-                    let _e151 = (*at_1).next;
-                    local_9 = _e151;
+                    let _e121 = (*at_1).next;
+                    local_9 = _e121;
                 }
-                let _e152 = local_9;
-                local_8 = _e152;
+                let _e122 = local_9;
+                local_8 = _e122;
             } else {
-                let _e154 = (*at_1).rim_depth;
-                local_8 = _e154;
+                let _e124 = (*at_1).rim_depth;
+                local_8 = _e124;
             }
-            let _e155 = local_8;
-            (*at_1).rim_depth = _e155;
-            let _e157 = jump;
-            phi_928_ = _e157;
+            let _e125 = local_8;
+            (*at_1).rim_depth = _e125;
+            let _e128 = (*at_1).a;
+            param_36 = _e128;
+            let _e130 = (*at_1).b;
+            param_37 = _e130;
+            let _e131 = jumps((&param_36), (&param_37));
+            phi_1003_ = _e131;
+            if _e131 {
+                let _e134 = synthesis.law[1u];
+                let _e136 = (*at_1).depth;
+                let _e138 = (*at_1).edge_depth;
+                phi_1003_ = ((_e134 * (_e136 - _e138)) < 0f);
+            }
+            let _e143 = phi_1003_;
+            farther_1 = _e143;
+            let _e144 = farther_1;
+            if _e144 {
+                let _e145 = here_1;
+                local_10 = _e145;
+            } else {
+                let _e147 = (*at_1).edge;
+                local_10 = _e147;
+            }
+            let _e148 = local_10;
+            (*at_1).edge = _e148;
+            let _e150 = farther_1;
+            if _e150 {
+                let _e152 = (*at_1).depth;
+                local_11 = _e152;
+            } else {
+                let _e154 = (*at_1).edge_depth;
+                local_11 = _e154;
+            }
+            let _e155 = local_11;
+            (*at_1).edge_depth = _e155;
+            let _e157 = farther_1;
             if _e157 {
                 let _e160 = synthesis.law[1u];
-                let _e162 = (*at_1).depth;
-                let _e164 = (*at_1).edge_depth;
-                phi_928_ = ((_e160 * (_e162 - _e164)) < 0f);
-            }
-            let _e169 = phi_928_;
-            farther_1 = _e169;
-            let _e170 = farther_1;
-            if _e170 {
-                let _e171 = here_1;
-                local_10 = _e171;
+                let _e162 = (*at_1).next;
+                local_12 = (_e160 * _e162);
             } else {
-                let _e173 = (*at_1).edge;
-                local_10 = _e173;
+                let _e165 = (*at_1).front;
+                local_12 = _e165;
             }
-            let _e174 = local_10;
-            (*at_1).edge = _e174;
-            let _e176 = farther_1;
-            if _e176 {
-                let _e178 = (*at_1).depth;
-                local_11 = _e178;
-            } else {
-                let _e180 = (*at_1).edge_depth;
-                local_11 = _e180;
-            }
-            let _e181 = local_11;
-            (*at_1).edge_depth = _e181;
-            let _e183 = farther_1;
-            if _e183 {
-                let _e186 = synthesis.law[1u];
-                let _e188 = (*at_1).next;
-                local_12 = (_e186 * _e188);
-            } else {
-                let _e191 = (*at_1).front;
-                local_12 = _e191;
-            }
-            let _e192 = local_12;
-            (*at_1).front = _e192;
+            let _e166 = local_12;
+            (*at_1).front = _e166;
             continue;
         } else {
             break;
@@ -724,147 +803,152 @@ fn walk(at_1: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<func
     return;
 }
 
-fn march(origin_2: ptr<function, f32>, row_7: ptr<function, i32>, steps: ptr<function, f32>, x_6: ptr<function, f32>, b: ptr<function, f32>, next: ptr<function, f32>, surface: ptr<function, Surface>) -> vec4<f32> {
+fn march(origin_2: ptr<function, f32>, row_7: ptr<function, i32>, steps: ptr<function, f32>, x_6: ptr<function, f32>, b_5: ptr<function, f32>, next: ptr<function, f32>, surface: ptr<function, Surface>) -> vec4<f32> {
     var last_column: f32;
     var outside_1: bool;
     var end_1: f32;
     var local_13: f32;
     var column_3: i32;
-    var param_19: i32;
+    var param_38: i32;
     var edge_1: i32;
     var edge_depth: f32;
     var local_14: f32;
     var at_2: Search;
-    var param_20: Search;
-    var param_21: f32;
-    var param_22: f32;
-    var param_23: i32;
+    var param_39: Search;
+    var param_40: f32;
+    var param_41: f32;
+    var param_42: i32;
     var own: bool;
     var local_15: i32;
-    var param_24: i32;
+    var param_43: i32;
     var t: f32;
+    var param_44: f32;
+    var param_45: f32;
     var local_16: f32;
     var local_17: f32;
-    var away_1: f32;
+    var away_2: f32;
     var color_2: vec4<f32>;
-    var param_25: f32;
-    var param_26: i32;
+    var param_46: f32;
+    var param_47: i32;
     var unknown: bool;
     var i_3: i32;
-    var param_27: vec2<f32>;
-    var param_28: f32;
-    var param_29: f32;
-    var param_30: i32;
-    var param_31: vec4<f32>;
-    var param_32: f32;
-    var param_33: bool;
-    var param_34: vec4<f32>;
-    var param_35: f32;
-    var param_36: f32;
-    var param_37: f32;
-    var param_38: i32;
-    var param_39: i32;
+    var param_48: vec2<f32>;
+    var param_49: f32;
+    var param_50: f32;
+    var param_51: i32;
+    var param_52: vec4<f32>;
+    var param_53: f32;
+    var param_54: bool;
+    var param_55: vec4<f32>;
+    var param_56: f32;
+    var param_57: f32;
+    var param_58: f32;
+    var param_59: i32;
+    var param_60: i32;
     var coverage: f32;
-    var param_40: vec2<i32>;
-    var phi_1055_: bool;
-    var phi_1133_: bool;
+    var param_61: vec2<i32>;
+    var phi_1130_: bool;
+    var phi_1209_: bool;
 
-    let _e65 = synthesis.source_size[0u];
-    last_column = f32((_e65 - 1i));
-    let _e68 = (*x_6);
-    let _e69 = (*b);
-    (*b) = (_e69 - _e68);
-    let _e71 = (*x_6);
-    let _e72 = last_column;
-    (*x_6) = clamp(_e71, 0f, _e72);
-    let _e74 = (*x_6);
-    let _e75 = (*b);
-    (*b) = (_e75 + _e74);
-    let _e77 = (*x_6);
-    let _e79 = (*b);
-    outside_1 = ((_e77 == 0f) && (_e79 > 0f));
-    let _e82 = outside_1;
-    let _e83 = (*b);
-    if (_e82 && (_e83 < 0.5f)) {
-        let _e86 = (*x_6);
-        local_13 = _e86;
-    } else {
+    let _e66 = synthesis.source_size[0u];
+    last_column = f32((_e66 - 1i));
+    let _e69 = (*x_6);
+    let _e70 = (*b_5);
+    (*b_5) = (_e70 - _e69);
+    let _e72 = (*x_6);
+    let _e73 = last_column;
+    (*x_6) = clamp(_e72, 0f, _e73);
+    let _e75 = (*x_6);
+    let _e76 = (*b_5);
+    (*b_5) = (_e76 + _e75);
+    let _e78 = (*x_6);
+    let _e80 = (*b_5);
+    outside_1 = ((_e78 == 0f) && (_e80 > 0f));
+    let _e83 = outside_1;
+    let _e84 = (*b_5);
+    if (_e83 && (_e84 < 0.5f)) {
         let _e87 = (*x_6);
-        let _e88 = (*steps);
-        let _e90 = last_column;
-        local_13 = min((_e87 + _e88), _e90);
-    }
-    let _e92 = local_13;
-    end_1 = _e92;
-    let _e93 = (*x_6);
-    param_19 = i32(_e93);
-    let _e95 = source_column((&param_19));
-    column_3 = _e95;
-    let _e96 = outside_1;
-    let _e97 = column_3;
-    edge_1 = select(-1i, _e97, _e96);
-    let _e99 = outside_1;
-    if _e99 {
-        let _e100 = (*next);
-        local_14 = _e100;
+        local_13 = _e87;
     } else {
-        let _e103 = synthesis.law[1u];
-        local_14 = select(1000000000f, -1000000000f, (_e103 < 0f));
+        let _e88 = (*x_6);
+        let _e89 = (*steps);
+        let _e91 = last_column;
+        local_13 = min((_e88 + _e89), _e91);
     }
-    let _e106 = local_14;
-    edge_depth = _e106;
-    let _e107 = column_3;
-    let _e108 = (*x_6);
-    let _e109 = (*origin_2);
-    let _e111 = (*b);
-    let _e112 = (*b);
-    let _e113 = (*next);
+    let _e93 = local_13;
+    end_1 = _e93;
+    let _e94 = (*x_6);
+    param_38 = i32(_e94);
+    let _e96 = source_column((&param_38));
+    column_3 = _e96;
+    let _e97 = outside_1;
+    let _e98 = column_3;
+    edge_1 = select(-1i, _e98, _e97);
+    let _e100 = outside_1;
+    if _e100 {
+        let _e101 = (*next);
+        local_14 = _e101;
+    } else {
+        let _e104 = synthesis.law[1u];
+        local_14 = select(1000000000f, -1000000000f, (_e104 < 0f));
+    }
+    let _e107 = local_14;
+    edge_depth = _e107;
+    let _e108 = column_3;
+    let _e109 = (*x_6);
+    let _e110 = (*origin_2);
+    let _e112 = (*b_5);
+    let _e113 = (*b_5);
     let _e114 = (*next);
-    let _e115 = edge_1;
-    let _e116 = edge_depth;
-    at_2 = Search(_e107, (_e108 - _e109), _e111, _e112, _e113, _e114, false, _e115, _e116, 1000000000f, -1i, 0f);
-    let _e118 = at_2;
-    param_20 = _e118;
-    let _e119 = end_1;
-    param_21 = _e119;
-    let _e120 = (*origin_2);
-    param_22 = _e120;
-    let _e121 = (*row_7);
-    param_23 = _e121;
-    walk((&param_20), (&param_21), (&param_22), (&param_23));
-    let _e122 = param_20;
-    at_2 = _e122;
-    let _e124 = at_2.found;
-    phi_1055_ = _e124;
-    if !(_e124) {
-        let _e127 = at_2.edge;
-        phi_1055_ = (_e127 < 0i);
+    let _e115 = (*next);
+    let _e116 = edge_1;
+    let _e117 = edge_depth;
+    at_2 = Search(_e108, (_e109 - _e110), _e112, _e113, _e114, _e115, false, _e116, _e117, 1000000000f, -1i, 0f);
+    let _e119 = at_2;
+    param_39 = _e119;
+    let _e120 = end_1;
+    param_40 = _e120;
+    let _e121 = (*origin_2);
+    param_41 = _e121;
+    let _e122 = (*row_7);
+    param_42 = _e122;
+    walk((&param_39), (&param_40), (&param_41), (&param_42));
+    let _e123 = param_39;
+    at_2 = _e123;
+    let _e125 = at_2.found;
+    phi_1130_ = _e125;
+    if !(_e125) {
+        let _e128 = at_2.edge;
+        phi_1130_ = (_e128 < 0i);
     }
-    let _e130 = phi_1055_;
-    own = _e130;
-    let _e131 = own;
-    if _e131 {
-        let _e133 = at_2.column;
-        local_15 = _e133;
+    let _e131 = phi_1130_;
+    own = _e131;
+    let _e132 = own;
+    if _e132 {
+        let _e134 = at_2.column;
+        local_15 = _e134;
     } else {
-        let _e135 = at_2.edge;
-        local_15 = _e135;
+        let _e136 = at_2.edge;
+        local_15 = _e136;
     }
-    let _e136 = local_15;
-    column_3 = _e136;
-    let _e137 = column_3;
-    param_24 = _e137;
-    let _e138 = source_column((&param_24));
-    (*x_6) = f32(_e138);
-    let _e141 = at_2.b;
-    let _e143 = at_2.a;
-    if ((_e141 - _e143) < 2f) {
+    let _e137 = local_15;
+    column_3 = _e137;
+    let _e138 = column_3;
+    param_43 = _e138;
+    let _e139 = source_column((&param_43));
+    (*x_6) = f32(_e139);
+    let _e142 = at_2.a;
+    param_44 = _e142;
+    let _e144 = at_2.b;
+    param_45 = _e144;
+    let _e145 = is_torn((&param_44), (&param_45));
+    if _e145 {
+        local_16 = 0f;
+    } else {
         let _e147 = at_2.a;
         let _e150 = at_2.b;
         let _e152 = at_2.a;
         local_16 = (-(_e147) / (_e150 - _e152));
-    } else {
-        local_16 = 0f;
     }
     let _e155 = local_16;
     t = _e155;
@@ -890,21 +974,21 @@ fn march(origin_2: ptr<function, f32>, row_7: ptr<function, i32>, steps: ptr<fun
     let _e177 = (*origin_2);
     let _e181 = synthesis.law[1u];
     let _e183 = (*surface).depth;
-    away_1 = ((_e176 - _e177) + (_e181 * _e183));
+    away_2 = ((_e176 - _e177) + (_e181 * _e183));
     let _e187 = at_2.found;
     let _e188 = !(_e187);
-    phi_1133_ = _e188;
+    phi_1209_ = _e188;
     if _e188 {
-        let _e189 = away_1;
-        phi_1133_ = (abs(_e189) >= 0.5f);
+        let _e189 = away_2;
+        phi_1209_ = (abs(_e189) >= 0.5f);
     }
-    let _e193 = phi_1133_;
+    let _e193 = phi_1209_;
     (*surface).hole = _e193;
     let _e196 = (*surface).source;
-    param_25 = _e196;
+    param_46 = _e196;
     let _e197 = (*row_7);
-    param_26 = _e197;
-    let _e198 = color_at((&param_25), (&param_26));
+    param_47 = _e197;
+    let _e198 = color_at((&param_46), (&param_47));
     color_2 = _e198;
     let _e200 = (*surface).hole;
     unknown = _e200;
@@ -915,21 +999,21 @@ fn march(origin_2: ptr<function, f32>, row_7: ptr<function, i32>, steps: ptr<fun
         if (_e204 < 1i) {
             let _e206 = gl_FragCoord_1;
             let _e209 = synthesis.target_origin;
-            param_27 = (_e206.xy - vec2<f32>(_e209));
+            param_48 = (_e206.xy - vec2<f32>(_e209));
             let _e213 = at_2.front;
-            param_28 = _e213;
+            param_49 = _e213;
             let _e214 = (*origin_2);
-            param_29 = _e214;
+            param_50 = _e214;
             let _e215 = (*row_7);
-            param_30 = _e215;
+            param_51 = _e215;
             let _e216 = color_2;
-            param_31 = _e216;
+            param_52 = _e216;
             let _e218 = (*surface).depth;
-            param_32 = _e218;
-            let _e219 = recall((&param_27), (&param_28), (&param_29), (&param_30), (&param_31), (&param_32));
-            let _e220 = param_31;
+            param_53 = _e218;
+            let _e219 = recall((&param_48), (&param_49), (&param_50), (&param_51), (&param_52), (&param_53));
+            let _e220 = param_52;
             color_2 = _e220;
-            let _e221 = param_32;
+            let _e221 = param_53;
             (*surface).depth = _e221;
             unknown = !(_e219);
             continue;
@@ -942,24 +1026,24 @@ fn march(origin_2: ptr<function, f32>, row_7: ptr<function, i32>, steps: ptr<fun
         }
     }
     let _e226 = unknown;
-    param_33 = _e226;
+    param_54 = _e226;
     let _e227 = color_2;
-    param_34 = _e227;
-    let _e228 = away_1;
-    param_35 = _e228;
+    param_55 = _e227;
+    let _e228 = away_2;
+    param_56 = _e228;
     let _e229 = (*x_6);
-    param_36 = _e229;
+    param_57 = _e229;
     let _e231 = (*surface).depth;
-    param_37 = _e231;
+    param_58 = _e231;
     let _e232 = (*row_7);
-    param_38 = _e232;
-    let _e233 = fill_hole((&param_33), (&param_34), (&param_35), (&param_36), (&param_37), (&param_38));
+    param_59 = _e232;
+    let _e233 = fill_hole((&param_54), (&param_55), (&param_56), (&param_57), (&param_58), (&param_59));
     color_2 = _e233;
     let _e235 = at_2.rim;
     if (_e235 >= 0i) {
         let _e238 = at_2.rim;
-        param_39 = _e238;
-        let _e239 = source_column((&param_39));
+        param_60 = _e238;
+        let _e239 = source_column((&param_60));
         (*x_6) = f32(_e239);
         let _e241 = (*x_6);
         let _e242 = (*origin_2);
@@ -969,8 +1053,8 @@ fn march(origin_2: ptr<function, f32>, row_7: ptr<function, i32>, steps: ptr<fun
         let _e253 = color_2;
         let _e255 = at_2.rim;
         let _e256 = (*row_7);
-        param_40 = vec2<i32>(_e255, _e256);
-        let _e258 = in_image((&param_40));
+        param_61 = vec2<i32>(_e255, _e256);
+        let _e258 = in_image((&param_61));
         let _e259 = textureLoad(color_map_texture, _e258, 0i);
         let _e260 = coverage;
         color_2 = mix(_e253, _e259, vec4(_e260));
@@ -1030,17 +1114,17 @@ fn main_1() {
     var x_7: f32;
     var row_8: i32;
     var depth_2: f32;
-    var param_41: i32;
-    var param_42: i32;
-    var param_43: u32;
+    var param_62: i32;
+    var param_63: i32;
+    var param_64: u32;
     var surface_1: Surface;
-    var param_44: f32;
-    var param_45: i32;
-    var param_46: f32;
-    var param_47: f32;
-    var param_48: f32;
-    var param_49: f32;
-    var param_50: Surface;
+    var param_65: f32;
+    var param_66: i32;
+    var param_67: f32;
+    var param_68: f32;
+    var param_69: f32;
+    var param_70: f32;
+    var param_71: Surface;
 
     let _e24 = pixel_span();
     span_1 = _e24;
@@ -1056,30 +1140,30 @@ fn main_1() {
     row_8 = _e44;
     let _e45 = x_7;
     let _e48 = synthesis.source_size[0u];
-    param_41 = i32(clamp(_e45, 0f, f32((_e48 - 1i))));
+    param_62 = i32(clamp(_e45, 0f, f32((_e48 - 1i))));
     let _e53 = row_8;
-    param_42 = _e53;
-    let _e54 = depth_at((&param_41), (&param_42));
+    param_63 = _e53;
+    let _e54 = depth_at((&param_62), (&param_63));
     depth_2 = _e54;
     let _e56 = span_1[0u];
-    param_43 = _e56;
-    let _e57 = span_steps((&param_43));
+    param_64 = _e56;
+    let _e57 = span_steps((&param_64));
     let _e58 = x_7;
     let _e59 = origin_3;
     let _e63 = synthesis.law[1u];
     let _e64 = depth_2;
     let _e67 = origin_3;
-    param_44 = _e67;
+    param_65 = _e67;
     let _e68 = row_8;
-    param_45 = _e68;
-    param_46 = _e57;
+    param_66 = _e68;
+    param_67 = _e57;
     let _e69 = x_7;
-    param_47 = _e69;
-    param_48 = ((_e58 - _e59) + (_e63 * _e64));
+    param_68 = _e69;
+    param_69 = ((_e58 - _e59) + (_e63 * _e64));
     let _e70 = depth_2;
-    param_49 = _e70;
-    let _e71 = march((&param_44), (&param_45), (&param_46), (&param_47), (&param_48), (&param_49), (&param_50));
-    let _e72 = param_50;
+    param_70 = _e70;
+    let _e71 = march((&param_65), (&param_66), (&param_67), (&param_68), (&param_69), (&param_70), (&param_71));
+    let _e72 = param_71;
     surface_1 = _e72;
     color_3 = _e71;
     let _e74 = surface_1.depth;

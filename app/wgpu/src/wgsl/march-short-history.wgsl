@@ -149,101 +149,109 @@ fn source_column(x_1: ptr<function, i32>) -> i32 {
     return _e15;
 }
 
-fn fill_hole(hole: ptr<function, bool>, color: ptr<function, vec4<f32>>, away_1: ptr<function, f32>, x_2: ptr<function, f32>, depth: ptr<function, f32>, row: ptr<function, i32>) -> vec4<f32> {
+fn fill_spread(away_1: ptr<function, f32>) -> f32 {
+    let _e4 = (*away_1);
+    return (0.5f * clamp(abs(_e4), 1f, 12f));
+}
+
+fn fill_hole(hole: ptr<function, bool>, color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_2: ptr<function, f32>, depth: ptr<function, f32>, row: ptr<function, i32>) -> vec4<f32> {
     var spread: f32;
+    var param_2: f32;
     var sum: vec4<f32>;
     var weights: f32;
     var edge: i32;
-    var param_2: i32;
+    var param_3: i32;
     var i: i32;
     var distance_: f32;
     var below: vec2<f32>;
-    var param_3: f32;
     var param_4: f32;
-    var above: vec2<f32>;
     var param_5: f32;
+    var above: vec2<f32>;
     var param_6: f32;
+    var param_7: f32;
     var depths: vec2<f32>;
-    var param_7: vec2<f32>;
     var param_8: vec2<f32>;
-    var below_color: vec4<f32>;
     var param_9: vec2<f32>;
-    var above_color: vec4<f32>;
+    var below_color: vec4<f32>;
     var param_10: vec2<f32>;
+    var above_color: vec4<f32>;
+    var param_11: vec2<f32>;
     var weight: vec2<f32>;
 
-    let _e38 = (*away_1);
-    spread = (0.5f * clamp(abs(_e38), 1f, 12f));
-    let _e42 = (*color);
-    sum = (_e42 * 2f);
+    let _e36 = (*away_2);
+    param_2 = _e36;
+    let _e37 = fill_spread((&param_2));
+    spread = _e37;
+    let _e38 = (*color);
+    sum = (_e38 * 2f);
     weights = 2f;
-    let _e44 = (*x_2);
-    param_2 = i32(_e44);
-    let _e46 = source_column((&param_2));
-    edge = _e46;
-    let _e47 = (*hole);
-    i = select(3i, 1i, _e47);
+    let _e40 = (*x_2);
+    param_3 = i32(_e40);
+    let _e42 = source_column((&param_3));
+    edge = _e42;
+    let _e43 = (*hole);
+    i = select(3i, 1i, _e43);
     loop {
-        let _e49 = i;
-        if (_e49 <= 2i) {
-            let _e51 = i;
-            let _e53 = spread;
-            distance_ = round((f32(_e51) * _e53));
-            let _e56 = (*x_2);
-            param_3 = _e56;
-            let _e57 = column_at((&param_3));
-            let _e58 = distance_;
-            param_4 = -(_e58);
-            let _e60 = row_at((&param_4));
-            below = vec2<f32>(_e57, _e60);
-            let _e62 = (*x_2);
-            param_5 = _e62;
-            let _e63 = column_at((&param_5));
-            let _e64 = distance_;
-            param_6 = _e64;
-            let _e65 = row_at((&param_6));
-            above = vec2<f32>(_e63, _e65);
-            let _e67 = below;
-            param_7 = _e67;
-            let _e68 = depth_sample((&param_7));
-            let _e69 = above;
-            param_8 = _e69;
-            let _e70 = depth_sample((&param_8));
-            depths = vec2<f32>(_e68, _e70);
-            let _e72 = below;
-            param_9 = _e72;
-            let _e73 = color_sample((&param_9));
-            below_color = _e73;
-            let _e74 = above;
-            param_10 = _e74;
-            let _e75 = color_sample((&param_10));
-            above_color = _e75;
-            let _e78 = synthesis.law[1u];
-            let _e79 = depths;
-            let _e80 = (*depth);
-            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e79 - vec2(_e80)) * _e78) <= vec2<f32>(1f, 1f)));
-            let _e87 = weight[0u];
-            let _e88 = below_color;
-            let _e91 = weight[1u];
-            let _e92 = above_color;
-            let _e95 = sum;
-            sum = (_e95 + ((_e88 * _e87) + (_e92 * _e91)));
-            let _e98 = weight[0u];
-            let _e100 = weight[1u];
-            let _e102 = weights;
-            weights = (_e102 + (_e98 + _e100));
+        let _e45 = i;
+        if (_e45 <= 2i) {
+            let _e47 = i;
+            let _e49 = spread;
+            distance_ = round((f32(_e47) * _e49));
+            let _e52 = (*x_2);
+            param_4 = _e52;
+            let _e53 = column_at((&param_4));
+            let _e54 = distance_;
+            param_5 = -(_e54);
+            let _e56 = row_at((&param_5));
+            below = vec2<f32>(_e53, _e56);
+            let _e58 = (*x_2);
+            param_6 = _e58;
+            let _e59 = column_at((&param_6));
+            let _e60 = distance_;
+            param_7 = _e60;
+            let _e61 = row_at((&param_7));
+            above = vec2<f32>(_e59, _e61);
+            let _e63 = below;
+            param_8 = _e63;
+            let _e64 = depth_sample((&param_8));
+            let _e65 = above;
+            param_9 = _e65;
+            let _e66 = depth_sample((&param_9));
+            depths = vec2<f32>(_e64, _e66);
+            let _e68 = below;
+            param_10 = _e68;
+            let _e69 = color_sample((&param_10));
+            below_color = _e69;
+            let _e70 = above;
+            param_11 = _e70;
+            let _e71 = color_sample((&param_11));
+            above_color = _e71;
+            let _e74 = synthesis.law[1u];
+            let _e75 = depths;
+            let _e76 = (*depth);
+            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e75 - vec2(_e76)) * _e74) <= vec2<f32>(1f, 1f)));
+            let _e83 = weight[0u];
+            let _e84 = below_color;
+            let _e87 = weight[1u];
+            let _e88 = above_color;
+            let _e91 = sum;
+            sum = (_e91 + ((_e84 * _e83) + (_e88 * _e87)));
+            let _e94 = weight[0u];
+            let _e96 = weight[1u];
+            let _e98 = weights;
+            weights = (_e98 + (_e94 + _e96));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e104 = i;
-            i = (_e104 + 1i);
+            let _e100 = i;
+            i = (_e100 + 1i);
         }
     }
-    let _e106 = sum;
-    let _e107 = weights;
-    return (_e106 / vec4(_e107));
+    let _e102 = sum;
+    let _e103 = weights;
+    return (_e102 / vec4(_e103));
 }
 
 fn in_image(pixel: ptr<function, vec2<i32>>) -> vec2<i32> {
@@ -262,41 +270,41 @@ fn in_image(pixel: ptr<function, vec2<i32>>) -> vec2<i32> {
 }
 
 fn depth_texel(column: ptr<function, i32>, row_1: ptr<function, i32>) -> f32 {
-    var param_11: vec2<i32>;
+    var param_12: vec2<i32>;
 
     let _e5 = (*column);
     let _e6 = (*row_1);
-    param_11 = vec2<i32>(_e5, _e6);
-    let _e8 = in_image((&param_11));
+    param_12 = vec2<i32>(_e5, _e6);
+    let _e8 = in_image((&param_12));
     let _e9 = textureLoad(depth_map_texture, _e8, 0i);
     return _e9.x;
 }
 
 fn depth_at(x_3: ptr<function, i32>, row_2: ptr<function, i32>) -> f32 {
-    var param_12: i32;
     var param_13: i32;
     var param_14: i32;
+    var param_15: i32;
 
     let _e5 = (*x_3);
-    param_12 = _e5;
-    let _e6 = source_column((&param_12));
-    param_13 = _e6;
+    param_13 = _e5;
+    let _e6 = source_column((&param_13));
+    param_14 = _e6;
     let _e7 = (*row_2);
-    param_14 = _e7;
-    let _e8 = depth_texel((&param_13), (&param_14));
+    param_15 = _e7;
+    let _e8 = depth_texel((&param_14), (&param_15));
     return _e8;
 }
 
 fn nearness_at(x_4: ptr<function, i32>, row_3: ptr<function, i32>) -> f32 {
-    var param_15: i32;
     var param_16: i32;
+    var param_17: i32;
 
     let _e8 = synthesis.law[1u];
     let _e9 = (*x_4);
-    param_15 = _e9;
+    param_16 = _e9;
     let _e10 = (*row_3);
-    param_16 = _e10;
-    let _e11 = depth_at((&param_15), (&param_16));
+    param_17 = _e10;
+    let _e11 = depth_at((&param_16), (&param_17));
     return (_e8 * _e11);
 }
 
@@ -321,10 +329,10 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     var outside: bool;
     var x_5: i32;
     var before: f32;
-    var param_17: i32;
     var param_18: i32;
     var param_19: i32;
     var param_20: i32;
+    var param_21: i32;
     var same: bool;
     var behind: bool;
     var hidden: bool;
@@ -335,10 +343,10 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     var i_2: i32;
     var texel: vec2<i32>;
     var local_5: vec2<f32>;
-    var phi_567_: bool;
-    var phi_582_: bool;
-    var phi_712_: bool;
-    var phi_790_: bool;
+    var phi_575_: bool;
+    var phi_590_: bool;
+    var phi_720_: bool;
+    var phi_798_: bool;
 
     let _e60 = textureDimensions(history_depth_texture, 0i);
     size = vec2<f32>(vec2<i32>(_e60));
@@ -387,25 +395,25 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     }
     let _e117 = guess;
     let _e119 = all((_e117 >= vec2<f32>(0f, 0f)));
-    phi_567_ = _e119;
+    phi_575_ = _e119;
     if _e119 {
         let _e120 = guess;
         let _e121 = size;
-        phi_567_ = all((_e120 < _e121));
+        phi_575_ = all((_e120 < _e121));
     }
-    let _e125 = phi_567_;
+    let _e125 = phi_575_;
     inside = _e125;
     let _e127 = seen[3u];
     let _e129 = inside;
     let _e130 = ((_e127 > 0f) && _e129);
-    phi_582_ = _e130;
+    phi_590_ = _e130;
     if _e130 {
         let _e132 = guess[1u];
         let _e133 = rows;
         let _e136 = strip;
-        phi_582_ = (i32((_e132 / _e133)) == _e136);
+        phi_590_ = (i32((_e132 / _e133)) == _e136);
     }
-    let _e139 = phi_582_;
+    let _e139 = phi_590_;
     if !(_e139) {
         return false;
     }
@@ -448,16 +456,16 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     let _e201 = last;
     x_5 = i32(clamp(_e200, 0f, max((_e201 - 1f), 0f)));
     let _e206 = x_5;
-    param_17 = _e206;
+    param_18 = _e206;
     let _e207 = (*row_4);
-    param_18 = _e207;
-    let _e208 = nearness_at((&param_17), (&param_18));
+    param_19 = _e207;
+    let _e208 = nearness_at((&param_18), (&param_19));
     let _e209 = x_5;
     let _e213 = synthesis.source_size[0u];
-    param_19 = min((_e209 + 1i), (_e213 - 1i));
+    param_20 = min((_e209 + 1i), (_e213 - 1i));
     let _e216 = (*row_4);
-    param_20 = _e216;
-    let _e217 = nearness_at((&param_19), (&param_20));
+    param_21 = _e216;
+    let _e217 = nearness_at((&param_20), (&param_21));
     before = max(_e208, _e217);
     let _e219 = place_2;
     let _e220 = guess;
@@ -470,13 +478,13 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
     let _e232 = (*depth_1);
     behind = (_e226 <= (_e227 - (0.25f * (_e228 - (_e231 * _e232)))));
     let _e238 = outside;
-    phi_712_ = _e238;
+    phi_720_ = _e238;
     if !(_e238) {
         let _e240 = before;
         let _e241 = nearness;
-        phi_712_ = (_e240 > (_e241 - 1f));
+        phi_720_ = (_e240 > (_e241 - 1f));
     }
-    let _e245 = phi_712_;
+    let _e245 = phi_720_;
     hidden = _e245;
     let _e246 = same;
     let _e247 = behind;
@@ -509,15 +517,15 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
             let _e289 = most;
             texel = min((_e281 + vec2<i32>((_e282 & 1i), (_e284 >> bitcast<u32>(1i)))), vec2<i32>(_e289));
             let _e292 = whole;
-            phi_790_ = _e292;
+            phi_798_ = _e292;
             if _e292 {
                 let _e295 = synthesis.law[1u];
                 let _e296 = texel;
                 let _e297 = textureLoad(history_depth_texture, _e296, 0i);
                 let _e299 = stored;
-                phi_790_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
+                phi_798_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
             }
-            let _e305 = phi_790_;
+            let _e305 = phi_798_;
             whole = _e305;
             continue;
         } else {
@@ -547,38 +555,38 @@ fn recall(pixel_1: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: 
 
 fn depth_pair(x_6: ptr<function, f32>) -> vec2<f32> {
     var row_5: f32;
-    var param_21: f32;
     var param_22: f32;
-    var param_23: vec2<f32>;
-    var param_24: f32;
-    var param_25: vec2<f32>;
+    var param_23: f32;
+    var param_24: vec2<f32>;
+    var param_25: f32;
+    var param_26: vec2<f32>;
     var quad: vec4<f32>;
-    var param_26: f32;
+    var param_27: f32;
     var local_6: vec2<f32>;
 
     if true {
-        param_21 = 0f;
-        let _e20 = row_at((&param_21));
+        param_22 = 0f;
+        let _e20 = row_at((&param_22));
         row_5 = _e20;
         let _e21 = (*x_6);
-        param_22 = _e21;
-        let _e22 = column_at((&param_22));
+        param_23 = _e21;
+        let _e22 = column_at((&param_23));
         let _e23 = row_5;
-        param_23 = vec2<f32>(_e22, _e23);
-        let _e25 = depth_sample((&param_23));
+        param_24 = vec2<f32>(_e22, _e23);
+        let _e25 = depth_sample((&param_24));
         let _e26 = (*x_6);
-        param_24 = (_e26 + 1f);
-        let _e28 = column_at((&param_24));
+        param_25 = (_e26 + 1f);
+        let _e28 = column_at((&param_25));
         let _e29 = row_5;
-        param_25 = vec2<f32>(_e28, _e29);
-        let _e31 = depth_sample((&param_25));
+        param_26 = vec2<f32>(_e28, _e29);
+        let _e31 = depth_sample((&param_26));
         return vec2<f32>(_e25, _e31);
     }
     let _e35 = synthesis.columns[0u];
     let _e36 = (*x_6);
     let _e41 = synthesis.columns[1u];
-    param_26 = 0.25f;
-    let _e43 = row_at((&param_26));
+    param_27 = 0.25f;
+    let _e43 = row_at((&param_27));
     let _e45 = textureGather(0, depth_map_texture, nearest_sampler, vec2<f32>(((_e35 * (_e36 + 1.25f)) + _e41), _e43));
     quad = _e45;
     let _e47 = synthesis.mirrored;
@@ -595,12 +603,12 @@ fn depth_pair(x_6: ptr<function, f32>) -> vec2<f32> {
 
 fn search_at(x_7: ptr<function, f32>, origin_1: ptr<function, f32>) -> Search {
     var depths_1: vec2<f32>;
-    var param_27: f32;
+    var param_28: f32;
     var shift: f32;
 
     let _e9 = (*x_7);
-    param_27 = _e9;
-    let _e10 = depth_pair((&param_27));
+    param_28 = _e9;
+    let _e10 = depth_pair((&param_28));
     depths_1 = _e10;
     let _e11 = (*x_7);
     let _e12 = (*origin_1);
@@ -663,11 +671,11 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     var local_11: f32;
     var local_12: f32;
     var local_13: f32;
-    var phi_994_: bool;
-    var phi_995_: bool;
-    var phi_996_: bool;
-    var phi_1043_: bool;
-    var phi_1090_: bool;
+    var phi_1002_: bool;
+    var phi_1003_: bool;
+    var phi_1004_: bool;
+    var phi_1051_: bool;
+    var phi_1098_: bool;
 
     let _e20 = (*at_1).b;
     jump = (_e20 > 0f);
@@ -676,25 +684,25 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     torn = ((_e23 - _e25) >= 2f);
     let _e29 = (*beside).rim;
     let _e30 = (_e29 < 0f);
-    phi_996_ = _e30;
+    phi_1004_ = _e30;
     if _e30 {
         let _e31 = jump;
         let _e32 = !(_e31);
-        phi_995_ = _e32;
+        phi_1003_ = _e32;
         if !(_e32) {
             let _e34 = torn;
-            phi_994_ = _e34;
+            phi_1002_ = _e34;
             if _e34 {
                 let _e36 = (*at_1).b;
-                phi_994_ = (_e36 < 1f);
+                phi_1002_ = (_e36 < 1f);
             }
-            let _e39 = phi_994_;
-            phi_995_ = _e39;
+            let _e39 = phi_1002_;
+            phi_1003_ = _e39;
         }
-        let _e41 = phi_995_;
-        phi_996_ = _e41;
+        let _e41 = phi_1003_;
+        phi_1004_ = _e41;
     }
-    let _e43 = phi_996_;
+    let _e43 = phi_1004_;
     rim = _e43;
     let _e44 = rim;
     if _e44 {
@@ -726,14 +734,14 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e65 = local_9;
     (*beside).rim_depth = _e65;
     let _e67 = jump;
-    phi_1043_ = _e67;
+    phi_1051_ = _e67;
     if _e67 {
         let _e70 = synthesis.law[1u];
         let _e73 = (*at_1).depths[0u];
         let _e75 = (*beside).edge_depth;
-        phi_1043_ = ((_e70 * (_e73 - _e75)) < 0f);
+        phi_1051_ = ((_e70 * (_e73 - _e75)) < 0f);
     }
-    let _e80 = phi_1043_;
+    let _e80 = phi_1051_;
     farther_1 = _e80;
     let _e81 = farther_1;
     if _e81 {
@@ -767,36 +775,36 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e106 = local_13;
     (*beside).edge_depth = _e106;
     let _e108 = jump;
-    phi_1090_ = _e108;
+    phi_1098_ = _e108;
     if _e108 {
         let _e110 = (*at_1).a;
         let _e112 = torn;
-        phi_1090_ = ((_e110 > -0.5f) || !(_e112));
+        phi_1098_ = ((_e110 > -0.5f) || !(_e112));
     }
-    let _e116 = phi_1090_;
+    let _e116 = phi_1098_;
     return _e116;
 }
 
 fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
-    var phi_909_: bool;
-    var phi_910_: bool;
+    var phi_917_: bool;
+    var phi_918_: bool;
 
     let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_910_ = _e5;
+    phi_918_ = _e5;
     if _e5 {
         let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_909_ = _e7;
+        phi_917_ = _e7;
         if !(_e7) {
             let _e9 = (*b);
             let _e11 = (*a);
-            phi_909_ = (max(_e9, -1f) < _e11);
+            phi_917_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_909_;
-        phi_910_ = _e14;
+        let _e14 = phi_917_;
+        phi_918_ = _e14;
     }
-    let _e16 = phi_910_;
+    let _e16 = phi_918_;
     return _e16;
 }
 
@@ -806,32 +814,32 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
     var beside_1: Beside;
     var local_14: f32;
     var found: bool;
-    var param_28: f32;
     var param_29: f32;
-    var param_30: Beside;
-    var param_31: Search;
+    var param_30: f32;
+    var param_31: Beside;
+    var param_32: Search;
     var x_9: f32;
     var a_1: f32;
     var tile_row_1: i32;
     var below_2: bool;
     var shift_2: u32;
     var crosses: bool;
-    var param_32: f32;
-    var param_33: i32;
-    var param_34: bool;
-    var param_35: u32;
-    var param_36: f32;
+    var param_33: f32;
+    var param_34: i32;
+    var param_35: bool;
+    var param_36: u32;
     var param_37: f32;
     var param_38: f32;
     var param_39: f32;
-    var param_40: Beside;
-    var param_41: Search;
+    var param_40: f32;
+    var param_41: Beside;
+    var param_42: Search;
     var local_15: f32;
     var local_16: f32;
     var last_1: f32;
     var b_1: f32;
-    var param_42: f32;
     var param_43: f32;
+    var param_44: f32;
     var behind_1: bool;
     var local_17: f32;
     var local_18: f32;
@@ -842,40 +850,40 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
     var t: f32;
     var local_22: f32;
     var local_23: f32;
-    var away_2: f32;
+    var away_3: f32;
     var color_2: vec4<f32>;
-    var param_44: f32;
     var param_45: f32;
-    var param_46: vec2<f32>;
-    var recalled: bool;
+    var param_46: f32;
     var param_47: vec2<f32>;
-    var param_48: f32;
+    var recalled: bool;
+    var param_48: vec2<f32>;
     var param_49: f32;
-    var param_50: i32;
-    var param_51: vec4<f32>;
-    var param_52: f32;
-    var param_53: bool;
-    var param_54: vec4<f32>;
-    var param_55: f32;
+    var param_50: f32;
+    var param_51: i32;
+    var param_52: vec4<f32>;
+    var param_53: f32;
+    var param_54: bool;
+    var param_55: vec4<f32>;
     var param_56: f32;
     var param_57: f32;
-    var param_58: i32;
+    var param_58: f32;
+    var param_59: i32;
     var coverage: f32;
-    var param_59: f32;
     var param_60: f32;
-    var param_61: vec2<f32>;
-    var phi_1139_: bool;
-    var phi_1146_: bool;
-    var phi_1156_: bool;
-    var phi_1225_: bool;
-    var phi_1236_: bool;
-    var phi_1246_: bool;
-    var phi_1320_: bool;
-    var phi_1370_: bool;
-    var phi_1393_: bool;
-    var phi_1444_: bool;
-    var phi_1485_: bool;
-    var phi_1490_: bool;
+    var param_61: f32;
+    var param_62: vec2<f32>;
+    var phi_1147_: bool;
+    var phi_1154_: bool;
+    var phi_1164_: bool;
+    var phi_1233_: bool;
+    var phi_1244_: bool;
+    var phi_1254_: bool;
+    var phi_1328_: bool;
+    var phi_1378_: bool;
+    var phi_1401_: bool;
+    var phi_1452_: bool;
+    var phi_1493_: bool;
+    var phi_1498_: bool;
 
     let _e87 = (*at_2).a;
     let _e89 = (*at_2).x;
@@ -903,36 +911,36 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
     beside_1.rim = -1f;
     beside_1.rim_depth = 0f;
     found = false;
-    phi_1139_ = true;
+    phi_1147_ = true;
     if true {
         let _e121 = (*at_2).x;
-        phi_1139_ = (_e121 >= 0f);
+        phi_1147_ = (_e121 >= 0f);
     }
-    let _e124 = phi_1139_;
-    phi_1146_ = _e124;
+    let _e124 = phi_1147_;
+    phi_1154_ = _e124;
     if _e124 {
         let _e126 = (*at_2).x;
         let _e127 = (*end);
-        phi_1146_ = (_e126 < _e127);
+        phi_1154_ = (_e126 < _e127);
     }
-    let _e130 = phi_1146_;
-    phi_1156_ = _e130;
+    let _e130 = phi_1154_;
+    phi_1164_ = _e130;
     if _e130 {
         let _e132 = (*at_2).a;
-        param_28 = _e132;
+        param_29 = _e132;
         let _e134 = (*at_2).b;
-        param_29 = _e134;
-        let _e135 = is_event((&param_28), (&param_29));
-        phi_1156_ = _e135;
+        param_30 = _e134;
+        let _e135 = is_event((&param_29), (&param_30));
+        phi_1164_ = _e135;
     }
-    let _e137 = phi_1156_;
+    let _e137 = phi_1164_;
     if _e137 {
         let _e138 = beside_1;
-        param_30 = _e138;
+        param_31 = _e138;
         let _e139 = (*at_2);
-        param_31 = _e139;
-        let _e140 = meet((&param_30), (&param_31));
-        let _e141 = param_30;
+        param_32 = _e139;
+        let _e140 = meet((&param_31), (&param_32));
+        let _e141 = param_31;
         beside_1 = _e141;
         found = _e140;
     }
@@ -955,57 +963,57 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
         let _e167 = found;
         if ((_e164 <= _e165) && !(_e167)) {
             let _e170 = x_9;
-            param_32 = _e170;
+            param_33 = _e170;
             let _e171 = tile_row_1;
-            param_33 = _e171;
+            param_34 = _e171;
             let _e172 = below_2;
-            param_34 = _e172;
+            param_35 = _e172;
             let _e173 = shift_2;
-            param_35 = _e173;
-            let _e174 = segment_end((&param_32), (&param_33), (&param_34), (&param_35));
+            param_36 = _e173;
+            let _e174 = segment_end((&param_33), (&param_34), (&param_35), (&param_36));
             let _e175 = (*end);
-            param_36 = min(_e174, _e175);
+            param_37 = min(_e174, _e175);
             let _e177 = (*origin_2);
-            param_37 = _e177;
-            let _e178 = search_at((&param_36), (&param_37));
+            param_38 = _e177;
+            let _e178 = search_at((&param_37), (&param_38));
             (*at_2) = _e178;
             let _e179 = a_1;
             let _e180 = (_e179 <= 0f);
-            phi_1225_ = _e180;
+            phi_1233_ = _e180;
             if _e180 {
                 let _e182 = (*at_2).a;
-                phi_1225_ = (_e182 > 0f);
+                phi_1233_ = (_e182 > 0f);
             }
-            let _e185 = phi_1225_;
+            let _e185 = phi_1233_;
             crosses = _e185;
             let _e186 = crosses;
             found = _e186;
             let _e187 = crosses;
             let _e189 = (true && !(_e187));
-            phi_1236_ = _e189;
+            phi_1244_ = _e189;
             if _e189 {
                 let _e191 = (*at_2).x;
                 let _e192 = (*end);
-                phi_1236_ = (_e191 < _e192);
+                phi_1244_ = (_e191 < _e192);
             }
-            let _e195 = phi_1236_;
-            phi_1246_ = _e195;
+            let _e195 = phi_1244_;
+            phi_1254_ = _e195;
             if _e195 {
                 let _e197 = (*at_2).a;
-                param_38 = _e197;
+                param_39 = _e197;
                 let _e199 = (*at_2).b;
-                param_39 = _e199;
-                let _e200 = is_event((&param_38), (&param_39));
-                phi_1246_ = _e200;
+                param_40 = _e199;
+                let _e200 = is_event((&param_39), (&param_40));
+                phi_1254_ = _e200;
             }
-            let _e202 = phi_1246_;
+            let _e202 = phi_1254_;
             if _e202 {
                 let _e203 = beside_1;
-                param_40 = _e203;
+                param_41 = _e203;
                 let _e204 = (*at_2);
-                param_41 = _e204;
-                let _e205 = meet((&param_40), (&param_41));
-                let _e206 = param_40;
+                param_42 = _e204;
+                let _e205 = meet((&param_41), (&param_42));
+                let _e206 = param_41;
                 beside_1 = _e206;
                 found = _e205;
             }
@@ -1051,19 +1059,19 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
             let _e235 = b_1;
             let _e240 = x_9;
             let _e241 = last_1;
-            param_42 = clamp(floor((_e228 + (((_e229 - _e230) * _e232) / (_e234 - _e235)))), _e240, (_e241 - 1f));
+            param_43 = clamp(floor((_e228 + (((_e229 - _e230) * _e232) / (_e234 - _e235)))), _e240, (_e241 - 1f));
             let _e244 = (*origin_2);
-            param_43 = _e244;
-            let _e245 = search_at((&param_42), (&param_43));
+            param_44 = _e244;
+            let _e245 = search_at((&param_43), (&param_44));
             (*at_2) = _e245;
             let _e247 = (*at_2).a;
             let _e248 = (_e247 > 0f);
-            phi_1320_ = _e248;
+            phi_1328_ = _e248;
             if !(_e248) {
                 let _e251 = (*at_2).b;
-                phi_1320_ = (_e251 <= 0f);
+                phi_1328_ = (_e251 <= 0f);
             }
-            let _e254 = phi_1320_;
+            let _e254 = phi_1328_;
             crosses = _e254;
             let _e256 = (*at_2).a;
             behind_1 = (_e256 > 0f);
@@ -1113,12 +1121,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
         }
     }
     let _e279 = found;
-    phi_1370_ = _e279;
+    phi_1378_ = _e279;
     if !(_e279) {
         let _e282 = beside_1.edge;
-        phi_1370_ = (_e282 < 0f);
+        phi_1378_ = (_e282 < 0f);
     }
-    let _e285 = phi_1370_;
+    let _e285 = phi_1378_;
     own = _e285;
     let _e286 = own;
     if _e286 {
@@ -1132,13 +1140,13 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
     let _e293 = local_21;
     x_9 = _e293;
     let _e294 = found;
-    phi_1393_ = _e294;
+    phi_1401_ = _e294;
     if _e294 {
         let _e296 = (*at_2).b;
         let _e298 = (*at_2).a;
-        phi_1393_ = ((_e296 - _e298) < 2f);
+        phi_1401_ = ((_e296 - _e298) < 2f);
     }
-    let _e302 = phi_1393_;
+    let _e302 = phi_1401_;
     if _e302 {
         let _e304 = (*at_2).a;
         let _e307 = (*at_2).b;
@@ -1168,69 +1176,69 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
     let _e331 = (*origin_2);
     let _e335 = synthesis.law[1u];
     let _e337 = (*surface).depth;
-    away_2 = ((_e330 - _e331) + (_e335 * _e337));
+    away_3 = ((_e330 - _e331) + (_e335 * _e337));
     let _e340 = found;
     let _e341 = !(_e340);
-    phi_1444_ = _e341;
+    phi_1452_ = _e341;
     if _e341 {
-        let _e342 = away_2;
-        phi_1444_ = (abs(_e342) >= 0.5f);
+        let _e342 = away_3;
+        phi_1452_ = (abs(_e342) >= 0.5f);
     }
-    let _e346 = phi_1444_;
+    let _e346 = phi_1452_;
     (*surface).hole = _e346;
     let _e349 = (*surface).source;
-    param_44 = _e349;
-    let _e350 = column_at((&param_44));
-    param_45 = 0f;
-    let _e351 = row_at((&param_45));
-    param_46 = vec2<f32>(_e350, _e351);
-    let _e353 = color_sample((&param_46));
+    param_45 = _e349;
+    let _e350 = column_at((&param_45));
+    param_46 = 0f;
+    let _e351 = row_at((&param_46));
+    param_47 = vec2<f32>(_e350, _e351);
+    let _e353 = color_sample((&param_47));
     color_2 = _e353;
     let _e355 = (*surface).hole;
-    phi_1485_ = _e355;
+    phi_1493_ = _e355;
     if _e355 {
         let _e356 = gl_FragCoord_1;
         let _e359 = synthesis.target_origin;
-        param_47 = (_e356.xy - vec2<f32>(_e359));
+        param_48 = (_e356.xy - vec2<f32>(_e359));
         let _e363 = beside_1.front;
-        param_48 = _e363;
+        param_49 = _e363;
         let _e364 = (*origin_2);
-        param_49 = _e364;
+        param_50 = _e364;
         let _e365 = (*row_6);
-        param_50 = _e365;
+        param_51 = _e365;
         let _e366 = color_2;
-        param_51 = _e366;
+        param_52 = _e366;
         let _e368 = (*surface).depth;
-        param_52 = _e368;
-        let _e369 = recall((&param_47), (&param_48), (&param_49), (&param_50), (&param_51), (&param_52));
-        let _e370 = param_51;
+        param_53 = _e368;
+        let _e369 = recall((&param_48), (&param_49), (&param_50), (&param_51), (&param_52), (&param_53));
+        let _e370 = param_52;
         color_2 = _e370;
-        let _e371 = param_52;
+        let _e371 = param_53;
         (*surface).depth = _e371;
-        phi_1485_ = _e369;
+        phi_1493_ = _e369;
     }
-    let _e374 = phi_1485_;
+    let _e374 = phi_1493_;
     recalled = _e374;
-    phi_1490_ = true;
+    phi_1498_ = true;
     if true {
         let _e376 = (*surface).hole;
-        phi_1490_ = _e376;
+        phi_1498_ = _e376;
     }
-    let _e378 = phi_1490_;
+    let _e378 = phi_1498_;
     let _e379 = recalled;
     if (_e378 && !(_e379)) {
-        param_53 = true;
+        param_54 = true;
         let _e382 = color_2;
-        param_54 = _e382;
-        let _e383 = away_2;
-        param_55 = _e383;
+        param_55 = _e382;
+        let _e383 = away_3;
+        param_56 = _e383;
         let _e384 = x_9;
-        param_56 = _e384;
+        param_57 = _e384;
         let _e386 = (*surface).depth;
-        param_57 = _e386;
+        param_58 = _e386;
         let _e387 = (*row_6);
-        param_58 = _e387;
-        let _e388 = fill_hole((&param_53), (&param_54), (&param_55), (&param_56), (&param_57), (&param_58));
+        param_59 = _e387;
+        let _e388 = fill_hole((&param_54), (&param_55), (&param_56), (&param_57), (&param_58), (&param_59));
         color_2 = _e388;
     }
     let _e390 = beside_1.rim;
@@ -1242,12 +1250,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_2: ptr<fun
         coverage = (1f - abs(((_e393 - _e394) + (_e398 * _e400))));
         let _e405 = color_2;
         let _e407 = beside_1.rim;
-        param_59 = _e407;
-        let _e408 = column_at((&param_59));
-        param_60 = 0f;
-        let _e409 = row_at((&param_60));
-        param_61 = vec2<f32>(_e408, _e409);
-        let _e411 = color_sample((&param_61));
+        param_60 = _e407;
+        let _e408 = column_at((&param_60));
+        param_61 = 0f;
+        let _e409 = row_at((&param_61));
+        param_62 = vec2<f32>(_e408, _e409);
+        let _e411 = color_sample((&param_62));
         let _e412 = coverage;
         color_2 = mix(_e405, _e411, vec4(_e412));
         let _e415 = coverage;
@@ -1288,32 +1296,32 @@ fn span_steps(span: ptr<function, u32>) -> f32 {
 fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> vec4<f32> {
     var origin_3: f32;
     var at_3: Search;
-    var param_62: f32;
     var param_63: f32;
+    var param_64: f32;
     var end_1: f32;
-    var param_64: u32;
+    var param_65: u32;
     var limit: f32;
     var next: f32;
-    var param_65: f32;
     var param_66: f32;
-    var param_67: vec2<f32>;
+    var param_67: f32;
+    var param_68: vec2<f32>;
     var stretch: f32;
     var t_1: f32;
     var seen_1: vec4<f32>;
-    var param_68: f32;
     var param_69: f32;
-    var param_70: vec2<f32>;
+    var param_70: f32;
+    var param_71: vec2<f32>;
     var middle: f32;
     var done: bool;
-    var param_71: Search;
-    var param_72: f32;
+    var param_72: Search;
     var param_73: f32;
-    var param_74: i32;
-    var param_75: Surface;
-    var phi_1645_: bool;
-    var phi_1654_: bool;
-    var phi_1737_: bool;
-    var phi_1750_: bool;
+    var param_74: f32;
+    var param_75: i32;
+    var param_76: Surface;
+    var phi_1653_: bool;
+    var phi_1662_: bool;
+    var phi_1745_: bool;
+    var phi_1758_: bool;
 
     let _e40 = synthesis.origins[0u];
     let _e42 = gl_FragCoord_1[0u];
@@ -1322,15 +1330,15 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     let _e48 = origin_3;
     let _e50 = synthesis.farthest;
     let _e52 = (*span_1);
-    param_62 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
+    param_63 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
     let _e56 = origin_3;
-    param_63 = _e56;
-    let _e57 = search_at((&param_62), (&param_63));
+    param_64 = _e56;
+    let _e57 = search_at((&param_63), (&param_64));
     at_3 = _e57;
     let _e59 = at_3.x;
     let _e61 = (*span_1);
-    param_64 = _e61;
-    let _e62 = span_steps((&param_64));
+    param_65 = _e61;
+    let _e62 = span_steps((&param_65));
     let _e66 = synthesis.source_size[0u];
     end_1 = min((max(_e59, 0f) + _e62), f32((_e66 - 1i)));
     let _e71 = at_3.x;
@@ -1340,27 +1348,27 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
         let _e76 = at_3.x;
         let _e77 = limit;
         let _e78 = (_e76 < _e77);
-        phi_1645_ = _e78;
+        phi_1653_ = _e78;
         if _e78 {
             let _e80 = at_3.b;
-            phi_1645_ = (_e80 <= 0f);
+            phi_1653_ = (_e80 <= 0f);
         }
-        let _e83 = phi_1645_;
-        phi_1654_ = _e83;
+        let _e83 = phi_1653_;
+        phi_1662_ = _e83;
         if _e83 {
             let _e85 = at_3.b;
             let _e88 = at_3.a;
-            phi_1654_ = (max(_e85, -1f) >= _e88);
+            phi_1662_ = (max(_e85, -1f) >= _e88);
         }
-        let _e91 = phi_1654_;
+        let _e91 = phi_1662_;
         if _e91 {
             let _e93 = at_3.x;
-            param_65 = (_e93 + 2f);
-            let _e95 = column_at((&param_65));
-            param_66 = 0f;
-            let _e96 = row_at((&param_66));
-            param_67 = vec2<f32>(_e95, _e96);
-            let _e98 = depth_sample((&param_67));
+            param_66 = (_e93 + 2f);
+            let _e95 = column_at((&param_66));
+            param_67 = 0f;
+            let _e96 = row_at((&param_67));
+            param_68 = vec2<f32>(_e95, _e96);
+            let _e98 = depth_sample((&param_68));
             next = _e98;
             let _e101 = at_3.depths[1u];
             let _e102 = next;
@@ -1394,46 +1402,46 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     let _e144 = t_1;
     (*surface_1) = Surface((_e135 + _e136), mix(_e140, _e143, _e144), false);
     let _e148 = (*surface_1).source;
-    param_68 = _e148;
-    let _e149 = column_at((&param_68));
-    param_69 = 0f;
-    let _e150 = row_at((&param_69));
-    param_70 = vec2<f32>(_e149, _e150);
-    let _e152 = color_sample((&param_70));
+    param_69 = _e148;
+    let _e149 = column_at((&param_69));
+    param_70 = 0f;
+    let _e150 = row_at((&param_70));
+    param_71 = vec2<f32>(_e149, _e150);
+    let _e152 = color_sample((&param_71));
     seen_1 = _e152;
     let _e155 = synthesis.source_size[0u];
     middle = (0.5f * f32((_e155 - 1i)));
     let _e160 = at_3.a;
     let _e161 = (_e160 <= 0f);
-    phi_1737_ = _e161;
+    phi_1745_ = _e161;
     if _e161 {
         let _e163 = at_3.b;
-        phi_1737_ = (_e163 > 0f);
+        phi_1745_ = (_e163 > 0f);
     }
-    let _e166 = phi_1737_;
+    let _e166 = phi_1745_;
     let _e167 = stretch;
     let _e169 = (_e166 && (_e167 < 2f));
-    phi_1750_ = _e169;
+    phi_1758_ = _e169;
     if _e169 {
         let _e171 = (*surface_1).source;
         let _e172 = middle;
         let _e175 = middle;
-        phi_1750_ = (abs((_e171 - _e172)) <= _e175);
+        phi_1758_ = (abs((_e171 - _e172)) <= _e175);
     }
-    let _e178 = phi_1750_;
+    let _e178 = phi_1758_;
     done = _e178;
     let _e179 = done;
     if (true && !(_e179)) {
         let _e182 = source_row();
         let _e183 = at_3;
-        param_71 = _e183;
+        param_72 = _e183;
         let _e184 = end_1;
-        param_72 = _e184;
+        param_73 = _e184;
         let _e185 = origin_3;
-        param_73 = _e185;
-        param_74 = _e182;
-        let _e186 = march((&param_71), (&param_72), (&param_73), (&param_74), (&param_75));
-        let _e187 = param_75;
+        param_74 = _e185;
+        param_75 = _e182;
+        let _e186 = march((&param_72), (&param_73), (&param_74), (&param_75), (&param_76));
+        let _e187 = param_76;
         (*surface_1) = _e187;
         seen_1 = _e186;
     }
@@ -1443,8 +1451,8 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
 
 fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
     var place_3: f32;
-    var param_76: f32;
-    var param_77: vec2<f32>;
+    var param_77: f32;
+    var param_78: vec2<f32>;
 
     let _e10 = (*affine)[0u];
     let _e12 = (*affine)[1u];
@@ -1453,10 +1461,10 @@ fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -
     let _e20 = gl_FragCoord_1[1u];
     place_3 = ((_e10 + (_e12 * _e14)) + (_e18 * _e20));
     let _e23 = place_3;
-    param_76 = 0f;
-    let _e24 = row_at((&param_76));
-    param_77 = vec2<f32>(_e23, _e24);
-    let _e26 = color_sample((&param_77));
+    param_77 = 0f;
+    let _e24 = row_at((&param_77));
+    param_78 = vec2<f32>(_e23, _e24);
+    let _e26 = color_sample((&param_78));
     return _e26;
 }
 
@@ -1478,33 +1486,33 @@ fn pixel_span() -> vec4<u32> {
 fn main_1() {
     var span_2: vec4<u32>;
     var surface_3: Surface;
-    var param_78: vec3<f32>;
-    var param_79: Surface;
-    var param_80: u32;
-    var param_81: Surface;
-    var phi_1777_: bool;
+    var param_79: vec3<f32>;
+    var param_80: Surface;
+    var param_81: u32;
+    var param_82: Surface;
+    var phi_1785_: bool;
 
     let _e10 = pixel_span();
     span_2 = _e10;
-    phi_1777_ = true;
+    phi_1785_ = true;
     if true {
         let _e12 = span_2[1u];
-        phi_1777_ = (_e12 != 0u);
+        phi_1785_ = (_e12 != 0u);
     }
-    let _e15 = phi_1777_;
+    let _e15 = phi_1785_;
     if _e15 {
         let _e16 = span_2;
-        param_78 = bitcast<vec3<f32>>(_e16.xyz);
-        let _e19 = lawful((&param_78), (&param_79));
-        let _e20 = param_79;
+        param_79 = bitcast<vec3<f32>>(_e16.xyz);
+        let _e19 = lawful((&param_79), (&param_80));
+        let _e20 = param_80;
         surface_3 = _e20;
         color_3 = _e19;
     } else {
         if true {
             let _e22 = span_2[0u];
-            param_80 = _e22;
-            let _e23 = searched((&param_80), (&param_81));
-            let _e24 = param_81;
+            param_81 = _e22;
+            let _e23 = searched((&param_81), (&param_82));
+            let _e24 = param_82;
             surface_3 = _e24;
             color_3 = _e23;
         } else {

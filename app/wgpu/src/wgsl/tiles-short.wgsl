@@ -18,12 +18,12 @@ struct Synthesis {
     texel: vec2<f32>,
 }
 
-@group(0) @binding(7) 
-var<uniform> synthesis: Synthesis;
 @group(0) @binding(0) 
 var depth_map_texture: texture_2d<f32>;
 @group(0) @binding(8) 
 var nearest_sampler: sampler;
+@group(0) @binding(7) 
+var<uniform> synthesis: Synthesis;
 var<private> gl_FragCoord_1: vec4<f32>;
 var<private> tile: vec4<u32>;
 

@@ -2,6 +2,7 @@
 
 #[path = "../../../core/tests/vulkan/against_opengl.rs"]
 mod against_opengl;
+mod any_view;
 mod edges;
 mod harness;
 mod history;
@@ -15,9 +16,9 @@ use against_opengl::{
 };
 use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::synthesis::{self, Edges, Outputs, Strips, SynthesisOptions};
+use yoro::synthesis::{self, Edges, Outputs, Strips, SynthesisOptions, WarpKind};
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
-use yoro_wgpu::{Gather, GatherVariant, History, Options, Source, Target, WgpuError};
+use yoro_wgpu::{AnyView, Gather, GatherVariant, History, Options, Pipeline, Source, Target, WgpuError};
 
 const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
 
@@ -69,14 +70,20 @@ struct Result {
 }
 
 /// Synthesizes a picture with textures around it that hold something else.
-fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) -> Result {
+fn synthesize<W: WarpKind>(
+    gpu: &Gpu,
+    pipeline: &mut Pipeline<W>,
+    setup: &Setup,
+    picture: &Picture<W>,
+) -> Result {
     let warp = &picture.warp;
+    let [source_size, target_size] = warp.sizes();
     let sum = |[a, b]: [[u32; 2]; 2], size: [u32; 2]| [0, 1].map(|i| a[i] + size[i] + b[i]);
-    let source_image = sum(setup.source_margins, warp.source_size);
-    let target_image = sum(setup.target_margins, warp.target_size);
+    let source_image = sum(setup.source_margins, source_size);
+    let target_image = sum(setup.target_margins, target_size);
     let pixels = |size: [u32; 2]| size[0] as usize * size[1] as usize;
     let [source_origin, target_origin] = [setup.source_margins[0], setup.target_margins[0]];
-    let width = warp.source_size[0] as usize;
+    let width = source_size[0] as usize;
 
     let [source_layers, target_layers] = [setup.source_layer + 1, setup.target_layer + 1];
     let color = gpu.texture(setup.color, source_image, source_layers);
@@ -112,16 +119,16 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, setup: &Setup, picture: &Picture) 
     let (target_view, depth_view) = (drawn(&target), target_depth.as_ref().map(drawn));
     let source = Source { origin: source_origin, ..Source::new(&color, &depth) };
     let target_of = Target { color: &target_view, depth: depth_view.as_ref(), origin: target_origin };
-    gpu.run(|encoder| gather.record(&gpu.device, &gpu.queue, encoder, &source, warp, &target_of)).unwrap();
+    gpu.run(|encoder| pipeline.record(&gpu.device, &gpu.queue, encoder, &source, warp, &target_of)).unwrap();
 
     let after = gpu.read_rgba8(&target, setup.target_layer);
-    let rgba = cut(&after, target_image, target_origin, warp.target_size, 4);
-    let width = warp.target_size[0] as usize;
+    let rgba = cut(&after, target_image, target_origin, target_size, 4);
+    let width = target_size[0] as usize;
     let outside = pasted(before, target_image, target_origin, &rgba, width);
     assert!(outside == after, "pixels outside of the target's rectangle have changed: {setup:?}");
     let depth = target_depth.zip(depth_before).map(|(depth, before)| {
         let after = gpu.read_depth(&depth, setup.target_layer);
-        let values = cut(&after, target_image, target_origin, warp.target_size, 1);
+        let values = cut(&after, target_image, target_origin, target_size, 1);
         let outside = pasted(before, target_image, target_origin, &values, width);
         assert!(outside == after, "depth outside of the target's rectangle has changed: {setup:?}");
         values
@@ -359,6 +366,10 @@ fn mistakes_are_refused() {
         for samples in [0, 1, 3, 8] {
             let options = Options { edges: Edges::Multisample, samples, ..plain };
             assert_eq!(make(&options), Some(WgpuError::SampleCount(samples)));
+        }
+
+        for other in [Options { edges: Edges::Nearest, ..plain }, Options { history: true, ..plain }] {
+            assert_eq!(AnyView::new(&gpu.device, &other).err(), Some(WgpuError::AnyView));
         }
 
         let mut gather = Gather::new(&gpu.device, &plain).unwrap();

@@ -1,0 +1,1084 @@
+// Made of yoro's GLSL by `cargo tools wgsl`.
+struct Segment {
+    steep: bool,
+    sense: f32,
+    far: f32,
+    far_beside: f32,
+    slope: f32,
+    law: f32,
+}
+
+struct Sample {
+    index: f32,
+    beside: f32,
+    depth: f32,
+}
+
+struct AnyView {
+    source_size: vec2<i32>,
+    target_origin: vec2<i32>,
+    to_source_x: vec4<f32>,
+    to_source_y: vec4<f32>,
+    to_source_w: vec4<f32>,
+    source_law: vec2<f32>,
+    target_law: vec2<f32>,
+    nearest: f32,
+    far_depth: f32,
+    source_origin: vec2<i32>,
+    texel: vec2<f32>,
+}
+
+struct FragmentOutput {
+    @location(0) member: vec4<f32>,
+    @builtin(frag_depth) member_1: f32,
+}
+
+@group(0) @binding(7) 
+var<uniform> synthesis: AnyView;
+@group(0) @binding(0) 
+var depth_map_texture: texture_2d<f32>;
+@group(0) @binding(1) 
+var color_map_texture: texture_2d<f32>;
+@group(0) @binding(9) 
+var linear_sampler: sampler;
+@group(0) @binding(2) 
+var tile_map_texture: texture_2d<u32>;
+var<private> gl_FragCoord_1: vec4<f32>;
+var<private> color: vec4<f32>;
+var<private> gl_FragDepth: f32 = 0f;
+
+fn target_depth(depth: ptr<function, f32>, scale: ptr<function, f32>) -> f32 {
+    var inverse: f32;
+    var seen: f32;
+
+    let _e12 = synthesis.source_law[0u];
+    let _e15 = synthesis.source_law[1u];
+    let _e16 = (*depth);
+    inverse = (_e12 + (_e15 * _e16));
+    let _e19 = inverse;
+    let _e20 = (*scale);
+    let _e22 = inverse;
+    let _e25 = synthesis.to_source_w[3u];
+    seen = ((_e19 * _e20) / (1f - (_e22 * _e25)));
+    let _e29 = seen;
+    let _e32 = synthesis.target_law[0u];
+    let _e36 = synthesis.target_law[1u];
+    return clamp(((_e29 - _e32) / _e36), 0f, 1f);
+}
+
+fn in_image(pixel: ptr<function, vec2<i32>>) -> vec2<i32> {
+    var local: vec2<i32>;
+
+    if true {
+        let _e5 = synthesis.source_origin;
+        let _e6 = (*pixel);
+        local = (_e5 + _e6);
+    } else {
+        let _e8 = (*pixel);
+        local = _e8;
+    }
+    let _e9 = local;
+    return _e9;
+}
+
+fn depth_texel(column: ptr<function, i32>, row: ptr<function, i32>) -> f32 {
+    var param: vec2<i32>;
+
+    let _e5 = (*column);
+    let _e6 = (*row);
+    param = vec2<i32>(_e5, _e6);
+    let _e8 = in_image((&param));
+    let _e9 = textureLoad(depth_map_texture, _e8, 0i);
+    return _e9.x;
+}
+
+fn pixel_of(line: ptr<function, Segment>, index: ptr<function, f32>, beside: ptr<function, f32>) -> vec2<i32> {
+    var local_1: vec2<f32>;
+
+    let _e5 = (*line).steep;
+    if _e5 {
+        let _e6 = (*beside);
+        let _e7 = (*index);
+        local_1 = vec2<f32>(_e6, _e7);
+    } else {
+        let _e9 = (*index);
+        let _e10 = (*beside);
+        local_1 = vec2<f32>(_e9, _e10);
+    }
+    let _e12 = local_1;
+    return vec2<i32>(_e12);
+}
+
+fn depth_of(line_1: ptr<function, Segment>, index_1: ptr<function, f32>, beside_1: ptr<function, f32>) -> f32 {
+    var pixel_1: vec2<i32>;
+    var param_1: Segment;
+    var param_2: f32;
+    var param_3: f32;
+    var param_4: i32;
+    var param_5: i32;
+
+    let _e11 = (*line_1);
+    param_1 = _e11;
+    let _e12 = (*index_1);
+    param_2 = _e12;
+    let _e13 = (*beside_1);
+    param_3 = _e13;
+    let _e14 = pixel_of((&param_1), (&param_2), (&param_3));
+    pixel_1 = _e14;
+    let _e16 = pixel_1[0u];
+    param_4 = _e16;
+    let _e18 = pixel_1[1u];
+    param_5 = _e18;
+    let _e19 = depth_texel((&param_4), (&param_5));
+    return _e19;
+}
+
+fn color_sample(place: ptr<function, vec2<f32>>) -> vec4<f32> {
+    let _e4 = (*place);
+    let _e5 = textureSampleLevel(color_map_texture, linear_sampler, _e4, 0f);
+    return _e5;
+}
+
+fn color_of(line_2: ptr<function, Segment>, at: ptr<function, Sample>) -> vec4<f32> {
+    var index_2: vec2<f32>;
+    var local_2: vec2<f32>;
+    var param_6: vec2<f32>;
+
+    let _e8 = (*line_2).steep;
+    if _e8 {
+        let _e10 = (*at).beside;
+        let _e12 = (*at).index;
+        local_2 = vec2<f32>(_e10, _e12);
+    } else {
+        let _e15 = (*at).index;
+        let _e17 = (*at).beside;
+        local_2 = vec2<f32>(_e15, _e17);
+    }
+    let _e19 = local_2;
+    index_2 = _e19;
+    let _e21 = synthesis.source_origin;
+    let _e23 = index_2;
+    let _e28 = synthesis.texel;
+    param_6 = (((vec2<f32>(_e21) + _e23) + vec2(0.5f)) * _e28);
+    let _e30 = color_sample((&param_6));
+    return _e30;
+}
+
+fn fill_spread(away: ptr<function, f32>) -> f32 {
+    let _e4 = (*away);
+    return (0.5f * clamp(abs(_e4), 1f, 12f));
+}
+
+fn last_indices(line_3: ptr<function, Segment>) -> vec2<f32> {
+    var last: vec2<f32>;
+    var local_3: vec2<f32>;
+
+    let _e6 = synthesis.source_size;
+    last = vec2<f32>((_e6 - vec2(1i)));
+    let _e11 = (*line_3).steep;
+    if _e11 {
+        let _e12 = last;
+        local_3 = _e12.yx;
+    } else {
+        let _e14 = last;
+        local_3 = _e14;
+    }
+    let _e15 = local_3;
+    return _e15;
+}
+
+fn fill_beside(line_4: ptr<function, Segment>, edge: ptr<function, Sample>, away_1: ptr<function, f32>) -> vec4<f32> {
+    var last_1: f32;
+    var param_7: Segment;
+    var spread: f32;
+    var param_8: f32;
+    var sum: vec4<f32>;
+    var param_9: Segment;
+    var param_10: Sample;
+    var weights: f32;
+    var i: i32;
+    var beside_2: f32;
+    var tap: Sample;
+    var param_11: Segment;
+    var param_12: f32;
+    var param_13: f32;
+    var weight: f32;
+    var param_14: Segment;
+    var param_15: Sample;
+    var phi_672_: bool;
+
+    let _e28 = (*line_4);
+    param_7 = _e28;
+    let _e29 = last_indices((&param_7));
+    last_1 = _e29.y;
+    let _e31 = (*away_1);
+    param_8 = _e31;
+    let _e32 = fill_spread((&param_8));
+    spread = _e32;
+    let _e33 = (*line_4);
+    param_9 = _e33;
+    let _e34 = (*edge);
+    param_10 = _e34;
+    let _e35 = color_of((&param_9), (&param_10));
+    sum = (_e35 * 2f);
+    weights = 2f;
+    i = -2i;
+    loop {
+        let _e37 = i;
+        if (_e37 <= 2i) {
+            let _e40 = (*edge).beside;
+            let _e43 = i;
+            let _e45 = spread;
+            let _e49 = last_1;
+            beside_2 = clamp((floor((_e40 + 0.5f)) + round((f32(_e43) * _e45))), 0f, _e49);
+            let _e52 = (*edge).index;
+            let _e53 = beside_2;
+            let _e54 = (*line_4);
+            param_11 = _e54;
+            let _e56 = (*edge).index;
+            param_12 = _e56;
+            let _e57 = beside_2;
+            param_13 = _e57;
+            let _e58 = depth_of((&param_11), (&param_12), (&param_13));
+            tap = Sample(_e52, _e53, _e58);
+            let _e60 = i;
+            let _e61 = (_e60 != 0i);
+            phi_672_ = _e61;
+            if _e61 {
+                let _e63 = (*line_4).law;
+                let _e65 = tap.depth;
+                let _e67 = (*edge).depth;
+                phi_672_ = ((_e63 * (_e65 - _e67)) <= 1f);
+            }
+            let _e72 = phi_672_;
+            weight = select(0f, 1f, _e72);
+            let _e74 = weight;
+            let _e75 = (*line_4);
+            param_14 = _e75;
+            let _e76 = tap;
+            param_15 = _e76;
+            let _e77 = color_of((&param_14), (&param_15));
+            let _e79 = sum;
+            sum = (_e79 + (_e77 * _e74));
+            let _e81 = weight;
+            let _e82 = weights;
+            weights = (_e82 + _e81);
+            continue;
+        } else {
+            break;
+        }
+        continuing {
+            let _e84 = i;
+            i = (_e84 + 1i);
+        }
+    }
+    let _e86 = sum;
+    let _e87 = weights;
+    return (_e86 / vec4(_e87));
+}
+
+fn is_torn(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
+    let _e3 = (*b);
+    let _e4 = (*a);
+    return ((_e3 - _e4) >= 2f);
+}
+
+fn jumps(a_1: ptr<function, f32>, b_1: ptr<function, f32>) -> bool {
+    let _e3 = (*a_1);
+    let _e5 = (*b_1);
+    return ((_e3 <= 0f) && (_e5 > 0f));
+}
+
+fn folds(a_2: ptr<function, f32>, b_2: ptr<function, f32>) -> bool {
+    var phi_164_: bool;
+
+    let _e4 = (*a_2);
+    let _e5 = (_e4 <= 0f);
+    phi_164_ = _e5;
+    if _e5 {
+        let _e6 = (*b_2);
+        let _e8 = (*a_2);
+        phi_164_ = (max(_e6, -1f) < _e8);
+    }
+    let _e11 = phi_164_;
+    return _e11;
+}
+
+fn has_rim(a_3: ptr<function, f32>, b_3: ptr<function, f32>) -> bool {
+    var param_16: f32;
+    var param_17: f32;
+    var param_18: f32;
+    var param_19: f32;
+    var param_20: f32;
+    var param_21: f32;
+    var phi_187_: bool;
+    var phi_192_: bool;
+
+    let _e9 = (*a_3);
+    param_16 = _e9;
+    let _e10 = (*b_3);
+    param_17 = _e10;
+    let _e11 = folds((&param_16), (&param_17));
+    phi_192_ = _e11;
+    if !(_e11) {
+        let _e13 = (*a_3);
+        param_18 = _e13;
+        let _e14 = (*b_3);
+        param_19 = _e14;
+        let _e15 = jumps((&param_18), (&param_19));
+        phi_187_ = _e15;
+        if _e15 {
+            let _e16 = (*a_3);
+            param_20 = _e16;
+            let _e17 = (*b_3);
+            param_21 = _e17;
+            let _e18 = is_torn((&param_20), (&param_21));
+            phi_187_ = _e18;
+        }
+        let _e20 = phi_187_;
+        let _e21 = (*b_3);
+        phi_192_ = (_e20 && (_e21 < 1f));
+    }
+    let _e25 = phi_192_;
+    return _e25;
+}
+
+fn is_seen(a_4: ptr<function, f32>, b_4: ptr<function, f32>) -> bool {
+    var param_22: f32;
+    var param_23: f32;
+    var param_24: f32;
+    var param_25: f32;
+    var phi_151_: bool;
+    var phi_152_: bool;
+
+    let _e7 = (*a_4);
+    param_22 = _e7;
+    let _e8 = (*b_4);
+    param_23 = _e8;
+    let _e9 = jumps((&param_22), (&param_23));
+    phi_152_ = _e9;
+    if _e9 {
+        let _e10 = (*a_4);
+        let _e11 = (_e10 > -0.5f);
+        phi_151_ = _e11;
+        if !(_e11) {
+            let _e13 = (*a_4);
+            param_24 = _e13;
+            let _e14 = (*b_4);
+            param_25 = _e14;
+            let _e15 = is_torn((&param_24), (&param_25));
+            phi_151_ = !(_e15);
+        }
+        let _e18 = phi_151_;
+        phi_152_ = _e18;
+    }
+    let _e20 = phi_152_;
+    return _e20;
+}
+
+fn landing(line_5: ptr<function, Segment>, index_3: ptr<function, f32>, depth_1: ptr<function, f32>) -> f32 {
+    let _e5 = (*line_5).sense;
+    let _e6 = (*index_3);
+    let _e8 = (*line_5).far;
+    let _e12 = (*line_5).law;
+    let _e13 = (*depth_1);
+    let _e15 = synthesis.far_depth;
+    return ((_e5 * (_e6 - _e8)) + (_e12 * (_e13 - _e15)));
+}
+
+fn lands(line_6: ptr<function, Segment>, index_4: ptr<function, f32>, beside_3: ptr<function, f32>, steps: ptr<function, f32>) -> bool {
+    var bounds: vec2<u32>;
+    var param_26: Segment;
+    var param_27: f32;
+    var param_28: f32;
+    var ends: vec2<f32>;
+    var param_29: Segment;
+    var param_30: f32;
+    var param_31: f32;
+    var param_32: Segment;
+    var param_33: f32;
+    var param_34: f32;
+    var phi_602_: bool;
+
+    let _e22 = (*beside_3);
+    let _e24 = (*line_6);
+    param_26 = _e24;
+    let _e25 = (*index_4);
+    param_27 = _e25;
+    param_28 = floor(_e22);
+    let _e26 = pixel_of((&param_26), (&param_27), (&param_28));
+    let _e28 = textureLoad(tile_map_texture, (_e26 / vec2<i32>(16i, 8i)), 0i);
+    bounds = _e28.xy;
+    let _e31 = bounds[0u];
+    let _e33 = (*line_6);
+    param_29 = _e33;
+    let _e34 = (*index_4);
+    param_30 = _e34;
+    param_31 = bitcast<f32>(_e31);
+    let _e35 = landing((&param_29), (&param_30), (&param_31));
+    let _e37 = bounds[1u];
+    let _e39 = (*line_6);
+    param_32 = _e39;
+    let _e40 = (*index_4);
+    param_33 = _e40;
+    param_34 = bitcast<f32>(_e37);
+    let _e41 = landing((&param_32), (&param_33), (&param_34));
+    ends = vec2<f32>(_e35, _e41);
+    let _e44 = ends[0u];
+    let _e46 = ends[1u];
+    let _e48 = (min(_e44, _e46) <= 1f);
+    phi_602_ = _e48;
+    if _e48 {
+        let _e50 = ends[0u];
+        let _e52 = ends[1u];
+        let _e54 = (*steps);
+        phi_602_ = ((max(_e50, _e52) + _e54) >= -1f);
+    }
+    let _e58 = phi_602_;
+    return _e58;
+}
+
+fn steps_in_tile(line_7: ptr<function, Segment>, index_5: ptr<function, f32>, beside_4: ptr<function, f32>) -> f32 {
+    var tile: vec2<f32>;
+    var in_tile: vec2<f32>;
+    var along: f32;
+    var local_4: f32;
+    var drift: f32;
+    var room: f32;
+    var local_5: f32;
+    var local_6: f32;
+
+    let _e18 = (*line_7).steep;
+    tile = select(vec2<f32>(16f, 8f), vec2<f32>(8f, 16f), vec2(_e18));
+    let _e21 = (*index_5);
+    let _e22 = (*beside_4);
+    let _e24 = vec2<f32>(_e21, floor(_e22));
+    let _e25 = tile;
+    in_tile = (_e24 - (floor((_e24 / _e25)) * _e25));
+    let _e31 = (*line_7).sense;
+    if (_e31 > 0f) {
+        let _e34 = tile[0u];
+        let _e36 = in_tile[0u];
+        local_4 = (_e34 - _e36);
+    } else {
+        let _e39 = in_tile[0u];
+        local_4 = (_e39 + 1f);
+    }
+    let _e41 = local_4;
+    along = _e41;
+    let _e43 = (*line_7).sense;
+    let _e45 = (*line_7).slope;
+    drift = (_e43 * _e45);
+    let _e47 = drift;
+    if (_e47 > 0f) {
+        let _e50 = tile[1u];
+        let _e52 = in_tile[1u];
+        let _e54 = (*beside_4);
+        local_5 = ((_e50 - _e52) - fract(_e54));
+    } else {
+        let _e58 = in_tile[1u];
+        let _e59 = (*beside_4);
+        local_5 = (_e58 + fract(_e59));
+    }
+    let _e62 = local_5;
+    room = _e62;
+    let _e63 = along;
+    let _e64 = drift;
+    let _e66 = along;
+    let _e68 = room;
+    if ((abs(_e64) * _e66) > _e68) {
+        let _e70 = room;
+        let _e71 = drift;
+        local_6 = (floor((_e70 / abs(_e71))) + 1f);
+    } else {
+        let _e76 = along;
+        local_6 = _e76;
+    }
+    let _e77 = local_6;
+    return max(min(_e63, _e77), 1f);
+}
+
+fn beside_at(line_8: ptr<function, Segment>, index_6: ptr<function, f32>) -> f32 {
+    let _e3 = (*line_8).far_beside;
+    let _e5 = (*line_8).slope;
+    let _e6 = (*index_6);
+    let _e8 = (*line_8).far;
+    return (_e3 + (_e5 * (_e6 - _e8)));
+}
+
+fn sample_at(line_9: ptr<function, Segment>, index_7: ptr<function, f32>) -> Sample {
+    var last_2: f32;
+    var param_35: Segment;
+    var beside_5: f32;
+    var param_36: Segment;
+    var param_37: f32;
+    var low: f32;
+    var here: f32;
+    var param_38: Segment;
+    var param_39: f32;
+    var param_40: f32;
+    var next: f32;
+    var param_41: Segment;
+    var param_42: f32;
+    var param_43: f32;
+    var t: f32;
+    var whole: bool;
+    var upper: bool;
+    var local_7: f32;
+    var local_8: f32;
+
+    let _e24 = (*line_9);
+    param_35 = _e24;
+    let _e25 = last_indices((&param_35));
+    last_2 = _e25.y;
+    let _e27 = (*line_9);
+    param_36 = _e27;
+    let _e28 = (*index_7);
+    param_37 = _e28;
+    let _e29 = beside_at((&param_36), (&param_37));
+    let _e30 = last_2;
+    beside_5 = clamp(_e29, 0f, _e30);
+    let _e32 = beside_5;
+    low = floor(_e32);
+    let _e34 = (*line_9);
+    param_38 = _e34;
+    let _e35 = (*index_7);
+    param_39 = _e35;
+    let _e36 = low;
+    param_40 = _e36;
+    let _e37 = depth_of((&param_38), (&param_39), (&param_40));
+    here = _e37;
+    let _e38 = low;
+    let _e40 = last_2;
+    let _e42 = (*line_9);
+    param_41 = _e42;
+    let _e43 = (*index_7);
+    param_42 = _e43;
+    param_43 = min((_e38 + 1f), _e40);
+    let _e44 = depth_of((&param_41), (&param_42), (&param_43));
+    next = _e44;
+    let _e45 = beside_5;
+    let _e46 = low;
+    t = (_e45 - _e46);
+    let _e49 = (*line_9).law;
+    let _e50 = next;
+    let _e51 = here;
+    whole = (abs((_e49 * (_e50 - _e51))) < 1f);
+    let _e56 = t;
+    upper = (_e56 >= 0.5f);
+    let _e58 = (*index_7);
+    let _e59 = whole;
+    if _e59 {
+        let _e60 = beside_5;
+        local_7 = _e60;
+    } else {
+        let _e61 = low;
+        let _e62 = upper;
+        local_7 = (_e61 + select(0f, 1f, _e62));
+    }
+    let _e65 = local_7;
+    let _e66 = whole;
+    if _e66 {
+        let _e67 = here;
+        let _e68 = next;
+        let _e69 = t;
+        local_8 = mix(_e67, _e68, _e69);
+    } else {
+        let _e71 = upper;
+        let _e72 = next;
+        let _e73 = here;
+        local_8 = select(_e73, _e72, _e71);
+    }
+    let _e75 = local_8;
+    return Sample(_e58, _e65, _e75);
+}
+
+fn main_1() {
+    var pixel_2: vec3<f32>;
+    var ray: vec3<f32>;
+    var infinity: vec2<f32>;
+    var parallax: vec2<f32>;
+    var far: vec2<f32>;
+    var moved: vec2<f32>;
+    var line_10: Segment;
+    var reach: f32;
+    var local_9: f32;
+    var last_3: vec2<f32>;
+    var param_44: Segment;
+    var middle: f32;
+    var first: f32;
+    var end: f32;
+    var left: f32;
+    var here_1: Sample;
+    var param_45: Segment;
+    var param_46: f32;
+    var before: Sample;
+    var b_5: f32;
+    var param_47: Segment;
+    var param_48: f32;
+    var param_49: f32;
+    var a_5: f32;
+    var found: bool;
+    var outside: bool;
+    var local_10: f32;
+    var has_edge: bool;
+    var edge_1: Sample;
+    var rimmed: bool;
+    var rim: Sample;
+    var beside_6: f32;
+    var param_50: Segment;
+    var param_51: f32;
+    var steps_1: f32;
+    var param_52: Segment;
+    var param_53: f32;
+    var param_54: f32;
+    var walked: bool;
+    var param_55: Segment;
+    var param_56: f32;
+    var param_57: f32;
+    var param_58: f32;
+    var param_59: Segment;
+    var param_60: f32;
+    var param_61: Segment;
+    var param_62: f32;
+    var param_63: f32;
+    var param_64: Segment;
+    var param_65: f32;
+    var param_66: Segment;
+    var param_67: f32;
+    var param_68: f32;
+    var param_69: f32;
+    var param_70: f32;
+    var param_71: f32;
+    var param_72: f32;
+    var param_73: f32;
+    var param_74: f32;
+    var param_75: f32;
+    var param_76: f32;
+    var t_1: f32;
+    var param_77: f32;
+    var param_78: f32;
+    var local_11: f32;
+    var depth_2: f32;
+    var param_79: Segment;
+    var param_80: Sample;
+    var param_81: Segment;
+    var param_82: Sample;
+    var fill: Sample;
+    var away_2: f32;
+    var param_83: Segment;
+    var param_84: f32;
+    var param_85: f32;
+    var local_12: vec4<f32>;
+    var param_86: Segment;
+    var param_87: Sample;
+    var param_88: f32;
+    var param_89: Segment;
+    var param_90: Sample;
+    var coverage: f32;
+    var param_91: Segment;
+    var param_92: f32;
+    var param_93: f32;
+    var param_94: Segment;
+    var param_95: Sample;
+    var local_13: f32;
+    var param_96: f32;
+    var param_97: f32;
+    var phi_933_: bool;
+    var phi_1062_: bool;
+    var phi_1095_: bool;
+    var phi_1096_: bool;
+
+    let _e105 = gl_FragCoord_1;
+    let _e108 = synthesis.target_origin;
+    let _e110 = (_e105.xy - vec2<f32>(_e108));
+    pixel_2 = vec3<f32>(_e110.x, _e110.y, 1f);
+    let _e115 = synthesis.to_source_x;
+    let _e117 = pixel_2;
+    let _e120 = synthesis.to_source_y;
+    let _e122 = pixel_2;
+    let _e125 = synthesis.to_source_w;
+    let _e127 = pixel_2;
+    ray = vec3<f32>(dot(_e115.xyz, _e117), dot(_e120.xyz, _e122), dot(_e125.xyz, _e127));
+    let _e130 = ray;
+    let _e133 = ray[2u];
+    infinity = (_e130.xy / vec2(_e133));
+    let _e138 = synthesis.to_source_x[3u];
+    let _e141 = synthesis.to_source_y[3u];
+    let _e145 = synthesis.to_source_w[3u];
+    let _e146 = infinity;
+    parallax = (vec2<f32>(_e138, _e141) - (_e146 * _e145));
+    let _e149 = infinity;
+    let _e152 = synthesis.source_law[0u];
+    let _e155 = synthesis.source_law[1u];
+    let _e157 = synthesis.far_depth;
+    let _e160 = parallax;
+    far = ((_e149 + (_e160 * (_e152 + (_e155 * _e157)))) - vec2(0.5f));
+    let _e167 = synthesis.source_law[1u];
+    let _e168 = parallax;
+    moved = (_e168 * _e167);
+    let _e171 = moved[1u];
+    let _e174 = moved[0u];
+    line_10.steep = (abs(_e171) > abs(_e174));
+    let _e179 = line_10.steep;
+    if _e179 {
+        let _e180 = far;
+        far = _e180.yx;
+        let _e182 = moved;
+        moved = _e182.yx;
+    }
+    let _e185 = moved[0u];
+    let _e187 = synthesis.nearest;
+    let _e189 = synthesis.far_depth;
+    reach = (_e185 * (_e187 - _e189));
+    let _e192 = reach;
+    line_10.sense = select(1f, -1f, (_e192 > 0f));
+    let _e197 = far[0u];
+    line_10.far = _e197;
+    let _e200 = far[1u];
+    line_10.far_beside = _e200;
+    let _e203 = moved[0u];
+    if (_e203 == 0f) {
+        local_9 = 0f;
+    } else {
+        let _e206 = moved[1u];
+        let _e208 = moved[0u];
+        local_9 = (_e206 / _e208);
+    }
+    let _e210 = local_9;
+    line_10.slope = _e210;
+    let _e213 = line_10.sense;
+    let _e216 = moved[0u];
+    line_10.law = (-(_e213) * _e216);
+    let _e219 = line_10;
+    param_44 = _e219;
+    let _e220 = last_indices((&param_44));
+    last_3 = _e220;
+    let _e222 = line_10.sense;
+    let _e224 = line_10.far;
+    middle = (_e222 * _e224);
+    let _e227 = line_10.sense;
+    let _e228 = middle;
+    let _e229 = reach;
+    let _e236 = last_3[0u];
+    first = clamp((_e227 * floor(((_e228 - abs(_e229)) - 0.01f))), 0f, _e236);
+    let _e239 = line_10.sense;
+    let _e240 = middle;
+    let _e246 = last_3[0u];
+    end = clamp((_e239 * (floor((_e240 + 0.01f)) + 1f)), 0f, _e246);
+    let _e249 = line_10.sense;
+    let _e250 = end;
+    let _e251 = first;
+    left = (_e249 * (_e250 - _e251));
+    let _e254 = line_10;
+    param_45 = _e254;
+    let _e255 = first;
+    param_46 = _e255;
+    let _e256 = sample_at((&param_45), (&param_46));
+    here_1 = _e256;
+    let _e257 = here_1;
+    before = _e257;
+    let _e258 = line_10;
+    param_47 = _e258;
+    let _e259 = first;
+    param_48 = _e259;
+    let _e261 = here_1.depth;
+    param_49 = _e261;
+    let _e262 = landing((&param_47), (&param_48), (&param_49));
+    b_5 = _e262;
+    let _e263 = b_5;
+    a_5 = _e263;
+    found = false;
+    let _e264 = b_5;
+    let _e265 = (_e264 > 0f);
+    phi_933_ = _e265;
+    if _e265 {
+        let _e266 = first;
+        let _e268 = line_10.sense;
+        if (_e268 > 0f) {
+            local_10 = 0f;
+        } else {
+            let _e271 = last_3[0u];
+            local_10 = _e271;
+        }
+        let _e272 = local_10;
+        phi_933_ = (_e266 == _e272);
+    }
+    let _e275 = phi_933_;
+    outside = _e275;
+    let _e276 = outside;
+    has_edge = _e276;
+    let _e277 = here_1;
+    edge_1 = _e277;
+    let _e278 = outside;
+    let _e279 = b_5;
+    let _e282 = left;
+    left = select(_e282, 0f, (_e278 && (_e279 < 0.5f)));
+    rimmed = false;
+    let _e284 = here_1;
+    rim = _e284;
+    loop {
+        let _e285 = left;
+        let _e287 = found;
+        if ((_e285 > 0f) && !(_e287)) {
+            let _e290 = line_10;
+            param_50 = _e290;
+            let _e292 = here_1.index;
+            param_51 = _e292;
+            let _e293 = beside_at((&param_50), (&param_51));
+            let _e295 = last_3[1u];
+            beside_6 = clamp(_e293, 0f, _e295);
+            let _e297 = line_10;
+            param_52 = _e297;
+            let _e299 = here_1.index;
+            param_53 = _e299;
+            let _e300 = beside_6;
+            param_54 = _e300;
+            let _e301 = steps_in_tile((&param_52), (&param_53), (&param_54));
+            let _e302 = left;
+            steps_1 = min(_e301, _e302);
+            let _e304 = line_10;
+            param_55 = _e304;
+            let _e306 = here_1.index;
+            param_56 = _e306;
+            let _e307 = beside_6;
+            param_57 = _e307;
+            let _e308 = steps_1;
+            param_58 = _e308;
+            let _e309 = lands((&param_55), (&param_56), (&param_57), (&param_58));
+            walked = _e309;
+            let _e310 = steps_1;
+            let _e311 = left;
+            left = (_e311 - _e310);
+            let _e313 = walked;
+            if !(_e313) {
+                let _e316 = here_1.index;
+                let _e318 = line_10.sense;
+                let _e319 = steps_1;
+                let _e322 = line_10;
+                param_59 = _e322;
+                param_60 = (_e316 + (_e318 * _e319));
+                let _e323 = sample_at((&param_59), (&param_60));
+                here_1 = _e323;
+                let _e324 = line_10;
+                param_61 = _e324;
+                let _e326 = here_1.index;
+                param_62 = _e326;
+                let _e328 = here_1.depth;
+                param_63 = _e328;
+                let _e329 = landing((&param_61), (&param_62), (&param_63));
+                b_5 = _e329;
+            }
+            loop {
+                let _e330 = walked;
+                let _e331 = steps_1;
+                let _e334 = found;
+                if ((_e330 && (_e331 > 0f)) && !(_e334)) {
+                    let _e337 = b_5;
+                    a_5 = _e337;
+                    let _e338 = here_1;
+                    before = _e338;
+                    let _e340 = before.index;
+                    let _e342 = line_10.sense;
+                    let _e344 = line_10;
+                    param_64 = _e344;
+                    param_65 = (_e340 + _e342);
+                    let _e345 = sample_at((&param_64), (&param_65));
+                    here_1 = _e345;
+                    let _e346 = line_10;
+                    param_66 = _e346;
+                    let _e348 = here_1.index;
+                    param_67 = _e348;
+                    let _e350 = here_1.depth;
+                    param_68 = _e350;
+                    let _e351 = landing((&param_66), (&param_67), (&param_68));
+                    b_5 = _e351;
+                    let _e352 = a_5;
+                    param_69 = _e352;
+                    let _e353 = b_5;
+                    param_70 = _e353;
+                    let _e354 = is_seen((&param_69), (&param_70));
+                    found = _e354;
+                    let _e355 = rimmed;
+                    let _e356 = !(_e355);
+                    phi_1062_ = _e356;
+                    if _e356 {
+                        let _e357 = a_5;
+                        param_71 = _e357;
+                        let _e358 = b_5;
+                        param_72 = _e358;
+                        let _e359 = has_rim((&param_71), (&param_72));
+                        phi_1062_ = _e359;
+                    }
+                    let _e361 = phi_1062_;
+                    if _e361 {
+                        rimmed = true;
+                        let _e362 = here_1;
+                        rim = _e362;
+                        let _e363 = a_5;
+                        param_73 = _e363;
+                        let _e364 = b_5;
+                        param_74 = _e364;
+                        let _e365 = folds((&param_73), (&param_74));
+                        if _e365 {
+                            let _e366 = before;
+                            rim = _e366;
+                        }
+                    }
+                    let _e367 = a_5;
+                    param_75 = _e367;
+                    let _e368 = b_5;
+                    param_76 = _e368;
+                    let _e369 = jumps((&param_75), (&param_76));
+                    phi_1096_ = _e369;
+                    if _e369 {
+                        let _e370 = has_edge;
+                        let _e371 = !(_e370);
+                        phi_1095_ = _e371;
+                        if !(_e371) {
+                            let _e374 = line_10.law;
+                            let _e376 = before.depth;
+                            let _e378 = edge_1.depth;
+                            phi_1095_ = ((_e374 * (_e376 - _e378)) < 0f);
+                        }
+                        let _e383 = phi_1095_;
+                        phi_1096_ = _e383;
+                    }
+                    let _e385 = phi_1096_;
+                    if _e385 {
+                        has_edge = true;
+                        let _e386 = before;
+                        edge_1 = _e386;
+                    }
+                    continue;
+                } else {
+                    break;
+                }
+                continuing {
+                    let _e387 = steps_1;
+                    steps_1 = (_e387 - 1f);
+                }
+            }
+            continue;
+        } else {
+            break;
+        }
+    }
+    let _e389 = a_5;
+    param_77 = _e389;
+    let _e390 = b_5;
+    param_78 = _e390;
+    let _e391 = is_torn((&param_77), (&param_78));
+    if _e391 {
+        local_11 = 0f;
+    } else {
+        let _e392 = a_5;
+        let _e394 = b_5;
+        let _e395 = a_5;
+        local_11 = (-(_e392) / (_e394 - _e395));
+    }
+    let _e398 = local_11;
+    t_1 = _e398;
+    let _e400 = before.depth;
+    let _e402 = here_1.depth;
+    let _e403 = t_1;
+    depth_2 = mix(_e400, _e402, _e403);
+    let _e405 = found;
+    if _e405 {
+        let _e406 = line_10;
+        param_79 = _e406;
+        let _e407 = before;
+        param_80 = _e407;
+        let _e408 = color_of((&param_79), (&param_80));
+        let _e409 = line_10;
+        param_81 = _e409;
+        let _e410 = here_1;
+        param_82 = _e410;
+        let _e411 = color_of((&param_81), (&param_82));
+        let _e412 = t_1;
+        color = mix(_e408, _e411, vec4(_e412));
+    } else {
+        let _e415 = here_1;
+        fill = _e415;
+        let _e416 = has_edge;
+        if _e416 {
+            let _e417 = edge_1;
+            fill = _e417;
+        }
+        let _e419 = fill.depth;
+        depth_2 = _e419;
+        let _e420 = line_10;
+        param_83 = _e420;
+        let _e422 = fill.index;
+        param_84 = _e422;
+        let _e423 = depth_2;
+        param_85 = _e423;
+        let _e424 = landing((&param_83), (&param_84), (&param_85));
+        away_2 = _e424;
+        let _e425 = away_2;
+        if (abs(_e425) >= 0.5f) {
+            let _e428 = line_10;
+            param_86 = _e428;
+            let _e429 = fill;
+            param_87 = _e429;
+            let _e430 = away_2;
+            param_88 = _e430;
+            let _e431 = fill_beside((&param_86), (&param_87), (&param_88));
+            local_12 = _e431;
+        } else {
+            let _e432 = line_10;
+            param_89 = _e432;
+            let _e433 = fill;
+            param_90 = _e433;
+            let _e434 = color_of((&param_89), (&param_90));
+            local_12 = _e434;
+        }
+        let _e435 = local_12;
+        color = _e435;
+    }
+    let _e436 = rimmed;
+    if _e436 {
+        let _e437 = line_10;
+        param_91 = _e437;
+        let _e439 = rim.index;
+        param_92 = _e439;
+        let _e441 = rim.depth;
+        param_93 = _e441;
+        let _e442 = landing((&param_91), (&param_92), (&param_93));
+        coverage = (1f - abs(_e442));
+        let _e445 = color;
+        let _e446 = line_10;
+        param_94 = _e446;
+        let _e447 = rim;
+        param_95 = _e447;
+        let _e448 = color_of((&param_94), (&param_95));
+        let _e449 = coverage;
+        color = mix(_e445, _e448, vec4(_e449));
+        let _e452 = coverage;
+        if (_e452 >= 0.5f) {
+            let _e455 = rim.depth;
+            local_13 = _e455;
+        } else {
+            let _e456 = depth_2;
+            local_13 = _e456;
+        }
+        let _e457 = local_13;
+        depth_2 = _e457;
+    }
+    let _e458 = depth_2;
+    param_96 = _e458;
+    let _e460 = ray[2u];
+    param_97 = _e460;
+    let _e461 = target_depth((&param_96), (&param_97));
+    gl_FragDepth = _e461;
+    return;
+}
+
+@fragment 
+fn main(@builtin(position) gl_FragCoord: vec4<f32>) -> FragmentOutput {
+    gl_FragCoord_1 = gl_FragCoord;
+    main_1();
+    let _e4 = color;
+    let _e5 = gl_FragDepth;
+    return FragmentOutput(_e4, _e5);
+}

@@ -1,0 +1,45 @@
+//! Any view: the pictures and depth of OpenGL.
+
+use yoro_wgpu::AnyView;
+use yoro_wgpu::wgpu::TextureFormat;
+
+use crate::against_opengl::{Gl, assert_depth_equal, assert_equal, picture, pose_warps};
+use crate::harness::with_gpus;
+use crate::{Setup, synthesize};
+
+/// Whole textures, parts of larger ones and layers of arrays, by one pipeline.
+#[test]
+fn any_view_is_that_of_opengl() {
+    let gl = Gl::new();
+    let numbered = pose_warps().into_iter().zip(0..);
+    let pictures: Vec<_> = numbered
+        .map(|((warp, range), seed)| {
+            let picture = picture(&warp, range, seed);
+            (gl.any_view(&picture), picture)
+        })
+        .collect();
+    drop(gl);
+    let setup = Setup { target_depth: Some(TextureFormat::Depth32Float), ..Setup::PLAIN };
+    let setups = [
+        setup,
+        Setup { source_layer: 1, source_margins: [[5, 3], [2, 7]], ..setup },
+        Setup {
+            depth: TextureFormat::Depth32Float,
+            source_margins: [[0, 2], [3, 0]],
+            target_margins: [[4, 9], [1, 2]],
+            ..setup
+        },
+    ];
+    with_gpus(|gpu| {
+        let mut any_view = AnyView::new(&gpu.device, &setup.options()).unwrap();
+        for (want, picture) in &pictures {
+            for setup in &setups {
+                let setup = setup.on(gpu);
+                let got = synthesize(gpu, &mut any_view, &setup, picture);
+                let what = format!("{}, {:?}, {setup:?}", gpu.name, picture.warp);
+                assert_equal(&got.rgba, &want.rgba, 4, 0, &what);
+                assert_depth_equal(&got.depth.unwrap(), &want.depth, &what);
+            }
+        }
+    });
+}
