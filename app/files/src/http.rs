@@ -1,10 +1,8 @@
 //! A folder's files over HTTP, for browsers on this machine or in its network.
 
-use std::fs;
-use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
-use std::net::TcpStream;
+use std::fs::File;
+use std::io::{self, BufRead as _, BufReader, Read, Write};
 use std::path::{Component, Path, PathBuf};
-use std::time::Duration;
 
 /// The content policy of what is served.
 pub const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
@@ -18,13 +16,12 @@ const MAX_LINES: usize = 100;
 pub struct Request(Vec<String>);
 
 impl Request {
-    /// Reads a request; waits ten seconds at most for each part of it.
+    /// Reads a request.
     ///
     /// # Errors
     /// When the connection fails, and for a request that is too long.
-    pub fn read(stream: &TcpStream) -> io::Result<Request> {
-        stream.set_read_timeout(Some(Duration::from_secs(10)))?;
-        let mut reader = BufReader::new(stream.try_clone()?);
+    pub fn read(connection: impl Read) -> io::Result<Request> {
+        let mut reader = BufReader::new(connection);
         let mut lines = Vec::new();
         while lines.len() < MAX_LINES {
             let mut line = String::new();
@@ -57,25 +54,32 @@ impl Request {
 ///
 /// # Errors
 /// When the connection fails.
-pub fn answer(mut stream: &TcpStream, request: &Request, folder: &Path) -> io::Result<()> {
+pub fn answer(connection: &mut impl Write, request: &Request, folder: &Path) -> io::Result<()> {
     let found = match (request.method(), request.target()) {
         (Some("GET" | "HEAD"), Some(target)) => file(folder, target),
         _ => None,
     };
-    let (status, kind, body) = match found.and_then(|path| Some((kind(&path), fs::read(path).ok()?))) {
-        Some((kind, body)) => ("200 OK", kind, body),
-        None => ("404 Not Found", "text/plain", b"There is no such file.\n".to_vec()),
+    let opened = found.and_then(|path| {
+        let file = File::open(&path).ok()?;
+        Some((kind(&path), file.metadata().ok()?.len(), Box::new(file) as Box<dyn Read>))
+    });
+    let missing = b"There is no such file.\n";
+    let (status, (kind, length, body)) = match opened {
+        Some(file) => ("200 OK", file),
+        None => {
+            ("404 Not Found", ("text/plain", missing.len() as u64, Box::new(&missing[..]) as Box<dyn Read>))
+        }
     };
-    write!(
-        stream,
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-cache\r\n\
-         Content-Security-Policy: {POLICY}\r\nConnection: close\r\n\r\n",
-        body.len()
-    )?;
+    // In one piece, and so in one packet.
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nCache-Control: no-cache\r\n\
+         Content-Security-Policy: {POLICY}\r\nConnection: close\r\n\r\n"
+    );
+    connection.write_all(head.as_bytes())?;
     if request.method() != Some("HEAD") {
-        stream.write_all(&body)?;
+        io::copy(&mut body.take(length), connection)?;
     }
-    stream.flush()
+    connection.flush()
 }
 
 /// Returns the file that a request's target names; none outside of the folder.

@@ -1,10 +1,18 @@
 //! A stream from the program to the page.
 
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::io::{BufRead as _, BufReader, Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::time::Duration;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use image::RgbImage;
+use rcgen::{KeyPair, PublicKeyData as _};
+use rustls::pki_types::pem::PemObject as _;
+use rustls::pki_types::{CertificateDer, ServerName};
 use serde_json::json;
 use yoro::eyes::{Eye, EyePair};
 use yoro_context::{Backend, Headless};
@@ -22,10 +30,11 @@ const QUANTIZER: &str = "16";
 const STEP: f32 = 0.02;
 
 /// `yoro serve`, until this is dropped.
-fn serve(mode: &str) -> (Server, String) {
+fn serve(options: &[&str], home: Option<&Path>) -> (Server, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_yoro"));
     command.args(["serve", "prototype", "--port", "0", "--frame-rate", "5", "--max-size", "320"]);
-    command.args(["--quantizer", QUANTIZER, "--mode", mode]);
+    command.args(["--quantizer", QUANTIZER]).args(options);
+    home.map(|home| command.env("XDG_STATE_HOME", home));
     let mut child: Child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let first = lines.next().expect("it says where it is").unwrap();
@@ -39,16 +48,21 @@ fn serve(mode: &str) -> (Server, String) {
 fn open(mode: &str) -> Option<(Page, String)> {
     // Says what is missing.
     Server::start()?;
-    let mut browser = Browser::start_with(&GL)?;
-    let (server, link) = serve(mode);
+    let browser = Browser::start_with(&GL)?;
+    let (server, link) = serve(&["--mode", mode], None);
+    Some((follow(browser, server, &link), link))
+}
+
+/// Opens a server's link in a browser, and waits for pictures.
+fn follow(mut browser: Browser, server: Server, link: &str) -> Page {
     browser.allow(&server.address);
     browser.allow(&server.address.replace("http", "ws"));
     browser.resize(640, 420);
-    browser.go(&link);
+    browser.go(link);
     let mut page = Page { browser, server };
     page.until("globalThis.yoro?.stream?.frames > 3");
     assert_eq!(page.message(), None);
-    Some((page, link))
+    page
 }
 
 /// The desktop's side: a scene, and what a viewer makes of its pictures.
@@ -127,6 +141,15 @@ fn check(page: &mut Page, desktop: &mut Desktop) -> [EyePair; 2] {
     pairs
 }
 
+/// Asks for the stream with these headers, and returns the answer's beginning.
+fn ask(mut connection: impl Read + Write, host: &str, headers: &str) -> String {
+    let key = "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==";
+    write!(connection, "GET /stream HTTP/1.1\r\nHost: {host}\r\n{headers}{key}\r\n\r\n").unwrap();
+    let mut answer = [0; 1000];
+    let length = connection.read(&mut answer).unwrap();
+    String::from_utf8_lossy(&answer[..length]).into_owned()
+}
+
 /// Sends a first message on a new connection, and gives the answer's bytes.
 fn knock(page: &mut Page, token: &str) -> serde_json::Value {
     page.evaluate(&format!(
@@ -153,13 +176,9 @@ fn a_stream_is_shown_at_the_newest_pose_to_one_page_with_the_token() {
     let token = link.split("stream=").nth(1).unwrap().split('&').next().unwrap();
     assert_eq!(knock(&mut page, &"0".repeat(32)), json!([1, 0]), "another token");
     assert_eq!(knock(&mut page, token), json!([1, 1]), "another page is served");
+    let host = page.server.address.trim_start_matches("http://").trim_end_matches('/').to_owned();
     for origin in ["Origin: http://elsewhere.example\r\n", ""] {
-        let host = page.server.address.trim_start_matches("http://").trim_end_matches('/').to_owned();
-        let mut stream = TcpStream::connect(&host).unwrap();
-        let key = "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==";
-        write!(stream, "GET /stream HTTP/1.1\r\nHost: {host}\r\n{origin}{key}\r\n\r\n").unwrap();
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).unwrap();
+        let answer = ask(TcpStream::connect(&host).unwrap(), &host, origin);
         assert!(answer.starts_with("HTTP/1.1 403"), "{answer}");
     }
 
@@ -180,4 +199,72 @@ fn two_eyes_are_turned_with_the_head() {
     let Some((mut page, _)) = open("eyes") else { return };
     check(&mut page, &mut Desktop::new(Mode::Eyes));
     page.browser.expect_silence();
+}
+
+#[test]
+fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
+    // Says what is missing.
+    let Some(_) = Server::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let (server, link) = serve(&["--lan=127.0.0.2"], Some(home.path()));
+    let host = server.address.strip_prefix("https://").expect("https").trim_end_matches('/').to_owned();
+    let port: u16 = host.strip_prefix("127.0.0.2:").expect("the address").parse().unwrap();
+    assert!(
+        TcpStream::connect(("127.0.0.1", port)).is_err(),
+        "it listens on the address that it prints alone"
+    );
+
+    // Who connects and says nothing is left.
+    let mut idle = TcpStream::connect(&host).unwrap();
+    let answer = ask(TcpStream::connect(&host).unwrap(), &host, "");
+    assert!(!answer.starts_with("HTTP"), "without encryption: {answer}");
+
+    // A strict client, which knows no authority but this certificate itself.
+    let pem = std::fs::read(home.path().join("yoro/serve/127.0.0.2.pem")).unwrap();
+    let mut roots = rustls::RootCertStore::empty();
+    roots.add(CertificateDer::from_pem_slice(&pem).unwrap()).unwrap();
+    let provider = Arc::new(rustls::crypto::ring::default_provider());
+    let config = rustls::ClientConfig::builder_with_provider(provider)
+        .with_safe_default_protocol_versions()
+        .unwrap()
+        .with_root_certificates(roots)
+        .with_no_client_auth();
+    let config = Arc::new(config);
+    let connect = |name: &'static str| {
+        let name = ServerName::try_from(name).unwrap();
+        let client = rustls::ClientConnection::new(config.clone(), name).unwrap();
+        rustls::StreamOwned::new(client, TcpStream::connect(&host).unwrap())
+    };
+    let answer = ask(connect("127.0.0.2"), &host, &format!("Origin: https://{host}\r\n"));
+    assert!(answer.starts_with("HTTP/1.1 101"), "{answer}");
+    for origin in
+        [format!("http://{host}"), format!("https://127.0.0.1:{port}"), "https://elsewhere.example".into()]
+    {
+        let answer = ask(connect("127.0.0.2"), &host, &format!("Origin: {origin}\r\n"));
+        assert!(answer.starts_with("HTTP/1.1 403"), "{origin}: {answer}");
+    }
+    let other = ask(connect("127.0.0.2"), "elsewhere.example", "Origin: https://elsewhere.example\r\n");
+    assert!(other.starts_with("HTTP/1.1 403"), "another name that leads here: {other}");
+    let mut elsewhere = connect("127.0.0.1");
+    assert!(
+        elsewhere.write_all(b"GET / HTTP/1.1\r\n\r\n").is_err(),
+        "the certificate is for another address"
+    );
+
+    // A browser whose user has accepted the certificate.
+    let key = KeyPair::from_pem(&String::from_utf8(pem).unwrap()).unwrap();
+    let spki = ring::digest::digest(&ring::digest::SHA256, &key.subject_public_key_info());
+    let accepted = format!("--ignore-certificate-errors-spki-list={}", STANDARD.encode(spki));
+    let options: Vec<&str> = GL.into_iter().chain([&*accepted]).collect();
+    let Some(browser) = Browser::start_with(&options) else { return };
+    let mut page = follow(browser, server, &link);
+    assert_eq!(page.evaluate("[location.protocol, isSecureContext]"), json!(["https:", true]));
+    let token = link.split("stream=").nth(1).unwrap().split('&').next().unwrap();
+    assert_eq!(knock(&mut page, &"0".repeat(32)), json!([1, 0]), "another token");
+    assert_eq!(knock(&mut page, token), json!([1, 1]), "another page is served");
+    page.until("document.getElementById('facts').textContent.includes('frames/s')");
+    page.browser.expect_silence();
+
+    idle.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    assert_eq!(idle.read(&mut [0]).unwrap(), 0, "it is left after ten seconds");
 }

@@ -4,6 +4,7 @@ use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::Path;
 use std::thread;
+use std::time::Duration;
 
 use anyhow::Context as _;
 use yoro_files::http::{self, Request};
@@ -20,7 +21,11 @@ pub fn serve(folder: &Path, port: u16) -> anyhow::Result<()> {
         "serving on http://localhost:{port}/ until Ctrl-C\n\
          on a phone or headset by cable: adb reverse tcp:{port} tcp:{port}, then the same address there\n"
     ));
-    let answer = |stream: TcpStream, folder: &Path| http::answer(&stream, &Request::read(&stream)?, folder);
+    let answer = |mut stream: TcpStream, folder: &Path| {
+        stream.set_read_timeout(Some(Duration::from_secs(10)))?;
+        let request = Request::read(&stream)?;
+        http::answer(&mut stream, &request, folder)
+    };
     for stream in listener.incoming() {
         let folder = folder.to_owned();
         // A browser keeps some connections open without asking for anything.

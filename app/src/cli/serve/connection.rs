@@ -1,0 +1,165 @@
+//! A connection with a browser, encrypted or not, that never waits for ever.
+
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, TcpStream};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use rustls::{ServerConfig, ServerConnection};
+
+/// A connection with a browser. Its clones are the same connection: one may read while another one writes.
+#[derive(Clone)]
+pub struct Connection(Arc<Inner>);
+
+struct Inner {
+    socket: TcpStream,
+    tls: Option<Tls>,
+    patience: Mutex<Patience>,
+}
+
+/// How long reading and writing may take.
+#[derive(Clone, Copy)]
+enum Patience {
+    /// All of it, until then.
+    Until(Instant),
+    /// Each time.
+    Each(Duration),
+}
+
+struct Tls {
+    state: Mutex<ServerConnection>,
+    /// Held from taking records out of the state until they are written, which keeps their order.
+    sending: Mutex<()>,
+}
+
+impl Connection {
+    /// Takes a connection over, encrypted where there is a configuration. All that is read and written may take so long
+    /// together.
+    ///
+    /// # Errors
+    /// When the connection is lost.
+    pub fn new(
+        socket: TcpStream,
+        tls: Option<&Arc<ServerConfig>>,
+        patience: Duration,
+    ) -> io::Result<Connection> {
+        socket.set_nodelay(true)?;
+        let tls = tls.map(|config| ServerConnection::new(config.clone())).transpose();
+        let tls = tls.map_err(io::Error::other)?;
+        let tls = tls.map(|state| Tls { state: Mutex::new(state), sending: Mutex::new(()) });
+        let patience = Mutex::new(Patience::Until(Instant::now() + patience));
+        Ok(Connection(Arc::new(Inner { socket, tls, patience })))
+    }
+
+    /// Lets all that is read and written from now on take so long together.
+    pub fn wait_in_all(&self, time: Duration) {
+        *lock(&self.0.patience) = Patience::Until(Instant::now() + time);
+    }
+
+    /// Lets each reading and each writing take so long.
+    pub fn wait_each(&self, time: Duration) {
+        *lock(&self.0.patience) = Patience::Each(time);
+    }
+
+    /// Ends the connection: whoever waits for it is woken.
+    pub fn close(&self) {
+        if let Some(tls) = &self.0.tls {
+            lock(&tls.state).send_close_notify();
+            // Nobody needs it of a connection that is lost.
+            let _ = self.send(tls);
+        }
+        let _ = self.0.socket.shutdown(Shutdown::Both);
+    }
+
+    /// Returns how long the next call may wait, never zero.
+    fn patience(&self) -> io::Result<Duration> {
+        match *lock(&self.0.patience) {
+            Patience::Each(time) => Ok(time),
+            Patience::Until(end) => {
+                let left = end.saturating_duration_since(Instant::now());
+                if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
+            }
+        }
+    }
+
+    fn receive(&self, to: &mut [u8]) -> io::Result<usize> {
+        self.0.socket.set_read_timeout(Some(self.patience()?))?;
+        (&self.0.socket).read(to)
+    }
+
+    fn transmit(&self, mut bytes: &[u8]) -> io::Result<()> {
+        while !bytes.is_empty() {
+            self.0.socket.set_write_timeout(Some(self.patience()?))?;
+            match (&self.0.socket).write(bytes)? {
+                0 => return Err(io::ErrorKind::WriteZero.into()),
+                written => bytes = &bytes[written..],
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends the records that there are.
+    fn send(&self, tls: &Tls) -> io::Result<()> {
+        let _in_order = lock(&tls.sending);
+        let mut records = Vec::new();
+        let mut state = lock(&tls.state);
+        while state.wants_write() {
+            state.write_tls(&mut records)?;
+        }
+        drop(state);
+        self.transmit(&records)
+    }
+
+    /// Takes records that have come, the handshake's among them, and answers where they want an answer.
+    fn understand(&self, tls: &Tls, mut records: &[u8]) -> io::Result<()> {
+        let mut state = lock(&tls.state);
+        let mut understood = Ok(());
+        while !records.is_empty() && understood.is_ok() {
+            state.read_tls(&mut records)?;
+            understood = state.process_new_packets().map(drop);
+        }
+        let answers = state.wants_write();
+        drop(state);
+        if answers {
+            self.send(tls)?;
+        }
+        understood.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+    }
+}
+
+impl Read for Connection {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let Some(tls) = &self.0.tls else { return self.receive(to) };
+        let mut records = [0; 4096];
+        loop {
+            match lock(&tls.state).reader().read(to) {
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+                done => return done,
+            }
+            match self.receive(&mut records)? {
+                0 => return Ok(0),
+                length => self.understand(tls, &records[..length])?,
+            }
+        }
+    }
+}
+
+impl Write for Connection {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let Some(tls) = &self.0.tls else {
+            self.transmit(bytes)?;
+            return Ok(bytes.len());
+        };
+        let taken = lock(&tls.state).writer().write(bytes)?;
+        self.send(tls)?;
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,211 @@
+//! What it takes to be seen in the local network: an address, a certificate for it, and a code that a camera reads.
+
+use std::fs::{self, DirBuilder};
+use std::net::{IpAddr, Ipv4Addr, UdpSocket};
+use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, SystemTime};
+
+use anyhow::{Context as _, bail, ensure};
+use qrcode::QrCode;
+use qrcode::render::unicode::Dense1x2;
+use rcgen::{CertificateParams, DnType, ExtendedKeyUsagePurpose, KeyPair, SanType};
+use rustls::ServerConfig;
+use rustls::pki_types::pem::PemObject as _;
+use rustls::pki_types::{CertificateDer, PrivateKeyDer};
+use yoro_layer::xdg;
+
+const DAY: Duration = Duration::from_secs(24 * 60 * 60);
+/// Certificates are valid for so long: Apple's browsers refuse those of more than 825 days.
+const VALID: Duration = Duration::from_secs(397 * 24 * 60 * 60);
+/// A certificate is used for so long.
+const USED: Duration = Duration::from_secs(365 * 24 * 60 * 60);
+
+/// Where and how a server is reached in the local network.
+pub struct Lan {
+    pub address: IpAddr,
+    pub tls: Arc<ServerConfig>,
+    /// SHA-256 of the certificate, as browsers show it.
+    pub fingerprint: String,
+}
+
+impl Lan {
+    /// Takes the address that was named, or that of the default route, with the certificate that was made for it before, or a
+    /// new one.
+    ///
+    /// # Errors
+    /// A sentence: no such address, or nowhere to keep the certificate.
+    pub fn new(named: Option<IpAddr>) -> anyhow::Result<Lan> {
+        let address = match named {
+            Some(address) => address,
+            None => own_address().context(
+                "this machine is in no network: connect it, or name one of its addresses with --lan=ADDRESS",
+            )?,
+        };
+        ensure!(
+            is_local(address),
+            "{address} is open to the internet, where nothing is served: name an address of a local network \
+             with --lan=ADDRESS"
+        );
+        let folder = xdg::folder("XDG_STATE_HOME", ".local/state")
+            .context("neither XDG_STATE_HOME nor HOME is an absolute path; set one of them")?
+            .join("yoro/serve");
+        let pem = certificate(&folder, address)?;
+        let certificate = CertificateDer::from_pem_slice(&pem).context("the certificate cannot be read")?;
+        Ok(Lan { address, tls: configure(&pem)?, fingerprint: fingerprint(&certificate) })
+    }
+}
+
+/// Returns the address of the interface by which this machine reaches others. Nothing is sent for that.
+fn own_address() -> Option<IpAddr> {
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+    // An address that is reserved for documents.
+    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
+    Some(socket.local_addr().ok()?.ip()).filter(|address| !address.is_loopback())
+}
+
+/// True for addresses that the internet does not reach: of private networks, of one link, of this machine, and those that
+/// providers and private overlay networks share (100.64.0.0/10).
+fn is_local(address: IpAddr) -> bool {
+    match address {
+        IpAddr::V4(v4) => {
+            let is_shared = v4.octets()[0] == 100 && v4.octets()[1] & 0xc0 == 64;
+            v4.is_private() || v4.is_link_local() || v4.is_loopback() || is_shared
+        }
+        IpAddr::V6(v6) => v6.is_unique_local() || v6.is_loopback(),
+    }
+}
+
+/// Returns key and certificate for an address: those that are kept in the folder, or new ones, which are kept.
+fn certificate(folder: &Path, address: IpAddr) -> anyhow::Result<Vec<u8>> {
+    // Others must not read the key.
+    let made = DirBuilder::new().recursive(true).mode(0o700).create(folder);
+    made.and_then(|()| fs::set_permissions(folder, fs::Permissions::from_mode(0o700)))
+        .with_context(|| format!("{} cannot be made", folder.display()))?;
+    let path = folder.join(format!("{address}.pem"));
+    let age = fs::metadata(&path).and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
+    if age.is_some_and(|age| age < USED)
+        && let Ok(pem) = fs::read(&path)
+        && configure(&pem).is_ok()
+    {
+        return Ok(pem);
+    }
+    let key = KeyPair::generate()?;
+    let mut params = CertificateParams::default();
+    params.distinguished_name.push(DnType::CommonName, "yoro serve");
+    params.subject_alt_names = vec![SanType::IpAddress(address)];
+    params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ServerAuth];
+    let now = SystemTime::now();
+    // Clocks differ.
+    params.not_before = (now - DAY).into();
+    params.not_after = (now + VALID - DAY).into();
+    let pem = [key.serialize_pem(), params.self_signed(&key)?.pem()].concat().into_bytes();
+    yoro_files::write(&path, &pem)?;
+    Ok(pem)
+}
+
+/// Returns how connections are encrypted with this key and certificate: by TLS 1.3, which each browser that decodes video for
+/// pages has.
+fn configure(pem: &[u8]) -> anyhow::Result<Arc<ServerConfig>> {
+    let (Ok(key), Ok(certificate)) =
+        (PrivateKeyDer::from_pem_slice(pem), CertificateDer::from_pem_slice(pem))
+    else {
+        bail!("there is no key with a certificate");
+    };
+    let provider = Arc::new(rustls::crypto::ring::default_provider());
+    let mut config = ServerConfig::builder_with_provider(provider)
+        .with_protocol_versions(&[&rustls::version::TLS13])?
+        .with_no_client_auth()
+        .with_single_cert(vec![certificate], key)?;
+    config.alpn_protocols = vec![b"http/1.1".to_vec()];
+    Ok(Arc::new(config))
+}
+
+/// Returns the SHA-256 of a certificate as browsers show it.
+fn fingerprint(certificate: &[u8]) -> String {
+    let hash = ring::digest::digest(&ring::digest::SHA256, certificate);
+    hash.as_ref().iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(":")
+}
+
+/// Returns a text as a QR code for a terminal: black on white, whatever its colours are.
+///
+/// # Errors
+/// When the text is too long.
+pub fn code(text: &str) -> anyhow::Result<String> {
+    let code = QrCode::new(text)?.render::<Dense1x2>().build();
+    Ok(code.lines().map(|line| format!("\x1b[30;107m{line}\x1b[0m\n")).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_addresses_of_local_networks_are_served() {
+        let local = |text: &str| is_local(text.parse().unwrap());
+        for address in [
+            "192.168.1.5",
+            "10.0.0.1",
+            "172.16.3.4",
+            "169.254.1.1",
+            "127.0.0.2",
+            "100.100.1.1",
+            "fd00::5",
+            "::1",
+        ] {
+            assert!(local(address), "{address}");
+        }
+        for address in ["8.8.8.8", "172.32.0.1", "100.128.0.1", "0.0.0.0", "2001:db8::1", "fe80::1", "::"] {
+            assert!(!local(address), "{address}");
+        }
+        let refused = Lan::new(Some("8.8.8.8".parse().unwrap())).err().unwrap().to_string();
+        assert!(refused.contains("--lan=ADDRESS"), "{refused}");
+    }
+
+    #[test]
+    fn a_certificate_is_kept_for_its_address_alone_until_it_is_damaged() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path().join("serve");
+        let [here, there] = [[10, 0, 0, 1], [10, 0, 0, 2]].map(|octets: [u8; 4]| IpAddr::from(octets));
+        let first = certificate(&folder, here).unwrap();
+        assert_eq!(fs::metadata(&folder).unwrap().permissions().mode() & 0o077, 0, "others read the key");
+        assert_eq!(certificate(&folder, here).unwrap(), first);
+        let other = certificate(&folder, there).unwrap();
+        assert_ne!(other, first);
+        // A key with another one's certificate is damage, too.
+        let half = String::from_utf8(other).unwrap().find("-----BEGIN CERTIFICATE").unwrap();
+        for damage in [
+            &first[..first.len() / 2],
+            &[&fs::read(folder.join("10.0.0.2.pem")).unwrap()[..half], &first[half..]].concat(),
+        ] {
+            fs::write(folder.join("10.0.0.1.pem"), damage).unwrap();
+            let new = certificate(&folder, here).unwrap();
+            assert!(new != first && configure(&new).is_ok());
+        }
+    }
+
+    #[test]
+    fn a_camera_reads_the_code_of_a_link() {
+        let link =
+            "https://192.168.178.20:8080/#stream=0123456789abcdef0123456789abcdef&display=side-by-side";
+        let text = code(link).unwrap();
+        let rows: Vec<&str> = text
+            .lines()
+            .map(|line| line.trim_start_matches("\x1b[30;107m").trim_end_matches("\x1b[0m"))
+            .collect();
+        // A letter shows two modules, one above the other.
+        let side = 4;
+        let width = rows[0].chars().count() * side;
+        let mut luma = Vec::new();
+        for row in &rows {
+            for half in ['▀', '▄'] {
+                let is_dark = |letter| letter == '█' || letter == half;
+                let line: Vec<u8> =
+                    row.chars().flat_map(|letter| [if is_dark(letter) { 0 } else { 255 }; 4]).collect();
+                (0..side).for_each(|_| luma.extend(&line));
+            }
+        }
+        assert_eq!(yoro_lenses::read_qr_in_luma(&luma, width).as_deref(), Some(link));
+    }
+}

@@ -1,0 +1,156 @@
+//! `yoro serve`: a scene rendered here, seen in a browser.
+
+mod access;
+mod connection;
+mod lan;
+mod session;
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
+use std::path::PathBuf;
+use std::sync::{Arc, mpsc};
+use std::thread;
+use std::time::Instant;
+
+use anyhow::{Context as _, ensure};
+
+use self::access::Access;
+use self::lan::Lan;
+use self::session::{Bounds, Server};
+use crate::cli::Subcommand;
+use crate::cli::args::GlArgs;
+use crate::cli::eyes;
+use crate::cli::outputs::Files;
+use crate::cli::settings::{Renderer, SettingOptions};
+use yoro_lab::streaming::{Mode, Stage};
+use yoro_render::PreparedScene;
+use yoro_stream::Token;
+use yoro_video::LiveEncoder;
+
+/// Stream a scene, rendered on this machine, to a browser that shows both eyes at the head's newest pose
+#[derive(clap::Args, Clone, Debug)]
+pub struct ServeArgs {
+    /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
+    scene: String,
+    /// Number of the scene's viewpoint, from 0
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pose: usize,
+    /// What is sent
+    #[arg(long, value_enum, default_value = "depth")]
+    mode: ModeArg,
+    /// H.264's quantizer, 12 (best) to 44; it grows where the connection is too slow
+    #[arg(long, default_value_t = 24, value_name = "QP", value_parser = clap::value_parser!(u8).range(12..=44))]
+    quantizer: u8,
+    /// Most frames a second
+    #[arg(long, default_value_t = 60, value_name = "HZ", value_parser = clap::value_parser!(u16).range(1..=240))]
+    frame_rate: u16,
+    /// Most pixels of an eye's longer side
+    #[arg(long, default_value_t = 1024, value_name = "N", value_parser = clap::value_parser!(u16).range(64..=1400))]
+    max_size: u16,
+    /// Serve to the local network by https, at this address of this machine [default: the one by which it reaches others]
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true)]
+    #[expect(clippy::option_option, reason = "clap's form of an option whose value may be left out")]
+    lan: Option<Option<IpAddr>>,
+    /// The port; 0 for a free one
+    #[arg(long, default_value_t = 8080)]
+    port: u16,
+    /// The folder of the built page [default: the one beside the program's]
+    #[arg(long, value_name = "FOLDER")]
+    page: Option<PathBuf>,
+    #[command(flatten)]
+    renderer: SettingOptions<Renderer>,
+    #[command(flatten)]
+    gl: GlArgs,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum ModeArg {
+    /// One eye and its depth, of which both eyes are made
+    Depth,
+    /// Both eyes, corrected by rotation alone
+    Eyes,
+}
+
+impl Subcommand for ServeArgs {
+    fn files(&self) -> anyhow::Result<Files> {
+        let mut files = Files::default();
+        files.read([&self.scene]);
+        Ok(files)
+    }
+
+    fn run(&self) -> anyhow::Result<()> {
+        run(self)
+    }
+}
+
+fn run(args: &ServeArgs) -> anyhow::Result<()> {
+    let settings = args.renderer.render_settings()?;
+    let scene = yoro_scenes::load(&args.scene, yoro_scenes::DEFAULT_SEED, None)?;
+    let home = eyes::scene_pose(&scene, args.pose)?;
+    let folder = match &args.page {
+        Some(folder) => folder.clone(),
+        None => std::env::current_exe()?.ancestors().nth(2).unwrap_or("".as_ref()).join("web"),
+    };
+    ensure!(
+        folder.join("index.html").is_file(),
+        "{} has no page: run cargo xtask web, or name its folder with --page",
+        folder.display()
+    );
+    let headless = args.gl.open()?;
+    let mode = match args.mode {
+        ModeArg::Depth => Mode::Depth,
+        ModeArg::Eyes => Mode::Eyes,
+    };
+    let lan = args.lan.map(Lan::new).transpose()?;
+    let mut server = Server {
+        prepared: PreparedScene::new(headless.gl(), scene, &settings)?,
+        stage: Stage::new(headless.gl(), mode)?,
+        encoder: LiveEncoder::new(args.frame_rate.into())?,
+        start: Instant::now(),
+        bounds: Bounds { quantizer: args.quantizer, frame_rate: args.frame_rate.into(), size: args.max_size },
+    };
+    let address = lan.as_ref().map_or(Ipv4Addr::LOCALHOST.into(), |lan| lan.address);
+    let listener = TcpListener::bind((address, args.port)).with_context(|| {
+        format!("{} cannot be served: name another port with --port", SocketAddr::new(address, args.port))
+    })?;
+    let port = listener.local_addr()?.port();
+    let mut token = Token::default();
+    std::fs::File::open("/dev/urandom")
+        .and_then(|mut random| io::Read::read_exact(&mut random, &mut token))
+        .context("/dev/urandom gives no random numbers")?;
+    let (scheme, hosts) = match &lan {
+        Some(lan) => ("https", vec![SocketAddr::new(lan.address, port).to_string()]),
+        None => ("http", ["localhost", "127.0.0.1"].map(|name| format!("{name}:{port}")).to_vec()),
+    };
+    let link =
+        format!("{scheme}://{}/#stream={:032x}&display=side-by-side", hosts[0], u128::from_be_bytes(token));
+    announce(&link, port, lan.as_ref())?;
+    let tls = lan.map(|lan| lan.tls);
+    let access = Arc::new(Access::new(token, (scheme, hosts), folder, home, tls));
+    let (clients, admitted) = mpsc::channel();
+    let door = access.clone();
+    thread::spawn(move || door.open(&listener, &clients));
+    server.serve(&admitted, &access)
+}
+
+/// Says where the stream is seen.
+fn announce(link: &str, port: u16, lan: Option<&Lan>) -> anyhow::Result<()> {
+    println!("open {link}");
+    match lan {
+        Some(lan) => {
+            if io::stdout().is_terminal() {
+                print!("{}", lan::code(link)?);
+            }
+            println!(
+                "a browser that has not been here warns that it does not know the certificate, with SHA-256\n{}\n\
+                 docs/streaming.md says what to do then, and what it protects from",
+                lan.fingerprint
+            );
+        }
+        None => println!(
+            "on a phone by cable: adb reverse tcp:{port} tcp:{port}, then the same address there; by Wi-Fi: --lan"
+        ),
+    }
+    println!("until Ctrl-C");
+    Ok(io::stdout().flush()?)
+}

@@ -1,0 +1,173 @@
+//! A client's session: what it says, and the frames that it gets.
+
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::bail;
+use tungstenite::Message;
+
+use super::access::{Access, Socket, web_socket};
+use super::connection::Connection;
+use yoro_files::interrupt;
+use yoro_lab::streaming::Stage;
+use yoro_render::PreparedScene;
+use yoro_stream::{Control, FrameHeader, FromServer, FromViewer, Wish};
+use yoro_video::LiveEncoder;
+
+/// A viewer that says nothing for so long is gone.
+const SILENCE: Duration = Duration::from_secs(3);
+
+/// Passes on what a viewer says, with the time, until it is silent, gone, or says what no viewer says: messages wait for no frame
+/// that is being rendered.
+fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
+    while let Ok(message) = socket.read() {
+        let Some(message) = FromViewer::read(&message.into_data()) else { return };
+        if heard.send((message, Instant::now())).is_err() {
+            return;
+        }
+    }
+}
+
+/// Renders, codes and sends.
+pub struct Server {
+    pub prepared: PreparedScene,
+    pub stage: Stage,
+    pub encoder: LiveEncoder,
+    pub start: Instant,
+    pub bounds: Bounds,
+}
+
+/// What a stream may take.
+pub struct Bounds {
+    /// The finest quantizer.
+    pub quantizer: u8,
+    /// Frames a second.
+    pub frame_rate: f32,
+    /// Pixels of an eye's longer side.
+    pub size: u16,
+}
+
+impl Server {
+    /// Serves one viewer after the other until Ctrl-C.
+    pub fn serve(&mut self, admitted: &Receiver<Connection>, access: &Access) -> anyhow::Result<()> {
+        loop {
+            interrupt::check()?;
+            match admitted.recv_timeout(Duration::from_millis(100)) {
+                Ok(connection) => {
+                    println!("a viewer has come");
+                    let ended = self.session(&connection);
+                    // Its listener ends, too.
+                    connection.close();
+                    access.leave();
+                    interrupt::check()?;
+                    println!(
+                        "the viewer has gone{}",
+                        ended.err().map_or(String::new(), |e| format!(": {e}"))
+                    );
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => bail!("the port is closed"),
+            }
+        }
+    }
+
+    /// Serves a viewer until it is gone, which is no error.
+    fn session(&mut self, connection: &Connection) -> anyhow::Result<()> {
+        let mut control = Control::new(self.bounds.quantizer, self.bounds.frame_rate);
+        let (mut wish, mut answered, mut number): (Option<Wish>, f64, u32) = (None, f64::NAN, 0);
+        let mut line = Line::new();
+        connection.wait_each(SILENCE);
+        let (tell, heard) = mpsc::channel();
+        let listener = web_socket(connection.clone());
+        thread::spawn(move || listen(listener, &tell));
+        let mut socket = web_socket(connection.clone());
+        loop {
+            interrupt::check()?;
+            match heard.recv_timeout(Duration::from_millis(1)) {
+                Ok((message, at)) => {
+                    match message {
+                        FromViewer::Wish(newest) => wish = Some(newest),
+                        FromViewer::Decoded(number) => control.decoded(number, at - self.start),
+                        FromViewer::Hello { .. } => {}
+                    }
+                    continue;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            }
+            line.print(&control);
+            let due = wish.filter(|wish| wish.time != answered && control.is_due(self.start.elapsed()));
+            let Some(mut wish) = due else { continue };
+            answered = wish.time;
+            let longest = wish.size[0].max(wish.size[1]);
+            if longest > self.bounds.size {
+                let scale = f32::from(self.bounds.size) / f32::from(longest);
+                wish.size = wish.size.map(|side| ((f32::from(side) * scale) as u16).max(16));
+            }
+            let begun = Instant::now();
+            self.prepared.set_time(self.start.elapsed().as_secs_f64())?;
+            let picture = self.stage.picture(&mut self.prepared, &wish)?;
+            let rendered = begun.elapsed();
+            let quantizer = control.quantizer();
+            let (data, is_intra) =
+                self.encoder.encode(&picture.planes, quantizer, number == 0 || picture.new_span)?;
+            let ms = |time: Duration| time.as_secs_f32() * 1e3;
+            let header = FrameHeader {
+                time: wish.time,
+                content: picture.content,
+                size: picture.size,
+                render_ms: ms(rendered),
+                code_ms: ms(begun.elapsed() - rendered),
+                quantizer,
+            };
+            let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
+            control.sent(number, self.start.elapsed());
+            socket.send(Message::binary(frame.to_bytes()))?;
+            line.add(data.len(), &header);
+            number = number.wrapping_add(1);
+        }
+    }
+}
+
+/// The line of figures, once a second.
+struct Line {
+    since: Instant,
+    frames: u32,
+    bytes: usize,
+    render_ms: f32,
+    code_ms: f32,
+}
+
+impl Line {
+    fn new() -> Line {
+        Line { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, code_ms: 0.0 }
+    }
+
+    fn add(&mut self, bytes: usize, header: &FrameHeader) {
+        self.frames += 1;
+        self.bytes += bytes;
+        self.render_ms += header.render_ms;
+        self.code_ms += header.code_ms;
+    }
+
+    fn print(&mut self, control: &Control) {
+        let seconds = self.since.elapsed().as_secs_f32();
+        if seconds < 1.0 {
+            return;
+        }
+        if self.frames > 0 {
+            let frames = self.frames as f32;
+            println!(
+                "{:.0} frames/s, {:.2} Mbit/s, quantizer {}, render {:.1} ms, code {:.1} ms, sent and decoded {}",
+                frames / seconds,
+                self.bytes as f32 * 8e-6 / seconds,
+                control.quantizer(),
+                self.render_ms / frames,
+                self.code_ms / frames,
+                control.round_trip().map_or("never".into(), |time| format!("after {} ms", time.as_millis()))
+            );
+        }
+        *self = Line::new();
+    }
+}
