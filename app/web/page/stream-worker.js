@@ -7,11 +7,15 @@ const PREFIX = 8;
 const CODEC = 'avc1.42c033';
 /** After a connection was lost it is tried again after so long, in ms. */
 const AGAIN = 1000;
+/** A decoder that fails before so many pictures would fail again. */
+const STEADY = 30;
 
 /** What the page has said: the server's address, and the message with which to begin. */
 let begin;
 let socket = null;
 let decoder = null;
+/** Pictures that it has decoded. */
+let pictures = 0;
 /** The heads of the frames that are being decoded, by number. */
 const heads = new Map();
 /** The newest decoded frame, if the page is still busy with the one before. */
@@ -57,10 +61,12 @@ function connect() {
 
 function start() {
   heads.clear();
-  const error = () => {
+  pictures = 0;
+  const error = ({ message }) => {
     decoder = null;
     // A new connection begins with an intra frame.
-    socket?.close();
+    if (pictures >= STEADY) socket?.close();
+    else postMessage({ fault: `This browser cannot decode the stream’s H.264 (${message}): update it, or use another one.` });
   };
   decoder = new VideoDecoder({ output: decoded, error });
   decoder.configure({ codec: CODEC, optimizeForLatency: true });
@@ -80,6 +86,7 @@ function decode(message) {
 async function decoded(frame) {
   const head = heads.get(frame.timestamp);
   heads.delete(frame.timestamp);
+  pictures += 1;
   const { width, height } = frame.visibleRect;
   const [luma, format] = [width * height, frame.format];
   const planes = new Uint8Array((luma * 3) / 2);

@@ -10,6 +10,8 @@ import { sentence } from './sentence.js';
 const TICK = 1000 / 60;
 /** Milliseconds from one line of figures to the next. */
 const LINE = 1000;
+/** The answer of a server that serves another page; app/stream/src/messages.rs has all. */
+const BUSY = [1, 1];
 
 let worker = null;
 let isThere = false;
@@ -48,11 +50,19 @@ export function follow(token) {
   document.addEventListener('visibilitychange', () => worker?.postMessage(document.hidden ? { end: true } : { begin }));
 }
 
-/** Ends the stream: something else is shown. */
-function stop() {
-  worker.terminate();
+/** Ends the connection for good. */
+function end() {
+  worker?.terminate();
   timers.forEach(clearInterval);
   worker = null;
+  isThere = false;
+  if (app.stream) app.stream.there = false;
+  loading(null);
+}
+
+/** Ends the stream: something else is shown. */
+function stop() {
+  end();
   app.stream = null;
   app.settings.stream = null;
 }
@@ -63,11 +73,16 @@ function receive({ answer, lost, fault, head, planes, bytes, skipped }) {
     return;
   }
   if (answer) welcome(answer);
-  if (fault) say(fault);
+  if (fault) {
+    end();
+    say(fault);
+  }
   if (lost && isThere) {
     isThere = false;
     Object.assign(app.stream, { there: false, losses: app.stream.losses + 1 });
     say('The connection to the server is lost; it is tried again each second.');
+  } else if (lost && !app.stream && element('message').hidden) {
+    say('The server does not answer; it is tried again each second.');
   }
   if (!head) return;
   try {
@@ -90,6 +105,8 @@ function welcome(answer) {
   try {
     app.page.streamBegin(answer);
   } catch (error) {
+    // Another page may end; every other refusal would come again.
+    if (BUSY.some((byte, i) => answer[i] !== byte)) end();
     loading(null);
     say(sentence(error));
     return;

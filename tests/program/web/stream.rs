@@ -1,11 +1,12 @@
 //! A stream from the program to the page.
 
 use std::io::{BufRead as _, BufReader, Read, Write};
-use std::net::TcpStream;
+use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
-use std::time::Duration;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -14,12 +15,16 @@ use rcgen::{KeyPair, PublicKeyData as _};
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, ServerName};
 use serde_json::json;
-use yoro::eyes::{Eye, EyePair};
+use tungstenite::handshake::derive_accept_key;
+use tungstenite::protocol::Role;
+use tungstenite::{Message, WebSocket};
+use yoro::eyes::{Eye, EyePair, Frustum, Pose};
 use yoro_context::{Backend, Headless};
+use yoro_files::http::{self, Request};
 use yoro_lab::metrics::{Channels, psnr};
 use yoro_lab::streaming::{Mode, Receiver, Stage};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_stream::{Sight, Wish};
+use yoro_stream::{Content, FrameHeader, FromServer, Sight, Wish};
 use yoro_video::{Decoder, LiveEncoder};
 
 use super::{GL, Page, Server, close};
@@ -267,4 +272,61 @@ fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
 
     idle.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
     assert_eq!(idle.read(&mut [0]).unwrap(), 0, "it is left after ten seconds");
+}
+
+/// Answers like `yoro serve`, with frames that are no H.264, and counts how often it is connected to.
+fn serve_damage(listener: &TcpListener, connections: &AtomicUsize) -> Option<()> {
+    let folder = Path::new(env!("CARGO_BIN_EXE_yoro")).ancestors().nth(2).unwrap().join("web");
+    let mut open = Vec::new();
+    for mut stream in listener.incoming().flatten() {
+        let request = Request::read(&stream).ok()?;
+        let Some(key) = request.header("sec-websocket-key") else {
+            http::answer(&mut stream, &request, &folder).ok()?;
+            continue;
+        };
+        connections.fetch_add(1, Ordering::SeqCst);
+        let upgrade = "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade";
+        let accept = derive_accept_key(key.as_bytes());
+        write!(stream, "{upgrade}\r\nSec-WebSocket-Accept: {accept}\r\n\r\n").ok()?;
+        let mut socket = WebSocket::from_raw_socket(stream, Role::Server, None);
+        socket.read().ok()?;
+        let sight = Sight { pose: Pose::IDENTITY, frustum: Frustum::symmetric(1.0, 1.0) };
+        let content = Content::Depth(sight, [1.0, 10.0]);
+        let header =
+            FrameHeader { time: 0.0, content, size: [64, 64], render_ms: 0.0, code_ms: 0.0, quantizer: 24 };
+        let data = &[0, 0, 0, 1, 0x65, 1, 2, 3];
+        for message in
+            [FromServer::Welcome(Pose::IDENTITY), FromServer::Frame { number: 0, intra: true, header, data }]
+        {
+            socket.send(Message::binary(message.to_bytes())).ok()?;
+        }
+        open.push(socket);
+    }
+    None
+}
+
+#[test]
+fn a_browser_that_cannot_decode_says_so_and_stops() {
+    // Says what is missing.
+    let Some(_) = Server::start() else { return };
+    let Some(mut browser) = Browser::start_with(&GL) else { return };
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("http://{}/", listener.local_addr().unwrap());
+    let connections = Arc::new(AtomicUsize::new(0));
+    let counted = connections.clone();
+    std::thread::spawn(move || serve_damage(&listener, &counted));
+    browser.allow(&address);
+    browser.allow(&address.replace("http", "ws"));
+    browser.resize(640, 420);
+    browser.go(&format!("{address}#stream={:032x}", 1));
+    let said = "document.getElementById('message-text').textContent";
+    let start = Instant::now();
+    while !browser.evaluate(said).as_str().unwrap().contains("cannot decode the stream’s H.264 (") {
+        assert!(start.elapsed() < Duration::from_secs(60), "{}", browser.evaluate(said));
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    // It would have been back three times.
+    std::thread::sleep(Duration::from_secs(3));
+    assert_eq!(connections.load(Ordering::SeqCst), 1);
+    browser.expect_silence();
 }
