@@ -818,6 +818,178 @@ typedef struct {
 } YoroStrips;
 
 /**
+ * Two views of a scene: a rendered one, and one in any pose near it.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroPoses).
+   */
+  uint32_t struct_size;
+  /**
+   * The meaning of the depth buffers' values.
+   */
+  YoroDepth depth;
+  /**
+   * Distance of the near plane of both, in metres, more than 0.
+   */
+  float near_z;
+  /**
+   * Distance of the far plane of both, in metres; may be INFINITY.
+   */
+  float far_z;
+  /**
+   * Order of rows in the images.
+   */
+  YoroRows rows;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+  /**
+   * The rendered view. Of this and the next one size, pose and angles are read, which may differ; the matrices are not.
+   */
+  const YoroView *source;
+  /**
+   * The view to synthesize.
+   */
+  const YoroView *target;
+  /**
+   * Where the sentences of errors go.
+   */
+  YoroMessages messages;
+} YoroPoses;
+
+/**
+ * The mapping of pixels from a rendered view to one in any pose near it, for yoro_gl_synthesize_pose and yoro_vk_record_pose.
+ * yoro_pose_warp fills it. It can be copied and kept.
+ *
+ * A surface that the target shows at the pixel (x, y), at the distance 1 / k along the axis of its eye, lies in the source at the
+ * homogeneous pixel homography * (x, y, 1) + k * epipole.
+ */
+typedef struct {
+  /**
+   * Width of the rendered colour and depth in pixels.
+   */
+  uint32_t source_width;
+  /**
+   * Height of the rendered colour and depth in pixels.
+   */
+  uint32_t source_height;
+  /**
+   * Width of the synthesized image in pixels.
+   */
+  uint32_t target_width;
+  /**
+   * Height of the synthesized image in pixels.
+   */
+  uint32_t target_height;
+  /**
+   * The homography of the rotation, column-major.
+   */
+  double homography[9];
+  /**
+   * Place of the target's eye in the source image. Zeros in its place leave rotation alone, without depth.
+   */
+  double epipole[3];
+  /**
+   * The source's 1 / distance is source_law[0] + source_law[1] * depth.
+   */
+  double source_law[2];
+  /**
+   * The same of the target.
+   */
+  double target_law[2];
+  /**
+   * Stored depth, in the source, of the nearest surface that the target may show.
+   */
+  double nearest;
+  /**
+   * Stored depth of the source's far plane.
+   */
+  double far_depth;
+} YoroPoseWarp;
+
+/**
+ * The bounds of a head's motion from the pose of a render to that of its display, and a view to render for it.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroHeadMotion).
+   */
+  uint32_t struct_size;
+  /**
+   * Largest angle of rotation, about any axis, in radians.
+   */
+  float rotation;
+  /**
+   * Largest distance that an eye moves, in metres.
+   */
+  float translation;
+  /**
+   * Distance in metres from the eye from which on surfaces are to stay in the image.
+   */
+  float nearest;
+  /**
+   * Distance of the near plane in metres, more than 0.
+   */
+  float near_z;
+  /**
+   * Distance of the far plane in metres; may be INFINITY.
+   */
+  float far_z;
+  /**
+   * The meaning of the depth buffer's values.
+   */
+  YoroDepth depth;
+  /**
+   * Order of rows in the images.
+   */
+  YoroRows rows;
+  /**
+   * The clip volume of the resulting matrices.
+   */
+  YoroClip clip;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+  /**
+   * The view to widen: its size, pose and angles are read.
+   */
+  const YoroView *view;
+  /**
+   * Where the sentences of errors go.
+   */
+  YoroMessages messages;
+} YoroHeadMotion;
+
+/**
+ * A view with a guard band on all four sides.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroGuardedView), set by the caller.
+   */
+  uint32_t struct_size;
+  /**
+   * First column of the original view's image in the wider one.
+   */
+  uint32_t crop_x;
+  /**
+   * First row of it, counted as YoroRows says.
+   */
+  uint32_t crop_y;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+  /**
+   * The wider view: what to render.
+   */
+  YoroView view;
+} YoroGuardedView;
+
+/**
  * Bits for outputs besides colour, and for their encoding.
  */
 typedef uint32_t YoroOutputFlags;
@@ -894,6 +1066,20 @@ typedef uint32_t YoroGlSourceFlags;
 #define YORO_GL_SOURCE_LAYERS 2
 
 /**
+ * The kind of warp that a context is made for.
+ */
+typedef uint32_t YoroWarpKind;
+/**
+ * Between two parallel eyes: YoroWarp.
+ */
+#define YORO_WARP_KIND_EYES 0
+/**
+ * To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where both views are
+ * parallel eyes the other kind gives the same picture, and is faster.
+ */
+#define YORO_WARP_KIND_POSE 1
+
+/**
  * The options of a context for OpenGL.
  */
 typedef struct {
@@ -943,9 +1129,9 @@ typedef struct {
    */
   uint32_t history;
   /**
-   * Zero.
+   * The kind of warp; 0 is YORO_WARP_KIND_EYES.
    */
-  uint32_t reserved_too;
+  YoroWarpKind warp_kind;
 } YoroGlInfo;
 
 /**
@@ -1177,6 +1363,34 @@ void yoro_chooser_destroy(YoroChooser *chooser);
 YoroResult yoro_strips(const YoroHistory *history, const YoroView *synthesized, YoroStrips *strips);
 
 /**
+ * Computes the mapping of pixels from a rendered view to one in any pose near it.
+ *
+ * Call it from any thread, without a context. It allocates and keeps nothing.
+ *
+ * @param poses The views.
+ * @param warp  Filled in.
+ * @pre The pointers lead to structures, and `poses` to one of the size that it states.
+ * @return YORO_ERROR_VALUE for views that are impossible, or of which the target sees further than 80 degrees from the source's
+ *         axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_pose_warp(const YoroPoses *poses,
+                          YoroPoseWarp *warp);
+
+/**
+ * Widens a view on all four sides, by whole pixels, so that it contains what the view shows after any such motion.
+ *
+ * Call it from any thread, without a context. It allocates and keeps nothing.
+ *
+ * @param motion  The bounds and the view.
+ * @param guarded Filled in; the caller sets struct_size.
+ * @pre The pointers lead to structures of the sizes that they state.
+ * @return YORO_ERROR_VALUE for a view that is impossible or would have to see further than 80 degrees to a side; YORO_ERROR_NULL,
+ *         YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_guarded_view(const YoroHeadMotion *motion,
+                             YoroGuardedView *guarded);
+
+/**
  * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
  * not in a frame.
  *
@@ -1193,7 +1407,8 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
 
 /**
  * Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone; drivers add
- * padding. yoro_capabilities says it of a context that exists.
+ * padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are 16 bytes for each
+ * 16 x 8 pixels of the source.
  *
  * Call it from any thread. Neither loader nor GL context is needed.
  *
@@ -1220,6 +1435,15 @@ YoroResult yoro_gl_prepare(YoroContext *context,
                            const YoroWarp *warp);
 
 /**
+ * Does what yoro_gl_prepare does in a context of YORO_WARP_KIND_POSE.
+ *
+ * @param context The context.
+ * @param warp    The warp of a frame of these sizes.
+ * @pre The GL context is current.
+ */
+YoroResult yoro_gl_prepare_pose(YoroContext *context, const YoroPoseWarp *warp);
+
+/**
  * Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
  * objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
  *
@@ -1238,6 +1462,20 @@ YoroResult yoro_gl_prepare(YoroContext *context,
 YoroResult yoro_gl_synthesize(YoroContext *context,
                               const YoroWarp *warp,
                               const YoroGlImages *images);
+
+/**
+ * Synthesizes a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE. All else is as in
+ * yoro_gl_synthesize.
+ *
+ * @param context The context.
+ * @param warp    The warp of yoro_pose_warp.
+ * @param images  The images to read and the place to draw.
+ * @pre Those of yoro_gl_synthesize.
+ * @return Those of yoro_gl_synthesize.
+ */
+YoroResult yoro_gl_synthesize_pose(YoroContext *context,
+                                   const YoroPoseWarp *warp,
+                                   const YoroGlImages *images);
 
 #ifdef __cplusplus
 }  // extern "C"
@@ -1343,6 +1581,14 @@ typedef struct {
    * 1: sources may have a history (YoroVkSource). 0: none has.
    */
   uint32_t history;
+  /**
+   * The kind of warp; 0 is YORO_WARP_KIND_EYES.
+   */
+  YoroWarpKind warp_kind;
+  /**
+   * Zero.
+   */
+  uint32_t reserved_too;
 } YoroVkInfo;
 
 /**
@@ -1694,6 +1940,22 @@ YoroResult yoro_vk_record(YoroContext *context,
                           VkCommandBuffer commands,
                           const YoroWarp *warp,
                           const YoroVkFrame *frame);
+
+/**
+ * Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
+ * two draws. All else is as in yoro_vk_record.
+ *
+ * @param context  The context.
+ * @param commands A command buffer of the device.
+ * @param warp     The warp of yoro_pose_warp, with rows as they lie in the images.
+ * @param frame    The images to read and the place to draw.
+ * @pre Those of yoro_vk_record.
+ * @return Those of yoro_vk_record.
+ */
+YoroResult yoro_vk_record_pose(YoroContext *context,
+                               VkCommandBuffer commands,
+                               const YoroPoseWarp *warp,
+                               const YoroVkFrame *frame);
 
 #ifdef __cplusplus
 }

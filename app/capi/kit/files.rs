@@ -1,19 +1,21 @@
-//! The files of the shader kit: the gather pipeline for engines that bring their own passes.
+//! The files of the shader kit: the gather pipeline and any view for engines that bring their own passes.
 
 use std::fmt::Write as _;
 use std::fs;
 use std::io;
 use std::path::Path;
 
-use yoro::synthesis::Uniforms;
+use yoro::synthesis::{PoseUniforms, Uniforms};
 
 /// File of the kit, and file of `yoro-shaders` that it is made of.
-const SHADERS: [(&str, &str); 5] = [
+const SHADERS: [(&str, &str); 7] = [
     ("screen.vert", "screen.vert"),
     ("march.vert", "synthesis/march.vert"),
     ("tiles.frag", "synthesis/gather/tiles.frag"),
     ("spans.frag", "synthesis/gather/spans.frag"),
     ("march.frag", "synthesis/gather/march.frag"),
+    ("any_view_tiles.frag", "synthesis/any_view/tiles.frag"),
+    ("any_view_march.frag", "synthesis/any_view/march.frag"),
 ];
 /// Names and values.
 type Macros = &'static [(&'static str, &'static str)];
@@ -75,7 +77,8 @@ pub fn write(folder: &Path) -> io::Result<()> {
     ] {
         put(&folder.join(name), text)?;
     }
-    put(&folder.join("README.md"), &include_str!("README.md").replace("UNIFORMS\n", &table()))
+    let text = include_str!("README.md").replace("POSE_UNIFORMS\n", &table(PoseUniforms::LAYOUT));
+    put(&folder.join("README.md"), &text.replace("UNIFORMS\n", &table(Uniforms::LAYOUT)))
 }
 
 /// A reader never sees half of a file.
@@ -95,18 +98,26 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
         "{first}\n// yoro, shader kit {}. SPDX-License-Identifier: MIT OR Apache-2.0\n",
         env!("CARGO_PKG_VERSION")
     );
-    if source.ends_with(".frag") {
+    let any_view = source.contains("any_view");
+    let march = source.ends_with("march.frag");
+    if source.ends_with(".frag") && (march || !any_view) {
         own += "//\n// Settings:\n";
-        if source.ends_with("march.frag") {
-            own += "// #define WRITE_DEPTH // The other eye's depth, too, to gl_FragDepth: for transparent objects.\n";
+        if march {
+            own += "// #define WRITE_DEPTH // The target's depth, too, to gl_FragDepth: for transparent objects.\n";
+        }
+        if march && !any_view {
             own += "// #define HISTORY // Disocclusions are looked up in a former image of the other eye: two textures and a block more.\n";
         }
-        own += match macros.iter().any(|(name, _)| *name == "TEXTURE_GATHER") {
-            true => "// #define SHORT_WAY // For GPUs, in all three passes: less work, the same picture.\n",
-            false => {
-                "// #define SHORT_WAY // For GPUs, in all three passes, with `#version 310 es`: less work, the same picture.\n"
-            }
-        };
+        if !any_view {
+            own += match macros.iter().any(|(name, _)| *name == "TEXTURE_GATHER") {
+                true => {
+                    "// #define SHORT_WAY // For GPUs, in all three passes: less work, the same picture.\n"
+                }
+                false => {
+                    "// #define SHORT_WAY // For GPUs, in all three passes, with `#version 310 es`: less work, the same picture.\n"
+                }
+            };
+        }
     }
     // Before the precision statements there are extensions, too, of which synthesis needs none.
     let begins = |line: &&str| line.starts_with("precision ");
@@ -142,10 +153,10 @@ fn is_setting(line: &str) -> bool {
     line == "//" || line == "// Settings:" || line.starts_with("// #define ")
 }
 
-/// The block's members.
-fn table() -> String {
+/// A block's members.
+fn table(layout: &[(&str, &str, usize)]) -> String {
     let mut table = String::from("| byte | member | type |\n|---:|---|---|\n");
-    for (name, glsl, offset) in Uniforms::LAYOUT {
+    for (name, glsl, offset) in layout.iter().filter(|(name, ..)| *name != "padding") {
         // Writing to a string cannot fail.
         let _ = writeln!(table, "| {offset} | `{name}` | {glsl} |");
     }

@@ -207,4 +207,77 @@ static inline int yoro_kit_strips(const YoroKitEyes *eyes, const YoroKitPose *ot
   return 1;
 }
 
+/* One view: where its eye is, and its image. With OpenXR: an XrView. */
+typedef struct {
+  YoroKitPose pose;
+  YoroKitFrustum frustum;
+  int width, height; /* in pixels */
+} YoroKitView;
+
+/* The block `AnyView` of any_view_tiles.frag and any_view_march.frag, in std140: 112 bytes, which fit push constants. */
+typedef struct {
+  int32_t source_size[2], target_origin[2];
+  float to_source_x[4], to_source_y[4], to_source_w[4];
+  float source_law[2], target_law[2];
+  float nearest, far_depth;
+  int32_t source_origin[2];
+  float texel[2], padding[2];
+} YoroKitPoseUniforms;
+
+/*
+ * Works out the uniforms to show `target`, in any pose near that of `source`, from the rendered image of that: near_z, far_z and
+ * reversed are as in YoroKitEyes, of both, and so is rows_down. x and y are the corner of the target's image, at row 0's side; the
+ * source fills its textures. tile_map receives the size of the target of any_view_tiles.frag, in RGBA32UI. Returns 0 for numbers
+ * out of range, and if the target sees further than 80 degrees from the source's axis.
+ */
+static inline int yoro_kit_any_view(const YoroKitView *source, const YoroKitView *target, float near_z, float far_z,
+                                    int reversed, int rows_down, int x, int y, int tile_map[2],
+                                    YoroKitPoseUniforms *block) {
+  const YoroKitFrustum s = source->frustum, t = target->frustum;
+  const double near_inverse = 1.0 / near_z, far_inverse = isinf(far_z) ? 0.0 : 1.0 / far_z;
+  const double constant = reversed ? far_inverse : near_inverse;
+  const double slope = reversed ? near_inverse - far_inverse : far_inverse - near_inverse;
+  const double wide = (double)t.right - t.left, high = (double)t.up - t.down, sense = rows_down ? -1.0 : 1.0;
+  const double low = rows_down ? t.up : t.down, source_low = rows_down ? s.up : s.down; /* at row 0 */
+  const double across = source->width / ((double)s.right - s.left), up = source->height / ((double)s.up - s.down);
+  const double least_cosine = 0.173648; /* of 80 degrees */
+  memset(block, 0, sizeof *block);
+  if (!(source->width > 0 && source->width <= YORO_KIT_MAX_SIDE && source->height > 0 && source->height <= YORO_KIT_MAX_SIDE &&
+        target->width > 0 && target->width <= YORO_KIT_MAX_SIDE && target->height > 0 && target->height <= YORO_KIT_MAX_SIDE &&
+        x >= 0 && x <= YORO_KIT_MAX_SIDE && y >= 0 && y <= YORO_KIT_MAX_SIDE && across > 0 && isfinite(across) && up > 0 &&
+        isfinite(up) && wide > 0 && high > 0 && near_z > 0 && near_z < far_z))
+    return 0;
+  /* Columns of the matrix from a pixel of the target and the inverse of its distance to a place before the source's eye. */
+  double ray[4][3] = {{wide / target->width, 0, 0}, {0, sense * high / target->height, 0}, {t.left, low, -1}, {0, 0, 0}}, own[4][3];
+  for (int i = 0; i < 3; ++i) ray[3][i] = (double)target->pose.position[i] - source->pose.position[i];
+  for (int column = 0; column < 4; ++column) {
+    double world[3] = {ray[3][0], ray[3][1], ray[3][2]};
+    if (column < 3) yoro_kit_turn(&target->pose, 1, ray[column], world);
+    yoro_kit_turn(&source->pose, -1, world, own[column]);
+    block->to_source_x[column] = (float)((own[column][0] + s.left * own[column][2]) * across);
+    block->to_source_y[column] = (float)(sense * (own[column][1] + source_low * own[column][2]) * up);
+    block->to_source_w[column] = (float)-own[column][2];
+  }
+  for (int corner = 0; corner < 4; ++corner) {
+    double length = 0, seen[3];
+    for (int i = 0; i < 3; ++i) {
+      seen[i] = own[2][i] + (corner & 1) * target->width * own[0][i] + (corner >> 1) * target->height * own[1][i];
+      length += seen[i] * seen[i];
+    }
+    /* In this form numbers that are not finite fail, too. */
+    if (!(-seen[2] >= least_cosine * sqrt(length))) return 0;
+  }
+  const double nearest = fmax(near_z, least_cosine * near_z - own[3][2]);
+  if (!(nearest < far_z && isfinite(own[3][0] + own[3][1] + own[3][2]))) return 0;
+  block->source_size[0] = source->width, block->source_size[1] = source->height;
+  block->target_origin[0] = x, block->target_origin[1] = y;
+  block->source_law[0] = block->target_law[0] = (float)constant;
+  block->source_law[1] = block->target_law[1] = (float)slope;
+  block->nearest = (float)((1.0 / nearest - constant) / slope);
+  block->far_depth = reversed ? 0.0f : 1.0f;
+  block->texel[0] = (float)(1.0 / source->width), block->texel[1] = (float)(1.0 / source->height);
+  tile_map[0] = (source->width + 15) / 16, tile_map[1] = (source->height + 7) / 8;
+  return 1;
+}
+
 #endif

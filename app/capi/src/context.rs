@@ -347,7 +347,7 @@ mod tests {
             sources: 0,
             timed: 0,
             history: 0,
-            reserved_too: 0,
+            warp_kind: 0,
         };
         let mut context = null_mut();
         // SAFETY: a context that is alive until the last line.

@@ -10,7 +10,8 @@ use std::rc::Rc;
 use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination, GlApi, PassTime, Profiling};
 use yoro::synthesis::{
-    self, Edges, GlState, History, Outputs, Part, Source, Strips, Synthesis, SynthesisOptions,
+    self, AnyView, Edges, GlState, History, Outputs, Part, Source, Strips, Synthesis, SynthesisOptions,
+    WarpKind,
 };
 
 use crate::context::{
@@ -18,12 +19,15 @@ use crate::context::{
     write_bytes,
 };
 use crate::history::{YoroStrips, read_strips};
+use crate::pose::{YoroPoseWarp, read_pose_warp};
 use crate::result::{
     Failure, YORO_ERROR_DRIVER, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YoroMessages,
     YoroResult,
 };
-use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFlags, edges};
-use crate::versioned::{self, check_reserved, versioned};
+use crate::types::{
+    YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFlags, YoroWarpKind, edges, is_pose, other_kind,
+};
+use crate::versioned::{self, versioned};
 use crate::views::YoroWarp;
 
 #[doc(hidden)]
@@ -79,8 +83,8 @@ pub struct YoroGlInfo {
     pub timed: u32,
     /// 1: sources may have a history (YoroGlImages). 0: none has.
     pub history: u32,
-    /// Zero.
-    pub reserved_too: u32,
+    /// The kind of warp; 0 is YORO_WARP_KIND_EYES.
+    pub warp_kind: YoroWarpKind,
 }
 
 versioned!(YoroGlInfo since sources);
@@ -105,7 +109,8 @@ pub unsafe extern "C" fn yoro_gl_create(
 }
 
 /// Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone; drivers add
-/// padding. yoro_capabilities says it of a context that exists.
+/// padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are 16 bytes for each
+/// 16 x 8 pixels of the source.
 ///
 /// Call it from any thread. Neither loader nor GL context is needed.
 ///
@@ -125,7 +130,12 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
             info,
             bytes,
             |info| info.messages,
-            |info| Ok(synthesis::buffer_bytes(edges(info.edges)?, &read_warp(warp)?)),
+            |info| match is_pose(info.warp_kind)? {
+                true => Err(Failure::value(
+                    "the buffers for YORO_WARP_KIND_POSE have 16 bytes for each 16 x 8 pixels of the source",
+                )),
+                false => Ok(synthesis::buffer_bytes(edges(info.edges)?, &read_warp(warp)?)),
+            },
         )
     }
 }
@@ -190,8 +200,27 @@ pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const
     // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
-            let warp = gl.fitting(warp)?;
-            Ok(gl.synthesis.prepare(&warp)?)
+            let warp = gl.fitting(|| read_warp(warp))?;
+            Ok(gl.passes.eyes()?.prepare(&warp)?)
+        })
+    }
+}
+
+/// Does what yoro_gl_prepare does in a context of YORO_WARP_KIND_POSE.
+///
+/// @param context The context.
+/// @param warp    The warp of a frame of these sizes.
+/// @pre The GL context is current.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_prepare_pose(
+    context: *mut YoroContext,
+    warp: *const YoroPoseWarp,
+) -> YoroResult {
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    unsafe {
+        enter_gl(context, |gl| {
+            let warp = gl.fitting(|| read_pose_warp(warp))?;
+            Ok(gl.passes.pose()?.prepare(&warp)?)
         })
     }
 }
@@ -219,9 +248,41 @@ pub unsafe extern "C" fn yoro_gl_synthesize(
     // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
-            let warp = gl.fitting(warp)?;
+            gl.passes.eyes()?;
+            let warp = gl.fitting(|| read_warp(warp))?;
             let images = versioned::read(images, "images")?;
-            gl.synthesize(&warp, &images, read_strips(images.strips)?)
+            let strips = read_strips(images.strips)?;
+            gl.synthesize(warp.sizes(), &images, strips, |passes, source, target| {
+                Ok(passes.eyes()?.synthesize(source, &warp, target)?)
+            })
+        })
+    }
+}
+
+/// Synthesizes a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE. All else is as in
+/// yoro_gl_synthesize.
+///
+/// @param context The context.
+/// @param warp    The warp of yoro_pose_warp.
+/// @param images  The images to read and the place to draw.
+/// @pre Those of yoro_gl_synthesize.
+/// @return Those of yoro_gl_synthesize.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_gl_synthesize_pose(
+    context: *mut YoroContext,
+    warp: *const YoroPoseWarp,
+    images: *const YoroGlImages,
+) -> YoroResult {
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    unsafe {
+        enter_gl(context, |gl| {
+            gl.passes.pose()?;
+            let warp = gl.fitting(|| read_pose_warp(warp))?;
+            let images = versioned::read(images, "images")?;
+            let strips = read_strips(images.strips)?;
+            gl.synthesize(warp.sizes(), &images, strips, |passes, source, target| {
+                Ok(passes.pose()?.synthesize(source, &warp, target)?)
+            })
         })
     }
 }
@@ -239,7 +300,7 @@ unsafe fn enter_gl(
 /// The synthesis in a GL context.
 pub(crate) struct Gl {
     context: Rc<Context>,
-    synthesis: Box<dyn Synthesis>,
+    passes: Passes,
     options: SynthesisOptions,
     outputs: Outputs,
     check: bool,
@@ -248,6 +309,28 @@ pub(crate) struct Gl {
     times: Vec<PassTime>,
     /// The entry point of this name.
     get_string: *const c_void,
+}
+
+/// The passes of a kind of warp.
+enum Passes {
+    Eyes(Box<dyn Synthesis>),
+    Pose(Box<AnyView>),
+}
+
+impl Passes {
+    fn eyes(&mut self) -> Result<&mut dyn Synthesis, Failure> {
+        match self {
+            Passes::Eyes(synthesis) => Ok(&mut **synthesis),
+            Passes::Pose(_) => Err(other_kind(true)),
+        }
+    }
+
+    fn pose(&mut self) -> Result<&mut AnyView, Failure> {
+        match self {
+            Passes::Pose(any_view) => Ok(any_view),
+            Passes::Eyes(_) => Err(other_kind(false)),
+        }
+    }
 }
 
 impl Gl {
@@ -269,7 +352,12 @@ impl Gl {
                 )));
             }
         };
-        let (outputs, edges) = (outputs(info.outputs)?, edges(info.edges)?);
+        let (outputs, edges, pose) = (outputs(info.outputs)?, edges(info.edges)?, is_pose(info.warp_kind)?);
+        if pose && (edges != Edges::Hard || info.history == 1) {
+            return Err(Failure::value(
+                "YORO_WARP_KIND_POSE is for YORO_EDGES_HARD without a history: choose these",
+            ));
+        }
         for (flag, what) in [(info.check, "check"), (info.timed, "timed"), (info.history, "history")] {
             if flag > 1 {
                 return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
@@ -281,7 +369,6 @@ impl Gl {
                 info.sources
             )));
         }
-        check_reserved("info", &[info.reserved_too])?;
         let Some(loader) = info.loader else {
             return Err(Failure::new(YORO_ERROR_NULL, "loader is NULL: give eglGetProcAddress or its like"));
         };
@@ -293,21 +380,21 @@ impl Gl {
         let has = |bit| info.sources & bit != 0;
         let (parts, layers) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
         let options = SynthesisOptions { edges, gl_state, parts, layers, history: info.history == 1 };
-        let synthesis = synthesis::create(&context, &options, outputs)?;
+        let passes = match pose {
+            true => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
+            false => Passes::Eyes(synthesis::create(&context, &options, outputs)?),
+        };
         let timed = info.timed == 1;
         if timed {
             context.set_profiling(Profiling::Queries);
         }
         let get_string = load(c"glGetString");
         let times = Vec::with_capacity(8);
-        Ok(Gl { context, synthesis, options, outputs, check: info.check == 1, timed, times, get_string })
+        Ok(Gl { context, passes, options, outputs, check: info.check == 1, timed, times, get_string })
     }
 
-    /// Reads a warp and checks that the driver can render its sizes.
-    ///
-    /// # Safety
-    /// `warp` is null or leads to one.
-    unsafe fn fitting(&self, warp: *const YoroWarp) -> Result<Warp, Failure> {
+    /// Reads a warp by `read`, and checks that the driver can render its sizes.
+    fn fitting<W: WarpKind>(&self, read: impl FnOnce() -> Result<W, Failure>) -> Result<W, Failure> {
         // SAFETY: the context was made with this entry point.
         if self.check && !unsafe { entry_points::is_current(self.get_string) } {
             return Err(Failure::new(
@@ -315,10 +402,9 @@ impl Gl {
                 "no GL context is current on this thread: call on the thread on which yoro_gl_create was called",
             ));
         }
-        // SAFETY: the contract is the same.
-        let warp = unsafe { read_warp(warp) }?;
+        let warp = read()?;
         let limit = self.context.capabilities().max_texture_size;
-        let largest = warp.source_size.into_iter().chain(warp.target_size).max().unwrap_or(0);
+        let largest = warp.sizes().into_iter().flatten().max().unwrap_or(0);
         if largest > limit {
             return Err(Failure::new(
                 YORO_ERROR_TOO_LARGE,
@@ -330,11 +416,13 @@ impl Gl {
         Ok(warp)
     }
 
+    /// Checks the images of a call, and draws by `draw`.
     fn synthesize(
         &mut self,
-        warp: &Warp,
+        [source_size, target_size]: [[u32; 2]; 2],
         images: &YoroGlImages,
         strips: Option<Strips>,
+        draw: impl FnOnce(&mut Passes, Source, &Destination) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let texture = |name: u32, what: &str| {
             let name = NonZeroU32::new(name).map(glow::NativeTexture);
@@ -348,7 +436,7 @@ impl Gl {
                 "sample_color_texture is for YORO_EDGES_MULTISAMPLE only: set it to 0, or choose those edges",
             ));
         }
-        let part = self.part(warp, images)?;
+        let part = self.part(source_size, images)?;
         if images.layer != 0 && !self.options.layers {
             return Err(Failure::value(
                 "layer is for YORO_GL_SOURCE_LAYERS only: set it to 0, or choose array textures",
@@ -378,12 +466,12 @@ impl Gl {
         let target = Destination {
             framebuffer: NonZeroU32::new(images.framebuffer).map(glow::NativeFramebuffer),
             origin: [images.x, images.y],
-            size: warp.target_size,
+            size: target_size,
         };
         if self.check {
-            check::check_images(&self.context, &self.options, self.outputs, source, warp, &target)?;
+            check::check_images(&self.context, &self.options, self.outputs, source, source_size, &target)?;
         }
-        self.synthesis.synthesize(source, warp, &target)?;
+        draw(&mut self.passes, source, &target)?;
         if self.timed {
             self.end_timed_frame();
         }
@@ -399,7 +487,7 @@ impl Gl {
 
 impl Gl {
     /// Returns the part of the textures that was rendered, None for all of them.
-    fn part(&self, warp: &Warp, images: &YoroGlImages) -> Result<Option<Part>, Failure> {
+    fn part(&self, size: [u32; 2], images: &YoroGlImages) -> Result<Option<Part>, Failure> {
         let (origin, image_size) =
             ([images.source_x, images.source_y], [images.image_width, images.image_height]);
         if !self.options.parts {
@@ -411,9 +499,9 @@ impl Gl {
                 )),
             };
         }
-        let end = |i: usize| u64::from(origin[i]) + u64::from(warp.source_size[i]);
+        let end = |i: usize| u64::from(origin[i]) + u64::from(size[i]);
         if (0..2).any(|i| end(i) > u64::from(image_size[i])) {
-            let ([x, y], [w, h], [iw, ih]) = (origin, warp.source_size, image_size);
+            let ([x, y], [w, h], [iw, ih]) = (origin, size, image_size);
             return Err(Failure::new(
                 YORO_ERROR_TOO_LARGE,
                 format!(

@@ -1,12 +1,11 @@
 //! What the other eye has seen: the views of a history's strips, and their relation to the synthesized image.
 
-use yoro::eyes::{DepthRange, View};
 use yoro::synthesis::Strips;
 
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
-use crate::types::{YoroDepth, YoroRows, depth, rows_down};
+use crate::types::{YoroDepth, YoroRows, rows_down};
 use crate::versioned::{self, versioned};
-use crate::views::YoroView;
+use crate::views::{YoroView, depth_range};
 
 /// The largest number of strips in a history.
 pub const YORO_MOST_STRIPS: usize = 8;
@@ -89,13 +88,7 @@ impl YoroHistory {
         if !(1..=YORO_MOST_STRIPS).contains(&count) {
             return Err(Failure::value(format!("{count} strips: give 1 to {YORO_MOST_STRIPS}")));
         }
-        let range = DepthRange { near: self.near_z, far: self.far_z, convention: depth(self.depth)? };
-        // In this form NaN fails, too.
-        if !(range.near > 0.0 && range.near < range.far && range.near.is_finite()) {
-            return Err(Failure::value(
-                "near_z and far_z of history: give 0 < near_z < far_z, those of the eyes",
-            ));
-        }
+        let range = depth_range(self.near_z, self.far_z, self.depth)?;
         let target = synthesized.core(range)?;
         let strips = strips[..count].iter().map(|view| view.map(|view| view.core(range)).transpose());
         let strips = strips.collect::<Result<Vec<_>, _>>()?;
@@ -114,23 +107,6 @@ impl YoroHistory {
             to_history: relation.to_history.map(|matrix| matrix.to_cols_array()),
             count: count as u32,
             reserved: [0; 3],
-        })
-    }
-}
-
-impl YoroView {
-    fn core(&self, depth: DepthRange) -> Result<View, Failure> {
-        let (pose, frustum) = (self.pose.pose(), self.fov.frustum());
-        let view = View { pose, frustum, depth, size: [self.width, self.height] };
-        let angles = [frustum.left, frustum.right, frustum.bottom, frustum.top];
-        let is_whole = view.size.iter().all(|side| (1..=1 << 16).contains(side))
-            && angles.iter().all(|tangent| tangent.is_finite())
-            && frustum.left < frustum.right
-            && frustum.bottom < frustum.top
-            && pose.position.is_finite()
-            && (pose.orientation.length_squared() - 1.0).abs() < 1e-2;
-        is_whole.then_some(view).ok_or_else(|| {
-            Failure::value("a view has an impossible size, pose or angle: take it from yoro_views_from_eyes")
         })
     }
 }

@@ -23,6 +23,7 @@ mod context;
 
 mod choice;
 mod history;
+mod pose;
 
 mod gl;
 
@@ -37,6 +38,7 @@ pub use eyes::*;
 pub use gl::*;
 pub use history::*;
 pub use matrices::*;
+pub use pose::*;
 pub use result::*;
 pub use types::*;
 pub use views::*;

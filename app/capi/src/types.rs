@@ -78,6 +78,31 @@ pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
     }
 }
 
+/// The kind of warp that a context is made for.
+pub type YoroWarpKind = u32;
+/// Between two parallel eyes: YoroWarp.
+pub const YORO_WARP_KIND_EYES: YoroWarpKind = 0;
+/// To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where both views are
+/// parallel eyes the other kind gives the same picture, and is faster.
+pub const YORO_WARP_KIND_POSE: YoroWarpKind = 1;
+
+/// True for any pose.
+pub(crate) fn is_pose(kind: YoroWarpKind) -> Result<bool, Failure> {
+    match kind {
+        YORO_WARP_KIND_EYES => Ok(false),
+        YORO_WARP_KIND_POSE => Ok(true),
+        other => Err(Failure::value(format!("{other} is no kind of warp: give a YORO_WARP_KIND_ constant"))),
+    }
+}
+
+/// The error of a warp that a context is not made for.
+pub(crate) fn other_kind(made_for_pose: bool) -> Failure {
+    Failure::value(match made_for_pose {
+        true => "the context was made for YORO_WARP_KIND_POSE: call the function that ends in _pose",
+        false => "the context was made for YORO_WARP_KIND_EYES: create one with the other warp_kind",
+    })
+}
+
 /// Bits for outputs besides colour, and for their encoding.
 pub type YoroOutputFlags = u32;
 /// Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent objects.

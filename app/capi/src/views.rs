@@ -168,24 +168,14 @@ pub(crate) fn views(mut pair: EyePair, guard: GuardBand, down: bool) -> Result<Y
         pair.frusta = pair.frusta.map(mirrored);
     }
     let views = pair.synthesis_views(guard)?;
-    let image = |view: &View| {
-        let frustum = if down { mirrored(view.frustum) } else { view.frustum };
-        YoroView {
-            width: view.size[0],
-            height: view.size[1],
-            pose: pose(&view.pose),
-            fov: fov(&frustum),
-            ..YoroView::default()
-        }
-    };
     Ok(YoroViews {
         struct_size: size_of::<YoroViews>() as u32,
         crop_x: views.dominant_crop[0],
         crop_y: views.dominant_crop[1],
         reserved: 0,
-        source: image(&views.source),
-        rendered: image(&pair.view(pair.dominant)),
-        synthesized: image(&views.target),
+        source: image(&views.source, down),
+        rendered: image(&pair.view(pair.dominant), down),
+        synthesized: image(&views.target, down),
         warp: YoroWarp::new(&views.warp),
     })
 }
@@ -215,7 +205,46 @@ impl YoroFov {
     }
 }
 
+/// Returns the depth planes of views that are given one by one.
+pub(crate) fn depth_range(near: f32, far: f32, convention: YoroDepth) -> Result<DepthRange, Failure> {
+    let range = DepthRange { near, far, convention: depth(convention)? };
+    // In this form NaN fails, too.
+    if near > 0.0 && near < far && near.is_finite() {
+        Ok(range)
+    } else {
+        Err(Failure::value("near_z or far_z is impossible: give 0 < near_z < far_z, those of the eyes"))
+    }
+}
+
+/// Returns an image without matrices. `turned` is true if the view is that of rows from the top.
+pub(crate) fn image(view: &View, turned: bool) -> YoroView {
+    let frustum = if turned { mirrored(view.frustum) } else { view.frustum };
+    YoroView {
+        width: view.size[0],
+        height: view.size[1],
+        pose: pose(&view.pose),
+        fov: fov(&frustum),
+        ..YoroView::default()
+    }
+}
+
 impl YoroView {
+    /// Returns the core's view: size, pose and angles, with depth planes.
+    pub(crate) fn core(&self, depth: DepthRange) -> Result<View, Failure> {
+        let (pose, frustum) = (self.pose.pose(), self.fov.frustum());
+        let view = View { pose, frustum, depth, size: [self.width, self.height] };
+        let angles = [frustum.left, frustum.right, frustum.bottom, frustum.top];
+        let is_whole = view.size.iter().all(|side| (1..=1 << 16).contains(side))
+            && angles.iter().all(|tangent| tangent.is_finite())
+            && frustum.left < frustum.right
+            && frustum.bottom < frustum.top
+            && pose.position.is_finite()
+            && (pose.orientation.length_squared() - 1.0).abs() < 1e-2;
+        is_whole.then_some(view).ok_or_else(|| {
+            Failure::value("a view has an impossible size, pose or angle: take it from yoro_views_from_eyes")
+        })
+    }
+
     /// Returns the rows x and y of the projection of an eye that looks along -Z.
     pub(crate) fn projection_xy(&self, clip: &Clip) -> [DVec4; 2] {
         let [left, right, top, bottom] =

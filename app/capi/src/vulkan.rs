@@ -3,16 +3,18 @@
 mod device;
 mod types;
 
-use yoro::synthesis::Strips;
+use yoro::synthesis::{Strips, WarpKind};
 use yoro::vulkan::ash::vk;
-use yoro::vulkan::{Frame, HistoryImages, SourceId, SourceImages, TargetId, TargetImages};
+use yoro::vulkan::{Frame, HistoryImages, Pipeline, SourceId, SourceImages, TargetId, TargetImages, Uses};
 
 use crate::context::{YoroContext, create, enter_as, write_bytes};
 use crate::history::read_strips;
+use crate::pose::{YoroPoseWarp, read_pose_warp};
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult};
+use crate::types::other_kind;
 use crate::versioned::{self, Versioned, check_reserved};
 use crate::views::YoroWarp;
-use device::Vulkan;
+use device::{Passes, Vulkan, of_passes};
 
 pub use types::*;
 
@@ -46,7 +48,7 @@ pub unsafe extern "C" fn yoro_vk_create(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_buffer_bytes(info: *const YoroVkInfo, bytes: *mut u64) -> YoroResult {
     // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
-    unsafe { write_bytes(info, bytes, |info| info.messages, |info| Ok(info.options()?.buffer_bytes())) }
+    unsafe { write_bytes(info, bytes, |info| info.messages, |info| info.buffer_bytes()) }
 }
 
 /// Creates views and descriptors of images to read. Call it once for each set of images that you render to.
@@ -88,7 +90,7 @@ pub unsafe extern "C" fn yoro_vk_register_source(
                     })
                 },
             };
-            let id = vulkan.gather.register_source(&images)?.to_raw();
+            let id = of_passes!(&mut vulkan.passes, register_source(&images))?.to_raw();
             if images.sample_color.is_some() {
                 vulkan.with_samples.push(id);
             }
@@ -120,7 +122,7 @@ pub unsafe extern "C" fn yoro_vk_register_target(
                 depth: vulkan.writes_depth.then(|| target.depth.checked("depth", false)).transpose()?,
                 size: [target.width, target.height],
             };
-            Ok(vulkan.gather.register_target(&images)?.to_raw())
+            Ok(of_passes!(&mut vulkan.passes, register_target(&images))?.to_raw())
         })
     }
 }
@@ -138,7 +140,7 @@ pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: Y
     // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
-            vulkan.gather.release_source(SourceId::from_raw(id));
+            of_passes!(&mut vulkan.passes, release_source(SourceId::from_raw(id)));
             vulkan.with_samples.retain(|with| *with != id);
             vulkan.with_history.retain(|(with, _)| *with != id);
             Ok(())
@@ -156,7 +158,7 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
     // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
-            vulkan.gather.release_target(TargetId::from_raw(id));
+            of_passes!(&mut vulkan.passes, release_target(TargetId::from_raw(id)));
             Ok(())
         })
     }
@@ -197,19 +199,91 @@ pub unsafe extern "C" fn yoro_vk_record(
             let mut warp = warp.read_unaligned().checked()?;
             // The core counts these rows from the bottom, and takes row 0 of Vulkan's images as the top.
             warp.row_offset = warp.target_size[1] as i32 - warp.source_size[1] as i32 - warp.row_offset;
+            let (frame, uses) = vulkan.frame(frame, warp.target_size)?;
+            match &mut vulkan.passes {
+                Passes::Eyes(gather) => record(gather, commands, &frame, &warp, uses.as_ref()),
+                Passes::Pose(_) => Err(other_kind(true)),
+            }
+        })
+    }
+}
+
+/// Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
+/// two draws. All else is as in yoro_vk_record.
+///
+/// @param context  The context.
+/// @param commands A command buffer of the device.
+/// @param warp     The warp of yoro_pose_warp, with rows as they lie in the images.
+/// @param frame    The images to read and the place to draw.
+/// @pre Those of yoro_vk_record.
+/// @return Those of yoro_vk_record.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn yoro_vk_record_pose(
+    context: *mut YoroContext,
+    commands: vk::CommandBuffer,
+    warp: *const YoroPoseWarp,
+    frame: *const YoroVkFrame,
+) -> YoroResult {
+    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    unsafe {
+        enter_vulkan(context, |vulkan| {
+            if commands == vk::CommandBuffer::null() {
+                return Err(Failure::new(YORO_ERROR_NULL, "commands is NULL: give a command buffer"));
+            }
+            // As above.
+            let warp = read_pose_warp(warp)?.rows_from_top();
+            let (frame, uses) = vulkan.frame(frame, warp.target_size)?;
+            match &mut vulkan.passes {
+                Passes::Pose(any_view) => record(any_view, commands, &frame, &warp, uses.as_ref()),
+                Passes::Eyes(_) => Err(other_kind(false)),
+            }
+        })
+    }
+}
+
+/// # Safety
+/// As `Pipeline::record`.
+unsafe fn record<W: WarpKind>(
+    passes: &mut Pipeline<W>,
+    commands: vk::CommandBuffer,
+    frame: &Frame,
+    warp: &W,
+    uses: Option<&Uses>,
+) -> Result<(), Failure> {
+    // SAFETY: the contract is the same.
+    unsafe {
+        match uses {
+            Some(uses) => passes.record_with_uses(commands, frame, warp, uses)?,
+            None => passes.record(commands, frame, warp)?,
+        }
+    }
+    Ok(())
+}
+
+impl Vulkan {
+    /// Reads a frame for a target of this size, and its images' uses if they are those of the call.
+    ///
+    /// # Safety
+    /// `frame` is null or leads to as many bytes as it states, and so do the pointers in it.
+    unsafe fn frame(
+        &self,
+        frame: *const YoroVkFrame,
+        target_size: [u32; 2],
+    ) -> Result<(Frame, Option<Uses>), Failure> {
+        // SAFETY: the contract is the same.
+        unsafe {
             let frame = versioned::read(frame, "frame")?;
             check_reserved("frame", &[frame.reserved])?;
-            let former = vulkan.with_history.iter().find(|(with, _)| *with == frame.source);
+            let former = self.with_history.iter().find(|(with, _)| *with == frame.source);
             let former = former.map(|(_, height)| *height);
             // As the warp's.
-            let turned = |strips: Strips| strips.rows_turned(warp.target_size[1], former.unwrap_or_default());
+            let turned = |strips: Strips| strips.rows_turned(target_size[1], former.unwrap_or_default());
             let history = read_strips(frame.strips)?.map(turned);
             let uses = if frame.uses.is_null() {
                 None
             } else {
-                let has_samples = vulkan.with_samples.contains(&frame.source);
-                let has = [has_samples, former.is_some()];
-                Some(versioned::read(frame.uses, "uses")?.checked(has, vulkan.writes_depth)?)
+                let has = [self.with_samples.contains(&frame.source), former.is_some()];
+                Some(versioned::read(frame.uses, "uses")?.checked(has, self.writes_depth)?)
             };
             let frame = Frame {
                 source: SourceId::from_raw(frame.source),
@@ -218,12 +292,8 @@ pub unsafe extern "C" fn yoro_vk_record(
                 target_origin: [frame.target_x, frame.target_y],
                 history,
             };
-            match uses {
-                Some(uses) => vulkan.gather.record_with_uses(commands, &frame, &warp, &uses)?,
-                None => vulkan.gather.record(commands, &frame, &warp)?,
-            }
-            Ok(())
-        })
+            Ok((frame, uses))
+        }
     }
 }
 

@@ -8,8 +8,8 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
-use yoro::synthesis::Strips;
+use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, PoseWarp, View};
+use yoro::synthesis::{Places, PoseUniforms, Strips};
 
 /// Compilers with their language and its standard.
 const COMPILERS: [[&str; 3]; 4] =
@@ -270,7 +270,17 @@ fn the_kits_shaders_for_vulkan_compile() {
             run(command.arg(kit.path().join("vulkan").join(shader)));
         }
     }
-    // Those of OpenGL ES are compiled where they are drawn with, but for this.
+    for (shader, settings) in
+        [("any_view_tiles.frag", &settings[..1]), ("any_view_march.frag", &settings[..2])]
+    {
+        for macros in settings {
+            let mut command = Command::new(COMPILER);
+            command.args(["-V", "-o"]).arg(kit.path().join("compiled")).args(*macros);
+            run(command.arg(kit.path().join("vulkan").join(shader)));
+        }
+        run(Command::new(COMPILER).arg(kit.path().join("gles").join(shader)));
+    }
+    // Those of OpenGL ES are compiled where they are drawn with, but for these.
     let text = std::fs::read_to_string(kit.path().join("gles/march.frag")).unwrap();
     let with_history = kit.path().join("history.frag");
     std::fs::write(&with_history, text.replacen('\n', "\n#define HISTORY\n", 1)).unwrap();
@@ -326,6 +336,83 @@ fn the_kit_and_the_core_find_the_same_place_in_a_history() {
             let [got, want] = [own, expected.to_history[1]].map(|matrix| matrix.project_point3(pixel));
             assert!((got - want).length() < 2e-3, "{pixel}: {got}, {want}");
             assert!((own * pixel.extend(1.0)).w > 0.0);
+        }
+    }
+}
+
+/// The kit's uniforms of any view are the core's, with rows from the bottom and from the top.
+#[test]
+fn the_kit_and_the_core_find_the_same_place_of_any_view() {
+    if !is_here("gcc") {
+        println!("SKIPPED: no gcc here");
+        return;
+    }
+    const TEXT: &str = "#include \"yoro_kit.h\"
+        #include <stdio.h>
+        int main(void) {
+          YoroKitView source = {{{0, 0.0998334f, 0, 0.9950042f}, {1, 1.6f, -20}}, {-0.8f, 0.7f, 0.6f, -0.5f}, 320, 240};
+          YoroKitView target = {{{0.0499792f, 0, 0, 0.9987503f}, {1.02f, 1.55f, -20.3f}}, {-0.6f, 0.6f, 0.5f, -0.5f}, 300, 200};
+          YoroKitPoseUniforms block;
+          int map[2], failed = sizeof block != 112;
+          for (int rows_down = 0; rows_down < 2; ++rows_down) {
+            const int served = yoro_kit_any_view(&source, &target, 0.1f, 50, rows_down, rows_down, 7, 9, map, &block);
+            failed |= !served || map[0] != 20 || map[1] != 30;
+            const uint32_t *words = (const uint32_t *)&block;
+            for (int i = 0; i < 28; ++i) printf(\"%lu\\n\", (unsigned long)words[i]);
+          }
+          YoroKitView behind = target;
+          behind.pose.orientation[0] = 0.8f, behind.pose.orientation[3] = 0.6f;
+          failed |= yoro_kit_any_view(&source, &behind, 0.1f, 50, 0, 0, 0, 0, map, &block);
+          failed |= yoro_kit_any_view(&source, &target, 0.1f, NAN, 0, 0, 0, 0, map, &block);
+          target.width = 0;
+          failed |= yoro_kit_any_view(&source, &target, 0.1f, 50, 0, 0, 0, 0, map, &block);
+          return failed;
+        }";
+    let kit = tempfile::tempdir().unwrap();
+    kit::write(kit.path()).unwrap();
+    let (text, program) = (kit.path().join("pose.c"), kit.path().join("pose"));
+    std::fs::write(&text, TEXT).unwrap();
+    run(Command::new("gcc").arg("-std=c99").args(WARNINGS).arg(&text).arg("-lm").arg("-o").arg(&program));
+    let output = Command::new(&program).output().unwrap();
+    assert!(output.status.success());
+    let words: Vec<u32> =
+        String::from_utf8(output.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect();
+    for (down, own) in words.chunks(28).enumerate() {
+        let convention = [DepthConvention::Standard, DepthConvention::Reversed][down];
+        let view =
+            |orientation: glam::Quat, position: [f32; 3], [left, right, bottom, top]: [f32; 4], size| View {
+                pose: Pose { orientation, position: position.into() },
+                frustum: Frustum { left, right, bottom, top },
+                depth: DepthRange { near: 0.1, far: 50.0, convention },
+                size,
+            };
+        let source =
+            view(glam::Quat::from_rotation_y(0.2), [1.0, 1.6, -20.0], [-0.8, 0.7, -0.5, 0.6], [320, 240]);
+        let target =
+            view(glam::Quat::from_rotation_x(0.1), [1.02, 1.55, -20.3], [-0.6, 0.6, -0.5, 0.5], [300, 200]);
+        let warp = PoseWarp::new(&source, &target).unwrap();
+        let warp = if down == 1 { warp.rows_from_top() } else { warp };
+        let places =
+            Places { source_origin: [0, 0], image_size: [320, 240], target_origin: [7, 9], part: false };
+        let core = PoseUniforms::new(&warp, &places);
+        let expected: &[u32] = bytemuck::cast_slice(bytemuck::bytes_of(&core));
+        for (name, glsl, offset) in PoseUniforms::LAYOUT {
+            let count = match *glsl {
+                "float" => 1,
+                "vec4" => 4,
+                _ => 2,
+            };
+            for i in offset / 4..offset / 4 + count {
+                let [got, want] = [own[i], expected[i]];
+                if glsl.starts_with('i') {
+                    assert_eq!(got, want, "{name}");
+                } else {
+                    let [got, want] = [got, want].map(f32::from_bits);
+                    // The orientations are those of seven digits.
+                    let off = (got - want).abs();
+                    assert!(off <= 1e-5 * want.abs().max(1.0) + 1e-7, "{name}: {got}, {want}");
+                }
+            }
         }
     }
 }

@@ -299,6 +299,57 @@ fn a_history_needs_a_context_and_a_source_with_one() {
     }
 }
 
+#[test]
+fn a_context_of_any_pose_records_pose_warps() {
+    let Some(gpu) = Gpu::open() else { return };
+    let info = YoroVkInfo { warp_kind: YORO_WARP_KIND_POSE, ..gpu.info() };
+    assert_eq!(create(&YoroVkInfo { warp_kind: 2, ..info }), Err(YORO_ERROR_VALUE));
+    assert_eq!(create(&YoroVkInfo { reserved_too: 1, ..info }), Err(YORO_ERROR_VALUE));
+    assert_eq!(create(&YoroVkInfo { history: 1, ..info }), Err(YORO_ERROR_VALUE));
+    assert_eq!(create(&YoroVkInfo { edges: YORO_EDGES_SAMPLE, ..info }), Err(YORO_ERROR_VALUE));
+    // Views turned alike, the target a little to the right.
+    let warp = YoroPoseWarp {
+        source_width: 200,
+        source_height: 120,
+        target_width: 160,
+        target_height: 120,
+        homography: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 20.0, 0.0, 1.0],
+        epipole: [5.0, 0.0, 0.0],
+        source_law: [0.0, 10.0],
+        target_law: [0.0, 10.0],
+        nearest: 1.0,
+        far_depth: 0.0,
+    };
+    let mut bytes = 0;
+    // SAFETY: live handles and whole structures, and null pointers, which are refused.
+    unsafe {
+        assert_eq!(yoro_vk_buffer_bytes(&info, &mut bytes), YORO_OK);
+        assert_eq!(bytes, 16 * 16 * 16);
+        let context = create(&info).unwrap();
+        let frame = registered(&gpu, context);
+        let record = |warp| yoro_vk_record_pose(context, gpu.commands, warp, &frame);
+        assert_eq!(record(&warp), YORO_OK);
+        assert_eq!(record(null()), YORO_ERROR_NULL);
+        assert_eq!(record(&YoroPoseWarp { source_width: 257, ..warp }), YORO_ERROR_TOO_LARGE);
+        assert_eq!(record(&YoroPoseWarp { nearest: f64::NAN, ..warp }), YORO_ERROR_VALUE);
+        assert_eq!(record(&YoroPoseWarp { homography: [0.0; 9], ..warp }), YORO_ERROR_VALUE);
+        let no_commands = vk::CommandBuffer::null();
+        assert_eq!(yoro_vk_record_pose(context, no_commands, &warp, &frame), YORO_ERROR_NULL);
+        assert_eq!(yoro_vk_record(context, gpu.commands, &WARP, &frame), YORO_ERROR_VALUE);
+        let eyes = create(&gpu.info()).unwrap();
+        let of_eyes = registered(&gpu, eyes);
+        assert_eq!(yoro_vk_record_pose(eyes, gpu.commands, &warp, &of_eyes), YORO_ERROR_VALUE);
+        gpu.device.end_command_buffer(gpu.commands).unwrap();
+        let buffers = [gpu.commands];
+        let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
+        let queue = gpu.device.get_device_queue(0, 0);
+        gpu.device.queue_submit(queue, &submit, vk::Fence::null()).unwrap();
+        gpu.device.device_wait_idle().unwrap();
+        assert_eq!(yoro_destroy(context), YORO_OK);
+        assert_eq!(yoro_destroy(eyes), YORO_OK);
+    }
+}
+
 /// A program of the first version knows neither uses nor times.
 #[test]
 fn the_first_version_of_structures_is_taken() {

@@ -3,7 +3,6 @@
 use std::num::NonZeroU32;
 
 use glow::HasContext;
-use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination};
 use yoro::synthesis::{Edges, Outputs, Source, SynthesisOptions};
 
@@ -15,7 +14,7 @@ pub(super) fn check_images(
     options: &SynthesisOptions,
     outputs: Outputs,
     source: Source,
-    warp: &Warp,
+    size: [u32; 2],
     target: &Destination,
 ) -> Result<(), Failure> {
     // Errors from before the call are not the call's own.
@@ -25,7 +24,7 @@ pub(super) fn check_images(
             format!("GL already has errors from before the call ({errors}): look for them in the engine"),
         ));
     }
-    let size = source.part.map_or(warp.source_size, |part| part.image_size);
+    let size = source.part.map_or(size, |part| part.image_size);
     let color_kind = if options.layers { &ARRAY } else { &SINGLE_SAMPLE };
     let depth_kind = if options.edges == Edges::Multisample { &MULTISAMPLE } else { color_kind };
     let is_here = |level: &Level| !options.layers || source.layer < level.layers;

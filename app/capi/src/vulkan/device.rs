@@ -4,16 +4,34 @@ use std::ffi::{CStr, c_char};
 use std::time::Duration;
 
 use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
-use yoro::vulkan::{Gather, Host};
+use yoro::vulkan::{AnyView, Gather, Host};
 
 use super::types::{YoroVkInfo, check_format};
 use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroTimes};
 use crate::result::{Failure, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL};
+use crate::types::is_pose;
 use crate::versioned::check_reserved;
+
+/// The passes of a kind of warp.
+pub(super) enum Passes {
+    Eyes(Gather),
+    Pose(AnyView),
+}
+
+/// Calls a method that both kinds have.
+macro_rules! of_passes {
+    ($passes:expr, $method:ident($($argument:expr),*)) => {
+        match $passes {
+            Passes::Eyes(passes) => passes.$method($($argument),*),
+            Passes::Pose(passes) => passes.$method($($argument),*),
+        }
+    };
+}
+pub(super) use of_passes;
 
 /// The synthesis on a device.
 pub(crate) struct Vulkan {
-    pub(super) gather: Gather,
+    pub(super) passes: Passes,
     pub(super) writes_depth: bool,
     /// Sources that have the colour of samples.
     pub(super) with_samples: Vec<u32>,
@@ -37,7 +55,7 @@ impl Vulkan {
         if let Some((_, what)) = handles.into_iter().find(|(is_null, _)| *is_null) {
             return Err(null(what));
         }
-        check_reserved("info", &[info.reserved])?;
+        check_reserved("info", &[info.reserved, info.reserved_too])?;
         for (flag, what) in [(info.dynamic_rendering, "dynamic_rendering"), (info.history, "history")] {
             if flag > 1 {
                 return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
@@ -90,16 +108,21 @@ impl Vulkan {
         };
         let options = info.options()?;
         // SAFETY: the header asks for handles that are valid, belong together, and outlive the context.
-        let gather = unsafe { Gather::new(&host, &options) }?;
+        let passes = unsafe {
+            match is_pose(info.warp_kind)? {
+                true => Passes::Pose(AnyView::new(&host, &options)?),
+                false => Passes::Eyes(Gather::new(&host, &options)?),
+            }
+        };
         let (with_samples, with_history, physical_device) = (Vec::new(), Vec::new(), info.physical_device);
-        Ok(Vulkan { gather, writes_depth, with_samples, with_history, instance, physical_device })
+        Ok(Vulkan { passes, writes_depth, with_samples, with_history, instance, physical_device })
     }
 }
 
 impl Backend for Vulkan {
     fn times(&mut self) -> Result<Option<YoroTimes>, Failure> {
         // SAFETY: the header asks that the frame has been executed.
-        let times = unsafe { self.gather.pass_times() }?;
+        let times = unsafe { of_passes!(&self.passes, pass_times()) }?;
         let nanoseconds = |time: Duration| time.as_nanos() as u64;
         Ok(times.map(|times| YoroTimes {
             split_ns: nanoseconds(times.split),
@@ -126,7 +149,7 @@ impl Backend for Vulkan {
             compute: 1,
             software: (properties.device_type == vk::PhysicalDeviceType::CPU).into(),
             max_image_size: properties.limits.max_image_dimension2_d,
-            buffer_bytes: self.gather.buffer_bytes(),
+            buffer_bytes: of_passes!(&self.passes, buffer_bytes()),
             device: [0; 128],
         };
         if let Ok(name) = properties.device_name_as_c_str() {

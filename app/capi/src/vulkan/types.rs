@@ -11,7 +11,7 @@ use crate::result::{
     YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED,
     YORO_ERROR_VALUE, YoroMessages,
 };
-use crate::types::{YoroEdges, edges};
+use crate::types::{YoroEdges, YoroWarpKind, edges, is_pose};
 use crate::versioned::{check_reserved, versioned};
 
 /// vkGetInstanceProcAddr of the Vulkan loader, or of a layer in its place.
@@ -65,6 +65,10 @@ pub struct YoroVkInfo {
     pub timed_frames: u32,
     /// 1: sources may have a history (YoroVkSource). 0: none has.
     pub history: u32,
+    /// The kind of warp; 0 is YORO_WARP_KIND_EYES.
+    pub warp_kind: YoroWarpKind,
+    /// Zero.
+    pub reserved_too: u32,
 }
 
 versioned!(YoroVkInfo since timed_frames);
@@ -241,6 +245,14 @@ impl YoroVkInfo {
     }
 }
 
+impl YoroVkInfo {
+    /// Returns the bytes of the buffers of a context with these options.
+    pub(super) fn buffer_bytes(&self) -> Result<u64, Failure> {
+        let options = self.options()?;
+        Ok(if is_pose(self.warp_kind)? { options.any_view_buffer_bytes() } else { options.buffer_bytes() })
+    }
+}
+
 /// Checks that a format is known: drivers look it up in tables, and some do not check their bounds.
 pub(super) fn check_format(format: vk::Format, what: &str) -> Result<(), Failure> {
     let last_of_version_1_0 = vk::Format::ASTC_12X12_SRGB_BLOCK.as_raw();
@@ -331,7 +343,7 @@ impl From<VulkanError> for Failure {
             VulkanError::QueueFamily(_) | VulkanError::DynamicRendering | VulkanError::Samples(_) => {
                 YORO_ERROR_UNSUPPORTED
             }
-            VulkanError::SampleColors | VulkanError::History => YORO_ERROR_VALUE,
+            VulkanError::SampleColors | VulkanError::History | VulkanError::AnyView => YORO_ERROR_VALUE,
             VulkanError::Size { size, .. } if size.contains(&0) => YORO_ERROR_VALUE,
             VulkanError::Size { .. } | VulkanError::Rectangle { .. } => YORO_ERROR_TOO_LARGE,
             VulkanError::NotRegistered => YORO_ERROR_NOT_REGISTERED,

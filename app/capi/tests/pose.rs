@@ -1,0 +1,269 @@
+//! A view in any pose near the rendered one: the warp and the guard band are the core's, and so is the picture on OpenGL.
+
+mod common;
+
+use std::num::NonZeroU32;
+use std::ptr::{null, null_mut};
+
+use common::{framebuffer, gl_info, good_eyes, messages, texture, views_of, zeroed};
+use glam::{DVec3, EulerRot, Quat};
+use glow::HasContext;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use yoro::eyes::{DepthConvention, DepthRange, Frustum, HeadMotion, Pose, PoseWarp, View};
+use yoro::gl::Destination;
+use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
+use yoro_c::*;
+use yoro_context::{Backend, Headless};
+
+const SIZE: [u32; 2] = [120, 90];
+const RANGE: DepthRange = DepthRange { near: 0.1, far: 50.0, convention: DepthConvention::Reversed };
+
+/// A view as C has it, without matrices.
+fn view(position: [f32; 3], turn: [f32; 3], [width, height]: [u32; 2]) -> YoroView {
+    let [yaw, pitch, roll] = turn;
+    let orientation = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll).to_array();
+    YoroView {
+        width,
+        height,
+        pose: YoroPose { orientation, position },
+        fov: YoroFov { angle_left: -0.7, angle_right: 0.6, angle_up: 0.5, angle_down: -0.55 },
+        ..YoroView::default()
+    }
+}
+
+/// The core's view.
+fn core(view: &YoroView) -> View {
+    let (pose, fov) = (view.pose, view.fov);
+    View {
+        pose: Pose { position: pose.position.into(), orientation: Quat::from_array(pose.orientation) },
+        frustum: Frustum::from_fov(fov.angle_left, fov.angle_right, fov.angle_up, fov.angle_down),
+        depth: RANGE,
+        size: [view.width, view.height],
+    }
+}
+
+fn poses(source: &YoroView, target: &YoroView, rows: YoroRows) -> YoroPoses {
+    let mut poses: YoroPoses = zeroed(|p: &mut YoroPoses| &mut p.struct_size);
+    (poses.near_z, poses.far_z, poses.depth) = (RANGE.near, RANGE.far, YORO_DEPTH_REVERSED);
+    (poses.rows, poses.source, poses.target) = (rows, source, target);
+    poses
+}
+
+fn warp_of(poses: &YoroPoses) -> Result<YoroPoseWarp, YoroResult> {
+    let mut warp = YoroPoseWarp::default();
+    // SAFETY: whole structures, and what is refused.
+    match unsafe { yoro_pose_warp(poses, &mut warp) } {
+        YORO_OK => Ok(warp),
+        code => Err(code),
+    }
+}
+
+fn the_cores(warp: &PoseWarp) -> YoroPoseWarp {
+    YoroPoseWarp {
+        source_width: warp.source_size[0],
+        source_height: warp.source_size[1],
+        target_width: warp.target_size[0],
+        target_height: warp.target_size[1],
+        homography: warp.homography.to_cols_array(),
+        epipole: warp.epipole.to_array(),
+        source_law: warp.source_law,
+        target_law: warp.target_law,
+        nearest: warp.nearest,
+        far_depth: warp.far_depth,
+    }
+}
+
+#[test]
+fn the_warp_is_the_cores_with_rows_from_either_end() {
+    let source = view([3.0, 1.6, -20.0], [0.0; 3], [140, 100]);
+    let target = view([3.02, 1.58, -20.1], [0.05, -0.03, 0.02], SIZE);
+    let expected = PoseWarp::new(&core(&source), &core(&target)).unwrap();
+    assert_eq!(warp_of(&poses(&source, &target, YORO_ROWS_UP)), Ok(the_cores(&expected)));
+    let down = warp_of(&poses(&source, &target, YORO_ROWS_DOWN)).unwrap();
+    let down = PoseWarp {
+        homography: glam::DMat3::from_cols_array(&down.homography),
+        epipole: DVec3::from_array(down.epipole),
+        ..expected
+    };
+    for k in [0.0, 0.3, 2.0] {
+        let from_bottom = expected.source_pixel(glam::DVec2::new(30.5, 20.5), k);
+        let from_top = down.source_pixel(glam::DVec2::new(30.5, 90.0 - 20.5), k);
+        assert!((from_top.x - from_bottom.x).abs() + (100.0 - from_top.y - from_bottom.y).abs() < 1e-9);
+    }
+
+    let behind = view([3.0, 1.6, -20.0], [1.5, 0.0, 0.0], SIZE);
+    let nowhere = view([f32::NAN, 0.0, 0.0], [0.0; 3], SIZE);
+    let good = poses(&source, &target, YORO_ROWS_UP);
+    let with = |change: &dyn Fn(&mut YoroPoses)| {
+        let mut changed = good;
+        change(&mut changed);
+        warp_of(&changed).map(drop)
+    };
+    assert_eq!(with(&|p| p.target = &behind), Err(YORO_ERROR_VALUE));
+    assert_eq!(with(&|p| p.source = &nowhere), Err(YORO_ERROR_VALUE));
+    assert_eq!(with(&|p| p.near_z = 50.0), Err(YORO_ERROR_VALUE));
+    assert_eq!(with(&|p| p.depth = 2), Err(YORO_ERROR_VALUE));
+    assert_eq!(with(&|p| p.rows = 2), Err(YORO_ERROR_VALUE));
+    assert_eq!(with(&|p| p.reserved = 1), Err(YORO_ERROR_VALUE));
+    assert_eq!(with(&|p| p.target = null()), Err(YORO_ERROR_NULL));
+    assert_eq!(with(&|p| p.struct_size = 8), Err(YORO_ERROR_STRUCT_SIZE));
+}
+
+#[test]
+fn the_guarded_view_is_the_cores() {
+    let own = view([1.0, 1.6, 2.0], [0.1, 0.05, 0.0], SIZE);
+    let expected = HeadMotion { rotation: 0.1, translation: 0.02 }.guarded(&core(&own), 0.5).unwrap();
+    let mut motion: YoroHeadMotion = zeroed(|m: &mut YoroHeadMotion| &mut m.struct_size);
+    (motion.rotation, motion.translation, motion.nearest) = (0.1, 0.02, 0.5);
+    (motion.near_z, motion.far_z, motion.depth) = (RANGE.near, RANGE.far, YORO_DEPTH_REVERSED);
+    (motion.clip, motion.view) = (YORO_CLIP_VULKAN, &own);
+    let of = |motion: &YoroHeadMotion| {
+        let mut guarded: YoroGuardedView = zeroed(|g: &mut YoroGuardedView| &mut g.struct_size);
+        // SAFETY: whole structures, and what is refused.
+        match unsafe { yoro_guarded_view(motion, &mut guarded) } {
+            YORO_OK => Ok(guarded),
+            code => Err(code),
+        }
+    };
+    let up = of(&motion).unwrap();
+    let down = of(&YoroHeadMotion { rows: YORO_ROWS_DOWN, ..motion }).unwrap();
+    assert_eq!([up.crop_x, up.crop_y], expected.crop);
+    assert_eq!([down.crop_x, down.crop_y], expected.crop_from_top(SIZE));
+    for guarded in [up, down] {
+        assert_eq!([guarded.view.width, guarded.view.height], expected.view.size);
+        let want = expected.view.vulkan_projection().to_cols_array();
+        let off = guarded.view.projection.iter().zip(want).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-5, "{:?}, {want:?}", guarded.view.projection);
+    }
+    assert_eq!(of(&YoroHeadMotion { translation: 0.6, ..motion }), Err(YORO_ERROR_VALUE));
+    assert_eq!(of(&YoroHeadMotion { nearest: f32::NAN, ..motion }), Err(YORO_ERROR_VALUE));
+    assert_eq!(of(&YoroHeadMotion { clip: 3, ..motion }), Err(YORO_ERROR_VALUE));
+    assert_eq!(of(&YoroHeadMotion { view: null(), ..motion }), Err(YORO_ERROR_NULL));
+}
+
+/// Textures of a source with a box before a wall, and a framebuffer of colour and depth to draw into.
+unsafe fn images(gl: &glow::Context, [w, h]: [u32; 2]) -> YoroGlImages {
+    let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
+    // SAFETY: the context is current; textures and framebuffers are its own.
+    unsafe {
+        let image = |size| {
+            let color = texture(gl, glow::TEXTURE_2D, glow::RGBA8, size);
+            let depth = texture(gl, glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, size);
+            let attachments = [(glow::COLOR_ATTACHMENT0, color), (glow::DEPTH_ATTACHMENT, depth)];
+            (color, depth, framebuffer(gl, &attachments))
+        };
+        let source = image([w, h]);
+        gl.bind_framebuffer(glow::FRAMEBUFFER, NonZeroU32::new(source.2).map(glow::NativeFramebuffer));
+        gl.enable(glow::SCISSOR_TEST);
+        let [w, h] = [w as i32, h as i32];
+        for (rectangle, color, depth) in
+            [([0, 0, w, h], [0.2, 0.5, 0.1], 0.02), ([w / 3, h / 4, w / 3, h / 3], [0.9, 0.1, 0.6], 0.15)]
+        {
+            let [x, y, width, height] = rectangle;
+            gl.scissor(x, y, width, height);
+            gl.clear_color(color[0], color[1], color[2], 1.0);
+            gl.clear_depth_f32(depth);
+            gl.clear(glow::COLOR_BUFFER_BIT | glow::DEPTH_BUFFER_BIT);
+        }
+        gl.disable(glow::SCISSOR_TEST);
+        (images.color_texture, images.depth_texture) = (source.0, source.1);
+        images.framebuffer = image(SIZE).2;
+    }
+    images
+}
+
+fn read(gl: &glow::Context, framebuffer: u32) -> Vec<u8> {
+    let mut pixels = vec![0; SIZE[0] as usize * SIZE[1] as usize * 4];
+    // SAFETY: the context is current, and the slice is as long as GL writes.
+    unsafe {
+        gl.bind_framebuffer(glow::FRAMEBUFFER, NonZeroU32::new(framebuffer).map(glow::NativeFramebuffer));
+        let data = glow::PixelPackData::Slice(Some(&mut pixels));
+        gl.read_pixels(0, 0, SIZE[0] as i32, SIZE[1] as i32, glow::RGBA, glow::UNSIGNED_BYTE, data);
+    }
+    pixels
+}
+
+#[test]
+fn the_picture_on_opengl_is_the_cores() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl().raw();
+    let mut noted = Vec::new();
+    let info =
+        YoroGlInfo { outputs: YORO_OUTPUT_DEPTH, warp_kind: YORO_WARP_KIND_POSE, ..gl_info(&mut noted) };
+    let create = |info: &YoroGlInfo| {
+        let mut context = null_mut();
+        // SAFETY: a whole structure, and a current context.
+        match unsafe { yoro_gl_create(info, &mut context) } {
+            YORO_OK => Ok(context),
+            code => Err(code),
+        }
+    };
+    let source = view([0.0, 1.6, 0.0], [0.0; 3], [140, 100]);
+    let target = view([0.03, 1.62, -0.1], [0.03, 0.02, 0.05], SIZE);
+    let warp = warp_of(&poses(&source, &target, YORO_ROWS_UP)).unwrap();
+    assert_eq!(create(&YoroGlInfo { warp_kind: 2, ..info }), Err(YORO_ERROR_VALUE));
+    assert_eq!(create(&YoroGlInfo { edges: YORO_EDGES_NEAREST, ..info }), Err(YORO_ERROR_VALUE));
+    assert_eq!(create(&YoroGlInfo { history: 1, ..info }), Err(YORO_ERROR_VALUE));
+    let context = create(&info).unwrap();
+    // SAFETY: whole structures, a context that is alive and current, and checks are on.
+    unsafe {
+        let given = images(gl, [140, 100]);
+        assert_eq!(yoro_gl_prepare_pose(context, &warp), YORO_OK);
+        assert_eq!(yoro_gl_synthesize_pose(context, &warp, &given), YORO_OK, "{noted:?}");
+        let got = read(gl, given.framebuffer);
+
+        let outputs = Outputs { depth: true, ..Outputs::default() };
+        let mut any_view = AnyView::new(headless.gl(), &SynthesisOptions::default(), outputs).unwrap();
+        let name = |name| glow::NativeTexture(NonZeroU32::new(name).unwrap());
+        let textures = Source::new(name(given.color_texture), name(given.depth_texture));
+        let into = images(gl, [8, 8]).framebuffer;
+        let place = Destination {
+            framebuffer: NonZeroU32::new(into).map(glow::NativeFramebuffer),
+            origin: [0, 0],
+            size: SIZE,
+        };
+        let core_warp = PoseWarp::new(&core(&source), &core(&target)).unwrap();
+        any_view.synthesize(textures, &core_warp, &place).unwrap();
+        assert!(got == read(gl, into));
+        let colors: std::collections::BTreeSet<&[u8]> = got.chunks_exact(4).collect();
+        assert!(colors.len() > 2, "the box and the wall, blended at the silhouette");
+
+        // The other kind of warp.
+        let views = views_of(&good_eyes()).unwrap();
+        assert_eq!(yoro_gl_synthesize(context, &views.warp, &given), YORO_ERROR_VALUE);
+        assert_eq!(yoro_gl_prepare(context, &views.warp), YORO_ERROR_VALUE);
+        let mut bytes = 0;
+        assert_eq!(yoro_gl_buffer_bytes(&info, &views.warp, &mut bytes), YORO_ERROR_VALUE);
+        assert_eq!(yoro_gl_synthesize_pose(context, null(), &given), YORO_ERROR_NULL);
+        let part = YoroGlImages { source_x: 1, ..given };
+        assert_eq!(yoro_gl_synthesize_pose(context, &warp, &part), YORO_ERROR_VALUE);
+        let mut noted = Vec::new();
+        let eyes = create(&gl_info(&mut noted)).unwrap();
+        assert_eq!(yoro_gl_synthesize_pose(eyes, &warp, &given), YORO_ERROR_VALUE);
+        assert_eq!(yoro_gl_prepare_pose(eyes, &warp), YORO_ERROR_VALUE);
+        assert_eq!(yoro_destroy(eyes), YORO_OK);
+
+        // Numbers that a program has made up.
+        let damage = (0..26usize, prop_oneof![any::<f64>(), Just(f64::NAN), Just(1e30), Just(0.0)]);
+        let config = Config { cases: 400, failure_persistence: None, ..Config::default() };
+        let words = size_of::<YoroPoseWarp>() / 8;
+        TestRunner::new(config)
+            .run(&damage, |(word, number)| {
+                let mut damaged = warp;
+                // The sizes stay: textures of others are refused as such.
+                (&raw mut damaged).cast::<f64>().add(2 + word % (words - 2)).write(number);
+                let code = yoro_gl_synthesize_pose(context, &damaged, &given);
+                assert!([YORO_OK, YORO_ERROR_VALUE].contains(&code), "{word}, {number}: {code}");
+                Ok(())
+            })
+            .unwrap();
+        let none = YoroPoseWarp { target_width: 0, ..warp };
+        assert_eq!(yoro_gl_synthesize_pose(context, &none, &given), YORO_ERROR_VALUE);
+        assert_eq!(yoro_destroy(context), YORO_OK);
+    }
+    let mut noted = Vec::new();
+    let told = messages(&mut noted);
+    assert_eq!(create(&YoroGlInfo { history: 1, messages: told, ..info }), Err(YORO_ERROR_VALUE));
+    assert!(noted[0].1.contains("YORO_EDGES_HARD"), "{noted:?}");
+}
