@@ -87,6 +87,7 @@ static FILES: &[(&str, &str)] = embed![
     "stereo/paper/scatter.comp",
     "stereo/uncovered.frag",
     "synthesis/any_view/march.frag",
+    "synthesis/any_view/spans.frag",
     "synthesis/any_view/tiles.frag",
     "synthesis/gather/march.frag",
     "synthesis/gather/spans.frag",

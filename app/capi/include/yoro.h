@@ -620,11 +620,11 @@ typedef struct {
    */
   uint64_t split_ns;
   /**
-   * The bounds of the displacements in each tile.
+   * The bounds of the displacements, or depths, in each tile.
    */
   uint64_t tiles_ns;
   /**
-   * The columns to search for each tile of the target.
+   * The part of the source to search for each tile of the target.
    */
   uint64_t spans_ns;
   /**
@@ -1408,7 +1408,7 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
 /**
  * Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone; drivers add
  * padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are 16 bytes for each
- * 16 x 8 pixels of the source.
+ * 16 x 8 pixels of the source, and of the target.
  *
  * Call it from any thread. Neither loader nor GL context is needed.
  *
@@ -1943,7 +1943,7 @@ YoroResult yoro_vk_record(YoroContext *context,
 
 /**
  * Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
- * two draws. All else is as in yoro_vk_record.
+ * three draws. All else is as in yoro_vk_record.
  *
  * @param context  The context.
  * @param commands A command buffer of the device.

@@ -8,13 +8,14 @@ use std::path::Path;
 use yoro::synthesis::{PoseUniforms, Uniforms};
 
 /// File of the kit, and file of `yoro-shaders` that it is made of.
-const SHADERS: [(&str, &str); 7] = [
+const SHADERS: [(&str, &str); 8] = [
     ("screen.vert", "screen.vert"),
     ("march.vert", "synthesis/march.vert"),
     ("tiles.frag", "synthesis/gather/tiles.frag"),
     ("spans.frag", "synthesis/gather/spans.frag"),
     ("march.frag", "synthesis/gather/march.frag"),
     ("any_view_tiles.frag", "synthesis/any_view/tiles.frag"),
+    ("any_view_spans.frag", "synthesis/any_view/spans.frag"),
     ("any_view_march.frag", "synthesis/any_view/march.frag"),
 ];
 /// Names and values.

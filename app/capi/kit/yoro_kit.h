@@ -214,7 +214,7 @@ typedef struct {
   int width, height; /* in pixels */
 } YoroKitView;
 
-/* The block `AnyView` of any_view_tiles.frag and any_view_march.frag, in std140: 112 bytes, which fit push constants. */
+/* The block `AnyView` of the passes of any view, in std140: 112 bytes, which fit push constants. */
 typedef struct {
   int32_t source_size[2], target_origin[2];
   float to_source_x[4], to_source_y[4], to_source_w[4];
@@ -227,11 +227,11 @@ typedef struct {
 /*
  * Works out the uniforms to show `target`, in any pose near that of `source`, from the rendered image of that: near_z, far_z and
  * reversed are as in YoroKitEyes, of both, and so is rows_down. x and y are the corner of the target's image, at row 0's side; the
- * source fills its textures. tile_map receives the size of the target of any_view_tiles.frag, in RGBA32UI. Returns 0 for numbers
- * out of range, and if the target sees further than 80 degrees from the source's axis.
+ * source fills its textures. maps receives the sizes of the targets of any_view_tiles.frag and any_view_spans.frag, both RGBA32UI.
+ * Returns 0 for numbers out of range, and if the target sees further than 80 degrees from the source's axis.
  */
 static inline int yoro_kit_any_view(const YoroKitView *source, const YoroKitView *target, float near_z, float far_z,
-                                    int reversed, int rows_down, int x, int y, int tile_map[2],
+                                    int reversed, int rows_down, int x, int y, int maps[2][2],
                                     YoroKitPoseUniforms *block) {
   const YoroKitFrustum s = source->frustum, t = target->frustum;
   const double near_inverse = 1.0 / near_z, far_inverse = isinf(far_z) ? 0.0 : 1.0 / far_z;
@@ -276,7 +276,8 @@ static inline int yoro_kit_any_view(const YoroKitView *source, const YoroKitView
   block->nearest = (float)((1.0 / nearest - constant) / slope);
   block->far_depth = reversed ? 0.0f : 1.0f;
   block->texel[0] = (float)(1.0 / source->width), block->texel[1] = (float)(1.0 / source->height);
-  tile_map[0] = (source->width + 15) / 16, tile_map[1] = (source->height + 7) / 8;
+  maps[0][0] = (source->width + 15) / 16, maps[0][1] = (source->height + 7) / 8;
+  maps[1][0] = (target->width + 15) / 16, maps[1][1] = (target->height + 7) / 8;
   return 1;
 }
 

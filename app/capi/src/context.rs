@@ -110,9 +110,9 @@ pub struct YoroTimes {
     pub is_known: u32,
     /// The split of the source into surfaces; 0 with YORO_EDGES_HARD.
     pub split_ns: u64,
-    /// The bounds of the displacements in each tile.
+    /// The bounds of the displacements, or depths, in each tile.
     pub tiles_ns: u64,
-    /// The columns to search for each tile of the target.
+    /// The part of the source to search for each tile of the target.
     pub spans_ns: u64,
     /// The search, which writes the target.
     pub march_ns: u64,

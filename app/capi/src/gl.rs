@@ -110,7 +110,7 @@ pub unsafe extern "C" fn yoro_gl_create(
 
 /// Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone; drivers add
 /// padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are 16 bytes for each
-/// 16 x 8 pixels of the source.
+/// 16 x 8 pixels of the source, and of the target.
 ///
 /// Call it from any thread. Neither loader nor GL context is needed.
 ///
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
             |info| info.messages,
             |info| match is_pose(info.warp_kind)? {
                 true => Err(Failure::value(
-                    "the buffers for YORO_WARP_KIND_POSE have 16 bytes for each 16 x 8 pixels of the source",
+                    "the buffers for YORO_WARP_KIND_POSE have 16 bytes for each 16 x 8 pixels of the source, and of the target",
                 )),
                 false => Ok(synthesis::buffer_bytes(edges(info.edges)?, &read_warp(warp)?)),
             },

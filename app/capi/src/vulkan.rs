@@ -209,7 +209,7 @@ pub unsafe extern "C" fn yoro_vk_record(
 }
 
 /// Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
-/// two draws. All else is as in yoro_vk_record.
+/// three draws. All else is as in yoro_vk_record.
 ///
 /// @param context  The context.
 /// @param commands A command buffer of the device.

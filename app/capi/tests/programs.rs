@@ -270,9 +270,11 @@ fn the_kits_shaders_for_vulkan_compile() {
             run(command.arg(kit.path().join("vulkan").join(shader)));
         }
     }
-    for (shader, settings) in
-        [("any_view_tiles.frag", &settings[..1]), ("any_view_march.frag", &settings[..2])]
-    {
+    for (shader, settings) in [
+        ("any_view_tiles.frag", &settings[..1]),
+        ("any_view_spans.frag", &settings[..1]),
+        ("any_view_march.frag", &settings[..2]),
+    ] {
         for macros in settings {
             let mut command = Command::new(COMPILER);
             command.args(["-V", "-o"]).arg(kit.path().join("compiled")).args(*macros);
@@ -353,19 +355,19 @@ fn the_kit_and_the_core_find_the_same_place_of_any_view() {
           YoroKitView source = {{{0, 0.0998334f, 0, 0.9950042f}, {1, 1.6f, -20}}, {-0.8f, 0.7f, 0.6f, -0.5f}, 320, 240};
           YoroKitView target = {{{0.0499792f, 0, 0, 0.9987503f}, {1.02f, 1.55f, -20.3f}}, {-0.6f, 0.6f, 0.5f, -0.5f}, 300, 200};
           YoroKitPoseUniforms block;
-          int map[2], failed = sizeof block != 112;
+          int maps[2][2], failed = sizeof block != 112;
           for (int rows_down = 0; rows_down < 2; ++rows_down) {
-            const int served = yoro_kit_any_view(&source, &target, 0.1f, 50, rows_down, rows_down, 7, 9, map, &block);
-            failed |= !served || map[0] != 20 || map[1] != 30;
+            const int served = yoro_kit_any_view(&source, &target, 0.1f, 50, rows_down, rows_down, 7, 9, maps, &block);
+            failed |= !served || maps[0][0] != 20 || maps[0][1] != 30 || maps[1][0] != 19 || maps[1][1] != 25;
             const uint32_t *words = (const uint32_t *)&block;
             for (int i = 0; i < 28; ++i) printf(\"%lu\\n\", (unsigned long)words[i]);
           }
           YoroKitView behind = target;
           behind.pose.orientation[0] = 0.8f, behind.pose.orientation[3] = 0.6f;
-          failed |= yoro_kit_any_view(&source, &behind, 0.1f, 50, 0, 0, 0, 0, map, &block);
-          failed |= yoro_kit_any_view(&source, &target, 0.1f, NAN, 0, 0, 0, 0, map, &block);
+          failed |= yoro_kit_any_view(&source, &behind, 0.1f, 50, 0, 0, 0, 0, maps, &block);
+          failed |= yoro_kit_any_view(&source, &target, 0.1f, NAN, 0, 0, 0, 0, maps, &block);
           target.width = 0;
-          failed |= yoro_kit_any_view(&source, &target, 0.1f, 50, 0, 0, 0, 0, map, &block);
+          failed |= yoro_kit_any_view(&source, &target, 0.1f, 50, 0, 0, 0, 0, maps, &block);
           return failed;
         }";
     let kit = tempfile::tempdir().unwrap();

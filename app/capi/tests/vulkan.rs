@@ -324,7 +324,7 @@ fn a_context_of_any_pose_records_pose_warps() {
     // SAFETY: live handles and whole structures, and null pointers, which are refused.
     unsafe {
         assert_eq!(yoro_vk_buffer_bytes(&info, &mut bytes), YORO_OK);
-        assert_eq!(bytes, 16 * 16 * 16);
+        assert_eq!(bytes, 16 * (16 * 16 + 10 * 15));
         let context = create(&info).unwrap();
         let frame = registered(&gpu, context);
         let record = |warp| yoro_vk_record_pose(context, gpu.commands, warp, &frame);

@@ -3,7 +3,7 @@
 use wgpu::{
     Device, Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
 };
-use yoro::synthesis::{Edges, tiles};
+use yoro::synthesis::{Edges, span_tiles, tiles};
 
 use crate::Options;
 
@@ -35,8 +35,7 @@ pub(crate) struct Buffers {
     source_size: [u32; 2],
     target_size: [u32; 2],
     pub(crate) tiles: TextureView,
-    /// None for any view.
-    pub(crate) spans: Option<TextureView>,
+    pub(crate) spans: TextureView,
     /// None for hard edges.
     pub(crate) layers: Option<[TextureView; 2]>,
 }
@@ -67,12 +66,11 @@ impl Buffers {
                 texture(device, "yoro background", background, source_size),
             ]
         };
-        let spans = || texture(device, "yoro spans", map, tiles([target_size[0], source_size[1]]));
         Buffers {
             source_size,
             target_size,
             tiles: texture(device, "yoro tiles", map, tiles(source_size)),
-            spans: (!any_view).then(spans),
+            spans: texture(device, "yoro spans", map, span_tiles(any_view, source_size, target_size)),
             layers: (options.edges != Edges::Hard).then(layers),
         }
     }
@@ -83,8 +81,7 @@ impl Buffers {
             let (texture, texel) = (view.texture(), view.texture().format().block_copy_size(None));
             u64::from(texture.width()) * u64::from(texture.height()) * u64::from(texel.unwrap_or(0))
         };
-        let maps = [Some(&self.tiles), self.spans.as_ref()].into_iter().flatten();
-        maps.chain(self.layers.iter().flatten()).map(bytes).sum()
+        [&self.tiles, &self.spans].into_iter().chain(self.layers.iter().flatten()).map(bytes).sum()
     }
 }
 

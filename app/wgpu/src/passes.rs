@@ -24,8 +24,7 @@ pub(crate) struct Passes {
     /// For sources with the samples' colours.
     split_samples: Option<Pass>,
     tiles: Pass,
-    /// None for any view.
-    spans: Option<Pass>,
+    spans: Pass,
     march: Pass,
     nearest: Sampler,
     linear: Sampler,
@@ -58,7 +57,7 @@ const STRIPS: u32 = 12;
 pub(crate) struct Groups {
     split: Option<BindGroup>,
     tiles: BindGroup,
-    spans: Option<BindGroup>,
+    spans: BindGroup,
     march: BindGroup,
     with_samples: bool,
 }
@@ -83,7 +82,7 @@ impl Passes {
         let layers = layer_formats(color_format);
         let tile_bindings: &[u32] = if hard { &[DEPTH, UNIFORMS, NEAREST] } else { &[LAYERS, UNIFORMS] };
         let march_bindings: &[u32] = match (hard, kind) {
-            (_, Kind::AnyView) => &[DEPTH, COLOR, TILE_MAP, UNIFORMS, LINEAR],
+            (_, Kind::AnyView) => &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, LINEAR],
             (true, Kind::Gather(GatherVariant::ShortWay)) => {
                 &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR]
             }
@@ -107,8 +106,7 @@ impl Passes {
                 make("yoro split", shaders::split_samples(samples), &bindings, &layers)
             }),
             tiles: make("yoro tiles", shaders::tiles(edges, kind), tile_bindings, &map),
-            spans: shaders::spans(edges, kind)
-                .map(|text| make("yoro spans", text, &[TILE_MAP, UNIFORMS], &map)),
+            spans: make("yoro spans", shaders::spans(edges, kind), &[TILE_MAP, UNIFORMS], &map),
             march: {
                 let text = shaders::march(edges, kind, depth_format.is_some(), history);
                 let bindings = [march_bindings, recall].concat();
@@ -136,7 +134,7 @@ impl Passes {
                     DEPTH => Some(source.depth),
                     COLOR => Some(source.color),
                     TILE_MAP => Some(&buffers.tiles),
-                    SPAN_MAP => buffers.spans.as_ref(),
+                    SPAN_MAP => Some(&buffers.spans),
                     LAYERS => layer(0),
                     BACKGROUND => layer(1),
                     SAMPLE_COLOR => source.sample_color,
@@ -162,7 +160,7 @@ impl Passes {
         Groups {
             split: self.split(with_samples).map(group),
             tiles: group(&self.tiles),
-            spans: self.spans.as_ref().map(group),
+            spans: group(&self.spans),
             march: group(&self.march),
             with_samples,
         }
@@ -204,10 +202,8 @@ impl Passes {
         }
         let tiles = [Some(color(&buffers.tiles, true))];
         self.tiles.record(encoder, &groups.tiles, &[uniforms], &tiles, None, all(tile_size));
-        let spans = self.spans.as_ref().zip(groups.spans.as_ref());
-        if let (Some((pass, group)), Some(map)) = (spans, &buffers.spans) {
-            pass.record(encoder, group, &[uniforms], &[Some(color(map, true))], None, all(span_size));
-        }
+        let spans = [Some(color(&buffers.spans, true))];
+        self.spans.record(encoder, &groups.spans, &[uniforms], &spans, None, all(span_size));
         let colors = [Some(color(target.color, target.whole))];
         let depth = target.depth.map(|view| depth(view, target.whole));
         let places = [uniforms, strips.unwrap_or(0)];

@@ -2,7 +2,7 @@
 
 use wgpu::{CommandEncoder, Device, DeviceType, Queue, TextureView};
 use yoro::eyes::{PoseWarp, Warp};
-use yoro::synthesis::{Edges, Places, Strips, WarpKind, tiles};
+use yoro::synthesis::{Edges, Places, Strips, WarpKind, span_tiles, tiles};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
@@ -18,7 +18,7 @@ const KEPT_CALLS: u64 = 32;
 /// them.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of any view: tile bounds, march. It draws a view in any pose near the source's, of sources with [`Edges::Hard`] and
+/// The passes of any view: tile bounds, tile spans, march. It draws a view in any pose near the source's, of sources with [`Edges::Hard`] and
 /// without a history.
 pub type AnyView = Pipeline<PoseWarp>;
 
@@ -155,7 +155,7 @@ impl<W: WarpKind> Pipeline<W> {
             area: [x, y, width, height],
             whole: size(target.color) == target_size,
         };
-        let sizes = [source_size, tiles(source_size), tiles([target_size[0], source_size[1]])];
+        let sizes = [source_size, tiles(source_size), span_tiles(W::ANY_VIEW, source_size, target_size)];
         self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, (uniforms, strips), &drawn);
         Ok(())
     }

@@ -52,12 +52,12 @@ pub(crate) fn tiles(edges: Edges, kind: Kind) -> &'static str {
     }
 }
 
-/// Returns the pass that finds what each tile of the target has to search; None for any view.
-pub(crate) fn spans(edges: Edges, kind: Kind) -> Option<&'static str> {
+/// Returns the pass that finds what each tile of the target has to search.
+pub(crate) fn spans(edges: Edges, kind: Kind) -> &'static str {
     match (edges, kind) {
-        (_, Kind::AnyView) => None,
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => Some(include_str!("wgsl/spans-short.wgsl")),
-        _ => Some(include_str!("wgsl/spans.wgsl")),
+        (_, Kind::AnyView) => include_str!("wgsl/any-view-spans.wgsl"),
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_str!("wgsl/spans-short.wgsl"),
+        _ => include_str!("wgsl/spans.wgsl"),
     }
 }
 

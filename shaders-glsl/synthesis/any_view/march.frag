@@ -1,6 +1,6 @@
 #version 310 es
-// Any view, pass 2: for each target pixel, walk along the segment of the source image on which its ray is seen, from the near
-// plane's place to the far plane's, past the tiles that hold no depth of the ray.
+// Any view, pass 3: for each target pixel, walk along the segment of the source image on which its ray is seen, from the place of
+// its tile's span to the far plane's, past the tiles that hold no depth of the ray.
 //
 // A surface at inverse distance s from the source, seen at the target pixel p, lies at the source pixel
 // `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity and e the epipole in homogeneous pixels. This is affine
@@ -10,6 +10,7 @@
 #include "include/any_view.glsl"
 
 TEXTURE(2) uniform highp usampler2D tile_map;
+TEXTURE(3) uniform highp usampler2D span_map;
 
 layout(location = 0) out vec4 color;
 
@@ -92,13 +93,15 @@ bool lands(Segment line, float index, float beside, float steps) {
     return min(ends.x, ends.y) <= 1.0 && max(ends.x, ends.y) + steps >= -1.0;
 }
 
-// The colour of a disocclusion: that of the background next to it, from five samples side by side, as `fill_hole`.
+// The colour of a sample; if a disocclusion lies beside it, that of the background there, from five samples side by side, as
+// `fill_hole`. `away` is its distance from the target in pixels.
 vec4 fill_beside(Segment line, Sample edge, float away) {
     float last = last_indices(line).y;
     float spread = fill_spread(away);
     vec4 sum = 2.0 * color_of(line, edge);
     float weights = 2.0;
-    for (int i = -2; i <= 2; ++i) {
+    // A loop that no compiler unrolls.
+    for (int i = abs(away) >= 0.5 ? -2 : 3; i <= 2; ++i) {
         float beside = clamp(floor(edge.beside + 0.5) + roundEven(float(i) * spread), 0.0, last);
         Sample tap = Sample(edge.index, beside, depth_of(line, edge.index, beside));
         float weight = i != 0 && line.law * (tap.depth - edge.depth) <= 1.0 ? 1.0 : 0.0;
@@ -135,74 +138,71 @@ void main() {
     line.far_beside = far.y;
     line.slope = moved.x == 0.0 ? 0.0 : moved.y / moved.x;
     line.law = -line.sense * moved.x;
-    // From before the nearest place to behind the farthest one; a hundredth of a pixel for rounding. Samples beyond the
-    // borders repeat them.
+    // From before the nearest place in the tile's span to behind the farthest one; a hundredth of a pixel for rounding. Samples
+    // beyond the borders repeat them.
+    ivec2 tile = ivec2(pixel.xy) / TILE;
+    reach = moved.x * (uintBitsToFloat(texelFetch(span_map, tile, 0).r) - far_depth);
     vec2 last = last_indices(line);
     float middle = line.sense * line.far;
     float first = clamp(line.sense * floor(middle - abs(reach) - 0.01), 0.0, last.x);
     float end = clamp(line.sense * (floor(middle + 0.01) + 1.0), 0.0, last.x);
     float left = line.sense * (end - first);
 
-    Sample here = sample_at(line, first);
-    Sample before = here;
-    float b = landing(line, first, here.depth);
+    // The search holds indices and depths alone: registers are few.
+    float index = first;
+    float depth = sample_at(line, first).depth;
+    float b = landing(line, first, depth);
     float a = b;
     bool found = false;
     // Before all samples the border of the image is the background.
     bool outside = b > 0.0 && first == (line.sense > 0.0 ? 0.0 : last.x);
-    bool has_edge = outside;
-    Sample edge = here;
+    // The hole's background; a negative index for none.
+    float edge = outside ? first : -1.0;
+    float edge_depth = depth;
     left = outside && b < 0.5 ? 0.0 : left;
-    // The nearest silhouette beside the pixel.
-    bool rimmed = false;
-    Sample rim = here;
+    // The nearest silhouette beside the pixel; negative for none.
+    float rim = -1.0;
     while (left > 0.0 && !found) {
-        float beside = clamp(beside_at(line, here.index), 0.0, last.y);
-        float steps = min(steps_in_tile(line, here.index, beside), left);
-        bool walked = lands(line, here.index, beside, steps);
+        float beside = clamp(beside_at(line, index), 0.0, last.y);
+        float steps = min(steps_in_tile(line, index, beside), left);
+        bool walked = lands(line, index, beside, steps);
         left -= steps;
         if (!walked) {
             // The tile's bounds contain the first sample beyond it.
-            here = sample_at(line, here.index + line.sense * steps);
-            b = landing(line, here.index, here.depth);
+            index += line.sense * steps;
+            depth = sample_at(line, index).depth;
+            b = landing(line, index, depth);
         }
         for (; walked && steps > 0.0 && !found; steps -= 1.0) {
             a = b;
-            before = here;
-            here = sample_at(line, before.index + line.sense);
-            b = landing(line, here.index, here.depth);
+            float before = depth;
+            index += line.sense;
+            depth = sample_at(line, index).depth;
+            b = landing(line, index, depth);
             found = is_seen(a, b);
-            if (!rimmed && has_rim(a, b)) {
-                rimmed = true;
-                rim = here;
-                if (folds(a, b)) {
-                    rim = before;
-                }
-            }
-            if (jumps(a, b) && (!has_edge || line.law * (before.depth - edge.depth) < 0.0)) {
-                has_edge = true;
-                edge = before;
+            rim = rim < 0.0 && has_rim(a, b) ? index - (folds(a, b) ? line.sense : 0.0) : rim;
+            if (jumps(a, b) && (edge < 0.0 || line.law * (before - edge_depth) < 0.0)) {
+                edge = index - line.sense;
+                edge_depth = before;
             }
         }
     }
     // Where nothing is found: the hole's edge, or the last sample beyond everything.
-    float t = is_torn(a, b) ? 0.0 : -a / (b - a);
-    float depth = mix(before.depth, here.depth, t);
+    Sample here = sample_at(line, found || edge < 0.0 ? index : edge);
     if (found) {
+        Sample before = sample_at(line, index - line.sense);
+        float t = is_torn(a, b) ? 0.0 : -a / (b - a);
+        depth = mix(before.depth, here.depth, t);
         color = mix(color_of(line, before), color_of(line, here), t);
     } else {
-        Sample fill = here;
-        if (has_edge) {
-            fill = edge;
-        }
-        depth = fill.depth;
-        float away = landing(line, fill.index, depth);
-        color = abs(away) >= 0.5 ? fill_beside(line, fill, away) : color_of(line, fill);
+        depth = here.depth;
+        color = fill_beside(line, here, landing(line, here.index, depth));
     }
-    if (rimmed) {
-        float coverage = 1.0 - abs(landing(line, rim.index, rim.depth));
-        color = mix(color, color_of(line, rim), coverage);
-        depth = coverage >= 0.5 ? rim.depth : depth;
+    if (rim >= 0.0) {
+        Sample silhouette = sample_at(line, rim);
+        float coverage = 1.0 - abs(landing(line, rim, silhouette.depth));
+        color = mix(color, color_of(line, silhouette), coverage);
+        depth = coverage >= 0.5 ? silhouette.depth : depth;
     }
 #ifdef WRITE_DEPTH
     gl_FragDepth = target_depth(depth, ray.z);

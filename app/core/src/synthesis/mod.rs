@@ -9,8 +9,8 @@
 //! | `Gather` | [`Edges::Hard`] | tile bounds, tile spans, march | ES 3.0 |
 //! | `Layers` | anti-aliased sources | split, tile bounds, tile spans, march | ES 3.0, [`Edges::Multisample`] ES 3.1 |
 //!
-//! `AnyView` draws a view in any other pose near the source's, from hard edges: tile bounds and a march along a segment of
-//! any direction, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the warp. It needs ES 3.0. `yoro::vulkan` and
+//! `AnyView` draws a view in any other pose near the source's, from hard edges: tile bounds, tile spans and a march along a segment
+//! of any direction, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the warp. It needs ES 3.0. `yoro::vulkan` and
 //! `yoro-wgpu` have it, too.
 
 mod edges;
@@ -28,5 +28,5 @@ pub use opengl::*;
 pub use source_map::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE, SourceMapEntry};
 /// For crates that have the passes on another graphics interface.
 #[doc(hidden)]
-pub use uniforms::{Places, WarpKind, tiles};
+pub use uniforms::{Places, WarpKind, span_tiles, tiles};
 pub use uniforms::{PoseUniforms, Uniforms};

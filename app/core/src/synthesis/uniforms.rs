@@ -215,12 +215,18 @@ impl PoseUniforms {
     }
 }
 
+/// Returns the size of the map of spans, which tiles of the target have: in rows of the source between parallel eyes.
+#[doc(hidden)]
+pub fn span_tiles(any_view: bool, source_size: [u32; 2], target_size: [u32; 2]) -> [u32; 2] {
+    tiles(if any_view { target_size } else { [target_size[0], source_size[1]] })
+}
+
 /// A kind of warp, and what the interfaces besides OpenGL need of it to record its passes.
 #[doc(hidden)]
 pub trait WarpKind: Copy {
     /// The block of the passes' uniforms.
     type Uniforms: Pod;
-    /// True for any view: the pipeline has no spans, and takes hard edges without a history.
+    /// True for any view: the pipeline takes hard edges without a history.
     const ANY_VIEW: bool;
 
     /// Width and height of the source and of the target in pixels.

@@ -126,7 +126,7 @@ impl Source {
             Some(depth),
             Some(color),
             Some(intermediate(&passes.tiles.map.attachments, 0)),
-            passes.spans.as_ref().map(|spans| intermediate(&spans.map.attachments, 0)),
+            Some(intermediate(&passes.spans.map.attachments, 0)),
             layers(0),
             layers(1),
             samples,

@@ -460,7 +460,7 @@ pub struct PassTimes {
     pub split: std::time::Duration,
     /// The bounds of the displacements in each tile.
     pub tiles: std::time::Duration,
-    /// The columns to search for each tile of the target; 0 of [`AnyView`].
+    /// The part of the source to search for each tile of the target.
     pub spans: std::time::Duration,
     /// The search, which writes the target.
     pub march: std::time::Duration,

@@ -12,7 +12,7 @@ use super::shaders::{self, Kind};
 use super::targets::{Attachments, Intermediate, PassKind, Rendering};
 use super::timer::{Stamp, Timer};
 use super::{ImageState, Options, VulkanError};
-use crate::synthesis::{Edges, tiles};
+use crate::synthesis::{Edges, span_tiles, tiles};
 
 /// All passes.
 pub(super) struct Passes {
@@ -20,8 +20,7 @@ pub(super) struct Passes {
     /// None for hard edges.
     pub(super) split: Option<SplitPass>,
     pub(super) tiles: TilesPass,
-    /// None for any view.
-    pub(super) spans: Option<SpansPass>,
+    pub(super) spans: SpansPass,
     pub(super) march: MarchPass,
 }
 
@@ -49,8 +48,7 @@ pub(super) struct SpansPass {
 pub(super) fn buffers(options: &Options, any_view: bool) -> impl Iterator<Item = (PassKind, [u32; 2])> {
     let layers = (options.edges != Edges::Hard).then_some((PassKind::Layers, options.max_source_size));
     let map = map_kind(options.edges);
-    let maps = if any_view { 1 } else { 2 };
-    map_sizes(options).map(|size| (map, size)).into_iter().take(maps).chain(layers)
+    map_sizes(options, any_view).map(|size| (map, size)).into_iter().chain(layers)
 }
 
 /// The kind of the maps of tiles and of spans.
@@ -59,9 +57,9 @@ fn map_kind(edges: Edges) -> PassKind {
 }
 
 /// The sizes of the maps of tiles and of spans.
-fn map_sizes(options: &Options) -> [[u32; 2]; 2] {
+fn map_sizes(options: &Options, any_view: bool) -> [[u32; 2]; 2] {
     let [source, target] = [options.max_source_size, options.max_target_size];
-    [source, [target[0], source[1]]].map(tiles)
+    [tiles(source), span_tiles(any_view, source, target)]
 }
 
 /// Searches for each target pixel, and writes the target.
@@ -88,8 +86,7 @@ impl Passes {
         let depth = options.depth_format.is_some();
         let map = map_kind(edges);
         let tile_pipelines = factory.pipelines(shaders::tiles(edges, kind), map)?;
-        let spans_pipeline =
-            shaders::spans(edges, kind).map(|shader| factory.pipeline(shader, map, false)).transpose()?;
+        let spans_pipeline = factory.pipeline(shaders::spans(edges, kind), map, false)?;
         let march =
             factory.pipelines(shaders::march(edges, kind, depth, options.history), PassKind::Target)?;
         let resolved =
@@ -101,12 +98,9 @@ impl Passes {
 
         let mut intermediate =
             |kind, size| Intermediate::new(objects, &rendering, memory, kind, options, size);
-        let [tile_size, span_size] = map_sizes(options);
+        let [tile_size, span_size] = map_sizes(options, kind == Kind::AnyView);
         let tile_map = intermediate(map, tile_size)?;
-        let spans = match spans_pipeline {
-            Some(pipeline) => Some(SpansPass { pipeline, map: intermediate(map, span_size)? }),
-            None => None,
-        };
+        let span_map = intermediate(map, span_size)?;
         let split = match resolved {
             Some(resolved) => {
                 let layers = intermediate(PassKind::Layers, options.max_source_size)?;
@@ -118,7 +112,7 @@ impl Passes {
             rendering,
             split,
             tiles: TilesPass { pipelines: tile_pipelines, map: tile_map },
-            spans,
+            spans: SpansPass { pipeline: spans_pipeline, map: span_map },
             march: MarchPass { pipelines: march },
         })
     }
@@ -129,8 +123,7 @@ impl Passes {
     }
 
     pub(super) fn intermediates(&self) -> impl Iterator<Item = &Intermediate> {
-        let spans = self.spans.as_ref().map(|spans| &spans.map);
-        [self.layers(), Some(&self.tiles.map), spans].into_iter().flatten()
+        [self.layers(), Some(&self.tiles.map), Some(&self.spans.map)].into_iter().flatten()
     }
 }
 
@@ -183,7 +176,7 @@ impl TilesPass {
 }
 
 impl SpansPass {
-    /// `size` is the target's width and the source's height in tiles.
+    /// `size` is that of [`span_tiles`].
     pub(super) fn record(&self, recorder: &Recorder, size: [u32; 2]) {
         recorder.intermediate(c"yoro spans", self.pipeline, &self.map, size);
     }

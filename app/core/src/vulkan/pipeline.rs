@@ -20,13 +20,13 @@ use super::{
     VulkanError,
 };
 use crate::eyes::{PoseWarp, Warp};
-use crate::synthesis::{Edges, Places, Strips, WarpKind, tiles};
+use crate::synthesis::{Edges, Places, Strips, WarpKind, span_tiles, tiles};
 
 /// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources those of `synthesis::Layers`, with
 /// the split into layers before them.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of `synthesis::AnyView`: tile bounds, march. It draws a view in any pose near the source's, of sources with
+/// The passes of `synthesis::AnyView`: tile bounds, tile spans, march. It draws a view in any pose near the source's, of sources with
 /// [`Edges::Hard`] and without a history.
 pub type AnyView = Pipeline<PoseWarp>;
 
@@ -250,10 +250,10 @@ impl<W: WarpKind> Pipeline<W> {
         self.check_frame(frame, warp.sizes(), source, target)?;
 
         let tile_size = tiles(source_size);
-        let span_size = tiles([target_size[0], source_size[1]]);
+        let span_size = span_tiles(W::ANY_VIEW, source_size, target_size);
         let part = source_size != source.images.size
             || tile_size != self.passes.tiles.map.size
-            || self.passes.spans.as_ref().is_some_and(|spans| span_size != spans.map.size);
+            || span_size != self.passes.spans.map.size;
         let places = Places {
             source_origin: frame.source_origin,
             image_size: source.images.size,
@@ -282,9 +282,7 @@ impl<W: WarpKind> Pipeline<W> {
         recorder.stamp(Stamp::Split);
         passes.tiles.record(&recorder, tile_size);
         recorder.stamp(Stamp::Tiles);
-        if let Some(spans) = &passes.spans {
-            spans.record(&recorder, span_size);
-        }
+        passes.spans.record(&recorder, span_size);
         recorder.stamp(Stamp::Spans);
         passes.march.record(&recorder, &target.attachments, frame.target_origin, target_size);
         recorder.stamp(Stamp::March);

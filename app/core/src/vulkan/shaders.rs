@@ -45,12 +45,12 @@ pub(super) fn tiles(edges: Edges, kind: Kind) -> &'static [u8] {
     }
 }
 
-/// Returns the pass that finds what each tile of the target has to search; None for any view.
-pub(super) fn spans(edges: Edges, kind: Kind) -> Option<&'static [u8]> {
+/// Returns the pass that finds what each tile of the target has to search.
+pub(super) fn spans(edges: Edges, kind: Kind) -> &'static [u8] {
     match (edges, kind) {
-        (_, Kind::AnyView) => None,
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => Some(include_bytes!("spirv/spans-short.spv")),
-        _ => Some(include_bytes!("spirv/spans.spv")),
+        (_, Kind::AnyView) => include_bytes!("spirv/any-view-spans.spv"),
+        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_bytes!("spirv/spans-short.spv"),
+        _ => include_bytes!("spirv/spans.spv"),
     }
 }
 
@@ -100,9 +100,10 @@ mod tests {
     const SPLIT: &str = "synthesis/layers/split.frag";
     const TILES: &str = "synthesis/gather/tiles.frag";
     const ANY_VIEW: &str = "synthesis/any_view/march.frag";
-    const MODULES: [Module; 30] = [
+    const MODULES: [Module; 31] = [
         ("any-view-march", ANY_VIEW, &[]),
         ("any-view-march-depth", ANY_VIEW, &["WRITE_DEPTH"]),
+        ("any-view-spans", "synthesis/any_view/spans.frag", &[]),
         ("any-view-tiles", "synthesis/any_view/tiles.frag", &[]),
         ("layer-march", LAYER_MARCH, &[]),
         ("layer-march-history", LAYER_MARCH, &["HISTORY"]),

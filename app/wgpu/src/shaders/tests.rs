@@ -16,9 +16,10 @@ const SPANS: &str = "synthesis/gather/spans.frag";
 const SPLIT: &str = "synthesis/layers/split.frag";
 const TILES: &str = "synthesis/gather/tiles.frag";
 const ANY_VIEW: &str = "synthesis/any_view/march.frag";
-const MODULES: [Row; 32] = [
+const MODULES: [Row; 33] = [
     ("any-view-march", ANY_VIEW, &[]),
     ("any-view-march-depth", ANY_VIEW, &["WRITE_DEPTH"]),
+    ("any-view-spans", "synthesis/any_view/spans.frag", &[]),
     ("any-view-tiles", "synthesis/any_view/tiles.frag", &[]),
     ("layer-march", LAYER_MARCH, &[]),
     ("layer-march-history", LAYER_MARCH, &["HISTORY"]),

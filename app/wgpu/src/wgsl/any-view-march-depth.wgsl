@@ -44,6 +44,8 @@ var linear_sampler: sampler;
 @group(0) @binding(2) 
 var tile_map_texture: texture_2d<u32>;
 var<private> gl_FragCoord_1: vec4<f32>;
+@group(0) @binding(3) 
+var span_map_texture: texture_2d<u32>;
 var<private> color: vec4<f32>;
 var<private> gl_FragDepth: f32 = 0f;
 
@@ -205,76 +207,77 @@ fn fill_beside(line_4: ptr<function, Segment>, edge: ptr<function, Sample>, away
     var weight: f32;
     var param_14: Segment;
     var param_15: Sample;
-    var phi_672_: bool;
+    var phi_676_: bool;
 
-    let _e28 = (*line_4);
-    param_7 = _e28;
-    let _e29 = last_indices((&param_7));
-    last_1 = _e29.y;
-    let _e31 = (*away_1);
-    param_8 = _e31;
-    let _e32 = fill_spread((&param_8));
-    spread = _e32;
-    let _e33 = (*line_4);
-    param_9 = _e33;
-    let _e34 = (*edge);
-    param_10 = _e34;
-    let _e35 = color_of((&param_9), (&param_10));
-    sum = (_e35 * 2f);
+    let _e29 = (*line_4);
+    param_7 = _e29;
+    let _e30 = last_indices((&param_7));
+    last_1 = _e30.y;
+    let _e32 = (*away_1);
+    param_8 = _e32;
+    let _e33 = fill_spread((&param_8));
+    spread = _e33;
+    let _e34 = (*line_4);
+    param_9 = _e34;
+    let _e35 = (*edge);
+    param_10 = _e35;
+    let _e36 = color_of((&param_9), (&param_10));
+    sum = (_e36 * 2f);
     weights = 2f;
-    i = -2i;
+    let _e38 = (*away_1);
+    i = select(3i, -2i, (abs(_e38) >= 0.5f));
     loop {
-        let _e37 = i;
-        if (_e37 <= 2i) {
-            let _e40 = (*edge).beside;
-            let _e43 = i;
-            let _e45 = spread;
-            let _e49 = last_1;
-            beside_2 = clamp((floor((_e40 + 0.5f)) + round((f32(_e43) * _e45))), 0f, _e49);
-            let _e52 = (*edge).index;
-            let _e53 = beside_2;
-            let _e54 = (*line_4);
-            param_11 = _e54;
-            let _e56 = (*edge).index;
-            param_12 = _e56;
-            let _e57 = beside_2;
-            param_13 = _e57;
-            let _e58 = depth_of((&param_11), (&param_12), (&param_13));
-            tap = Sample(_e52, _e53, _e58);
-            let _e60 = i;
-            let _e61 = (_e60 != 0i);
-            phi_672_ = _e61;
-            if _e61 {
-                let _e63 = (*line_4).law;
-                let _e65 = tap.depth;
-                let _e67 = (*edge).depth;
-                phi_672_ = ((_e63 * (_e65 - _e67)) <= 1f);
+        let _e42 = i;
+        if (_e42 <= 2i) {
+            let _e45 = (*edge).beside;
+            let _e48 = i;
+            let _e50 = spread;
+            let _e54 = last_1;
+            beside_2 = clamp((floor((_e45 + 0.5f)) + round((f32(_e48) * _e50))), 0f, _e54);
+            let _e57 = (*edge).index;
+            let _e58 = beside_2;
+            let _e59 = (*line_4);
+            param_11 = _e59;
+            let _e61 = (*edge).index;
+            param_12 = _e61;
+            let _e62 = beside_2;
+            param_13 = _e62;
+            let _e63 = depth_of((&param_11), (&param_12), (&param_13));
+            tap = Sample(_e57, _e58, _e63);
+            let _e65 = i;
+            let _e66 = (_e65 != 0i);
+            phi_676_ = _e66;
+            if _e66 {
+                let _e68 = (*line_4).law;
+                let _e70 = tap.depth;
+                let _e72 = (*edge).depth;
+                phi_676_ = ((_e68 * (_e70 - _e72)) <= 1f);
             }
-            let _e72 = phi_672_;
-            weight = select(0f, 1f, _e72);
-            let _e74 = weight;
-            let _e75 = (*line_4);
-            param_14 = _e75;
-            let _e76 = tap;
-            param_15 = _e76;
-            let _e77 = color_of((&param_14), (&param_15));
-            let _e79 = sum;
-            sum = (_e79 + (_e77 * _e74));
-            let _e81 = weight;
-            let _e82 = weights;
-            weights = (_e82 + _e81);
+            let _e77 = phi_676_;
+            weight = select(0f, 1f, _e77);
+            let _e79 = weight;
+            let _e80 = (*line_4);
+            param_14 = _e80;
+            let _e81 = tap;
+            param_15 = _e81;
+            let _e82 = color_of((&param_14), (&param_15));
+            let _e84 = sum;
+            sum = (_e84 + (_e82 * _e79));
+            let _e86 = weight;
+            let _e87 = weights;
+            weights = (_e87 + _e86);
             continue;
         } else {
             break;
         }
         continuing {
-            let _e84 = i;
-            i = (_e84 + 1i);
+            let _e89 = i;
+            i = (_e89 + 1i);
         }
     }
-    let _e86 = sum;
-    let _e87 = weights;
-    return (_e86 / vec4(_e87));
+    let _e91 = sum;
+    let _e92 = weights;
+    return (_e91 / vec4(_e92));
 }
 
 fn is_torn(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
@@ -603,16 +606,17 @@ fn main_1() {
     var line_10: Segment;
     var reach: f32;
     var local_9: f32;
+    var tile_1: vec2<i32>;
     var last_3: vec2<f32>;
     var param_44: Segment;
     var middle: f32;
     var first: f32;
     var end: f32;
     var left: f32;
-    var here_1: Sample;
+    var index_8: f32;
+    var depth_2: f32;
     var param_45: Segment;
     var param_46: f32;
-    var before: Sample;
     var b_5: f32;
     var param_47: Segment;
     var param_48: f32;
@@ -621,10 +625,9 @@ fn main_1() {
     var found: bool;
     var outside: bool;
     var local_10: f32;
-    var has_edge: bool;
-    var edge_1: Sample;
-    var rimmed: bool;
-    var rim: Sample;
+    var edge_1: f32;
+    var edge_depth: f32;
+    var rim: f32;
     var beside_6: f32;
     var param_50: Segment;
     var param_51: f32;
@@ -642,6 +645,7 @@ fn main_1() {
     var param_61: Segment;
     var param_62: f32;
     var param_63: f32;
+    var before: f32;
     var param_64: Segment;
     var param_65: f32;
     var param_66: Segment;
@@ -651,312 +655,336 @@ fn main_1() {
     var param_70: f32;
     var param_71: f32;
     var param_72: f32;
+    var local_11: f32;
     var param_73: f32;
     var param_74: f32;
+    var local_12: f32;
     var param_75: f32;
     var param_76: f32;
-    var t_1: f32;
-    var param_77: f32;
+    var here_1: Sample;
+    var param_77: Segment;
     var param_78: f32;
-    var local_11: f32;
-    var depth_2: f32;
+    var before_1: Sample;
     var param_79: Segment;
-    var param_80: Sample;
-    var param_81: Segment;
-    var param_82: Sample;
-    var fill: Sample;
-    var away_2: f32;
-    var param_83: Segment;
-    var param_84: f32;
-    var param_85: f32;
-    var local_12: vec4<f32>;
-    var param_86: Segment;
-    var param_87: Sample;
-    var param_88: f32;
-    var param_89: Segment;
-    var param_90: Sample;
-    var coverage: f32;
-    var param_91: Segment;
-    var param_92: f32;
-    var param_93: f32;
-    var param_94: Segment;
-    var param_95: Sample;
+    var param_80: f32;
+    var t_1: f32;
+    var param_81: f32;
+    var param_82: f32;
     var local_13: f32;
+    var param_83: Segment;
+    var param_84: Sample;
+    var param_85: Segment;
+    var param_86: Sample;
+    var param_87: Segment;
+    var param_88: f32;
+    var param_89: f32;
+    var param_90: Segment;
+    var param_91: Sample;
+    var param_92: f32;
+    var silhouette: Sample;
+    var param_93: Segment;
+    var param_94: f32;
+    var coverage: f32;
+    var param_95: Segment;
     var param_96: f32;
     var param_97: f32;
-    var phi_933_: bool;
-    var phi_1062_: bool;
-    var phi_1095_: bool;
-    var phi_1096_: bool;
+    var param_98: Segment;
+    var param_99: Sample;
+    var local_14: f32;
+    var param_100: f32;
+    var param_101: f32;
+    var phi_957_: bool;
+    var phi_1082_: bool;
+    var phi_1122_: bool;
+    var phi_1123_: bool;
 
-    let _e105 = gl_FragCoord_1;
-    let _e108 = synthesis.target_origin;
-    let _e110 = (_e105.xy - vec2<f32>(_e108));
-    pixel_2 = vec3<f32>(_e110.x, _e110.y, 1f);
-    let _e115 = synthesis.to_source_x;
-    let _e117 = pixel_2;
-    let _e120 = synthesis.to_source_y;
-    let _e122 = pixel_2;
-    let _e125 = synthesis.to_source_w;
-    let _e127 = pixel_2;
-    ray = vec3<f32>(dot(_e115.xyz, _e117), dot(_e120.xyz, _e122), dot(_e125.xyz, _e127));
-    let _e130 = ray;
-    let _e133 = ray[2u];
-    infinity = (_e130.xy / vec2(_e133));
-    let _e138 = synthesis.to_source_x[3u];
-    let _e141 = synthesis.to_source_y[3u];
-    let _e145 = synthesis.to_source_w[3u];
-    let _e146 = infinity;
-    parallax = (vec2<f32>(_e138, _e141) - (_e146 * _e145));
-    let _e149 = infinity;
-    let _e152 = synthesis.source_law[0u];
-    let _e155 = synthesis.source_law[1u];
-    let _e157 = synthesis.far_depth;
-    let _e160 = parallax;
-    far = ((_e149 + (_e160 * (_e152 + (_e155 * _e157)))) - vec2(0.5f));
-    let _e167 = synthesis.source_law[1u];
+    let _e113 = gl_FragCoord_1;
+    let _e116 = synthesis.target_origin;
+    let _e118 = (_e113.xy - vec2<f32>(_e116));
+    pixel_2 = vec3<f32>(_e118.x, _e118.y, 1f);
+    let _e123 = synthesis.to_source_x;
+    let _e125 = pixel_2;
+    let _e128 = synthesis.to_source_y;
+    let _e130 = pixel_2;
+    let _e133 = synthesis.to_source_w;
+    let _e135 = pixel_2;
+    ray = vec3<f32>(dot(_e123.xyz, _e125), dot(_e128.xyz, _e130), dot(_e133.xyz, _e135));
+    let _e138 = ray;
+    let _e141 = ray[2u];
+    infinity = (_e138.xy / vec2(_e141));
+    let _e146 = synthesis.to_source_x[3u];
+    let _e149 = synthesis.to_source_y[3u];
+    let _e153 = synthesis.to_source_w[3u];
+    let _e154 = infinity;
+    parallax = (vec2<f32>(_e146, _e149) - (_e154 * _e153));
+    let _e157 = infinity;
+    let _e160 = synthesis.source_law[0u];
+    let _e163 = synthesis.source_law[1u];
+    let _e165 = synthesis.far_depth;
     let _e168 = parallax;
-    moved = (_e168 * _e167);
-    let _e171 = moved[1u];
-    let _e174 = moved[0u];
-    line_10.steep = (abs(_e171) > abs(_e174));
-    let _e179 = line_10.steep;
-    if _e179 {
-        let _e180 = far;
-        far = _e180.yx;
-        let _e182 = moved;
-        moved = _e182.yx;
+    far = ((_e157 + (_e168 * (_e160 + (_e163 * _e165)))) - vec2(0.5f));
+    let _e175 = synthesis.source_law[1u];
+    let _e176 = parallax;
+    moved = (_e176 * _e175);
+    let _e179 = moved[1u];
+    let _e182 = moved[0u];
+    line_10.steep = (abs(_e179) > abs(_e182));
+    let _e187 = line_10.steep;
+    if _e187 {
+        let _e188 = far;
+        far = _e188.yx;
+        let _e190 = moved;
+        moved = _e190.yx;
     }
-    let _e185 = moved[0u];
-    let _e187 = synthesis.nearest;
-    let _e189 = synthesis.far_depth;
-    reach = (_e185 * (_e187 - _e189));
-    let _e192 = reach;
-    line_10.sense = select(1f, -1f, (_e192 > 0f));
-    let _e197 = far[0u];
-    line_10.far = _e197;
-    let _e200 = far[1u];
-    line_10.far_beside = _e200;
-    let _e203 = moved[0u];
-    if (_e203 == 0f) {
+    let _e193 = moved[0u];
+    let _e195 = synthesis.nearest;
+    let _e197 = synthesis.far_depth;
+    reach = (_e193 * (_e195 - _e197));
+    let _e200 = reach;
+    line_10.sense = select(1f, -1f, (_e200 > 0f));
+    let _e205 = far[0u];
+    line_10.far = _e205;
+    let _e208 = far[1u];
+    line_10.far_beside = _e208;
+    let _e211 = moved[0u];
+    if (_e211 == 0f) {
         local_9 = 0f;
     } else {
-        let _e206 = moved[1u];
-        let _e208 = moved[0u];
-        local_9 = (_e206 / _e208);
+        let _e214 = moved[1u];
+        let _e216 = moved[0u];
+        local_9 = (_e214 / _e216);
     }
-    let _e210 = local_9;
-    line_10.slope = _e210;
-    let _e213 = line_10.sense;
-    let _e216 = moved[0u];
-    line_10.law = (-(_e213) * _e216);
-    let _e219 = line_10;
-    param_44 = _e219;
-    let _e220 = last_indices((&param_44));
-    last_3 = _e220;
-    let _e222 = line_10.sense;
-    let _e224 = line_10.far;
-    middle = (_e222 * _e224);
-    let _e227 = line_10.sense;
-    let _e228 = middle;
-    let _e229 = reach;
-    let _e236 = last_3[0u];
-    first = clamp((_e227 * floor(((_e228 - abs(_e229)) - 0.01f))), 0f, _e236);
-    let _e239 = line_10.sense;
-    let _e240 = middle;
-    let _e246 = last_3[0u];
-    end = clamp((_e239 * (floor((_e240 + 0.01f)) + 1f)), 0f, _e246);
+    let _e218 = local_9;
+    line_10.slope = _e218;
+    let _e221 = line_10.sense;
+    let _e224 = moved[0u];
+    line_10.law = (-(_e221) * _e224);
+    let _e227 = pixel_2;
+    tile_1 = (vec2<i32>(_e227.xy) / vec2<i32>(16i, 8i));
+    let _e232 = moved[0u];
+    let _e233 = tile_1;
+    let _e234 = textureLoad(span_map_texture, _e233, 0i);
+    let _e238 = synthesis.far_depth;
+    reach = (_e232 * (bitcast<f32>(_e234.x) - _e238));
+    let _e241 = line_10;
+    param_44 = _e241;
+    let _e242 = last_indices((&param_44));
+    last_3 = _e242;
+    let _e244 = line_10.sense;
+    let _e246 = line_10.far;
+    middle = (_e244 * _e246);
     let _e249 = line_10.sense;
-    let _e250 = end;
-    let _e251 = first;
-    left = (_e249 * (_e250 - _e251));
-    let _e254 = line_10;
-    param_45 = _e254;
-    let _e255 = first;
-    param_46 = _e255;
-    let _e256 = sample_at((&param_45), (&param_46));
-    here_1 = _e256;
-    let _e257 = here_1;
-    before = _e257;
-    let _e258 = line_10;
-    param_47 = _e258;
-    let _e259 = first;
-    param_48 = _e259;
-    let _e261 = here_1.depth;
-    param_49 = _e261;
-    let _e262 = landing((&param_47), (&param_48), (&param_49));
-    b_5 = _e262;
-    let _e263 = b_5;
-    a_5 = _e263;
+    let _e250 = middle;
+    let _e251 = reach;
+    let _e258 = last_3[0u];
+    first = clamp((_e249 * floor(((_e250 - abs(_e251)) - 0.01f))), 0f, _e258);
+    let _e261 = line_10.sense;
+    let _e262 = middle;
+    let _e268 = last_3[0u];
+    end = clamp((_e261 * (floor((_e262 + 0.01f)) + 1f)), 0f, _e268);
+    let _e271 = line_10.sense;
+    let _e272 = end;
+    let _e273 = first;
+    left = (_e271 * (_e272 - _e273));
+    let _e276 = first;
+    index_8 = _e276;
+    let _e277 = line_10;
+    param_45 = _e277;
+    let _e278 = first;
+    param_46 = _e278;
+    let _e279 = sample_at((&param_45), (&param_46));
+    depth_2 = _e279.depth;
+    let _e281 = line_10;
+    param_47 = _e281;
+    let _e282 = first;
+    param_48 = _e282;
+    let _e283 = depth_2;
+    param_49 = _e283;
+    let _e284 = landing((&param_47), (&param_48), (&param_49));
+    b_5 = _e284;
+    let _e285 = b_5;
+    a_5 = _e285;
     found = false;
-    let _e264 = b_5;
-    let _e265 = (_e264 > 0f);
-    phi_933_ = _e265;
-    if _e265 {
-        let _e266 = first;
-        let _e268 = line_10.sense;
-        if (_e268 > 0f) {
+    let _e286 = b_5;
+    let _e287 = (_e286 > 0f);
+    phi_957_ = _e287;
+    if _e287 {
+        let _e288 = first;
+        let _e290 = line_10.sense;
+        if (_e290 > 0f) {
             local_10 = 0f;
         } else {
-            let _e271 = last_3[0u];
-            local_10 = _e271;
+            let _e293 = last_3[0u];
+            local_10 = _e293;
         }
-        let _e272 = local_10;
-        phi_933_ = (_e266 == _e272);
+        let _e294 = local_10;
+        phi_957_ = (_e288 == _e294);
     }
-    let _e275 = phi_933_;
-    outside = _e275;
-    let _e276 = outside;
-    has_edge = _e276;
-    let _e277 = here_1;
-    edge_1 = _e277;
-    let _e278 = outside;
-    let _e279 = b_5;
-    let _e282 = left;
-    left = select(_e282, 0f, (_e278 && (_e279 < 0.5f)));
-    rimmed = false;
-    let _e284 = here_1;
-    rim = _e284;
+    let _e297 = phi_957_;
+    outside = _e297;
+    let _e298 = outside;
+    let _e299 = first;
+    edge_1 = select(-1f, _e299, _e298);
+    let _e301 = depth_2;
+    edge_depth = _e301;
+    let _e302 = outside;
+    let _e303 = b_5;
+    let _e306 = left;
+    left = select(_e306, 0f, (_e302 && (_e303 < 0.5f)));
+    rim = -1f;
     loop {
-        let _e285 = left;
-        let _e287 = found;
-        if ((_e285 > 0f) && !(_e287)) {
-            let _e290 = line_10;
-            param_50 = _e290;
-            let _e292 = here_1.index;
-            param_51 = _e292;
-            let _e293 = beside_at((&param_50), (&param_51));
-            let _e295 = last_3[1u];
-            beside_6 = clamp(_e293, 0f, _e295);
-            let _e297 = line_10;
-            param_52 = _e297;
-            let _e299 = here_1.index;
-            param_53 = _e299;
-            let _e300 = beside_6;
-            param_54 = _e300;
-            let _e301 = steps_in_tile((&param_52), (&param_53), (&param_54));
-            let _e302 = left;
-            steps_1 = min(_e301, _e302);
-            let _e304 = line_10;
-            param_55 = _e304;
-            let _e306 = here_1.index;
-            param_56 = _e306;
-            let _e307 = beside_6;
-            param_57 = _e307;
-            let _e308 = steps_1;
-            param_58 = _e308;
-            let _e309 = lands((&param_55), (&param_56), (&param_57), (&param_58));
-            walked = _e309;
-            let _e310 = steps_1;
-            let _e311 = left;
-            left = (_e311 - _e310);
-            let _e313 = walked;
-            if !(_e313) {
-                let _e316 = here_1.index;
-                let _e318 = line_10.sense;
-                let _e319 = steps_1;
-                let _e322 = line_10;
-                param_59 = _e322;
-                param_60 = (_e316 + (_e318 * _e319));
-                let _e323 = sample_at((&param_59), (&param_60));
-                here_1 = _e323;
-                let _e324 = line_10;
-                param_61 = _e324;
-                let _e326 = here_1.index;
-                param_62 = _e326;
-                let _e328 = here_1.depth;
-                param_63 = _e328;
-                let _e329 = landing((&param_61), (&param_62), (&param_63));
-                b_5 = _e329;
+        let _e308 = left;
+        let _e310 = found;
+        if ((_e308 > 0f) && !(_e310)) {
+            let _e313 = line_10;
+            param_50 = _e313;
+            let _e314 = index_8;
+            param_51 = _e314;
+            let _e315 = beside_at((&param_50), (&param_51));
+            let _e317 = last_3[1u];
+            beside_6 = clamp(_e315, 0f, _e317);
+            let _e319 = line_10;
+            param_52 = _e319;
+            let _e320 = index_8;
+            param_53 = _e320;
+            let _e321 = beside_6;
+            param_54 = _e321;
+            let _e322 = steps_in_tile((&param_52), (&param_53), (&param_54));
+            let _e323 = left;
+            steps_1 = min(_e322, _e323);
+            let _e325 = line_10;
+            param_55 = _e325;
+            let _e326 = index_8;
+            param_56 = _e326;
+            let _e327 = beside_6;
+            param_57 = _e327;
+            let _e328 = steps_1;
+            param_58 = _e328;
+            let _e329 = lands((&param_55), (&param_56), (&param_57), (&param_58));
+            walked = _e329;
+            let _e330 = steps_1;
+            let _e331 = left;
+            left = (_e331 - _e330);
+            let _e333 = walked;
+            if !(_e333) {
+                let _e336 = line_10.sense;
+                let _e337 = steps_1;
+                let _e339 = index_8;
+                index_8 = (_e339 + (_e336 * _e337));
+                let _e341 = line_10;
+                param_59 = _e341;
+                let _e342 = index_8;
+                param_60 = _e342;
+                let _e343 = sample_at((&param_59), (&param_60));
+                depth_2 = _e343.depth;
+                let _e345 = line_10;
+                param_61 = _e345;
+                let _e346 = index_8;
+                param_62 = _e346;
+                let _e347 = depth_2;
+                param_63 = _e347;
+                let _e348 = landing((&param_61), (&param_62), (&param_63));
+                b_5 = _e348;
             }
             loop {
-                let _e330 = walked;
-                let _e331 = steps_1;
-                let _e334 = found;
-                if ((_e330 && (_e331 > 0f)) && !(_e334)) {
-                    let _e337 = b_5;
-                    a_5 = _e337;
-                    let _e338 = here_1;
-                    before = _e338;
-                    let _e340 = before.index;
-                    let _e342 = line_10.sense;
-                    let _e344 = line_10;
-                    param_64 = _e344;
-                    param_65 = (_e340 + _e342);
-                    let _e345 = sample_at((&param_64), (&param_65));
-                    here_1 = _e345;
-                    let _e346 = line_10;
-                    param_66 = _e346;
-                    let _e348 = here_1.index;
-                    param_67 = _e348;
-                    let _e350 = here_1.depth;
-                    param_68 = _e350;
-                    let _e351 = landing((&param_66), (&param_67), (&param_68));
-                    b_5 = _e351;
-                    let _e352 = a_5;
-                    param_69 = _e352;
-                    let _e353 = b_5;
-                    param_70 = _e353;
-                    let _e354 = is_seen((&param_69), (&param_70));
-                    found = _e354;
-                    let _e355 = rimmed;
-                    let _e356 = !(_e355);
-                    phi_1062_ = _e356;
-                    if _e356 {
-                        let _e357 = a_5;
-                        param_71 = _e357;
-                        let _e358 = b_5;
-                        param_72 = _e358;
-                        let _e359 = has_rim((&param_71), (&param_72));
-                        phi_1062_ = _e359;
+                let _e349 = walked;
+                let _e350 = steps_1;
+                let _e353 = found;
+                if ((_e349 && (_e350 > 0f)) && !(_e353)) {
+                    let _e356 = b_5;
+                    a_5 = _e356;
+                    let _e357 = depth_2;
+                    before = _e357;
+                    let _e359 = line_10.sense;
+                    let _e360 = index_8;
+                    index_8 = (_e360 + _e359);
+                    let _e362 = line_10;
+                    param_64 = _e362;
+                    let _e363 = index_8;
+                    param_65 = _e363;
+                    let _e364 = sample_at((&param_64), (&param_65));
+                    depth_2 = _e364.depth;
+                    let _e366 = line_10;
+                    param_66 = _e366;
+                    let _e367 = index_8;
+                    param_67 = _e367;
+                    let _e368 = depth_2;
+                    param_68 = _e368;
+                    let _e369 = landing((&param_66), (&param_67), (&param_68));
+                    b_5 = _e369;
+                    let _e370 = a_5;
+                    param_69 = _e370;
+                    let _e371 = b_5;
+                    param_70 = _e371;
+                    let _e372 = is_seen((&param_69), (&param_70));
+                    found = _e372;
+                    let _e373 = rim;
+                    let _e374 = (_e373 < 0f);
+                    phi_1082_ = _e374;
+                    if _e374 {
+                        let _e375 = a_5;
+                        param_71 = _e375;
+                        let _e376 = b_5;
+                        param_72 = _e376;
+                        let _e377 = has_rim((&param_71), (&param_72));
+                        phi_1082_ = _e377;
                     }
-                    let _e361 = phi_1062_;
-                    if _e361 {
-                        rimmed = true;
-                        let _e362 = here_1;
-                        rim = _e362;
-                        let _e363 = a_5;
-                        param_73 = _e363;
-                        let _e364 = b_5;
-                        param_74 = _e364;
-                        let _e365 = folds((&param_73), (&param_74));
-                        if _e365 {
-                            let _e366 = before;
-                            rim = _e366;
+                    let _e379 = phi_1082_;
+                    if _e379 {
+                        let _e380 = index_8;
+                        let _e381 = a_5;
+                        param_73 = _e381;
+                        let _e382 = b_5;
+                        param_74 = _e382;
+                        let _e383 = folds((&param_73), (&param_74));
+                        if _e383 {
+                            let _e385 = line_10.sense;
+                            local_12 = _e385;
+                        } else {
+                            local_12 = 0f;
                         }
+                        let _e386 = local_12;
+                        local_11 = (_e380 - _e386);
+                    } else {
+                        let _e388 = rim;
+                        local_11 = _e388;
                     }
-                    let _e367 = a_5;
-                    param_75 = _e367;
-                    let _e368 = b_5;
-                    param_76 = _e368;
-                    let _e369 = jumps((&param_75), (&param_76));
-                    phi_1096_ = _e369;
-                    if _e369 {
-                        let _e370 = has_edge;
-                        let _e371 = !(_e370);
-                        phi_1095_ = _e371;
-                        if !(_e371) {
-                            let _e374 = line_10.law;
-                            let _e376 = before.depth;
-                            let _e378 = edge_1.depth;
-                            phi_1095_ = ((_e374 * (_e376 - _e378)) < 0f);
+                    let _e389 = local_11;
+                    rim = _e389;
+                    let _e390 = a_5;
+                    param_75 = _e390;
+                    let _e391 = b_5;
+                    param_76 = _e391;
+                    let _e392 = jumps((&param_75), (&param_76));
+                    phi_1123_ = _e392;
+                    if _e392 {
+                        let _e393 = edge_1;
+                        let _e394 = (_e393 < 0f);
+                        phi_1122_ = _e394;
+                        if !(_e394) {
+                            let _e397 = line_10.law;
+                            let _e398 = before;
+                            let _e399 = edge_depth;
+                            phi_1122_ = ((_e397 * (_e398 - _e399)) < 0f);
                         }
-                        let _e383 = phi_1095_;
-                        phi_1096_ = _e383;
+                        let _e404 = phi_1122_;
+                        phi_1123_ = _e404;
                     }
-                    let _e385 = phi_1096_;
-                    if _e385 {
-                        has_edge = true;
-                        let _e386 = before;
-                        edge_1 = _e386;
+                    let _e406 = phi_1123_;
+                    if _e406 {
+                        let _e407 = index_8;
+                        let _e409 = line_10.sense;
+                        edge_1 = (_e407 - _e409);
+                        let _e411 = before;
+                        edge_depth = _e411;
                     }
                     continue;
                 } else {
                     break;
                 }
                 continuing {
-                    let _e387 = steps_1;
-                    steps_1 = (_e387 - 1f);
+                    let _e412 = steps_1;
+                    steps_1 = (_e412 - 1f);
                 }
             }
             continue;
@@ -964,113 +992,114 @@ fn main_1() {
             break;
         }
     }
-    let _e389 = a_5;
-    param_77 = _e389;
-    let _e390 = b_5;
-    param_78 = _e390;
-    let _e391 = is_torn((&param_77), (&param_78));
-    if _e391 {
-        local_11 = 0f;
-    } else {
-        let _e392 = a_5;
-        let _e394 = b_5;
-        let _e395 = a_5;
-        local_11 = (-(_e392) / (_e394 - _e395));
-    }
-    let _e398 = local_11;
-    t_1 = _e398;
-    let _e400 = before.depth;
-    let _e402 = here_1.depth;
-    let _e403 = t_1;
-    depth_2 = mix(_e400, _e402, _e403);
-    let _e405 = found;
-    if _e405 {
-        let _e406 = line_10;
-        param_79 = _e406;
-        let _e407 = before;
-        param_80 = _e407;
-        let _e408 = color_of((&param_79), (&param_80));
-        let _e409 = line_10;
-        param_81 = _e409;
-        let _e410 = here_1;
-        param_82 = _e410;
-        let _e411 = color_of((&param_81), (&param_82));
-        let _e412 = t_1;
-        color = mix(_e408, _e411, vec4(_e412));
-    } else {
-        let _e415 = here_1;
-        fill = _e415;
-        let _e416 = has_edge;
-        if _e416 {
-            let _e417 = edge_1;
-            fill = _e417;
-        }
-        let _e419 = fill.depth;
-        depth_2 = _e419;
-        let _e420 = line_10;
-        param_83 = _e420;
-        let _e422 = fill.index;
-        param_84 = _e422;
-        let _e423 = depth_2;
-        param_85 = _e423;
-        let _e424 = landing((&param_83), (&param_84), (&param_85));
-        away_2 = _e424;
-        let _e425 = away_2;
-        if (abs(_e425) >= 0.5f) {
-            let _e428 = line_10;
-            param_86 = _e428;
-            let _e429 = fill;
-            param_87 = _e429;
-            let _e430 = away_2;
-            param_88 = _e430;
-            let _e431 = fill_beside((&param_86), (&param_87), (&param_88));
-            local_12 = _e431;
+    let _e414 = found;
+    let _e415 = edge_1;
+    let _e418 = index_8;
+    let _e419 = edge_1;
+    let _e421 = line_10;
+    param_77 = _e421;
+    param_78 = select(_e419, _e418, (_e414 || (_e415 < 0f)));
+    let _e422 = sample_at((&param_77), (&param_78));
+    here_1 = _e422;
+    let _e423 = found;
+    if _e423 {
+        let _e424 = index_8;
+        let _e426 = line_10.sense;
+        let _e428 = line_10;
+        param_79 = _e428;
+        param_80 = (_e424 - _e426);
+        let _e429 = sample_at((&param_79), (&param_80));
+        before_1 = _e429;
+        let _e430 = a_5;
+        param_81 = _e430;
+        let _e431 = b_5;
+        param_82 = _e431;
+        let _e432 = is_torn((&param_81), (&param_82));
+        if _e432 {
+            local_13 = 0f;
         } else {
-            let _e432 = line_10;
-            param_89 = _e432;
-            let _e433 = fill;
-            param_90 = _e433;
-            let _e434 = color_of((&param_89), (&param_90));
-            local_12 = _e434;
+            let _e433 = a_5;
+            let _e435 = b_5;
+            let _e436 = a_5;
+            local_13 = (-(_e433) / (_e435 - _e436));
         }
-        let _e435 = local_12;
-        color = _e435;
-    }
-    let _e436 = rimmed;
-    if _e436 {
-        let _e437 = line_10;
-        param_91 = _e437;
-        let _e439 = rim.index;
-        param_92 = _e439;
-        let _e441 = rim.depth;
-        param_93 = _e441;
-        let _e442 = landing((&param_91), (&param_92), (&param_93));
-        coverage = (1f - abs(_e442));
-        let _e445 = color;
+        let _e439 = local_13;
+        t_1 = _e439;
+        let _e441 = before_1.depth;
+        let _e443 = here_1.depth;
+        let _e444 = t_1;
+        depth_2 = mix(_e441, _e443, _e444);
         let _e446 = line_10;
-        param_94 = _e446;
-        let _e447 = rim;
-        param_95 = _e447;
-        let _e448 = color_of((&param_94), (&param_95));
-        let _e449 = coverage;
-        color = mix(_e445, _e448, vec4(_e449));
-        let _e452 = coverage;
-        if (_e452 >= 0.5f) {
-            let _e455 = rim.depth;
-            local_13 = _e455;
-        } else {
-            let _e456 = depth_2;
-            local_13 = _e456;
-        }
-        let _e457 = local_13;
-        depth_2 = _e457;
+        param_83 = _e446;
+        let _e447 = before_1;
+        param_84 = _e447;
+        let _e448 = color_of((&param_83), (&param_84));
+        let _e449 = line_10;
+        param_85 = _e449;
+        let _e450 = here_1;
+        param_86 = _e450;
+        let _e451 = color_of((&param_85), (&param_86));
+        let _e452 = t_1;
+        color = mix(_e448, _e451, vec4(_e452));
+    } else {
+        let _e456 = here_1.depth;
+        depth_2 = _e456;
+        let _e457 = line_10;
+        param_87 = _e457;
+        let _e459 = here_1.index;
+        param_88 = _e459;
+        let _e460 = depth_2;
+        param_89 = _e460;
+        let _e461 = landing((&param_87), (&param_88), (&param_89));
+        let _e462 = line_10;
+        param_90 = _e462;
+        let _e463 = here_1;
+        param_91 = _e463;
+        param_92 = _e461;
+        let _e464 = fill_beside((&param_90), (&param_91), (&param_92));
+        color = _e464;
     }
-    let _e458 = depth_2;
-    param_96 = _e458;
-    let _e460 = ray[2u];
-    param_97 = _e460;
-    let _e461 = target_depth((&param_96), (&param_97));
-    gl_FragDepth = _e461;
+    let _e465 = rim;
+    if (_e465 >= 0f) {
+        let _e467 = line_10;
+        param_93 = _e467;
+        let _e468 = rim;
+        param_94 = _e468;
+        let _e469 = sample_at((&param_93), (&param_94));
+        silhouette = _e469;
+        let _e470 = line_10;
+        param_95 = _e470;
+        let _e471 = rim;
+        param_96 = _e471;
+        let _e473 = silhouette.depth;
+        param_97 = _e473;
+        let _e474 = landing((&param_95), (&param_96), (&param_97));
+        coverage = (1f - abs(_e474));
+        let _e477 = color;
+        let _e478 = line_10;
+        param_98 = _e478;
+        let _e479 = silhouette;
+        param_99 = _e479;
+        let _e480 = color_of((&param_98), (&param_99));
+        let _e481 = coverage;
+        color = mix(_e477, _e480, vec4(_e481));
+        let _e484 = coverage;
+        if (_e484 >= 0.5f) {
+            let _e487 = silhouette.depth;
+            local_14 = _e487;
+        } else {
+            let _e488 = depth_2;
+            local_14 = _e488;
+        }
+        let _e489 = local_14;
+        depth_2 = _e489;
+    }
+    let _e490 = depth_2;
+    param_100 = _e490;
+    let _e492 = ray[2u];
+    param_101 = _e492;
+    let _e493 = target_depth((&param_100), (&param_101));
+    gl_FragDepth = _e493;
     return;
 }
 

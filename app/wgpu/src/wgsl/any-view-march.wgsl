@@ -39,6 +39,8 @@ var linear_sampler: sampler;
 @group(0) @binding(2) 
 var tile_map_texture: texture_2d<u32>;
 var<private> gl_FragCoord_1: vec4<f32>;
+@group(0) @binding(3) 
+var span_map_texture: texture_2d<u32>;
 var<private> color: vec4<f32>;
 
 fn in_image(pixel: ptr<function, vec2<i32>>) -> vec2<i32> {
@@ -180,76 +182,77 @@ fn fill_beside(line_4: ptr<function, Segment>, edge: ptr<function, Sample>, away
     var weight: f32;
     var param_14: Segment;
     var param_15: Sample;
-    var phi_667_: bool;
+    var phi_671_: bool;
 
-    let _e28 = (*line_4);
-    param_7 = _e28;
-    let _e29 = last_indices((&param_7));
-    last_1 = _e29.y;
-    let _e31 = (*away_1);
-    param_8 = _e31;
-    let _e32 = fill_spread((&param_8));
-    spread = _e32;
-    let _e33 = (*line_4);
-    param_9 = _e33;
-    let _e34 = (*edge);
-    param_10 = _e34;
-    let _e35 = color_of((&param_9), (&param_10));
-    sum = (_e35 * 2f);
+    let _e29 = (*line_4);
+    param_7 = _e29;
+    let _e30 = last_indices((&param_7));
+    last_1 = _e30.y;
+    let _e32 = (*away_1);
+    param_8 = _e32;
+    let _e33 = fill_spread((&param_8));
+    spread = _e33;
+    let _e34 = (*line_4);
+    param_9 = _e34;
+    let _e35 = (*edge);
+    param_10 = _e35;
+    let _e36 = color_of((&param_9), (&param_10));
+    sum = (_e36 * 2f);
     weights = 2f;
-    i = -2i;
+    let _e38 = (*away_1);
+    i = select(3i, -2i, (abs(_e38) >= 0.5f));
     loop {
-        let _e37 = i;
-        if (_e37 <= 2i) {
-            let _e40 = (*edge).beside;
-            let _e43 = i;
-            let _e45 = spread;
-            let _e49 = last_1;
-            beside_2 = clamp((floor((_e40 + 0.5f)) + round((f32(_e43) * _e45))), 0f, _e49);
-            let _e52 = (*edge).index;
-            let _e53 = beside_2;
-            let _e54 = (*line_4);
-            param_11 = _e54;
-            let _e56 = (*edge).index;
-            param_12 = _e56;
-            let _e57 = beside_2;
-            param_13 = _e57;
-            let _e58 = depth_of((&param_11), (&param_12), (&param_13));
-            tap = Sample(_e52, _e53, _e58);
-            let _e60 = i;
-            let _e61 = (_e60 != 0i);
-            phi_667_ = _e61;
-            if _e61 {
-                let _e63 = (*line_4).law;
-                let _e65 = tap.depth;
-                let _e67 = (*edge).depth;
-                phi_667_ = ((_e63 * (_e65 - _e67)) <= 1f);
+        let _e42 = i;
+        if (_e42 <= 2i) {
+            let _e45 = (*edge).beside;
+            let _e48 = i;
+            let _e50 = spread;
+            let _e54 = last_1;
+            beside_2 = clamp((floor((_e45 + 0.5f)) + round((f32(_e48) * _e50))), 0f, _e54);
+            let _e57 = (*edge).index;
+            let _e58 = beside_2;
+            let _e59 = (*line_4);
+            param_11 = _e59;
+            let _e61 = (*edge).index;
+            param_12 = _e61;
+            let _e62 = beside_2;
+            param_13 = _e62;
+            let _e63 = depth_of((&param_11), (&param_12), (&param_13));
+            tap = Sample(_e57, _e58, _e63);
+            let _e65 = i;
+            let _e66 = (_e65 != 0i);
+            phi_671_ = _e66;
+            if _e66 {
+                let _e68 = (*line_4).law;
+                let _e70 = tap.depth;
+                let _e72 = (*edge).depth;
+                phi_671_ = ((_e68 * (_e70 - _e72)) <= 1f);
             }
-            let _e72 = phi_667_;
-            weight = select(0f, 1f, _e72);
-            let _e74 = weight;
-            let _e75 = (*line_4);
-            param_14 = _e75;
-            let _e76 = tap;
-            param_15 = _e76;
-            let _e77 = color_of((&param_14), (&param_15));
-            let _e79 = sum;
-            sum = (_e79 + (_e77 * _e74));
-            let _e81 = weight;
-            let _e82 = weights;
-            weights = (_e82 + _e81);
+            let _e77 = phi_671_;
+            weight = select(0f, 1f, _e77);
+            let _e79 = weight;
+            let _e80 = (*line_4);
+            param_14 = _e80;
+            let _e81 = tap;
+            param_15 = _e81;
+            let _e82 = color_of((&param_14), (&param_15));
+            let _e84 = sum;
+            sum = (_e84 + (_e82 * _e79));
+            let _e86 = weight;
+            let _e87 = weights;
+            weights = (_e87 + _e86);
             continue;
         } else {
             break;
         }
         continuing {
-            let _e84 = i;
-            i = (_e84 + 1i);
+            let _e89 = i;
+            i = (_e89 + 1i);
         }
     }
-    let _e86 = sum;
-    let _e87 = weights;
-    return (_e86 / vec4(_e87));
+    let _e91 = sum;
+    let _e92 = weights;
+    return (_e91 / vec4(_e92));
 }
 
 fn is_torn(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
@@ -578,16 +581,17 @@ fn main_1() {
     var line_10: Segment;
     var reach: f32;
     var local_9: f32;
+    var tile_1: vec2<i32>;
     var last_3: vec2<f32>;
     var param_44: Segment;
     var middle: f32;
     var first: f32;
     var end: f32;
     var left: f32;
-    var here_1: Sample;
+    var index_8: f32;
+    var depth_1: f32;
     var param_45: Segment;
     var param_46: f32;
-    var before: Sample;
     var b_5: f32;
     var param_47: Segment;
     var param_48: f32;
@@ -596,10 +600,9 @@ fn main_1() {
     var found: bool;
     var outside: bool;
     var local_10: f32;
-    var has_edge: bool;
-    var edge_1: Sample;
-    var rimmed: bool;
-    var rim: Sample;
+    var edge_1: f32;
+    var edge_depth: f32;
+    var rim: f32;
     var beside_6: f32;
     var param_50: Segment;
     var param_51: f32;
@@ -617,6 +620,7 @@ fn main_1() {
     var param_61: Segment;
     var param_62: f32;
     var param_63: f32;
+    var before: f32;
     var param_64: Segment;
     var param_65: f32;
     var param_66: Segment;
@@ -626,310 +630,334 @@ fn main_1() {
     var param_70: f32;
     var param_71: f32;
     var param_72: f32;
+    var local_11: f32;
     var param_73: f32;
     var param_74: f32;
+    var local_12: f32;
     var param_75: f32;
     var param_76: f32;
-    var t_1: f32;
-    var param_77: f32;
+    var here_1: Sample;
+    var param_77: Segment;
     var param_78: f32;
-    var local_11: f32;
-    var depth_1: f32;
+    var before_1: Sample;
     var param_79: Segment;
-    var param_80: Sample;
-    var param_81: Segment;
-    var param_82: Sample;
-    var fill: Sample;
-    var away_2: f32;
-    var param_83: Segment;
-    var param_84: f32;
-    var param_85: f32;
-    var local_12: vec4<f32>;
-    var param_86: Segment;
-    var param_87: Sample;
-    var param_88: f32;
-    var param_89: Segment;
-    var param_90: Sample;
-    var coverage: f32;
-    var param_91: Segment;
-    var param_92: f32;
-    var param_93: f32;
-    var param_94: Segment;
-    var param_95: Sample;
+    var param_80: f32;
+    var t_1: f32;
+    var param_81: f32;
+    var param_82: f32;
     var local_13: f32;
-    var phi_899_: bool;
-    var phi_1028_: bool;
-    var phi_1061_: bool;
-    var phi_1062_: bool;
+    var param_83: Segment;
+    var param_84: Sample;
+    var param_85: Segment;
+    var param_86: Sample;
+    var param_87: Segment;
+    var param_88: f32;
+    var param_89: f32;
+    var param_90: Segment;
+    var param_91: Sample;
+    var param_92: f32;
+    var silhouette: Sample;
+    var param_93: Segment;
+    var param_94: f32;
+    var coverage: f32;
+    var param_95: Segment;
+    var param_96: f32;
+    var param_97: f32;
+    var param_98: Segment;
+    var param_99: Sample;
+    var local_14: f32;
+    var phi_923_: bool;
+    var phi_1048_: bool;
+    var phi_1088_: bool;
+    var phi_1089_: bool;
 
-    let _e102 = gl_FragCoord_1;
-    let _e105 = synthesis.target_origin;
-    let _e107 = (_e102.xy - vec2<f32>(_e105));
-    pixel_2 = vec3<f32>(_e107.x, _e107.y, 1f);
-    let _e112 = synthesis.to_source_x;
-    let _e114 = pixel_2;
-    let _e117 = synthesis.to_source_y;
-    let _e119 = pixel_2;
-    let _e122 = synthesis.to_source_w;
-    let _e124 = pixel_2;
-    ray = vec3<f32>(dot(_e112.xyz, _e114), dot(_e117.xyz, _e119), dot(_e122.xyz, _e124));
-    let _e127 = ray;
-    let _e130 = ray[2u];
-    infinity = (_e127.xy / vec2(_e130));
-    let _e135 = synthesis.to_source_x[3u];
-    let _e138 = synthesis.to_source_y[3u];
-    let _e142 = synthesis.to_source_w[3u];
-    let _e143 = infinity;
-    parallax = (vec2<f32>(_e135, _e138) - (_e143 * _e142));
-    let _e146 = infinity;
-    let _e149 = synthesis.source_law[0u];
-    let _e152 = synthesis.source_law[1u];
-    let _e154 = synthesis.far_depth;
-    let _e157 = parallax;
-    far = ((_e146 + (_e157 * (_e149 + (_e152 * _e154)))) - vec2(0.5f));
-    let _e164 = synthesis.source_law[1u];
+    let _e110 = gl_FragCoord_1;
+    let _e113 = synthesis.target_origin;
+    let _e115 = (_e110.xy - vec2<f32>(_e113));
+    pixel_2 = vec3<f32>(_e115.x, _e115.y, 1f);
+    let _e120 = synthesis.to_source_x;
+    let _e122 = pixel_2;
+    let _e125 = synthesis.to_source_y;
+    let _e127 = pixel_2;
+    let _e130 = synthesis.to_source_w;
+    let _e132 = pixel_2;
+    ray = vec3<f32>(dot(_e120.xyz, _e122), dot(_e125.xyz, _e127), dot(_e130.xyz, _e132));
+    let _e135 = ray;
+    let _e138 = ray[2u];
+    infinity = (_e135.xy / vec2(_e138));
+    let _e143 = synthesis.to_source_x[3u];
+    let _e146 = synthesis.to_source_y[3u];
+    let _e150 = synthesis.to_source_w[3u];
+    let _e151 = infinity;
+    parallax = (vec2<f32>(_e143, _e146) - (_e151 * _e150));
+    let _e154 = infinity;
+    let _e157 = synthesis.source_law[0u];
+    let _e160 = synthesis.source_law[1u];
+    let _e162 = synthesis.far_depth;
     let _e165 = parallax;
-    moved = (_e165 * _e164);
-    let _e168 = moved[1u];
-    let _e171 = moved[0u];
-    line_10.steep = (abs(_e168) > abs(_e171));
-    let _e176 = line_10.steep;
-    if _e176 {
-        let _e177 = far;
-        far = _e177.yx;
-        let _e179 = moved;
-        moved = _e179.yx;
+    far = ((_e154 + (_e165 * (_e157 + (_e160 * _e162)))) - vec2(0.5f));
+    let _e172 = synthesis.source_law[1u];
+    let _e173 = parallax;
+    moved = (_e173 * _e172);
+    let _e176 = moved[1u];
+    let _e179 = moved[0u];
+    line_10.steep = (abs(_e176) > abs(_e179));
+    let _e184 = line_10.steep;
+    if _e184 {
+        let _e185 = far;
+        far = _e185.yx;
+        let _e187 = moved;
+        moved = _e187.yx;
     }
-    let _e182 = moved[0u];
-    let _e184 = synthesis.nearest;
-    let _e186 = synthesis.far_depth;
-    reach = (_e182 * (_e184 - _e186));
-    let _e189 = reach;
-    line_10.sense = select(1f, -1f, (_e189 > 0f));
-    let _e194 = far[0u];
-    line_10.far = _e194;
-    let _e197 = far[1u];
-    line_10.far_beside = _e197;
-    let _e200 = moved[0u];
-    if (_e200 == 0f) {
+    let _e190 = moved[0u];
+    let _e192 = synthesis.nearest;
+    let _e194 = synthesis.far_depth;
+    reach = (_e190 * (_e192 - _e194));
+    let _e197 = reach;
+    line_10.sense = select(1f, -1f, (_e197 > 0f));
+    let _e202 = far[0u];
+    line_10.far = _e202;
+    let _e205 = far[1u];
+    line_10.far_beside = _e205;
+    let _e208 = moved[0u];
+    if (_e208 == 0f) {
         local_9 = 0f;
     } else {
-        let _e203 = moved[1u];
-        let _e205 = moved[0u];
-        local_9 = (_e203 / _e205);
+        let _e211 = moved[1u];
+        let _e213 = moved[0u];
+        local_9 = (_e211 / _e213);
     }
-    let _e207 = local_9;
-    line_10.slope = _e207;
-    let _e210 = line_10.sense;
-    let _e213 = moved[0u];
-    line_10.law = (-(_e210) * _e213);
-    let _e216 = line_10;
-    param_44 = _e216;
-    let _e217 = last_indices((&param_44));
-    last_3 = _e217;
-    let _e219 = line_10.sense;
-    let _e221 = line_10.far;
-    middle = (_e219 * _e221);
-    let _e224 = line_10.sense;
-    let _e225 = middle;
-    let _e226 = reach;
-    let _e233 = last_3[0u];
-    first = clamp((_e224 * floor(((_e225 - abs(_e226)) - 0.01f))), 0f, _e233);
-    let _e236 = line_10.sense;
-    let _e237 = middle;
-    let _e243 = last_3[0u];
-    end = clamp((_e236 * (floor((_e237 + 0.01f)) + 1f)), 0f, _e243);
+    let _e215 = local_9;
+    line_10.slope = _e215;
+    let _e218 = line_10.sense;
+    let _e221 = moved[0u];
+    line_10.law = (-(_e218) * _e221);
+    let _e224 = pixel_2;
+    tile_1 = (vec2<i32>(_e224.xy) / vec2<i32>(16i, 8i));
+    let _e229 = moved[0u];
+    let _e230 = tile_1;
+    let _e231 = textureLoad(span_map_texture, _e230, 0i);
+    let _e235 = synthesis.far_depth;
+    reach = (_e229 * (bitcast<f32>(_e231.x) - _e235));
+    let _e238 = line_10;
+    param_44 = _e238;
+    let _e239 = last_indices((&param_44));
+    last_3 = _e239;
+    let _e241 = line_10.sense;
+    let _e243 = line_10.far;
+    middle = (_e241 * _e243);
     let _e246 = line_10.sense;
-    let _e247 = end;
-    let _e248 = first;
-    left = (_e246 * (_e247 - _e248));
-    let _e251 = line_10;
-    param_45 = _e251;
-    let _e252 = first;
-    param_46 = _e252;
-    let _e253 = sample_at((&param_45), (&param_46));
-    here_1 = _e253;
-    let _e254 = here_1;
-    before = _e254;
-    let _e255 = line_10;
-    param_47 = _e255;
-    let _e256 = first;
-    param_48 = _e256;
-    let _e258 = here_1.depth;
-    param_49 = _e258;
-    let _e259 = landing((&param_47), (&param_48), (&param_49));
-    b_5 = _e259;
-    let _e260 = b_5;
-    a_5 = _e260;
+    let _e247 = middle;
+    let _e248 = reach;
+    let _e255 = last_3[0u];
+    first = clamp((_e246 * floor(((_e247 - abs(_e248)) - 0.01f))), 0f, _e255);
+    let _e258 = line_10.sense;
+    let _e259 = middle;
+    let _e265 = last_3[0u];
+    end = clamp((_e258 * (floor((_e259 + 0.01f)) + 1f)), 0f, _e265);
+    let _e268 = line_10.sense;
+    let _e269 = end;
+    let _e270 = first;
+    left = (_e268 * (_e269 - _e270));
+    let _e273 = first;
+    index_8 = _e273;
+    let _e274 = line_10;
+    param_45 = _e274;
+    let _e275 = first;
+    param_46 = _e275;
+    let _e276 = sample_at((&param_45), (&param_46));
+    depth_1 = _e276.depth;
+    let _e278 = line_10;
+    param_47 = _e278;
+    let _e279 = first;
+    param_48 = _e279;
+    let _e280 = depth_1;
+    param_49 = _e280;
+    let _e281 = landing((&param_47), (&param_48), (&param_49));
+    b_5 = _e281;
+    let _e282 = b_5;
+    a_5 = _e282;
     found = false;
-    let _e261 = b_5;
-    let _e262 = (_e261 > 0f);
-    phi_899_ = _e262;
-    if _e262 {
-        let _e263 = first;
-        let _e265 = line_10.sense;
-        if (_e265 > 0f) {
+    let _e283 = b_5;
+    let _e284 = (_e283 > 0f);
+    phi_923_ = _e284;
+    if _e284 {
+        let _e285 = first;
+        let _e287 = line_10.sense;
+        if (_e287 > 0f) {
             local_10 = 0f;
         } else {
-            let _e268 = last_3[0u];
-            local_10 = _e268;
+            let _e290 = last_3[0u];
+            local_10 = _e290;
         }
-        let _e269 = local_10;
-        phi_899_ = (_e263 == _e269);
+        let _e291 = local_10;
+        phi_923_ = (_e285 == _e291);
     }
-    let _e272 = phi_899_;
-    outside = _e272;
-    let _e273 = outside;
-    has_edge = _e273;
-    let _e274 = here_1;
-    edge_1 = _e274;
-    let _e275 = outside;
-    let _e276 = b_5;
-    let _e279 = left;
-    left = select(_e279, 0f, (_e275 && (_e276 < 0.5f)));
-    rimmed = false;
-    let _e281 = here_1;
-    rim = _e281;
+    let _e294 = phi_923_;
+    outside = _e294;
+    let _e295 = outside;
+    let _e296 = first;
+    edge_1 = select(-1f, _e296, _e295);
+    let _e298 = depth_1;
+    edge_depth = _e298;
+    let _e299 = outside;
+    let _e300 = b_5;
+    let _e303 = left;
+    left = select(_e303, 0f, (_e299 && (_e300 < 0.5f)));
+    rim = -1f;
     loop {
-        let _e282 = left;
-        let _e284 = found;
-        if ((_e282 > 0f) && !(_e284)) {
-            let _e287 = line_10;
-            param_50 = _e287;
-            let _e289 = here_1.index;
-            param_51 = _e289;
-            let _e290 = beside_at((&param_50), (&param_51));
-            let _e292 = last_3[1u];
-            beside_6 = clamp(_e290, 0f, _e292);
-            let _e294 = line_10;
-            param_52 = _e294;
-            let _e296 = here_1.index;
-            param_53 = _e296;
-            let _e297 = beside_6;
-            param_54 = _e297;
-            let _e298 = steps_in_tile((&param_52), (&param_53), (&param_54));
-            let _e299 = left;
-            steps_1 = min(_e298, _e299);
-            let _e301 = line_10;
-            param_55 = _e301;
-            let _e303 = here_1.index;
-            param_56 = _e303;
-            let _e304 = beside_6;
-            param_57 = _e304;
-            let _e305 = steps_1;
-            param_58 = _e305;
-            let _e306 = lands((&param_55), (&param_56), (&param_57), (&param_58));
-            walked = _e306;
-            let _e307 = steps_1;
-            let _e308 = left;
-            left = (_e308 - _e307);
-            let _e310 = walked;
-            if !(_e310) {
-                let _e313 = here_1.index;
-                let _e315 = line_10.sense;
-                let _e316 = steps_1;
-                let _e319 = line_10;
-                param_59 = _e319;
-                param_60 = (_e313 + (_e315 * _e316));
-                let _e320 = sample_at((&param_59), (&param_60));
-                here_1 = _e320;
-                let _e321 = line_10;
-                param_61 = _e321;
-                let _e323 = here_1.index;
-                param_62 = _e323;
-                let _e325 = here_1.depth;
-                param_63 = _e325;
-                let _e326 = landing((&param_61), (&param_62), (&param_63));
-                b_5 = _e326;
+        let _e305 = left;
+        let _e307 = found;
+        if ((_e305 > 0f) && !(_e307)) {
+            let _e310 = line_10;
+            param_50 = _e310;
+            let _e311 = index_8;
+            param_51 = _e311;
+            let _e312 = beside_at((&param_50), (&param_51));
+            let _e314 = last_3[1u];
+            beside_6 = clamp(_e312, 0f, _e314);
+            let _e316 = line_10;
+            param_52 = _e316;
+            let _e317 = index_8;
+            param_53 = _e317;
+            let _e318 = beside_6;
+            param_54 = _e318;
+            let _e319 = steps_in_tile((&param_52), (&param_53), (&param_54));
+            let _e320 = left;
+            steps_1 = min(_e319, _e320);
+            let _e322 = line_10;
+            param_55 = _e322;
+            let _e323 = index_8;
+            param_56 = _e323;
+            let _e324 = beside_6;
+            param_57 = _e324;
+            let _e325 = steps_1;
+            param_58 = _e325;
+            let _e326 = lands((&param_55), (&param_56), (&param_57), (&param_58));
+            walked = _e326;
+            let _e327 = steps_1;
+            let _e328 = left;
+            left = (_e328 - _e327);
+            let _e330 = walked;
+            if !(_e330) {
+                let _e333 = line_10.sense;
+                let _e334 = steps_1;
+                let _e336 = index_8;
+                index_8 = (_e336 + (_e333 * _e334));
+                let _e338 = line_10;
+                param_59 = _e338;
+                let _e339 = index_8;
+                param_60 = _e339;
+                let _e340 = sample_at((&param_59), (&param_60));
+                depth_1 = _e340.depth;
+                let _e342 = line_10;
+                param_61 = _e342;
+                let _e343 = index_8;
+                param_62 = _e343;
+                let _e344 = depth_1;
+                param_63 = _e344;
+                let _e345 = landing((&param_61), (&param_62), (&param_63));
+                b_5 = _e345;
             }
             loop {
-                let _e327 = walked;
-                let _e328 = steps_1;
-                let _e331 = found;
-                if ((_e327 && (_e328 > 0f)) && !(_e331)) {
-                    let _e334 = b_5;
-                    a_5 = _e334;
-                    let _e335 = here_1;
-                    before = _e335;
-                    let _e337 = before.index;
-                    let _e339 = line_10.sense;
-                    let _e341 = line_10;
-                    param_64 = _e341;
-                    param_65 = (_e337 + _e339);
-                    let _e342 = sample_at((&param_64), (&param_65));
-                    here_1 = _e342;
-                    let _e343 = line_10;
-                    param_66 = _e343;
-                    let _e345 = here_1.index;
-                    param_67 = _e345;
-                    let _e347 = here_1.depth;
-                    param_68 = _e347;
-                    let _e348 = landing((&param_66), (&param_67), (&param_68));
-                    b_5 = _e348;
-                    let _e349 = a_5;
-                    param_69 = _e349;
-                    let _e350 = b_5;
-                    param_70 = _e350;
-                    let _e351 = is_seen((&param_69), (&param_70));
-                    found = _e351;
-                    let _e352 = rimmed;
-                    let _e353 = !(_e352);
-                    phi_1028_ = _e353;
-                    if _e353 {
-                        let _e354 = a_5;
-                        param_71 = _e354;
-                        let _e355 = b_5;
-                        param_72 = _e355;
-                        let _e356 = has_rim((&param_71), (&param_72));
-                        phi_1028_ = _e356;
+                let _e346 = walked;
+                let _e347 = steps_1;
+                let _e350 = found;
+                if ((_e346 && (_e347 > 0f)) && !(_e350)) {
+                    let _e353 = b_5;
+                    a_5 = _e353;
+                    let _e354 = depth_1;
+                    before = _e354;
+                    let _e356 = line_10.sense;
+                    let _e357 = index_8;
+                    index_8 = (_e357 + _e356);
+                    let _e359 = line_10;
+                    param_64 = _e359;
+                    let _e360 = index_8;
+                    param_65 = _e360;
+                    let _e361 = sample_at((&param_64), (&param_65));
+                    depth_1 = _e361.depth;
+                    let _e363 = line_10;
+                    param_66 = _e363;
+                    let _e364 = index_8;
+                    param_67 = _e364;
+                    let _e365 = depth_1;
+                    param_68 = _e365;
+                    let _e366 = landing((&param_66), (&param_67), (&param_68));
+                    b_5 = _e366;
+                    let _e367 = a_5;
+                    param_69 = _e367;
+                    let _e368 = b_5;
+                    param_70 = _e368;
+                    let _e369 = is_seen((&param_69), (&param_70));
+                    found = _e369;
+                    let _e370 = rim;
+                    let _e371 = (_e370 < 0f);
+                    phi_1048_ = _e371;
+                    if _e371 {
+                        let _e372 = a_5;
+                        param_71 = _e372;
+                        let _e373 = b_5;
+                        param_72 = _e373;
+                        let _e374 = has_rim((&param_71), (&param_72));
+                        phi_1048_ = _e374;
                     }
-                    let _e358 = phi_1028_;
-                    if _e358 {
-                        rimmed = true;
-                        let _e359 = here_1;
-                        rim = _e359;
-                        let _e360 = a_5;
-                        param_73 = _e360;
-                        let _e361 = b_5;
-                        param_74 = _e361;
-                        let _e362 = folds((&param_73), (&param_74));
-                        if _e362 {
-                            let _e363 = before;
-                            rim = _e363;
+                    let _e376 = phi_1048_;
+                    if _e376 {
+                        let _e377 = index_8;
+                        let _e378 = a_5;
+                        param_73 = _e378;
+                        let _e379 = b_5;
+                        param_74 = _e379;
+                        let _e380 = folds((&param_73), (&param_74));
+                        if _e380 {
+                            let _e382 = line_10.sense;
+                            local_12 = _e382;
+                        } else {
+                            local_12 = 0f;
                         }
+                        let _e383 = local_12;
+                        local_11 = (_e377 - _e383);
+                    } else {
+                        let _e385 = rim;
+                        local_11 = _e385;
                     }
-                    let _e364 = a_5;
-                    param_75 = _e364;
-                    let _e365 = b_5;
-                    param_76 = _e365;
-                    let _e366 = jumps((&param_75), (&param_76));
-                    phi_1062_ = _e366;
-                    if _e366 {
-                        let _e367 = has_edge;
-                        let _e368 = !(_e367);
-                        phi_1061_ = _e368;
-                        if !(_e368) {
-                            let _e371 = line_10.law;
-                            let _e373 = before.depth;
-                            let _e375 = edge_1.depth;
-                            phi_1061_ = ((_e371 * (_e373 - _e375)) < 0f);
+                    let _e386 = local_11;
+                    rim = _e386;
+                    let _e387 = a_5;
+                    param_75 = _e387;
+                    let _e388 = b_5;
+                    param_76 = _e388;
+                    let _e389 = jumps((&param_75), (&param_76));
+                    phi_1089_ = _e389;
+                    if _e389 {
+                        let _e390 = edge_1;
+                        let _e391 = (_e390 < 0f);
+                        phi_1088_ = _e391;
+                        if !(_e391) {
+                            let _e394 = line_10.law;
+                            let _e395 = before;
+                            let _e396 = edge_depth;
+                            phi_1088_ = ((_e394 * (_e395 - _e396)) < 0f);
                         }
-                        let _e380 = phi_1061_;
-                        phi_1062_ = _e380;
+                        let _e401 = phi_1088_;
+                        phi_1089_ = _e401;
                     }
-                    let _e382 = phi_1062_;
-                    if _e382 {
-                        has_edge = true;
-                        let _e383 = before;
-                        edge_1 = _e383;
+                    let _e403 = phi_1089_;
+                    if _e403 {
+                        let _e404 = index_8;
+                        let _e406 = line_10.sense;
+                        edge_1 = (_e404 - _e406);
+                        let _e408 = before;
+                        edge_depth = _e408;
                     }
                     continue;
                 } else {
                     break;
                 }
                 continuing {
-                    let _e384 = steps_1;
-                    steps_1 = (_e384 - 1f);
+                    let _e409 = steps_1;
+                    steps_1 = (_e409 - 1f);
                 }
             }
             continue;
@@ -937,106 +965,107 @@ fn main_1() {
             break;
         }
     }
-    let _e386 = a_5;
-    param_77 = _e386;
-    let _e387 = b_5;
-    param_78 = _e387;
-    let _e388 = is_torn((&param_77), (&param_78));
-    if _e388 {
-        local_11 = 0f;
-    } else {
-        let _e389 = a_5;
-        let _e391 = b_5;
-        let _e392 = a_5;
-        local_11 = (-(_e389) / (_e391 - _e392));
-    }
-    let _e395 = local_11;
-    t_1 = _e395;
-    let _e397 = before.depth;
-    let _e399 = here_1.depth;
-    let _e400 = t_1;
-    depth_1 = mix(_e397, _e399, _e400);
-    let _e402 = found;
-    if _e402 {
-        let _e403 = line_10;
-        param_79 = _e403;
-        let _e404 = before;
-        param_80 = _e404;
-        let _e405 = color_of((&param_79), (&param_80));
-        let _e406 = line_10;
-        param_81 = _e406;
-        let _e407 = here_1;
-        param_82 = _e407;
-        let _e408 = color_of((&param_81), (&param_82));
-        let _e409 = t_1;
-        color = mix(_e405, _e408, vec4(_e409));
-    } else {
-        let _e412 = here_1;
-        fill = _e412;
-        let _e413 = has_edge;
-        if _e413 {
-            let _e414 = edge_1;
-            fill = _e414;
-        }
-        let _e416 = fill.depth;
-        depth_1 = _e416;
-        let _e417 = line_10;
-        param_83 = _e417;
-        let _e419 = fill.index;
-        param_84 = _e419;
-        let _e420 = depth_1;
-        param_85 = _e420;
-        let _e421 = landing((&param_83), (&param_84), (&param_85));
-        away_2 = _e421;
-        let _e422 = away_2;
-        if (abs(_e422) >= 0.5f) {
-            let _e425 = line_10;
-            param_86 = _e425;
-            let _e426 = fill;
-            param_87 = _e426;
-            let _e427 = away_2;
-            param_88 = _e427;
-            let _e428 = fill_beside((&param_86), (&param_87), (&param_88));
-            local_12 = _e428;
+    let _e411 = found;
+    let _e412 = edge_1;
+    let _e415 = index_8;
+    let _e416 = edge_1;
+    let _e418 = line_10;
+    param_77 = _e418;
+    param_78 = select(_e416, _e415, (_e411 || (_e412 < 0f)));
+    let _e419 = sample_at((&param_77), (&param_78));
+    here_1 = _e419;
+    let _e420 = found;
+    if _e420 {
+        let _e421 = index_8;
+        let _e423 = line_10.sense;
+        let _e425 = line_10;
+        param_79 = _e425;
+        param_80 = (_e421 - _e423);
+        let _e426 = sample_at((&param_79), (&param_80));
+        before_1 = _e426;
+        let _e427 = a_5;
+        param_81 = _e427;
+        let _e428 = b_5;
+        param_82 = _e428;
+        let _e429 = is_torn((&param_81), (&param_82));
+        if _e429 {
+            local_13 = 0f;
         } else {
-            let _e429 = line_10;
-            param_89 = _e429;
-            let _e430 = fill;
-            param_90 = _e430;
-            let _e431 = color_of((&param_89), (&param_90));
-            local_12 = _e431;
+            let _e430 = a_5;
+            let _e432 = b_5;
+            let _e433 = a_5;
+            local_13 = (-(_e430) / (_e432 - _e433));
         }
-        let _e432 = local_12;
-        color = _e432;
-    }
-    let _e433 = rimmed;
-    if _e433 {
-        let _e434 = line_10;
-        param_91 = _e434;
-        let _e436 = rim.index;
-        param_92 = _e436;
-        let _e438 = rim.depth;
-        param_93 = _e438;
-        let _e439 = landing((&param_91), (&param_92), (&param_93));
-        coverage = (1f - abs(_e439));
-        let _e442 = color;
+        let _e436 = local_13;
+        t_1 = _e436;
+        let _e438 = before_1.depth;
+        let _e440 = here_1.depth;
+        let _e441 = t_1;
+        depth_1 = mix(_e438, _e440, _e441);
         let _e443 = line_10;
-        param_94 = _e443;
-        let _e444 = rim;
-        param_95 = _e444;
-        let _e445 = color_of((&param_94), (&param_95));
-        let _e446 = coverage;
-        color = mix(_e442, _e445, vec4(_e446));
-        let _e449 = coverage;
-        if (_e449 >= 0.5f) {
-            let _e452 = rim.depth;
-            local_13 = _e452;
+        param_83 = _e443;
+        let _e444 = before_1;
+        param_84 = _e444;
+        let _e445 = color_of((&param_83), (&param_84));
+        let _e446 = line_10;
+        param_85 = _e446;
+        let _e447 = here_1;
+        param_86 = _e447;
+        let _e448 = color_of((&param_85), (&param_86));
+        let _e449 = t_1;
+        color = mix(_e445, _e448, vec4(_e449));
+    } else {
+        let _e453 = here_1.depth;
+        depth_1 = _e453;
+        let _e454 = line_10;
+        param_87 = _e454;
+        let _e456 = here_1.index;
+        param_88 = _e456;
+        let _e457 = depth_1;
+        param_89 = _e457;
+        let _e458 = landing((&param_87), (&param_88), (&param_89));
+        let _e459 = line_10;
+        param_90 = _e459;
+        let _e460 = here_1;
+        param_91 = _e460;
+        param_92 = _e458;
+        let _e461 = fill_beside((&param_90), (&param_91), (&param_92));
+        color = _e461;
+    }
+    let _e462 = rim;
+    if (_e462 >= 0f) {
+        let _e464 = line_10;
+        param_93 = _e464;
+        let _e465 = rim;
+        param_94 = _e465;
+        let _e466 = sample_at((&param_93), (&param_94));
+        silhouette = _e466;
+        let _e467 = line_10;
+        param_95 = _e467;
+        let _e468 = rim;
+        param_96 = _e468;
+        let _e470 = silhouette.depth;
+        param_97 = _e470;
+        let _e471 = landing((&param_95), (&param_96), (&param_97));
+        coverage = (1f - abs(_e471));
+        let _e474 = color;
+        let _e475 = line_10;
+        param_98 = _e475;
+        let _e476 = silhouette;
+        param_99 = _e476;
+        let _e477 = color_of((&param_98), (&param_99));
+        let _e478 = coverage;
+        color = mix(_e474, _e477, vec4(_e478));
+        let _e481 = coverage;
+        if (_e481 >= 0.5f) {
+            let _e484 = silhouette.depth;
+            local_14 = _e484;
         } else {
-            let _e453 = depth_1;
-            local_13 = _e453;
+            let _e485 = depth_1;
+            local_14 = _e485;
         }
-        let _e454 = local_13;
-        depth_1 = _e454;
+        let _e486 = local_14;
+        depth_1 = _e486;
     }
     return;
 }

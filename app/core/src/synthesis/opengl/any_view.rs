@@ -1,4 +1,4 @@
-//! The pipeline for any view near the source's: two fragment passes.
+//! The pipeline for any view near the source's: three fragment passes.
 
 use std::rc::Rc;
 
@@ -8,17 +8,19 @@ use crate::eyes::PoseWarp;
 use crate::synthesis::PoseUniforms;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
-/// View synthesis for a target in any pose near the source's: tile bounds, march. Where both views are parallel eyes on a
-/// level line it shows what [`Gather`](super::Gather) does, within the rounding of positions, and gather is the fast way.
-/// The buffer has 16 bytes per tile of 16 x 8 source pixels. What a call does to the context's state is in the table of
+/// View synthesis for a target in any pose near the source's: tile bounds, tile spans, march. Where both views are
+/// parallel eyes on a level line it shows what [`Gather`](super::Gather) does, within the rounding of positions, and gather is the
+/// fast way. The buffers have 16 bytes per tile of 16 x 8 source pixels, and of as many target pixels. What a call does to the context's state is in the table of
 /// [`Synthesis`](super::Synthesis).
 pub struct AnyView {
     gl: Rc<Context>,
     outputs: Outputs,
     options: SynthesisOptions,
     bounds: Program,
+    spans: Program,
     march: Program,
     tile_map: RenderTarget,
+    span_map: RenderTarget,
 }
 
 impl AnyView {
@@ -36,25 +38,32 @@ impl AnyView {
             let defines = options.defines();
             let march = [defines.clone(), outputs.defines()].concat();
             let program = |file, defines: &[_]| Program::new(gl, ShaderSource::Screen(file), defines);
+            let map = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None);
             Ok(AnyView {
                 gl: gl.clone(),
                 outputs,
                 options: *options,
                 bounds: program("synthesis/any_view/tiles.frag", &defines)?,
+                spans: program("synthesis/any_view/spans.frag", &defines)?,
                 march: program("synthesis/any_view/march.frag", &march)?,
-                tile_map: RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None)?,
+                tile_map: map()?,
+                span_map: map()?,
             })
         })
     }
 
-    /// Allocates the buffer for sources of this size. Costs nothing if the size is the same as before.
+    /// Allocates the buffers for images of these sizes. Costs nothing if the sizes are the same as before.
     /// [`AnyView::synthesize`] calls it.
     ///
     /// # Errors
-    /// [`GlError`] if the size is beyond the driver's limits.
+    /// [`GlError`] if the sizes are beyond the driver's limits.
     pub fn prepare(&mut self, warp: &PoseWarp) -> Result<(), GlError> {
-        let size = self.options.buffer_size(self.tile_map.size(), tiles(warp.source_size));
-        preserving(&self.gl, &self.options, || self.tile_map.resize(size))
+        let tile_size = self.options.buffer_size(self.tile_map.size(), tiles(warp.source_size));
+        let span_size = self.options.buffer_size(self.span_map.size(), tiles(warp.target_size));
+        preserving(&self.gl, &self.options, || {
+            self.tile_map.resize(tile_size)?;
+            self.span_map.resize(span_size)
+        })
     }
 
     /// Synthesizes the target into a rectangle of [`PoseWarp::target_size`] and overwrites all of it.
@@ -77,9 +86,16 @@ impl AnyView {
                 self.set(&self.bounds, source, warp, target);
                 gl.draw_screen();
             });
+            gl.pass("any view spans", || {
+                self.span_map.bind_part(tiles(warp.target_size));
+                self.set(&self.spans, source, warp, target);
+                self.spans.texture("tile_map", 2, self.tile_map.color(0).raw());
+                gl.draw_screen();
+            });
             gl.pass("any view march", || {
                 self.set(&self.march, source, warp, target);
                 self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
+                self.march.texture("span_map", 3, self.span_map.color(0).raw());
                 draw_target(gl, target, self.outputs);
             });
             gl.end_synthesis();
