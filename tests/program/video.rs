@@ -5,7 +5,7 @@ use std::fs;
 use image::{RgbImage, imageops};
 use yoro_lab::metrics::{Channels, psnr};
 use yoro_lab::picture;
-use yoro_video::{Reader, VideoError};
+use yoro_video::{Format, Planes, Reader, VideoError};
 
 use crate::program::{run, succeed};
 
@@ -38,6 +38,68 @@ fn both_eyes_come_out_of_an_rgbd_video() {
         assert!(rendered > 34.0, "frame {frame}: {rendered:.1} dB");
         assert!(synthesized > same_image + 2.0, "frame {frame}: {synthesized:.1} dB, {same_image:.1} dB");
         assert!(synthesized > uncoded - 1.0, "frame {frame}: {synthesized:.1} dB, {uncoded:.1} dB");
+    }
+}
+
+/// A file as the iPhone application Record3D writes it: depth as hue on the left, the camera in the metadata. It is made of
+/// this program's own, whose eye is not widened; no phone has recorded one for this test.
+#[test]
+fn a_video_of_record3d_becomes_stereo() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let scene = "render prototype --frames 2 --size 128x96";
+    succeed(at, &format!("{scene} --video rgbd.mp4 --quantizer 10 --guard-band none"));
+    let mut reader = Reader::open(&at.join("rgbd.mp4")).unwrap();
+    let rgbd = reader.rgbd().unwrap();
+    assert_eq!(rgbd.guard_columns, 0);
+    // What is farther is told as farthest.
+    const RANGE: f32 = 6.0;
+    let hue = |depth: u8| {
+        let share = f32::from(depth) / 255.0;
+        let distance = 1.0 / (share / rgbd.nearest + (1.0 - share) / rgbd.farthest);
+        let sixths = 6.0 * distance.min(0.97 * RANGE) / RANGE;
+        let channel = |n: f32| {
+            let k = (n + sixths) % 6.0;
+            (255.0 * (1.0 - k.min(4.0 - k).clamp(0.0, 1.0))) as u8
+        };
+        image::Rgb([channel(5.0), channel(3.0), channel(1.0)])
+    };
+    let format = Format { frame_rate: 30, quantizer: 10, frames: 2, rgbd: None };
+    yoro_video::write(&at.join("phone.mp4"), &format, || -> Result<Option<Planes>, VideoError> {
+        Ok(reader.read_rgbd()?.map(|(color, depth)| {
+            let hues = RgbImage::from_fn(128, 96, |x, y| hue(depth.get_pixel(x, y).0[0]));
+            Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))
+        }))
+    })
+    .unwrap();
+    let focal = 48.0 / (rgbd.fov_y / 2.0).tan();
+    let file = fs::read(at.join("phone.mp4")).unwrap();
+    let camera = format!(
+        r#"{{"intrinsicMatrix":[{focal},0,0,0,{focal},0,64,48,1],"rangeOfEncodedDepth":[0,{RANGE}]}}"#
+    );
+    let size = (camera.len() as u32 + 8).to_be_bytes();
+    fs::write(at.join("phone.mp4"), [&file[..], &size, b"meta", camera.as_bytes()].concat()).unwrap();
+
+    succeed(at, &format!("{scene} --method conventional --outputs left,right --out truth"));
+    let stereo = ["phone", "rgbd"].map(|name| {
+        succeed(at, &format!("synthesize {name}.mp4 --out {name}.stereo.mp4 --quantizer 10"));
+        Reader::open(&at.join(format!("{name}.stereo.mp4"))).unwrap()
+    });
+    let [mut phone, mut own] = stereo;
+    for frame in 0..2 {
+        let [left, right] = ["left", "right"].map(|eye| {
+            picture::load_color(&at.join(format!("truth/prototype-{frame:04}.{eye}.png"))).unwrap()
+        });
+        let synthesized = |reader: &mut Reader| {
+            let both = reader.read().unwrap().unwrap().rgb((256, 96));
+            imageops::crop_imm(&both, 0, 0, 128, 96).to_image()
+        };
+        let [value, own, same] = [&synthesized(&mut phone), &synthesized(&mut own), &right]
+            .map(|image| psnr(image, &left, Channels::Luma).unwrap().0);
+        let what =
+            format!("frame {frame}: {value:.1} dB, {own:.1} dB by luma, {same:.1} dB for the same image");
+        println!("{what}");
+        assert!(value > same + 1.0, "{what}");
     }
 }
 

@@ -108,8 +108,7 @@ pub fn synthesize(
     let bar = progress_bar(frames as u64);
     let bytes = yoro_video::write(out, &format, || -> anyhow::Result<Option<Planes>> {
         interrupt::check()?;
-        let Some(picture) = reader.read()? else { return Ok(None) };
-        let (color, depth) = rgbd.unpack(&picture);
+        let Some((color, depth)) = reader.read_rgbd()? else { return Ok(None) };
         let rgba: Vec<u8> = color.rows().rev().flatten().flat_map(|p| [p[0], p[1], p[2], 255]).collect();
         let depth: Vec<f32> = depth.rows().rev().flatten().map(|p| f32::from(p[0]) / 255.0).collect();
         let result = offline.run(&rgba, &depth, &views.warp)?;

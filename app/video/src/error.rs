@@ -19,7 +19,7 @@ pub enum VideoError {
     },
     /// The video has no depth.
     #[error(
-        "{} has no depth: give a file that `yoro render --video` has written",
+        "{} has no depth: give a file that `yoro render --video` or Record3D has written",
         path.display()
     )]
     NoDepth {

@@ -3,6 +3,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
+use image::{GrayImage, RgbImage};
 use shiguredo_mp4::bitstream::h264::{
     H264NalUnitType, H264SampleEntryConfig, LengthSize, annexb_to_length_prefixed,
     build_avc1_box_from_annexb, length_prefixed_to_annexb, parse_annexb_nal_units,
@@ -13,7 +14,7 @@ use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_max
 use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
-use crate::{DEPTH_BOX, Decoder, Encoder, Planes, Rgbd, VideoError};
+use crate::{DEPTH_BOX, Decoder, Encoder, Planes, Rgbd, VideoError, record3d};
 
 /// How a video is coded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,7 +188,15 @@ pub struct Reader {
     length_size: LengthSize,
     decoder: Decoder,
     frame_rate: u32,
-    rgbd: Option<Rgbd>,
+    depth: Option<(Rgbd, DepthCode)>,
+}
+
+/// How a picture tells depth.
+enum DepthCode {
+    /// As [`Rgbd::pack`] has it.
+    Luma,
+    /// As the application Record3D has it: distances in metres of the hues 0 and 1.
+    Hue([f32; 2]),
 }
 
 impl Reader {
@@ -234,6 +243,15 @@ impl Reader {
             samples.push((sample.data_offset, sample.data_size));
         }
         let (entry, frame_rate) = found.ok_or_else(|| VideoError::format(path, "it has no H.264 video"))?;
+        let depth = match rgbd(path, &entry)? {
+            Some(rgbd) => Some((rgbd, DepthCode::Luma)),
+            None => {
+                let size = [entry.visual.width, entry.visual.height].map(u32::from);
+                let found = record3d::find(&mut file, length, size).map_err(failed)?;
+                let found = found.transpose().map_err(|what| VideoError::format(path, what))?;
+                found.map(|(rgbd, range)| (rgbd, DepthCode::Hue(range)))
+            }
+        };
         let sets = entry.avcc_box.sps_list.iter().chain(&entry.avcc_box.pps_list);
         Ok(Reader {
             path: path.into(),
@@ -247,7 +265,7 @@ impl Reader {
             },
             decoder: Decoder::new()?,
             frame_rate,
-            rgbd: rgbd(path, &entry)?,
+            depth,
         })
     }
 
@@ -266,7 +284,25 @@ impl Reader {
     /// # Errors
     /// [`VideoError::NoDepth`] for an ordinary video.
     pub fn rgbd(&self) -> Result<Rgbd, VideoError> {
-        self.rgbd.ok_or_else(|| VideoError::NoDepth { path: self.path.clone() })
+        let no_depth = || VideoError::NoDepth { path: self.path.clone() };
+        self.depth.as_ref().map(|(rgbd, _)| *rgbd).ok_or_else(no_depth)
+    }
+
+    /// Returns colour and depth of the next picture, or `None` after the last. Depth is as [`Rgbd`] tells.
+    ///
+    /// # Errors
+    /// As [`Reader::read`], and [`VideoError::NoDepth`] for an ordinary video.
+    pub fn read_rgbd(&mut self) -> Result<Option<(RgbImage, GrayImage)>, VideoError> {
+        let rgbd = self.rgbd()?;
+        let Some(picture) = self.read()? else { return Ok(None) };
+        Ok(Some(match self.depth {
+            Some((_, DepthCode::Hue(range))) => {
+                let [hues, color] = picture.halves();
+                let [hues, color] = [hues, color].map(|half| half.rgb(rgbd.size.into()));
+                (color, record3d::depth(&hues, range, &rgbd))
+            }
+            _ => rgbd.unpack(&picture),
+        }))
     }
 
     /// Returns the next picture, or `None` after the last.
@@ -282,7 +318,7 @@ impl Reader {
             .map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
         let bytes = [std::mem::take(&mut self.parameters), annex_b].concat();
         let picture = self.decoder.decode(&bytes).map_err(|error| VideoError::format(&self.path, error))?;
-        if let Some(rgbd) = self.rgbd {
+        if let Some((rgbd, _)) = &self.depth {
             let width = (rgbd.size[0] + rgbd.guard_columns).next_multiple_of(2) as usize;
             let size = [2 * width, rgbd.size[1].next_multiple_of(2) as usize];
             if picture.size != size {
@@ -315,8 +351,9 @@ fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize) -> io::Res
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record3d::tests::{CAMERA, color};
     use crate::rgbd::tests::RGBD;
-    use image::{Rgb, RgbImage};
+    use image::Rgb;
     use std::fs;
 
     const FORMAT: Format = Format { frame_rate: 3, quantizer: 20, frames: 7, rgbd: Some(RGBD) };
@@ -360,18 +397,57 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"old");
     }
 
+    /// Colour of one tone beside depth of 0.5 to 3.5 m in 4 m of hues.
+    fn record3d_video(path: &Path) {
+        let hues = RgbImage::from_fn(60, 32, |x, _| color((0.5 + f32::from(x as u8 / 4) / 5.0) / 4.0));
+        let grey = RgbImage::from_pixel(60, 32, Rgb([100, 120, 140]));
+        let mut pictures = (0..2).map(|_| Planes::of_rgb(&hues).beside(&Planes::of_rgb(&grey)));
+        let format = Format { rgbd: None, frames: 2, ..FORMAT };
+        write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
+        let size = (CAMERA.len() as u32 + 8).to_be_bytes();
+        let file = fs::read(path).unwrap();
+        fs::write(path, [&file[..], &size, b"meta", CAMERA.as_bytes()].concat()).unwrap();
+    }
+
+    #[test]
+    fn videos_of_record3d_have_depth_as_hue() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("phone.mp4");
+        record3d_video(&path);
+        let mut reader = Reader::open(&path).unwrap();
+        let rgbd = reader.rgbd().unwrap();
+        assert_eq!((rgbd.size, rgbd.nearest, rgbd.farthest), ([60, 32], 0.1, 4.0));
+        for _ in 0..2 {
+            let (color, depth) = reader.read_rgbd().unwrap().unwrap();
+            let worst = color.iter().zip([100, 120, 140].iter().cycle()).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(worst.unwrap() < 24, "{worst:?}");
+            for x in (1..60).step_by(4) {
+                let share = f32::from(depth.get_pixel(x, 16).0[0]) / 255.0;
+                let distance = 1.0 / (share / rgbd.nearest + (1.0 - share) / rgbd.farthest);
+                let wanted = 0.5 + (x / 4) as f32 / 5.0;
+                assert!(
+                    (distance / wanted - 1.0).abs() < 0.15,
+                    "column {x}: {distance} m in place of {wanted}"
+                );
+            }
+        }
+        assert!(reader.read_rgbd().unwrap().is_none());
+    }
+
     /// Every byte of a file may be wrong, and it may end anywhere.
     #[test]
     fn damaged_files_are_errors() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("v.mp4");
+        record3d_video(&path);
+        let phone = fs::read(&path).unwrap();
         video(&path);
         let whole = fs::read(&path).unwrap();
         let read = |bytes: &[u8]| -> Result<usize, VideoError> {
             fs::write(&path, bytes).unwrap();
             let mut reader = Reader::open(&path)?;
             let mut frames = 0;
-            while reader.read()?.is_some() {
+            while reader.read_rgbd()?.is_some() {
                 frames += 1;
             }
             Ok(frames)
@@ -385,8 +461,8 @@ mod tests {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (seed >> 8) as usize
         };
-        for _ in 0..300 {
-            let mut damaged = whole.clone();
+        for i in 0..400 {
+            let mut damaged = [&whole, &phone][i % 2].clone();
             for _ in 0..=next() % 4 {
                 let at = next() % damaged.len();
                 damaged[at] = next() as u8;

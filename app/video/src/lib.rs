@@ -7,6 +7,7 @@ mod coder;
 mod error;
 mod file;
 mod planes;
+mod record3d;
 mod rgbd;
 
 pub use coder::{Decoder, Encoder, LiveEncoder};

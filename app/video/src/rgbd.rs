@@ -67,13 +67,13 @@ impl Rgbd {
     }
 
     /// Returns colour and depth of a picture, of the size of the rendered eye with its guard band.
-    pub fn unpack(&self, picture: &Planes) -> (RgbImage, GrayImage) {
+    pub(crate) fn unpack(&self, picture: &Planes) -> (RgbImage, GrayImage) {
         let [color, depth] = picture.halves();
         let size = (self.size[0] + self.guard_columns, self.size[1]);
         (color.rgb(size), depth.gray(size))
     }
 
-    fn quantize(&self, distance: f32) -> u8 {
+    pub(crate) fn quantize(&self, distance: f32) -> u8 {
         depth_luma(distance, [self.nearest, self.farthest])
     }
 }

@@ -1,0 +1,193 @@
+//! RGBD videos of the iPhone application Record3D: depth as hue on the left, colour on the right.
+//!
+//! The format is told by players that read it, such as Record3D's own for browsers: the hue of a pixel stands for its
+//! distance, from red at the nearest over green and blue to red at the farthest. A JSON object in the file's metadata
+//! has the camera.
+
+use std::io::{self, Read, Seek, SeekFrom};
+
+use image::{GrayImage, Luma, RgbImage};
+use serde::Deserialize;
+use yoro::eyes::Eye;
+
+use crate::Rgbd;
+
+/// The beginning of the JSON object.
+const BEGIN: &[u8] = br#"{"intrinsic"#;
+/// Metadata beyond this are not looked through, in bytes.
+const METADATA_LIMIT: u64 = 64 << 20;
+/// Distances of the hues 0 and 1 where the file does not tell them, in metres.
+const DEFAULT_RANGE: [f32; 2] = [0.0, 3.0];
+/// Phones measure nothing that is nearer, in metres. Pixels without a distance are red.
+const NEAREST: f32 = 0.1;
+/// The distance between the eyes in metres.
+const IPD: f32 = 0.063;
+
+/// The camera of a video.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(rename_all = "camelCase")]
+struct Camera {
+    /// Focal lengths and principal point in pixels, a matrix by columns.
+    intrinsic_matrix: [f32; 9],
+    /// Distances of the hues 0 and 1 in metres.
+    range_of_encoded_depth: Option<[f32; 2]>,
+}
+
+/// Returns what the pictures show, and the distances of the hues 0 and 1 in metres. `None` if the file has no such metadata.
+///
+/// # Errors
+/// What cannot be.
+pub(crate) fn find(
+    file: &mut (impl Read + Seek),
+    length: u64,
+    size: [u32; 2],
+) -> io::Result<Option<Result<(Rgbd, [f32; 2]), String>>> {
+    let bytes = metadata(file, length)?;
+    let Some(at) = bytes.windows(BEGIN.len()).rposition(|window| window == BEGIN) else { return Ok(None) };
+    // Other metadata may follow.
+    let camera = serde_json::Deserializer::from_slice(&bytes[at..]).into_iter::<Camera>().next();
+    let camera = camera.expect("there is a text").map_err(|error| error.to_string());
+    Ok(Some(camera.and_then(|camera| camera.rgbd(size))))
+}
+
+/// Returns the contents of all boxes of an MP4 file but those of the video itself.
+fn metadata(file: &mut (impl Read + Seek), length: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut at = 0;
+    while at + 8 <= length {
+        file.seek(SeekFrom::Start(at))?;
+        let mut header = [0; 8];
+        file.read_exact(&mut header)?;
+        let [size, kind] = [&header[..4], &header[4..]].map(|four| four.try_into().unwrap_or([0; 4]));
+        let (size, header) = match u32::from_be_bytes(size) {
+            0 => (length - at, 8),
+            1 if at + 16 <= length => {
+                let mut large = [0; 8];
+                file.read_exact(&mut large)?;
+                (u64::from_be_bytes(large), 16)
+            }
+            size => (u64::from(size), 8),
+        };
+        let Some(end) = at.checked_add(size).filter(|end| size >= header && *end <= length) else { break };
+        if &kind != b"mdat" && bytes.len() as u64 + size <= METADATA_LIMIT {
+            file.take(size - header).read_to_end(&mut bytes)?;
+        }
+        at = end;
+    }
+    Ok(bytes)
+}
+
+impl Camera {
+    /// Returns what pictures of this size in pixels show. The other eye is as high as the camera, so where the optical axis
+    /// meets the picture counts in width alone.
+    fn rgbd(&self, [width, height]: [u32; 2]) -> Result<(Rgbd, [f32; 2]), String> {
+        let [focal_x, _, _, _, focal_y, _, center_x, ..] = self.intrinsic_matrix;
+        let [low, high] = self.range_of_encoded_depth.unwrap_or(DEFAULT_RANGE);
+        if width % 2 != 0 {
+            return Err(format!("pictures of {width} pixels have no two halves"));
+        }
+        let columns = width / 2;
+        let angle = |pixels: f32, focal: f32| (pixels / focal).atan();
+        let rgbd = Rgbd {
+            size: [columns, height],
+            eye: Eye::Right,
+            guard_columns: 0,
+            fov_y: 2.0 * angle(height as f32 / 2.0, focal_y),
+            // The outer side of a right eye is on the right.
+            outer_inner: Some([angle(columns as f32 - center_x, focal_x), angle(center_x, focal_x)]),
+            ipd: IPD,
+            nearest: low.max(NEAREST),
+            farthest: high,
+        };
+        let inside = center_x > 0.0 && center_x < columns as f32;
+        match inside && low >= 0.0 && rgbd.is_valid() {
+            true => Ok((rgbd, [low, high])),
+            false => Err("what it says of its camera cannot be".into()),
+        }
+    }
+}
+
+/// Returns the distances that hues stand for, as [`Rgbd`]'s depth. What was not measured is as far as can be.
+pub(crate) fn depth(hues: &RgbImage, [low, high]: [f32; 2], rgbd: &Rgbd) -> GrayImage {
+    GrayImage::from_fn(hues.width(), hues.height(), |x, y| {
+        let distance = hue(hues.get_pixel(x, y).0).map(|hue| low + hue * (high - low));
+        Luma([distance.filter(|distance| *distance >= NEAREST).map_or(0, |distance| rgbd.quantize(distance))])
+    })
+}
+
+/// Returns the hue, 0 to 1, or `None` for grey.
+fn hue(color: [u8; 3]) -> Option<f32> {
+    let [r, g, b] = color.map(f32::from);
+    let largest = r.max(g).max(b);
+    let range = largest - r.min(g).min(b);
+    if range < 64.0 {
+        return None;
+    }
+    let sixths = match largest {
+        _ if largest == r => ((g - b) / range).rem_euclid(6.0),
+        _ if largest == g => (b - r) / range + 2.0,
+        _ => (r - g) / range + 4.0,
+    };
+    Some(sixths / 6.0)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use image::Rgb;
+    use std::io::Cursor;
+
+    /// A camera whose axis is left of the middle of 60 x 32 pixels, as the application writes it.
+    pub(crate) const CAMERA: &str =
+        r#"{"intrinsicMatrix":[50,0,0,0,50,0,25,16,1],"rangeOfEncodedDepth":[0,4]}"#;
+
+    /// Returns the colour of a hue, 0 to 1.
+    pub(crate) fn color(hue: f32) -> Rgb<u8> {
+        let channel = |n: f32| {
+            let k = (n + hue * 6.0) % 6.0;
+            (255.0 * (1.0 - k.min(4.0 - k).clamp(0.0, 1.0))).round() as u8
+        };
+        Rgb([channel(5.0), channel(3.0), channel(1.0)])
+    }
+
+    fn atom(kind: &[u8; 4], payload: &[u8]) -> Vec<u8> {
+        [&(payload.len() as u32 + 8).to_be_bytes(), &kind[..], payload].concat()
+    }
+
+    fn found(file: &[u8]) -> Option<Result<(Rgbd, [f32; 2]), String>> {
+        find(&mut Cursor::new(file), file.len() as u64, [120, 32]).unwrap()
+    }
+
+    #[test]
+    fn hues_are_what_they_were_made_of() {
+        for i in 0..600 {
+            let wanted = i as f32 / 600.0;
+            let read = hue(color(wanted).0).unwrap();
+            assert!((read - wanted).abs() < 0.5 / 255.0, "{read} in place of {wanted}");
+        }
+        assert_eq!([[0, 0, 0], [255, 255, 255], [90, 100, 120]].map(hue), [None; 3]);
+    }
+
+    #[test]
+    fn the_camera_is_found_wherever_it_stands_but_not_in_the_video() {
+        let meta = atom(b"meta", format!("key{CAMERA}more").as_bytes());
+        let video = atom(b"mdat", CAMERA.as_bytes());
+        let (rgbd, range) = found(&[&atom(b"ftyp", b"mp42")[..], &video, &meta].concat()).unwrap().unwrap();
+        assert_eq!((rgbd.size, rgbd.farthest, range), ([60, 32], 4.0, [0.0, 4.0]));
+        assert_eq!(rgbd.outer_inner.unwrap().map(|angle| (angle.tan() * 50.0).round()), [35.0, 25.0]);
+        assert!(found(&[&meta[..], &video].concat()).is_some());
+        assert_eq!(found(&video), None);
+        assert_eq!(found(b"no boxes at all"), None);
+    }
+
+    #[test]
+    fn impossible_cameras_are_errors() {
+        let with = |from: &str, to: &str| found(&atom(b"moov", CAMERA.replace(from, to).as_bytes())).unwrap();
+        assert!(with("", "").is_ok() && with(",\"range", ",\"other").is_ok());
+        for (from, to) in
+            [("[50,", "[0,"), ("[0,4]", "[4,0]"), (",25,", ",-1,"), ("50,0,", "\"x\","), ("]}", "")]
+        {
+            assert!(with(from, to).is_err(), "{from} {to}");
+        }
+    }
+}
