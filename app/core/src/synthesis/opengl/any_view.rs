@@ -10,8 +10,8 @@ use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarg
 
 /// View synthesis for a target in any pose near the source's: tile bounds, tile spans, march. Where both views are
 /// parallel eyes on a level line it shows what [`Gather`](super::Gather) does, within the rounding of positions, and gather is the
-/// fast way. The buffers have 16 bytes per tile of 16 x 8 source pixels, and of as many target pixels. What a call does to the context's state is in the table of
-/// [`Synthesis`](super::Synthesis).
+/// fast way. The buffers have 16 bytes per tile of 16 x 8 source pixels, and of as many target pixels. What a call does to the
+/// context's state is in the table of [`Synthesis`](super::Synthesis).
 pub struct AnyView {
     gl: Rc<Context>,
     outputs: Outputs,
