@@ -15,8 +15,9 @@ pub mod dataset;
 mod depth;
 pub mod inpaint;
 pub mod machine;
-pub mod metrics;
 pub mod picture;
 pub mod report;
 pub mod run;
 pub mod streaming;
+
+pub use yoro_metrics as metrics;

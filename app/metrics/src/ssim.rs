@@ -225,7 +225,7 @@ fn mean_across_rows<const N: usize>(half: &[f64; N], ring: &[f64], y: isize, out
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::tests::image;
+    use crate::tests::image;
 
     /// Straight from the definition, one window at a time.
     fn plain(a: &RgbImage, b: &RgbImage, x0: usize, y0: usize, channel: usize) -> f64 {

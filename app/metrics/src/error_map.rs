@@ -50,7 +50,7 @@ pub fn error_map(a: &RgbImage, b: &RgbImage) -> Result<RgbImage, MetricsError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::tests::image;
+    use crate::tests::image;
 
     #[test]
     fn colours_get_lighter_with_the_error() {

@@ -252,7 +252,7 @@ fn balanced(mut kernel: Vec<f64>) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::tests::{image, pair};
+    use crate::tests::{image, pair};
 
     /// A size of the test images, pixels per degree, and what flip-evaluator 1.7 says: the mean and the map at (0,
     /// h - 1), (5, 5), (w - 1, h / 2).
