@@ -1,48 +1,79 @@
-## The GPU's time for a frame of the demo with one view and with both, in turn: on an OpenXR runtime, or without one (two
-## viewports are then Godot's stereo). Run it by hand, alone on the machine.
+## What a frame of the demo costs, on an OpenXR runtime or without one (two viewports are then Godot's stereo). Without arguments
+## all variants in turn. A runtime paces a program by the frames before, so for the time between frames one variant has a process
+## of its own: `only=NUMBER`. `blocks=COUNT`. Run it by hand.
 extends Node
 
-## Blocks of each mode, and frames of a block; the first ones of a block are not counted.
-const BLOCKS := 8
+## What is set for each; the first one is Godot's stereo.
+const VARIANTS: Array[Dictionary] = [
+	{mode = YoroCamera3D.Mode.BOTH_VIEWS, near_limit = 0.4, stereo_layers = DemoRoom.STEREO},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = DemoRoom.STEREO},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.0, stereo_layers = DemoRoom.STEREO},
+	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = 0},
+]
+## Frames of a block; the first ones of a block are not counted.
 const FRAMES := 8
 const SKIPPED := 3
+## Clock ticks in a second of /proc.
+const TICKS := 100.0
 
 @onready var camera: YoroCamera3D = $Demo/XROrigin3D/YoroCamera3D
 
 
 func _ready() -> void:
+	var blocks := 8
+	var wanted := range(VARIANTS.size())
+	for argument in OS.get_cmdline_user_args():
+		blocks = int(argument.trim_prefix("blocks=")) if argument.begins_with("blocks=") else blocks
+		wanted = [int(argument.trim_prefix("only="))] if argument.begins_with("only=") else wanted
 	var interface: OpenXRInterface = XRServer.primary_interface as OpenXRInterface
 	if interface != null and interface.is_initialized():
 		interface.render_target_size_multiplier = 2.0
-	await _frames(8)
+	await _frames(12)
 	var shown: Array[Viewport] = [get_viewport()]
-	var source: Viewport = camera.source_viewport()
+	var eye: Viewport = camera.source_viewport()
 	if camera.preview() != null:
 		shown.assign(camera.preview().eyes)
-		source = camera.preview().source
-	for viewport: Viewport in shown + [source]:
+		eye = camera.preview().source
+	for viewport: Viewport in shown + [eye]:
 		RenderingServer.viewport_set_measure_render_time(viewport.get_viewport_rid(), true)
-	var times := {YoroCamera3D.Mode.BOTH_VIEWS: [], YoroCamera3D.Mode.ONE_VIEW: []}
-	for block in BLOCKS:
-		for mode: YoroCamera3D.Mode in times:
-			camera.mode = mode
+	var times: Array[Dictionary] = []
+	for variant in VARIANTS:
+		times.append({frame = [], processor = [], shown = [], eye = []})
+	for block in blocks:
+		for i: int in wanted:
+			for property: String in VARIANTS[i]:
+				camera.set(property, VARIANTS[i][property])
 			await _frames(SKIPPED)
+			var processor := _processor()
 			for frame in FRAMES:
+				var start := Time.get_ticks_usec()
 				await _frames(1)
-				var drawn := shown.duplicate()
-				if mode == YoroCamera3D.Mode.ONE_VIEW:
-					drawn.append(source)
-				var time := 0.0
-				for viewport: Viewport in drawn:
-					time += RenderingServer.viewport_get_measured_render_time_gpu(viewport.get_viewport_rid())
-				times[mode].append(time)
-	var medians: Array[float] = []
-	for mode: YoroCamera3D.Mode in times:
-		times[mode].sort()
-		medians.append(times[mode][times[mode].size() / 2])
-		print("fact %s: median %.1f ms of %d" % [YoroCamera3D.Mode.find_key(mode), medians[-1], times[mode].size()])
-	print("fact ratio %.2f" % (medians[1] / medians[0]))
+				times[i].frame.append((Time.get_ticks_usec() - start) / 1000.0)
+				times[i].shown.append(_gpu(shown))
+				times[i].eye.append(_gpu([eye]) if camera.mode == YoroCamera3D.Mode.ONE_VIEW else 0.0)
+			times[i].processor.append((_processor() - processor) * 1000.0 / FRAMES)
+	for i: int in wanted:
+		var medians: Array[float] = []
+		for part: String in times[i]:
+			var values: Array = times[i][part]
+			values.sort()
+			medians.append(values[values.size() / 2])
+		print("fact %d: a frame %.1f ms, processor %.1f ms, GPU: shown %.1f ms, rendered eye %.1f ms" % ([i] + medians))
 	get_tree().quit()
+
+
+## Returns the GPU's time for the last frame of viewports, in ms.
+func _gpu(viewports: Array[Viewport]) -> float:
+	var time := 0.0
+	for viewport in viewports:
+		time += RenderingServer.viewport_get_measured_render_time_gpu(viewport.get_viewport_rid())
+	return time
+
+
+## Returns the seconds that all threads of this program have run for, on Linux.
+func _processor() -> float:
+	var fields := FileAccess.open("/proc/self/stat", FileAccess.READ).get_line().get_slice(") ", 1).split(" ")
+	return (float(fields[11]) + float(fields[12])) / TICKS
 
 
 func _frames(count: int) -> void:

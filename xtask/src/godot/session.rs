@@ -46,6 +46,11 @@ impl Session {
         Ok(Self { godot, display: format!(":{}", number.trim()), _screen: screen })
     }
 
+    /// The program that is Godot.
+    pub fn program(&self) -> PathBuf {
+        self.godot.join("godot")
+    }
+
     /// Runs Godot with arguments, and returns what it printed. `folder` gets its log, and is where it meets the runtime.
     ///
     /// # Errors
@@ -53,7 +58,7 @@ impl Session {
     pub fn godot(&self, arguments: &[&str], folder: &Path, limit: Duration) -> anyhow::Result<String> {
         let log = folder.join("log");
         let file = File::create(&log).with_context(|| format!("{} cannot be written", log.display()))?;
-        let child = Command::new(self.godot.join("godot"))
+        let child = Command::new(self.program())
             .args(arguments)
             .env("DISPLAY", &self.display)
             .env("XDG_RUNTIME_DIR", folder)

@@ -58,6 +58,8 @@ const SCENES: [Scene; 2] = [
             "fact views 2",
             // Two of the five places are the same, and are left and entered differently.
             "fact near [false, false, true, true, false]",
+            "fact paused true, drawn 0, rests true",
+            "fact resumed, as before true, bytes more 0\n",
             "fact trouble \n",
         ],
     },
@@ -68,6 +70,17 @@ const GAIN: f64 = 10.0;
 const IDENTITY: f64 = 60.0;
 /// The pose that was rendered and the one that is shown differ by less, in radians and metres.
 const LAG: f64 = 1e-4;
+/// What the editor's script says when the add-on's menu does what it says.
+const EDITOR: [&str; 8] = [
+    "fact without a camera of ours nothing is marked: true",
+    "fact replaced true, near 0.2",
+    "fact warnings before: 1",
+    "fact glass on its own layer true, box as it was true, lights on both true",
+    "fact warnings after: 0",
+    "fact unmarked true",
+    "fact put back true",
+    "fact done",
+];
 /// What Godot 4.6 says at exit of any project with OpenXR on Monado.
 const USUAL: [&str; 2] = [
     "Attempt to disconnect a nonexistent connection from '<OpenXRSpatialEntityExtension",
@@ -95,6 +108,7 @@ pub fn test() -> anyhow::Result<()> {
     make_parent(&import.join("log"))?;
     let headless = ["--path", &project, "--xr-mode", "off", "--headless", "--import"];
     faults.extend(errors(&session.godot(&headless, &import, LIMIT)?));
+    faults.extend(edit(&session, &project, &folder.join("editor"))?);
     let program = cargo::program("yoro")?;
     let program = program.get_program().to_owned();
     for scene in &SCENES {
@@ -127,6 +141,16 @@ pub fn test() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Operates the editor's menu. What an editor leaks that a script ends is no fault.
+fn edit(session: &Session, project: &str, folder: &Path) -> anyhow::Result<Vec<String>> {
+    make_parent(&folder.join("log"))?;
+    let script = "res://test/editor.gd";
+    let arguments = ["--path", project, "--xr-mode", "off", "--headless", "--editor", "--script", script];
+    let printed = session.godot(&arguments, folder, LIMIT)?;
+    let faults = errors(&printed).into_iter().filter(|error| error.starts_with("SCRIPT"));
+    Ok(faults.chain(unsaid(EDITOR, &printed)).map(|fault| format!("editor: {fault}")).collect())
+}
+
 fn play(
     session: &Session,
     scene: &Scene,
@@ -137,6 +161,7 @@ fn play(
     let runtime = scene.headset.then(|| session.runtime(folder)).transpose()?;
     let file = format!("res://test/{}.tscn", scene.name);
     let out = format!("out={}", folder.display());
+    let godot = format!("godot={}", session.program().display());
     let xr = if scene.headset { "on" } else { "off" };
     // A hundred frames once: the other renderer's are the same scripts.
     let frames = if renderer == RENDERERS[0] { "frames=100" } else { "frames=60" };
@@ -152,6 +177,7 @@ fn play(
         &file,
         "--",
         &out,
+        &godot,
         frames,
     ];
     let printed = session.godot(&arguments, folder, LIMIT);
@@ -173,13 +199,8 @@ fn errors(printed: &str) -> Vec<String> {
 
 /// What a scene did not say.
 fn missing(scene: &Scene, printed: &str) -> Vec<String> {
-    let mut missing: Vec<String> = scene
-        .facts
-        .iter()
-        .chain(&["fact done"])
-        .filter(|fact| !printed.contains(**fact))
-        .map(|fact| format!("it does not say `{}`", fact.trim_end()))
-        .collect();
+    let facts = scene.facts.iter().chain(&["fact done"]).copied();
+    let mut missing: Vec<String> = unsaid(facts, printed).collect();
     if scene.headset {
         match lag(printed) {
             Some(lag) if lag < LAG => {}
@@ -187,6 +208,13 @@ fn missing(scene: &Scene, printed: &str) -> Vec<String> {
         }
     }
     missing
+}
+
+fn unsaid<'a>(facts: impl IntoIterator<Item = &'a str>, printed: &str) -> impl Iterator<Item = String> {
+    facts
+        .into_iter()
+        .filter(|fact| !printed.contains(fact))
+        .map(|fact| format!("it does not say `{}`", fact.trim_end()))
 }
 
 /// The larger number of `fact lag A rad, B m`.
@@ -221,6 +249,7 @@ mod tests {
     #[test]
     fn a_late_pose_and_a_silent_scene_are_faults() {
         let said = "fact views 2\nfact near [false, false, true, true, false]\n\
+                    fact paused true, drawn 0, rests true\nfact resumed, as before true, bytes more 0\n\
                     fact trouble \nfact lag 0.0000001 rad, 0.0000020 m\nfact done\n";
         assert_eq!(lag(said), Some(0.000_002));
         assert!(missing(&SCENES[1], said).is_empty());

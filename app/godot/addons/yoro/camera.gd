@@ -25,6 +25,12 @@ enum DebugView {
 	DISPARITY, ## How far surfaces move between the eyes: white is a tenth of the image's width.
 	MADE_EYE, ## The synthesized eye's image to both eyes.
 }
+## What Godot draws with this camera.
+enum _Drawn {
+	ALL, ## As without this add-on.
+	ALL_WATCHED, ## The same, and nearness is measured.
+	STEREO_LAYERS, ## Over the eyes that are put there.
+}
 
 ## What is different where both eyes are shown: the sky and screen-space light are the rendered eye's.
 const SHOWN_EXCEPT := {
@@ -72,7 +78,7 @@ var _environment := YoroEnvironment.new(SHOWN_EXCEPT)
 var _compositor := Compositor.new()
 var _world_effects: Array[CompositorEffect] = []
 var _trouble := ""
-var _takes_part := false
+var _drawn := _Drawn.ALL
 
 
 ## Returns why Godot renders both eyes although [member mode] is another, in one sentence; empty if it does not.
@@ -112,9 +118,21 @@ func preview() -> YoroPreview:
 	return _preview.get_child(0) if _preview != null else null
 
 
+## Follows each frame, after the scripts that move things. While the scene is paused it is still shown.
+class _Follower:
+	extends Node
+	var camera: YoroCamera3D
+
+	func _init(of: YoroCamera3D) -> void:
+		camera = of
+		process_mode = PROCESS_MODE_ALWAYS
+		process_priority = 1000
+
+	func _process(_delta: float) -> void:
+		camera._follow()
+
+
 func _ready() -> void:
-	# After the scripts that move things.
-	process_priority = 1000
 	if Engine.is_editor_hint():
 		return
 	for node: WorldEnvironment in get_tree().root.find_children("*", "WorldEnvironment", true, false):
@@ -122,6 +140,8 @@ func _ready() -> void:
 			_world_effects = node.compositor.compositor_effects
 	if RenderingServer.get_rendering_device() == null:
 		_refuse("the Compatibility renderer has no effects: choose Mobile or Forward+")
+		return
+	add_child(_Follower.new(self), false, INTERNAL_MODE_BACK)
 
 
 func _exit_tree() -> void:
@@ -129,9 +149,7 @@ func _exit_tree() -> void:
 		_step_back()
 
 
-func _process(_delta: float) -> void:
-	if Engine.is_editor_hint() or RenderingServer.get_rendering_device() == null:
-		return
+func _follow() -> void:
 	var viewport := get_viewport()
 	var interface := XRServer.primary_interface
 	var in_xr := viewport.use_xr and interface != null and interface.is_initialized()
@@ -140,9 +158,8 @@ func _process(_delta: float) -> void:
 		_refuse("")
 		return
 	if interface is OpenXRInterface and not _is_shown(interface):
-		# Nobody sees anything: the session is paused.
-		if _eye != null:
-			_eye.rest()
+		# Nobody sees anything: the session is paused. This camera's viewport is not drawn either, by Godot's doing.
+		_rest()
 		return
 	if _eye == null:
 		_make()
@@ -165,6 +182,8 @@ func _make() -> void:
 	_latch.camera = _eye.camera.get_camera_rid()
 	_first = SubViewport.new()
 	_first.size = Vector2i(2, 2)
+	# Without anything to be culled.
+	_first.own_world_3d = true
 	_first.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	var nothing := Camera3D.new()
 	nothing.cull_mask = 0
@@ -211,8 +230,7 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 	if _is_near():
 		# Not a fault: nobody is warned.
 		_trouble = "most of the view is near"
-		_step_back()
-		_watch()
+		_step_back(_Drawn.ALL_WATCHED)
 		return
 	_trouble = ""
 	_put.covered = extent / (Vector2(eye) * pitch)
@@ -239,15 +257,8 @@ func _is_near() -> bool:
 	return is_near
 
 
-## Measures nearness while Godot renders both eyes.
-func _watch() -> void:
-	var wanted: Array[CompositorEffect] = [_nearness]
-	wanted.append_array(effects(false) + effects(true))
-	_set_compositor(wanted)
-	_takes_part = true
-
-
-func _set_compositor(wanted: Array[CompositorEffect]) -> void:
+## Sets effects in place of the user's. In each frame: a change of [member compositor] sets that again.
+func _set_effects(wanted: Array[CompositorEffect]) -> void:
 	if _compositor.compositor_effects != wanted:
 		_compositor.compositor_effects = wanted
 	RenderingServer.camera_set_compositor(get_camera_rid(), _compositor.get_rid())
@@ -259,12 +270,12 @@ func _take_part() -> void:
 	var wanted := effects(true)
 	wanted.push_front(_nearness)
 	wanted.push_front(_put)
-	_set_compositor(wanted)
+	_set_effects(wanted)
 	var camera := get_camera_rid()
 	RenderingServer.camera_set_cull_mask(camera, cull_mask & stereo_layers)
 	RenderingServer.camera_set_environment(camera, _environment.copy.get_rid() if _environment.copy != null else RID())
 	_first.render_target_update_mode = SubViewport.UPDATE_ALWAYS
-	_takes_part = true
+	_drawn = _Drawn.STEREO_LAYERS
 
 
 ## Lets Godot render both eyes, because of [param reason].
@@ -275,16 +286,27 @@ func _refuse(reason: String) -> void:
 	_step_back()
 
 
-func _step_back() -> void:
-	if not _takes_part:
-		return
-	_takes_part = false
-	_eye.rest()
-	_first.render_target_update_mode = SubViewport.UPDATE_DISABLED
+## Lets Godot draw all of both eyes.
+func _step_back(drawn := _Drawn.ALL) -> void:
 	var camera := get_camera_rid()
-	RenderingServer.camera_set_cull_mask(camera, cull_mask)
-	RenderingServer.camera_set_environment(camera, environment.get_rid() if environment != null else RID())
-	RenderingServer.camera_set_compositor(camera, compositor.get_rid() if compositor != null else RID())
+	if _drawn == _Drawn.STEREO_LAYERS:
+		_rest()
+		RenderingServer.camera_set_cull_mask(camera, cull_mask)
+		RenderingServer.camera_set_environment(camera, environment.get_rid() if environment != null else RID())
+	if drawn == _Drawn.ALL_WATCHED:
+		var wanted: Array[CompositorEffect] = [_nearness]
+		wanted.append_array(effects(false) + effects(true))
+		_set_effects(wanted)
+	elif drawn != _drawn:
+		RenderingServer.camera_set_compositor(camera, compositor.get_rid() if compositor != null else RID())
+	_drawn = drawn
+
+
+## Draws no eye to synthesize the other one from.
+func _rest() -> void:
+	if _eye != null:
+		_eye.rest()
+		_first.render_target_update_mode = SubViewport.UPDATE_DISABLED
 
 
 func _show_preview(shown: bool) -> void:

@@ -12,10 +12,10 @@ static func warnings(scene: Node, layers: int) -> PackedStringArray:
 	var marked := not drawn(scene, layers).is_empty()
 	var dark := lights(scene).filter(func(light: VisualInstance3D) -> bool: return light.layers & layers == 0)
 	if marked and not dark.is_empty():
-		sentences.append("%d lights or probes (%s first) are not on the stereo layers: things there are too dark." % [dark.size(), dark[0].name])
+		sentences.append("Lights and probes that are not on the stereo layers leave things there too dark: %d, %s first." % [dark.size(), dark[0].name])
 	var moved := transparent(scene).filter(func(thing: VisualInstance3D) -> bool: return thing.layers & layers == 0)
 	if not moved.is_empty():
-		sentences.append("%d transparent things (%s first) are not on the stereo layers: they move with what lies behind them." % [moved.size(), moved[0].name])
+		sentences.append("Transparent things that are not on the stereo layers move with what lies behind them: %d, %s first." % [moved.size(), moved[0].name])
 	return sentences
 
 

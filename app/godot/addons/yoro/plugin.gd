@@ -31,9 +31,13 @@ func _choose(id: int) -> void:
 	match id:
 		_Item.REPLACE:
 			for camera: XRCamera3D in _cameras(scene):
-				if not camera is YoroCamera3D:
+				if camera is YoroCamera3D:
+					continue
+				if camera.get_script() != null:
+					_say("%s has a script of its own: let it extend YoroCamera3D." % camera.name)
+				else:
 					replace(camera)
-					return
+				return
 			_say("This scene has no XRCamera3D to replace.")
 		_Item.MARK:
 			var camera := _camera(scene)
@@ -76,6 +80,9 @@ func _process(_delta: float) -> void:
 
 func _show_preview(shown: bool) -> void:
 	if shown == (_preview != null):
+		return
+	if shown and RenderingServer.get_rendering_device() == null:
+		_say("The Compatibility renderer cannot show this: choose Mobile or Forward+.")
 		return
 	_menu.get_popup().set_item_checked(_Item.PREVIEW, shown)
 	if not shown:

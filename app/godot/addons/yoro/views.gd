@@ -51,6 +51,9 @@ static func of(frusta: Array, ipd: float, near: float, far: float, rendered_eye:
 	var right := _ceil((t[1] - s[1]) / dx) + (0 if to_left else guard)
 	var below := _ceil((s[3] - t[3]) / dy)
 	var above := _ceil((t[2] - s[2]) / dy)
+	# An even size: YoroEye draws at twice its viewport's.
+	right += (eye.x + left + right) % 2
+	above += (eye.y + below + above) % 2
 	s[0] -= left * dx
 	s[1] += right * dx
 	s[3] -= below * dy
