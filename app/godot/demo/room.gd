@@ -3,7 +3,7 @@ class_name DemoRoom
 extends Node3D
 
 ## Drawn for both eyes by Godot: YoroCamera3D.stereo_layers.
-const STEREO := 1 << 19
+const STEREO := YoroMarks.LAYER
 
 var environment := WorldEnvironment.new()
 

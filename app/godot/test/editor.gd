@@ -4,7 +4,7 @@ extends SceneTree
 
 enum Item { REPLACE, MARK, PREVIEW }
 
-const STEREO := 1 << 19
+const STEREO := YoroMarks.LAYER
 
 var out := ""
 var menu: PopupMenu
@@ -36,6 +36,7 @@ func _initialize() -> void:
 	await _choose(Item.MARK)
 	var lit := lights.all(func(light: VisualInstance3D) -> bool: return light.layers == 1 | STEREO)
 	print("fact glass on its own layer %s, box as it was %s, lights on both %s" % [glass.layers == STEREO, box.layers == 1, lit])
+	print("fact stereo layers %d" % camera.stereo_layers)
 	print("fact warnings after: %d" % camera._get_configuration_warnings().size())
 	if RenderingServer.get_rendering_device() != null:
 		await _choose(Item.PREVIEW)
@@ -45,7 +46,7 @@ func _initialize() -> void:
 	var manager := EditorInterface.get_editor_undo_redo()
 	var history := manager.get_history_undo_redo(manager.get_object_history_id(scene))
 	history.undo()
-	print("fact unmarked %s" % [glass.layers == 1 and lights.all(func(light: VisualInstance3D) -> bool: return light.layers == 1)])
+	print("fact unmarked %s" % [camera.stereo_layers == 0 and glass.layers == 1 and lights.all(func(light: VisualInstance3D) -> bool: return light.layers == 1)])
 	history.undo()
 	print("fact put back %s" % [not camera is YoroCamera3D])
 	print("fact done")

@@ -1,6 +1,6 @@
 ## What a frame of the demo costs, on an OpenXR runtime or without one (two viewports are then Godot's stereo). Without arguments
 ## all variants in turn. A runtime paces a program by the frames before, so for the time between frames one variant has a process
-## of its own: `only=NUMBER`. `blocks=COUNT`. Run it by hand.
+## of its own: `only=NUMBER`. `blocks=COUNT`. With Godot's option `--gpu-profile` also the stages of each viewport. Run it by hand.
 extends Node
 
 ## What is set for each; the first one is Godot's stereo.
@@ -39,6 +39,7 @@ func _ready() -> void:
 	var times: Array[Dictionary] = []
 	for variant in VARIANTS:
 		times.append({frame = [], processor = [], shown = [], eye = []})
+	var stages: Array[Dictionary] = [{}, {}, {}, {}]
 	for block in blocks:
 		for i: int in wanted:
 			for property: String in VARIANTS[i]:
@@ -49,16 +50,18 @@ func _ready() -> void:
 				var start := Time.get_ticks_usec()
 				await _frames(1)
 				times[i].frame.append((Time.get_ticks_usec() - start) / 1000.0)
+				_add_stages(stages[i])
 				times[i].shown.append(_gpu(shown))
 				times[i].eye.append(_gpu([eye]) if camera.mode == YoroCamera3D.Mode.ONE_VIEW else 0.0)
 			times[i].processor.append((_processor() - processor) * 1000.0 / FRAMES)
 	for i: int in wanted:
 		var medians: Array[float] = []
 		for part: String in times[i]:
-			var values: Array = times[i][part]
-			values.sort()
-			medians.append(values[values.size() / 2])
+			medians.append(_median(times[i][part]))
 		print("fact %d: a frame %.1f ms, processor %.1f ms, GPU: shown %.1f ms, rendered eye %.1f ms" % ([i] + medians))
+		for stage: String in stages[i]:
+			if _median(stages[i][stage]) >= 1.0:
+				print("stage %d, viewport %s: %.1f ms" % [i, stage, _median(stages[i][stage])])
 	get_tree().quit()
 
 
@@ -68,6 +71,22 @@ func _gpu(viewports: Array[Viewport]) -> float:
 	for viewport in viewports:
 		time += RenderingServer.viewport_get_measured_render_time_gpu(viewport.get_viewport_rid())
 	return time
+
+
+## Adds the GPU's time of each stage that Godot names, in ms. A stage lasts until the next one.
+func _add_stages(to: Dictionary) -> void:
+	var device := RenderingServer.get_rendering_device()
+	var viewport := 0
+	for i in device.get_captured_timestamps_count() - 1:
+		var stage := device.get_captured_timestamp_name(i)
+		viewport += int(stage == "Update Occlusion Buffer")
+		var values: Array = to.get_or_add("%d %s" % [viewport, stage], [])
+		values.append((device.get_captured_timestamp_gpu_time(i + 1) - device.get_captured_timestamp_gpu_time(i)) / 1e6)
+
+
+func _median(values: Array) -> float:
+	values.sort()
+	return values[values.size() / 2]
 
 
 ## Returns the seconds that all threads of this program have run for, on Linux.

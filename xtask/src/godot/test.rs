@@ -71,11 +71,12 @@ const IDENTITY: f64 = 60.0;
 /// The pose that was rendered and the one that is shown differ by less, in radians and metres.
 const LAG: f64 = 1e-4;
 /// What the editor's script says when the add-on's menu does what it says.
-const EDITOR: [&str; 8] = [
+const EDITOR: [&str; 9] = [
     "fact without a camera of ours nothing is marked: true",
     "fact replaced true, near 0.2",
     "fact warnings before: 1",
     "fact glass on its own layer true, box as it was true, lights on both true",
+    "fact stereo layers 524288",
     "fact warnings after: 0",
     "fact unmarked true",
     "fact put back true",

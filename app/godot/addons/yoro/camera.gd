@@ -54,8 +54,9 @@ const _SWITCH_OFF := 0.35
 ## keep the headset's in XR.
 @export_range(0.0, 2.0, 0.01) var ipd_scale := 1.0
 ## What is on these layers Godot draws for both eyes. Everything else is drawn once and moved, transparent things with what lies
-## behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu marks both.
-@export_flags_3d_render var stereo_layers := 1 << 19:
+## behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu marks both. None is cheaper:
+## then shadow maps are drawn once.
+@export_flags_3d_render var stereo_layers := 0:
 	set(value):
 		stereo_layers = value
 		update_configuration_warnings()
@@ -266,7 +267,7 @@ func _set_effects(wanted: Array[CompositorEffect]) -> void:
 
 ## Tells the renderer what this camera draws itself. The properties stay what they are: they are the user's.
 func _take_part() -> void:
-	_environment.follow(shown_environment())
+	_environment.follow(shown_environment(), cull_mask & stereo_layers != 0)
 	var wanted := effects(true)
 	wanted.push_front(_nearness)
 	wanted.push_front(_put)

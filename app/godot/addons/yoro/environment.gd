@@ -6,46 +6,55 @@ extends RefCounted
 ## Properties that are compared in a frame: all of them within a tenth of a second.
 const _EACH_FRAME := 12
 
+## Where nothing is lit. A sky that is used with different lights in each viewport is made anew for each, in each frame.
+const _UNLIT := {
+	sky = null, ambient_light_source = Environment.AMBIENT_SOURCE_DISABLED,
+	reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED,
+}
+
 ## The copy; null where there is nothing to copy.
 var copy: Environment
 
 var _of: Environment
+var _always_except: Dictionary
 var _except: Dictionary
+var _lit := true
 var _names: PackedStringArray
 var _next := 0
 
 
 func _init(except: Dictionary) -> void:
+	_always_except = except
 	_except = except
 	for property in ClassDB.class_get_property_list(&"Environment", true):
-		if property.usage & PROPERTY_USAGE_STORAGE and not except.has(property.name):
+		if property.usage & PROPERTY_USAGE_STORAGE:
 			_names.append(property.name)
 
 
-## To be called in each frame.
-func follow(environment: Environment) -> void:
-	if environment != _of:
+## To be called in each frame. [param lit]: what is drawn with the copy is lit by it.
+func follow(environment: Environment, lit := true) -> void:
+	if environment != _of or lit != _lit:
 		_of = environment
+		_lit = lit
+		_except = _always_except if lit else _always_except.merged(_UNLIT)
 		copy = environment.duplicate() if environment != null else null
 		if copy != null:
 			for name: String in _except:
 				copy.set(name, _except[name])
-			if _except.has("background_mode"):
-				_keep_light()
+			_keep_light()
 	if copy == null:
 		return
 	for i in _EACH_FRAME:
 		var name := _names[_next]
 		_next = (_next + 1) % _names.size()
-		if copy.get(name) != _of.get(name):
+		if not _except.has(name) and copy.get(name) != _of.get(name):
 			copy.set(name, _of.get(name))
-			if _except.has("background_mode"):
-				_keep_light()
+			_keep_light()
 
 
 ## Light that comes from the background keeps coming from it.
 func _keep_light() -> void:
-	if _of.background_mode == Environment.BG_SKY:
+	if _lit and _except.has("background_mode") and _of.background_mode == Environment.BG_SKY:
 		if _of.ambient_light_source == Environment.AMBIENT_SOURCE_BG:
 			copy.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
 		if _of.reflected_light_source == Environment.REFLECTION_SOURCE_BG:

@@ -3,6 +3,9 @@
 class_name YoroMarks
 extends RefCounted
 
+## The layer that is used for it.
+const LAYER := 1 << 19
+
 
 ## Returns what will look wrong in a scene, in sentences.
 static func warnings(scene: Node, layers: int) -> PackedStringArray:
@@ -12,7 +15,7 @@ static func warnings(scene: Node, layers: int) -> PackedStringArray:
 	var marked := not drawn(scene, layers).is_empty()
 	var dark := lights(scene).filter(func(light: VisualInstance3D) -> bool: return light.layers & layers == 0)
 	if marked and not dark.is_empty():
-		sentences.append("Lights and probes that are not on the stereo layers leave things there too dark: %d, %s first." % [dark.size(), dark[0].name])
+		sentences.append("Lights and probes that are not on the stereo layers leave things there too dark, and the sky is made anew in each frame: %d, %s first." % [dark.size(), dark[0].name])
 	var moved := transparent(scene).filter(func(thing: VisualInstance3D) -> bool: return thing.layers & layers == 0)
 	if not moved.is_empty():
 		sentences.append("Transparent things that are not on the stereo layers move with what lies behind them: %d, %s first." % [moved.size(), moved[0].name])

@@ -59,15 +59,18 @@ func replace(camera: XRCamera3D) -> void:
 	camera.update_configuration_warnings()
 
 
-## Puts transparent things and lights onto the stereo layers.
+## Puts transparent things and lights onto the stereo layers, which are [constant YoroMarks.LAYER] if there was none.
 func mark(scene: Node, camera: YoroCamera3D) -> void:
 	var undo := get_undo_redo()
 	undo.create_action("Draw Transparent Things for Both Eyes", UndoRedo.MERGE_DISABLE, scene)
+	var layers := camera.stereo_layers if camera.stereo_layers != 0 else YoroMarks.LAYER
+	undo.add_do_property(camera, &"stereo_layers", layers)
+	undo.add_undo_property(camera, &"stereo_layers", camera.stereo_layers)
 	for thing in YoroMarks.transparent(scene):
-		undo.add_do_property(thing, &"layers", camera.stereo_layers)
+		undo.add_do_property(thing, &"layers", layers)
 		undo.add_undo_property(thing, &"layers", thing.layers)
 	for light in YoroMarks.lights(scene):
-		undo.add_do_property(light, &"layers", light.layers | camera.stereo_layers)
+		undo.add_do_property(light, &"layers", light.layers | layers)
 		undo.add_undo_property(light, &"layers", light.layers)
 	undo.commit_action()
 	camera.update_configuration_warnings()

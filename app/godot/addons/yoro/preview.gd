@@ -54,7 +54,7 @@ func _process(_delta: float) -> void:
 	var frustum: Array[float] = [-across, across, up, -up]
 	var views := YoroViews.of([frustum, frustum], ipd, camera.near, camera.far, camera.dominant_eye, eye, camera.guard_band)
 	var both := views == null or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
-	_environment.follow(camera.shown_environment())
+	_environment.follow(camera.shown_environment(), camera.cull_mask & camera.stereo_layers != 0)
 	var effects := camera.effects(false)
 	for i in 2:
 		var shown := _cameras[i]
