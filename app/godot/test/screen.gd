@@ -26,6 +26,13 @@ func _ready() -> void:
 	camera.synthesis().short_way = false
 	await _case("every", ["ONE_VIEW"])
 	camera.synthesis().short_way = true
+	# Then glass is drawn with the rendered eye, and that looks as before.
+	var before := _image(camera.dominant_eye)
+	camera.stereo_layers = 0
+	await _frames(2)
+	var levels: float = before.compute_image_metrics(_image(camera.dominant_eye), false).max
+	print("fact without stereo layers the rendered eye is as before: %s" % [levels <= 2.0])
+	camera.stereo_layers = DemoRoom.STEREO
 	camera.ipd_scale = 0.0
 	await _case("ipd0")
 	camera.ipd_scale = 1.0
@@ -70,4 +77,8 @@ func _case(name: String, modes: Array[String] = ["BOTH_VIEWS", "ONE_VIEW"]) -> v
 
 func _save(name: String) -> void:
 	for eye in 2:
-		camera.preview().eyes[eye].get_texture().get_image().save_png("%s/%s-%s.png" % [out, name, ["left", "right"][eye]])
+		_image(eye).save_png("%s/%s-%s.png" % [out, name, ["left", "right"][eye]])
+
+
+func _image(eye: int) -> Image:
+	return camera.preview().eyes[eye].get_texture().get_image()
