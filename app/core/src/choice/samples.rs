@@ -1,20 +1,20 @@
 //! Times of frames, and their middle.
 
 /// Most times that are kept; more say nothing new.
-const MOST: usize = 128;
+const MAX: usize = 128;
 /// Fewer times have no middle.
 const FEWEST: usize = 4;
 
 /// Times in milliseconds.
 #[derive(Clone, Debug)]
 pub(super) struct Samples {
-    times: [f32; MOST],
+    times: [f32; MAX],
     len: usize,
 }
 
 impl Default for Samples {
     fn default() -> Samples {
-        Samples { times: [0.0; MOST], len: 0 }
+        Samples { times: [0.0; MAX], len: 0 }
     }
 }
 

@@ -12,7 +12,7 @@ use crate::eyes::View;
 pub struct Strips {
     /// From a pixel of the target and its depth to a pixel of each strip's image and its depth. Zero for strips with nothing in
     /// them.
-    pub to_history: [Mat4; Strips::MOST],
+    pub to_history: [Mat4; Strips::MAX],
     /// Number of strips, at least 1.
     pub history_strips: i32,
     _padding: [i32; 3],
@@ -20,20 +20,20 @@ pub struct Strips {
 
 impl Strips {
     /// The largest number of strips.
-    pub const MOST: usize = 8;
+    pub const MAX: usize = 8;
     /// A history with nothing in it.
     pub const NONE: Strips =
-        Strips { to_history: [Mat4::ZERO; Strips::MOST], history_strips: 1, _padding: [0; 3] };
+        Strips { to_history: [Mat4::ZERO; Strips::MAX], history_strips: 1, _padding: [0; 3] };
 
     /// Returns the relation of a target to the strips of a history, from row 0 of the image on, each by the view of the whole image
     /// from which it was rendered; `None` if nothing is there. All but the last have as many rows: those of the image divided by the number
     /// of strips, rounded up. Views have the depth planes and encoding of the target. Strips after the first
-    /// [`Strips::MOST`] are ignored.
+    /// [`Strips::MAX`] are ignored.
     pub fn new(target: &View, strips: &[Option<View>]) -> Strips {
         let mut relation =
-            Strips { history_strips: strips.len().clamp(1, Strips::MOST) as i32, ..Strips::NONE };
+            Strips { history_strips: strips.len().clamp(1, Strips::MAX) as i32, ..Strips::NONE };
         let from_target = window(target).inverse();
-        for (i, view) in strips.iter().enumerate().take(Strips::MOST) {
+        for (i, view) in strips.iter().enumerate().take(Strips::MAX) {
             let Some(view) = view else { continue };
             // Differences of positions first: they are small where positions are large.
             let moved = (target.pose.position.as_dvec3() - view.pose.position.as_dvec3()).extend(0.0);

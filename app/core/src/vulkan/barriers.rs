@@ -7,11 +7,11 @@ use super::formats::{aspects, range};
 use super::{ImageState, LayerImage};
 
 /// The most barriers of a frame: three source images, two of a history, two target images, and four intermediate images.
-const MOST: usize = 11;
+const MAX: usize = 11;
 
 /// Barriers that are recorded with one command.
 pub(super) struct Barriers {
-    list: [vk::ImageMemoryBarrier<'static>; MOST],
+    list: [vk::ImageMemoryBarrier<'static>; MAX],
     count: usize,
     before: vk::PipelineStageFlags,
     after: vk::PipelineStageFlags,

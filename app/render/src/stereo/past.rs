@@ -24,7 +24,7 @@ const GROWTH: f32 = 0.1;
 const LEAP: f32 = 0.5;
 const TURN: f32 = std::f32::consts::FRAC_PI_4;
 /// A strip is given up when the scene has moved so often since it was rendered, which it has not while rounds follow one another.
-const MOVED: u64 = Strips::MOST as u64;
+const MOVED: u64 = Strips::MAX as u64;
 
 /// The history of one method.
 pub(super) struct Past<R: StereoRenderer> {
@@ -35,7 +35,7 @@ pub(super) struct Past<R: StereoRenderer> {
     color: RenderTarget,
     depth: RenderTarget,
     copy: DepthCopy,
-    strips: [Option<Strip>; Strips::MOST],
+    strips: [Option<Strip>; Strips::MAX],
     eyes: Option<Eyes>,
     need: Need,
     rounds: Rounds,
@@ -101,7 +101,7 @@ impl Rounds {
     }
 
     fn begin(&mut self) {
-        *self = Rounds { left: Strips::MOST, round: self.round + 1, least: None };
+        *self = Rounds { left: Strips::MAX, round: self.round + 1, least: None };
     }
 
     /// All strips were replaced at once.
@@ -126,7 +126,7 @@ impl<R: StereoRenderer> Past<R> {
             color: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?,
             depth: RenderTarget::new(gl, [1, 1], &[], Some(Format::Depth32F))?,
             copy: DepthCopy::new(gl)?,
-            strips: [None; Strips::MOST],
+            strips: [None; Strips::MAX],
             eyes: None,
             need: Need::new(gl)?,
             rounds: Rounds::default(),
@@ -138,7 +138,7 @@ impl<R: StereoRenderer> Past<R> {
     fn fit(&mut self, frame: &Frame<R>, views: &SynthesisViews) -> Result<(), GlError> {
         let eyes = Eyes::new(frame.scene.id(), frame.pair, views);
         if self.eyes.is_none_or(|before| eyes.replaces(&before)) {
-            self.strips = [None; Strips::MOST];
+            self.strips = [None; Strips::MAX];
             self.need.readback.forget();
             self.rounds = Rounds::default();
             self.color.resize(self.size(views))?;
@@ -163,7 +163,7 @@ impl<R: StereoRenderer> Past<R> {
         self.fit(frame, views)?;
         self.keep(targets, 0, 0, views.target.size);
         let strip = Strip { view: views.target, times_moved: frame.scene.times_moved() };
-        self.strips = [Some(strip); Strips::MOST];
+        self.strips = [Some(strip); Strips::MAX];
         self.rounds.served();
         Ok(())
     }
@@ -206,7 +206,7 @@ impl<R: StereoRenderer> Past<R> {
         }
         self.rendered = 0;
         if self.rounds.left > 0 {
-            self.render(frame, views, Strips::MOST - self.rounds.left, selection)?;
+            self.render(frame, views, Strips::MAX - self.rounds.left, selection)?;
             self.rounds.left -= 1;
         }
         Ok(self.relation(views))
@@ -234,7 +234,7 @@ impl<R: StereoRenderer> Past<R> {
     ) -> Result<(), GlError> {
         let whole = View { size: self.size(views), ..views.target };
         let [width, height] = whole.size;
-        let rows = height.div_ceil(Strips::MOST as u32);
+        let rows = height.div_ceil(Strips::MAX as u32);
         let first = strip as u32 * rows;
         let shown = rows.min(height.saturating_sub(first));
         if shown == 0 {
@@ -335,7 +335,7 @@ mod tests {
         rounds.measured(Some(0), &counted(0, 0));
         assert_eq!(rounds, Rounds { least: Some(0), ..Rounds::default() }, "nothing is uncovered");
         rounds.measured(Some(0), &counted(500, 500));
-        assert_eq!((rounds.left, rounds.round), (Strips::MOST, 1));
+        assert_eq!((rounds.left, rounds.round), (Strips::MAX, 1));
         // Frames of the round itself, and of the time before it, tell nothing.
         rounds.measured(Some(0), &counted(500, 500));
         rounds.left = 0;
@@ -348,6 +348,6 @@ mod tests {
             assert_eq!(rounds.left, 0, "{unknown}");
         }
         rounds.measured(Some(1), &counted(500, 141));
-        assert_eq!((rounds.left, rounds.round), (Strips::MOST, 2));
+        assert_eq!((rounds.left, rounds.round), (Strips::MAX, 2));
     }
 }
