@@ -247,7 +247,7 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 
 ## True if the view is too near for the synthesis. What is near by the last frames counts.
 func _is_near() -> bool:
-	if near_limit <= near or mode != Mode.ONE_VIEW:
+	if not _watches():
 		_nearness.share = 0.0
 		_nearness.synthesized = true
 		return false
@@ -256,6 +256,11 @@ func _is_near() -> bool:
 	if _nearness.synthesized == is_near:
 		_nearness.synthesized = not is_near
 	return is_near
+
+
+## True if nearness is measured.
+func _watches() -> bool:
+	return near_limit > near and mode == Mode.ONE_VIEW
 
 
 ## Sets effects in place of the user's. In each frame: a change of [member compositor] sets that again.
@@ -269,7 +274,8 @@ func _set_effects(wanted: Array[CompositorEffect]) -> void:
 func _take_part() -> void:
 	_environment.follow(shown_environment(), cull_mask & stereo_layers != 0)
 	var wanted := effects(true)
-	wanted.push_front(_nearness)
+	if _watches():
+		wanted.push_front(_nearness)
 	wanted.push_front(_put)
 	_set_effects(wanted)
 	var camera := get_camera_rid()
