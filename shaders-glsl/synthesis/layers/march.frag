@@ -32,19 +32,23 @@ uint layer_bits(int column, int row) {
 
 Layer layer_at(int column, int row) {
     uint bits = layer_bits(column, row);
-    if (is_full(bits)) {
-        return Layer(full_front(bits), 1e9, false, vec4(1.0));
-    }
     vec2 both = split_displacements(bits);
-    uint code = bits >> 28;
+    bool split = !is_full(bits);
+    return Layer(split ? both.x : full_front(bits), split ? both.y : 1e9, split, bits >> 28);
+}
+
+// The front's coverage, by stripes, of the layer at this place.
+vec4 mask_of(Layer layer, int column, int row) {
+    if (!layer.split) {
+        return vec4(1.0);
+    }
 #ifdef MULTISAMPLE
-    vec4 mask = vec4((uvec4(code) >> uvec4(0, 1, 2, 3)) & 1u);
+    return vec4((uvec4(layer.code) >> uvec4(0, 1, 2, 3)) & 1u);
 #else
     float share = texelFetch(back_map, ivec2(column, row), 0).a;
-    vec4 mask = code == FROM_LEFT ? clamp(4.0 * share - STRIPES, 0.0, 1.0)
-        : code == FROM_RIGHT ? clamp(4.0 * share - STRIPES.wzyx, 0.0, 1.0) : vec4(share);
+    return layer.code == FROM_LEFT ? clamp(4.0 * share - STRIPES, 0.0, 1.0)
+        : layer.code == FROM_RIGHT ? clamp(4.0 * share - STRIPES.wzyx, 0.0, 1.0) : vec4(share);
 #endif
-    return Layer(both.x, both.y, true, mask);
 }
 
 #ifdef HISTORY
@@ -113,6 +117,7 @@ struct Seen {
     float rest;
     float column;
     float reach;
+    bool hole;
 };
 
 // A surface covers a share of the uncovered rest. The visible surface is the one with which the coverage from the front
@@ -124,6 +129,201 @@ float cover(inout Seen seen, float share, float column, float reach) {
     seen.reach = passes ? reach : seen.reach;
     seen.rest -= taken;
     return taken;
+}
+
+// Colour of a pixel beside a silhouette: what covers it from forward column `x` to `limit`, and the fill of what remains.
+// `column` is x in the source's image, `t` where the pixel is.
+vec4 composed(int row, float t, float x, float limit, int column, inout Seen seen) {
+    int sense = mirrored ? -1 : 1;
+    vec4 color_sum = vec4(0.0);
+    Layer here = layer_at(column, row);
+    Edge edge = Edge(-1, false, 1e9, 1.0);
+    Edge second = edge;
+#ifdef HISTORY
+    // Displacement of the foreground beside the edge.
+    float beside = 1e9;
+#endif
+    // Left of all surfaces: the border of the image.
+    if (x == 0.0) {
+        if (here.front > t) {
+            edge = Edge(column, false, here.front, 1.0);
+        }
+        if (here.split && here.back < edge.reach && here.back > t) {
+            edge = Edge(column, true, here.back, 1.0);
+        }
+    }
+    // The surface to which the pixel's back is linked at the left: a front, or a back.
+    bool on_front = false;
+    bool on_back = false;
+    if (x > 0.0 && here.split) {
+        Layer before = layer_at(column - sense, row);
+        on_front = abs(before.front - here.back) < LINK;
+        on_back = before.split && abs(before.back - here.back) < LINK;
+    }
+    while (x < limit && seen.rest > REST) {
+        COUNT_TRIP(1)
+        // Past pairs of columns that change nothing, to the next one that may.
+        Layer next = here;
+        float a = 0.0;
+        float b = 0.0;
+        float c = 0.0;
+        float d = 0.0;
+        bool front_front = false;
+        bool front_back = false;
+        bool back_front = false;
+        bool back_back = false;
+        bool event = false;
+        while (!event && x < limit) {
+            COUNT_TRIP(2)
+            next = layer_at(column + sense, row);
+            // Where the four surfaces land, relative to the pixel.
+            a = x + here.front - t;
+            b = x + 1.0 + next.front - t;
+            c = x + here.back - t;
+            d = x + 1.0 + next.back - t;
+            front_front = abs(next.front - here.front) < LINK;
+            front_back = abs(next.back - here.front) < LINK;
+            back_front = abs(next.front - here.back) < LINK;
+            back_back = here.split && abs(next.back - here.back) < LINK;
+            bool crosses = (a <= 0.0 && ((front_front && b > 0.0) || (front_back && d > 0.0)))
+                || (c <= 0.0 && ((back_front && b > 0.0) || (back_back && d > 0.0)));
+            // A surface that ends left of the pixel matters beyond it only beside a nearer one: that is a disocclusion.
+            bool front_begins = !front_front && !back_front && b > 0.0 && b < 1.0;
+            bool front_ends = !front_front && !front_back && a <= 0.0 && (a > -1.0 || next.front > here.front);
+            bool back_ends = !back_front && !back_back && c < 1.0 && (c > -1.0 || next.front > here.back);
+            event = crosses || front_begins || front_ends || back_ends;
+            if (!event) {
+                x += 1.0;
+                column += sense;
+                here = next;
+                on_front = front_back;
+                on_back = back_back;
+            }
+        }
+        if (!event) {
+            break;
+        }
+        vec4 here_mask = mask_of(here, column, row);
+        vec4 next_mask = mask_of(next, column + sense, row);
+        // Distances between the fronts and the backs of this column and the next.
+        vec2 fronts = vec2(0.0);
+        vec2 backs = vec2(0.0);
+        if (front_front && a <= 0.0 && b > 0.0) {
+            float g = -a / (b - a);
+            vec4 right = right_of(g);
+            vec2 shares = vec2(covered(here_mask, right), covered(next_mask, 1.0 - right));
+            float share = shares.x + shares.y;
+            fronts = cover(seen, share, x + g, mix(here.front, next.front, g)) * shares / max(share, 1e-6);
+        }
+        // A front that begins or ends here, before a farther surface.
+        if (!front_front && (next.front > here.front || next.split) && !back_front && b > 0.0 && b < 1.0) {
+            float share = covered(next_mask, 1.0 - right_of(1.0 - b));
+            fronts.y += cover(seen, share, x + 1.0, next.front);
+        }
+        if (!front_front && (next.front < here.front || here.split) && !front_back && a <= 0.0 && a > -1.0) {
+            fronts.x += cover(seen, covered(here_mask, right_of(-a)), x, here.front);
+        }
+        // A surface that continues behind a front covers all.
+        if (front_back && a <= 0.0 && d > 0.0 && seen.rest > REST) {
+            float g = -a / (d - a);
+            float taken = cover(seen, 1.0, x + g, here.front);
+            fronts.x += taken * (1.0 - g);
+            backs.y += taken * g;
+        }
+        if (back_front && c <= 0.0 && b > 0.0 && seen.rest > REST) {
+            float g = -c / (b - c);
+            float taken = cover(seen, 1.0, x + g, next.front);
+            backs.x += taken * (1.0 - g);
+            fronts.y += taken * g;
+        }
+        if (back_back && c <= 0.0 && d > 0.0 && seen.rest > REST) {
+            float g = -c / (d - c);
+            float taken = cover(seen, 1.0, x + g, here.back);
+            backs += taken * vec2(1.0 - g, g);
+        }
+        bool ends = here.split && !back_front && !back_back;
+        // A back that no neighbour continues covers only its samples.
+        if (ends && !on_front && !on_back && abs(c) < 1.0 && seen.rest > REST) {
+            vec4 stripes = c <= 0.0 ? right_of(-c) : 1.0 - right_of(1.0 - c);
+            backs.x += cover(seen, covered(1.0 - here_mask, stripes), x, here.back);
+        }
+        // Disocclusion edges. A sliver of background that no neighbour continues fills only its share of the pixel; the
+        // next farthest edge fills the rest of the hole.
+        bool at_back = ends && next.front > here.back && c <= 0.0;
+        bool at_front = !here.split && !front_front && !front_back && next.front > here.front && a <= 0.0;
+        if ((at_back || at_front) && seen.rest > REST) {
+            float reach = at_back ? here.back : here.front;
+            float away = at_back ? -c : -a;
+            float weight = at_back && !on_front ? 1.0 - covered(here_mask, vec4(1.0)) : 1.0;
+            Edge found = Edge(column, at_back, reach, weight);
+            if (weight == 1.0 && away < 0.5) {
+                float taken = cover(seen, 1.0, x, reach);
+                backs.x += at_back ? taken : 0.0;
+                fronts.x += at_back ? 0.0 : taken;
+            }
+            if (reach < edge.reach) {
+                if (weight < 1.0) {
+                    second = edge;
+                }
+                edge = found;
+#ifdef HISTORY
+                beside = next.front;
+#endif
+            } else if (reach < second.reach) {
+                second = found;
+            }
+        }
+        if (max(fronts.x, backs.x) > 0.0) {
+            color_sum += weighted(column, row, fronts.x, backs.x);
+        }
+        if (max(fronts.y, backs.y) > 0.0) {
+            color_sum += weighted(column + sense, row, fronts.y, backs.y);
+        }
+        on_front = front_back;
+        on_back = back_back;
+        here = next;
+        column += sense;
+        x += 1.0;
+    }
+    seen.hole = seen.rest > 0.5;
+    if (seen.rest > REST) {
+        bool beyond = edge.column < 0;
+        if (beyond) {
+            // Right of all surfaces, or the last column itself.
+            edge = Edge(column, here.split, here.split ? here.back : here.front, 1.0);
+        }
+        float edge_x = float(source_column(edge.column));
+        float away = abs(t - edge_x - edge.reach);
+        float spread = 0.5 * clamp(away, 1.0, 12.0);
+        vec4 sum = vec4(0.0);
+        float weights = 0.0;
+        int rows = beyond && away < 0.5 ? 0 : 2;
+        for (int i = -rows; i <= rows; ++i) {
+            COUNT_TRIP(3)
+            int at = clamp(row + int(roundEven(float(i) * spread)), 0, source_size.y - 1);
+            Layer layer = layer_at(edge.column, at);
+            bool front = i == 0 ? !edge.back : layer.front <= edge.reach + 1.0;
+            bool behind = i == 0 ? edge.back : !front && layer.split && layer.back <= edge.reach + 1.0;
+            float weight = i == 0 ? 2.0 : front ? 1.0 : behind ? 1.0 - covered(mask_of(layer, edge.column, at), vec4(1.0)) : 0.0;
+            sum += weighted(edge.column, at, front ? weight : 0.0, front ? 0.0 : weight);
+            weights += weight;
+        }
+        vec4 fill = sum / weights;
+        if (second.column >= 0 && edge.weight < 1.0) {
+            vec2 one = second.back ? vec2(0.0, 1.0) : vec2(1.0, 0.0);
+            fill = mix(weighted(second.column, row, one.x, one.y), fill, edge.weight);
+        }
+        seen.hole = seen.hole && away >= 0.5;
+#ifdef HISTORY
+        float depth = (edge.reach + far_nearness()) / law.y;
+        float origin = origins.x * gl_FragCoord.x + origins.y;
+        if (away >= 0.5 && recall(gl_FragCoord.xy - vec2(target_origin), beside + far_nearness(), origin, row, fill, depth)) {
+            edge.reach = law.y * depth - far_nearness();
+        }
+#endif
+        color_sum += cover(seen, 1.0, edge_x, edge.reach) * fill;
+    }
+    return color_sum;
 }
 
 void main() {
@@ -138,8 +338,7 @@ void main() {
     int sense = mirrored ? -1 : 1;
     int column = source_column(int(x));
 
-    Seen seen = Seen(1.0, 0.0, 0.0);
-    color = vec4(0.0);
+    Seen seen = Seen(1.0, 0.0, 0.0, false);
     // Nearly every pixel shows a single surface that is linked from the start of the search on.
     uint bits = layer_bits(column, row);
     float front = full_front(bits);
@@ -164,184 +363,11 @@ void main() {
     }
     if (seen.rest < REST) {
         color = sharp_color_at(seen.column, row);
-    }
-    Layer here = layer_at(column, row);
-    Edge edge = Edge(-1, false, 1e9, 1.0);
-    Edge second = edge;
-#ifdef HISTORY
-    // Displacement of the foreground beside the edge.
-    float beside = 1e9;
-#endif
-    // Left of all surfaces: the border of the image.
-    if (x == 0.0) {
-        if (here.front > t) {
-            edge = Edge(column, false, here.front, 1.0);
-        }
-        if (here.split && here.back < edge.reach && here.back > t) {
-            edge = Edge(column, true, here.back, 1.0);
-        }
-    }
-    // The surface to which the pixel's back is linked at the left: a front, or a back.
-    bool on_front = false;
-    bool on_back = false;
-    if (x > 0.0 && here.split && seen.rest > REST) {
-        Layer before = layer_at(column - sense, row);
-        on_front = abs(before.front - here.back) < LINK;
-        on_back = before.split && abs(before.back - here.back) < LINK;
-    }
-    while (x < limit && seen.rest > REST) {
-        COUNT_TRIP(1)
-        // Past columns that change nothing: a single surface that is linked to the next column's and does not cross the pixel.
-        bool idle = !here.split;
-        float landed = x + here.front - t;
-        while (idle && x < limit) {
-            COUNT_TRIP(2)
-            uint ahead = layer_bits(column + sense, row);
-            float following = full_front(ahead);
-            float then = x + 1.0 + following - t;
-            idle = is_full(ahead) && abs(following - here.front) < LINK && (landed > 0.0 || then <= 0.0);
-            if (idle) {
-                x += 1.0;
-                column += sense;
-                here.front = following;
-                landed = then;
-                on_front = false;
-                on_back = false;
-            }
-        }
-        if (x >= limit) {
-            break;
-        }
-        Layer next = layer_at(column + sense, row);
-        // Where the four surfaces land, relative to the pixel.
-        float a = x + here.front - t;
-        float b = x + 1.0 + next.front - t;
-        float c = x + here.back - t;
-        float d = x + 1.0 + next.back - t;
-        bool front_front = abs(next.front - here.front) < LINK;
-        bool front_back = next.split && abs(next.back - here.front) < LINK;
-        bool back_front = here.split && abs(next.front - here.back) < LINK;
-        bool back_back = here.split && next.split && abs(next.back - here.back) < LINK;
-        // Distances between the fronts and the backs of this column and the next.
-        vec2 fronts = vec2(0.0);
-        vec2 backs = vec2(0.0);
-        if (front_front && a <= 0.0 && b > 0.0) {
-            float g = -a / (b - a);
-            vec4 right = right_of(g);
-            vec2 shares = vec2(covered(here.mask, right), covered(next.mask, 1.0 - right));
-            float share = shares.x + shares.y;
-            fronts = cover(seen, share, x + g, mix(here.front, next.front, g)) * shares / max(share, 1e-6);
-        }
-        // A front that begins or ends here, before a farther surface.
-        if (!front_front && (next.front > here.front || next.split) && !back_front && b > 0.0 && b < 1.0) {
-            float share = covered(next.mask, 1.0 - right_of(1.0 - b));
-            fronts.y += cover(seen, share, x + 1.0, next.front);
-        }
-        if (!front_front && (next.front < here.front || here.split) && !front_back && a <= 0.0 && a > -1.0) {
-            fronts.x += cover(seen, covered(here.mask, right_of(-a)), x, here.front);
-        }
-        // A surface that continues behind a front covers all.
-        if (front_back && a <= 0.0 && d > 0.0 && seen.rest > REST) {
-            float g = -a / (d - a);
-            float taken = cover(seen, 1.0, x + g, here.front);
-            fronts.x += taken * (1.0 - g);
-            backs.y += taken * g;
-        }
-        if (back_front && c <= 0.0 && b > 0.0 && seen.rest > REST) {
-            float g = -c / (b - c);
-            float taken = cover(seen, 1.0, x + g, next.front);
-            backs.x += taken * (1.0 - g);
-            fronts.y += taken * g;
-        }
-        if (back_back && c <= 0.0 && d > 0.0 && seen.rest > REST) {
-            float g = -c / (d - c);
-            float taken = cover(seen, 1.0, x + g, here.back);
-            backs += taken * vec2(1.0 - g, g);
-        }
-        bool ends = here.split && !back_front && !back_back;
-        // A back that no neighbour continues covers only its samples.
-        if (ends && !on_front && !on_back && abs(c) < 1.0 && seen.rest > REST) {
-            vec4 stripes = c <= 0.0 ? right_of(-c) : 1.0 - right_of(1.0 - c);
-            backs.x += cover(seen, covered(1.0 - here.mask, stripes), x, here.back);
-        }
-        // Disocclusion edges. A sliver of background that no neighbour continues fills only its share of the pixel; the
-        // next farthest edge fills the rest of the hole.
-        bool at_back = ends && next.front > here.back && c <= 0.0;
-        bool at_front = !here.split && !front_front && !front_back && next.front > here.front && a <= 0.0;
-        if ((at_back || at_front) && seen.rest > REST) {
-            float reach = at_back ? here.back : here.front;
-            float away = at_back ? -c : -a;
-            float weight = at_back && !on_front ? 1.0 - covered(here.mask, vec4(1.0)) : 1.0;
-            Edge found = Edge(column, at_back, reach, weight);
-            if (weight == 1.0 && away < 0.5) {
-                float taken = cover(seen, 1.0, x, reach);
-                backs.x += at_back ? taken : 0.0;
-                fronts.x += at_back ? 0.0 : taken;
-            }
-            if (reach < edge.reach) {
-                if (weight < 1.0) {
-                    second = edge;
-                }
-                edge = found;
-#ifdef HISTORY
-                beside = next.front;
-#endif
-            } else if (reach < second.reach) {
-                second = found;
-            }
-        }
-        if (max(fronts.x, backs.x) > 0.0) {
-            color += weighted(column, row, fronts.x, backs.x);
-        }
-        if (max(fronts.y, backs.y) > 0.0) {
-            color += weighted(column + sense, row, fronts.y, backs.y);
-        }
-        on_front = front_back;
-        on_back = back_back;
-        here = next;
-        column += sense;
-        x += 1.0;
-    }
-    bool hole = seen.rest > 0.5;
-    if (seen.rest > REST) {
-        bool beyond = edge.column < 0;
-        if (beyond) {
-            // Right of all surfaces, or the last column itself.
-            edge = Edge(column, here.split, here.split ? here.back : here.front, 1.0);
-        }
-        float edge_x = float(source_column(edge.column));
-        float away = abs(t - edge_x - edge.reach);
-        float spread = 0.5 * clamp(away, 1.0, 12.0);
-        vec4 sum = vec4(0.0);
-        float weights = 0.0;
-        int rows = beyond && away < 0.5 ? 0 : 2;
-        for (int i = -rows; i <= rows; ++i) {
-            COUNT_TRIP(3)
-            int at = clamp(row + int(roundEven(float(i) * spread)), 0, source_size.y - 1);
-            Layer layer = layer_at(edge.column, at);
-            bool front = i == 0 ? !edge.back : layer.front <= edge.reach + 1.0;
-            bool behind = i == 0 ? edge.back : !front && layer.split && layer.back <= edge.reach + 1.0;
-            float weight = i == 0 ? 2.0 : front ? 1.0 : behind ? 1.0 - covered(layer.mask, vec4(1.0)) : 0.0;
-            sum += weighted(edge.column, at, front ? weight : 0.0, front ? 0.0 : weight);
-            weights += weight;
-        }
-        vec4 fill = sum / weights;
-        if (second.column >= 0 && edge.weight < 1.0) {
-            vec2 one = second.back ? vec2(0.0, 1.0) : vec2(1.0, 0.0);
-            fill = mix(weighted(second.column, row, one.x, one.y), fill, edge.weight);
-        }
-        hole = hole && away >= 0.5;
-#ifdef HISTORY
-        float depth = (edge.reach + far_nearness()) / law.y;
-        float origin = origins.x * gl_FragCoord.x + origins.y;
-        if (away >= 0.5 && recall(gl_FragCoord.xy - vec2(target_origin), beside + far_nearness(), origin, row, fill, depth)) {
-            edge.reach = law.y * depth - far_nearness();
-        }
-#endif
-        color += cover(seen, 1.0, edge_x, edge.reach) * fill;
+    } else {
+        color = composed(row, t, x, limit, column, seen);
     }
 #ifdef COUNT_TRIPS
-    // Columns of the three loops and rows of the fill; and whether the source's pixel at this place shows two surfaces.
+    // Columns of the first loop, pairs of columns with an event, pairs in all, and rows of the fill; and whether the source's pixel at this place shows two surfaces.
     bool split = !is_full(layer_bits(int(gl_FragCoord.x), row));
     color = vec4(min(ivec4(trips[0], trips[1], trips[2], trips[3] | (split ? 128 : 0)), 255)) / 255.0;
 #endif
@@ -349,6 +375,6 @@ void main() {
     gl_FragDepth = clamp((far_displacement + seen.reach - law.x) / law.y, 0.0, 1.0);
 #endif
 #ifdef SOURCE_MAP
-    source_entry = uint(seen.column * FIXED + 0.5) | (hole ? HOLE : 0u);
+    source_entry = uint(seen.column * FIXED + 0.5) | (seen.hole ? HOLE : 0u);
 #endif
 }

@@ -3,13 +3,14 @@ struct Layer {
     front: f32,
     back: f32,
     split: bool,
-    mask: vec4<f32>,
+    code: u32,
 }
 
 struct Seen {
     rest: f32,
     column: f32,
     reach: f32,
+    hole: bool,
 }
 
 struct Synthesis {
@@ -190,10 +191,10 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
     var i_1: i32;
     var texel: vec2<i32>;
     var local_3: vec2<f32>;
-    var phi_495_: bool;
-    var phi_510_: bool;
-    var phi_638_: bool;
-    var phi_717_: bool;
+    var phi_528_: bool;
+    var phi_543_: bool;
+    var phi_672_: bool;
+    var phi_751_: bool;
 
     let _e60 = textureDimensions(history_depth_texture, 0i);
     size = vec2<f32>(vec2<i32>(_e60));
@@ -242,25 +243,25 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
     }
     let _e117 = guess;
     let _e119 = all((_e117 >= vec2<f32>(0f, 0f)));
-    phi_495_ = _e119;
+    phi_528_ = _e119;
     if _e119 {
         let _e120 = guess;
         let _e121 = size;
-        phi_495_ = all((_e120 < _e121));
+        phi_528_ = all((_e120 < _e121));
     }
-    let _e125 = phi_495_;
+    let _e125 = phi_528_;
     inside = _e125;
     let _e127 = seen[3u];
     let _e129 = inside;
     let _e130 = ((_e127 > 0f) && _e129);
-    phi_510_ = _e130;
+    phi_543_ = _e130;
     if _e130 {
         let _e132 = guess[1u];
         let _e133 = rows;
         let _e136 = strip;
-        phi_510_ = (i32((_e132 / _e133)) == _e136);
+        phi_543_ = (i32((_e132 / _e133)) == _e136);
     }
-    let _e139 = phi_510_;
+    let _e139 = phi_543_;
     if !(_e139) {
         return false;
     }
@@ -325,13 +326,13 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
     let _e232 = (*depth);
     behind = (_e226 <= (_e227 - (0.25f * (_e228 - (_e231 * _e232)))));
     let _e238 = outside;
-    phi_638_ = _e238;
+    phi_672_ = _e238;
     if !(_e238) {
         let _e240 = before;
         let _e241 = nearness;
-        phi_638_ = (_e240 > (_e241 - 1f));
+        phi_672_ = (_e240 > (_e241 - 1f));
     }
-    let _e245 = phi_638_;
+    let _e245 = phi_672_;
     hidden = _e245;
     let _e246 = same;
     let _e247 = behind;
@@ -364,15 +365,15 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
             let _e289 = most;
             texel = min((_e281 + vec2<i32>((_e282 & 1i), (_e284 >> bitcast<u32>(1i)))), vec2<i32>(_e289));
             let _e292 = whole;
-            phi_717_ = _e292;
+            phi_751_ = _e292;
             if _e292 {
                 let _e295 = synthesis.law[1u];
                 let _e296 = texel;
                 let _e297 = textureLoad(history_depth_texture, _e296, 0i);
                 let _e299 = stored;
-                phi_717_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
+                phi_751_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
             }
-            let _e305 = phi_717_;
+            let _e305 = phi_751_;
             whole = _e305;
             continue;
         } else {
@@ -457,6 +458,53 @@ fn weighted(column_2: ptr<function, i32>, row_3: ptr<function, i32>, of_front: p
     return ((_e49 * _e48) + (_e52 * _e51));
 }
 
+fn cover(seen_1: ptr<function, Seen>, share_1: ptr<function, f32>, column_3: ptr<function, f32>, reach_1: ptr<function, f32>) -> f32 {
+    var taken: f32;
+    var passes: bool;
+    var local_6: f32;
+    var local_7: f32;
+    var phi_986_: bool;
+
+    let _e10 = (*seen_1).rest;
+    let _e11 = (*share_1);
+    taken = (_e10 * _e11);
+    let _e14 = (*seen_1).rest;
+    let _e15 = (_e14 > 0.5f);
+    phi_986_ = _e15;
+    if _e15 {
+        let _e17 = (*seen_1).rest;
+        let _e18 = taken;
+        phi_986_ = ((_e17 - _e18) <= 0.5f);
+    }
+    let _e22 = phi_986_;
+    passes = _e22;
+    let _e23 = passes;
+    if _e23 {
+        let _e24 = (*column_3);
+        local_6 = _e24;
+    } else {
+        let _e26 = (*seen_1).column;
+        local_6 = _e26;
+    }
+    let _e27 = local_6;
+    (*seen_1).column = _e27;
+    let _e29 = passes;
+    if _e29 {
+        let _e30 = (*reach_1);
+        local_7 = _e30;
+    } else {
+        let _e32 = (*seen_1).reach;
+        local_7 = _e32;
+    }
+    let _e33 = local_7;
+    (*seen_1).reach = _e33;
+    let _e35 = taken;
+    let _e37 = (*seen_1).rest;
+    (*seen_1).rest = (_e37 - _e35);
+    let _e40 = taken;
+    return _e40;
+}
+
 fn covered(mask: ptr<function, vec4<f32>>, stripes: ptr<function, vec4<f32>>) -> f32 {
     let _e3 = (*mask);
     let _e4 = (*stripes);
@@ -468,131 +516,1277 @@ fn right_of(place_1: ptr<function, f32>) -> vec4<f32> {
     return clamp((vec4<f32>(1f, 2f, 3f, 4f) - vec4((4f * _e5))), vec4(0f), vec4(1f));
 }
 
-fn layer_at(column_3: ptr<function, i32>, row_4: ptr<function, i32>) -> Layer {
+fn mask_of(layer_3: ptr<function, Layer>, column_4: ptr<function, i32>, row_4: ptr<function, i32>) -> vec4<f32> {
+    var share_2: f32;
+    var local_8: vec4<f32>;
+    var local_9: vec4<f32>;
+
+    let _e17 = (*layer_3).split;
+    if !(_e17) {
+        return vec4<f32>(1f, 1f, 1f, 1f);
+    }
+    let _e19 = (*column_4);
+    let _e20 = (*row_4);
+    let _e22 = textureLoad(back_map_texture, vec2<i32>(_e19, _e20), 0i);
+    share_2 = _e22.w;
+    let _e25 = (*layer_3).code;
+    if (_e25 == 1u) {
+        let _e27 = share_2;
+        local_8 = clamp((vec4((4f * _e27)) - vec4<f32>(0f, 1f, 2f, 3f)), vec4(0f), vec4(1f));
+    } else {
+        let _e35 = (*layer_3).code;
+        if (_e35 == 2u) {
+            let _e37 = share_2;
+            local_9 = clamp((vec4((4f * _e37)) - vec4<f32>(3f, 2f, 1f, 0f)), vec4(0f), vec4(1f));
+        } else {
+            let _e44 = share_2;
+            local_9 = vec4(_e44);
+        }
+        let _e46 = local_9;
+        local_8 = _e46;
+    }
+    let _e47 = local_8;
+    return _e47;
+}
+
+fn layer_at(column_5: ptr<function, i32>, row_5: ptr<function, i32>) -> Layer {
     var bits_1: u32;
     var param_11: i32;
     var param_12: i32;
-    var param_13: u32;
-    var param_14: u32;
     var both: vec2<f32>;
+    var param_13: u32;
+    var split: bool;
+    var param_14: u32;
+    var local_10: f32;
     var param_15: u32;
-    var code: u32;
-    var share_1: f32;
-    var mask_1: vec4<f32>;
-    var local_6: vec4<f32>;
-    var local_7: vec4<f32>;
+    var local_11: f32;
 
-    let _e29 = (*column_3);
-    param_11 = _e29;
-    let _e30 = (*row_4);
-    param_12 = _e30;
-    let _e31 = layer_bits((&param_11), (&param_12));
-    bits_1 = _e31;
-    let _e32 = bits_1;
-    param_13 = _e32;
-    let _e33 = is_full((&param_13));
-    if _e33 {
-        let _e34 = bits_1;
-        param_14 = _e34;
-        let _e35 = full_front((&param_14));
-        return Layer(_e35, 1000000000f, false, vec4<f32>(1f, 1f, 1f, 1f));
-    }
-    let _e37 = bits_1;
-    param_15 = _e37;
-    let _e38 = split_displacements((&param_15));
-    both = _e38;
-    let _e39 = bits_1;
-    code = (_e39 >> bitcast<u32>(28i));
-    let _e42 = (*column_3);
-    let _e43 = (*row_4);
-    let _e45 = textureLoad(back_map_texture, vec2<i32>(_e42, _e43), 0i);
-    share_1 = _e45.w;
-    let _e47 = code;
-    if (_e47 == 1u) {
-        let _e49 = share_1;
-        local_6 = clamp((vec4((4f * _e49)) - vec4<f32>(0f, 1f, 2f, 3f)), vec4(0f), vec4(1f));
+    let _e16 = (*column_5);
+    param_11 = _e16;
+    let _e17 = (*row_5);
+    param_12 = _e17;
+    let _e18 = layer_bits((&param_11), (&param_12));
+    bits_1 = _e18;
+    let _e19 = bits_1;
+    param_13 = _e19;
+    let _e20 = split_displacements((&param_13));
+    both = _e20;
+    let _e21 = bits_1;
+    param_14 = _e21;
+    let _e22 = is_full((&param_14));
+    split = !(_e22);
+    let _e24 = split;
+    if _e24 {
+        let _e26 = both[0u];
+        local_10 = _e26;
     } else {
-        let _e56 = code;
-        if (_e56 == 2u) {
-            let _e58 = share_1;
-            local_7 = clamp((vec4((4f * _e58)) - vec4<f32>(3f, 2f, 1f, 0f)), vec4(0f), vec4(1f));
-        } else {
-            let _e65 = share_1;
-            local_7 = vec4(_e65);
-        }
-        let _e67 = local_7;
-        local_6 = _e67;
+        let _e27 = bits_1;
+        param_15 = _e27;
+        let _e28 = full_front((&param_15));
+        local_10 = _e28;
     }
-    let _e68 = local_6;
-    mask_1 = _e68;
-    let _e70 = both[0u];
-    let _e72 = both[1u];
-    let _e73 = mask_1;
-    return Layer(_e70, _e72, true, _e73);
+    let _e29 = local_10;
+    let _e30 = split;
+    if _e30 {
+        let _e32 = both[1u];
+        local_11 = _e32;
+    } else {
+        local_11 = 1000000000f;
+    }
+    let _e33 = local_11;
+    let _e34 = split;
+    let _e35 = bits_1;
+    return Layer(_e29, _e33, _e34, (_e35 >> bitcast<u32>(28i)));
 }
 
-fn color_texel(x_3: ptr<function, i32>, row_5: ptr<function, i32>) -> vec4<f32> {
+fn composed(row_6: ptr<function, i32>, t: ptr<function, f32>, x_3: ptr<function, f32>, limit: ptr<function, f32>, column_6: ptr<function, i32>, seen_2: ptr<function, Seen>) -> vec4<f32> {
+    var sense: i32;
+    var color_sum: vec4<f32>;
+    var here_1: Layer;
     var param_16: i32;
-    var param_17: vec2<i32>;
+    var param_17: i32;
+    var edge: Edge;
+    var second: Edge;
+    var beside: f32;
+    var on_front: bool;
+    var on_back: bool;
+    var before_1: Layer;
+    var param_18: i32;
+    var param_19: i32;
+    var next: Layer;
+    var a: f32;
+    var b: f32;
+    var c: f32;
+    var d: f32;
+    var front_front: bool;
+    var front_back: bool;
+    var back_front: bool;
+    var back_back: bool;
+    var event: bool;
+    var param_20: i32;
+    var param_21: i32;
+    var crosses: bool;
+    var front_begins: bool;
+    var front_ends: bool;
+    var back_ends: bool;
+    var here_mask: vec4<f32>;
+    var param_22: Layer;
+    var param_23: i32;
+    var param_24: i32;
+    var next_mask: vec4<f32>;
+    var param_25: Layer;
+    var param_26: i32;
+    var param_27: i32;
+    var fronts: vec2<f32>;
+    var backs: vec2<f32>;
+    var g: f32;
+    var right: vec4<f32>;
+    var param_28: f32;
+    var shares: vec2<f32>;
+    var param_29: vec4<f32>;
+    var param_30: vec4<f32>;
+    var param_31: vec4<f32>;
+    var param_32: vec4<f32>;
+    var share_3: f32;
+    var param_33: Seen;
+    var param_34: f32;
+    var param_35: f32;
+    var param_36: f32;
+    var share_4: f32;
+    var param_37: f32;
+    var param_38: vec4<f32>;
+    var param_39: vec4<f32>;
+    var param_40: Seen;
+    var param_41: f32;
+    var param_42: f32;
+    var param_43: f32;
+    var param_44: f32;
+    var param_45: vec4<f32>;
+    var param_46: vec4<f32>;
+    var param_47: Seen;
+    var param_48: f32;
+    var param_49: f32;
+    var param_50: f32;
+    var g_1: f32;
+    var taken_1: f32;
+    var param_51: Seen;
+    var param_52: f32;
+    var param_53: f32;
+    var param_54: f32;
+    var g_2: f32;
+    var taken_2: f32;
+    var param_55: Seen;
+    var param_56: f32;
+    var param_57: f32;
+    var param_58: f32;
+    var g_3: f32;
+    var taken_3: f32;
+    var param_59: Seen;
+    var param_60: f32;
+    var param_61: f32;
+    var param_62: f32;
+    var ends: bool;
+    var stripes_1: vec4<f32>;
+    var local_12: vec4<f32>;
+    var param_63: f32;
+    var param_64: f32;
+    var param_65: vec4<f32>;
+    var param_66: vec4<f32>;
+    var param_67: Seen;
+    var param_68: f32;
+    var param_69: f32;
+    var param_70: f32;
+    var at_back: bool;
+    var at_front: bool;
+    var reach_2: f32;
+    var local_13: f32;
+    var away: f32;
+    var local_14: f32;
+    var weight: f32;
+    var local_15: f32;
+    var param_71: vec4<f32>;
+    var param_72: vec4<f32>;
+    var found: Edge;
+    var taken_4: f32;
+    var param_73: Seen;
+    var param_74: f32;
+    var param_75: f32;
+    var param_76: f32;
+    var param_77: i32;
+    var param_78: i32;
+    var param_79: f32;
+    var param_80: f32;
+    var param_81: i32;
+    var param_82: i32;
+    var param_83: f32;
+    var param_84: f32;
+    var beyond: bool;
+    var local_16: f32;
+    var edge_x: f32;
+    var param_85: i32;
+    var away_1: f32;
+    var spread: f32;
+    var sum: vec4<f32>;
+    var weights: f32;
+    var rows_1: i32;
+    var i_2: i32;
+    var at: i32;
+    var layer_4: Layer;
+    var param_86: i32;
+    var param_87: i32;
+    var front_2: bool;
+    var local_17: bool;
+    var behind_2: bool;
+    var local_18: bool;
+    var weight_1: f32;
+    var local_19: f32;
+    var local_20: f32;
+    var local_21: f32;
+    var param_88: Layer;
+    var param_89: i32;
+    var param_90: i32;
+    var param_91: vec4<f32>;
+    var param_92: vec4<f32>;
+    var param_93: i32;
+    var param_94: i32;
+    var param_95: f32;
+    var param_96: f32;
+    var fill: vec4<f32>;
+    var one: vec2<f32>;
+    var param_97: i32;
+    var param_98: i32;
+    var param_99: f32;
+    var param_100: f32;
+    var depth_1: f32;
+    var origin_1: f32;
+    var param_101: vec2<f32>;
+    var param_102: f32;
+    var param_103: f32;
+    var param_104: i32;
+    var param_105: vec4<f32>;
+    var param_106: f32;
+    var param_107: Seen;
+    var param_108: f32;
+    var param_109: f32;
+    var param_110: f32;
+    var phi_1059_: bool;
+    var phi_1066_: bool;
+    var phi_1108_: bool;
+    var phi_1122_: bool;
+    var phi_1210_: bool;
+    var phi_1227_: bool;
+    var phi_1228_: bool;
+    var phi_1247_: bool;
+    var phi_1248_: bool;
+    var phi_1249_: bool;
+    var phi_1284_: bool;
+    var phi_1285_: bool;
+    var phi_1307_: bool;
+    var phi_1308_: bool;
+    var phi_1428_: bool;
+    var phi_1479_: bool;
+    var phi_1525_: bool;
+    var phi_1575_: bool;
+    var phi_1625_: bool;
+    var phi_1677_: bool;
+    var phi_1683_: bool;
+    var phi_1734_: bool;
+    var phi_1755_: bool;
+    var phi_1767_: bool;
+    var phi_2046_: bool;
+    var phi_2114_: bool;
+    var phi_2195_: bool;
 
-    let _e6 = (*x_3);
-    param_16 = _e6;
-    let _e7 = source_column((&param_16));
-    let _e8 = (*row_5);
-    param_17 = vec2<i32>(_e7, _e8);
-    let _e10 = in_image((&param_17));
+    let _e201 = synthesis.mirrored;
+    sense = select(1i, -1i, (_e201 != 0u));
+    color_sum = vec4<f32>(0f, 0f, 0f, 0f);
+    let _e204 = (*column_6);
+    param_16 = _e204;
+    let _e205 = (*row_6);
+    param_17 = _e205;
+    let _e206 = layer_at((&param_16), (&param_17));
+    here_1 = _e206;
+    edge = Edge(-1i, false, 1000000000f, 1f);
+    let _e207 = edge;
+    second = _e207;
+    beside = 1000000000f;
+    let _e208 = (*x_3);
+    if (_e208 == 0f) {
+        let _e211 = here_1.front;
+        let _e212 = (*t);
+        if (_e211 > _e212) {
+            let _e214 = (*column_6);
+            let _e216 = here_1.front;
+            edge = Edge(_e214, false, _e216, 1f);
+        }
+        let _e219 = here_1.split;
+        phi_1059_ = _e219;
+        if _e219 {
+            let _e221 = here_1.back;
+            let _e223 = edge.reach;
+            phi_1059_ = (_e221 < _e223);
+        }
+        let _e226 = phi_1059_;
+        phi_1066_ = _e226;
+        if _e226 {
+            let _e228 = here_1.back;
+            let _e229 = (*t);
+            phi_1066_ = (_e228 > _e229);
+        }
+        let _e232 = phi_1066_;
+        if _e232 {
+            let _e233 = (*column_6);
+            let _e235 = here_1.back;
+            edge = Edge(_e233, true, _e235, 1f);
+        }
+    }
+    on_front = false;
+    on_back = false;
+    let _e237 = (*x_3);
+    let _e240 = here_1.split;
+    if ((_e237 > 0f) && _e240) {
+        let _e242 = (*column_6);
+        let _e243 = sense;
+        param_18 = (_e242 - _e243);
+        let _e245 = (*row_6);
+        param_19 = _e245;
+        let _e246 = layer_at((&param_18), (&param_19));
+        before_1 = _e246;
+        let _e248 = before_1.front;
+        let _e250 = here_1.back;
+        on_front = (abs((_e248 - _e250)) < 0.5f);
+        let _e255 = before_1.split;
+        phi_1108_ = _e255;
+        if _e255 {
+            let _e257 = before_1.back;
+            let _e259 = here_1.back;
+            phi_1108_ = (abs((_e257 - _e259)) < 0.5f);
+        }
+        let _e264 = phi_1108_;
+        on_back = _e264;
+    }
+    loop {
+        let _e265 = (*x_3);
+        let _e266 = (*limit);
+        let _e267 = (_e265 < _e266);
+        phi_1122_ = _e267;
+        if _e267 {
+            let _e269 = (*seen_2).rest;
+            phi_1122_ = (_e269 > 0.01f);
+        }
+        let _e272 = phi_1122_;
+        if _e272 {
+            let _e273 = here_1;
+            next = _e273;
+            a = 0f;
+            b = 0f;
+            c = 0f;
+            d = 0f;
+            front_front = false;
+            front_back = false;
+            back_front = false;
+            back_back = false;
+            event = false;
+            loop {
+                let _e274 = event;
+                let _e276 = (*x_3);
+                let _e277 = (*limit);
+                if (!(_e274) && (_e276 < _e277)) {
+                    let _e280 = (*column_6);
+                    let _e281 = sense;
+                    param_20 = (_e280 + _e281);
+                    let _e283 = (*row_6);
+                    param_21 = _e283;
+                    let _e284 = layer_at((&param_20), (&param_21));
+                    next = _e284;
+                    let _e285 = (*x_3);
+                    let _e287 = here_1.front;
+                    let _e289 = (*t);
+                    a = ((_e285 + _e287) - _e289);
+                    let _e291 = (*x_3);
+                    let _e294 = next.front;
+                    let _e296 = (*t);
+                    b = (((_e291 + 1f) + _e294) - _e296);
+                    let _e298 = (*x_3);
+                    let _e300 = here_1.back;
+                    let _e302 = (*t);
+                    c = ((_e298 + _e300) - _e302);
+                    let _e304 = (*x_3);
+                    let _e307 = next.back;
+                    let _e309 = (*t);
+                    d = (((_e304 + 1f) + _e307) - _e309);
+                    let _e312 = next.front;
+                    let _e314 = here_1.front;
+                    front_front = (abs((_e312 - _e314)) < 0.5f);
+                    let _e319 = next.back;
+                    let _e321 = here_1.front;
+                    front_back = (abs((_e319 - _e321)) < 0.5f);
+                    let _e326 = next.front;
+                    let _e328 = here_1.back;
+                    back_front = (abs((_e326 - _e328)) < 0.5f);
+                    let _e333 = here_1.split;
+                    phi_1210_ = _e333;
+                    if _e333 {
+                        let _e335 = next.back;
+                        let _e337 = here_1.back;
+                        phi_1210_ = (abs((_e335 - _e337)) < 0.5f);
+                    }
+                    let _e342 = phi_1210_;
+                    back_back = _e342;
+                    let _e343 = a;
+                    let _e344 = (_e343 <= 0f);
+                    phi_1228_ = _e344;
+                    if _e344 {
+                        let _e345 = front_front;
+                        let _e346 = b;
+                        let _e348 = (_e345 && (_e346 > 0f));
+                        phi_1227_ = _e348;
+                        if !(_e348) {
+                            let _e350 = front_back;
+                            let _e351 = d;
+                            phi_1227_ = (_e350 && (_e351 > 0f));
+                        }
+                        let _e355 = phi_1227_;
+                        phi_1228_ = _e355;
+                    }
+                    let _e357 = phi_1228_;
+                    phi_1249_ = _e357;
+                    if !(_e357) {
+                        let _e359 = c;
+                        let _e360 = (_e359 <= 0f);
+                        phi_1248_ = _e360;
+                        if _e360 {
+                            let _e361 = back_front;
+                            let _e362 = b;
+                            let _e364 = (_e361 && (_e362 > 0f));
+                            phi_1247_ = _e364;
+                            if !(_e364) {
+                                let _e366 = back_back;
+                                let _e367 = d;
+                                phi_1247_ = (_e366 && (_e367 > 0f));
+                            }
+                            let _e371 = phi_1247_;
+                            phi_1248_ = _e371;
+                        }
+                        let _e373 = phi_1248_;
+                        phi_1249_ = _e373;
+                    }
+                    let _e375 = phi_1249_;
+                    crosses = _e375;
+                    let _e376 = front_front;
+                    let _e378 = back_front;
+                    let _e381 = b;
+                    let _e384 = b;
+                    front_begins = (((!(_e376) && !(_e378)) && (_e381 > 0f)) && (_e384 < 1f));
+                    let _e387 = front_front;
+                    let _e389 = front_back;
+                    let _e392 = a;
+                    let _e394 = ((!(_e387) && !(_e389)) && (_e392 <= 0f));
+                    phi_1285_ = _e394;
+                    if _e394 {
+                        let _e395 = a;
+                        let _e396 = (_e395 > -1f);
+                        phi_1284_ = _e396;
+                        if !(_e396) {
+                            let _e399 = next.front;
+                            let _e401 = here_1.front;
+                            phi_1284_ = (_e399 > _e401);
+                        }
+                        let _e404 = phi_1284_;
+                        phi_1285_ = _e404;
+                    }
+                    let _e406 = phi_1285_;
+                    front_ends = _e406;
+                    let _e407 = back_front;
+                    let _e409 = back_back;
+                    let _e412 = c;
+                    let _e414 = ((!(_e407) && !(_e409)) && (_e412 < 1f));
+                    phi_1308_ = _e414;
+                    if _e414 {
+                        let _e415 = c;
+                        let _e416 = (_e415 > -1f);
+                        phi_1307_ = _e416;
+                        if !(_e416) {
+                            let _e419 = next.front;
+                            let _e421 = here_1.back;
+                            phi_1307_ = (_e419 > _e421);
+                        }
+                        let _e424 = phi_1307_;
+                        phi_1308_ = _e424;
+                    }
+                    let _e426 = phi_1308_;
+                    back_ends = _e426;
+                    let _e427 = crosses;
+                    let _e428 = front_begins;
+                    let _e430 = front_ends;
+                    let _e432 = back_ends;
+                    event = (((_e427 || _e428) || _e430) || _e432);
+                    let _e434 = event;
+                    if !(_e434) {
+                        let _e436 = (*x_3);
+                        (*x_3) = (_e436 + 1f);
+                        let _e438 = sense;
+                        let _e439 = (*column_6);
+                        (*column_6) = (_e439 + _e438);
+                        let _e441 = next;
+                        here_1 = _e441;
+                        let _e442 = front_back;
+                        on_front = _e442;
+                        let _e443 = back_back;
+                        on_back = _e443;
+                    }
+                    continue;
+                } else {
+                    break;
+                }
+            }
+            let _e444 = event;
+            if !(_e444) {
+                break;
+            }
+            let _e446 = here_1;
+            param_22 = _e446;
+            let _e447 = (*column_6);
+            param_23 = _e447;
+            let _e448 = (*row_6);
+            param_24 = _e448;
+            let _e449 = mask_of((&param_22), (&param_23), (&param_24));
+            here_mask = _e449;
+            let _e450 = (*column_6);
+            let _e451 = sense;
+            let _e453 = next;
+            param_25 = _e453;
+            param_26 = (_e450 + _e451);
+            let _e454 = (*row_6);
+            param_27 = _e454;
+            let _e455 = mask_of((&param_25), (&param_26), (&param_27));
+            next_mask = _e455;
+            fronts = vec2<f32>(0f, 0f);
+            backs = vec2<f32>(0f, 0f);
+            let _e456 = front_front;
+            let _e457 = a;
+            let _e460 = b;
+            if ((_e456 && (_e457 <= 0f)) && (_e460 > 0f)) {
+                let _e463 = a;
+                let _e465 = b;
+                let _e466 = a;
+                g = (-(_e463) / (_e465 - _e466));
+                let _e469 = g;
+                param_28 = _e469;
+                let _e470 = right_of((&param_28));
+                right = _e470;
+                let _e471 = here_mask;
+                param_29 = _e471;
+                let _e472 = right;
+                param_30 = _e472;
+                let _e473 = covered((&param_29), (&param_30));
+                let _e474 = right;
+                let _e477 = next_mask;
+                param_31 = _e477;
+                param_32 = (vec4(1f) - _e474);
+                let _e478 = covered((&param_31), (&param_32));
+                shares = vec2<f32>(_e473, _e478);
+                let _e481 = shares[0u];
+                let _e483 = shares[1u];
+                share_3 = (_e481 + _e483);
+                let _e485 = (*x_3);
+                let _e486 = g;
+                let _e489 = here_1.front;
+                let _e491 = next.front;
+                let _e492 = g;
+                let _e494 = (*seen_2);
+                param_33 = _e494;
+                let _e495 = share_3;
+                param_34 = _e495;
+                param_35 = (_e485 + _e486);
+                param_36 = mix(_e489, _e491, _e492);
+                let _e496 = cover((&param_33), (&param_34), (&param_35), (&param_36));
+                let _e497 = param_33;
+                (*seen_2) = _e497;
+                let _e498 = shares;
+                let _e500 = share_3;
+                fronts = ((_e498 * _e496) / vec2(max(_e500, 0.000001f)));
+            }
+            let _e504 = front_front;
+            let _e505 = !(_e504);
+            phi_1428_ = _e505;
+            if _e505 {
+                let _e507 = next.front;
+                let _e509 = here_1.front;
+                let _e512 = next.split;
+                phi_1428_ = ((_e507 > _e509) || _e512);
+            }
+            let _e515 = phi_1428_;
+            let _e516 = back_front;
+            let _e519 = b;
+            let _e522 = b;
+            if (((_e515 && !(_e516)) && (_e519 > 0f)) && (_e522 < 1f)) {
+                let _e525 = b;
+                param_37 = (1f - _e525);
+                let _e527 = right_of((&param_37));
+                let _e530 = next_mask;
+                param_38 = _e530;
+                param_39 = (vec4(1f) - _e527);
+                let _e531 = covered((&param_38), (&param_39));
+                share_4 = _e531;
+                let _e532 = (*x_3);
+                let _e534 = (*seen_2);
+                param_40 = _e534;
+                let _e535 = share_4;
+                param_41 = _e535;
+                param_42 = (_e532 + 1f);
+                let _e537 = next.front;
+                param_43 = _e537;
+                let _e538 = cover((&param_40), (&param_41), (&param_42), (&param_43));
+                let _e539 = param_40;
+                (*seen_2) = _e539;
+                let _e541 = fronts[1u];
+                fronts[1u] = (_e541 + _e538);
+            }
+            let _e544 = front_front;
+            let _e545 = !(_e544);
+            phi_1479_ = _e545;
+            if _e545 {
+                let _e547 = next.front;
+                let _e549 = here_1.front;
+                let _e552 = here_1.split;
+                phi_1479_ = ((_e547 < _e549) || _e552);
+            }
+            let _e555 = phi_1479_;
+            let _e556 = front_back;
+            let _e559 = a;
+            let _e562 = a;
+            if (((_e555 && !(_e556)) && (_e559 <= 0f)) && (_e562 > -1f)) {
+                let _e565 = a;
+                param_44 = -(_e565);
+                let _e567 = right_of((&param_44));
+                let _e568 = here_mask;
+                param_45 = _e568;
+                param_46 = _e567;
+                let _e569 = covered((&param_45), (&param_46));
+                let _e570 = (*seen_2);
+                param_47 = _e570;
+                param_48 = _e569;
+                let _e571 = (*x_3);
+                param_49 = _e571;
+                let _e573 = here_1.front;
+                param_50 = _e573;
+                let _e574 = cover((&param_47), (&param_48), (&param_49), (&param_50));
+                let _e575 = param_47;
+                (*seen_2) = _e575;
+                let _e577 = fronts[0u];
+                fronts[0u] = (_e577 + _e574);
+            }
+            let _e580 = front_back;
+            let _e581 = a;
+            let _e584 = d;
+            let _e586 = ((_e580 && (_e581 <= 0f)) && (_e584 > 0f));
+            phi_1525_ = _e586;
+            if _e586 {
+                let _e588 = (*seen_2).rest;
+                phi_1525_ = (_e588 > 0.01f);
+            }
+            let _e591 = phi_1525_;
+            if _e591 {
+                let _e592 = a;
+                let _e594 = d;
+                let _e595 = a;
+                g_1 = (-(_e592) / (_e594 - _e595));
+                let _e598 = (*x_3);
+                let _e599 = g_1;
+                let _e601 = (*seen_2);
+                param_51 = _e601;
+                param_52 = 1f;
+                param_53 = (_e598 + _e599);
+                let _e603 = here_1.front;
+                param_54 = _e603;
+                let _e604 = cover((&param_51), (&param_52), (&param_53), (&param_54));
+                let _e605 = param_51;
+                (*seen_2) = _e605;
+                taken_1 = _e604;
+                let _e606 = taken_1;
+                let _e607 = g_1;
+                let _e611 = fronts[0u];
+                fronts[0u] = (_e611 + (_e606 * (1f - _e607)));
+                let _e614 = taken_1;
+                let _e615 = g_1;
+                let _e618 = backs[1u];
+                backs[1u] = (_e618 + (_e614 * _e615));
+            }
+            let _e621 = back_front;
+            let _e622 = c;
+            let _e625 = b;
+            let _e627 = ((_e621 && (_e622 <= 0f)) && (_e625 > 0f));
+            phi_1575_ = _e627;
+            if _e627 {
+                let _e629 = (*seen_2).rest;
+                phi_1575_ = (_e629 > 0.01f);
+            }
+            let _e632 = phi_1575_;
+            if _e632 {
+                let _e633 = c;
+                let _e635 = b;
+                let _e636 = c;
+                g_2 = (-(_e633) / (_e635 - _e636));
+                let _e639 = (*x_3);
+                let _e640 = g_2;
+                let _e642 = (*seen_2);
+                param_55 = _e642;
+                param_56 = 1f;
+                param_57 = (_e639 + _e640);
+                let _e644 = next.front;
+                param_58 = _e644;
+                let _e645 = cover((&param_55), (&param_56), (&param_57), (&param_58));
+                let _e646 = param_55;
+                (*seen_2) = _e646;
+                taken_2 = _e645;
+                let _e647 = taken_2;
+                let _e648 = g_2;
+                let _e652 = backs[0u];
+                backs[0u] = (_e652 + (_e647 * (1f - _e648)));
+                let _e655 = taken_2;
+                let _e656 = g_2;
+                let _e659 = fronts[1u];
+                fronts[1u] = (_e659 + (_e655 * _e656));
+            }
+            let _e662 = back_back;
+            let _e663 = c;
+            let _e666 = d;
+            let _e668 = ((_e662 && (_e663 <= 0f)) && (_e666 > 0f));
+            phi_1625_ = _e668;
+            if _e668 {
+                let _e670 = (*seen_2).rest;
+                phi_1625_ = (_e670 > 0.01f);
+            }
+            let _e673 = phi_1625_;
+            if _e673 {
+                let _e674 = c;
+                let _e676 = d;
+                let _e677 = c;
+                g_3 = (-(_e674) / (_e676 - _e677));
+                let _e680 = (*x_3);
+                let _e681 = g_3;
+                let _e683 = (*seen_2);
+                param_59 = _e683;
+                param_60 = 1f;
+                param_61 = (_e680 + _e681);
+                let _e685 = here_1.back;
+                param_62 = _e685;
+                let _e686 = cover((&param_59), (&param_60), (&param_61), (&param_62));
+                let _e687 = param_59;
+                (*seen_2) = _e687;
+                taken_3 = _e686;
+                let _e688 = taken_3;
+                let _e689 = g_3;
+                let _e691 = g_3;
+                let _e694 = backs;
+                backs = (_e694 + (vec2<f32>((1f - _e689), _e691) * _e688));
+            }
+            let _e697 = here_1.split;
+            let _e698 = back_front;
+            let _e701 = back_back;
+            ends = ((_e697 && !(_e698)) && !(_e701));
+            let _e704 = ends;
+            let _e705 = on_front;
+            let _e708 = on_back;
+            let _e710 = ((_e704 && !(_e705)) && !(_e708));
+            phi_1677_ = _e710;
+            if _e710 {
+                let _e711 = c;
+                phi_1677_ = (abs(_e711) < 1f);
+            }
+            let _e715 = phi_1677_;
+            phi_1683_ = _e715;
+            if _e715 {
+                let _e717 = (*seen_2).rest;
+                phi_1683_ = (_e717 > 0.01f);
+            }
+            let _e720 = phi_1683_;
+            if _e720 {
+                let _e721 = c;
+                if (_e721 <= 0f) {
+                    let _e723 = c;
+                    param_63 = -(_e723);
+                    let _e725 = right_of((&param_63));
+                    local_12 = _e725;
+                } else {
+                    let _e726 = c;
+                    param_64 = (1f - _e726);
+                    let _e728 = right_of((&param_64));
+                    local_12 = (vec4(1f) - _e728);
+                }
+                let _e731 = local_12;
+                stripes_1 = _e731;
+                let _e732 = here_mask;
+                param_65 = (vec4(1f) - _e732);
+                let _e735 = stripes_1;
+                param_66 = _e735;
+                let _e736 = covered((&param_65), (&param_66));
+                let _e737 = (*seen_2);
+                param_67 = _e737;
+                param_68 = _e736;
+                let _e738 = (*x_3);
+                param_69 = _e738;
+                let _e740 = here_1.back;
+                param_70 = _e740;
+                let _e741 = cover((&param_67), (&param_68), (&param_69), (&param_70));
+                let _e742 = param_67;
+                (*seen_2) = _e742;
+                let _e744 = backs[0u];
+                backs[0u] = (_e744 + _e741);
+            }
+            let _e747 = ends;
+            phi_1734_ = _e747;
+            if _e747 {
+                let _e749 = next.front;
+                let _e751 = here_1.back;
+                phi_1734_ = (_e749 > _e751);
+            }
+            let _e754 = phi_1734_;
+            let _e755 = c;
+            at_back = (_e754 && (_e755 <= 0f));
+            let _e759 = here_1.split;
+            let _e761 = front_front;
+            let _e764 = front_back;
+            let _e766 = ((!(_e759) && !(_e761)) && !(_e764));
+            phi_1755_ = _e766;
+            if _e766 {
+                let _e768 = next.front;
+                let _e770 = here_1.front;
+                phi_1755_ = (_e768 > _e770);
+            }
+            let _e773 = phi_1755_;
+            let _e774 = a;
+            at_front = (_e773 && (_e774 <= 0f));
+            let _e777 = at_back;
+            let _e778 = at_front;
+            let _e779 = (_e777 || _e778);
+            phi_1767_ = _e779;
+            if _e779 {
+                let _e781 = (*seen_2).rest;
+                phi_1767_ = (_e781 > 0.01f);
+            }
+            let _e784 = phi_1767_;
+            if _e784 {
+                let _e785 = at_back;
+                if _e785 {
+                    let _e787 = here_1.back;
+                    local_13 = _e787;
+                } else {
+                    let _e789 = here_1.front;
+                    local_13 = _e789;
+                }
+                let _e790 = local_13;
+                reach_2 = _e790;
+                let _e791 = at_back;
+                if _e791 {
+                    let _e792 = c;
+                    local_14 = -(_e792);
+                } else {
+                    let _e794 = a;
+                    local_14 = -(_e794);
+                }
+                let _e796 = local_14;
+                away = _e796;
+                let _e797 = at_back;
+                let _e798 = on_front;
+                if (_e797 && !(_e798)) {
+                    let _e801 = here_mask;
+                    param_71 = _e801;
+                    param_72 = vec4<f32>(1f, 1f, 1f, 1f);
+                    let _e802 = covered((&param_71), (&param_72));
+                    local_15 = (1f - _e802);
+                } else {
+                    local_15 = 1f;
+                }
+                let _e804 = local_15;
+                weight = _e804;
+                let _e805 = (*column_6);
+                let _e806 = at_back;
+                let _e807 = reach_2;
+                let _e808 = weight;
+                found = Edge(_e805, _e806, _e807, _e808);
+                let _e810 = weight;
+                let _e812 = away;
+                if ((_e810 == 1f) && (_e812 < 0.5f)) {
+                    let _e815 = (*seen_2);
+                    param_73 = _e815;
+                    param_74 = 1f;
+                    let _e816 = (*x_3);
+                    param_75 = _e816;
+                    let _e817 = reach_2;
+                    param_76 = _e817;
+                    let _e818 = cover((&param_73), (&param_74), (&param_75), (&param_76));
+                    let _e819 = param_73;
+                    (*seen_2) = _e819;
+                    taken_4 = _e818;
+                    let _e820 = at_back;
+                    let _e821 = taken_4;
+                    let _e824 = backs[0u];
+                    backs[0u] = (_e824 + select(0f, _e821, _e820));
+                    let _e827 = at_back;
+                    let _e828 = taken_4;
+                    let _e831 = fronts[0u];
+                    fronts[0u] = (_e831 + select(_e828, 0f, _e827));
+                }
+                let _e834 = reach_2;
+                let _e836 = edge.reach;
+                if (_e834 < _e836) {
+                    let _e838 = weight;
+                    if (_e838 < 1f) {
+                        let _e840 = edge;
+                        second = _e840;
+                    }
+                    let _e841 = found;
+                    edge = _e841;
+                    let _e843 = next.front;
+                    beside = _e843;
+                } else {
+                    let _e844 = reach_2;
+                    let _e846 = second.reach;
+                    if (_e844 < _e846) {
+                        let _e848 = found;
+                        second = _e848;
+                    }
+                }
+            }
+            let _e850 = fronts[0u];
+            let _e852 = backs[0u];
+            if (max(_e850, _e852) > 0f) {
+                let _e855 = (*column_6);
+                param_77 = _e855;
+                let _e856 = (*row_6);
+                param_78 = _e856;
+                let _e858 = fronts[0u];
+                param_79 = _e858;
+                let _e860 = backs[0u];
+                param_80 = _e860;
+                let _e861 = weighted((&param_77), (&param_78), (&param_79), (&param_80));
+                let _e862 = color_sum;
+                color_sum = (_e862 + _e861);
+            }
+            let _e865 = fronts[1u];
+            let _e867 = backs[1u];
+            if (max(_e865, _e867) > 0f) {
+                let _e870 = (*column_6);
+                let _e871 = sense;
+                param_81 = (_e870 + _e871);
+                let _e873 = (*row_6);
+                param_82 = _e873;
+                let _e875 = fronts[1u];
+                param_83 = _e875;
+                let _e877 = backs[1u];
+                param_84 = _e877;
+                let _e878 = weighted((&param_81), (&param_82), (&param_83), (&param_84));
+                let _e879 = color_sum;
+                color_sum = (_e879 + _e878);
+            }
+            let _e881 = front_back;
+            on_front = _e881;
+            let _e882 = back_back;
+            on_back = _e882;
+            let _e883 = next;
+            here_1 = _e883;
+            let _e884 = sense;
+            let _e885 = (*column_6);
+            (*column_6) = (_e885 + _e884);
+            let _e887 = (*x_3);
+            (*x_3) = (_e887 + 1f);
+            continue;
+        } else {
+            break;
+        }
+    }
+    let _e890 = (*seen_2).rest;
+    (*seen_2).hole = (_e890 > 0.5f);
+    let _e894 = (*seen_2).rest;
+    if (_e894 > 0.01f) {
+        let _e897 = edge.column;
+        beyond = (_e897 < 0i);
+        let _e899 = beyond;
+        if _e899 {
+            let _e900 = (*column_6);
+            let _e902 = here_1.split;
+            let _e904 = here_1.split;
+            if _e904 {
+                let _e906 = here_1.back;
+                local_16 = _e906;
+            } else {
+                let _e908 = here_1.front;
+                local_16 = _e908;
+            }
+            let _e909 = local_16;
+            edge = Edge(_e900, _e902, _e909, 1f);
+        }
+        let _e912 = edge.column;
+        param_85 = _e912;
+        let _e913 = source_column((&param_85));
+        edge_x = f32(_e913);
+        let _e915 = (*t);
+        let _e916 = edge_x;
+        let _e919 = edge.reach;
+        away_1 = abs(((_e915 - _e916) - _e919));
+        let _e922 = away_1;
+        spread = (0.5f * clamp(_e922, 1f, 12f));
+        sum = vec4<f32>(0f, 0f, 0f, 0f);
+        weights = 0f;
+        let _e925 = beyond;
+        let _e926 = away_1;
+        rows_1 = select(2i, 0i, (_e925 && (_e926 < 0.5f)));
+        let _e930 = rows_1;
+        i_2 = -(_e930);
+        loop {
+            let _e932 = i_2;
+            let _e933 = rows_1;
+            if (_e932 <= _e933) {
+                let _e935 = (*row_6);
+                let _e936 = i_2;
+                let _e938 = spread;
+                let _e945 = synthesis.source_size[1u];
+                at = clamp((_e935 + i32(round((f32(_e936) * _e938)))), 0i, (_e945 - 1i));
+                let _e949 = edge.column;
+                param_86 = _e949;
+                let _e950 = at;
+                param_87 = _e950;
+                let _e951 = layer_at((&param_86), (&param_87));
+                layer_4 = _e951;
+                let _e952 = i_2;
+                if (_e952 == 0i) {
+                    let _e955 = edge.back;
+                    local_17 = !(_e955);
+                } else {
+                    let _e958 = layer_4.front;
+                    let _e960 = edge.reach;
+                    local_17 = (_e958 <= (_e960 + 1f));
+                }
+                let _e963 = local_17;
+                front_2 = _e963;
+                let _e964 = i_2;
+                if (_e964 == 0i) {
+                    let _e967 = edge.back;
+                    local_18 = _e967;
+                } else {
+                    let _e968 = front_2;
+                    let _e971 = layer_4.split;
+                    let _e972 = (!(_e968) && _e971);
+                    phi_2046_ = _e972;
+                    if _e972 {
+                        let _e974 = layer_4.back;
+                        let _e976 = edge.reach;
+                        phi_2046_ = (_e974 <= (_e976 + 1f));
+                    }
+                    let _e980 = phi_2046_;
+                    local_18 = _e980;
+                }
+                let _e981 = local_18;
+                behind_2 = _e981;
+                let _e982 = i_2;
+                if (_e982 == 0i) {
+                    local_19 = 2f;
+                } else {
+                    let _e984 = front_2;
+                    if _e984 {
+                        local_20 = 1f;
+                    } else {
+                        let _e985 = behind_2;
+                        if _e985 {
+                            let _e986 = layer_4;
+                            param_88 = _e986;
+                            let _e988 = edge.column;
+                            param_89 = _e988;
+                            let _e989 = at;
+                            param_90 = _e989;
+                            let _e990 = mask_of((&param_88), (&param_89), (&param_90));
+                            param_91 = _e990;
+                            param_92 = vec4<f32>(1f, 1f, 1f, 1f);
+                            let _e991 = covered((&param_91), (&param_92));
+                            local_21 = (1f - _e991);
+                        } else {
+                            local_21 = 0f;
+                        }
+                        let _e993 = local_21;
+                        local_20 = _e993;
+                    }
+                    let _e994 = local_20;
+                    local_19 = _e994;
+                }
+                let _e995 = local_19;
+                weight_1 = _e995;
+                let _e996 = front_2;
+                let _e997 = weight_1;
+                let _e999 = front_2;
+                let _e1000 = weight_1;
+                let _e1003 = edge.column;
+                param_93 = _e1003;
+                let _e1004 = at;
+                param_94 = _e1004;
+                param_95 = select(0f, _e997, _e996);
+                param_96 = select(_e1000, 0f, _e999);
+                let _e1005 = weighted((&param_93), (&param_94), (&param_95), (&param_96));
+                let _e1006 = sum;
+                sum = (_e1006 + _e1005);
+                let _e1008 = weight_1;
+                let _e1009 = weights;
+                weights = (_e1009 + _e1008);
+                continue;
+            } else {
+                break;
+            }
+            continuing {
+                let _e1011 = i_2;
+                i_2 = (_e1011 + 1i);
+            }
+        }
+        let _e1013 = sum;
+        let _e1014 = weights;
+        fill = (_e1013 / vec4(_e1014));
+        let _e1018 = second.column;
+        let _e1019 = (_e1018 >= 0i);
+        phi_2114_ = _e1019;
+        if _e1019 {
+            let _e1021 = edge.weight;
+            phi_2114_ = (_e1021 < 1f);
+        }
+        let _e1024 = phi_2114_;
+        if _e1024 {
+            let _e1026 = second.back;
+            one = select(vec2<f32>(1f, 0f), vec2<f32>(0f, 1f), vec2(_e1026));
+            let _e1030 = second.column;
+            param_97 = _e1030;
+            let _e1031 = (*row_6);
+            param_98 = _e1031;
+            let _e1033 = one[0u];
+            param_99 = _e1033;
+            let _e1035 = one[1u];
+            param_100 = _e1035;
+            let _e1036 = weighted((&param_97), (&param_98), (&param_99), (&param_100));
+            let _e1037 = fill;
+            let _e1039 = edge.weight;
+            fill = mix(_e1036, _e1037, vec4(_e1039));
+        }
+        let _e1043 = (*seen_2).hole;
+        let _e1044 = away_1;
+        (*seen_2).hole = (_e1043 && (_e1044 >= 0.5f));
+        let _e1049 = edge.reach;
+        let _e1050 = far_nearness();
+        let _e1054 = synthesis.law[1u];
+        depth_1 = ((_e1049 + _e1050) / _e1054);
+        let _e1058 = synthesis.origins[0u];
+        let _e1060 = gl_FragCoord_1[0u];
+        let _e1064 = synthesis.origins[1u];
+        origin_1 = ((_e1058 * _e1060) + _e1064);
+        let _e1066 = away_1;
+        let _e1067 = (_e1066 >= 0.5f);
+        phi_2195_ = _e1067;
+        if _e1067 {
+            let _e1068 = gl_FragCoord_1;
+            let _e1071 = synthesis.target_origin;
+            let _e1074 = beside;
+            let _e1075 = far_nearness();
+            param_101 = (_e1068.xy - vec2<f32>(_e1071));
+            param_102 = (_e1074 + _e1075);
+            let _e1077 = origin_1;
+            param_103 = _e1077;
+            let _e1078 = (*row_6);
+            param_104 = _e1078;
+            let _e1079 = fill;
+            param_105 = _e1079;
+            let _e1080 = depth_1;
+            param_106 = _e1080;
+            let _e1081 = recall((&param_101), (&param_102), (&param_103), (&param_104), (&param_105), (&param_106));
+            let _e1082 = param_105;
+            fill = _e1082;
+            let _e1083 = param_106;
+            depth_1 = _e1083;
+            phi_2195_ = _e1081;
+        }
+        let _e1085 = phi_2195_;
+        if _e1085 {
+            let _e1088 = synthesis.law[1u];
+            let _e1089 = depth_1;
+            let _e1091 = far_nearness();
+            edge.reach = ((_e1088 * _e1089) - _e1091);
+        }
+        let _e1094 = (*seen_2);
+        param_107 = _e1094;
+        param_108 = 1f;
+        let _e1095 = edge_x;
+        param_109 = _e1095;
+        let _e1097 = edge.reach;
+        param_110 = _e1097;
+        let _e1098 = cover((&param_107), (&param_108), (&param_109), (&param_110));
+        let _e1099 = param_107;
+        (*seen_2) = _e1099;
+        let _e1100 = fill;
+        let _e1102 = color_sum;
+        color_sum = (_e1102 + (_e1100 * _e1098));
+    }
+    let _e1104 = color_sum;
+    return _e1104;
+}
+
+fn color_texel(x_4: ptr<function, i32>, row_7: ptr<function, i32>) -> vec4<f32> {
+    var param_111: i32;
+    var param_112: vec2<i32>;
+
+    let _e6 = (*x_4);
+    param_111 = _e6;
+    let _e7 = source_column((&param_111));
+    let _e8 = (*row_7);
+    param_112 = vec2<i32>(_e7, _e8);
+    let _e10 = in_image((&param_112));
     let _e11 = textureLoad(color_map_texture, _e10, 0i);
     return _e11;
 }
 
-fn sharp_color_at(x_4: ptr<function, f32>, row_6: ptr<function, i32>) -> vec4<f32> {
+fn sharp_color_at(x_5: ptr<function, f32>, row_8: ptr<function, i32>) -> vec4<f32> {
     var last_1: i32;
-    var column_4: i32;
+    var column_7: i32;
     var f: f32;
-    var here_1: vec4<f32>;
-    var param_18: i32;
-    var param_19: i32;
-    var next: vec4<f32>;
-    var param_20: i32;
-    var param_21: i32;
+    var here_2: vec4<f32>;
+    var param_113: i32;
+    var param_114: i32;
+    var next_1: vec4<f32>;
+    var param_115: i32;
+    var param_116: i32;
     var apart: vec4<f32>;
     var outer: vec2<f32>;
     var inner: f32;
-    var sum: vec4<f32>;
-    var param_22: i32;
-    var param_23: i32;
-    var param_24: i32;
-    var param_25: i32;
+    var sum_1: vec4<f32>;
+    var param_117: i32;
+    var param_118: i32;
+    var param_119: i32;
+    var param_120: i32;
 
     let _e33 = synthesis.source_size[0u];
     last_1 = (_e33 - 1i);
-    let _e35 = (*x_4);
-    column_4 = i32(_e35);
-    let _e37 = (*x_4);
-    let _e38 = column_4;
+    let _e35 = (*x_5);
+    column_7 = i32(_e35);
+    let _e37 = (*x_5);
+    let _e38 = column_7;
     f = (_e37 - f32(_e38));
-    let _e41 = column_4;
-    param_18 = _e41;
-    let _e42 = (*row_6);
-    param_19 = _e42;
-    let _e43 = color_texel((&param_18), (&param_19));
-    here_1 = _e43;
-    let _e44 = column_4;
+    let _e41 = column_7;
+    param_113 = _e41;
+    let _e42 = (*row_8);
+    param_114 = _e42;
+    let _e43 = color_texel((&param_113), (&param_114));
+    here_2 = _e43;
+    let _e44 = column_7;
     let _e46 = last_1;
-    param_20 = min((_e44 + 1i), _e46);
-    let _e48 = (*row_6);
-    param_21 = _e48;
-    let _e49 = color_texel((&param_20), (&param_21));
-    next = _e49;
-    let _e50 = next;
-    let _e51 = here_1;
+    param_115 = min((_e44 + 1i), _e46);
+    let _e48 = (*row_8);
+    param_116 = _e48;
+    let _e49 = color_texel((&param_115), (&param_116));
+    next_1 = _e49;
+    let _e50 = next_1;
+    let _e51 = here_2;
     apart = abs((_e50 - _e51));
     let _e55 = apart[0u];
     let _e57 = apart[1u];
     let _e59 = apart[2u];
     if (max(_e55, max(_e57, _e59)) <= 0.03137255f) {
-        let _e63 = here_1;
-        let _e64 = next;
+        let _e63 = here_2;
+        let _e64 = next_1;
         let _e65 = f;
         return mix(_e63, _e64, vec4(_e65));
     }
@@ -606,94 +1800,47 @@ fn sharp_color_at(x_4: ptr<function, f32>, row_6: ptr<function, i32>) -> vec4<f3
     let _e83 = f;
     inner = (((((1.25f * _e78) - 2.25f) * _e81) * _e83) + 1f);
     let _e87 = outer[0u];
-    let _e88 = column_4;
-    param_22 = max((_e88 - 1i), 0i);
-    let _e91 = (*row_6);
-    param_23 = _e91;
-    let _e92 = color_texel((&param_22), (&param_23));
+    let _e88 = column_7;
+    param_117 = max((_e88 - 1i), 0i);
+    let _e91 = (*row_8);
+    param_118 = _e91;
+    let _e92 = color_texel((&param_117), (&param_118));
     let _e95 = outer[1u];
-    let _e96 = column_4;
+    let _e96 = column_7;
     let _e98 = last_1;
-    param_24 = min((_e96 + 2i), _e98);
-    let _e100 = (*row_6);
-    param_25 = _e100;
-    let _e101 = color_texel((&param_24), (&param_25));
+    param_119 = min((_e96 + 2i), _e98);
+    let _e100 = (*row_8);
+    param_120 = _e100;
+    let _e101 = color_texel((&param_119), (&param_120));
     let _e104 = inner;
-    let _e105 = here_1;
+    let _e105 = here_2;
     let _e108 = inner;
     let _e111 = outer[0u];
     let _e114 = outer[1u];
-    let _e116 = next;
-    sum = ((((_e92 * _e87) + (_e101 * _e95)) + (_e105 * _e104)) + (_e116 * (((1f - _e108) - _e111) - _e114)));
-    let _e119 = sum;
-    let _e120 = here_1;
-    let _e121 = next;
-    let _e123 = here_1;
-    let _e124 = next;
+    let _e116 = next_1;
+    sum_1 = ((((_e92 * _e87) + (_e101 * _e95)) + (_e105 * _e104)) + (_e116 * (((1f - _e108) - _e111) - _e114)));
+    let _e119 = sum_1;
+    let _e120 = here_2;
+    let _e121 = next_1;
+    let _e123 = here_2;
+    let _e124 = next_1;
     return clamp(_e119, min(_e120, _e121), max(_e123, _e124));
-}
-
-fn cover(seen_1: ptr<function, Seen>, share_2: ptr<function, f32>, column_5: ptr<function, f32>, reach_1: ptr<function, f32>) -> f32 {
-    var taken: f32;
-    var passes: bool;
-    var local_8: f32;
-    var local_9: f32;
-    var phi_952_: bool;
-
-    let _e10 = (*seen_1).rest;
-    let _e11 = (*share_2);
-    taken = (_e10 * _e11);
-    let _e14 = (*seen_1).rest;
-    let _e15 = (_e14 > 0.5f);
-    phi_952_ = _e15;
-    if _e15 {
-        let _e17 = (*seen_1).rest;
-        let _e18 = taken;
-        phi_952_ = ((_e17 - _e18) <= 0.5f);
-    }
-    let _e22 = phi_952_;
-    passes = _e22;
-    let _e23 = passes;
-    if _e23 {
-        let _e24 = (*column_5);
-        local_8 = _e24;
-    } else {
-        let _e26 = (*seen_1).column;
-        local_8 = _e26;
-    }
-    let _e27 = local_8;
-    (*seen_1).column = _e27;
-    let _e29 = passes;
-    if _e29 {
-        let _e30 = (*reach_1);
-        local_9 = _e30;
-    } else {
-        let _e32 = (*seen_1).reach;
-        local_9 = _e32;
-    }
-    let _e33 = local_9;
-    (*seen_1).reach = _e33;
-    let _e35 = taken;
-    let _e37 = (*seen_1).rest;
-    (*seen_1).rest = (_e37 - _e35);
-    let _e40 = taken;
-    return _e40;
 }
 
 fn span_steps(span: ptr<function, u32>) -> f32 {
     var steps: u32;
-    var local_10: f32;
+    var local_22: f32;
 
     let _e5 = (*span);
     steps = (_e5 & 1023u);
     let _e7 = steps;
     if (_e7 == 1023u) {
-        local_10 = 1000000000f;
+        local_22 = 1000000000f;
     } else {
         let _e9 = steps;
-        local_10 = f32(_e9);
+        local_22 = f32(_e9);
     }
-    let _e11 = local_10;
+    let _e11 = local_22;
     return _e11;
 }
 
@@ -714,338 +1861,159 @@ fn pixel_span() -> vec4<u32> {
 
 fn main_1() {
     var last_3: f32;
-    var row_7: i32;
-    var t: f32;
+    var row_9: i32;
+    var t_1: f32;
     var span_1: u32;
-    var x_5: f32;
-    var limit: f32;
-    var param_26: u32;
-    var sense: i32;
-    var column_6: i32;
-    var param_27: i32;
-    var seen_2: Seen;
+    var x_6: f32;
+    var limit_1: f32;
+    var param_121: u32;
+    var sense_1: i32;
+    var column_8: i32;
+    var param_122: i32;
+    var seen_3: Seen;
     var bits_2: u32;
-    var param_28: i32;
-    var param_29: i32;
-    var front_2: f32;
-    var param_30: u32;
-    var at: f32;
+    var param_123: i32;
+    var param_124: i32;
+    var front_3: f32;
+    var param_125: u32;
+    var at_1: f32;
     var plain: bool;
-    var param_31: u32;
-    var param_32: i32;
-    var param_33: i32;
+    var param_126: u32;
+    var param_127: i32;
+    var param_128: i32;
     var following: f32;
-    var param_34: u32;
-    var param_35: u32;
+    var param_129: u32;
+    var param_130: u32;
     var then: f32;
-    var g: f32;
-    var param_36: Seen;
-    var param_37: f32;
-    var param_38: f32;
-    var param_39: f32;
-    var param_40: f32;
-    var param_41: i32;
-    var here_2: Layer;
-    var param_42: i32;
-    var param_43: i32;
-    var edge: Edge;
-    var second: Edge;
-    var beside: f32;
-    var on_front: bool;
-    var on_back: bool;
-    var before_1: Layer;
-    var param_44: i32;
-    var param_45: i32;
-    var idle: bool;
-    var landed: f32;
-    var ahead: u32;
-    var param_46: i32;
-    var param_47: i32;
-    var following_1: f32;
-    var param_48: u32;
-    var then_1: f32;
-    var param_49: u32;
-    var next_1: Layer;
-    var param_50: i32;
-    var param_51: i32;
-    var a: f32;
-    var b: f32;
-    var c: f32;
-    var d: f32;
-    var front_front: bool;
-    var front_back: bool;
-    var back_front: bool;
-    var back_back: bool;
-    var fronts: vec2<f32>;
-    var backs: vec2<f32>;
-    var g_1: f32;
-    var right: vec4<f32>;
-    var param_52: f32;
-    var shares: vec2<f32>;
-    var param_53: vec4<f32>;
-    var param_54: vec4<f32>;
-    var param_55: vec4<f32>;
-    var param_56: vec4<f32>;
-    var share_3: f32;
-    var param_57: Seen;
-    var param_58: f32;
-    var param_59: f32;
-    var param_60: f32;
-    var share_4: f32;
-    var param_61: f32;
-    var param_62: vec4<f32>;
-    var param_63: vec4<f32>;
-    var param_64: Seen;
-    var param_65: f32;
-    var param_66: f32;
-    var param_67: f32;
-    var param_68: f32;
-    var param_69: vec4<f32>;
-    var param_70: vec4<f32>;
-    var param_71: Seen;
-    var param_72: f32;
-    var param_73: f32;
-    var param_74: f32;
-    var g_2: f32;
-    var taken_1: f32;
-    var param_75: Seen;
-    var param_76: f32;
-    var param_77: f32;
-    var param_78: f32;
-    var g_3: f32;
-    var taken_2: f32;
-    var param_79: Seen;
-    var param_80: f32;
-    var param_81: f32;
-    var param_82: f32;
     var g_4: f32;
-    var taken_3: f32;
-    var param_83: Seen;
-    var param_84: f32;
-    var param_85: f32;
-    var param_86: f32;
-    var ends: bool;
-    var stripes_1: vec4<f32>;
-    var local_11: vec4<f32>;
-    var param_87: f32;
-    var param_88: f32;
-    var param_89: vec4<f32>;
-    var param_90: vec4<f32>;
-    var param_91: Seen;
-    var param_92: f32;
-    var param_93: f32;
-    var param_94: f32;
-    var at_back: bool;
-    var at_front: bool;
-    var reach_2: f32;
-    var local_12: f32;
-    var away: f32;
-    var local_13: f32;
-    var weight: f32;
-    var local_14: f32;
-    var param_95: vec4<f32>;
-    var param_96: vec4<f32>;
-    var found: Edge;
-    var taken_4: f32;
-    var param_97: Seen;
-    var param_98: f32;
-    var param_99: f32;
-    var param_100: f32;
-    var param_101: i32;
-    var param_102: i32;
-    var param_103: f32;
-    var param_104: f32;
-    var param_105: i32;
-    var param_106: i32;
-    var param_107: f32;
-    var param_108: f32;
-    var hole: bool;
-    var beyond: bool;
-    var local_15: f32;
-    var edge_x: f32;
-    var param_109: i32;
-    var away_1: f32;
-    var spread: f32;
-    var sum_1: vec4<f32>;
-    var weights: f32;
-    var rows_1: i32;
-    var i_2: i32;
-    var at_1: i32;
-    var layer_3: Layer;
-    var param_110: i32;
-    var param_111: i32;
-    var front_3: bool;
-    var local_16: bool;
-    var behind_2: bool;
-    var local_17: bool;
-    var weight_1: f32;
-    var local_18: f32;
-    var local_19: f32;
-    var local_20: f32;
-    var param_112: vec4<f32>;
-    var param_113: vec4<f32>;
-    var param_114: i32;
-    var param_115: i32;
-    var param_116: f32;
-    var param_117: f32;
-    var fill: vec4<f32>;
-    var one: vec2<f32>;
-    var param_118: i32;
-    var param_119: i32;
-    var param_120: f32;
-    var param_121: f32;
-    var depth_1: f32;
-    var origin_1: f32;
-    var param_122: vec2<f32>;
-    var param_123: f32;
-    var param_124: f32;
-    var param_125: i32;
-    var param_126: vec4<f32>;
-    var param_127: f32;
-    var param_128: Seen;
-    var param_129: f32;
-    var param_130: f32;
-    var param_131: f32;
-    var phi_1109_: bool;
-    var phi_1204_: bool;
-    var phi_1211_: bool;
-    var phi_1230_: bool;
-    var phi_1259_: bool;
-    var phi_1273_: bool;
-    var phi_1325_: bool;
-    var phi_1333_: bool;
-    var phi_1409_: bool;
-    var phi_1422_: bool;
-    var phi_1438_: bool;
-    var phi_1518_: bool;
-    var phi_1570_: bool;
-    var phi_1618_: bool;
-    var phi_1668_: bool;
-    var phi_1718_: bool;
-    var phi_1770_: bool;
-    var phi_1776_: bool;
-    var phi_1828_: bool;
-    var phi_1849_: bool;
-    var phi_1861_: bool;
-    var phi_2141_: bool;
-    var phi_2203_: bool;
-    var phi_2278_: bool;
+    var param_131: Seen;
+    var param_132: f32;
+    var param_133: f32;
+    var param_134: f32;
+    var param_135: f32;
+    var param_136: i32;
+    var param_137: i32;
+    var param_138: f32;
+    var param_139: f32;
+    var param_140: f32;
+    var param_141: i32;
+    var param_142: Seen;
+    var phi_2342_: bool;
 
-    let _e223 = synthesis.source_size[0u];
-    last_3 = f32((_e223 - 1i));
-    let _e227 = gl_FragCoord_1[1u];
-    let _e229 = synthesis.first_row;
-    let _e233 = synthesis.source_size[1u];
-    row_7 = i32(clamp((_e227 - _e229), 0f, f32((_e233 - 1i))));
-    let _e240 = synthesis.origins[0u];
-    let _e242 = gl_FragCoord_1[0u];
-    let _e246 = synthesis.origins[1u];
-    let _e249 = synthesis.farthest;
-    t = ((((_e240 * _e242) + _e246) - _e249) + 0.01f);
-    let _e252 = pixel_span();
-    span_1 = _e252.x;
-    let _e254 = t;
-    let _e255 = span_1;
-    let _e260 = last_3;
-    x_5 = clamp(floor(((_e254 - bitcast<f32>(_e255)) - 1.01f)), 0f, _e260);
-    let _e262 = x_5;
-    let _e263 = span_1;
-    param_26 = _e263;
-    let _e264 = span_steps((&param_26));
-    let _e267 = last_3;
-    limit = min(((_e262 + _e264) + 2f), _e267);
-    let _e270 = synthesis.mirrored;
-    sense = select(1i, -1i, (_e270 != 0u));
-    let _e273 = x_5;
-    param_27 = i32(_e273);
-    let _e275 = source_column((&param_27));
-    column_6 = _e275;
-    seen_2 = Seen(1f, 0f, 0f);
-    color_1 = vec4<f32>(0f, 0f, 0f, 0f);
-    let _e276 = column_6;
-    param_28 = _e276;
-    let _e277 = row_7;
-    param_29 = _e277;
-    let _e278 = layer_bits((&param_28), (&param_29));
-    bits_2 = _e278;
-    let _e279 = bits_2;
-    param_30 = _e279;
-    let _e280 = full_front((&param_30));
-    front_2 = _e280;
-    let _e281 = x_5;
-    let _e282 = front_2;
-    let _e284 = t;
-    at = ((_e281 + _e282) - _e284);
-    let _e286 = bits_2;
-    param_31 = _e286;
-    let _e287 = is_full((&param_31));
-    let _e288 = at;
-    plain = (_e287 && (_e288 <= 0f));
+    let _e54 = synthesis.source_size[0u];
+    last_3 = f32((_e54 - 1i));
+    let _e58 = gl_FragCoord_1[1u];
+    let _e60 = synthesis.first_row;
+    let _e64 = synthesis.source_size[1u];
+    row_9 = i32(clamp((_e58 - _e60), 0f, f32((_e64 - 1i))));
+    let _e71 = synthesis.origins[0u];
+    let _e73 = gl_FragCoord_1[0u];
+    let _e77 = synthesis.origins[1u];
+    let _e80 = synthesis.farthest;
+    t_1 = ((((_e71 * _e73) + _e77) - _e80) + 0.01f);
+    let _e83 = pixel_span();
+    span_1 = _e83.x;
+    let _e85 = t_1;
+    let _e86 = span_1;
+    let _e91 = last_3;
+    x_6 = clamp(floor(((_e85 - bitcast<f32>(_e86)) - 1.01f)), 0f, _e91);
+    let _e93 = x_6;
+    let _e94 = span_1;
+    param_121 = _e94;
+    let _e95 = span_steps((&param_121));
+    let _e98 = last_3;
+    limit_1 = min(((_e93 + _e95) + 2f), _e98);
+    let _e101 = synthesis.mirrored;
+    sense_1 = select(1i, -1i, (_e101 != 0u));
+    let _e104 = x_6;
+    param_122 = i32(_e104);
+    let _e106 = source_column((&param_122));
+    column_8 = _e106;
+    seen_3 = Seen(1f, 0f, 0f, false);
+    let _e107 = column_8;
+    param_123 = _e107;
+    let _e108 = row_9;
+    param_124 = _e108;
+    let _e109 = layer_bits((&param_123), (&param_124));
+    bits_2 = _e109;
+    let _e110 = bits_2;
+    param_125 = _e110;
+    let _e111 = full_front((&param_125));
+    front_3 = _e111;
+    let _e112 = x_6;
+    let _e113 = front_3;
+    let _e115 = t_1;
+    at_1 = ((_e112 + _e113) - _e115);
+    let _e117 = bits_2;
+    param_126 = _e117;
+    let _e118 = is_full((&param_126));
+    let _e119 = at_1;
+    plain = (_e118 && (_e119 <= 0f));
     loop {
-        let _e291 = plain;
-        let _e292 = x_5;
-        let _e293 = limit;
-        if (_e291 && (_e292 < _e293)) {
-            let _e296 = column_6;
-            let _e297 = sense;
-            param_32 = (_e296 + _e297);
-            let _e299 = row_7;
-            param_33 = _e299;
-            let _e300 = layer_bits((&param_32), (&param_33));
-            bits_2 = _e300;
-            let _e301 = bits_2;
-            param_34 = _e301;
-            let _e302 = full_front((&param_34));
-            following = _e302;
-            let _e303 = bits_2;
-            param_35 = _e303;
-            let _e304 = is_full((&param_35));
-            phi_1109_ = _e304;
-            if _e304 {
-                let _e305 = following;
-                let _e306 = front_2;
-                phi_1109_ = (abs((_e305 - _e306)) < 0.5f);
+        let _e122 = plain;
+        let _e123 = x_6;
+        let _e124 = limit_1;
+        if (_e122 && (_e123 < _e124)) {
+            let _e127 = column_8;
+            let _e128 = sense_1;
+            param_127 = (_e127 + _e128);
+            let _e130 = row_9;
+            param_128 = _e130;
+            let _e131 = layer_bits((&param_127), (&param_128));
+            bits_2 = _e131;
+            let _e132 = bits_2;
+            param_129 = _e132;
+            let _e133 = full_front((&param_129));
+            following = _e133;
+            let _e134 = bits_2;
+            param_130 = _e134;
+            let _e135 = is_full((&param_130));
+            phi_2342_ = _e135;
+            if _e135 {
+                let _e136 = following;
+                let _e137 = front_3;
+                phi_2342_ = (abs((_e136 - _e137)) < 0.5f);
             }
-            let _e311 = phi_1109_;
-            plain = _e311;
-            let _e312 = x_5;
-            let _e314 = following;
-            let _e316 = t;
-            then = (((_e312 + 1f) + _e314) - _e316);
-            let _e318 = plain;
-            let _e319 = then;
-            if (_e318 && (_e319 > 0f)) {
-                let _e322 = at;
-                let _e324 = then;
-                let _e325 = at;
-                g = (-(_e322) / (_e324 - _e325));
-                let _e328 = x_5;
-                let _e329 = g;
-                let _e331 = front_2;
-                let _e332 = following;
-                let _e333 = g;
-                let _e335 = seen_2;
-                param_36 = _e335;
-                param_37 = 1f;
-                param_38 = (_e328 + _e329);
-                param_39 = mix(_e331, _e332, _e333);
-                let _e336 = cover((&param_36), (&param_37), (&param_38), (&param_39));
-                let _e337 = param_36;
-                seen_2 = _e337;
-                let _e338 = x_5;
-                limit = _e338;
+            let _e142 = phi_2342_;
+            plain = _e142;
+            let _e143 = x_6;
+            let _e145 = following;
+            let _e147 = t_1;
+            then = (((_e143 + 1f) + _e145) - _e147);
+            let _e149 = plain;
+            let _e150 = then;
+            if (_e149 && (_e150 > 0f)) {
+                let _e153 = at_1;
+                let _e155 = then;
+                let _e156 = at_1;
+                g_4 = (-(_e153) / (_e155 - _e156));
+                let _e159 = x_6;
+                let _e160 = g_4;
+                let _e162 = front_3;
+                let _e163 = following;
+                let _e164 = g_4;
+                let _e166 = seen_3;
+                param_131 = _e166;
+                param_132 = 1f;
+                param_133 = (_e159 + _e160);
+                param_134 = mix(_e162, _e163, _e164);
+                let _e167 = cover((&param_131), (&param_132), (&param_133), (&param_134));
+                let _e168 = param_131;
+                seen_3 = _e168;
+                let _e169 = x_6;
+                limit_1 = _e169;
             } else {
-                let _e339 = plain;
-                if _e339 {
-                    let _e340 = x_5;
-                    x_5 = (_e340 + 1f);
-                    let _e342 = sense;
-                    let _e343 = column_6;
-                    column_6 = (_e343 + _e342);
-                    let _e345 = following;
-                    front_2 = _e345;
-                    let _e346 = then;
-                    at = _e346;
+                let _e170 = plain;
+                if _e170 {
+                    let _e171 = x_6;
+                    x_6 = (_e171 + 1f);
+                    let _e173 = sense_1;
+                    let _e174 = column_8;
+                    column_8 = (_e174 + _e173);
+                    let _e176 = following;
+                    front_3 = _e176;
+                    let _e177 = then;
+                    at_1 = _e177;
                 }
             }
             continue;
@@ -1053,874 +2021,31 @@ fn main_1() {
             break;
         }
     }
-    let _e348 = seen_2.rest;
-    if (_e348 < 0.01f) {
-        let _e351 = seen_2.column;
-        param_40 = _e351;
-        let _e352 = row_7;
-        param_41 = _e352;
-        let _e353 = sharp_color_at((&param_40), (&param_41));
-        color_1 = _e353;
-    }
-    let _e354 = column_6;
-    param_42 = _e354;
-    let _e355 = row_7;
-    param_43 = _e355;
-    let _e356 = layer_at((&param_42), (&param_43));
-    here_2 = _e356;
-    edge = Edge(-1i, false, 1000000000f, 1f);
-    let _e357 = edge;
-    second = _e357;
-    beside = 1000000000f;
-    let _e358 = x_5;
-    if (_e358 == 0f) {
-        let _e361 = here_2.front;
-        let _e362 = t;
-        if (_e361 > _e362) {
-            let _e364 = column_6;
-            let _e366 = here_2.front;
-            edge = Edge(_e364, false, _e366, 1f);
-        }
-        let _e369 = here_2.split;
-        phi_1204_ = _e369;
-        if _e369 {
-            let _e371 = here_2.back;
-            let _e373 = edge.reach;
-            phi_1204_ = (_e371 < _e373);
-        }
-        let _e376 = phi_1204_;
-        phi_1211_ = _e376;
-        if _e376 {
-            let _e378 = here_2.back;
-            let _e379 = t;
-            phi_1211_ = (_e378 > _e379);
-        }
-        let _e382 = phi_1211_;
-        if _e382 {
-            let _e383 = column_6;
-            let _e385 = here_2.back;
-            edge = Edge(_e383, true, _e385, 1f);
-        }
-    }
-    on_front = false;
-    on_back = false;
-    let _e387 = x_5;
-    let _e390 = here_2.split;
-    let _e391 = ((_e387 > 0f) && _e390);
-    phi_1230_ = _e391;
-    if _e391 {
-        let _e393 = seen_2.rest;
-        phi_1230_ = (_e393 > 0.01f);
-    }
-    let _e396 = phi_1230_;
-    if _e396 {
-        let _e397 = column_6;
-        let _e398 = sense;
-        param_44 = (_e397 - _e398);
-        let _e400 = row_7;
-        param_45 = _e400;
-        let _e401 = layer_at((&param_44), (&param_45));
-        before_1 = _e401;
-        let _e403 = before_1.front;
-        let _e405 = here_2.back;
-        on_front = (abs((_e403 - _e405)) < 0.5f);
-        let _e410 = before_1.split;
-        phi_1259_ = _e410;
-        if _e410 {
-            let _e412 = before_1.back;
-            let _e414 = here_2.back;
-            phi_1259_ = (abs((_e412 - _e414)) < 0.5f);
-        }
-        let _e419 = phi_1259_;
-        on_back = _e419;
-    }
-    loop {
-        let _e420 = x_5;
-        let _e421 = limit;
-        let _e422 = (_e420 < _e421);
-        phi_1273_ = _e422;
-        if _e422 {
-            let _e424 = seen_2.rest;
-            phi_1273_ = (_e424 > 0.01f);
-        }
-        let _e427 = phi_1273_;
-        if _e427 {
-            let _e429 = here_2.split;
-            idle = !(_e429);
-            let _e431 = x_5;
-            let _e433 = here_2.front;
-            let _e435 = t;
-            landed = ((_e431 + _e433) - _e435);
-            loop {
-                let _e437 = idle;
-                let _e438 = x_5;
-                let _e439 = limit;
-                if (_e437 && (_e438 < _e439)) {
-                    let _e442 = column_6;
-                    let _e443 = sense;
-                    param_46 = (_e442 + _e443);
-                    let _e445 = row_7;
-                    param_47 = _e445;
-                    let _e446 = layer_bits((&param_46), (&param_47));
-                    ahead = _e446;
-                    let _e447 = ahead;
-                    param_48 = _e447;
-                    let _e448 = full_front((&param_48));
-                    following_1 = _e448;
-                    let _e449 = x_5;
-                    let _e451 = following_1;
-                    let _e453 = t;
-                    then_1 = (((_e449 + 1f) + _e451) - _e453);
-                    let _e455 = ahead;
-                    param_49 = _e455;
-                    let _e456 = is_full((&param_49));
-                    phi_1325_ = _e456;
-                    if _e456 {
-                        let _e457 = following_1;
-                        let _e459 = here_2.front;
-                        phi_1325_ = (abs((_e457 - _e459)) < 0.5f);
-                    }
-                    let _e464 = phi_1325_;
-                    phi_1333_ = _e464;
-                    if _e464 {
-                        let _e465 = landed;
-                        let _e467 = then_1;
-                        phi_1333_ = ((_e465 > 0f) || (_e467 <= 0f));
-                    }
-                    let _e471 = phi_1333_;
-                    idle = _e471;
-                    let _e472 = idle;
-                    if _e472 {
-                        let _e473 = x_5;
-                        x_5 = (_e473 + 1f);
-                        let _e475 = sense;
-                        let _e476 = column_6;
-                        column_6 = (_e476 + _e475);
-                        let _e478 = following_1;
-                        here_2.front = _e478;
-                        let _e480 = then_1;
-                        landed = _e480;
-                        on_front = false;
-                        on_back = false;
-                    }
-                    continue;
-                } else {
-                    break;
-                }
-            }
-            let _e481 = x_5;
-            let _e482 = limit;
-            if (_e481 >= _e482) {
-                break;
-            }
-            let _e484 = column_6;
-            let _e485 = sense;
-            param_50 = (_e484 + _e485);
-            let _e487 = row_7;
-            param_51 = _e487;
-            let _e488 = layer_at((&param_50), (&param_51));
-            next_1 = _e488;
-            let _e489 = x_5;
-            let _e491 = here_2.front;
-            let _e493 = t;
-            a = ((_e489 + _e491) - _e493);
-            let _e495 = x_5;
-            let _e498 = next_1.front;
-            let _e500 = t;
-            b = (((_e495 + 1f) + _e498) - _e500);
-            let _e502 = x_5;
-            let _e504 = here_2.back;
-            let _e506 = t;
-            c = ((_e502 + _e504) - _e506);
-            let _e508 = x_5;
-            let _e511 = next_1.back;
-            let _e513 = t;
-            d = (((_e508 + 1f) + _e511) - _e513);
-            let _e516 = next_1.front;
-            let _e518 = here_2.front;
-            front_front = (abs((_e516 - _e518)) < 0.5f);
-            let _e523 = next_1.split;
-            phi_1409_ = _e523;
-            if _e523 {
-                let _e525 = next_1.back;
-                let _e527 = here_2.front;
-                phi_1409_ = (abs((_e525 - _e527)) < 0.5f);
-            }
-            let _e532 = phi_1409_;
-            front_back = _e532;
-            let _e534 = here_2.split;
-            phi_1422_ = _e534;
-            if _e534 {
-                let _e536 = next_1.front;
-                let _e538 = here_2.back;
-                phi_1422_ = (abs((_e536 - _e538)) < 0.5f);
-            }
-            let _e543 = phi_1422_;
-            back_front = _e543;
-            let _e545 = here_2.split;
-            let _e547 = next_1.split;
-            let _e548 = (_e545 && _e547);
-            phi_1438_ = _e548;
-            if _e548 {
-                let _e550 = next_1.back;
-                let _e552 = here_2.back;
-                phi_1438_ = (abs((_e550 - _e552)) < 0.5f);
-            }
-            let _e557 = phi_1438_;
-            back_back = _e557;
-            fronts = vec2<f32>(0f, 0f);
-            backs = vec2<f32>(0f, 0f);
-            let _e558 = front_front;
-            let _e559 = a;
-            let _e562 = b;
-            if ((_e558 && (_e559 <= 0f)) && (_e562 > 0f)) {
-                let _e565 = a;
-                let _e567 = b;
-                let _e568 = a;
-                g_1 = (-(_e565) / (_e567 - _e568));
-                let _e571 = g_1;
-                param_52 = _e571;
-                let _e572 = right_of((&param_52));
-                right = _e572;
-                let _e574 = here_2.mask;
-                param_53 = _e574;
-                let _e575 = right;
-                param_54 = _e575;
-                let _e576 = covered((&param_53), (&param_54));
-                let _e577 = right;
-                let _e581 = next_1.mask;
-                param_55 = _e581;
-                param_56 = (vec4(1f) - _e577);
-                let _e582 = covered((&param_55), (&param_56));
-                shares = vec2<f32>(_e576, _e582);
-                let _e585 = shares[0u];
-                let _e587 = shares[1u];
-                share_3 = (_e585 + _e587);
-                let _e589 = x_5;
-                let _e590 = g_1;
-                let _e593 = here_2.front;
-                let _e595 = next_1.front;
-                let _e596 = g_1;
-                let _e598 = seen_2;
-                param_57 = _e598;
-                let _e599 = share_3;
-                param_58 = _e599;
-                param_59 = (_e589 + _e590);
-                param_60 = mix(_e593, _e595, _e596);
-                let _e600 = cover((&param_57), (&param_58), (&param_59), (&param_60));
-                let _e601 = param_57;
-                seen_2 = _e601;
-                let _e602 = shares;
-                let _e604 = share_3;
-                fronts = ((_e602 * _e600) / vec2(max(_e604, 0.000001f)));
-            }
-            let _e608 = front_front;
-            let _e609 = !(_e608);
-            phi_1518_ = _e609;
-            if _e609 {
-                let _e611 = next_1.front;
-                let _e613 = here_2.front;
-                let _e616 = next_1.split;
-                phi_1518_ = ((_e611 > _e613) || _e616);
-            }
-            let _e619 = phi_1518_;
-            let _e620 = back_front;
-            let _e623 = b;
-            let _e626 = b;
-            if (((_e619 && !(_e620)) && (_e623 > 0f)) && (_e626 < 1f)) {
-                let _e629 = b;
-                param_61 = (1f - _e629);
-                let _e631 = right_of((&param_61));
-                let _e635 = next_1.mask;
-                param_62 = _e635;
-                param_63 = (vec4(1f) - _e631);
-                let _e636 = covered((&param_62), (&param_63));
-                share_4 = _e636;
-                let _e637 = x_5;
-                let _e639 = seen_2;
-                param_64 = _e639;
-                let _e640 = share_4;
-                param_65 = _e640;
-                param_66 = (_e637 + 1f);
-                let _e642 = next_1.front;
-                param_67 = _e642;
-                let _e643 = cover((&param_64), (&param_65), (&param_66), (&param_67));
-                let _e644 = param_64;
-                seen_2 = _e644;
-                let _e646 = fronts[1u];
-                fronts[1u] = (_e646 + _e643);
-            }
-            let _e649 = front_front;
-            let _e650 = !(_e649);
-            phi_1570_ = _e650;
-            if _e650 {
-                let _e652 = next_1.front;
-                let _e654 = here_2.front;
-                let _e657 = here_2.split;
-                phi_1570_ = ((_e652 < _e654) || _e657);
-            }
-            let _e660 = phi_1570_;
-            let _e661 = front_back;
-            let _e664 = a;
-            let _e667 = a;
-            if (((_e660 && !(_e661)) && (_e664 <= 0f)) && (_e667 > -1f)) {
-                let _e670 = a;
-                param_68 = -(_e670);
-                let _e672 = right_of((&param_68));
-                let _e674 = here_2.mask;
-                param_69 = _e674;
-                param_70 = _e672;
-                let _e675 = covered((&param_69), (&param_70));
-                let _e676 = seen_2;
-                param_71 = _e676;
-                param_72 = _e675;
-                let _e677 = x_5;
-                param_73 = _e677;
-                let _e679 = here_2.front;
-                param_74 = _e679;
-                let _e680 = cover((&param_71), (&param_72), (&param_73), (&param_74));
-                let _e681 = param_71;
-                seen_2 = _e681;
-                let _e683 = fronts[0u];
-                fronts[0u] = (_e683 + _e680);
-            }
-            let _e686 = front_back;
-            let _e687 = a;
-            let _e690 = d;
-            let _e692 = ((_e686 && (_e687 <= 0f)) && (_e690 > 0f));
-            phi_1618_ = _e692;
-            if _e692 {
-                let _e694 = seen_2.rest;
-                phi_1618_ = (_e694 > 0.01f);
-            }
-            let _e697 = phi_1618_;
-            if _e697 {
-                let _e698 = a;
-                let _e700 = d;
-                let _e701 = a;
-                g_2 = (-(_e698) / (_e700 - _e701));
-                let _e704 = x_5;
-                let _e705 = g_2;
-                let _e707 = seen_2;
-                param_75 = _e707;
-                param_76 = 1f;
-                param_77 = (_e704 + _e705);
-                let _e709 = here_2.front;
-                param_78 = _e709;
-                let _e710 = cover((&param_75), (&param_76), (&param_77), (&param_78));
-                let _e711 = param_75;
-                seen_2 = _e711;
-                taken_1 = _e710;
-                let _e712 = taken_1;
-                let _e713 = g_2;
-                let _e717 = fronts[0u];
-                fronts[0u] = (_e717 + (_e712 * (1f - _e713)));
-                let _e720 = taken_1;
-                let _e721 = g_2;
-                let _e724 = backs[1u];
-                backs[1u] = (_e724 + (_e720 * _e721));
-            }
-            let _e727 = back_front;
-            let _e728 = c;
-            let _e731 = b;
-            let _e733 = ((_e727 && (_e728 <= 0f)) && (_e731 > 0f));
-            phi_1668_ = _e733;
-            if _e733 {
-                let _e735 = seen_2.rest;
-                phi_1668_ = (_e735 > 0.01f);
-            }
-            let _e738 = phi_1668_;
-            if _e738 {
-                let _e739 = c;
-                let _e741 = b;
-                let _e742 = c;
-                g_3 = (-(_e739) / (_e741 - _e742));
-                let _e745 = x_5;
-                let _e746 = g_3;
-                let _e748 = seen_2;
-                param_79 = _e748;
-                param_80 = 1f;
-                param_81 = (_e745 + _e746);
-                let _e750 = next_1.front;
-                param_82 = _e750;
-                let _e751 = cover((&param_79), (&param_80), (&param_81), (&param_82));
-                let _e752 = param_79;
-                seen_2 = _e752;
-                taken_2 = _e751;
-                let _e753 = taken_2;
-                let _e754 = g_3;
-                let _e758 = backs[0u];
-                backs[0u] = (_e758 + (_e753 * (1f - _e754)));
-                let _e761 = taken_2;
-                let _e762 = g_3;
-                let _e765 = fronts[1u];
-                fronts[1u] = (_e765 + (_e761 * _e762));
-            }
-            let _e768 = back_back;
-            let _e769 = c;
-            let _e772 = d;
-            let _e774 = ((_e768 && (_e769 <= 0f)) && (_e772 > 0f));
-            phi_1718_ = _e774;
-            if _e774 {
-                let _e776 = seen_2.rest;
-                phi_1718_ = (_e776 > 0.01f);
-            }
-            let _e779 = phi_1718_;
-            if _e779 {
-                let _e780 = c;
-                let _e782 = d;
-                let _e783 = c;
-                g_4 = (-(_e780) / (_e782 - _e783));
-                let _e786 = x_5;
-                let _e787 = g_4;
-                let _e789 = seen_2;
-                param_83 = _e789;
-                param_84 = 1f;
-                param_85 = (_e786 + _e787);
-                let _e791 = here_2.back;
-                param_86 = _e791;
-                let _e792 = cover((&param_83), (&param_84), (&param_85), (&param_86));
-                let _e793 = param_83;
-                seen_2 = _e793;
-                taken_3 = _e792;
-                let _e794 = taken_3;
-                let _e795 = g_4;
-                let _e797 = g_4;
-                let _e800 = backs;
-                backs = (_e800 + (vec2<f32>((1f - _e795), _e797) * _e794));
-            }
-            let _e803 = here_2.split;
-            let _e804 = back_front;
-            let _e807 = back_back;
-            ends = ((_e803 && !(_e804)) && !(_e807));
-            let _e810 = ends;
-            let _e811 = on_front;
-            let _e814 = on_back;
-            let _e816 = ((_e810 && !(_e811)) && !(_e814));
-            phi_1770_ = _e816;
-            if _e816 {
-                let _e817 = c;
-                phi_1770_ = (abs(_e817) < 1f);
-            }
-            let _e821 = phi_1770_;
-            phi_1776_ = _e821;
-            if _e821 {
-                let _e823 = seen_2.rest;
-                phi_1776_ = (_e823 > 0.01f);
-            }
-            let _e826 = phi_1776_;
-            if _e826 {
-                let _e827 = c;
-                if (_e827 <= 0f) {
-                    let _e829 = c;
-                    param_87 = -(_e829);
-                    let _e831 = right_of((&param_87));
-                    local_11 = _e831;
-                } else {
-                    let _e832 = c;
-                    param_88 = (1f - _e832);
-                    let _e834 = right_of((&param_88));
-                    local_11 = (vec4(1f) - _e834);
-                }
-                let _e837 = local_11;
-                stripes_1 = _e837;
-                let _e839 = here_2.mask;
-                param_89 = (vec4(1f) - _e839);
-                let _e842 = stripes_1;
-                param_90 = _e842;
-                let _e843 = covered((&param_89), (&param_90));
-                let _e844 = seen_2;
-                param_91 = _e844;
-                param_92 = _e843;
-                let _e845 = x_5;
-                param_93 = _e845;
-                let _e847 = here_2.back;
-                param_94 = _e847;
-                let _e848 = cover((&param_91), (&param_92), (&param_93), (&param_94));
-                let _e849 = param_91;
-                seen_2 = _e849;
-                let _e851 = backs[0u];
-                backs[0u] = (_e851 + _e848);
-            }
-            let _e854 = ends;
-            phi_1828_ = _e854;
-            if _e854 {
-                let _e856 = next_1.front;
-                let _e858 = here_2.back;
-                phi_1828_ = (_e856 > _e858);
-            }
-            let _e861 = phi_1828_;
-            let _e862 = c;
-            at_back = (_e861 && (_e862 <= 0f));
-            let _e866 = here_2.split;
-            let _e868 = front_front;
-            let _e871 = front_back;
-            let _e873 = ((!(_e866) && !(_e868)) && !(_e871));
-            phi_1849_ = _e873;
-            if _e873 {
-                let _e875 = next_1.front;
-                let _e877 = here_2.front;
-                phi_1849_ = (_e875 > _e877);
-            }
-            let _e880 = phi_1849_;
-            let _e881 = a;
-            at_front = (_e880 && (_e881 <= 0f));
-            let _e884 = at_back;
-            let _e885 = at_front;
-            let _e886 = (_e884 || _e885);
-            phi_1861_ = _e886;
-            if _e886 {
-                let _e888 = seen_2.rest;
-                phi_1861_ = (_e888 > 0.01f);
-            }
-            let _e891 = phi_1861_;
-            if _e891 {
-                let _e892 = at_back;
-                if _e892 {
-                    let _e894 = here_2.back;
-                    local_12 = _e894;
-                } else {
-                    let _e896 = here_2.front;
-                    local_12 = _e896;
-                }
-                let _e897 = local_12;
-                reach_2 = _e897;
-                let _e898 = at_back;
-                if _e898 {
-                    let _e899 = c;
-                    local_13 = -(_e899);
-                } else {
-                    let _e901 = a;
-                    local_13 = -(_e901);
-                }
-                let _e903 = local_13;
-                away = _e903;
-                let _e904 = at_back;
-                let _e905 = on_front;
-                if (_e904 && !(_e905)) {
-                    let _e909 = here_2.mask;
-                    param_95 = _e909;
-                    param_96 = vec4<f32>(1f, 1f, 1f, 1f);
-                    let _e910 = covered((&param_95), (&param_96));
-                    local_14 = (1f - _e910);
-                } else {
-                    local_14 = 1f;
-                }
-                let _e912 = local_14;
-                weight = _e912;
-                let _e913 = column_6;
-                let _e914 = at_back;
-                let _e915 = reach_2;
-                let _e916 = weight;
-                found = Edge(_e913, _e914, _e915, _e916);
-                let _e918 = weight;
-                let _e920 = away;
-                if ((_e918 == 1f) && (_e920 < 0.5f)) {
-                    let _e923 = seen_2;
-                    param_97 = _e923;
-                    param_98 = 1f;
-                    let _e924 = x_5;
-                    param_99 = _e924;
-                    let _e925 = reach_2;
-                    param_100 = _e925;
-                    let _e926 = cover((&param_97), (&param_98), (&param_99), (&param_100));
-                    let _e927 = param_97;
-                    seen_2 = _e927;
-                    taken_4 = _e926;
-                    let _e928 = at_back;
-                    let _e929 = taken_4;
-                    let _e932 = backs[0u];
-                    backs[0u] = (_e932 + select(0f, _e929, _e928));
-                    let _e935 = at_back;
-                    let _e936 = taken_4;
-                    let _e939 = fronts[0u];
-                    fronts[0u] = (_e939 + select(_e936, 0f, _e935));
-                }
-                let _e942 = reach_2;
-                let _e944 = edge.reach;
-                if (_e942 < _e944) {
-                    let _e946 = weight;
-                    if (_e946 < 1f) {
-                        let _e948 = edge;
-                        second = _e948;
-                    }
-                    let _e949 = found;
-                    edge = _e949;
-                    let _e951 = next_1.front;
-                    beside = _e951;
-                } else {
-                    let _e952 = reach_2;
-                    let _e954 = second.reach;
-                    if (_e952 < _e954) {
-                        let _e956 = found;
-                        second = _e956;
-                    }
-                }
-            }
-            let _e958 = fronts[0u];
-            let _e960 = backs[0u];
-            if (max(_e958, _e960) > 0f) {
-                let _e963 = column_6;
-                param_101 = _e963;
-                let _e964 = row_7;
-                param_102 = _e964;
-                let _e966 = fronts[0u];
-                param_103 = _e966;
-                let _e968 = backs[0u];
-                param_104 = _e968;
-                let _e969 = weighted((&param_101), (&param_102), (&param_103), (&param_104));
-                let _e970 = color_1;
-                color_1 = (_e970 + _e969);
-            }
-            let _e973 = fronts[1u];
-            let _e975 = backs[1u];
-            if (max(_e973, _e975) > 0f) {
-                let _e978 = column_6;
-                let _e979 = sense;
-                param_105 = (_e978 + _e979);
-                let _e981 = row_7;
-                param_106 = _e981;
-                let _e983 = fronts[1u];
-                param_107 = _e983;
-                let _e985 = backs[1u];
-                param_108 = _e985;
-                let _e986 = weighted((&param_105), (&param_106), (&param_107), (&param_108));
-                let _e987 = color_1;
-                color_1 = (_e987 + _e986);
-            }
-            let _e989 = front_back;
-            on_front = _e989;
-            let _e990 = back_back;
-            on_back = _e990;
-            let _e991 = next_1;
-            here_2 = _e991;
-            let _e992 = sense;
-            let _e993 = column_6;
-            column_6 = (_e993 + _e992);
-            let _e995 = x_5;
-            x_5 = (_e995 + 1f);
-            continue;
-        } else {
-            break;
-        }
-    }
-    let _e998 = seen_2.rest;
-    hole = (_e998 > 0.5f);
-    let _e1001 = seen_2.rest;
-    if (_e1001 > 0.01f) {
-        let _e1004 = edge.column;
-        beyond = (_e1004 < 0i);
-        let _e1006 = beyond;
-        if _e1006 {
-            let _e1007 = column_6;
-            let _e1009 = here_2.split;
-            let _e1011 = here_2.split;
-            if _e1011 {
-                let _e1013 = here_2.back;
-                local_15 = _e1013;
-            } else {
-                let _e1015 = here_2.front;
-                local_15 = _e1015;
-            }
-            let _e1016 = local_15;
-            edge = Edge(_e1007, _e1009, _e1016, 1f);
-        }
-        let _e1019 = edge.column;
-        param_109 = _e1019;
-        let _e1020 = source_column((&param_109));
-        edge_x = f32(_e1020);
-        let _e1022 = t;
-        let _e1023 = edge_x;
-        let _e1026 = edge.reach;
-        away_1 = abs(((_e1022 - _e1023) - _e1026));
-        let _e1029 = away_1;
-        spread = (0.5f * clamp(_e1029, 1f, 12f));
-        sum_1 = vec4<f32>(0f, 0f, 0f, 0f);
-        weights = 0f;
-        let _e1032 = beyond;
-        let _e1033 = away_1;
-        rows_1 = select(2i, 0i, (_e1032 && (_e1033 < 0.5f)));
-        let _e1037 = rows_1;
-        i_2 = -(_e1037);
-        loop {
-            let _e1039 = i_2;
-            let _e1040 = rows_1;
-            if (_e1039 <= _e1040) {
-                let _e1042 = row_7;
-                let _e1043 = i_2;
-                let _e1045 = spread;
-                let _e1052 = synthesis.source_size[1u];
-                at_1 = clamp((_e1042 + i32(round((f32(_e1043) * _e1045)))), 0i, (_e1052 - 1i));
-                let _e1056 = edge.column;
-                param_110 = _e1056;
-                let _e1057 = at_1;
-                param_111 = _e1057;
-                let _e1058 = layer_at((&param_110), (&param_111));
-                layer_3 = _e1058;
-                let _e1059 = i_2;
-                if (_e1059 == 0i) {
-                    let _e1062 = edge.back;
-                    local_16 = !(_e1062);
-                } else {
-                    let _e1065 = layer_3.front;
-                    let _e1067 = edge.reach;
-                    local_16 = (_e1065 <= (_e1067 + 1f));
-                }
-                let _e1070 = local_16;
-                front_3 = _e1070;
-                let _e1071 = i_2;
-                if (_e1071 == 0i) {
-                    let _e1074 = edge.back;
-                    local_17 = _e1074;
-                } else {
-                    let _e1075 = front_3;
-                    let _e1078 = layer_3.split;
-                    let _e1079 = (!(_e1075) && _e1078);
-                    phi_2141_ = _e1079;
-                    if _e1079 {
-                        let _e1081 = layer_3.back;
-                        let _e1083 = edge.reach;
-                        phi_2141_ = (_e1081 <= (_e1083 + 1f));
-                    }
-                    let _e1087 = phi_2141_;
-                    local_17 = _e1087;
-                }
-                let _e1088 = local_17;
-                behind_2 = _e1088;
-                let _e1089 = i_2;
-                if (_e1089 == 0i) {
-                    local_18 = 2f;
-                } else {
-                    let _e1091 = front_3;
-                    if _e1091 {
-                        local_19 = 1f;
-                    } else {
-                        let _e1092 = behind_2;
-                        if _e1092 {
-                            let _e1094 = layer_3.mask;
-                            param_112 = _e1094;
-                            param_113 = vec4<f32>(1f, 1f, 1f, 1f);
-                            let _e1095 = covered((&param_112), (&param_113));
-                            local_20 = (1f - _e1095);
-                        } else {
-                            local_20 = 0f;
-                        }
-                        let _e1097 = local_20;
-                        local_19 = _e1097;
-                    }
-                    let _e1098 = local_19;
-                    local_18 = _e1098;
-                }
-                let _e1099 = local_18;
-                weight_1 = _e1099;
-                let _e1100 = front_3;
-                let _e1101 = weight_1;
-                let _e1103 = front_3;
-                let _e1104 = weight_1;
-                let _e1107 = edge.column;
-                param_114 = _e1107;
-                let _e1108 = at_1;
-                param_115 = _e1108;
-                param_116 = select(0f, _e1101, _e1100);
-                param_117 = select(_e1104, 0f, _e1103);
-                let _e1109 = weighted((&param_114), (&param_115), (&param_116), (&param_117));
-                let _e1110 = sum_1;
-                sum_1 = (_e1110 + _e1109);
-                let _e1112 = weight_1;
-                let _e1113 = weights;
-                weights = (_e1113 + _e1112);
-                continue;
-            } else {
-                break;
-            }
-            continuing {
-                let _e1115 = i_2;
-                i_2 = (_e1115 + 1i);
-            }
-        }
-        let _e1117 = sum_1;
-        let _e1118 = weights;
-        fill = (_e1117 / vec4(_e1118));
-        let _e1122 = second.column;
-        let _e1123 = (_e1122 >= 0i);
-        phi_2203_ = _e1123;
-        if _e1123 {
-            let _e1125 = edge.weight;
-            phi_2203_ = (_e1125 < 1f);
-        }
-        let _e1128 = phi_2203_;
-        if _e1128 {
-            let _e1130 = second.back;
-            one = select(vec2<f32>(1f, 0f), vec2<f32>(0f, 1f), vec2(_e1130));
-            let _e1134 = second.column;
-            param_118 = _e1134;
-            let _e1135 = row_7;
-            param_119 = _e1135;
-            let _e1137 = one[0u];
-            param_120 = _e1137;
-            let _e1139 = one[1u];
-            param_121 = _e1139;
-            let _e1140 = weighted((&param_118), (&param_119), (&param_120), (&param_121));
-            let _e1141 = fill;
-            let _e1143 = edge.weight;
-            fill = mix(_e1140, _e1141, vec4(_e1143));
-        }
-        let _e1146 = hole;
-        let _e1147 = away_1;
-        hole = (_e1146 && (_e1147 >= 0.5f));
-        let _e1151 = edge.reach;
-        let _e1152 = far_nearness();
-        let _e1156 = synthesis.law[1u];
-        depth_1 = ((_e1151 + _e1152) / _e1156);
-        let _e1160 = synthesis.origins[0u];
-        let _e1162 = gl_FragCoord_1[0u];
-        let _e1166 = synthesis.origins[1u];
-        origin_1 = ((_e1160 * _e1162) + _e1166);
-        let _e1168 = away_1;
-        let _e1169 = (_e1168 >= 0.5f);
-        phi_2278_ = _e1169;
-        if _e1169 {
-            let _e1170 = gl_FragCoord_1;
-            let _e1173 = synthesis.target_origin;
-            let _e1176 = beside;
-            let _e1177 = far_nearness();
-            param_122 = (_e1170.xy - vec2<f32>(_e1173));
-            param_123 = (_e1176 + _e1177);
-            let _e1179 = origin_1;
-            param_124 = _e1179;
-            let _e1180 = row_7;
-            param_125 = _e1180;
-            let _e1181 = fill;
-            param_126 = _e1181;
-            let _e1182 = depth_1;
-            param_127 = _e1182;
-            let _e1183 = recall((&param_122), (&param_123), (&param_124), (&param_125), (&param_126), (&param_127));
-            let _e1184 = param_126;
-            fill = _e1184;
-            let _e1185 = param_127;
-            depth_1 = _e1185;
-            phi_2278_ = _e1183;
-        }
-        let _e1187 = phi_2278_;
-        if _e1187 {
-            let _e1190 = synthesis.law[1u];
-            let _e1191 = depth_1;
-            let _e1193 = far_nearness();
-            edge.reach = ((_e1190 * _e1191) - _e1193);
-        }
-        let _e1196 = seen_2;
-        param_128 = _e1196;
-        param_129 = 1f;
-        let _e1197 = edge_x;
-        param_130 = _e1197;
-        let _e1199 = edge.reach;
-        param_131 = _e1199;
-        let _e1200 = cover((&param_128), (&param_129), (&param_130), (&param_131));
-        let _e1201 = param_128;
-        seen_2 = _e1201;
-        let _e1202 = fill;
-        let _e1204 = color_1;
-        color_1 = (_e1204 + (_e1202 * _e1200));
+    let _e179 = seen_3.rest;
+    if (_e179 < 0.01f) {
+        let _e182 = seen_3.column;
+        param_135 = _e182;
+        let _e183 = row_9;
+        param_136 = _e183;
+        let _e184 = sharp_color_at((&param_135), (&param_136));
+        color_1 = _e184;
+    } else {
+        let _e185 = row_9;
+        param_137 = _e185;
+        let _e186 = t_1;
+        param_138 = _e186;
+        let _e187 = x_6;
+        param_139 = _e187;
+        let _e188 = limit_1;
+        param_140 = _e188;
+        let _e189 = column_8;
+        param_141 = _e189;
+        let _e190 = seen_3;
+        param_142 = _e190;
+        let _e191 = composed((&param_137), (&param_138), (&param_139), (&param_140), (&param_141), (&param_142));
+        let _e192 = param_142;
+        seen_3 = _e192;
+        color_1 = _e191;
     }
     return;
 }

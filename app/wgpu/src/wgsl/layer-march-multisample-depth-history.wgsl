@@ -3,13 +3,14 @@ struct Layer {
     front: f32,
     back: f32,
     split: bool,
-    mask: vec4<f32>,
+    code: u32,
 }
 
 struct Seen {
     rest: f32,
     column: f32,
     reach: f32,
+    hole: bool,
 }
 
 struct Synthesis {
@@ -196,10 +197,10 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
     var i_1: i32;
     var texel: vec2<i32>;
     var local_3: vec2<f32>;
-    var phi_456_: bool;
-    var phi_471_: bool;
-    var phi_599_: bool;
-    var phi_678_: bool;
+    var phi_488_: bool;
+    var phi_503_: bool;
+    var phi_632_: bool;
+    var phi_711_: bool;
 
     let _e60 = textureDimensions(history_depth_texture, 0i);
     size = vec2<f32>(vec2<i32>(_e60));
@@ -248,25 +249,25 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
     }
     let _e117 = guess;
     let _e119 = all((_e117 >= vec2<f32>(0f, 0f)));
-    phi_456_ = _e119;
+    phi_488_ = _e119;
     if _e119 {
         let _e120 = guess;
         let _e121 = size;
-        phi_456_ = all((_e120 < _e121));
+        phi_488_ = all((_e120 < _e121));
     }
-    let _e125 = phi_456_;
+    let _e125 = phi_488_;
     inside = _e125;
     let _e127 = seen[3u];
     let _e129 = inside;
     let _e130 = ((_e127 > 0f) && _e129);
-    phi_471_ = _e130;
+    phi_503_ = _e130;
     if _e130 {
         let _e132 = guess[1u];
         let _e133 = rows;
         let _e136 = strip;
-        phi_471_ = (i32((_e132 / _e133)) == _e136);
+        phi_503_ = (i32((_e132 / _e133)) == _e136);
     }
-    let _e139 = phi_471_;
+    let _e139 = phi_503_;
     if !(_e139) {
         return false;
     }
@@ -331,13 +332,13 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
     let _e232 = (*depth);
     behind = (_e226 <= (_e227 - (0.25f * (_e228 - (_e231 * _e232)))));
     let _e238 = outside;
-    phi_599_ = _e238;
+    phi_632_ = _e238;
     if !(_e238) {
         let _e240 = before;
         let _e241 = nearness;
-        phi_599_ = (_e240 > (_e241 - 1f));
+        phi_632_ = (_e240 > (_e241 - 1f));
     }
-    let _e245 = phi_599_;
+    let _e245 = phi_632_;
     hidden = _e245;
     let _e246 = same;
     let _e247 = behind;
@@ -370,15 +371,15 @@ fn recall(pixel: ptr<function, vec2<f32>>, front: ptr<function, f32>, origin: pt
             let _e289 = most;
             texel = min((_e281 + vec2<i32>((_e282 & 1i), (_e284 >> bitcast<u32>(1i)))), vec2<i32>(_e289));
             let _e292 = whole;
-            phi_678_ = _e292;
+            phi_711_ = _e292;
             if _e292 {
                 let _e295 = synthesis.law[1u];
                 let _e296 = texel;
                 let _e297 = textureLoad(history_depth_texture, _e296, 0i);
                 let _e299 = stored;
-                phi_678_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
+                phi_711_ = (abs((_e295 * (_e297.x - _e299))) < 1f);
             }
-            let _e305 = phi_678_;
+            let _e305 = phi_711_;
             whole = _e305;
             continue;
         } else {
@@ -463,182 +464,29 @@ fn weighted(column_2: ptr<function, i32>, row_3: ptr<function, i32>, of_front: p
     return ((_e49 * _e48) + (_e52 * _e51));
 }
 
-fn covered(mask: ptr<function, vec4<f32>>, stripes: ptr<function, vec4<f32>>) -> f32 {
-    let _e3 = (*mask);
-    let _e4 = (*stripes);
-    return (0.25f * dot(_e3, _e4));
-}
-
-fn right_of(place_1: ptr<function, f32>) -> vec4<f32> {
-    let _e5 = (*place_1);
-    return clamp((vec4<f32>(1f, 2f, 3f, 4f) - vec4((4f * _e5))), vec4(0f), vec4(1f));
-}
-
-fn layer_at(column_3: ptr<function, i32>, row_4: ptr<function, i32>) -> Layer {
-    var bits_1: u32;
-    var param_11: i32;
-    var param_12: i32;
-    var param_13: u32;
-    var param_14: u32;
-    var both: vec2<f32>;
-    var param_15: u32;
-    var code: u32;
-    var mask_1: vec4<f32>;
-
-    let _e19 = (*column_3);
-    param_11 = _e19;
-    let _e20 = (*row_4);
-    param_12 = _e20;
-    let _e21 = layer_bits((&param_11), (&param_12));
-    bits_1 = _e21;
-    let _e22 = bits_1;
-    param_13 = _e22;
-    let _e23 = is_full((&param_13));
-    if _e23 {
-        let _e24 = bits_1;
-        param_14 = _e24;
-        let _e25 = full_front((&param_14));
-        return Layer(_e25, 1000000000f, false, vec4<f32>(1f, 1f, 1f, 1f));
-    }
-    let _e27 = bits_1;
-    param_15 = _e27;
-    let _e28 = split_displacements((&param_15));
-    both = _e28;
-    let _e29 = bits_1;
-    code = (_e29 >> bitcast<u32>(28i));
-    let _e32 = code;
-    mask_1 = vec4<f32>(((vec4(_e32) >> bitcast<vec4<u32>>(vec4<u32>(0u, 1u, 2u, 3u))) & vec4(1u)));
-    let _e40 = both[0u];
-    let _e42 = both[1u];
-    let _e43 = mask_1;
-    return Layer(_e40, _e42, true, _e43);
-}
-
-fn color_texel(x_3: ptr<function, i32>, row_5: ptr<function, i32>) -> vec4<f32> {
-    var param_16: i32;
-    var param_17: vec2<i32>;
-
-    let _e6 = (*x_3);
-    param_16 = _e6;
-    let _e7 = source_column((&param_16));
-    let _e8 = (*row_5);
-    param_17 = vec2<i32>(_e7, _e8);
-    let _e10 = in_image((&param_17));
-    let _e11 = textureLoad(color_map_texture, _e10, 0i);
-    return _e11;
-}
-
-fn sharp_color_at(x_4: ptr<function, f32>, row_6: ptr<function, i32>) -> vec4<f32> {
-    var last_1: i32;
-    var column_4: i32;
-    var f: f32;
-    var here_1: vec4<f32>;
-    var param_18: i32;
-    var param_19: i32;
-    var next: vec4<f32>;
-    var param_20: i32;
-    var param_21: i32;
-    var apart: vec4<f32>;
-    var outer: vec2<f32>;
-    var inner: f32;
-    var sum: vec4<f32>;
-    var param_22: i32;
-    var param_23: i32;
-    var param_24: i32;
-    var param_25: i32;
-
-    let _e33 = synthesis.source_size[0u];
-    last_1 = (_e33 - 1i);
-    let _e35 = (*x_4);
-    column_4 = i32(_e35);
-    let _e37 = (*x_4);
-    let _e38 = column_4;
-    f = (_e37 - f32(_e38));
-    let _e41 = column_4;
-    param_18 = _e41;
-    let _e42 = (*row_6);
-    param_19 = _e42;
-    let _e43 = color_texel((&param_18), (&param_19));
-    here_1 = _e43;
-    let _e44 = column_4;
-    let _e46 = last_1;
-    param_20 = min((_e44 + 1i), _e46);
-    let _e48 = (*row_6);
-    param_21 = _e48;
-    let _e49 = color_texel((&param_20), (&param_21));
-    next = _e49;
-    let _e50 = next;
-    let _e51 = here_1;
-    apart = abs((_e50 - _e51));
-    let _e55 = apart[0u];
-    let _e57 = apart[1u];
-    let _e59 = apart[2u];
-    if (max(_e55, max(_e57, _e59)) <= 0.03137255f) {
-        let _e63 = here_1;
-        let _e64 = next;
-        let _e65 = f;
-        return mix(_e63, _e64, vec4(_e65));
-    }
-    let _e68 = f;
-    let _e70 = f;
-    let _e73 = f;
-    let _e75 = f;
-    outer = (vec2<f32>((1f - _e73), _e75) * ((-0.75f * _e68) * (1f - _e70)));
-    let _e78 = f;
-    let _e81 = f;
-    let _e83 = f;
-    inner = (((((1.25f * _e78) - 2.25f) * _e81) * _e83) + 1f);
-    let _e87 = outer[0u];
-    let _e88 = column_4;
-    param_22 = max((_e88 - 1i), 0i);
-    let _e91 = (*row_6);
-    param_23 = _e91;
-    let _e92 = color_texel((&param_22), (&param_23));
-    let _e95 = outer[1u];
-    let _e96 = column_4;
-    let _e98 = last_1;
-    param_24 = min((_e96 + 2i), _e98);
-    let _e100 = (*row_6);
-    param_25 = _e100;
-    let _e101 = color_texel((&param_24), (&param_25));
-    let _e104 = inner;
-    let _e105 = here_1;
-    let _e108 = inner;
-    let _e111 = outer[0u];
-    let _e114 = outer[1u];
-    let _e116 = next;
-    sum = ((((_e92 * _e87) + (_e101 * _e95)) + (_e105 * _e104)) + (_e116 * (((1f - _e108) - _e111) - _e114)));
-    let _e119 = sum;
-    let _e120 = here_1;
-    let _e121 = next;
-    let _e123 = here_1;
-    let _e124 = next;
-    return clamp(_e119, min(_e120, _e121), max(_e123, _e124));
-}
-
-fn cover(seen_1: ptr<function, Seen>, share_1: ptr<function, f32>, column_5: ptr<function, f32>, reach_1: ptr<function, f32>) -> f32 {
+fn cover(seen_1: ptr<function, Seen>, share_1: ptr<function, f32>, column_3: ptr<function, f32>, reach_1: ptr<function, f32>) -> f32 {
     var taken: f32;
     var passes: bool;
     var local_6: f32;
     var local_7: f32;
-    var phi_917_: bool;
+    var phi_950_: bool;
 
     let _e10 = (*seen_1).rest;
     let _e11 = (*share_1);
     taken = (_e10 * _e11);
     let _e14 = (*seen_1).rest;
     let _e15 = (_e14 > 0.5f);
-    phi_917_ = _e15;
+    phi_950_ = _e15;
     if _e15 {
         let _e17 = (*seen_1).rest;
         let _e18 = taken;
-        phi_917_ = ((_e17 - _e18) <= 0.5f);
+        phi_950_ = ((_e17 - _e18) <= 0.5f);
     }
-    let _e22 = phi_917_;
+    let _e22 = phi_950_;
     passes = _e22;
     let _e23 = passes;
     if _e23 {
-        let _e24 = (*column_5);
+        let _e24 = (*column_3);
         local_6 = _e24;
     } else {
         let _e26 = (*seen_1).column;
@@ -663,20 +511,1318 @@ fn cover(seen_1: ptr<function, Seen>, share_1: ptr<function, f32>, column_5: ptr
     return _e40;
 }
 
+fn covered(mask: ptr<function, vec4<f32>>, stripes: ptr<function, vec4<f32>>) -> f32 {
+    let _e3 = (*mask);
+    let _e4 = (*stripes);
+    return (0.25f * dot(_e3, _e4));
+}
+
+fn right_of(place_1: ptr<function, f32>) -> vec4<f32> {
+    let _e5 = (*place_1);
+    return clamp((vec4<f32>(1f, 2f, 3f, 4f) - vec4((4f * _e5))), vec4(0f), vec4(1f));
+}
+
+fn mask_of(layer_3: ptr<function, Layer>, column_4: ptr<function, i32>, row_4: ptr<function, i32>) -> vec4<f32> {
+    let _e5 = (*layer_3).split;
+    if !(_e5) {
+        return vec4<f32>(1f, 1f, 1f, 1f);
+    }
+    let _e8 = (*layer_3).code;
+    return vec4<f32>(((vec4(_e8) >> bitcast<vec4<u32>>(vec4<u32>(0u, 1u, 2u, 3u))) & vec4(1u)));
+}
+
+fn layer_at(column_5: ptr<function, i32>, row_5: ptr<function, i32>) -> Layer {
+    var bits_1: u32;
+    var param_11: i32;
+    var param_12: i32;
+    var both: vec2<f32>;
+    var param_13: u32;
+    var split: bool;
+    var param_14: u32;
+    var local_8: f32;
+    var param_15: u32;
+    var local_9: f32;
+
+    let _e16 = (*column_5);
+    param_11 = _e16;
+    let _e17 = (*row_5);
+    param_12 = _e17;
+    let _e18 = layer_bits((&param_11), (&param_12));
+    bits_1 = _e18;
+    let _e19 = bits_1;
+    param_13 = _e19;
+    let _e20 = split_displacements((&param_13));
+    both = _e20;
+    let _e21 = bits_1;
+    param_14 = _e21;
+    let _e22 = is_full((&param_14));
+    split = !(_e22);
+    let _e24 = split;
+    if _e24 {
+        let _e26 = both[0u];
+        local_8 = _e26;
+    } else {
+        let _e27 = bits_1;
+        param_15 = _e27;
+        let _e28 = full_front((&param_15));
+        local_8 = _e28;
+    }
+    let _e29 = local_8;
+    let _e30 = split;
+    if _e30 {
+        let _e32 = both[1u];
+        local_9 = _e32;
+    } else {
+        local_9 = 1000000000f;
+    }
+    let _e33 = local_9;
+    let _e34 = split;
+    let _e35 = bits_1;
+    return Layer(_e29, _e33, _e34, (_e35 >> bitcast<u32>(28i)));
+}
+
+fn composed(row_6: ptr<function, i32>, t: ptr<function, f32>, x_3: ptr<function, f32>, limit: ptr<function, f32>, column_6: ptr<function, i32>, seen_2: ptr<function, Seen>) -> vec4<f32> {
+    var sense: i32;
+    var color_sum: vec4<f32>;
+    var here_1: Layer;
+    var param_16: i32;
+    var param_17: i32;
+    var edge: Edge;
+    var second: Edge;
+    var beside: f32;
+    var on_front: bool;
+    var on_back: bool;
+    var before_1: Layer;
+    var param_18: i32;
+    var param_19: i32;
+    var next: Layer;
+    var a: f32;
+    var b: f32;
+    var c: f32;
+    var d: f32;
+    var front_front: bool;
+    var front_back: bool;
+    var back_front: bool;
+    var back_back: bool;
+    var event: bool;
+    var param_20: i32;
+    var param_21: i32;
+    var crosses: bool;
+    var front_begins: bool;
+    var front_ends: bool;
+    var back_ends: bool;
+    var here_mask: vec4<f32>;
+    var param_22: Layer;
+    var param_23: i32;
+    var param_24: i32;
+    var next_mask: vec4<f32>;
+    var param_25: Layer;
+    var param_26: i32;
+    var param_27: i32;
+    var fronts: vec2<f32>;
+    var backs: vec2<f32>;
+    var g: f32;
+    var right: vec4<f32>;
+    var param_28: f32;
+    var shares: vec2<f32>;
+    var param_29: vec4<f32>;
+    var param_30: vec4<f32>;
+    var param_31: vec4<f32>;
+    var param_32: vec4<f32>;
+    var share_2: f32;
+    var param_33: Seen;
+    var param_34: f32;
+    var param_35: f32;
+    var param_36: f32;
+    var share_3: f32;
+    var param_37: f32;
+    var param_38: vec4<f32>;
+    var param_39: vec4<f32>;
+    var param_40: Seen;
+    var param_41: f32;
+    var param_42: f32;
+    var param_43: f32;
+    var param_44: f32;
+    var param_45: vec4<f32>;
+    var param_46: vec4<f32>;
+    var param_47: Seen;
+    var param_48: f32;
+    var param_49: f32;
+    var param_50: f32;
+    var g_1: f32;
+    var taken_1: f32;
+    var param_51: Seen;
+    var param_52: f32;
+    var param_53: f32;
+    var param_54: f32;
+    var g_2: f32;
+    var taken_2: f32;
+    var param_55: Seen;
+    var param_56: f32;
+    var param_57: f32;
+    var param_58: f32;
+    var g_3: f32;
+    var taken_3: f32;
+    var param_59: Seen;
+    var param_60: f32;
+    var param_61: f32;
+    var param_62: f32;
+    var ends: bool;
+    var stripes_1: vec4<f32>;
+    var local_10: vec4<f32>;
+    var param_63: f32;
+    var param_64: f32;
+    var param_65: vec4<f32>;
+    var param_66: vec4<f32>;
+    var param_67: Seen;
+    var param_68: f32;
+    var param_69: f32;
+    var param_70: f32;
+    var at_back: bool;
+    var at_front: bool;
+    var reach_2: f32;
+    var local_11: f32;
+    var away: f32;
+    var local_12: f32;
+    var weight: f32;
+    var local_13: f32;
+    var param_71: vec4<f32>;
+    var param_72: vec4<f32>;
+    var found: Edge;
+    var taken_4: f32;
+    var param_73: Seen;
+    var param_74: f32;
+    var param_75: f32;
+    var param_76: f32;
+    var param_77: i32;
+    var param_78: i32;
+    var param_79: f32;
+    var param_80: f32;
+    var param_81: i32;
+    var param_82: i32;
+    var param_83: f32;
+    var param_84: f32;
+    var beyond: bool;
+    var local_14: f32;
+    var edge_x: f32;
+    var param_85: i32;
+    var away_1: f32;
+    var spread: f32;
+    var sum: vec4<f32>;
+    var weights: f32;
+    var rows_1: i32;
+    var i_2: i32;
+    var at: i32;
+    var layer_4: Layer;
+    var param_86: i32;
+    var param_87: i32;
+    var front_2: bool;
+    var local_15: bool;
+    var behind_2: bool;
+    var local_16: bool;
+    var weight_1: f32;
+    var local_17: f32;
+    var local_18: f32;
+    var local_19: f32;
+    var param_88: Layer;
+    var param_89: i32;
+    var param_90: i32;
+    var param_91: vec4<f32>;
+    var param_92: vec4<f32>;
+    var param_93: i32;
+    var param_94: i32;
+    var param_95: f32;
+    var param_96: f32;
+    var fill: vec4<f32>;
+    var one: vec2<f32>;
+    var param_97: i32;
+    var param_98: i32;
+    var param_99: f32;
+    var param_100: f32;
+    var depth_1: f32;
+    var origin_1: f32;
+    var param_101: vec2<f32>;
+    var param_102: f32;
+    var param_103: f32;
+    var param_104: i32;
+    var param_105: vec4<f32>;
+    var param_106: f32;
+    var param_107: Seen;
+    var param_108: f32;
+    var param_109: f32;
+    var param_110: f32;
+    var phi_1023_: bool;
+    var phi_1030_: bool;
+    var phi_1072_: bool;
+    var phi_1086_: bool;
+    var phi_1174_: bool;
+    var phi_1191_: bool;
+    var phi_1192_: bool;
+    var phi_1211_: bool;
+    var phi_1212_: bool;
+    var phi_1213_: bool;
+    var phi_1248_: bool;
+    var phi_1249_: bool;
+    var phi_1271_: bool;
+    var phi_1272_: bool;
+    var phi_1392_: bool;
+    var phi_1443_: bool;
+    var phi_1489_: bool;
+    var phi_1539_: bool;
+    var phi_1589_: bool;
+    var phi_1641_: bool;
+    var phi_1647_: bool;
+    var phi_1698_: bool;
+    var phi_1719_: bool;
+    var phi_1731_: bool;
+    var phi_2010_: bool;
+    var phi_2078_: bool;
+    var phi_2159_: bool;
+
+    let _e201 = synthesis.mirrored;
+    sense = select(1i, -1i, (_e201 != 0u));
+    color_sum = vec4<f32>(0f, 0f, 0f, 0f);
+    let _e204 = (*column_6);
+    param_16 = _e204;
+    let _e205 = (*row_6);
+    param_17 = _e205;
+    let _e206 = layer_at((&param_16), (&param_17));
+    here_1 = _e206;
+    edge = Edge(-1i, false, 1000000000f, 1f);
+    let _e207 = edge;
+    second = _e207;
+    beside = 1000000000f;
+    let _e208 = (*x_3);
+    if (_e208 == 0f) {
+        let _e211 = here_1.front;
+        let _e212 = (*t);
+        if (_e211 > _e212) {
+            let _e214 = (*column_6);
+            let _e216 = here_1.front;
+            edge = Edge(_e214, false, _e216, 1f);
+        }
+        let _e219 = here_1.split;
+        phi_1023_ = _e219;
+        if _e219 {
+            let _e221 = here_1.back;
+            let _e223 = edge.reach;
+            phi_1023_ = (_e221 < _e223);
+        }
+        let _e226 = phi_1023_;
+        phi_1030_ = _e226;
+        if _e226 {
+            let _e228 = here_1.back;
+            let _e229 = (*t);
+            phi_1030_ = (_e228 > _e229);
+        }
+        let _e232 = phi_1030_;
+        if _e232 {
+            let _e233 = (*column_6);
+            let _e235 = here_1.back;
+            edge = Edge(_e233, true, _e235, 1f);
+        }
+    }
+    on_front = false;
+    on_back = false;
+    let _e237 = (*x_3);
+    let _e240 = here_1.split;
+    if ((_e237 > 0f) && _e240) {
+        let _e242 = (*column_6);
+        let _e243 = sense;
+        param_18 = (_e242 - _e243);
+        let _e245 = (*row_6);
+        param_19 = _e245;
+        let _e246 = layer_at((&param_18), (&param_19));
+        before_1 = _e246;
+        let _e248 = before_1.front;
+        let _e250 = here_1.back;
+        on_front = (abs((_e248 - _e250)) < 0.5f);
+        let _e255 = before_1.split;
+        phi_1072_ = _e255;
+        if _e255 {
+            let _e257 = before_1.back;
+            let _e259 = here_1.back;
+            phi_1072_ = (abs((_e257 - _e259)) < 0.5f);
+        }
+        let _e264 = phi_1072_;
+        on_back = _e264;
+    }
+    loop {
+        let _e265 = (*x_3);
+        let _e266 = (*limit);
+        let _e267 = (_e265 < _e266);
+        phi_1086_ = _e267;
+        if _e267 {
+            let _e269 = (*seen_2).rest;
+            phi_1086_ = (_e269 > 0.01f);
+        }
+        let _e272 = phi_1086_;
+        if _e272 {
+            let _e273 = here_1;
+            next = _e273;
+            a = 0f;
+            b = 0f;
+            c = 0f;
+            d = 0f;
+            front_front = false;
+            front_back = false;
+            back_front = false;
+            back_back = false;
+            event = false;
+            loop {
+                let _e274 = event;
+                let _e276 = (*x_3);
+                let _e277 = (*limit);
+                if (!(_e274) && (_e276 < _e277)) {
+                    let _e280 = (*column_6);
+                    let _e281 = sense;
+                    param_20 = (_e280 + _e281);
+                    let _e283 = (*row_6);
+                    param_21 = _e283;
+                    let _e284 = layer_at((&param_20), (&param_21));
+                    next = _e284;
+                    let _e285 = (*x_3);
+                    let _e287 = here_1.front;
+                    let _e289 = (*t);
+                    a = ((_e285 + _e287) - _e289);
+                    let _e291 = (*x_3);
+                    let _e294 = next.front;
+                    let _e296 = (*t);
+                    b = (((_e291 + 1f) + _e294) - _e296);
+                    let _e298 = (*x_3);
+                    let _e300 = here_1.back;
+                    let _e302 = (*t);
+                    c = ((_e298 + _e300) - _e302);
+                    let _e304 = (*x_3);
+                    let _e307 = next.back;
+                    let _e309 = (*t);
+                    d = (((_e304 + 1f) + _e307) - _e309);
+                    let _e312 = next.front;
+                    let _e314 = here_1.front;
+                    front_front = (abs((_e312 - _e314)) < 0.5f);
+                    let _e319 = next.back;
+                    let _e321 = here_1.front;
+                    front_back = (abs((_e319 - _e321)) < 0.5f);
+                    let _e326 = next.front;
+                    let _e328 = here_1.back;
+                    back_front = (abs((_e326 - _e328)) < 0.5f);
+                    let _e333 = here_1.split;
+                    phi_1174_ = _e333;
+                    if _e333 {
+                        let _e335 = next.back;
+                        let _e337 = here_1.back;
+                        phi_1174_ = (abs((_e335 - _e337)) < 0.5f);
+                    }
+                    let _e342 = phi_1174_;
+                    back_back = _e342;
+                    let _e343 = a;
+                    let _e344 = (_e343 <= 0f);
+                    phi_1192_ = _e344;
+                    if _e344 {
+                        let _e345 = front_front;
+                        let _e346 = b;
+                        let _e348 = (_e345 && (_e346 > 0f));
+                        phi_1191_ = _e348;
+                        if !(_e348) {
+                            let _e350 = front_back;
+                            let _e351 = d;
+                            phi_1191_ = (_e350 && (_e351 > 0f));
+                        }
+                        let _e355 = phi_1191_;
+                        phi_1192_ = _e355;
+                    }
+                    let _e357 = phi_1192_;
+                    phi_1213_ = _e357;
+                    if !(_e357) {
+                        let _e359 = c;
+                        let _e360 = (_e359 <= 0f);
+                        phi_1212_ = _e360;
+                        if _e360 {
+                            let _e361 = back_front;
+                            let _e362 = b;
+                            let _e364 = (_e361 && (_e362 > 0f));
+                            phi_1211_ = _e364;
+                            if !(_e364) {
+                                let _e366 = back_back;
+                                let _e367 = d;
+                                phi_1211_ = (_e366 && (_e367 > 0f));
+                            }
+                            let _e371 = phi_1211_;
+                            phi_1212_ = _e371;
+                        }
+                        let _e373 = phi_1212_;
+                        phi_1213_ = _e373;
+                    }
+                    let _e375 = phi_1213_;
+                    crosses = _e375;
+                    let _e376 = front_front;
+                    let _e378 = back_front;
+                    let _e381 = b;
+                    let _e384 = b;
+                    front_begins = (((!(_e376) && !(_e378)) && (_e381 > 0f)) && (_e384 < 1f));
+                    let _e387 = front_front;
+                    let _e389 = front_back;
+                    let _e392 = a;
+                    let _e394 = ((!(_e387) && !(_e389)) && (_e392 <= 0f));
+                    phi_1249_ = _e394;
+                    if _e394 {
+                        let _e395 = a;
+                        let _e396 = (_e395 > -1f);
+                        phi_1248_ = _e396;
+                        if !(_e396) {
+                            let _e399 = next.front;
+                            let _e401 = here_1.front;
+                            phi_1248_ = (_e399 > _e401);
+                        }
+                        let _e404 = phi_1248_;
+                        phi_1249_ = _e404;
+                    }
+                    let _e406 = phi_1249_;
+                    front_ends = _e406;
+                    let _e407 = back_front;
+                    let _e409 = back_back;
+                    let _e412 = c;
+                    let _e414 = ((!(_e407) && !(_e409)) && (_e412 < 1f));
+                    phi_1272_ = _e414;
+                    if _e414 {
+                        let _e415 = c;
+                        let _e416 = (_e415 > -1f);
+                        phi_1271_ = _e416;
+                        if !(_e416) {
+                            let _e419 = next.front;
+                            let _e421 = here_1.back;
+                            phi_1271_ = (_e419 > _e421);
+                        }
+                        let _e424 = phi_1271_;
+                        phi_1272_ = _e424;
+                    }
+                    let _e426 = phi_1272_;
+                    back_ends = _e426;
+                    let _e427 = crosses;
+                    let _e428 = front_begins;
+                    let _e430 = front_ends;
+                    let _e432 = back_ends;
+                    event = (((_e427 || _e428) || _e430) || _e432);
+                    let _e434 = event;
+                    if !(_e434) {
+                        let _e436 = (*x_3);
+                        (*x_3) = (_e436 + 1f);
+                        let _e438 = sense;
+                        let _e439 = (*column_6);
+                        (*column_6) = (_e439 + _e438);
+                        let _e441 = next;
+                        here_1 = _e441;
+                        let _e442 = front_back;
+                        on_front = _e442;
+                        let _e443 = back_back;
+                        on_back = _e443;
+                    }
+                    continue;
+                } else {
+                    break;
+                }
+            }
+            let _e444 = event;
+            if !(_e444) {
+                break;
+            }
+            let _e446 = here_1;
+            param_22 = _e446;
+            let _e447 = (*column_6);
+            param_23 = _e447;
+            let _e448 = (*row_6);
+            param_24 = _e448;
+            let _e449 = mask_of((&param_22), (&param_23), (&param_24));
+            here_mask = _e449;
+            let _e450 = (*column_6);
+            let _e451 = sense;
+            let _e453 = next;
+            param_25 = _e453;
+            param_26 = (_e450 + _e451);
+            let _e454 = (*row_6);
+            param_27 = _e454;
+            let _e455 = mask_of((&param_25), (&param_26), (&param_27));
+            next_mask = _e455;
+            fronts = vec2<f32>(0f, 0f);
+            backs = vec2<f32>(0f, 0f);
+            let _e456 = front_front;
+            let _e457 = a;
+            let _e460 = b;
+            if ((_e456 && (_e457 <= 0f)) && (_e460 > 0f)) {
+                let _e463 = a;
+                let _e465 = b;
+                let _e466 = a;
+                g = (-(_e463) / (_e465 - _e466));
+                let _e469 = g;
+                param_28 = _e469;
+                let _e470 = right_of((&param_28));
+                right = _e470;
+                let _e471 = here_mask;
+                param_29 = _e471;
+                let _e472 = right;
+                param_30 = _e472;
+                let _e473 = covered((&param_29), (&param_30));
+                let _e474 = right;
+                let _e477 = next_mask;
+                param_31 = _e477;
+                param_32 = (vec4(1f) - _e474);
+                let _e478 = covered((&param_31), (&param_32));
+                shares = vec2<f32>(_e473, _e478);
+                let _e481 = shares[0u];
+                let _e483 = shares[1u];
+                share_2 = (_e481 + _e483);
+                let _e485 = (*x_3);
+                let _e486 = g;
+                let _e489 = here_1.front;
+                let _e491 = next.front;
+                let _e492 = g;
+                let _e494 = (*seen_2);
+                param_33 = _e494;
+                let _e495 = share_2;
+                param_34 = _e495;
+                param_35 = (_e485 + _e486);
+                param_36 = mix(_e489, _e491, _e492);
+                let _e496 = cover((&param_33), (&param_34), (&param_35), (&param_36));
+                let _e497 = param_33;
+                (*seen_2) = _e497;
+                let _e498 = shares;
+                let _e500 = share_2;
+                fronts = ((_e498 * _e496) / vec2(max(_e500, 0.000001f)));
+            }
+            let _e504 = front_front;
+            let _e505 = !(_e504);
+            phi_1392_ = _e505;
+            if _e505 {
+                let _e507 = next.front;
+                let _e509 = here_1.front;
+                let _e512 = next.split;
+                phi_1392_ = ((_e507 > _e509) || _e512);
+            }
+            let _e515 = phi_1392_;
+            let _e516 = back_front;
+            let _e519 = b;
+            let _e522 = b;
+            if (((_e515 && !(_e516)) && (_e519 > 0f)) && (_e522 < 1f)) {
+                let _e525 = b;
+                param_37 = (1f - _e525);
+                let _e527 = right_of((&param_37));
+                let _e530 = next_mask;
+                param_38 = _e530;
+                param_39 = (vec4(1f) - _e527);
+                let _e531 = covered((&param_38), (&param_39));
+                share_3 = _e531;
+                let _e532 = (*x_3);
+                let _e534 = (*seen_2);
+                param_40 = _e534;
+                let _e535 = share_3;
+                param_41 = _e535;
+                param_42 = (_e532 + 1f);
+                let _e537 = next.front;
+                param_43 = _e537;
+                let _e538 = cover((&param_40), (&param_41), (&param_42), (&param_43));
+                let _e539 = param_40;
+                (*seen_2) = _e539;
+                let _e541 = fronts[1u];
+                fronts[1u] = (_e541 + _e538);
+            }
+            let _e544 = front_front;
+            let _e545 = !(_e544);
+            phi_1443_ = _e545;
+            if _e545 {
+                let _e547 = next.front;
+                let _e549 = here_1.front;
+                let _e552 = here_1.split;
+                phi_1443_ = ((_e547 < _e549) || _e552);
+            }
+            let _e555 = phi_1443_;
+            let _e556 = front_back;
+            let _e559 = a;
+            let _e562 = a;
+            if (((_e555 && !(_e556)) && (_e559 <= 0f)) && (_e562 > -1f)) {
+                let _e565 = a;
+                param_44 = -(_e565);
+                let _e567 = right_of((&param_44));
+                let _e568 = here_mask;
+                param_45 = _e568;
+                param_46 = _e567;
+                let _e569 = covered((&param_45), (&param_46));
+                let _e570 = (*seen_2);
+                param_47 = _e570;
+                param_48 = _e569;
+                let _e571 = (*x_3);
+                param_49 = _e571;
+                let _e573 = here_1.front;
+                param_50 = _e573;
+                let _e574 = cover((&param_47), (&param_48), (&param_49), (&param_50));
+                let _e575 = param_47;
+                (*seen_2) = _e575;
+                let _e577 = fronts[0u];
+                fronts[0u] = (_e577 + _e574);
+            }
+            let _e580 = front_back;
+            let _e581 = a;
+            let _e584 = d;
+            let _e586 = ((_e580 && (_e581 <= 0f)) && (_e584 > 0f));
+            phi_1489_ = _e586;
+            if _e586 {
+                let _e588 = (*seen_2).rest;
+                phi_1489_ = (_e588 > 0.01f);
+            }
+            let _e591 = phi_1489_;
+            if _e591 {
+                let _e592 = a;
+                let _e594 = d;
+                let _e595 = a;
+                g_1 = (-(_e592) / (_e594 - _e595));
+                let _e598 = (*x_3);
+                let _e599 = g_1;
+                let _e601 = (*seen_2);
+                param_51 = _e601;
+                param_52 = 1f;
+                param_53 = (_e598 + _e599);
+                let _e603 = here_1.front;
+                param_54 = _e603;
+                let _e604 = cover((&param_51), (&param_52), (&param_53), (&param_54));
+                let _e605 = param_51;
+                (*seen_2) = _e605;
+                taken_1 = _e604;
+                let _e606 = taken_1;
+                let _e607 = g_1;
+                let _e611 = fronts[0u];
+                fronts[0u] = (_e611 + (_e606 * (1f - _e607)));
+                let _e614 = taken_1;
+                let _e615 = g_1;
+                let _e618 = backs[1u];
+                backs[1u] = (_e618 + (_e614 * _e615));
+            }
+            let _e621 = back_front;
+            let _e622 = c;
+            let _e625 = b;
+            let _e627 = ((_e621 && (_e622 <= 0f)) && (_e625 > 0f));
+            phi_1539_ = _e627;
+            if _e627 {
+                let _e629 = (*seen_2).rest;
+                phi_1539_ = (_e629 > 0.01f);
+            }
+            let _e632 = phi_1539_;
+            if _e632 {
+                let _e633 = c;
+                let _e635 = b;
+                let _e636 = c;
+                g_2 = (-(_e633) / (_e635 - _e636));
+                let _e639 = (*x_3);
+                let _e640 = g_2;
+                let _e642 = (*seen_2);
+                param_55 = _e642;
+                param_56 = 1f;
+                param_57 = (_e639 + _e640);
+                let _e644 = next.front;
+                param_58 = _e644;
+                let _e645 = cover((&param_55), (&param_56), (&param_57), (&param_58));
+                let _e646 = param_55;
+                (*seen_2) = _e646;
+                taken_2 = _e645;
+                let _e647 = taken_2;
+                let _e648 = g_2;
+                let _e652 = backs[0u];
+                backs[0u] = (_e652 + (_e647 * (1f - _e648)));
+                let _e655 = taken_2;
+                let _e656 = g_2;
+                let _e659 = fronts[1u];
+                fronts[1u] = (_e659 + (_e655 * _e656));
+            }
+            let _e662 = back_back;
+            let _e663 = c;
+            let _e666 = d;
+            let _e668 = ((_e662 && (_e663 <= 0f)) && (_e666 > 0f));
+            phi_1589_ = _e668;
+            if _e668 {
+                let _e670 = (*seen_2).rest;
+                phi_1589_ = (_e670 > 0.01f);
+            }
+            let _e673 = phi_1589_;
+            if _e673 {
+                let _e674 = c;
+                let _e676 = d;
+                let _e677 = c;
+                g_3 = (-(_e674) / (_e676 - _e677));
+                let _e680 = (*x_3);
+                let _e681 = g_3;
+                let _e683 = (*seen_2);
+                param_59 = _e683;
+                param_60 = 1f;
+                param_61 = (_e680 + _e681);
+                let _e685 = here_1.back;
+                param_62 = _e685;
+                let _e686 = cover((&param_59), (&param_60), (&param_61), (&param_62));
+                let _e687 = param_59;
+                (*seen_2) = _e687;
+                taken_3 = _e686;
+                let _e688 = taken_3;
+                let _e689 = g_3;
+                let _e691 = g_3;
+                let _e694 = backs;
+                backs = (_e694 + (vec2<f32>((1f - _e689), _e691) * _e688));
+            }
+            let _e697 = here_1.split;
+            let _e698 = back_front;
+            let _e701 = back_back;
+            ends = ((_e697 && !(_e698)) && !(_e701));
+            let _e704 = ends;
+            let _e705 = on_front;
+            let _e708 = on_back;
+            let _e710 = ((_e704 && !(_e705)) && !(_e708));
+            phi_1641_ = _e710;
+            if _e710 {
+                let _e711 = c;
+                phi_1641_ = (abs(_e711) < 1f);
+            }
+            let _e715 = phi_1641_;
+            phi_1647_ = _e715;
+            if _e715 {
+                let _e717 = (*seen_2).rest;
+                phi_1647_ = (_e717 > 0.01f);
+            }
+            let _e720 = phi_1647_;
+            if _e720 {
+                let _e721 = c;
+                if (_e721 <= 0f) {
+                    let _e723 = c;
+                    param_63 = -(_e723);
+                    let _e725 = right_of((&param_63));
+                    local_10 = _e725;
+                } else {
+                    let _e726 = c;
+                    param_64 = (1f - _e726);
+                    let _e728 = right_of((&param_64));
+                    local_10 = (vec4(1f) - _e728);
+                }
+                let _e731 = local_10;
+                stripes_1 = _e731;
+                let _e732 = here_mask;
+                param_65 = (vec4(1f) - _e732);
+                let _e735 = stripes_1;
+                param_66 = _e735;
+                let _e736 = covered((&param_65), (&param_66));
+                let _e737 = (*seen_2);
+                param_67 = _e737;
+                param_68 = _e736;
+                let _e738 = (*x_3);
+                param_69 = _e738;
+                let _e740 = here_1.back;
+                param_70 = _e740;
+                let _e741 = cover((&param_67), (&param_68), (&param_69), (&param_70));
+                let _e742 = param_67;
+                (*seen_2) = _e742;
+                let _e744 = backs[0u];
+                backs[0u] = (_e744 + _e741);
+            }
+            let _e747 = ends;
+            phi_1698_ = _e747;
+            if _e747 {
+                let _e749 = next.front;
+                let _e751 = here_1.back;
+                phi_1698_ = (_e749 > _e751);
+            }
+            let _e754 = phi_1698_;
+            let _e755 = c;
+            at_back = (_e754 && (_e755 <= 0f));
+            let _e759 = here_1.split;
+            let _e761 = front_front;
+            let _e764 = front_back;
+            let _e766 = ((!(_e759) && !(_e761)) && !(_e764));
+            phi_1719_ = _e766;
+            if _e766 {
+                let _e768 = next.front;
+                let _e770 = here_1.front;
+                phi_1719_ = (_e768 > _e770);
+            }
+            let _e773 = phi_1719_;
+            let _e774 = a;
+            at_front = (_e773 && (_e774 <= 0f));
+            let _e777 = at_back;
+            let _e778 = at_front;
+            let _e779 = (_e777 || _e778);
+            phi_1731_ = _e779;
+            if _e779 {
+                let _e781 = (*seen_2).rest;
+                phi_1731_ = (_e781 > 0.01f);
+            }
+            let _e784 = phi_1731_;
+            if _e784 {
+                let _e785 = at_back;
+                if _e785 {
+                    let _e787 = here_1.back;
+                    local_11 = _e787;
+                } else {
+                    let _e789 = here_1.front;
+                    local_11 = _e789;
+                }
+                let _e790 = local_11;
+                reach_2 = _e790;
+                let _e791 = at_back;
+                if _e791 {
+                    let _e792 = c;
+                    local_12 = -(_e792);
+                } else {
+                    let _e794 = a;
+                    local_12 = -(_e794);
+                }
+                let _e796 = local_12;
+                away = _e796;
+                let _e797 = at_back;
+                let _e798 = on_front;
+                if (_e797 && !(_e798)) {
+                    let _e801 = here_mask;
+                    param_71 = _e801;
+                    param_72 = vec4<f32>(1f, 1f, 1f, 1f);
+                    let _e802 = covered((&param_71), (&param_72));
+                    local_13 = (1f - _e802);
+                } else {
+                    local_13 = 1f;
+                }
+                let _e804 = local_13;
+                weight = _e804;
+                let _e805 = (*column_6);
+                let _e806 = at_back;
+                let _e807 = reach_2;
+                let _e808 = weight;
+                found = Edge(_e805, _e806, _e807, _e808);
+                let _e810 = weight;
+                let _e812 = away;
+                if ((_e810 == 1f) && (_e812 < 0.5f)) {
+                    let _e815 = (*seen_2);
+                    param_73 = _e815;
+                    param_74 = 1f;
+                    let _e816 = (*x_3);
+                    param_75 = _e816;
+                    let _e817 = reach_2;
+                    param_76 = _e817;
+                    let _e818 = cover((&param_73), (&param_74), (&param_75), (&param_76));
+                    let _e819 = param_73;
+                    (*seen_2) = _e819;
+                    taken_4 = _e818;
+                    let _e820 = at_back;
+                    let _e821 = taken_4;
+                    let _e824 = backs[0u];
+                    backs[0u] = (_e824 + select(0f, _e821, _e820));
+                    let _e827 = at_back;
+                    let _e828 = taken_4;
+                    let _e831 = fronts[0u];
+                    fronts[0u] = (_e831 + select(_e828, 0f, _e827));
+                }
+                let _e834 = reach_2;
+                let _e836 = edge.reach;
+                if (_e834 < _e836) {
+                    let _e838 = weight;
+                    if (_e838 < 1f) {
+                        let _e840 = edge;
+                        second = _e840;
+                    }
+                    let _e841 = found;
+                    edge = _e841;
+                    let _e843 = next.front;
+                    beside = _e843;
+                } else {
+                    let _e844 = reach_2;
+                    let _e846 = second.reach;
+                    if (_e844 < _e846) {
+                        let _e848 = found;
+                        second = _e848;
+                    }
+                }
+            }
+            let _e850 = fronts[0u];
+            let _e852 = backs[0u];
+            if (max(_e850, _e852) > 0f) {
+                let _e855 = (*column_6);
+                param_77 = _e855;
+                let _e856 = (*row_6);
+                param_78 = _e856;
+                let _e858 = fronts[0u];
+                param_79 = _e858;
+                let _e860 = backs[0u];
+                param_80 = _e860;
+                let _e861 = weighted((&param_77), (&param_78), (&param_79), (&param_80));
+                let _e862 = color_sum;
+                color_sum = (_e862 + _e861);
+            }
+            let _e865 = fronts[1u];
+            let _e867 = backs[1u];
+            if (max(_e865, _e867) > 0f) {
+                let _e870 = (*column_6);
+                let _e871 = sense;
+                param_81 = (_e870 + _e871);
+                let _e873 = (*row_6);
+                param_82 = _e873;
+                let _e875 = fronts[1u];
+                param_83 = _e875;
+                let _e877 = backs[1u];
+                param_84 = _e877;
+                let _e878 = weighted((&param_81), (&param_82), (&param_83), (&param_84));
+                let _e879 = color_sum;
+                color_sum = (_e879 + _e878);
+            }
+            let _e881 = front_back;
+            on_front = _e881;
+            let _e882 = back_back;
+            on_back = _e882;
+            let _e883 = next;
+            here_1 = _e883;
+            let _e884 = sense;
+            let _e885 = (*column_6);
+            (*column_6) = (_e885 + _e884);
+            let _e887 = (*x_3);
+            (*x_3) = (_e887 + 1f);
+            continue;
+        } else {
+            break;
+        }
+    }
+    let _e890 = (*seen_2).rest;
+    (*seen_2).hole = (_e890 > 0.5f);
+    let _e894 = (*seen_2).rest;
+    if (_e894 > 0.01f) {
+        let _e897 = edge.column;
+        beyond = (_e897 < 0i);
+        let _e899 = beyond;
+        if _e899 {
+            let _e900 = (*column_6);
+            let _e902 = here_1.split;
+            let _e904 = here_1.split;
+            if _e904 {
+                let _e906 = here_1.back;
+                local_14 = _e906;
+            } else {
+                let _e908 = here_1.front;
+                local_14 = _e908;
+            }
+            let _e909 = local_14;
+            edge = Edge(_e900, _e902, _e909, 1f);
+        }
+        let _e912 = edge.column;
+        param_85 = _e912;
+        let _e913 = source_column((&param_85));
+        edge_x = f32(_e913);
+        let _e915 = (*t);
+        let _e916 = edge_x;
+        let _e919 = edge.reach;
+        away_1 = abs(((_e915 - _e916) - _e919));
+        let _e922 = away_1;
+        spread = (0.5f * clamp(_e922, 1f, 12f));
+        sum = vec4<f32>(0f, 0f, 0f, 0f);
+        weights = 0f;
+        let _e925 = beyond;
+        let _e926 = away_1;
+        rows_1 = select(2i, 0i, (_e925 && (_e926 < 0.5f)));
+        let _e930 = rows_1;
+        i_2 = -(_e930);
+        loop {
+            let _e932 = i_2;
+            let _e933 = rows_1;
+            if (_e932 <= _e933) {
+                let _e935 = (*row_6);
+                let _e936 = i_2;
+                let _e938 = spread;
+                let _e945 = synthesis.source_size[1u];
+                at = clamp((_e935 + i32(round((f32(_e936) * _e938)))), 0i, (_e945 - 1i));
+                let _e949 = edge.column;
+                param_86 = _e949;
+                let _e950 = at;
+                param_87 = _e950;
+                let _e951 = layer_at((&param_86), (&param_87));
+                layer_4 = _e951;
+                let _e952 = i_2;
+                if (_e952 == 0i) {
+                    let _e955 = edge.back;
+                    local_15 = !(_e955);
+                } else {
+                    let _e958 = layer_4.front;
+                    let _e960 = edge.reach;
+                    local_15 = (_e958 <= (_e960 + 1f));
+                }
+                let _e963 = local_15;
+                front_2 = _e963;
+                let _e964 = i_2;
+                if (_e964 == 0i) {
+                    let _e967 = edge.back;
+                    local_16 = _e967;
+                } else {
+                    let _e968 = front_2;
+                    let _e971 = layer_4.split;
+                    let _e972 = (!(_e968) && _e971);
+                    phi_2010_ = _e972;
+                    if _e972 {
+                        let _e974 = layer_4.back;
+                        let _e976 = edge.reach;
+                        phi_2010_ = (_e974 <= (_e976 + 1f));
+                    }
+                    let _e980 = phi_2010_;
+                    local_16 = _e980;
+                }
+                let _e981 = local_16;
+                behind_2 = _e981;
+                let _e982 = i_2;
+                if (_e982 == 0i) {
+                    local_17 = 2f;
+                } else {
+                    let _e984 = front_2;
+                    if _e984 {
+                        local_18 = 1f;
+                    } else {
+                        let _e985 = behind_2;
+                        if _e985 {
+                            let _e986 = layer_4;
+                            param_88 = _e986;
+                            let _e988 = edge.column;
+                            param_89 = _e988;
+                            let _e989 = at;
+                            param_90 = _e989;
+                            let _e990 = mask_of((&param_88), (&param_89), (&param_90));
+                            param_91 = _e990;
+                            param_92 = vec4<f32>(1f, 1f, 1f, 1f);
+                            let _e991 = covered((&param_91), (&param_92));
+                            local_19 = (1f - _e991);
+                        } else {
+                            local_19 = 0f;
+                        }
+                        let _e993 = local_19;
+                        local_18 = _e993;
+                    }
+                    let _e994 = local_18;
+                    local_17 = _e994;
+                }
+                let _e995 = local_17;
+                weight_1 = _e995;
+                let _e996 = front_2;
+                let _e997 = weight_1;
+                let _e999 = front_2;
+                let _e1000 = weight_1;
+                let _e1003 = edge.column;
+                param_93 = _e1003;
+                let _e1004 = at;
+                param_94 = _e1004;
+                param_95 = select(0f, _e997, _e996);
+                param_96 = select(_e1000, 0f, _e999);
+                let _e1005 = weighted((&param_93), (&param_94), (&param_95), (&param_96));
+                let _e1006 = sum;
+                sum = (_e1006 + _e1005);
+                let _e1008 = weight_1;
+                let _e1009 = weights;
+                weights = (_e1009 + _e1008);
+                continue;
+            } else {
+                break;
+            }
+            continuing {
+                let _e1011 = i_2;
+                i_2 = (_e1011 + 1i);
+            }
+        }
+        let _e1013 = sum;
+        let _e1014 = weights;
+        fill = (_e1013 / vec4(_e1014));
+        let _e1018 = second.column;
+        let _e1019 = (_e1018 >= 0i);
+        phi_2078_ = _e1019;
+        if _e1019 {
+            let _e1021 = edge.weight;
+            phi_2078_ = (_e1021 < 1f);
+        }
+        let _e1024 = phi_2078_;
+        if _e1024 {
+            let _e1026 = second.back;
+            one = select(vec2<f32>(1f, 0f), vec2<f32>(0f, 1f), vec2(_e1026));
+            let _e1030 = second.column;
+            param_97 = _e1030;
+            let _e1031 = (*row_6);
+            param_98 = _e1031;
+            let _e1033 = one[0u];
+            param_99 = _e1033;
+            let _e1035 = one[1u];
+            param_100 = _e1035;
+            let _e1036 = weighted((&param_97), (&param_98), (&param_99), (&param_100));
+            let _e1037 = fill;
+            let _e1039 = edge.weight;
+            fill = mix(_e1036, _e1037, vec4(_e1039));
+        }
+        let _e1043 = (*seen_2).hole;
+        let _e1044 = away_1;
+        (*seen_2).hole = (_e1043 && (_e1044 >= 0.5f));
+        let _e1049 = edge.reach;
+        let _e1050 = far_nearness();
+        let _e1054 = synthesis.law[1u];
+        depth_1 = ((_e1049 + _e1050) / _e1054);
+        let _e1058 = synthesis.origins[0u];
+        let _e1060 = gl_FragCoord_1[0u];
+        let _e1064 = synthesis.origins[1u];
+        origin_1 = ((_e1058 * _e1060) + _e1064);
+        let _e1066 = away_1;
+        let _e1067 = (_e1066 >= 0.5f);
+        phi_2159_ = _e1067;
+        if _e1067 {
+            let _e1068 = gl_FragCoord_1;
+            let _e1071 = synthesis.target_origin;
+            let _e1074 = beside;
+            let _e1075 = far_nearness();
+            param_101 = (_e1068.xy - vec2<f32>(_e1071));
+            param_102 = (_e1074 + _e1075);
+            let _e1077 = origin_1;
+            param_103 = _e1077;
+            let _e1078 = (*row_6);
+            param_104 = _e1078;
+            let _e1079 = fill;
+            param_105 = _e1079;
+            let _e1080 = depth_1;
+            param_106 = _e1080;
+            let _e1081 = recall((&param_101), (&param_102), (&param_103), (&param_104), (&param_105), (&param_106));
+            let _e1082 = param_105;
+            fill = _e1082;
+            let _e1083 = param_106;
+            depth_1 = _e1083;
+            phi_2159_ = _e1081;
+        }
+        let _e1085 = phi_2159_;
+        if _e1085 {
+            let _e1088 = synthesis.law[1u];
+            let _e1089 = depth_1;
+            let _e1091 = far_nearness();
+            edge.reach = ((_e1088 * _e1089) - _e1091);
+        }
+        let _e1094 = (*seen_2);
+        param_107 = _e1094;
+        param_108 = 1f;
+        let _e1095 = edge_x;
+        param_109 = _e1095;
+        let _e1097 = edge.reach;
+        param_110 = _e1097;
+        let _e1098 = cover((&param_107), (&param_108), (&param_109), (&param_110));
+        let _e1099 = param_107;
+        (*seen_2) = _e1099;
+        let _e1100 = fill;
+        let _e1102 = color_sum;
+        color_sum = (_e1102 + (_e1100 * _e1098));
+    }
+    let _e1104 = color_sum;
+    return _e1104;
+}
+
+fn color_texel(x_4: ptr<function, i32>, row_7: ptr<function, i32>) -> vec4<f32> {
+    var param_111: i32;
+    var param_112: vec2<i32>;
+
+    let _e6 = (*x_4);
+    param_111 = _e6;
+    let _e7 = source_column((&param_111));
+    let _e8 = (*row_7);
+    param_112 = vec2<i32>(_e7, _e8);
+    let _e10 = in_image((&param_112));
+    let _e11 = textureLoad(color_map_texture, _e10, 0i);
+    return _e11;
+}
+
+fn sharp_color_at(x_5: ptr<function, f32>, row_8: ptr<function, i32>) -> vec4<f32> {
+    var last_1: i32;
+    var column_7: i32;
+    var f: f32;
+    var here_2: vec4<f32>;
+    var param_113: i32;
+    var param_114: i32;
+    var next_1: vec4<f32>;
+    var param_115: i32;
+    var param_116: i32;
+    var apart: vec4<f32>;
+    var outer: vec2<f32>;
+    var inner: f32;
+    var sum_1: vec4<f32>;
+    var param_117: i32;
+    var param_118: i32;
+    var param_119: i32;
+    var param_120: i32;
+
+    let _e33 = synthesis.source_size[0u];
+    last_1 = (_e33 - 1i);
+    let _e35 = (*x_5);
+    column_7 = i32(_e35);
+    let _e37 = (*x_5);
+    let _e38 = column_7;
+    f = (_e37 - f32(_e38));
+    let _e41 = column_7;
+    param_113 = _e41;
+    let _e42 = (*row_8);
+    param_114 = _e42;
+    let _e43 = color_texel((&param_113), (&param_114));
+    here_2 = _e43;
+    let _e44 = column_7;
+    let _e46 = last_1;
+    param_115 = min((_e44 + 1i), _e46);
+    let _e48 = (*row_8);
+    param_116 = _e48;
+    let _e49 = color_texel((&param_115), (&param_116));
+    next_1 = _e49;
+    let _e50 = next_1;
+    let _e51 = here_2;
+    apart = abs((_e50 - _e51));
+    let _e55 = apart[0u];
+    let _e57 = apart[1u];
+    let _e59 = apart[2u];
+    if (max(_e55, max(_e57, _e59)) <= 0.03137255f) {
+        let _e63 = here_2;
+        let _e64 = next_1;
+        let _e65 = f;
+        return mix(_e63, _e64, vec4(_e65));
+    }
+    let _e68 = f;
+    let _e70 = f;
+    let _e73 = f;
+    let _e75 = f;
+    outer = (vec2<f32>((1f - _e73), _e75) * ((-0.75f * _e68) * (1f - _e70)));
+    let _e78 = f;
+    let _e81 = f;
+    let _e83 = f;
+    inner = (((((1.25f * _e78) - 2.25f) * _e81) * _e83) + 1f);
+    let _e87 = outer[0u];
+    let _e88 = column_7;
+    param_117 = max((_e88 - 1i), 0i);
+    let _e91 = (*row_8);
+    param_118 = _e91;
+    let _e92 = color_texel((&param_117), (&param_118));
+    let _e95 = outer[1u];
+    let _e96 = column_7;
+    let _e98 = last_1;
+    param_119 = min((_e96 + 2i), _e98);
+    let _e100 = (*row_8);
+    param_120 = _e100;
+    let _e101 = color_texel((&param_119), (&param_120));
+    let _e104 = inner;
+    let _e105 = here_2;
+    let _e108 = inner;
+    let _e111 = outer[0u];
+    let _e114 = outer[1u];
+    let _e116 = next_1;
+    sum_1 = ((((_e92 * _e87) + (_e101 * _e95)) + (_e105 * _e104)) + (_e116 * (((1f - _e108) - _e111) - _e114)));
+    let _e119 = sum_1;
+    let _e120 = here_2;
+    let _e121 = next_1;
+    let _e123 = here_2;
+    let _e124 = next_1;
+    return clamp(_e119, min(_e120, _e121), max(_e123, _e124));
+}
+
 fn span_steps(span: ptr<function, u32>) -> f32 {
     var steps: u32;
-    var local_8: f32;
+    var local_20: f32;
 
     let _e5 = (*span);
     steps = (_e5 & 1023u);
     let _e7 = steps;
     if (_e7 == 1023u) {
-        local_8 = 1000000000f;
+        local_20 = 1000000000f;
     } else {
         let _e9 = steps;
-        local_8 = f32(_e9);
+        local_20 = f32(_e9);
     }
-    let _e11 = local_8;
+    let _e11 = local_20;
     return _e11;
 }
 
@@ -697,338 +1843,159 @@ fn pixel_span() -> vec4<u32> {
 
 fn main_1() {
     var last_3: f32;
-    var row_7: i32;
-    var t: f32;
+    var row_9: i32;
+    var t_1: f32;
     var span_1: u32;
-    var x_5: f32;
-    var limit: f32;
-    var param_26: u32;
-    var sense: i32;
-    var column_6: i32;
-    var param_27: i32;
-    var seen_2: Seen;
+    var x_6: f32;
+    var limit_1: f32;
+    var param_121: u32;
+    var sense_1: i32;
+    var column_8: i32;
+    var param_122: i32;
+    var seen_3: Seen;
     var bits_2: u32;
-    var param_28: i32;
-    var param_29: i32;
-    var front_2: f32;
-    var param_30: u32;
-    var at: f32;
+    var param_123: i32;
+    var param_124: i32;
+    var front_3: f32;
+    var param_125: u32;
+    var at_1: f32;
     var plain: bool;
-    var param_31: u32;
-    var param_32: i32;
-    var param_33: i32;
+    var param_126: u32;
+    var param_127: i32;
+    var param_128: i32;
     var following: f32;
-    var param_34: u32;
-    var param_35: u32;
+    var param_129: u32;
+    var param_130: u32;
     var then: f32;
-    var g: f32;
-    var param_36: Seen;
-    var param_37: f32;
-    var param_38: f32;
-    var param_39: f32;
-    var param_40: f32;
-    var param_41: i32;
-    var here_2: Layer;
-    var param_42: i32;
-    var param_43: i32;
-    var edge: Edge;
-    var second: Edge;
-    var beside: f32;
-    var on_front: bool;
-    var on_back: bool;
-    var before_1: Layer;
-    var param_44: i32;
-    var param_45: i32;
-    var idle: bool;
-    var landed: f32;
-    var ahead: u32;
-    var param_46: i32;
-    var param_47: i32;
-    var following_1: f32;
-    var param_48: u32;
-    var then_1: f32;
-    var param_49: u32;
-    var next_1: Layer;
-    var param_50: i32;
-    var param_51: i32;
-    var a: f32;
-    var b: f32;
-    var c: f32;
-    var d: f32;
-    var front_front: bool;
-    var front_back: bool;
-    var back_front: bool;
-    var back_back: bool;
-    var fronts: vec2<f32>;
-    var backs: vec2<f32>;
-    var g_1: f32;
-    var right: vec4<f32>;
-    var param_52: f32;
-    var shares: vec2<f32>;
-    var param_53: vec4<f32>;
-    var param_54: vec4<f32>;
-    var param_55: vec4<f32>;
-    var param_56: vec4<f32>;
-    var share_2: f32;
-    var param_57: Seen;
-    var param_58: f32;
-    var param_59: f32;
-    var param_60: f32;
-    var share_3: f32;
-    var param_61: f32;
-    var param_62: vec4<f32>;
-    var param_63: vec4<f32>;
-    var param_64: Seen;
-    var param_65: f32;
-    var param_66: f32;
-    var param_67: f32;
-    var param_68: f32;
-    var param_69: vec4<f32>;
-    var param_70: vec4<f32>;
-    var param_71: Seen;
-    var param_72: f32;
-    var param_73: f32;
-    var param_74: f32;
-    var g_2: f32;
-    var taken_1: f32;
-    var param_75: Seen;
-    var param_76: f32;
-    var param_77: f32;
-    var param_78: f32;
-    var g_3: f32;
-    var taken_2: f32;
-    var param_79: Seen;
-    var param_80: f32;
-    var param_81: f32;
-    var param_82: f32;
     var g_4: f32;
-    var taken_3: f32;
-    var param_83: Seen;
-    var param_84: f32;
-    var param_85: f32;
-    var param_86: f32;
-    var ends: bool;
-    var stripes_1: vec4<f32>;
-    var local_9: vec4<f32>;
-    var param_87: f32;
-    var param_88: f32;
-    var param_89: vec4<f32>;
-    var param_90: vec4<f32>;
-    var param_91: Seen;
-    var param_92: f32;
-    var param_93: f32;
-    var param_94: f32;
-    var at_back: bool;
-    var at_front: bool;
-    var reach_2: f32;
-    var local_10: f32;
-    var away: f32;
-    var local_11: f32;
-    var weight: f32;
-    var local_12: f32;
-    var param_95: vec4<f32>;
-    var param_96: vec4<f32>;
-    var found: Edge;
-    var taken_4: f32;
-    var param_97: Seen;
-    var param_98: f32;
-    var param_99: f32;
-    var param_100: f32;
-    var param_101: i32;
-    var param_102: i32;
-    var param_103: f32;
-    var param_104: f32;
-    var param_105: i32;
-    var param_106: i32;
-    var param_107: f32;
-    var param_108: f32;
-    var hole: bool;
-    var beyond: bool;
-    var local_13: f32;
-    var edge_x: f32;
-    var param_109: i32;
-    var away_1: f32;
-    var spread: f32;
-    var sum_1: vec4<f32>;
-    var weights: f32;
-    var rows_1: i32;
-    var i_2: i32;
-    var at_1: i32;
-    var layer_3: Layer;
-    var param_110: i32;
-    var param_111: i32;
-    var front_3: bool;
-    var local_14: bool;
-    var behind_2: bool;
-    var local_15: bool;
-    var weight_1: f32;
-    var local_16: f32;
-    var local_17: f32;
-    var local_18: f32;
-    var param_112: vec4<f32>;
-    var param_113: vec4<f32>;
-    var param_114: i32;
-    var param_115: i32;
-    var param_116: f32;
-    var param_117: f32;
-    var fill: vec4<f32>;
-    var one: vec2<f32>;
-    var param_118: i32;
-    var param_119: i32;
-    var param_120: f32;
-    var param_121: f32;
-    var depth_1: f32;
-    var origin_1: f32;
-    var param_122: vec2<f32>;
-    var param_123: f32;
-    var param_124: f32;
-    var param_125: i32;
-    var param_126: vec4<f32>;
-    var param_127: f32;
-    var param_128: Seen;
-    var param_129: f32;
-    var param_130: f32;
-    var param_131: f32;
-    var phi_1074_: bool;
-    var phi_1169_: bool;
-    var phi_1176_: bool;
-    var phi_1195_: bool;
-    var phi_1224_: bool;
-    var phi_1238_: bool;
-    var phi_1290_: bool;
-    var phi_1298_: bool;
-    var phi_1374_: bool;
-    var phi_1387_: bool;
-    var phi_1403_: bool;
-    var phi_1483_: bool;
-    var phi_1535_: bool;
-    var phi_1583_: bool;
-    var phi_1633_: bool;
-    var phi_1683_: bool;
-    var phi_1735_: bool;
-    var phi_1741_: bool;
-    var phi_1793_: bool;
-    var phi_1814_: bool;
-    var phi_1826_: bool;
-    var phi_2106_: bool;
-    var phi_2168_: bool;
-    var phi_2243_: bool;
+    var param_131: Seen;
+    var param_132: f32;
+    var param_133: f32;
+    var param_134: f32;
+    var param_135: f32;
+    var param_136: i32;
+    var param_137: i32;
+    var param_138: f32;
+    var param_139: f32;
+    var param_140: f32;
+    var param_141: i32;
+    var param_142: Seen;
+    var phi_2306_: bool;
 
-    let _e224 = synthesis.source_size[0u];
-    last_3 = f32((_e224 - 1i));
-    let _e228 = gl_FragCoord_1[1u];
-    let _e230 = synthesis.first_row;
-    let _e234 = synthesis.source_size[1u];
-    row_7 = i32(clamp((_e228 - _e230), 0f, f32((_e234 - 1i))));
-    let _e241 = synthesis.origins[0u];
-    let _e243 = gl_FragCoord_1[0u];
-    let _e247 = synthesis.origins[1u];
-    let _e250 = synthesis.farthest;
-    t = ((((_e241 * _e243) + _e247) - _e250) + 0.01f);
-    let _e253 = pixel_span();
-    span_1 = _e253.x;
-    let _e255 = t;
-    let _e256 = span_1;
-    let _e261 = last_3;
-    x_5 = clamp(floor(((_e255 - bitcast<f32>(_e256)) - 1.01f)), 0f, _e261);
-    let _e263 = x_5;
-    let _e264 = span_1;
-    param_26 = _e264;
-    let _e265 = span_steps((&param_26));
-    let _e268 = last_3;
-    limit = min(((_e263 + _e265) + 2f), _e268);
-    let _e271 = synthesis.mirrored;
-    sense = select(1i, -1i, (_e271 != 0u));
-    let _e274 = x_5;
-    param_27 = i32(_e274);
-    let _e276 = source_column((&param_27));
-    column_6 = _e276;
-    seen_2 = Seen(1f, 0f, 0f);
-    color_1 = vec4<f32>(0f, 0f, 0f, 0f);
-    let _e277 = column_6;
-    param_28 = _e277;
-    let _e278 = row_7;
-    param_29 = _e278;
-    let _e279 = layer_bits((&param_28), (&param_29));
-    bits_2 = _e279;
-    let _e280 = bits_2;
-    param_30 = _e280;
-    let _e281 = full_front((&param_30));
-    front_2 = _e281;
-    let _e282 = x_5;
-    let _e283 = front_2;
-    let _e285 = t;
-    at = ((_e282 + _e283) - _e285);
-    let _e287 = bits_2;
-    param_31 = _e287;
-    let _e288 = is_full((&param_31));
-    let _e289 = at;
-    plain = (_e288 && (_e289 <= 0f));
+    let _e55 = synthesis.source_size[0u];
+    last_3 = f32((_e55 - 1i));
+    let _e59 = gl_FragCoord_1[1u];
+    let _e61 = synthesis.first_row;
+    let _e65 = synthesis.source_size[1u];
+    row_9 = i32(clamp((_e59 - _e61), 0f, f32((_e65 - 1i))));
+    let _e72 = synthesis.origins[0u];
+    let _e74 = gl_FragCoord_1[0u];
+    let _e78 = synthesis.origins[1u];
+    let _e81 = synthesis.farthest;
+    t_1 = ((((_e72 * _e74) + _e78) - _e81) + 0.01f);
+    let _e84 = pixel_span();
+    span_1 = _e84.x;
+    let _e86 = t_1;
+    let _e87 = span_1;
+    let _e92 = last_3;
+    x_6 = clamp(floor(((_e86 - bitcast<f32>(_e87)) - 1.01f)), 0f, _e92);
+    let _e94 = x_6;
+    let _e95 = span_1;
+    param_121 = _e95;
+    let _e96 = span_steps((&param_121));
+    let _e99 = last_3;
+    limit_1 = min(((_e94 + _e96) + 2f), _e99);
+    let _e102 = synthesis.mirrored;
+    sense_1 = select(1i, -1i, (_e102 != 0u));
+    let _e105 = x_6;
+    param_122 = i32(_e105);
+    let _e107 = source_column((&param_122));
+    column_8 = _e107;
+    seen_3 = Seen(1f, 0f, 0f, false);
+    let _e108 = column_8;
+    param_123 = _e108;
+    let _e109 = row_9;
+    param_124 = _e109;
+    let _e110 = layer_bits((&param_123), (&param_124));
+    bits_2 = _e110;
+    let _e111 = bits_2;
+    param_125 = _e111;
+    let _e112 = full_front((&param_125));
+    front_3 = _e112;
+    let _e113 = x_6;
+    let _e114 = front_3;
+    let _e116 = t_1;
+    at_1 = ((_e113 + _e114) - _e116);
+    let _e118 = bits_2;
+    param_126 = _e118;
+    let _e119 = is_full((&param_126));
+    let _e120 = at_1;
+    plain = (_e119 && (_e120 <= 0f));
     loop {
-        let _e292 = plain;
-        let _e293 = x_5;
-        let _e294 = limit;
-        if (_e292 && (_e293 < _e294)) {
-            let _e297 = column_6;
-            let _e298 = sense;
-            param_32 = (_e297 + _e298);
-            let _e300 = row_7;
-            param_33 = _e300;
-            let _e301 = layer_bits((&param_32), (&param_33));
-            bits_2 = _e301;
-            let _e302 = bits_2;
-            param_34 = _e302;
-            let _e303 = full_front((&param_34));
-            following = _e303;
-            let _e304 = bits_2;
-            param_35 = _e304;
-            let _e305 = is_full((&param_35));
-            phi_1074_ = _e305;
-            if _e305 {
-                let _e306 = following;
-                let _e307 = front_2;
-                phi_1074_ = (abs((_e306 - _e307)) < 0.5f);
+        let _e123 = plain;
+        let _e124 = x_6;
+        let _e125 = limit_1;
+        if (_e123 && (_e124 < _e125)) {
+            let _e128 = column_8;
+            let _e129 = sense_1;
+            param_127 = (_e128 + _e129);
+            let _e131 = row_9;
+            param_128 = _e131;
+            let _e132 = layer_bits((&param_127), (&param_128));
+            bits_2 = _e132;
+            let _e133 = bits_2;
+            param_129 = _e133;
+            let _e134 = full_front((&param_129));
+            following = _e134;
+            let _e135 = bits_2;
+            param_130 = _e135;
+            let _e136 = is_full((&param_130));
+            phi_2306_ = _e136;
+            if _e136 {
+                let _e137 = following;
+                let _e138 = front_3;
+                phi_2306_ = (abs((_e137 - _e138)) < 0.5f);
             }
-            let _e312 = phi_1074_;
-            plain = _e312;
-            let _e313 = x_5;
-            let _e315 = following;
-            let _e317 = t;
-            then = (((_e313 + 1f) + _e315) - _e317);
-            let _e319 = plain;
-            let _e320 = then;
-            if (_e319 && (_e320 > 0f)) {
-                let _e323 = at;
-                let _e325 = then;
-                let _e326 = at;
-                g = (-(_e323) / (_e325 - _e326));
-                let _e329 = x_5;
-                let _e330 = g;
-                let _e332 = front_2;
-                let _e333 = following;
-                let _e334 = g;
-                let _e336 = seen_2;
-                param_36 = _e336;
-                param_37 = 1f;
-                param_38 = (_e329 + _e330);
-                param_39 = mix(_e332, _e333, _e334);
-                let _e337 = cover((&param_36), (&param_37), (&param_38), (&param_39));
-                let _e338 = param_36;
-                seen_2 = _e338;
-                let _e339 = x_5;
-                limit = _e339;
+            let _e143 = phi_2306_;
+            plain = _e143;
+            let _e144 = x_6;
+            let _e146 = following;
+            let _e148 = t_1;
+            then = (((_e144 + 1f) + _e146) - _e148);
+            let _e150 = plain;
+            let _e151 = then;
+            if (_e150 && (_e151 > 0f)) {
+                let _e154 = at_1;
+                let _e156 = then;
+                let _e157 = at_1;
+                g_4 = (-(_e154) / (_e156 - _e157));
+                let _e160 = x_6;
+                let _e161 = g_4;
+                let _e163 = front_3;
+                let _e164 = following;
+                let _e165 = g_4;
+                let _e167 = seen_3;
+                param_131 = _e167;
+                param_132 = 1f;
+                param_133 = (_e160 + _e161);
+                param_134 = mix(_e163, _e164, _e165);
+                let _e168 = cover((&param_131), (&param_132), (&param_133), (&param_134));
+                let _e169 = param_131;
+                seen_3 = _e169;
+                let _e170 = x_6;
+                limit_1 = _e170;
             } else {
-                let _e340 = plain;
-                if _e340 {
-                    let _e341 = x_5;
-                    x_5 = (_e341 + 1f);
-                    let _e343 = sense;
-                    let _e344 = column_6;
-                    column_6 = (_e344 + _e343);
-                    let _e346 = following;
-                    front_2 = _e346;
-                    let _e347 = then;
-                    at = _e347;
+                let _e171 = plain;
+                if _e171 {
+                    let _e172 = x_6;
+                    x_6 = (_e172 + 1f);
+                    let _e174 = sense_1;
+                    let _e175 = column_8;
+                    column_8 = (_e175 + _e174);
+                    let _e177 = following;
+                    front_3 = _e177;
+                    let _e178 = then;
+                    at_1 = _e178;
                 }
             }
             continue;
@@ -1036,880 +2003,37 @@ fn main_1() {
             break;
         }
     }
-    let _e349 = seen_2.rest;
-    if (_e349 < 0.01f) {
-        let _e352 = seen_2.column;
-        param_40 = _e352;
-        let _e353 = row_7;
-        param_41 = _e353;
-        let _e354 = sharp_color_at((&param_40), (&param_41));
-        color_1 = _e354;
+    let _e180 = seen_3.rest;
+    if (_e180 < 0.01f) {
+        let _e183 = seen_3.column;
+        param_135 = _e183;
+        let _e184 = row_9;
+        param_136 = _e184;
+        let _e185 = sharp_color_at((&param_135), (&param_136));
+        color_1 = _e185;
+    } else {
+        let _e186 = row_9;
+        param_137 = _e186;
+        let _e187 = t_1;
+        param_138 = _e187;
+        let _e188 = x_6;
+        param_139 = _e188;
+        let _e189 = limit_1;
+        param_140 = _e189;
+        let _e190 = column_8;
+        param_141 = _e190;
+        let _e191 = seen_3;
+        param_142 = _e191;
+        let _e192 = composed((&param_137), (&param_138), (&param_139), (&param_140), (&param_141), (&param_142));
+        let _e193 = param_142;
+        seen_3 = _e193;
+        color_1 = _e192;
     }
-    let _e355 = column_6;
-    param_42 = _e355;
-    let _e356 = row_7;
-    param_43 = _e356;
-    let _e357 = layer_at((&param_42), (&param_43));
-    here_2 = _e357;
-    edge = Edge(-1i, false, 1000000000f, 1f);
-    let _e358 = edge;
-    second = _e358;
-    beside = 1000000000f;
-    let _e359 = x_5;
-    if (_e359 == 0f) {
-        let _e362 = here_2.front;
-        let _e363 = t;
-        if (_e362 > _e363) {
-            let _e365 = column_6;
-            let _e367 = here_2.front;
-            edge = Edge(_e365, false, _e367, 1f);
-        }
-        let _e370 = here_2.split;
-        phi_1169_ = _e370;
-        if _e370 {
-            let _e372 = here_2.back;
-            let _e374 = edge.reach;
-            phi_1169_ = (_e372 < _e374);
-        }
-        let _e377 = phi_1169_;
-        phi_1176_ = _e377;
-        if _e377 {
-            let _e379 = here_2.back;
-            let _e380 = t;
-            phi_1176_ = (_e379 > _e380);
-        }
-        let _e383 = phi_1176_;
-        if _e383 {
-            let _e384 = column_6;
-            let _e386 = here_2.back;
-            edge = Edge(_e384, true, _e386, 1f);
-        }
-    }
-    on_front = false;
-    on_back = false;
-    let _e388 = x_5;
-    let _e391 = here_2.split;
-    let _e392 = ((_e388 > 0f) && _e391);
-    phi_1195_ = _e392;
-    if _e392 {
-        let _e394 = seen_2.rest;
-        phi_1195_ = (_e394 > 0.01f);
-    }
-    let _e397 = phi_1195_;
-    if _e397 {
-        let _e398 = column_6;
-        let _e399 = sense;
-        param_44 = (_e398 - _e399);
-        let _e401 = row_7;
-        param_45 = _e401;
-        let _e402 = layer_at((&param_44), (&param_45));
-        before_1 = _e402;
-        let _e404 = before_1.front;
-        let _e406 = here_2.back;
-        on_front = (abs((_e404 - _e406)) < 0.5f);
-        let _e411 = before_1.split;
-        phi_1224_ = _e411;
-        if _e411 {
-            let _e413 = before_1.back;
-            let _e415 = here_2.back;
-            phi_1224_ = (abs((_e413 - _e415)) < 0.5f);
-        }
-        let _e420 = phi_1224_;
-        on_back = _e420;
-    }
-    loop {
-        let _e421 = x_5;
-        let _e422 = limit;
-        let _e423 = (_e421 < _e422);
-        phi_1238_ = _e423;
-        if _e423 {
-            let _e425 = seen_2.rest;
-            phi_1238_ = (_e425 > 0.01f);
-        }
-        let _e428 = phi_1238_;
-        if _e428 {
-            let _e430 = here_2.split;
-            idle = !(_e430);
-            let _e432 = x_5;
-            let _e434 = here_2.front;
-            let _e436 = t;
-            landed = ((_e432 + _e434) - _e436);
-            loop {
-                let _e438 = idle;
-                let _e439 = x_5;
-                let _e440 = limit;
-                if (_e438 && (_e439 < _e440)) {
-                    let _e443 = column_6;
-                    let _e444 = sense;
-                    param_46 = (_e443 + _e444);
-                    let _e446 = row_7;
-                    param_47 = _e446;
-                    let _e447 = layer_bits((&param_46), (&param_47));
-                    ahead = _e447;
-                    let _e448 = ahead;
-                    param_48 = _e448;
-                    let _e449 = full_front((&param_48));
-                    following_1 = _e449;
-                    let _e450 = x_5;
-                    let _e452 = following_1;
-                    let _e454 = t;
-                    then_1 = (((_e450 + 1f) + _e452) - _e454);
-                    let _e456 = ahead;
-                    param_49 = _e456;
-                    let _e457 = is_full((&param_49));
-                    phi_1290_ = _e457;
-                    if _e457 {
-                        let _e458 = following_1;
-                        let _e460 = here_2.front;
-                        phi_1290_ = (abs((_e458 - _e460)) < 0.5f);
-                    }
-                    let _e465 = phi_1290_;
-                    phi_1298_ = _e465;
-                    if _e465 {
-                        let _e466 = landed;
-                        let _e468 = then_1;
-                        phi_1298_ = ((_e466 > 0f) || (_e468 <= 0f));
-                    }
-                    let _e472 = phi_1298_;
-                    idle = _e472;
-                    let _e473 = idle;
-                    if _e473 {
-                        let _e474 = x_5;
-                        x_5 = (_e474 + 1f);
-                        let _e476 = sense;
-                        let _e477 = column_6;
-                        column_6 = (_e477 + _e476);
-                        let _e479 = following_1;
-                        here_2.front = _e479;
-                        let _e481 = then_1;
-                        landed = _e481;
-                        on_front = false;
-                        on_back = false;
-                    }
-                    continue;
-                } else {
-                    break;
-                }
-            }
-            let _e482 = x_5;
-            let _e483 = limit;
-            if (_e482 >= _e483) {
-                break;
-            }
-            let _e485 = column_6;
-            let _e486 = sense;
-            param_50 = (_e485 + _e486);
-            let _e488 = row_7;
-            param_51 = _e488;
-            let _e489 = layer_at((&param_50), (&param_51));
-            next_1 = _e489;
-            let _e490 = x_5;
-            let _e492 = here_2.front;
-            let _e494 = t;
-            a = ((_e490 + _e492) - _e494);
-            let _e496 = x_5;
-            let _e499 = next_1.front;
-            let _e501 = t;
-            b = (((_e496 + 1f) + _e499) - _e501);
-            let _e503 = x_5;
-            let _e505 = here_2.back;
-            let _e507 = t;
-            c = ((_e503 + _e505) - _e507);
-            let _e509 = x_5;
-            let _e512 = next_1.back;
-            let _e514 = t;
-            d = (((_e509 + 1f) + _e512) - _e514);
-            let _e517 = next_1.front;
-            let _e519 = here_2.front;
-            front_front = (abs((_e517 - _e519)) < 0.5f);
-            let _e524 = next_1.split;
-            phi_1374_ = _e524;
-            if _e524 {
-                let _e526 = next_1.back;
-                let _e528 = here_2.front;
-                phi_1374_ = (abs((_e526 - _e528)) < 0.5f);
-            }
-            let _e533 = phi_1374_;
-            front_back = _e533;
-            let _e535 = here_2.split;
-            phi_1387_ = _e535;
-            if _e535 {
-                let _e537 = next_1.front;
-                let _e539 = here_2.back;
-                phi_1387_ = (abs((_e537 - _e539)) < 0.5f);
-            }
-            let _e544 = phi_1387_;
-            back_front = _e544;
-            let _e546 = here_2.split;
-            let _e548 = next_1.split;
-            let _e549 = (_e546 && _e548);
-            phi_1403_ = _e549;
-            if _e549 {
-                let _e551 = next_1.back;
-                let _e553 = here_2.back;
-                phi_1403_ = (abs((_e551 - _e553)) < 0.5f);
-            }
-            let _e558 = phi_1403_;
-            back_back = _e558;
-            fronts = vec2<f32>(0f, 0f);
-            backs = vec2<f32>(0f, 0f);
-            let _e559 = front_front;
-            let _e560 = a;
-            let _e563 = b;
-            if ((_e559 && (_e560 <= 0f)) && (_e563 > 0f)) {
-                let _e566 = a;
-                let _e568 = b;
-                let _e569 = a;
-                g_1 = (-(_e566) / (_e568 - _e569));
-                let _e572 = g_1;
-                param_52 = _e572;
-                let _e573 = right_of((&param_52));
-                right = _e573;
-                let _e575 = here_2.mask;
-                param_53 = _e575;
-                let _e576 = right;
-                param_54 = _e576;
-                let _e577 = covered((&param_53), (&param_54));
-                let _e578 = right;
-                let _e582 = next_1.mask;
-                param_55 = _e582;
-                param_56 = (vec4(1f) - _e578);
-                let _e583 = covered((&param_55), (&param_56));
-                shares = vec2<f32>(_e577, _e583);
-                let _e586 = shares[0u];
-                let _e588 = shares[1u];
-                share_2 = (_e586 + _e588);
-                let _e590 = x_5;
-                let _e591 = g_1;
-                let _e594 = here_2.front;
-                let _e596 = next_1.front;
-                let _e597 = g_1;
-                let _e599 = seen_2;
-                param_57 = _e599;
-                let _e600 = share_2;
-                param_58 = _e600;
-                param_59 = (_e590 + _e591);
-                param_60 = mix(_e594, _e596, _e597);
-                let _e601 = cover((&param_57), (&param_58), (&param_59), (&param_60));
-                let _e602 = param_57;
-                seen_2 = _e602;
-                let _e603 = shares;
-                let _e605 = share_2;
-                fronts = ((_e603 * _e601) / vec2(max(_e605, 0.000001f)));
-            }
-            let _e609 = front_front;
-            let _e610 = !(_e609);
-            phi_1483_ = _e610;
-            if _e610 {
-                let _e612 = next_1.front;
-                let _e614 = here_2.front;
-                let _e617 = next_1.split;
-                phi_1483_ = ((_e612 > _e614) || _e617);
-            }
-            let _e620 = phi_1483_;
-            let _e621 = back_front;
-            let _e624 = b;
-            let _e627 = b;
-            if (((_e620 && !(_e621)) && (_e624 > 0f)) && (_e627 < 1f)) {
-                let _e630 = b;
-                param_61 = (1f - _e630);
-                let _e632 = right_of((&param_61));
-                let _e636 = next_1.mask;
-                param_62 = _e636;
-                param_63 = (vec4(1f) - _e632);
-                let _e637 = covered((&param_62), (&param_63));
-                share_3 = _e637;
-                let _e638 = x_5;
-                let _e640 = seen_2;
-                param_64 = _e640;
-                let _e641 = share_3;
-                param_65 = _e641;
-                param_66 = (_e638 + 1f);
-                let _e643 = next_1.front;
-                param_67 = _e643;
-                let _e644 = cover((&param_64), (&param_65), (&param_66), (&param_67));
-                let _e645 = param_64;
-                seen_2 = _e645;
-                let _e647 = fronts[1u];
-                fronts[1u] = (_e647 + _e644);
-            }
-            let _e650 = front_front;
-            let _e651 = !(_e650);
-            phi_1535_ = _e651;
-            if _e651 {
-                let _e653 = next_1.front;
-                let _e655 = here_2.front;
-                let _e658 = here_2.split;
-                phi_1535_ = ((_e653 < _e655) || _e658);
-            }
-            let _e661 = phi_1535_;
-            let _e662 = front_back;
-            let _e665 = a;
-            let _e668 = a;
-            if (((_e661 && !(_e662)) && (_e665 <= 0f)) && (_e668 > -1f)) {
-                let _e671 = a;
-                param_68 = -(_e671);
-                let _e673 = right_of((&param_68));
-                let _e675 = here_2.mask;
-                param_69 = _e675;
-                param_70 = _e673;
-                let _e676 = covered((&param_69), (&param_70));
-                let _e677 = seen_2;
-                param_71 = _e677;
-                param_72 = _e676;
-                let _e678 = x_5;
-                param_73 = _e678;
-                let _e680 = here_2.front;
-                param_74 = _e680;
-                let _e681 = cover((&param_71), (&param_72), (&param_73), (&param_74));
-                let _e682 = param_71;
-                seen_2 = _e682;
-                let _e684 = fronts[0u];
-                fronts[0u] = (_e684 + _e681);
-            }
-            let _e687 = front_back;
-            let _e688 = a;
-            let _e691 = d;
-            let _e693 = ((_e687 && (_e688 <= 0f)) && (_e691 > 0f));
-            phi_1583_ = _e693;
-            if _e693 {
-                let _e695 = seen_2.rest;
-                phi_1583_ = (_e695 > 0.01f);
-            }
-            let _e698 = phi_1583_;
-            if _e698 {
-                let _e699 = a;
-                let _e701 = d;
-                let _e702 = a;
-                g_2 = (-(_e699) / (_e701 - _e702));
-                let _e705 = x_5;
-                let _e706 = g_2;
-                let _e708 = seen_2;
-                param_75 = _e708;
-                param_76 = 1f;
-                param_77 = (_e705 + _e706);
-                let _e710 = here_2.front;
-                param_78 = _e710;
-                let _e711 = cover((&param_75), (&param_76), (&param_77), (&param_78));
-                let _e712 = param_75;
-                seen_2 = _e712;
-                taken_1 = _e711;
-                let _e713 = taken_1;
-                let _e714 = g_2;
-                let _e718 = fronts[0u];
-                fronts[0u] = (_e718 + (_e713 * (1f - _e714)));
-                let _e721 = taken_1;
-                let _e722 = g_2;
-                let _e725 = backs[1u];
-                backs[1u] = (_e725 + (_e721 * _e722));
-            }
-            let _e728 = back_front;
-            let _e729 = c;
-            let _e732 = b;
-            let _e734 = ((_e728 && (_e729 <= 0f)) && (_e732 > 0f));
-            phi_1633_ = _e734;
-            if _e734 {
-                let _e736 = seen_2.rest;
-                phi_1633_ = (_e736 > 0.01f);
-            }
-            let _e739 = phi_1633_;
-            if _e739 {
-                let _e740 = c;
-                let _e742 = b;
-                let _e743 = c;
-                g_3 = (-(_e740) / (_e742 - _e743));
-                let _e746 = x_5;
-                let _e747 = g_3;
-                let _e749 = seen_2;
-                param_79 = _e749;
-                param_80 = 1f;
-                param_81 = (_e746 + _e747);
-                let _e751 = next_1.front;
-                param_82 = _e751;
-                let _e752 = cover((&param_79), (&param_80), (&param_81), (&param_82));
-                let _e753 = param_79;
-                seen_2 = _e753;
-                taken_2 = _e752;
-                let _e754 = taken_2;
-                let _e755 = g_3;
-                let _e759 = backs[0u];
-                backs[0u] = (_e759 + (_e754 * (1f - _e755)));
-                let _e762 = taken_2;
-                let _e763 = g_3;
-                let _e766 = fronts[1u];
-                fronts[1u] = (_e766 + (_e762 * _e763));
-            }
-            let _e769 = back_back;
-            let _e770 = c;
-            let _e773 = d;
-            let _e775 = ((_e769 && (_e770 <= 0f)) && (_e773 > 0f));
-            phi_1683_ = _e775;
-            if _e775 {
-                let _e777 = seen_2.rest;
-                phi_1683_ = (_e777 > 0.01f);
-            }
-            let _e780 = phi_1683_;
-            if _e780 {
-                let _e781 = c;
-                let _e783 = d;
-                let _e784 = c;
-                g_4 = (-(_e781) / (_e783 - _e784));
-                let _e787 = x_5;
-                let _e788 = g_4;
-                let _e790 = seen_2;
-                param_83 = _e790;
-                param_84 = 1f;
-                param_85 = (_e787 + _e788);
-                let _e792 = here_2.back;
-                param_86 = _e792;
-                let _e793 = cover((&param_83), (&param_84), (&param_85), (&param_86));
-                let _e794 = param_83;
-                seen_2 = _e794;
-                taken_3 = _e793;
-                let _e795 = taken_3;
-                let _e796 = g_4;
-                let _e798 = g_4;
-                let _e801 = backs;
-                backs = (_e801 + (vec2<f32>((1f - _e796), _e798) * _e795));
-            }
-            let _e804 = here_2.split;
-            let _e805 = back_front;
-            let _e808 = back_back;
-            ends = ((_e804 && !(_e805)) && !(_e808));
-            let _e811 = ends;
-            let _e812 = on_front;
-            let _e815 = on_back;
-            let _e817 = ((_e811 && !(_e812)) && !(_e815));
-            phi_1735_ = _e817;
-            if _e817 {
-                let _e818 = c;
-                phi_1735_ = (abs(_e818) < 1f);
-            }
-            let _e822 = phi_1735_;
-            phi_1741_ = _e822;
-            if _e822 {
-                let _e824 = seen_2.rest;
-                phi_1741_ = (_e824 > 0.01f);
-            }
-            let _e827 = phi_1741_;
-            if _e827 {
-                let _e828 = c;
-                if (_e828 <= 0f) {
-                    let _e830 = c;
-                    param_87 = -(_e830);
-                    let _e832 = right_of((&param_87));
-                    local_9 = _e832;
-                } else {
-                    let _e833 = c;
-                    param_88 = (1f - _e833);
-                    let _e835 = right_of((&param_88));
-                    local_9 = (vec4(1f) - _e835);
-                }
-                let _e838 = local_9;
-                stripes_1 = _e838;
-                let _e840 = here_2.mask;
-                param_89 = (vec4(1f) - _e840);
-                let _e843 = stripes_1;
-                param_90 = _e843;
-                let _e844 = covered((&param_89), (&param_90));
-                let _e845 = seen_2;
-                param_91 = _e845;
-                param_92 = _e844;
-                let _e846 = x_5;
-                param_93 = _e846;
-                let _e848 = here_2.back;
-                param_94 = _e848;
-                let _e849 = cover((&param_91), (&param_92), (&param_93), (&param_94));
-                let _e850 = param_91;
-                seen_2 = _e850;
-                let _e852 = backs[0u];
-                backs[0u] = (_e852 + _e849);
-            }
-            let _e855 = ends;
-            phi_1793_ = _e855;
-            if _e855 {
-                let _e857 = next_1.front;
-                let _e859 = here_2.back;
-                phi_1793_ = (_e857 > _e859);
-            }
-            let _e862 = phi_1793_;
-            let _e863 = c;
-            at_back = (_e862 && (_e863 <= 0f));
-            let _e867 = here_2.split;
-            let _e869 = front_front;
-            let _e872 = front_back;
-            let _e874 = ((!(_e867) && !(_e869)) && !(_e872));
-            phi_1814_ = _e874;
-            if _e874 {
-                let _e876 = next_1.front;
-                let _e878 = here_2.front;
-                phi_1814_ = (_e876 > _e878);
-            }
-            let _e881 = phi_1814_;
-            let _e882 = a;
-            at_front = (_e881 && (_e882 <= 0f));
-            let _e885 = at_back;
-            let _e886 = at_front;
-            let _e887 = (_e885 || _e886);
-            phi_1826_ = _e887;
-            if _e887 {
-                let _e889 = seen_2.rest;
-                phi_1826_ = (_e889 > 0.01f);
-            }
-            let _e892 = phi_1826_;
-            if _e892 {
-                let _e893 = at_back;
-                if _e893 {
-                    let _e895 = here_2.back;
-                    local_10 = _e895;
-                } else {
-                    let _e897 = here_2.front;
-                    local_10 = _e897;
-                }
-                let _e898 = local_10;
-                reach_2 = _e898;
-                let _e899 = at_back;
-                if _e899 {
-                    let _e900 = c;
-                    local_11 = -(_e900);
-                } else {
-                    let _e902 = a;
-                    local_11 = -(_e902);
-                }
-                let _e904 = local_11;
-                away = _e904;
-                let _e905 = at_back;
-                let _e906 = on_front;
-                if (_e905 && !(_e906)) {
-                    let _e910 = here_2.mask;
-                    param_95 = _e910;
-                    param_96 = vec4<f32>(1f, 1f, 1f, 1f);
-                    let _e911 = covered((&param_95), (&param_96));
-                    local_12 = (1f - _e911);
-                } else {
-                    local_12 = 1f;
-                }
-                let _e913 = local_12;
-                weight = _e913;
-                let _e914 = column_6;
-                let _e915 = at_back;
-                let _e916 = reach_2;
-                let _e917 = weight;
-                found = Edge(_e914, _e915, _e916, _e917);
-                let _e919 = weight;
-                let _e921 = away;
-                if ((_e919 == 1f) && (_e921 < 0.5f)) {
-                    let _e924 = seen_2;
-                    param_97 = _e924;
-                    param_98 = 1f;
-                    let _e925 = x_5;
-                    param_99 = _e925;
-                    let _e926 = reach_2;
-                    param_100 = _e926;
-                    let _e927 = cover((&param_97), (&param_98), (&param_99), (&param_100));
-                    let _e928 = param_97;
-                    seen_2 = _e928;
-                    taken_4 = _e927;
-                    let _e929 = at_back;
-                    let _e930 = taken_4;
-                    let _e933 = backs[0u];
-                    backs[0u] = (_e933 + select(0f, _e930, _e929));
-                    let _e936 = at_back;
-                    let _e937 = taken_4;
-                    let _e940 = fronts[0u];
-                    fronts[0u] = (_e940 + select(_e937, 0f, _e936));
-                }
-                let _e943 = reach_2;
-                let _e945 = edge.reach;
-                if (_e943 < _e945) {
-                    let _e947 = weight;
-                    if (_e947 < 1f) {
-                        let _e949 = edge;
-                        second = _e949;
-                    }
-                    let _e950 = found;
-                    edge = _e950;
-                    let _e952 = next_1.front;
-                    beside = _e952;
-                } else {
-                    let _e953 = reach_2;
-                    let _e955 = second.reach;
-                    if (_e953 < _e955) {
-                        let _e957 = found;
-                        second = _e957;
-                    }
-                }
-            }
-            let _e959 = fronts[0u];
-            let _e961 = backs[0u];
-            if (max(_e959, _e961) > 0f) {
-                let _e964 = column_6;
-                param_101 = _e964;
-                let _e965 = row_7;
-                param_102 = _e965;
-                let _e967 = fronts[0u];
-                param_103 = _e967;
-                let _e969 = backs[0u];
-                param_104 = _e969;
-                let _e970 = weighted((&param_101), (&param_102), (&param_103), (&param_104));
-                let _e971 = color_1;
-                color_1 = (_e971 + _e970);
-            }
-            let _e974 = fronts[1u];
-            let _e976 = backs[1u];
-            if (max(_e974, _e976) > 0f) {
-                let _e979 = column_6;
-                let _e980 = sense;
-                param_105 = (_e979 + _e980);
-                let _e982 = row_7;
-                param_106 = _e982;
-                let _e984 = fronts[1u];
-                param_107 = _e984;
-                let _e986 = backs[1u];
-                param_108 = _e986;
-                let _e987 = weighted((&param_105), (&param_106), (&param_107), (&param_108));
-                let _e988 = color_1;
-                color_1 = (_e988 + _e987);
-            }
-            let _e990 = front_back;
-            on_front = _e990;
-            let _e991 = back_back;
-            on_back = _e991;
-            let _e992 = next_1;
-            here_2 = _e992;
-            let _e993 = sense;
-            let _e994 = column_6;
-            column_6 = (_e994 + _e993);
-            let _e996 = x_5;
-            x_5 = (_e996 + 1f);
-            continue;
-        } else {
-            break;
-        }
-    }
-    let _e999 = seen_2.rest;
-    hole = (_e999 > 0.5f);
-    let _e1002 = seen_2.rest;
-    if (_e1002 > 0.01f) {
-        let _e1005 = edge.column;
-        beyond = (_e1005 < 0i);
-        let _e1007 = beyond;
-        if _e1007 {
-            let _e1008 = column_6;
-            let _e1010 = here_2.split;
-            let _e1012 = here_2.split;
-            if _e1012 {
-                let _e1014 = here_2.back;
-                local_13 = _e1014;
-            } else {
-                let _e1016 = here_2.front;
-                local_13 = _e1016;
-            }
-            let _e1017 = local_13;
-            edge = Edge(_e1008, _e1010, _e1017, 1f);
-        }
-        let _e1020 = edge.column;
-        param_109 = _e1020;
-        let _e1021 = source_column((&param_109));
-        edge_x = f32(_e1021);
-        let _e1023 = t;
-        let _e1024 = edge_x;
-        let _e1027 = edge.reach;
-        away_1 = abs(((_e1023 - _e1024) - _e1027));
-        let _e1030 = away_1;
-        spread = (0.5f * clamp(_e1030, 1f, 12f));
-        sum_1 = vec4<f32>(0f, 0f, 0f, 0f);
-        weights = 0f;
-        let _e1033 = beyond;
-        let _e1034 = away_1;
-        rows_1 = select(2i, 0i, (_e1033 && (_e1034 < 0.5f)));
-        let _e1038 = rows_1;
-        i_2 = -(_e1038);
-        loop {
-            let _e1040 = i_2;
-            let _e1041 = rows_1;
-            if (_e1040 <= _e1041) {
-                let _e1043 = row_7;
-                let _e1044 = i_2;
-                let _e1046 = spread;
-                let _e1053 = synthesis.source_size[1u];
-                at_1 = clamp((_e1043 + i32(round((f32(_e1044) * _e1046)))), 0i, (_e1053 - 1i));
-                let _e1057 = edge.column;
-                param_110 = _e1057;
-                let _e1058 = at_1;
-                param_111 = _e1058;
-                let _e1059 = layer_at((&param_110), (&param_111));
-                layer_3 = _e1059;
-                let _e1060 = i_2;
-                if (_e1060 == 0i) {
-                    let _e1063 = edge.back;
-                    local_14 = !(_e1063);
-                } else {
-                    let _e1066 = layer_3.front;
-                    let _e1068 = edge.reach;
-                    local_14 = (_e1066 <= (_e1068 + 1f));
-                }
-                let _e1071 = local_14;
-                front_3 = _e1071;
-                let _e1072 = i_2;
-                if (_e1072 == 0i) {
-                    let _e1075 = edge.back;
-                    local_15 = _e1075;
-                } else {
-                    let _e1076 = front_3;
-                    let _e1079 = layer_3.split;
-                    let _e1080 = (!(_e1076) && _e1079);
-                    phi_2106_ = _e1080;
-                    if _e1080 {
-                        let _e1082 = layer_3.back;
-                        let _e1084 = edge.reach;
-                        phi_2106_ = (_e1082 <= (_e1084 + 1f));
-                    }
-                    let _e1088 = phi_2106_;
-                    local_15 = _e1088;
-                }
-                let _e1089 = local_15;
-                behind_2 = _e1089;
-                let _e1090 = i_2;
-                if (_e1090 == 0i) {
-                    local_16 = 2f;
-                } else {
-                    let _e1092 = front_3;
-                    if _e1092 {
-                        local_17 = 1f;
-                    } else {
-                        let _e1093 = behind_2;
-                        if _e1093 {
-                            let _e1095 = layer_3.mask;
-                            param_112 = _e1095;
-                            param_113 = vec4<f32>(1f, 1f, 1f, 1f);
-                            let _e1096 = covered((&param_112), (&param_113));
-                            local_18 = (1f - _e1096);
-                        } else {
-                            local_18 = 0f;
-                        }
-                        let _e1098 = local_18;
-                        local_17 = _e1098;
-                    }
-                    let _e1099 = local_17;
-                    local_16 = _e1099;
-                }
-                let _e1100 = local_16;
-                weight_1 = _e1100;
-                let _e1101 = front_3;
-                let _e1102 = weight_1;
-                let _e1104 = front_3;
-                let _e1105 = weight_1;
-                let _e1108 = edge.column;
-                param_114 = _e1108;
-                let _e1109 = at_1;
-                param_115 = _e1109;
-                param_116 = select(0f, _e1102, _e1101);
-                param_117 = select(_e1105, 0f, _e1104);
-                let _e1110 = weighted((&param_114), (&param_115), (&param_116), (&param_117));
-                let _e1111 = sum_1;
-                sum_1 = (_e1111 + _e1110);
-                let _e1113 = weight_1;
-                let _e1114 = weights;
-                weights = (_e1114 + _e1113);
-                continue;
-            } else {
-                break;
-            }
-            continuing {
-                let _e1116 = i_2;
-                i_2 = (_e1116 + 1i);
-            }
-        }
-        let _e1118 = sum_1;
-        let _e1119 = weights;
-        fill = (_e1118 / vec4(_e1119));
-        let _e1123 = second.column;
-        let _e1124 = (_e1123 >= 0i);
-        phi_2168_ = _e1124;
-        if _e1124 {
-            let _e1126 = edge.weight;
-            phi_2168_ = (_e1126 < 1f);
-        }
-        let _e1129 = phi_2168_;
-        if _e1129 {
-            let _e1131 = second.back;
-            one = select(vec2<f32>(1f, 0f), vec2<f32>(0f, 1f), vec2(_e1131));
-            let _e1135 = second.column;
-            param_118 = _e1135;
-            let _e1136 = row_7;
-            param_119 = _e1136;
-            let _e1138 = one[0u];
-            param_120 = _e1138;
-            let _e1140 = one[1u];
-            param_121 = _e1140;
-            let _e1141 = weighted((&param_118), (&param_119), (&param_120), (&param_121));
-            let _e1142 = fill;
-            let _e1144 = edge.weight;
-            fill = mix(_e1141, _e1142, vec4(_e1144));
-        }
-        let _e1147 = hole;
-        let _e1148 = away_1;
-        hole = (_e1147 && (_e1148 >= 0.5f));
-        let _e1152 = edge.reach;
-        let _e1153 = far_nearness();
-        let _e1157 = synthesis.law[1u];
-        depth_1 = ((_e1152 + _e1153) / _e1157);
-        let _e1161 = synthesis.origins[0u];
-        let _e1163 = gl_FragCoord_1[0u];
-        let _e1167 = synthesis.origins[1u];
-        origin_1 = ((_e1161 * _e1163) + _e1167);
-        let _e1169 = away_1;
-        let _e1170 = (_e1169 >= 0.5f);
-        phi_2243_ = _e1170;
-        if _e1170 {
-            let _e1171 = gl_FragCoord_1;
-            let _e1174 = synthesis.target_origin;
-            let _e1177 = beside;
-            let _e1178 = far_nearness();
-            param_122 = (_e1171.xy - vec2<f32>(_e1174));
-            param_123 = (_e1177 + _e1178);
-            let _e1180 = origin_1;
-            param_124 = _e1180;
-            let _e1181 = row_7;
-            param_125 = _e1181;
-            let _e1182 = fill;
-            param_126 = _e1182;
-            let _e1183 = depth_1;
-            param_127 = _e1183;
-            let _e1184 = recall((&param_122), (&param_123), (&param_124), (&param_125), (&param_126), (&param_127));
-            let _e1185 = param_126;
-            fill = _e1185;
-            let _e1186 = param_127;
-            depth_1 = _e1186;
-            phi_2243_ = _e1184;
-        }
-        let _e1188 = phi_2243_;
-        if _e1188 {
-            let _e1191 = synthesis.law[1u];
-            let _e1192 = depth_1;
-            let _e1194 = far_nearness();
-            edge.reach = ((_e1191 * _e1192) - _e1194);
-        }
-        let _e1197 = seen_2;
-        param_128 = _e1197;
-        param_129 = 1f;
-        let _e1198 = edge_x;
-        param_130 = _e1198;
-        let _e1200 = edge.reach;
-        param_131 = _e1200;
-        let _e1201 = cover((&param_128), (&param_129), (&param_130), (&param_131));
-        let _e1202 = param_128;
-        seen_2 = _e1202;
-        let _e1203 = fill;
-        let _e1205 = color_1;
-        color_1 = (_e1205 + (_e1203 * _e1201));
-    }
-    let _e1208 = synthesis.far_displacement;
-    let _e1210 = seen_2.reach;
-    let _e1214 = synthesis.law[0u];
-    let _e1218 = synthesis.law[1u];
-    gl_FragDepth = clamp((((_e1208 + _e1210) - _e1214) / _e1218), 0f, 1f);
+    let _e195 = synthesis.far_displacement;
+    let _e197 = seen_3.reach;
+    let _e201 = synthesis.law[0u];
+    let _e205 = synthesis.law[1u];
+    gl_FragDepth = clamp((((_e195 + _e197) - _e201) / _e205), 0f, 1f);
     return;
 }
 

@@ -56,9 +56,9 @@ impl Layers {
         Layers::with_options(gl, outputs, &SynthesisOptions { edges, ..SynthesisOptions::default() })
     }
 
-    /// Compiles the passes with counts in place of colours. Red, green and blue: columns of the march's three loops, in the order
-    /// of the text, at most 255 each. Alpha: rows of its fill, and in the highest bit whether the source's pixel at this place
-    /// shows two surfaces.
+    /// Compiles the passes with counts in place of colours. Red: columns of the march's first loop. Green and blue: pairs of columns
+    /// in which something happens, and all that the second loop passes. Alpha: rows of its fill, and in the highest bit whether the
+    /// source's pixel at this place shows two surfaces. At most 255 each.
     ///
     /// # Errors
     /// Those of [`Layers::new`].

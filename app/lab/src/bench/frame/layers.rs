@@ -92,17 +92,17 @@ impl LayerCounts {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Wave {
     plain: u8,
-    columns: u8,
-    idle: u8,
+    events: u8,
+    pairs: u8,
     rows: u8,
     split: bool,
 }
 
 impl Wave {
-    fn include(&mut self, [plain, columns, idle, rows]: [u8; 4]) {
+    fn include(&mut self, [plain, events, pairs, rows]: [u8; 4]) {
         self.plain = self.plain.max(plain);
-        self.columns = self.columns.max(columns);
-        self.idle = self.idle.max(idle);
+        self.events = self.events.max(events);
+        self.pairs = self.pairs.max(pairs);
         self.rows = self.rows.max(rows & 127);
         self.split |= rows > 127;
     }
@@ -114,12 +114,11 @@ fn looped(parts: &Parts, trips: &[f64]) -> f64 {
 
 /// What a wave executes of the march.
 fn march_slots(march: &Parts, wave: &Wave) -> f64 {
-    let goes_on = wave.columns > 0 || wave.rows > 0;
+    let goes_on = wave.events > 0 || wave.rows > 0;
     let straight = march.straight * if goes_on { 1.0 } else { PLAIN_SHARE };
-    let trips = [wave.plain, wave.columns, wave.rows].map(f64::from);
-    // Without a loop of its own, what changes nothing is passed over by the large one.
-    let idle = march.inner.or(march.loops.get(1).copied()).unwrap_or(0.0);
-    straight + looped(march, &trips) + f64::from(wave.idle) * idle
+    let trips = [wave.plain, wave.events, wave.rows].map(f64::from);
+    // The loop to the next event is inside of that over events.
+    straight + looped(march, &trips) + f64::from(wave.pairs) * march.inner.unwrap_or(0.0)
 }
 
 #[cfg(test)]
