@@ -10,7 +10,7 @@ use yoro::eyes::{DepthRange, EyePair, EyesError, GuardBand, HeadMotion, PoseWarp
 use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 use yoro_render::PreparedScene;
-use yoro_stream::{Content, DepthSpan, Sight, Wish};
+use yoro_stream::{Content, DepthSpan, EyeView, ViewRequest};
 use yoro_video::{Planes, depth_luma};
 
 /// What a stream carries.
@@ -40,47 +40,51 @@ pub struct Picture {
 }
 
 /// Makes a server's pictures of a scene.
-pub struct Stage {
+pub struct FrameRenderer {
     groups: GroupRenderer,
     span: DepthSpan,
     mode: Mode,
 }
 
-impl Stage {
+impl FrameRenderer {
     /// Compiles what it needs.
     ///
     /// # Errors
     /// [`GlError`] when the driver refuses.
-    pub fn new(gl: &Rc<Context>, mode: Mode) -> Result<Stage, GlError> {
+    pub fn new(gl: &Rc<Context>, mode: Mode) -> Result<FrameRenderer, GlError> {
         let options = GroupOptions { anti_aliasing: true, ..GroupOptions::default() };
-        Ok(Stage { groups: GroupRenderer::new(gl, &options)?, span: DepthSpan::default(), mode })
+        Ok(FrameRenderer { groups: GroupRenderer::new(gl, &options)?, span: DepthSpan::default(), mode })
     }
 
-    /// Renders what a viewer wishes for.
+    /// Renders what a viewer requests.
     ///
     /// # Errors
     /// [`GroupError`] for eyes that cannot be rendered.
-    pub fn picture(&mut self, prepared: &mut PreparedScene, wish: &Wish) -> Result<Picture, GroupError> {
+    pub fn picture(
+        &mut self,
+        prepared: &mut PreparedScene,
+        request: &ViewRequest,
+    ) -> Result<Picture, GroupError> {
         let pair = EyePair {
-            poses: wish.eyes.map(|eye| eye.pose),
-            frusta: wish.eyes.map(|eye| eye.frustum),
+            poses: request.eyes.map(|eye| eye.pose),
+            frusta: request.eyes.map(|eye| eye.frustum),
             depth: DepthRange::PAPER,
-            size: wish.size.map(u32::from),
-            dominant: wish.dominant,
+            size: request.size.map(u32::from),
+            dominant: request.dominant,
         };
         let guarded = |view: &View, motion: HeadMotion| Ok(motion.guarded(view, NEAREST)?.view);
-        let sight = |view: &View| Sight { pose: view.pose, frustum: view.frustum };
+        let eye_view = |view: &View| EyeView { pose: view.pose, frustum: view.frustum };
         let size = |view: &View| view.size.map(|n| n as u16);
         if self.mode == Mode::Eyes {
             let still = HeadMotion { translation: 0.0, ..MOTION };
-            let views = wish_views(&pair).map(|view| guarded(&view, still));
+            let views = views_of(&pair).map(|view| guarded(&view, still));
             let [left, right]: [Result<View, EyesError>; 2] = views;
             let views = [left?, right?];
             let mut eyes = Vec::new();
             for view in &views {
                 eyes.push(Planes::of_rgb(&self.groups.render_one(prepared, view)?.0));
             }
-            let content = Content::Eyes([sight(&views[0]), sight(&views[1])]);
+            let content = Content::Eyes([eye_view(&views[0]), eye_view(&views[1])]);
             let planes = eyes[0].beside(&eyes[1]);
             return Ok(Picture { planes, content, size: size(&views[0]), new_span: false });
         }
@@ -99,11 +103,11 @@ impl Stage {
             Luma([depth_luma(distance(depth.get_pixel(x, y).0[0]), span)])
         });
         let planes = Planes::of_rgb(&color).beside(&Planes::of_gray(&luma));
-        Ok(Picture { planes, content: Content::Depth(sight(&view), span), size: size(&view), new_span })
+        Ok(Picture { planes, content: Content::Depth(eye_view(&view), span), size: size(&view), new_span })
     }
 }
 
-fn wish_views(pair: &EyePair) -> [View; 2] {
+fn views_of(pair: &EyePair) -> [View; 2] {
     yoro::eyes::Eye::BOTH.map(|eye| pair.view(eye))
 }
 
@@ -159,11 +163,13 @@ impl Receiver {
             Content::Eyes(_) => vec![color(&left)?, color(&right)?],
         };
         let mut eyes = Vec::new();
-        for (i, target) in wish_views(pair).iter().enumerate() {
+        for (i, target) in views_of(pair).iter().enumerate() {
             let (image, warp) = match content {
-                Content::Depth(sight, span) => (&images[0], PoseWarp::new(&sight.view(size, *span), target)?),
-                Content::Eyes(sights) => {
-                    let source = sights[i].view(size, [1.0, 2.0]);
+                Content::Depth(eye_view, span) => {
+                    (&images[0], PoseWarp::new(&eye_view.view(size, *span), target)?)
+                }
+                Content::Eyes(eyes) => {
+                    let source = eyes[i].view(size, [1.0, 2.0]);
                     (&images[i], PoseWarp::new(&source, target)?.rotation_only())
                 }
             };

@@ -9,5 +9,7 @@ mod messages;
 mod span;
 
 pub use control::Control;
-pub use messages::{Content, FrameHeader, FromServer, FromViewer, Refusal, Sight, Token, VERSION, Wish};
+pub use messages::{
+    Content, EyeView, FrameHeader, FromServer, FromViewer, Refusal, Token, VERSION, ViewRequest,
+};
 pub use span::DepthSpan;

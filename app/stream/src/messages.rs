@@ -16,14 +16,14 @@ const SIDES: std::ops::RangeInclusive<u16> = 16..=4096;
 
 /// An eye's pose and frustum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sight {
+pub struct EyeView {
     /// Pose in the world.
     pub pose: Pose,
     /// Frustum.
     pub frustum: Frustum,
 }
 
-impl Sight {
+impl EyeView {
     /// Returns the view with this size in pixels and depth uniform in 1/z, 1 at `nearest` to 0 at `farthest` metres.
     pub fn view(&self, size: [u16; 2], [nearest, farthest]: [f32; 2]) -> View {
         let depth = DepthRange { near: nearest, far: farthest, convention: DepthConvention::Reversed };
@@ -31,7 +31,7 @@ impl Sight {
     }
 
     fn is_valid(&self) -> bool {
-        let Sight { pose, frustum: f } = self;
+        let EyeView { pose, frustum: f } = self;
         // In this form NaN fails, too.
         let sides = [f.left, f.right, f.bottom, f.top].iter().all(|side| side.abs() <= STEEPEST);
         let place = pose.position.to_array().iter().all(|n| n.abs() <= FARTHEST);
@@ -42,11 +42,11 @@ impl Sight {
 
 /// What a viewer shows, and so what the server is to render for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Wish {
+pub struct ViewRequest {
     /// Milliseconds of the viewer's clock. The frame that is rendered for it brings them back.
     pub time: f64,
     /// Left and right eye at the newest pose of the head.
-    pub eyes: [Sight; 2],
+    pub eyes: [EyeView; 2],
     /// The eye to render.
     pub dominant: Eye,
     /// Width and height of each eye in pixels.
@@ -64,7 +64,7 @@ pub enum FromViewer {
         token: Token,
     },
     /// The head has moved, or time has passed.
-    Wish(Wish),
+    Request(ViewRequest),
     /// The frame of this number was decoded.
     Decoded(u32),
 }
@@ -72,17 +72,17 @@ pub enum FromViewer {
 /// What the two halves of a frame's picture show.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Content {
-    /// An eye on the left, wider than the eye that was wished for, and its depth as luma on the right: 255 at the first distance
+    /// An eye on the left, wider than the eye that was requested, and its depth as luma on the right: 255 at the first distance
     /// in metres to 0 at the second, uniform in 1/z.
-    Depth(Sight, [f32; 2]),
+    Depth(EyeView, [f32; 2]),
     /// Both eyes.
-    Eyes([Sight; 2]),
+    Eyes([EyeView; 2]),
 }
 
 /// What stands before a frame's H.264.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameHeader {
-    /// [`Wish::time`] of the wish that it was rendered for.
+    /// [`ViewRequest::time`] of the request that it was rendered for.
     pub time: f64,
     /// What is in it.
     pub content: Content,
@@ -137,9 +137,9 @@ impl FromViewer {
     pub fn read(bytes: &[u8]) -> Option<FromViewer> {
         let message = exact(bytes)?;
         let valid = match &message {
-            FromViewer::Wish(wish) => {
-                let sizes = wish.size.iter().all(|side| SIDES.contains(side));
-                wish.time.is_finite() && sizes && wish.eyes.iter().all(Sight::is_valid)
+            FromViewer::Request(request) => {
+                let sizes = request.size.iter().all(|side| SIDES.contains(side));
+                request.time.is_finite() && sizes && request.eyes.iter().all(EyeView::is_valid)
             }
             _ => true,
         };
@@ -179,7 +179,7 @@ impl<'a> FromServer<'a> {
             (&WELCOME, rest) => {
                 let pose = exact(rest)?;
                 let frustum = Frustum::symmetric(1.0, 1.0);
-                Sight { pose, frustum }.is_valid().then_some(FromServer::Welcome(pose))
+                EyeView { pose, frustum }.is_valid().then_some(FromServer::Welcome(pose))
             }
             (&REFUSED, rest) => exact(rest).map(FromServer::Refused),
             (&FRAME, _) => {
@@ -188,10 +188,10 @@ impl<'a> FromServer<'a> {
                 let (header, data) = rest.split_at_checked(length)?;
                 let header: FrameHeader = exact(header)?;
                 let content = match header.content {
-                    Content::Depth(sight, [near, far]) => {
-                        sight.is_valid() && 1e-4 <= near && near < far && far <= 1e6
+                    Content::Depth(eye_view, [near, far]) => {
+                        eye_view.is_valid() && 1e-4 <= near && near < far && far <= 1e6
                     }
-                    Content::Eyes(eyes) => eyes.iter().all(Sight::is_valid),
+                    Content::Eyes(eyes) => eyes.iter().all(EyeView::is_valid),
                 };
                 let valid = content && intra < 2 && header.size.iter().all(|side| SIDES.contains(side));
                 let number = u32::from_le_bytes(number);
@@ -218,12 +218,13 @@ mod tests {
     use proptest::prelude::*;
     use yoro::eyes::Pose;
 
-    const SIGHT: Sight =
-        Sight { pose: Pose::IDENTITY, frustum: Frustum { left: -1.0, right: 0.9, bottom: -0.8, top: 0.7 } };
-    const WISH: Wish = Wish { time: 12.5, eyes: [SIGHT; 2], dominant: Eye::Right, size: [640, 480] };
+    const EYE: EyeView =
+        EyeView { pose: Pose::IDENTITY, frustum: Frustum { left: -1.0, right: 0.9, bottom: -0.8, top: 0.7 } };
+    const REQUEST: ViewRequest =
+        ViewRequest { time: 12.5, eyes: [EYE; 2], dominant: Eye::Right, size: [640, 480] };
     const HEADER: FrameHeader = FrameHeader {
         time: 12.5,
-        content: Content::Depth(SIGHT, [0.5, 40.0]),
+        content: Content::Depth(EYE, [0.5, 40.0]),
         size: [700, 500],
         render_ms: 3.0,
         code_ms: 4.0,
@@ -232,11 +233,11 @@ mod tests {
 
     fn up() -> Vec<FromViewer> {
         let hello = FromViewer::Hello { version: VERSION, token: [7; 16] };
-        vec![hello, FromViewer::Wish(WISH), FromViewer::Decoded(9)]
+        vec![hello, FromViewer::Request(REQUEST), FromViewer::Decoded(9)]
     }
 
     fn down() -> Vec<FromServer<'static>> {
-        let eyes = FrameHeader { content: Content::Eyes([SIGHT; 2]), ..HEADER };
+        let eyes = FrameHeader { content: Content::Eyes([EYE; 2]), ..HEADER };
         let frame =
             |header| FromServer::Frame { number: 70_000, intra: true, header, data: &[0, 0, 0, 1, 9] };
         let refused = FromServer::Refused(Refusal::Busy);
@@ -262,24 +263,24 @@ mod tests {
 
     #[test]
     fn numbers_out_of_bounds_are_refused() {
-        let wish = |change: fn(&mut Wish)| {
-            let mut wish = WISH;
-            change(&mut wish);
-            FromViewer::read(&FromViewer::Wish(wish).to_bytes())
+        let request = |change: fn(&mut ViewRequest)| {
+            let mut request = REQUEST;
+            change(&mut request);
+            FromViewer::read(&FromViewer::Request(request).to_bytes())
         };
-        assert!(wish(|_| {}).is_some());
-        assert_eq!(wish(|wish| wish.time = f64::NAN), None);
-        assert_eq!(wish(|wish| wish.size[1] = 0), None);
-        assert_eq!(wish(|wish| wish.size[0] = 5000), None);
-        assert_eq!(wish(|wish| wish.eyes[1].pose.position.x = f32::INFINITY), None);
-        assert_eq!(wish(|wish| wish.eyes[0].pose.orientation.w = 0.5), None);
-        assert_eq!(wish(|wish| wish.eyes[0].frustum.right = -1.0), None);
+        assert!(request(|_| {}).is_some());
+        assert_eq!(request(|request| request.time = f64::NAN), None);
+        assert_eq!(request(|request| request.size[1] = 0), None);
+        assert_eq!(request(|request| request.size[0] = 5000), None);
+        assert_eq!(request(|request| request.eyes[1].pose.position.x = f32::INFINITY), None);
+        assert_eq!(request(|request| request.eyes[0].pose.orientation.w = 0.5), None);
+        assert_eq!(request(|request| request.eyes[0].frustum.right = -1.0), None);
         let frame = |header| {
             let bytes = FromServer::Frame { number: 0, intra: false, header, data: &[] }.to_bytes();
             FromServer::read(&bytes).is_some()
         };
         assert!(frame(HEADER));
-        assert!(!frame(FrameHeader { content: Content::Depth(SIGHT, [2.0, 1.0]), ..HEADER }));
+        assert!(!frame(FrameHeader { content: Content::Depth(EYE, [2.0, 1.0]), ..HEADER }));
         assert!(!frame(FrameHeader { size: [0, 5], ..HEADER }));
     }
 
@@ -299,8 +300,8 @@ mod tests {
                     let at = at % bytes.len();
                     bytes[at] = *byte;
                 }
-                if let Some(FromViewer::Wish(wish)) = FromViewer::read(&bytes) {
-                    prop_assert!(wish.eyes.iter().all(Sight::is_valid));
+                if let Some(FromViewer::Request(request)) = FromViewer::read(&bytes) {
+                    prop_assert!(request.eyes.iter().all(EyeView::is_valid));
                 }
                 let _ = FromServer::read(&bytes);
             }

@@ -6,7 +6,7 @@ import { changed, startLoop } from './drawing.js';
 import { clear, loading, say } from './messages.js';
 import { sentence } from './sentence.js';
 
-/** Milliseconds from one wish to the next. */
+/** Milliseconds from one request to the next. */
 const TICK = 1000 / 60;
 /** Milliseconds from one line of figures to the next. */
 const LINE = 1000;
@@ -45,7 +45,7 @@ export function follow(token) {
     }
   };
   worker.postMessage({ begin });
-  timers = [setInterval(wish, TICK), setInterval(figures, LINE)];
+  timers = [setInterval(request, TICK), setInterval(figures, LINE)];
   // Nobody sees a hidden page: another one may have the stream.
   document.addEventListener('visibilitychange', () => worker?.postMessage(document.hidden ? { end: true } : { begin }));
 }
@@ -124,9 +124,9 @@ function welcome(answer) {
 }
 
 /** Asks for the eyes as they were made last. */
-function wish() {
+function request() {
   if (!isThere || !app.page || app.source) return;
-  const message = app.page.streamWish(performance.now());
+  const message = app.page.streamRequest(performance.now());
   if (message) worker.postMessage({ send: message });
 }
 

@@ -22,9 +22,9 @@ use yoro::eyes::{Eye, EyePair, Frustum, Pose};
 use yoro_context::{Backend, Headless};
 use yoro_files::http::{self, Request};
 use yoro_lab::metrics::{Channels, psnr};
-use yoro_lab::streaming::{Mode, Receiver, Stage};
+use yoro_lab::streaming::{FrameRenderer, Mode, Receiver};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_stream::{Content, FrameHeader, FromServer, Sight, Wish};
+use yoro_stream::{Content, EyeView, FrameHeader, FromServer, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder};
 
 use super::{GL, Page, Server, close};
@@ -73,7 +73,7 @@ fn follow(mut browser: Browser, server: Server, link: &str) -> Page {
 /// The desktop's side: a scene, and what a viewer makes of its pictures.
 struct Desktop {
     prepared: PreparedScene,
-    stage: Stage,
+    renderer: FrameRenderer,
     receiver: Receiver,
     _headless: Headless,
 }
@@ -85,7 +85,7 @@ impl Desktop {
         let scene = yoro_scenes::build("prototype", yoro_scenes::DEFAULT_SEED).unwrap();
         Desktop {
             prepared: PreparedScene::new(gl, scene, &RenderSettings::default()).unwrap(),
-            stage: Stage::new(gl, mode).unwrap(),
+            renderer: FrameRenderer::new(gl, mode).unwrap(),
             receiver: Receiver::new(gl).unwrap(),
             _headless: headless,
         }
@@ -103,10 +103,12 @@ impl Desktop {
     /// Returns what is seen of the first pair's picture at the poses of both.
     fn seen(&mut self, pairs: &[EyePair; 2]) -> [[RgbImage; 2]; 2] {
         let [first, _] = pairs;
-        let sight = |eye: Eye| Sight { pose: first.poses[eye.index()], frustum: first.frusta[eye.index()] };
-        let eyes = Eye::BOTH.map(sight);
-        let wish = Wish { time: 0.0, eyes, dominant: first.dominant, size: first.size.map(|n| n as u16) };
-        let picture = self.stage.picture(&mut self.prepared, &wish).unwrap();
+        let eye_view =
+            |eye: Eye| EyeView { pose: first.poses[eye.index()], frustum: first.frusta[eye.index()] };
+        let eyes = Eye::BOTH.map(eye_view);
+        let request =
+            ViewRequest { time: 0.0, eyes, dominant: first.dominant, size: first.size.map(|n| n as u16) };
+        let picture = self.renderer.picture(&mut self.prepared, &request).unwrap();
         let (mut encoder, mut decoder) = (LiveEncoder::new(5.0).unwrap(), Decoder::new().unwrap());
         let mut planes = picture.planes.clone();
         // A picture that stands still becomes better for some frames.
@@ -290,8 +292,8 @@ fn serve_damage(listener: &TcpListener, connections: &AtomicUsize) -> Option<()>
         write!(stream, "{upgrade}\r\nSec-WebSocket-Accept: {accept}\r\n\r\n").ok()?;
         let mut socket = WebSocket::from_raw_socket(stream, Role::Server, None);
         socket.read().ok()?;
-        let sight = Sight { pose: Pose::IDENTITY, frustum: Frustum::symmetric(1.0, 1.0) };
-        let content = Content::Depth(sight, [1.0, 10.0]);
+        let eye_view = EyeView { pose: Pose::IDENTITY, frustum: Frustum::symmetric(1.0, 1.0) };
+        let content = Content::Depth(eye_view, [1.0, 10.0]);
         let header =
             FrameHeader { time: 0.0, content, size: [64, 64], render_ms: 0.0, code_ms: 0.0, quantizer: 24 };
         let data = &[0, 0, 0, 1, 0x65, 1, 2, 3];

@@ -22,7 +22,7 @@ use crate::cli::args::GlArgs;
 use crate::cli::eyes;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
-use yoro_lab::streaming::{Mode, Stage};
+use yoro_lab::streaming::{FrameRenderer, Mode};
 use yoro_render::PreparedScene;
 use yoro_stream::Token;
 use yoro_video::LiveEncoder;
@@ -104,7 +104,7 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let lan = args.lan.map(Lan::new).transpose()?;
     let mut server = Server {
         prepared: PreparedScene::new(headless.gl(), scene, &settings)?,
-        stage: Stage::new(headless.gl(), mode)?,
+        renderer: FrameRenderer::new(headless.gl(), mode)?,
         encoder: LiveEncoder::new(args.frame_rate.into())?,
         start: Instant::now(),
         bounds: Bounds { quantizer: args.quantizer, frame_rate: args.frame_rate.into(), size: args.max_size },

@@ -10,9 +10,9 @@ use tungstenite::Message;
 use super::access::{Access, Socket, web_socket};
 use super::connection::Connection;
 use yoro_files::interrupt;
-use yoro_lab::streaming::Stage;
+use yoro_lab::streaming::FrameRenderer;
 use yoro_render::PreparedScene;
-use yoro_stream::{Control, FrameHeader, FromServer, FromViewer, Wish};
+use yoro_stream::{Control, FrameHeader, FromServer, FromViewer, ViewRequest};
 use yoro_video::LiveEncoder;
 
 /// A viewer that says nothing for so long is gone.
@@ -32,7 +32,7 @@ fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
 /// Renders, codes and sends.
 pub struct Server {
     pub prepared: PreparedScene,
-    pub stage: Stage,
+    pub renderer: FrameRenderer,
     pub encoder: LiveEncoder,
     pub start: Instant,
     pub bounds: Bounds,
@@ -75,7 +75,7 @@ impl Server {
     /// Serves a viewer until it is gone, which is no error.
     fn session(&mut self, connection: &Connection) -> anyhow::Result<()> {
         let mut control = Control::new(self.bounds.quantizer, self.bounds.frame_rate);
-        let (mut wish, mut answered, mut number): (Option<Wish>, f64, u32) = (None, f64::NAN, 0);
+        let (mut request, mut answered, mut number): (Option<ViewRequest>, f64, u32) = (None, f64::NAN, 0);
         let mut line = Line::new();
         connection.wait_each(SILENCE);
         let (tell, heard) = mpsc::channel();
@@ -87,7 +87,7 @@ impl Server {
             match heard.recv_timeout(Duration::from_millis(1)) {
                 Ok((message, at)) => {
                     match message {
-                        FromViewer::Wish(newest) => wish = Some(newest),
+                        FromViewer::Request(newest) => request = Some(newest),
                         FromViewer::Decoded(number) => control.decoded(number, at - self.start),
                         FromViewer::Hello { .. } => {}
                     }
@@ -97,24 +97,25 @@ impl Server {
                 Err(RecvTimeoutError::Disconnected) => return Ok(()),
             }
             line.print(&control);
-            let due = wish.filter(|wish| wish.time != answered && control.is_due(self.start.elapsed()));
-            let Some(mut wish) = due else { continue };
-            answered = wish.time;
-            let longest = wish.size[0].max(wish.size[1]);
+            let due =
+                request.filter(|request| request.time != answered && control.is_due(self.start.elapsed()));
+            let Some(mut request) = due else { continue };
+            answered = request.time;
+            let longest = request.size[0].max(request.size[1]);
             if longest > self.bounds.size {
                 let scale = f32::from(self.bounds.size) / f32::from(longest);
-                wish.size = wish.size.map(|side| ((f32::from(side) * scale) as u16).max(16));
+                request.size = request.size.map(|side| ((f32::from(side) * scale) as u16).max(16));
             }
             let begun = Instant::now();
             self.prepared.set_time(self.start.elapsed().as_secs_f64())?;
-            let picture = self.stage.picture(&mut self.prepared, &wish)?;
+            let picture = self.renderer.picture(&mut self.prepared, &request)?;
             let rendered = begun.elapsed();
             let quantizer = control.quantizer();
             let (data, is_intra) =
                 self.encoder.encode(&picture.planes, quantizer, number == 0 || picture.new_span)?;
             let ms = |time: Duration| time.as_secs_f32() * 1e3;
             let header = FrameHeader {
-                time: wish.time,
+                time: request.time,
                 content: picture.content,
                 size: picture.size,
                 render_ms: ms(rendered),

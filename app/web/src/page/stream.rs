@@ -68,9 +68,9 @@ impl Page {
     }
 
     /// Returns the message that asks for the newest eyes at a time of `performance.now()`; none before any were drawn.
-    #[wasm_bindgen(js_name = streamWish)]
-    pub fn stream_wish(&self, time: f64) -> Option<Vec<u8>> {
+    #[wasm_bindgen(js_name = streamRequest)]
+    pub fn stream_request(&self, time: f64) -> Option<Vec<u8>> {
         let Content::Stream(stream) = &self.content else { return None };
-        stream.wish(time)
+        stream.request(time)
     }
 }

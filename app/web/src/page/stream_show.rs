@@ -8,7 +8,7 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
 use yoro_render::stereo::StereoFrame;
-use yoro_stream::{Content, FrameHeader, FromViewer, Sight, Wish};
+use yoro_stream::{Content, EyeView, FrameHeader, FromViewer, ViewRequest};
 
 /// Everything that is needed to show a stream.
 pub struct StreamShow {
@@ -124,19 +124,20 @@ impl StreamShow {
     }
 
     /// Returns the message that asks for the eyes that were made last; none before the first.
-    pub fn wish(&self, time: f64) -> Option<Vec<u8>> {
+    pub fn request(&self, time: f64) -> Option<Vec<u8>> {
         let pair = self.pair?;
-        let sight = |eye: Eye| Sight { pose: pair.poses[eye.index()], frustum: pair.frusta[eye.index()] };
+        let eye_view =
+            |eye: Eye| EyeView { pose: pair.poses[eye.index()], frustum: pair.frusta[eye.index()] };
         let size = pair.size.map(|n| n.clamp(16, 4096) as u16);
-        let wish = Wish { time, eyes: Eye::BOTH.map(sight), dominant: pair.dominant, size };
-        Some(FromViewer::Wish(wish).to_bytes())
+        let request = ViewRequest { time, eyes: Eye::BOTH.map(eye_view), dominant: pair.dominant, size };
+        Some(FromViewer::Request(request).to_bytes())
     }
 }
 
 /// Returns which of the frame's images an eye is made of, and how.
 fn warp(header: &FrameHeader, target: &View, eye: Eye) -> Result<(usize, PoseWarp), EyesError> {
     match header.content {
-        Content::Depth(sight, span) => Ok((0, PoseWarp::new(&sight.view(header.size, span), target)?)),
+        Content::Depth(eye_view, span) => Ok((0, PoseWarp::new(&eye_view.view(header.size, span), target)?)),
         Content::Eyes(eyes) => {
             let source = eyes[eye.index()].view(header.size, [1.0, 2.0]);
             Ok((eye.index(), PoseWarp::new(&source, target)?.rotation_only()))

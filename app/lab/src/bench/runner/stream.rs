@@ -8,12 +8,12 @@ use crate::bench::suite::{Job, STREAM_QUANTIZERS};
 use crate::bench::views::{HEADSET_RATE, Views};
 use crate::dataset::{GroupOptions, GroupRenderer};
 use crate::metrics::{Channels, SsimWindow, psnr, ssim};
-use crate::streaming::{Mode, Picture, Receiver, Stage};
+use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
 use image::RgbImage;
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
 use yoro_render::PreparedScene;
-use yoro_stream::{Sight, Wish};
+use yoro_stream::{EyeView, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder};
 
 const MODES: [(Mode, &str); 2] = [(Mode::Eyes, "two eyes, rotation"), (Mode::Depth, "one eye and depth")];
@@ -86,14 +86,14 @@ fn pictures(
     pairs: &[EyePair],
     prepared: &mut PreparedScene,
 ) -> anyhow::Result<Vec<Picture>> {
-    let mut stage = Stage::new(gl, mode)?;
-    let wish = |pair: &EyePair| Wish {
+    let mut renderer = FrameRenderer::new(gl, mode)?;
+    let request = |pair: &EyePair| ViewRequest {
         time: 0.0,
-        eyes: [0, 1].map(|i| Sight { pose: pair.poses[i], frustum: pair.frusta[i] }),
+        eyes: [0, 1].map(|i| EyeView { pose: pair.poses[i], frustum: pair.frusta[i] }),
         dominant: pair.dominant,
         size: pair.size.map(|n| n as u16),
     };
-    pairs.iter().map(|pair| Ok(stage.picture(prepared, &wish(pair))?)).collect()
+    pairs.iter().map(|pair| Ok(renderer.picture(prepared, &request(pair))?)).collect()
 }
 
 /// Notes the mean of both eyes.
