@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Ipd;
-use yoro_render::stereo::{self, AntiAliasing, Chosen, Method, MethodChoice, StereoMethod, StereoOptions};
+use yoro_render::stereo::{
+    self, AntiAliasing, Chosen, History, Method, MethodChoice, StereoMethod, StereoOptions,
+};
 use yoro_render::{RenderSettings, RendererKind};
 
 /// The way to show two images on a flat screen.
@@ -69,6 +71,8 @@ pub struct Settings {
     pub msaa: u32,
     /// The anti-aliasing of images with one sample a pixel: before synthesis, after it, or none.
     pub anti_aliasing: AntiAliasing,
+    /// The resolution of what the other eye has really seen, for disocclusions.
+    pub history: History,
     /// Distance between the eyes in metres.
     pub ipd: Ipd,
     /// The eye that is rendered.
@@ -79,12 +83,13 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        let yoro_protocol::Settings { renderer, msaa, dominant, .. } = Default::default();
+        let yoro_protocol::Settings { renderer, msaa, history, dominant, .. } = Default::default();
         Settings {
             method: MethodChoice::default(),
             renderer,
             msaa,
             anti_aliasing: AntiAliasing::After,
+            history,
             ipd: Ipd::DEFAULT,
             dominant,
             display: Display::SideBySide,
@@ -109,7 +114,8 @@ impl Settings {
     /// Returns the methods' options. They differ from the desktop's in one: no frame is rendered twice because much of
     /// it is near, as finding that out would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
-        StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
+        let &Settings { anti_aliasing, history, .. } = self;
+        StereoOptions { anti_aliasing, history, policy: None, ..StereoOptions::default() }
     }
 
     /// Returns the method that is in use, or the choice between two. Displays that compare with a real render show what

@@ -58,6 +58,21 @@ fn every_method_shows_what_the_desktop_shows() {
         }
         assert!(compared >= 5, "{}: {compared} methods", renderer.name());
     }
+
+    // What was seen while walking fills what is uncovered: better than what is invented.
+    page.choose("renderer", "deferred");
+    page.choose("method", "yoro");
+    page.choose("display", "divider");
+    page.evaluate("yoro.busy = { name: 'test', end: 'The test draws.', stop() {} }; 0");
+    let mut walked = |history: &str| {
+        page.choose("history", history);
+        let walk = "(async () => { yoro.page.goTo(1); for (let i = 0; i < 32; i++) { yoro.page.walk(-0.01, 0, 0); \
+                    yoro.page.draw(480, 320, 0.5); await new Promise((done) => setTimeout(done)); } return yoro.page.psnr[0]; })()";
+        page.evaluate(walk).as_f64().unwrap()
+    };
+    let [off, full] = ["off", "full"].map(&mut walked);
+    eprintln!("the other eye after a walk: {off:.2} dB, with a history {full:.2} dB");
+    assert!(full > off, "{full} dB with a history, {off} dB without");
     page.browser.expect_silence();
 }
 
