@@ -5,6 +5,7 @@ uniform sampler2D blue;     // colour differences, of half the width and height
 uniform sampler2D red;
 uniform int first_column;   // of the half, in pixels
 uniform int height;         // of the picture's part that is shown, in pixels
+uniform int framed;         // 1 to make the outermost pixels black
 
 layout(location = 0) out vec4 out_color;
 
@@ -13,5 +14,8 @@ void main() {
     float y = texelFetch(luma, at, 0).r;
     vec2 difference = vec2(texelFetch(blue, at / 2, 0).r, texelFetch(red, at / 2, 0).r) - 128.0 / 255.0;
     vec3 color = y + vec3(1.402 * difference.y, -0.344136 * difference.x - 0.714136 * difference.y, 1.772 * difference.x);
-    out_color = vec4(color, 1.0);
+    int last = textureSize(luma, 0).x / 2 - 1;
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    bool border = any(equal(here, ivec2(0))) || here.x >= last - 1 || here.y == height - 1;
+    out_color = vec4(framed == 1 && border ? vec3(0.0) : color, 1.0);
 }

@@ -9,12 +9,11 @@ use shiguredo_mp4::bitstream::h264::{
     build_avc1_box_from_annexb, length_prefixed_to_annexb, parse_annexb_nal_units,
 };
 use shiguredo_mp4::boxes::{Avc1Box, SampleEntry, UnknownBox};
-use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
 use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size};
 use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
-use crate::{DEPTH_BOX, Decoder, Encoder, Planes, Rgbd, VideoError, record3d};
+use crate::{Coded, DEPTH_BOX, Decoder, Encoder, Index, Indexer, Planes, Rgbd, VideoError, record3d};
 
 /// How a video is coded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,13 +180,12 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
 pub struct Reader {
     path: PathBuf,
     file: BufReader<File>,
-    /// Place and length of each picture.
-    samples: std::vec::IntoIter<(u64, usize)>,
+    index: Index,
+    /// Pictures that have been read.
+    read: usize,
     /// Parameter sets in the format of Annex B, which come before the first picture.
     parameters: Vec<u8>,
-    length_size: LengthSize,
     decoder: Decoder,
-    frame_rate: u32,
     depth: Option<(Rgbd, DepthCode)>,
 }
 
@@ -214,69 +212,31 @@ impl Reader {
         };
         let mut file = BufReader::new(File::open(path).map_err(failed)?);
         let length = file.get_ref().metadata().map_err(failed)?.len();
-        let mut demuxer = Mp4FileDemuxer::new();
-        while let Some(required) = demuxer.required_input() {
-            let rest = length.saturating_sub(required.position);
-            let size = required.size.map_or(rest, |size| size as u64);
-            if size == 0 || size > rest {
-                return Err(VideoError::format(path, "it is no MP4 file, or it is cut off"));
-            }
-            let data = read_at(&mut file, required.position, size as usize).map_err(failed)?;
-            demuxer.handle_input(Input { position: required.position, data: &data });
+        let mut indexer = Indexer::new(path, length);
+        while let Some((position, size)) = indexer.needed()? {
+            indexer.take(position, &read_at(&mut file, position, size).map_err(failed)?);
         }
-        let damaged = |error: &dyn std::fmt::Debug| VideoError::format(path, format!("{error:?}"));
-        let mut samples = Vec::new();
-        let mut found = None;
-        while let Some(sample) = demuxer.next_sample().map_err(|error| damaged(&error))? {
-            if sample.track.kind != TrackKind::Video {
-                continue;
-            }
-            if let Some(SampleEntry::Avc1(entry)) = sample.sample_entry {
-                found.get_or_insert_with(|| {
-                    let ticks = u64::from(sample.track.timescale.get());
-                    (entry.clone(), ticks.div_ceil(u64::from(sample.duration.max(1))).min(1000) as u32)
-                });
-            }
-            if sample.data_offset.checked_add(sample.data_size as u64).is_none_or(|end| end > length) {
-                return Err(VideoError::format(path, "it is cut off"));
-            }
-            samples.push((sample.data_offset, sample.data_size));
-        }
-        let (entry, frame_rate) = found.ok_or_else(|| VideoError::format(path, "it has no H.264 video"))?;
-        let depth = match rgbd(path, &entry)? {
+        let index = indexer.finish()?;
+        let depth = match index.rgbd {
             Some(rgbd) => Some((rgbd, DepthCode::Luma)),
             None => {
-                let size = [entry.visual.width, entry.visual.height].map(u32::from);
-                let found = record3d::find(&mut file, length, size).map_err(failed)?;
+                let found = record3d::find(&mut file, length, index.size()).map_err(failed)?;
                 let found = found.transpose().map_err(|what| VideoError::format(path, what))?;
                 found.map(|(rgbd, range)| (rgbd, DepthCode::Hue(range)))
             }
         };
-        let sets = entry.avcc_box.sps_list.iter().chain(&entry.avcc_box.pps_list);
-        Ok(Reader {
-            path: path.into(),
-            file,
-            samples: samples.into_iter(),
-            parameters: sets.flat_map(|set| [&[0, 0, 0, 1], &set[..]].concat()).collect(),
-            length_size: match entry.avcc_box.length_size_minus_one.get() {
-                0 => LengthSize::OneByte,
-                1 => LengthSize::TwoBytes,
-                _ => LengthSize::FourBytes,
-            },
-            decoder: Decoder::new()?,
-            frame_rate,
-            depth,
-        })
+        let (parameters, decoder) = (index.parameters(), Decoder::new()?);
+        Ok(Reader { path: path.into(), file, index, read: 0, parameters, decoder, depth })
     }
 
     /// Returns the number of pictures that are still to be read.
     pub fn frames(&self) -> usize {
-        self.samples.len()
+        self.index.pictures.len() - self.read
     }
 
     /// Returns the pictures a second, rounded up.
     pub fn frame_rate(&self) -> u32 {
-        self.frame_rate
+        self.index.frame_rate
     }
 
     /// Returns what the depth in the pictures means.
@@ -311,10 +271,11 @@ impl Reader {
     /// [`VideoError::File`], and [`VideoError::Format`] for a damaged picture or one of another size than its depth
     /// says.
     pub fn read(&mut self) -> Result<Option<Planes>, VideoError> {
-        let Some((offset, size)) = self.samples.next() else { return Ok(None) };
+        let Some(&Coded { offset, size, .. }) = self.index.pictures.get(self.read) else { return Ok(None) };
+        self.read += 1;
         let data = read_at(&mut self.file, offset, size)
             .map_err(|source| FileError::Read { path: self.path.clone(), source })?;
-        let annex_b = length_prefixed_to_annexb(&data, self.length_size)
+        let annex_b = length_prefixed_to_annexb(&data, self.index.length_size())
             .map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
         let bytes = [std::mem::take(&mut self.parameters), annex_b].concat();
         let picture = self.decoder.decode(&bytes).map_err(|error| VideoError::format(&self.path, error))?;
@@ -327,17 +288,6 @@ impl Reader {
             }
         }
         Ok(Some(picture))
-    }
-}
-
-fn rgbd(path: &Path, entry: &Avc1Box) -> Result<Option<Rgbd>, VideoError> {
-    let ours = entry.unknown_boxes.iter().find(|found| found.box_type == BoxType::Uuid(DEPTH_BOX));
-    let Some(ours) = ours else { return Ok(None) };
-    let rgbd: Rgbd =
-        serde_json::from_slice(&ours.payload).map_err(|error| VideoError::format(path, error))?;
-    match rgbd.is_valid() {
-        true => Ok(Some(rgbd)),
-        false => Err(VideoError::format(path, "what it says of its depth cannot be")),
     }
 }
 

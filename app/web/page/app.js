@@ -39,7 +39,8 @@ export const app = {
   source: null,
   /** The source that is being loaded. @type {Source | null} */
   wanted: null,
-  /** A stream's state, once it has begun. @type {{frames: number, there: boolean, losses: number} | null} */
+  /** A stream's or a video's state, once it has begun.
+   * @type {{frames: number, there: boolean, losses: number, video?: boolean, stop: () => void, again: () => void} | null} */
   stream: null,
   /** The module's facts about the scene; null for pictures. */
   facts: null,

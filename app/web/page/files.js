@@ -5,10 +5,11 @@ import { changed } from './drawing.js';
 import { clear, say } from './messages.js';
 import { photo } from './photos.js';
 import { checkOptions, fill, guess, options, showFields } from './pictures.js';
-import { showSource } from './sources.js';
+import { showSource, stopLoading } from './sources.js';
 
 const MODEL = /\.(obj|gltf|glb)$/i;
 const PICTURE = /\.(png|jpe?g|bmp|tga|exr)$/i;
+const VIDEO = /\.(mp4|m4v|mov)$/i;
 const EXR = /\.exr$/i;
 const DEPTH = /depth|disp|z[-_. ]?(buffer|map)/i;
 /** A size beyond the capacity of a browser's module, in bytes. */
@@ -57,7 +58,7 @@ export function understand(files) {
     throw new Error(`${pictures.length === 1 ? 'One picture is not enough' : `${pictures.length} pictures are too many`}: drop two, colour and depth, the one with “depth” in its name.`);
   }
   const names = files.map(({ name }) => name).slice(0, 3).join(', ') || 'nothing';
-  throw new Error(`There is neither a model (OBJ, glTF, GLB) nor a pair of pictures (PNG, JPEG, EXR) among the files: ${names}.`);
+  throw new Error(`There is neither a model (OBJ, glTF, GLB) nor a pair of pictures (PNG, JPEG, EXR) among the files, nor are they one RGBD video (MP4): ${names}.`);
 }
 
 /**
@@ -69,6 +70,12 @@ export async function take(files, known = null) {
   try {
     if (app.busy) throw new Error(app.busy.end);
     if (!app.page) throw new Error('The page has not started, so that it cannot show files yet.');
+    if (files.length === 1 && VIDEO.test(files[0].name)) {
+      clear();
+      stopLoading();
+      (await import('./stream.js')).play(files[0].file);
+      return;
+    }
     const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
     if (bytes > MAX_BYTES) throw new Error(`The files have ${(bytes / 1e9).toFixed(1)} GB together, more than a page can hold: leave some out.`);
     const read = await Promise.all(files.map(async ({ name, file }) => ({ name, bytes: await file.arrayBuffer() })));

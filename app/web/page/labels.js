@@ -44,6 +44,6 @@ export function label(real) {
   element('divider').hidden = !compares;
   element('magnifier').disabled = !compares;
   element('error').disabled = !app.facts;
-  element('play').disabled = !app.facts?.moves;
+  element('play').disabled = !app.facts?.moves && !app.stream?.video;
   element('stage').style.setProperty('--divider', `${element('divider').value}%`);
 }

@@ -84,15 +84,11 @@ function lost(event) {
 }
 
 function restored() {
-  // A stream begins again with the page.
-  if (app.stream) {
-    location.reload();
-    return;
-  }
   if (!attach()) return;
   clear();
   apply();
-  showAgain();
+  if (app.stream) app.stream.again();
+  else showAgain();
 }
 
 function fillScreen() {

@@ -39,6 +39,7 @@ export function stopLoading() {
 function end() {
   app.wanted = null;
   loading(null);
+  if (app.source) app.stream?.stop();
   describe();
   try {
     apply();

@@ -1,4 +1,5 @@
-// A stream from a server: connects, hands frames to the module, tells the server where the head is, and shows figures.
+// Moving pictures of one eye with its depth: a stream from a server, or an RGBD video. Hands frames to the module, tells the
+// server where the head is, and shows figures.
 
 import { app, element } from './app.js';
 import { apply, offerOrbit } from './choices.js';
@@ -14,11 +15,52 @@ const LINE = 1000;
 const BUSY = [1, 1];
 
 let worker = null;
+/** The file that is played, if the worker plays one. @type {File | null} */
+let playing = null;
 let isThere = false;
 /** Since the last line of figures. */
 let sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
 let last = null;
 let timers = [];
+
+/** Says why nothing can be decoded here; true if it can. */
+function canDecode() {
+  const can = 'VideoDecoder' in globalThis;
+  if (!can) {
+    say(isSecureContext
+      ? 'This browser has no WebCodecs, which decode videos for pages: update it, or use another one.'
+      : 'Browsers decode videos for a page only over https, or from an address on this machine (localhost).');
+  }
+  return can;
+}
+
+/** Starts a worker that decodes. @param {URL} script */
+function start(script) {
+  worker = new Worker(script, { type: 'module' });
+  worker.onmessage = ({ data }) => {
+    try {
+      receive(data);
+    } catch (error) {
+      say(sentence(error));
+    }
+  };
+}
+
+/** Plays an RGBD video, over and over, unless it is paused. @param {File} file */
+export function play(file) {
+  if (!canDecode()) return;
+  if (worker) stop();
+  loading(`Reading ${file.name}`);
+  start(new URL('video-worker.js', import.meta.url));
+  playing = file;
+  element('play').checked = true;
+  worker.postMessage({ file });
+}
+
+/** Tells a video to go on or to pause. */
+function pause() {
+  if (playing) worker?.postMessage({ playing: element('play').checked && !document.hidden });
+}
 
 /** Follows the stream of a token, from the server that the page comes from. @param {string} token */
 export function follow(token) {
@@ -27,27 +69,17 @@ export function follow(token) {
     say('The link’s token is not whole: open the link that the server prints.');
     return;
   }
-  if (!('VideoDecoder' in globalThis)) {
-    say(isSecureContext
-      ? 'This browser has no WebCodecs, which decode the stream: update it, or use another one.'
-      : 'Browsers decode a stream only over https, or from an address on this machine (localhost).');
-    return;
-  }
+  if (!canDecode()) return;
   loading('Waiting for the stream');
   element('where').textContent = 'The eye comes from the server, which gets to know where your head is.';
   const begin = { address: `${location.origin.replace(/^http/, 'ws')}/stream`, hello };
-  worker = new Worker(new URL('stream-worker.js', import.meta.url), { type: 'module' });
-  worker.onmessage = ({ data }) => {
-    try {
-      receive(data);
-    } catch (error) {
-      say(sentence(error));
-    }
-  };
+  start(new URL('stream-worker.js', import.meta.url));
   worker.postMessage({ begin });
   timers = [setInterval(request, TICK), setInterval(figures, LINE)];
   // Nobody sees a hidden page: another one may have the stream.
-  document.addEventListener('visibilitychange', () => worker?.postMessage(document.hidden ? { end: true } : { begin }));
+  document.addEventListener('visibilitychange', () => {
+    if (!playing) worker?.postMessage(document.hidden ? { end: true } : { begin });
+  });
 }
 
 /** Ends the connection for good. */
@@ -55,6 +87,7 @@ function end() {
   worker?.terminate();
   timers.forEach(clearInterval);
   worker = null;
+  playing = null;
   isThere = false;
   if (app.stream) app.stream.there = false;
   loading(null);
@@ -67,12 +100,9 @@ function stop() {
   app.settings.stream = null;
 }
 
-function receive({ answer, lost, fault, head, planes, bytes, skipped }) {
-  if (!app.page || app.source) {
-    if (app.source) stop();
-    return;
-  }
-  if (answer) welcome(answer);
+function receive({ answer, video, lost, fault, head, planes, bytes, skipped }) {
+  if (!app.page) return;
+  if (answer) welcome(answer, video);
   if (fault) {
     end();
     say(fault);
@@ -88,7 +118,7 @@ function receive({ answer, lost, fault, head, planes, bytes, skipped }) {
   try {
     const [decoded, [time, render, code, quantizer, width, height]] = app.page.streamFrame(head, planes);
     const latency = performance.now() - time;
-    worker.postMessage({ send: decoded });
+    worker?.postMessage({ send: decoded });
     sums.frames += 1;
     sums.bytes += bytes;
     sums.skipped += skipped;
@@ -97,13 +127,17 @@ function receive({ answer, lost, fault, head, planes, bytes, skipped }) {
     app.stream.frames += 1;
     if (!app.busy) changed();
   } finally {
-    worker.postMessage({ free: true });
+    worker?.postMessage({ free: true });
   }
 }
 
-function welcome(answer) {
+function welcome(answer, video) {
   try {
     app.page.streamBegin(answer);
+    if (video) {
+      app.page.streamFrusta(video.frusta);
+      app.settings.dominant = video.dominant;
+    }
   } catch (error) {
     // Another page may end; every other refusal would come again.
     if (BUSY.some((byte, i) => answer[i] !== byte)) end();
@@ -114,14 +148,18 @@ function welcome(answer) {
   clear();
   loading(null);
   isThere = true;
-  app.stream ??= { frames: 0, there: true, losses: 0 };
-  app.stream.there = true;
+  app.stream ??= { frames: 0, there: true, losses: 0, stop, again: () => { if (playing) play(playing); else location.reload(); } };
+  Object.assign(app.stream, { there: true, video: Boolean(video) });
   Object.assign(app, { source: null, facts: null });
   app.settings.scene = null;
   offerOrbit();
   apply();
+  if (playing) element('facts').textContent = playing.name;
   startLoop();
 }
+
+document.addEventListener('visibilitychange', pause);
+element('play').addEventListener('change', pause);
 
 /** Asks for the eyes as they were made last. */
 function request() {

@@ -5,6 +5,7 @@ mod headset;
 mod measure;
 mod methods;
 mod stream;
+mod video;
 mod visit;
 mod visitor;
 

@@ -28,7 +28,15 @@ const LASTING: [&str; 8] = [
     "example.mtl",
 ];
 /// The scripts that the page does not load as modules of its own.
-const SEPARATE: [&str; 4] = ["boot.js", "worker.js", "stream.js", "stream-worker.js"];
+const SEPARATE: [&str; 7] = [
+    "boot.js",
+    "worker.js",
+    "stream.js",
+    "stream-worker.js",
+    "video-worker.js",
+    "decoding.js",
+    "yoro_web_video.js",
+];
 /// Returns the folder of the page's sources.
 pub fn sources() -> PathBuf {
     root().join("app/web/page")
@@ -94,7 +102,7 @@ fn fill(text: &str, version: &str, names: &[String], source: Option<&str>) -> St
     let modules: Vec<String> =
         scripts.map(|name| format!("<link rel=\"modulepreload\" href=\"{VERSION}/{name}\">")).collect();
     // A stream has no use without a network.
-    let kept = names.iter().filter(|name| !name.starts_with("stream"));
+    let kept = names.iter().filter(|name| *name != "stream-worker.js");
     let list: Vec<String> = kept.map(|name| format!("'{VERSION}/{name}'")).collect();
     let source = source.map_or_else(String::new, |source| format!("<a href=\"{source}\">Source</a>"));
     text.replace("<!-- MODULES -->", &modules.join("\n"))

@@ -12,8 +12,8 @@ use wasm_bindgen_cli_support::Bindgen;
 
 /// What a first visit loads besides the module.
 const TEXTS: [&str; 5] = ["css", "html", "js", "svg", "webmanifest"];
-/// What only a visit to a stream loads.
-const LATER: [&str; 2] = ["stream.js", "stream-worker.js"];
+/// What only streams and videos load.
+const LATER: [&str; 4] = ["stream.js", "stream-worker.js", "video-worker.js", "decoding.js"];
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();

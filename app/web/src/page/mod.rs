@@ -219,7 +219,7 @@ impl Page {
         self.scene().map_or(Ok(()), |scene| scene.prepared.set_time(seconds)).map_err(sentence)
     }
 
-    /// Goes to a viewpoint of the scene.
+    /// Goes to a viewpoint of the scene, or to where a video was taken.
     #[wasm_bindgen(js_name = goTo)]
     pub fn go_to(&mut self, viewpoint: usize) {
         if let Content::Scene(scene) = &self.content
@@ -228,6 +228,11 @@ impl Page {
             self.walker = Walker::new(viewpoint.pose());
             self.orbit(self.orbits);
             self.measure_again();
+        }
+        if let Content::Stream(stream) = &self.content
+            && stream.frusta.is_some()
+        {
+            self.walker = Walker::new(Pose::IDENTITY);
         }
     }
 
@@ -273,8 +278,9 @@ impl Page {
             scene.render(&self.gl, &self.settings, self.walker.pose(), size).map_err(sentence)?;
         }
         if let Content::Stream(stream) = &mut self.content {
-            let size = self.settings.display.part([width, height]);
-            stream.draw(&self.settings.pair(self.walker.pose(), size)).map_err(sentence)?;
+            let part = self.settings.display.part([width, height]);
+            let (_, pair) = stream.place(&self.settings, self.walker.pose(), part);
+            stream.draw(&pair).map_err(sentence)?;
         }
         self.show(width, height, divider);
         Ok(())
@@ -339,15 +345,13 @@ impl Page {
             self.show.eyes(display, &scene.frame, dominant, scene.real_image(&self.settings), &layout);
             return;
         }
-        if let Content::Stream(stream) = &self.content {
-            // There is no real image to compare with: the divider has nothing on its left.
-            let size = display.part(canvas);
-            let layout = Layout { origin: [0, 0], size, step: size[0], divider: 0 };
-            self.show.eyes(display, &stream.frame, dominant, None, &layout);
-            return;
-        }
         self.gl.bind_framebuffer(None, [0, 0], canvas);
         self.gl.clear(None);
+        if let Content::Stream(stream) = &self.content {
+            // There is no real image to compare with: the divider has nothing on its left.
+            let (layout, _) = stream.place(&self.settings, self.walker.pose(), display.part(canvas));
+            self.show.eyes(display, &stream.frame, dominant, None, &layout);
+        }
         if let Content::Pictures(pictures) = &self.content {
             pictures.draw(&self.show, &self.settings, canvas);
         }

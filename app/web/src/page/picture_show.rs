@@ -113,12 +113,7 @@ impl PictureShow {
             display if !display.needs_truth() => display,
             _ => Display::one_eye(self.options.source.targets()[0].0),
         };
-        let part = display.part(canvas);
-        let [width, height] = self.pair.size.map(|n| n as f32);
-        let factor = (part[0] as f32 / width).min(part[1] as f32 / height);
-        let size = [(width * factor) as u32, (height * factor) as u32].map(|n| n.max(1));
-        let origin = [part[0].saturating_sub(size[0]) / 2, part[1].saturating_sub(size[1]) / 2];
-        let layout = Layout { origin, size, step: part[0], divider: 0 };
+        let layout = Layout::whole(display.part(canvas), self.pair.size.map(|n| n as f32));
         show.eyes(display, &self.frame, settings.dominant, None, &layout);
     }
 }

@@ -22,6 +22,16 @@ pub struct Layout {
     pub divider: u32,
 }
 
+impl Layout {
+    /// Shows images with this proportion of width to height as large as they can be in the middle of parts of a canvas.
+    pub fn whole(part: [u32; 2], [width, height]: [f32; 2]) -> Layout {
+        let factor = (part[0] as f32 / width).min(part[1] as f32 / height);
+        let size = [width, height].map(|side| ((side * factor).round() as u32).max(1));
+        let origin = [part[0].saturating_sub(size[0]) / 2, part[1].saturating_sub(size[1]) / 2];
+        Layout { origin, size, step: part[0], divider: 0 }
+    }
+}
+
 /// The programs that show images; they fill a rectangle, scaled to it.
 pub struct Show {
     gl: Rc<Context>,

@@ -2,6 +2,7 @@
 
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
+use yoro::eyes::{Frustum, Pose};
 use yoro_stream::{FromServer, FromViewer, Refusal, VERSION};
 
 use super::error::sentence;
@@ -43,6 +44,17 @@ impl Page {
             _ => "The server has another version of yoro: reload the page.",
         };
         Err(JsError::new(refused))
+    }
+
+    /// Shows the stream as a video, whole, from where it was taken: `frusta` are the tangents of left, right, bottom and top of
+    /// the left eye, then of the right one. Nothing for fewer numbers.
+    #[wasm_bindgen(js_name = streamFrusta)]
+    pub fn stream_frusta(&mut self, frusta: &[f32]) {
+        let Content::Stream(stream) = &mut self.content else { return };
+        let ([left, right], []) = frusta.as_chunks::<4>() else { return };
+        let frustum = |[left, right, bottom, top]: [f32; 4]| Frustum { left, right, bottom, top };
+        stream.frusta = Some([*left, *right].map(frustum));
+        self.walker = Walker::new(Pose::IDENTITY);
     }
 
     /// Takes a frame, whose H.264 may be left out, with its decoded picture. Returns the message that confirms it, and six

@@ -2,7 +2,9 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{Eye, EyePair, EyesError, PoseWarp, View};
+use super::show::Layout;
+use crate::settings::Settings;
+use yoro::eyes::{Eye, EyePair, EyesError, Frustum, Pose, PoseWarp, View};
 use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
@@ -22,6 +24,8 @@ pub struct StreamShow {
     /// The first eye's depth. Two eyes have none: all is taken as far away.
     depth: Option<Texture>,
     header: Option<FrameHeader>,
+    /// The eyes' frusta where they are not the page's: a video's, which has nothing beyond them.
+    pub frusta: Option<[Frustum; 2]>,
     /// The eyes that were made last.
     pair: Option<EyePair>,
     /// Their images, where they are for the canvas.
@@ -39,6 +43,7 @@ impl StreamShow {
             colors: [color()?, color()?],
             depth: None,
             header: None,
+            frusta: None,
             pair: None,
             frame: StereoFrame::new(gl, [1, 1])?,
         })
@@ -89,6 +94,8 @@ impl StreamShow {
                 self.decoded.texture(name, unit as u32, texture.raw());
             }
             self.decoded.set("first_column", i as i32 * half as i32).set("height", height as i32);
+            // What is beyond the border repeats it.
+            self.decoded.set("framed", i32::from(self.frusta.is_some()));
             self.gl.draw_screen();
         }
         self.header = Some(header);
@@ -111,6 +118,18 @@ impl StreamShow {
             self.any_view.synthesize(source, &warp, to)?;
         }
         Ok(())
+    }
+
+    /// Returns where the eyes are shown on parts of a canvas of this size, and the eyes of a head there: the page's, or a
+    /// video's, whole and with black beside them.
+    pub fn place(&self, settings: &Settings, head: Pose, part: [u32; 2]) -> (Layout, EyePair) {
+        let Some(frusta) = self.frusta else {
+            let layout = Layout { origin: [0, 0], size: part, step: part[0], divider: 0 };
+            return (layout, settings.pair(head, part));
+        };
+        let layout = Layout::whole(part, [frusta[0].width(), frusta[0].height()]);
+        let pair = EyePair { frusta, ..settings.pair(head, layout.size) };
+        (layout, pair)
     }
 
     /// Makes both eyes for the canvas.
