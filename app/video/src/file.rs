@@ -13,7 +13,8 @@ use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_max
 use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
-use crate::{Coded, DEPTH_BOX, Decoder, Encoder, Index, Indexer, Planes, Rgbd, VideoError, record3d};
+use crate::record3d::{self, Recording};
+use crate::{Coded, DEPTH_BOX, Decoder, Encoder, Index, Indexer, Planes, Rgbd, VideoError};
 
 /// How a video is coded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,15 +187,15 @@ pub struct Reader {
     /// Parameter sets in the format of Annex B, which come before the first picture.
     parameters: Vec<u8>,
     decoder: Decoder,
-    depth: Option<(Rgbd, DepthCode)>,
+    depth: Option<Depth>,
 }
 
-/// How a picture tells depth.
-enum DepthCode {
-    /// As [`Rgbd::pack`] has it.
-    Luma,
-    /// As the application Record3D has it: distances in metres of the hues 0 and 1.
-    Hue([f32; 2]),
+/// What depth a video has.
+enum Depth {
+    /// As [`Rgbd::pack`] writes it.
+    Luma(Rgbd),
+    /// As the application Record3D writes it.
+    Hue(Recording),
 }
 
 impl Reader {
@@ -218,11 +219,11 @@ impl Reader {
         }
         let index = indexer.finish()?;
         let depth = match index.rgbd {
-            Some(rgbd) => Some((rgbd, DepthCode::Luma)),
+            Some(rgbd) => Some(Depth::Luma(rgbd)),
             None => {
                 let found = record3d::find(&mut file, length, index.size()).map_err(failed)?;
                 let found = found.transpose().map_err(|what| VideoError::format(path, what))?;
-                found.map(|(rgbd, range)| (rgbd, DepthCode::Hue(range)))
+                found.map(Depth::Hue)
             }
         };
         let (parameters, decoder) = (index.parameters(), Decoder::new()?);
@@ -244,8 +245,10 @@ impl Reader {
     /// # Errors
     /// [`VideoError::NoDepth`] for an ordinary video.
     pub fn rgbd(&self) -> Result<Rgbd, VideoError> {
-        let no_depth = || VideoError::NoDepth { path: self.path.clone() };
-        self.depth.as_ref().map(|(rgbd, _)| *rgbd).ok_or_else(no_depth)
+        match self.depth {
+            Some(Depth::Luma(rgbd) | Depth::Hue(Recording { rgbd, .. })) => Ok(rgbd),
+            None => Err(VideoError::NoDepth { path: self.path.clone() }),
+        }
     }
 
     /// Returns colour and depth of the next picture, or `None` after the last. Depth is as [`Rgbd`] tells.
@@ -256,10 +259,10 @@ impl Reader {
         let rgbd = self.rgbd()?;
         let Some(picture) = self.read()? else { return Ok(None) };
         Ok(Some(match self.depth {
-            Some((_, DepthCode::Hue(range))) => {
+            Some(Depth::Hue(recording)) => {
                 let [hues, color] = picture.halves();
                 let [hues, color] = [hues, color].map(|half| half.rgb(rgbd.size.into()));
-                (color, record3d::depth(&hues, range, &rgbd))
+                (color, recording.depth(&hues))
             }
             _ => rgbd.unpack(&picture),
         }))
@@ -279,7 +282,7 @@ impl Reader {
             .map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
         let bytes = [std::mem::take(&mut self.parameters), annex_b].concat();
         let picture = self.decoder.decode(&bytes).map_err(|error| VideoError::format(&self.path, error))?;
-        if let Some((rgbd, _)) = &self.depth {
+        if let Ok(rgbd) = self.rgbd() {
             let width = (rgbd.size[0] + rgbd.guard_columns).next_multiple_of(2) as usize;
             let size = [2 * width, rgbd.size[1].next_multiple_of(2) as usize];
             if picture.size != size {

@@ -12,6 +12,7 @@ mod file;
 mod index;
 mod planes;
 #[cfg(feature = "coder")]
+#[cfg(feature = "coder")]
 mod record3d;
 mod rgbd;
 

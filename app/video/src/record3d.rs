@@ -33,21 +33,29 @@ struct Camera {
     range_of_encoded_depth: Option<[f32; 2]>,
 }
 
-/// Returns what the pictures show, and the distances of the hues 0 and 1 in metres. `None` if the file has no such metadata.
+/// What a video shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Recording {
+    pub(crate) rgbd: Rgbd,
+    /// Distances of the hues 0 and 1 in metres.
+    range: [f32; 2],
+}
+
+/// Returns what pictures of this size in pixels show, or why that cannot be. `None` if the file has no such metadata.
 ///
 /// # Errors
-/// What cannot be.
+/// When the file cannot be read.
 pub(crate) fn find(
     file: &mut (impl Read + Seek),
     length: u64,
     size: [u32; 2],
-) -> io::Result<Option<Result<(Rgbd, [f32; 2]), String>>> {
+) -> io::Result<Option<Result<Recording, String>>> {
     let bytes = metadata(file, length)?;
     let Some(at) = bytes.windows(BEGIN.len()).rposition(|window| window == BEGIN) else { return Ok(None) };
     // Other metadata may follow.
     let camera = serde_json::Deserializer::from_slice(&bytes[at..]).into_iter::<Camera>().next();
     let camera = camera.expect("there is a text").map_err(|error| error.to_string());
-    Ok(Some(camera.and_then(|camera| camera.rgbd(size))))
+    Ok(Some(camera.and_then(|camera| camera.recording(size))))
 }
 
 /// Returns the contents of all boxes of an MP4 file but those of the video itself.
@@ -80,7 +88,7 @@ fn metadata(file: &mut (impl Read + Seek), length: u64) -> io::Result<Vec<u8>> {
 impl Camera {
     /// Returns what pictures of this size in pixels show. The other eye is as high as the camera, so where the optical axis
     /// meets the picture counts in width alone.
-    fn rgbd(&self, [width, height]: [u32; 2]) -> Result<(Rgbd, [f32; 2]), String> {
+    fn recording(&self, [width, height]: [u32; 2]) -> Result<Recording, String> {
         let [focal_x, _, _, _, focal_y, _, center_x, ..] = self.intrinsic_matrix;
         let [low, high] = self.range_of_encoded_depth.unwrap_or(DEFAULT_RANGE);
         if width % 2 != 0 {
@@ -101,18 +109,22 @@ impl Camera {
         };
         let inside = center_x > 0.0 && center_x < columns as f32;
         match inside && low >= 0.0 && rgbd.is_valid() {
-            true => Ok((rgbd, [low, high])),
+            true => Ok(Recording { rgbd, range: [low, high] }),
             false => Err("what it says of its camera cannot be".into()),
         }
     }
 }
 
-/// Returns the distances that hues stand for, as [`Rgbd`]'s depth. What was not measured is as far as can be.
-pub(crate) fn depth(hues: &RgbImage, [low, high]: [f32; 2], rgbd: &Rgbd) -> GrayImage {
-    GrayImage::from_fn(hues.width(), hues.height(), |x, y| {
-        let distance = hue(hues.get_pixel(x, y).0).map(|hue| low + hue * (high - low));
-        Luma([distance.filter(|distance| *distance >= NEAREST).map_or(0, |distance| rgbd.quantize(distance))])
-    })
+impl Recording {
+    /// Returns the distances that hues stand for, as [`Rgbd`]'s depth. What was not measured is as far as can be.
+    pub(crate) fn depth(&self, hues: &RgbImage) -> GrayImage {
+        let [low, high] = self.range;
+        GrayImage::from_fn(hues.width(), hues.height(), |x, y| {
+            let distance = hue(hues.get_pixel(x, y).0).map(|hue| low + hue * (high - low));
+            let measured = distance.filter(|distance| *distance >= NEAREST);
+            Luma([measured.map_or(0, |distance| self.rgbd.quantize(distance))])
+        })
+    }
 }
 
 /// Returns the hue, 0 to 1, or `None` for grey.
@@ -154,7 +166,7 @@ pub(crate) mod tests {
         [&(payload.len() as u32 + 8).to_be_bytes(), &kind[..], payload].concat()
     }
 
-    fn found(file: &[u8]) -> Option<Result<(Rgbd, [f32; 2]), String>> {
+    fn found(file: &[u8]) -> Option<Result<Recording, String>> {
         find(&mut Cursor::new(file), file.len() as u64, [120, 32]).unwrap()
     }
 
@@ -172,7 +184,8 @@ pub(crate) mod tests {
     fn the_camera_is_found_wherever_it_stands_but_not_in_the_video() {
         let meta = atom(b"meta", format!("key{CAMERA}more").as_bytes());
         let video = atom(b"mdat", CAMERA.as_bytes());
-        let (rgbd, range) = found(&[&atom(b"ftyp", b"mp42")[..], &video, &meta].concat()).unwrap().unwrap();
+        let Recording { rgbd, range } =
+            found(&[&atom(b"ftyp", b"mp42")[..], &video, &meta].concat()).unwrap().unwrap();
         assert_eq!((rgbd.size, rgbd.farthest, range), ([60, 32], 4.0, [0.0, 4.0]));
         assert_eq!(rgbd.outer_inner.unwrap().map(|angle| (angle.tan() * 50.0).round()), [35.0, 25.0]);
         assert!(found(&[&meta[..], &video].concat()).is_some());
