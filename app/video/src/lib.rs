@@ -12,7 +12,6 @@ mod file;
 mod index;
 mod planes;
 #[cfg(feature = "coder")]
-#[cfg(feature = "coder")]
 mod record3d;
 mod rgbd;
 

@@ -21,14 +21,14 @@ use yoro::eyes::Pose;
 use yoro_files::http::{self, Request};
 use yoro_stream::{FromServer, FromViewer, Refusal, Token, VERSION};
 
-/// A message of a viewer has no more bytes.
-const MOST_BYTES: usize = 1 << 12;
-/// The handshake with a request, and a hello after it, may take so long together.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// A file may take so long.
-const DOWNLOAD: Duration = Duration::from_secs(60);
-/// Connections that have not been let in, of all machines and of one. A browser opens six for a page's files.
-const MOST: [usize; 2] = [64, 16];
+/// The largest message of a viewer, in bytes.
+const MAX_MESSAGE_BYTES: usize = 1 << 12;
+/// The time for a handshake with its request and the hello after it.
+const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
+/// The time for sending a file.
+const FILE_TIMEOUT: Duration = Duration::from_secs(60);
+/// The number of connections that may wait to be let in, of all machines and of one. A browser opens six for a page's files.
+const MAX_PENDING: [usize; 2] = [64, 16];
 
 /// A client's connection, once it speaks WebSocket.
 pub type Socket = WebSocket<Connection>;
@@ -46,7 +46,7 @@ pub struct Access {
     /// How connections are encrypted, if they are.
     pub tls: Option<Arc<ServerConfig>>,
     busy: AtomicBool,
-    strangers: Arc<Strangers>,
+    pending: Arc<PendingConnections>,
 }
 
 impl Access {
@@ -57,14 +57,14 @@ impl Access {
         home: Pose,
         tls: Option<Arc<ServerConfig>>,
     ) -> Access {
-        let (busy, strangers) = (AtomicBool::new(false), Arc::default());
-        Access { token, scheme, hosts, folder, home, tls, busy, strangers }
+        let (busy, pending) = (AtomicBool::new(false), Arc::default());
+        Access { token, scheme, hosts, folder, home, tls, busy, pending }
     }
 
     /// Answers connections for ever, and passes on those that are let in.
     pub fn open(self: &Arc<Self>, listener: &TcpListener, clients: &mpsc::Sender<Connection>) {
         for (socket, address) in std::iter::repeat_with(|| listener.accept()).flatten() {
-            let Some(place) = Strangers::enter(&self.strangers, address.ip()) else {
+            let Some(place) = PendingConnections::enter(&self.pending, address.ip()) else {
                 log::info!("{address} has too many connections");
                 continue;
             };
@@ -86,12 +86,12 @@ impl Access {
 
     /// Answers a connection: with a file, or, for a page of this server with the token, by letting it in.
     fn answer(&self, socket: TcpStream, clients: &mpsc::Sender<Connection>) -> anyhow::Result<()> {
-        let connection = Connection::new(socket, self.tls.as_ref(), PATIENCE)?;
+        let connection = Connection::new(socket, self.tls.as_ref(), HELLO_TIMEOUT)?;
         let request = Request::read(connection.clone())?;
         let admitted = if request.target() == Some("/stream") {
             self.admit(&connection, &request)
         } else {
-            connection.wait_in_all(DOWNLOAD);
+            connection.set_deadline(FILE_TIMEOUT);
             Ok(http::answer(&mut connection.clone(), &request, &self.folder).map(|()| false)?)
         };
         match admitted {
@@ -157,27 +157,29 @@ impl Access {
 
 /// Speaks WebSocket on a connection whose handshake is done.
 pub fn web_socket(connection: Connection) -> Socket {
-    let limits =
-        WebSocketConfig::default().max_message_size(Some(MOST_BYTES)).max_frame_size(Some(MOST_BYTES));
+    let limits = WebSocketConfig::default()
+        .max_message_size(Some(MAX_MESSAGE_BYTES))
+        .max_frame_size(Some(MAX_MESSAGE_BYTES));
     WebSocket::from_raw_socket(connection, Role::Server, Some(limits))
 }
 
-/// Connections that have not been let in, by the address that they come from: none may keep others from connecting.
+/// The number of connections that have not been let in, by the address that they come from: one machine must not keep others from
+/// connecting.
 #[derive(Default)]
-struct Strangers(Mutex<HashMap<IpAddr, usize>>);
+struct PendingConnections(Mutex<HashMap<IpAddr, usize>>);
 
-/// A connection's place among them, until it is dropped.
-struct Place(Arc<Strangers>, IpAddr);
+/// One of these connections: it is counted until this is dropped.
+struct Place(Arc<PendingConnections>, IpAddr);
 
-impl Strangers {
-    fn enter(strangers: &Arc<Strangers>, address: IpAddr) -> Option<Place> {
-        let mut counts = strangers.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let [most, most_of_one] = MOST;
+impl PendingConnections {
+    fn enter(pending: &Arc<PendingConnections>, address: IpAddr) -> Option<Place> {
+        let mut counts = pending.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let [most, most_of_one] = MAX_PENDING;
         if counts.values().sum::<usize>() >= most || counts.get(&address).is_some_and(|n| *n >= most_of_one) {
             return None;
         }
         *counts.entry(address).or_default() += 1;
-        Some(Place(strangers.clone(), address))
+        Some(Place(pending.clone(), address))
     }
 }
 
@@ -199,14 +201,14 @@ mod tests {
 
     #[test]
     fn one_machine_cannot_take_all_connections() {
-        let strangers = Arc::default();
-        let enter = |last: u8| Strangers::enter(&strangers, IpAddr::from([10, 0, 0, last]));
+        let pending = Arc::default();
+        let enter = |last: u8| PendingConnections::enter(&pending, IpAddr::from([10, 0, 0, last]));
         let mut taken: Vec<_> = std::iter::from_fn(|| enter(1)).collect();
-        assert_eq!(taken.len(), MOST[1]);
+        assert_eq!(taken.len(), MAX_PENDING[1]);
         assert!(enter(2).is_some(), "another machine comes in");
         taken.pop();
         assert!(enter(1).is_some(), "a place is free again");
         let others: Vec<_> = (2..=200).filter_map(enter).collect();
-        assert_eq!(taken.len() + others.len(), MOST[0]);
+        assert_eq!(taken.len() + others.len(), MAX_PENDING[0]);
     }
 }

@@ -14,15 +14,15 @@ pub struct Connection(Arc<Inner>);
 struct Inner {
     socket: TcpStream,
     tls: Option<Tls>,
-    patience: Mutex<Patience>,
+    timeout: Mutex<Timeout>,
 }
 
-/// How long reading and writing may take.
+/// The limit of the time that reading and writing take.
 #[derive(Clone, Copy)]
-enum Patience {
-    /// All of it, until then.
+enum Timeout {
+    /// For all of it together.
     Until(Instant),
-    /// Each time.
+    /// For each call.
     Each(Duration),
 }
 
@@ -33,7 +33,7 @@ struct Tls {
 }
 
 impl Connection {
-    /// Takes a connection over, encrypted where there is a configuration. All that is read and written may take so long
+    /// Takes a connection over, encrypted where there is a configuration. The timeout is for all that is read and written
     /// together.
     ///
     /// # Errors
@@ -41,24 +41,24 @@ impl Connection {
     pub fn new(
         socket: TcpStream,
         tls: Option<&Arc<ServerConfig>>,
-        patience: Duration,
+        timeout: Duration,
     ) -> io::Result<Connection> {
         socket.set_nodelay(true)?;
         let tls = tls.map(|config| ServerConnection::new(config.clone())).transpose();
         let tls = tls.map_err(io::Error::other)?;
         let tls = tls.map(|state| Tls { state: Mutex::new(state), sending: Mutex::new(()) });
-        let patience = Mutex::new(Patience::Until(Instant::now() + patience));
-        Ok(Connection(Arc::new(Inner { socket, tls, patience })))
+        let timeout = Mutex::new(Timeout::Until(Instant::now() + timeout));
+        Ok(Connection(Arc::new(Inner { socket, tls, timeout })))
     }
 
-    /// Lets all that is read and written from now on take so long together.
-    pub fn wait_in_all(&self, time: Duration) {
-        *lock(&self.0.patience) = Patience::Until(Instant::now() + time);
+    /// Limits the time of all that is read and written from now on together.
+    pub fn set_deadline(&self, time: Duration) {
+        *lock(&self.0.timeout) = Timeout::Until(Instant::now() + time);
     }
 
-    /// Lets each reading and each writing take so long.
-    pub fn wait_each(&self, time: Duration) {
-        *lock(&self.0.patience) = Patience::Each(time);
+    /// Limits the time of each call that reads or writes.
+    pub fn set_timeout(&self, time: Duration) {
+        *lock(&self.0.timeout) = Timeout::Each(time);
     }
 
     /// Ends the connection: whoever waits for it is woken.
@@ -72,10 +72,10 @@ impl Connection {
     }
 
     /// Returns how long the next call may wait, never zero.
-    fn patience(&self) -> io::Result<Duration> {
-        match *lock(&self.0.patience) {
-            Patience::Each(time) => Ok(time),
-            Patience::Until(end) => {
+    fn timeout(&self) -> io::Result<Duration> {
+        match *lock(&self.0.timeout) {
+            Timeout::Each(time) => Ok(time),
+            Timeout::Until(end) => {
                 let left = end.saturating_duration_since(Instant::now());
                 if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
             }
@@ -83,13 +83,13 @@ impl Connection {
     }
 
     fn receive(&self, to: &mut [u8]) -> io::Result<usize> {
-        self.0.socket.set_read_timeout(Some(self.patience()?))?;
+        self.0.socket.set_read_timeout(Some(self.timeout()?))?;
         (&self.0.socket).read(to)
     }
 
     fn transmit(&self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
-            self.0.socket.set_write_timeout(Some(self.patience()?))?;
+            self.0.socket.set_write_timeout(Some(self.timeout()?))?;
             match (&self.0.socket).write(bytes)? {
                 0 => return Err(io::ErrorKind::WriteZero.into()),
                 written => bytes = &bytes[written..],

@@ -77,7 +77,7 @@ impl Server {
         let mut control = Control::new(self.bounds.quantizer, self.bounds.frame_rate);
         let (mut request, mut answered, mut number): (Option<ViewRequest>, f64, u32) = (None, f64::NAN, 0);
         let mut line = Line::new();
-        connection.wait_each(SILENCE);
+        connection.set_timeout(SILENCE);
         let (tell, heard) = mpsc::channel();
         let listener = web_socket(connection.clone());
         thread::spawn(move || listen(listener, &tell));
