@@ -3,14 +3,17 @@
 use super::Runner;
 use crate::bench::bandwidth::metric::KBIT_S;
 use crate::bench::motion::Motion;
+use crate::bench::pictures::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::suite::{Job, STREAM_QUANTIZERS};
 use crate::bench::views::{HEADSET_RATE, Views};
 use crate::dataset::{GroupOptions, GroupRenderer};
 use crate::metrics::{Channels, SsimWindow, psnr, ssim};
+use crate::picture;
 use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
 use image::RgbImage;
 use yoro::eyes::{Eye, EyePair};
+use yoro_figures::text::slug;
 use yoro_files::interrupt;
 use yoro_render::PreparedScene;
 use yoro_stream::{EyeView, ViewRequest};
@@ -46,6 +49,12 @@ impl Runner<'_> {
             measure(&mut same, &[image.clone(), image], &truth)?;
             truths.push(truth);
         }
+        // The left eye in the last frame.
+        let folder = picture_folder(&self.before.path, &job.setting);
+        let place = |name: &str| folder.join(format!("{}.png", slug(name)));
+        if let Some([left, _]) = truths.last() {
+            picture::save_color(&place("truth"), left)?;
+        }
         let mut measurements = vec![same];
         let mut receiver = Receiver::new(self.gl)?;
         let pictures = MODES.map(|(mode, _)| pictures(self.gl, mode, then, prepared));
@@ -65,6 +74,9 @@ impl Runner<'_> {
                     let decoded = decoder.decode(&bits)?;
                     let eyes = receiver.eyes(&decoded, &picture.content, picture.size, &now[i])?;
                     measure(&mut measurement, &eyes, &truths[i])?;
+                    if i + 1 == pictures.len() {
+                        picture::save_color(&place(&measurement.contender), &eyes[0])?;
+                    }
                     self.bar.inc(1);
                 }
                 let rate = bytes as f64 * 8e-3 * HEADSET_RATE / (pictures.len() - 1) as f64;
