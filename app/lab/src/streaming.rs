@@ -22,9 +22,9 @@ pub enum Mode {
     Eyes,
 }
 
-/// The motion of a head, until its eyes are shown, that pictures are wide enough for.
+/// The largest motion of the head between rendering and display that the guard band covers: 4 degrees, 2 cm.
 const MOTION: HeadMotion = HeadMotion { rotation: 0.07, translation: 0.02 };
-/// The distance in metres from which on they are wide enough.
+/// The nearest surface that it covers the motion for, in metres.
 const NEAREST: f32 = 1.0;
 
 /// A picture to be coded.
@@ -35,7 +35,7 @@ pub struct Picture {
     pub content: Content,
     /// Width and height of each half, without what makes them even.
     pub size: [u16; 2],
-    /// True if depth has another meaning than in the picture before.
+    /// True if the range of depth has changed: the frame must be an intra frame.
     pub new_span: bool,
 }
 
@@ -56,7 +56,7 @@ impl FrameRenderer {
         Ok(FrameRenderer { groups: GroupRenderer::new(gl, &options)?, span: DepthSpan::default(), mode })
     }
 
-    /// Renders what a viewer requests.
+    /// Returns the picture for a request: one eye and its depth, or both eyes.
     ///
     /// # Errors
     /// [`GroupError`] for eyes that cannot be rendered.
@@ -88,7 +88,7 @@ impl FrameRenderer {
             let planes = eyes[0].beside(&eyes[1]);
             return Ok(Picture { planes, content, size: size(&views[0]), new_span: false });
         }
-        // Eyes that are not parallel have no band of their own.
+        // Eyes that are not parallel cannot be synthesized from one another: the dominant view is taken as it is.
         let own =
             pair.synthesis_views(GuardBand::Distance(NEAREST)).map_or(pair.view(pair.dominant), |v| v.source);
         let view = guarded(&own, MOTION)?;

@@ -7,7 +7,7 @@ const EDGE: f32 = 24.0;
 
 /// Unwanted change of one eye's image from a frame to the next: the root of the mean square,
 /// over pixels and red, green and blue, of `(S1 - S0) - (T1 - T0)` for the images S of a method and T of the
-/// ground truth at the same two moments, in steps of 255.
+/// ground truth at the same two moments, in units of 1/255 of the full range.
 ///
 /// An error that stands still on the screen is not flicker, an error that appears, goes or moves is. This is dtSSD
 /// of Erofeev et al., "Perceptually Motivated Benchmark for Video Matting", BMVC 2015, on colours. For scale, the
@@ -50,16 +50,20 @@ impl FlickerMeter {
         check_sizes(before, after)?;
         holes.iter().try_for_each(|holes| check_mask(before, holes))?;
         let edges = truth.map(edges);
-        let region = |i: usize| match () {
-            () if holes.iter().any(|h| h[i]) => Region::Hole,
-            () if edges.iter().any(|e| e[i]) => Region::Edge,
-            () => Region::Rest,
+        let region = |i: usize| {
+            if holes.iter().any(|h| h[i]) {
+                Region::Hole
+            } else if edges.iter().any(|e| e[i]) {
+                Region::Edge
+            } else {
+                Region::Rest
+            }
         };
         let regions = (0..holes[0].len()).map(region).collect();
         Ok(FlickerMeter { size: before.dimensions(), regions, change: difference(before, after).collect() })
     }
 
-    /// The ground truth's own change.
+    /// Returns the RMS change of the ground truth between the frames, in the same unit.
     pub fn change(&self) -> Flicker {
         self.over_regions(self.change.iter().copied())
     }

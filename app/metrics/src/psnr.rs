@@ -26,7 +26,7 @@ impl Psnr {
     }
 }
 
-/// Two decimals, or `inf`; width and alignment are obeyed.
+/// Two decimals unless a precision is given, or `inf`; right-aligned in the width.
 impl fmt::Display for Psnr {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(2);

@@ -1,15 +1,15 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The coarsest quantizer that is used: coarser pictures are no use, and frames are left out instead.
-const COARSEST: u8 = 44;
+/// The largest quantizer that is used: coarser pictures are no use, and frames are left out instead.
+const MAX_QUANTIZER: u8 = 44;
 /// A frame that takes so much longer than the fastest ones has waited in a queue.
-const LATE: Duration = Duration::from_millis(15);
+const QUEUEING: Duration = Duration::from_millis(15);
 /// A frame that takes so much longer stands for several late ones.
 const STUCK: Duration = Duration::from_millis(60);
 /// So many late frames in a row make pictures coarser.
 const MOST_LATE: u32 = 3;
-/// Pictures become finer after so long without a change and without a late frame in a row.
+/// The quantizer falls by one when the newest frame was not late and the quantizer has not changed for so long.
 const CALM: Duration = Duration::from_secs(1);
 /// The fastest round trip is that of the last one or two of these.
 const WINDOW: Duration = Duration::from_secs(5);
@@ -20,14 +20,14 @@ const WINDOW: Duration = Duration::from_secs(5);
 /// Nothing waits in a queue: while the oldest frame on its way takes too long, none is made, and the next one that is made
 /// shows the newest pose.
 #[derive(Clone, Debug)]
-pub struct Control {
+pub struct RateControl {
     interval: Duration,
-    finest: u8,
+    min_quantizer: u8,
     quantizer: u8,
     /// The next frame is not made before.
     next: Duration,
     /// Number and time of the frames that are on their way.
-    flying: VecDeque<(u32, Duration)>,
+    in_flight: VecDeque<(u32, Duration)>,
     /// The fastest round trips of this window and the one before.
     fastest: [Option<Duration>; 2],
     window_start: Duration,
@@ -36,15 +36,15 @@ pub struct Control {
     round_trip: Option<Duration>,
 }
 
-impl Control {
-    /// Starts with frames of quantizer `finest`, which is never undercut, at most `frame_rate` a second.
-    pub fn new(finest: u8, frame_rate: f32) -> Control {
-        Control {
+impl RateControl {
+    /// Starts with frames of quantizer `min_quantizer`, which is never undercut, at most `frame_rate` a second.
+    pub fn new(min_quantizer: u8, frame_rate: f32) -> RateControl {
+        RateControl {
             interval: Duration::from_secs_f32(1.0 / frame_rate),
-            finest,
-            quantizer: finest,
+            min_quantizer,
+            quantizer: min_quantizer,
             next: Duration::ZERO,
-            flying: VecDeque::new(),
+            in_flight: VecDeque::new(),
             fastest: [None; 2],
             window_start: Duration::ZERO,
             late: 0,
@@ -55,10 +55,10 @@ impl Control {
 
     /// True if a frame is due.
     pub fn is_due(&self, now: Duration) -> bool {
-        let flows = match (self.flying.front(), self.fastest()) {
+        let flows = match (self.in_flight.front(), self.fastest()) {
             (None, _) => true,
             (Some((_, sent)), Some(fastest)) => {
-                now.saturating_sub(*sent) < fastest + self.interval + 2 * LATE
+                now.saturating_sub(*sent) < fastest + self.interval + 2 * QUEUEING
             }
             (Some(_), None) => false,
         };
@@ -77,15 +77,15 @@ impl Control {
 
     /// Notes that a frame is handed to the transport.
     pub fn sent(&mut self, number: u32, now: Duration) {
-        self.flying.push_back((number, now));
+        self.in_flight.push_back((number, now));
         self.next = (self.next + self.interval).max(now);
     }
 
     /// Notes that the viewer has decoded a frame. Numbers that are not on their way change nothing.
     pub fn decoded(&mut self, number: u32, now: Duration) {
-        let Some(at) = self.flying.iter().position(|(flying, _)| *flying == number) else { return };
+        let Some(at) = self.in_flight.iter().position(|(in_flight, _)| *in_flight == number) else { return };
         // Those before it were not shown.
-        let (_, sent) = self.flying.drain(..=at).next_back().unwrap_or((number, now));
+        let (_, sent) = self.in_flight.drain(..=at).next_back().unwrap_or((number, now));
         let round_trip = now.saturating_sub(sent);
         self.round_trip = Some(round_trip);
         if now.saturating_sub(self.window_start) >= WINDOW {
@@ -96,16 +96,16 @@ impl Control {
         let fastest = self.fastest().unwrap_or(round_trip);
         self.late = match round_trip - fastest {
             waited if waited > STUCK => self.late + MOST_LATE,
-            waited if waited > LATE => self.late + 1,
+            waited if waited > QUEUEING => self.late + 1,
             _ => 0,
         };
         let since = now.saturating_sub(self.changed);
         // What was on its way at the last change tells nothing about it.
         if self.late >= MOST_LATE && sent >= self.changed {
-            // Two steps are a fifth of the bits.
-            self.quantizer = (self.quantizer + 2).min(COARSEST.max(self.finest));
+            // Two steps save about a fifth of the bits.
+            self.quantizer = (self.quantizer + 2).min(MAX_QUANTIZER.max(self.min_quantizer));
             (self.late, self.changed) = (0, now);
-        } else if self.late == 0 && since >= CALM && self.quantizer > self.finest {
+        } else if self.late == 0 && since >= CALM && self.quantizer > self.min_quantizer {
             self.quantizer -= 1;
             self.changed = now;
         }
@@ -155,7 +155,7 @@ mod tests {
 
     /// Runs a stream for some virtual seconds over a link that may change with time.
     fn run(seconds: f64, link: impl Fn(f64) -> Link) -> Outcome {
-        let mut control = Control::new(20, FRAME_RATE);
+        let mut control = RateControl::new(20, FRAME_RATE);
         let mut random = Pcg32::seed_from_u64(7);
         let mut outcome = Outcome { ages: Vec::new(), quantizer: 20, bytes: 0.0 };
         let (mut free, mut last_arrival) = (0.0f64, 0.0f64);
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn on_a_narrow_link_pictures_become_coarser_until_nothing_waits() {
-        // A third of what the finest pictures take.
+        // A third of what the min_quantizer pictures take.
         let narrow = Link { bytes_per_second: 1e6, ..LAN };
         let outcome = run(20.0, |_| narrow);
         let (rate, age) = outcome.from(5.0, 20.0);
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_link_that_stands_still_gets_a_few_frames_and_then_the_newest() {
-        let mut control = Control::new(20, FRAME_RATE);
+        let mut control = RateControl::new(20, FRAME_RATE);
         let mut sent = 0;
         for millisecond in 0..7000 {
             let now = Duration::from_millis(millisecond);

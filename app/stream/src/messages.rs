@@ -7,8 +7,8 @@ pub const VERSION: u16 = 1;
 /// What a viewer must know to be served: 128 random bits.
 pub type Token = [u8; 16];
 
-/// A head is no farther from the origin than this, in metres.
-const FARTHEST: f32 = 1e5;
+/// A head is no farther from the origin than this, in metres, as on the page.
+const FARTHEST: f32 = 1e6;
 /// No side of a frustum is farther from its axis than this tangent: that of 80 degrees.
 const STEEPEST: f32 = 5.671;
 /// Sides of pictures in pixels.
@@ -19,7 +19,7 @@ const SIDES: std::ops::RangeInclusive<u16> = 16..=4096;
 pub struct EyeView {
     /// Pose in the world.
     pub pose: Pose,
-    /// Frustum.
+    /// Frustum, as tangents.
     pub frustum: Frustum,
 }
 
@@ -49,7 +49,7 @@ pub struct ViewRequest {
     pub eyes: [EyeView; 2],
     /// The eye to render.
     pub dominant: Eye,
-    /// Width and height of each eye in pixels.
+    /// Width and height of each eye in pixels. The server may answer with fewer.
     pub size: [u16; 2],
 }
 
@@ -86,7 +86,7 @@ pub struct FrameHeader {
     pub time: f64,
     /// What is in it.
     pub content: Content,
-    /// Width and height of each half in pixels.
+    /// Width and height of each half in pixels, without the padding to an even size.
     pub size: [u16; 2],
     /// Milliseconds that it took to render.
     pub render_ms: f32,

@@ -5,7 +5,7 @@ pub struct DepthSpan(Option<[f32; 2]>);
 /// The span reaches further than what is seen, by this factor at its near end and its square at the far one, where a step is
 /// long.
 const ROOM: f32 = 1.25;
-/// A span whose near end is closer by more than this factor wastes steps.
+/// A span is renewed when the nearest surface is farther by more than this factor than when it was chosen: steps are wasted then.
 const WASTE: f32 = 3.0;
 
 impl DepthSpan {

@@ -29,7 +29,7 @@ pub struct Format {
     pub rgbd: Option<Rgbd>,
 }
 
-/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the bytes of video.
+/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the number of bytes of coded pictures.
 /// The file appears when it is complete.
 ///
 /// # Errors
@@ -57,7 +57,7 @@ pub fn write<E: From<VideoError>>(
     }
 }
 
-/// Writes all pictures, and returns the bytes of video.
+/// Writes all pictures, and returns the number of bytes of coded pictures.
 fn fill<E: From<VideoError>>(
     out: &mut (impl Write + Seek),
     path: &Path,

@@ -48,7 +48,7 @@ impl Indexer {
         Indexer { path: path.into(), length, demuxer: Mp4FileDemuxer::new() }
     }
 
-    /// Returns place and length of the piece that is needed next; none if nothing is.
+    /// Returns offset and length in bytes of the piece to [take](Indexer::take) next; `None` when [`Indexer::finish`] may be called.
     ///
     /// # Errors
     /// [`VideoError::Format`] for what is no MP4 file.
@@ -146,7 +146,7 @@ impl Index {
         sets.flat_map(|set| [&[0, 0, 0, 1], &set[..]].concat()).collect()
     }
 
-    /// Returns the bytes of the lengths that stand before the parts of a picture.
+    /// Returns how many bytes the length before each NAL unit of a picture has.
     #[cfg(feature = "coder")]
     pub(crate) fn length_size(&self) -> LengthSize {
         match self.entry.avcc_box.length_size_minus_one.get() {
@@ -164,6 +164,6 @@ fn rgbd(path: &Path, entry: &Avc1Box) -> Result<Option<Rgbd>, VideoError> {
         serde_json::from_slice(&ours.payload).map_err(|error| VideoError::format(path, error))?;
     match rgbd.is_valid() {
         true => Ok(Some(rgbd)),
-        false => Err(VideoError::format(path, "what it says of its depth cannot be")),
+        false => Err(VideoError::format(path, "its depth has parameters that are out of range")),
     }
 }

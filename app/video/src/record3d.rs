@@ -110,7 +110,7 @@ impl Camera {
         let inside = center_x > 0.0 && center_x < columns as f32;
         match inside && low >= 0.0 && rgbd.is_valid() {
             true => Ok(Recording { rgbd, range: [low, high] }),
-            false => Err("what it says of its camera cannot be".into()),
+            false => Err("its camera has parameters that are out of range".into()),
         }
     }
 }

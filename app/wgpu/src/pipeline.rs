@@ -69,10 +69,12 @@ impl<W: WarpKind> Pipeline<W> {
     /// [`WgpuError::AnyView`] for what [`AnyView`] cannot, [`WgpuError::Refused`] for whatever else wgpu refuses. In a browser
     /// the device's handler of uncaptured errors is told of such things.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
-        let kind = match device.adapter_info().device_type {
-            _ if W::ANY_VIEW => Kind::AnyView,
-            DeviceType::Cpu => Kind::Gather(GatherVariant::Software),
-            _ => Kind::Gather(GatherVariant::ShortWay),
+        let kind = if W::ANY_VIEW {
+            Kind::AnyView
+        } else if device.adapter_info().device_type == DeviceType::Cpu {
+            Kind::Gather(GatherVariant::Software)
+        } else {
+            Kind::Gather(GatherVariant::ShortWay)
         };
         Pipeline::of_kind(device, options, kind)
     }

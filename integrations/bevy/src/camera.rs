@@ -20,6 +20,10 @@ use crate::plan::{Plan, Rendering};
 use crate::projection::EyeProjection;
 use crate::shared::{OtherCamera, ShareSystems};
 
+/// The orders of the cameras beside a stereo camera, from its own.
+const OTHER_EYE_ORDER: isize = 1;
+const SCREEN_ORDER: isize = 2;
+
 /// One of the two eyes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Debug, PartialEq, Hash, Clone)]
@@ -187,7 +191,7 @@ pub(crate) struct Screen(pub(crate) Entity);
 
 pub(crate) fn build(app: &mut App) {
     app.register_type::<StereoCamera>()
-        .add_systems(PreUpdate, (forget, back_to_head.after(update_previous_view_data)))
+        .add_systems(PreUpdate, (forget_removed_cameras, back_to_head.after(update_previous_view_data)))
         .configure_sets(PostUpdate, ShareSystems.before(CameraUpdateSystems))
         .add_systems(PostUpdate, arrange.before(ShareSystems))
         .add_systems(
@@ -197,7 +201,7 @@ pub(crate) fn build(app: &mut App) {
                 .before(VisibilitySystems::UpdateFrusta)
                 .before(SimulationLightSystems::UpdateDirectionalLightCascades),
         )
-        .add_observer(end);
+        .add_observer(restore_camera);
 }
 
 /// The components of a stereo camera that decide about its arrangement, or are part of it.
@@ -268,10 +272,11 @@ fn arrange(
         if parts.eyes.arrangement.is_none() || !parts.eyes.renders_to(&parts.target) {
             show(&mut commands, &mut parts);
         }
-        let beside = [(parts.eyes.screen, 2), (parts.other.map(|other| other.entity), 1)];
-        for (entity, later) in beside {
+        let beside =
+            [(parts.eyes.screen, SCREEN_ORDER), (parts.other.map(|other| other.entity), OTHER_EYE_ORDER)];
+        for (entity, offset) in beside {
             if let Some(mut camera) = entity.and_then(|entity| others.get_mut(entity).ok()) {
-                follow(&mut camera, &parts.camera, later);
+                follow(&mut camera, &parts.camera, offset);
             }
         }
         let Some((size, format)) =
@@ -295,13 +300,13 @@ fn arrange(
     }
 }
 
-/// Gives a camera beside a stereo camera its activity, its order plus `later`, and the other eye's its clear colour.
-fn follow(camera: &mut Mut<Camera>, stereo: &Camera, later: isize) {
-    if camera.is_active != stereo.is_active || camera.order != stereo.order + later {
-        (camera.is_active, camera.order) = (stereo.is_active, stereo.order + later);
+/// Copies `is_active` and `order` plus an offset from a stereo camera, and for the other eye's camera `clear_color`, too.
+fn follow(camera: &mut Mut<Camera>, stereo: &Camera, offset: isize) {
+    if camera.is_active != stereo.is_active || camera.order != stereo.order + offset {
+        (camera.is_active, camera.order) = (stereo.is_active, stereo.order + offset);
     }
     // The screen clears what is beside the eyes.
-    if later == 1 && !same_clear_color(camera.clear_color, stereo.clear_color) {
+    if offset == OTHER_EYE_ORDER && !same_clear_color(camera.clear_color, stereo.clear_color) {
         camera.clear_color = stereo.clear_color;
     }
 }
@@ -324,7 +329,7 @@ fn show(commands: &mut Commands, parts: &mut PartsItem) {
     }
     let usages = CameraMainTextureUsages::default().0 | TextureUsages::COPY_DST;
     let camera = Camera {
-        order: parts.camera.order + 2,
+        order: parts.camera.order + SCREEN_ORDER,
         clear_color: ClearColorConfig::Custom(Color::BLACK),
         ..default()
     };
@@ -406,7 +411,7 @@ impl PartsItem<'_, '_> {
         }
         let own = (
             Camera {
-                order: self.camera.order + 1,
+                order: self.camera.order + OTHER_EYE_ORDER,
                 clear_color: self.camera.clear_color,
                 is_active: self.camera.is_active,
                 ..default()
@@ -462,7 +467,7 @@ pub(crate) fn bevy_transform(pose: &Pose) -> Transform {
 }
 
 /// Forgets cameras that somebody else has removed.
-fn forget(
+fn forget_removed_cameras(
     mut commands: Commands,
     mut stereo: Query<(Entity, &mut Eyes, Option<&OtherCamera>)>,
     cameras: Query<(), With<Camera>>,
@@ -480,7 +485,7 @@ fn forget(
 }
 
 /// Restores the single camera.
-fn end(
+fn restore_camera(
     removed: On<Remove, StereoCamera>,
     mut commands: Commands,
     cameras: Query<

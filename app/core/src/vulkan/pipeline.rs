@@ -86,10 +86,12 @@ impl<W: WarpKind> Pipeline<W> {
     pub unsafe fn new(host: &Host, options: &Options) -> Result<Pipeline<W>, VulkanError> {
         // SAFETY: the caller's handles are valid and belong together.
         let adapter = unsafe { Adapter::new(host) };
-        let kind = match adapter.properties.device_type {
-            _ if W::ANY_VIEW => Kind::AnyView,
-            vk::PhysicalDeviceType::CPU => Kind::Gather(GatherVariant::Software),
-            _ => Kind::Gather(GatherVariant::ShortWay),
+        let kind = if W::ANY_VIEW {
+            Kind::AnyView
+        } else if adapter.properties.device_type == vk::PhysicalDeviceType::CPU {
+            Kind::Gather(GatherVariant::Software)
+        } else {
+            Kind::Gather(GatherVariant::ShortWay)
         };
         // SAFETY: the contract of this function is the same.
         unsafe { Pipeline::of_kind(host, options, kind) }

@@ -1,5 +1,5 @@
-//! Who gets in: pages of this server that have the token, one at a time. Whoever has not is given a few connections, and
-//! little time.
+//! Who gets in: pages of this server that have the token, one at a time. Clients without the token are limited in the number of
+//! connections and in time.
 
 use std::collections::HashMap;
 use std::io::Write as _;
@@ -61,8 +61,8 @@ impl Access {
         Access { token, scheme, hosts, folder, home, tls, busy, pending }
     }
 
-    /// Answers connections for ever, and passes on those that are let in.
-    pub fn open(self: &Arc<Self>, listener: &TcpListener, clients: &mpsc::Sender<Connection>) {
+    /// Accepts connections for ever, and passes on those that are let in.
+    pub fn accept(self: &Arc<Self>, listener: &TcpListener, clients: &mpsc::Sender<Connection>) {
         for (socket, address) in std::iter::repeat_with(|| listener.accept()).flatten() {
             let Some(place) = PendingConnections::enter(&self.pending, address.ip()) else {
                 log::info!("{address} has too many connections");
@@ -112,7 +112,7 @@ impl Access {
     fn admit(&self, connection: &Connection, request: &Request) -> anyhow::Result<bool> {
         let mut connection = connection.clone();
         let host = request.header("host").unwrap_or_default();
-        // Any page may open a connection to here, also one whose name leads here.
+        // Against WebSocket hijacking by other sites and DNS rebinding: both must be ours.
         let own = self.hosts.iter().any(|name| name == host)
             && request.header("origin") == Some(&format!("{}://{host}", self.scheme));
         let key = request.header("sec-websocket-key").filter(|_| own);
@@ -132,7 +132,7 @@ impl Access {
         let Some(FromViewer::Hello { version, token }) = hello else {
             bail!("it does not say hello");
         };
-        // Takes as long wherever they differ.
+        // In constant time.
         let differs = token.iter().zip(&self.token).fold(0, |differs, (a, b)| differs | (a ^ b));
         let refusal = if version != VERSION {
             Some(Refusal::Version)

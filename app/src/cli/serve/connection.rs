@@ -13,6 +13,8 @@ pub struct Connection(Arc<Inner>);
 
 struct Inner {
     socket: TcpStream,
+    /// Held while bytes are sent: what two clones write does not mix.
+    sending: Mutex<()>,
     tls: Option<Tls>,
     timeout: Mutex<Timeout>,
 }
@@ -28,8 +30,6 @@ enum Timeout {
 
 struct Tls {
     state: Mutex<ServerConnection>,
-    /// Held from taking records out of the state until they are written, which keeps their order.
-    sending: Mutex<()>,
 }
 
 impl Connection {
@@ -46,9 +46,13 @@ impl Connection {
         socket.set_nodelay(true)?;
         let tls = tls.map(|config| ServerConnection::new(config.clone())).transpose();
         let tls = tls.map_err(io::Error::other)?;
-        let tls = tls.map(|state| Tls { state: Mutex::new(state), sending: Mutex::new(()) });
+        let tls = tls.map(|mut state| {
+            // A message is taken as a whole: another writer's does not get into it.
+            state.set_buffer_limit(None);
+            Tls { state: Mutex::new(state) }
+        });
         let timeout = Mutex::new(Timeout::Until(Instant::now() + timeout));
-        Ok(Connection(Arc::new(Inner { socket, tls, timeout })))
+        Ok(Connection(Arc::new(Inner { socket, sending: Mutex::new(()), tls, timeout })))
     }
 
     /// Limits the time of all that is read and written from now on together.
@@ -66,12 +70,15 @@ impl Connection {
         if let Some(tls) = &self.0.tls {
             lock(&tls.state).send_close_notify();
             // Nobody needs it of a connection that is lost.
-            let _ = self.send(tls);
+            let _ = self.flush_tls(tls);
         }
         let _ = self.0.socket.shutdown(Shutdown::Both);
     }
 
     /// Returns how long the next call may wait, never zero.
+    ///
+    /// # Errors
+    /// `TimedOut` after the deadline.
     fn timeout(&self) -> io::Result<Duration> {
         match *lock(&self.0.timeout) {
             Timeout::Each(time) => Ok(time),
@@ -98,9 +105,9 @@ impl Connection {
         Ok(())
     }
 
-    /// Sends the records that there are.
-    fn send(&self, tls: &Tls) -> io::Result<()> {
-        let _in_order = lock(&tls.sending);
+    /// Sends the records that there are, in their order.
+    fn flush_tls(&self, tls: &Tls) -> io::Result<()> {
+        let _sending = lock(&self.0.sending);
         let mut records = Vec::new();
         let mut state = lock(&tls.state);
         while state.wants_write() {
@@ -110,20 +117,20 @@ impl Connection {
         self.transmit(&records)
     }
 
-    /// Takes records that have come, the handshake's among them, and answers where they want an answer.
-    fn understand(&self, tls: &Tls, mut records: &[u8]) -> io::Result<()> {
+    /// Processes records that have come, the handshake's among them, and sends TLS's own replies.
+    fn process_tls(&self, tls: &Tls, mut records: &[u8]) -> io::Result<()> {
         let mut state = lock(&tls.state);
-        let mut understood = Ok(());
-        while !records.is_empty() && understood.is_ok() {
+        let mut processed = Ok(());
+        while !records.is_empty() && processed.is_ok() {
             state.read_tls(&mut records)?;
-            understood = state.process_new_packets().map(drop);
+            processed = state.process_new_packets().map(drop);
         }
-        let answers = state.wants_write();
+        let has_reply = state.wants_write();
         drop(state);
-        if answers {
-            self.send(tls)?;
+        if has_reply {
+            self.flush_tls(tls)?;
         }
-        understood.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+        processed.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
     }
 }
 
@@ -138,7 +145,7 @@ impl Read for Connection {
             }
             match self.receive(&mut records)? {
                 0 => return Ok(0),
-                length => self.understand(tls, &records[..length])?,
+                length => self.process_tls(tls, &records[..length])?,
             }
         }
     }
@@ -147,11 +154,12 @@ impl Read for Connection {
 impl Write for Connection {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let Some(tls) = &self.0.tls else {
+            let _sending = lock(&self.0.sending);
             self.transmit(bytes)?;
             return Ok(bytes.len());
         };
         let taken = lock(&tls.state).writer().write(bytes)?;
-        self.send(tls)?;
+        self.flush_tls(tls)?;
         Ok(taken)
     }
 

@@ -16,7 +16,7 @@ use anyhow::{Context as _, ensure};
 
 use self::access::Access;
 use self::lan::Lan;
-use self::session::{Bounds, Server};
+use self::session::{Limits, Server};
 use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
 use crate::cli::eyes;
@@ -107,7 +107,7 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         renderer: FrameRenderer::new(headless.gl(), mode)?,
         encoder: LiveEncoder::new(args.frame_rate.into())?,
         start: Instant::now(),
-        bounds: Bounds { quantizer: args.quantizer, frame_rate: args.frame_rate.into(), size: args.max_size },
+        limits: Limits { quantizer: args.quantizer, frame_rate: args.frame_rate.into(), size: args.max_size },
     };
     let address = lan.as_ref().map_or(Ipv4Addr::LOCALHOST.into(), |lan| lan.address);
     let listener = TcpListener::bind((address, args.port)).with_context(|| {
@@ -128,8 +128,8 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let tls = lan.map(|lan| lan.tls);
     let access = Arc::new(Access::new(token, (scheme, hosts), folder, home, tls));
     let (clients, admitted) = mpsc::channel();
-    let door = access.clone();
-    thread::spawn(move || door.open(&listener, &clients));
+    let accepting = access.clone();
+    thread::spawn(move || accepting.accept(&listener, &clients));
     server.serve(&admitted, &access)
 }
 

@@ -12,14 +12,14 @@ use super::connection::Connection;
 use yoro_files::interrupt;
 use yoro_lab::streaming::FrameRenderer;
 use yoro_render::PreparedScene;
-use yoro_stream::{Control, FrameHeader, FromServer, FromViewer, ViewRequest};
+use yoro_stream::{FrameHeader, FromServer, FromViewer, RateControl, ViewRequest};
 use yoro_video::LiveEncoder;
 
 /// A viewer that says nothing for so long is gone.
 const SILENCE: Duration = Duration::from_secs(3);
 
-/// Passes on what a viewer says, with the time, until it is silent, gone, or says what no viewer says: messages wait for no frame
-/// that is being rendered.
+/// Passes on a viewer's messages with the time, until a timeout, a lost connection or an invalid message. It has a thread of its own,
+/// so that messages are read while a frame is rendered.
 fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
     while let Ok(message) = socket.read() {
         let Some(message) = FromViewer::read(&message.into_data()) else { return };
@@ -35,16 +35,16 @@ pub struct Server {
     pub renderer: FrameRenderer,
     pub encoder: LiveEncoder,
     pub start: Instant,
-    pub bounds: Bounds,
+    pub limits: Limits,
 }
 
-/// What a stream may take.
-pub struct Bounds {
-    /// The finest quantizer.
+/// The limits of a stream.
+pub struct Limits {
+    /// The smallest quantizer.
     pub quantizer: u8,
-    /// Frames a second.
+    /// The largest frame rate in Hz.
     pub frame_rate: f32,
-    /// Pixels of an eye's longer side.
+    /// The longer side of an eye in pixels, at most.
     pub size: u16,
 }
 
@@ -74,9 +74,12 @@ impl Server {
 
     /// Serves a viewer until it is gone, which is no error.
     fn session(&mut self, connection: &Connection) -> anyhow::Result<()> {
-        let mut control = Control::new(self.bounds.quantizer, self.bounds.frame_rate);
-        let (mut request, mut answered, mut number): (Option<ViewRequest>, f64, u32) = (None, f64::NAN, 0);
-        let mut line = Line::new();
+        let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate);
+        let mut request: Option<ViewRequest> = None;
+        // The time of the request that was answered last.
+        let mut answered: Option<f64> = None;
+        let mut number = 0u32;
+        let mut statistics = Statistics::new();
         connection.set_timeout(SILENCE);
         let (tell, heard) = mpsc::channel();
         let listener = web_socket(connection.clone());
@@ -88,7 +91,7 @@ impl Server {
                 Ok((message, at)) => {
                     match message {
                         FromViewer::Request(newest) => request = Some(newest),
-                        FromViewer::Decoded(number) => control.decoded(number, at - self.start),
+                        FromViewer::Decoded(decoded) => control.decoded(decoded, at - self.start),
                         FromViewer::Hello { .. } => {}
                     }
                     continue;
@@ -96,14 +99,14 @@ impl Server {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return Ok(()),
             }
-            line.print(&control);
-            let due =
-                request.filter(|request| request.time != answered && control.is_due(self.start.elapsed()));
+            statistics.print(&control);
+            let due = request
+                .filter(|request| Some(request.time) != answered && control.is_due(self.start.elapsed()));
             let Some(mut request) = due else { continue };
-            answered = request.time;
+            answered = Some(request.time);
             let longest = request.size[0].max(request.size[1]);
-            if longest > self.bounds.size {
-                let scale = f32::from(self.bounds.size) / f32::from(longest);
+            if longest > self.limits.size {
+                let scale = f32::from(self.limits.size) / f32::from(longest);
                 request.size = request.size.map(|side| ((f32::from(side) * scale) as u16).max(16));
             }
             let begun = Instant::now();
@@ -125,14 +128,14 @@ impl Server {
             let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
             control.sent(number, self.start.elapsed());
             socket.send(Message::binary(frame.to_bytes()))?;
-            line.add(data.len(), &header);
+            statistics.add(data.len(), &header);
             number = number.wrapping_add(1);
         }
     }
 }
 
-/// The line of figures, once a second.
-struct Line {
+/// Figures that are printed once a second.
+struct Statistics {
     since: Instant,
     frames: u32,
     bytes: usize,
@@ -140,9 +143,9 @@ struct Line {
     code_ms: f32,
 }
 
-impl Line {
-    fn new() -> Line {
-        Line { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, code_ms: 0.0 }
+impl Statistics {
+    fn new() -> Statistics {
+        Statistics { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, code_ms: 0.0 }
     }
 
     fn add(&mut self, bytes: usize, header: &FrameHeader) {
@@ -152,7 +155,7 @@ impl Line {
         self.code_ms += header.code_ms;
     }
 
-    fn print(&mut self, control: &Control) {
+    fn print(&mut self, control: &RateControl) {
         let seconds = self.since.elapsed().as_secs_f32();
         if seconds < 1.0 {
             return;
@@ -169,6 +172,6 @@ impl Line {
                 control.round_trip().map_or("never".into(), |time| format!("after {} ms", time.as_millis()))
             );
         }
-        *self = Line::new();
+        *self = Statistics::new();
     }
 }
