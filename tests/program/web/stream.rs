@@ -24,7 +24,7 @@ use yoro_files::http::{self, Request};
 use yoro_lab::metrics::{Channels, psnr};
 use yoro_lab::streaming::{FrameRenderer, Mode, Receiver};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_stream::{Content, EyeView, FrameHeader, FromServer, ViewRequest};
+use yoro_stream::{Content, EyeView, FrameHeader, FromServer, FromViewer, VERSION, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder};
 
 use super::{GL, Page, Server, close};
@@ -35,10 +35,10 @@ const QUANTIZER: &str = "16";
 const STEP: f32 = 0.02;
 
 /// `yoro serve`, until this is dropped.
-fn serve(options: &[&str], home: Option<&Path>) -> (Server, String) {
+fn serve(frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_yoro"));
-    command.args(["serve", "prototype", "--port", "0", "--frame-rate", "5", "--max-size", "320"]);
-    command.args(["--quantizer", QUANTIZER]).args(options);
+    command.args(["serve", "prototype", "--port", "0", "--max-size", "320", "--quantizer", QUANTIZER]);
+    command.args(["--frame-rate", &frame_rate.to_string()]).args(options);
     home.map(|home| command.env("XDG_STATE_HOME", home));
     let mut child: Child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
@@ -54,7 +54,7 @@ fn open(mode: &str) -> Option<(Page, String)> {
     // Says what is missing.
     Server::start()?;
     let browser = Browser::start_with(&GL)?;
-    let (server, link) = serve(&["--mode", mode], None);
+    let (server, link) = serve(5, &["--mode", mode], None);
     Some((follow(browser, server, &link), link))
 }
 
@@ -213,7 +213,7 @@ fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
     // Says what is missing.
     let Some(_) = Server::start() else { return };
     let home = tempfile::tempdir().unwrap();
-    let (server, link) = serve(&["--lan=127.0.0.2"], Some(home.path()));
+    let (server, link) = serve(5, &["--lan=127.0.0.2"], Some(home.path()));
     let host = server.address.strip_prefix("https://").expect("https").trim_end_matches('/').to_owned();
     let port: u16 = host.strip_prefix("127.0.0.2:").expect("the address").parse().unwrap();
     assert!(
@@ -274,6 +274,69 @@ fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
 
     idle.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
     assert_eq!(idle.read(&mut [0]).unwrap(), 0, "it is left after ten seconds");
+}
+
+/// Returns the resident memory of a process in bytes.
+fn resident(id: u32) -> u64 {
+    let pages = std::fs::read_to_string(format!("/proc/{id}/statm")).unwrap();
+    pages.split(' ').nth(1).unwrap().parse::<u64>().unwrap() * 4096
+}
+
+/// A client that decodes every frame takes ten thousand; each shows the newest view that it has asked for or the one before.
+#[test]
+#[ignore = "takes minutes"]
+fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
+    const FRAMES: u32 = 10_000;
+    let (server, link) = serve(240, &[], None);
+    let host = server.address.trim_start_matches("http://").trim_end_matches('/').to_owned();
+    let mut stream = TcpStream::connect(&host).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+    let answer = ask(&mut stream, &host, &format!("Origin: http://{host}\r\n"));
+    assert!(answer.starts_with("HTTP/1.1 101"), "{answer}");
+    let mut socket = WebSocket::from_raw_socket(stream, Role::Client, None);
+    let token = link.split("stream=").nth(1).unwrap().split('&').next().unwrap();
+    let token = u128::from_str_radix(token, 16).unwrap().to_be_bytes();
+    let say = |socket: &mut WebSocket<TcpStream>, message: FromViewer| {
+        socket.send(Message::binary(message.to_bytes())).unwrap();
+    };
+    say(&mut socket, FromViewer::Hello { version: VERSION, token });
+    let welcome = socket.read().unwrap().into_data();
+    let Some(FromServer::Welcome(home)) = FromServer::read(&welcome) else { panic!("no welcome") };
+
+    let mut decoder = Decoder::new().unwrap();
+    let (mut early, mut bytes) = (0, 0);
+    let start = Instant::now();
+    for expected in 0..FRAMES {
+        // The head walks in a circle of 40 cm.
+        let angle = expected as f32 * 0.01;
+        let at = home.position + 0.2 * glam::Vec3::new(angle.sin(), 0.0, angle.cos());
+        let eye = EyeView { pose: Pose { position: at, ..home }, frustum: Frustum::symmetric(1.0, 1.0) };
+        let mut other = eye;
+        other.pose.position += home.orientation * (0.063 * glam::Vec3::X);
+        let time = f64::from(expected);
+        let request = ViewRequest { time, eyes: [eye, other], dominant: Eye::Right, size: [64, 64] };
+        say(&mut socket, FromViewer::Request(request));
+        let message = socket.read().unwrap().into_data();
+        let Some(FromServer::Frame { number, header, data, .. }) = FromServer::read(&message) else {
+            panic!("frame {expected} is no frame")
+        };
+        assert_eq!((number, header.time), (expected, time));
+        decoder.decode(data).unwrap();
+        bytes += data.len();
+        say(&mut socket, FromViewer::Decoded(number));
+        if expected == FRAMES / 10 {
+            early = resident(server.child.id());
+        }
+    }
+    let late = resident(server.child.id());
+    println!(
+        "{FRAMES} frames in {:.0} s, {} bytes each, {} then {} KiB of memory",
+        start.elapsed().as_secs_f32(),
+        bytes / FRAMES as usize,
+        early / 1024,
+        late / 1024
+    );
+    assert!(late < early + (4 << 20), "{early} bytes after a tenth, {late} at the end");
 }
 
 /// Answers like `yoro serve`, with frames that are no H.264, and counts how often it is connected to.
