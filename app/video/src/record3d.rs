@@ -1,8 +1,7 @@
 //! RGBD videos of the iPhone application Record3D: depth as hue on the left, colour on the right.
 //!
-//! The format is told by players that read it, such as Record3D's own for browsers: the hue of a pixel stands for its
-//! distance, from red at the nearest over green and blue to red at the farthest. A JSON object in the file's metadata
-//! has the camera.
+//! The format is taken from open players, such as Record3D's own for browsers. The hue of a pixel is its distance, from red
+//! at the nearest through green and blue to red at the farthest. A JSON object in the file's metadata describes the camera.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -14,11 +13,11 @@ use crate::Rgbd;
 
 /// The beginning of the JSON object.
 const BEGIN: &[u8] = br#"{"intrinsic"#;
-/// Metadata beyond this are not looked through, in bytes.
+/// The most metadata that is searched, in bytes.
 const METADATA_LIMIT: u64 = 64 << 20;
-/// Distances of the hues 0 and 1 where the file does not tell them, in metres.
+/// The default distances of the hues 0 and 1 in metres.
 const DEFAULT_RANGE: [f32; 2] = [0.0, 3.0];
-/// Phones measure nothing that is nearer, in metres. Pixels without a distance are red.
+/// The nearest distance that phones measure, in metres. Pixels without a measurement are red.
 const NEAREST: f32 = 0.1;
 /// The distance between the eyes in metres.
 const IPD: f32 = 0.063;

@@ -32,7 +32,7 @@ pub(crate) fn build(app: &mut App) {
             Render,
             leave_out_opaque
                 .in_set(RenderSystems::Prepare)
-                // The texture for transmission is made for views that have all phases.
+                // Bevy makes the texture for transmission only for views that have all phases.
                 .after(RenderSystems::PrepareResources)
                 .before(RenderSystems::PrepareResourcesBatchPhases),
         )
