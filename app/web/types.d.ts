@@ -14,6 +14,11 @@ declare module '*yoro_web.js' {
   export class Why extends Built {}
   export class Headset extends Built { static planes(): Float32Array }
 }
+declare module '*yoro_web_video.js' {
+  class Built { constructor(...all: any[]); [member: string]: any }
+  export default function init(options: { module_or_path: URL }): Promise<unknown>;
+  export class VideoFile extends Built {}
+}
 declare const XRWebGLLayer: any;
 interface Navigator { xr?: any; userAgentData?: { platform: string } }
 interface ScreenOrientation { lock(orientation: string): Promise<void> }

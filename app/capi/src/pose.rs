@@ -54,7 +54,7 @@ pub struct YoroPoseWarp {
     pub homography: [f64; 9],
     /// Place of the target's eye in the source image. Zeros in its place leave rotation alone, without depth.
     pub epipole: [f64; 3],
-    /// The source's 1 / distance is source_law[0] + source_law[1] * depth.
+    /// The source's 1 / distance is `source_law[0] + source_law[1] * depth`.
     pub source_law: [f64; 2],
     /// The same of the target.
     pub target_law: [f64; 2],

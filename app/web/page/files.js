@@ -73,7 +73,7 @@ export async function take(files, known = null) {
     if (files.length === 1 && VIDEO.test(files[0].name)) {
       clear();
       stopLoading();
-      (await import('./stream.js')).play(files[0].file);
+      (await import('./stream.js')).play(new File([files[0].file], files[0].name));
       return;
     }
     const bytes = files.reduce((sum, { file }) => sum + file.size, 0);

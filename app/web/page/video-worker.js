@@ -9,7 +9,7 @@ const LATE = 100;
 const NUMBERS = 5;
 
 let isPlaying = true;
-/** Ends the pause. */
+/** Ends the pause. @type {(value?: unknown) => void} */
 let goOn = () => {};
 
 onmessage = async ({ data }) => {
