@@ -892,7 +892,7 @@ typedef struct {
    */
   double epipole[3];
   /**
-   * The source's 1 / distance is source_law[0] + source_law[1] * depth.
+   * The source's 1 / distance is `source_law[0] + source_law[1] * depth`.
    */
   double source_law[2];
   /**
