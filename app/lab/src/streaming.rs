@@ -27,7 +27,7 @@ const MOTION: HeadMotion = HeadMotion { rotation: 0.07, translation: 0.02 };
 /// The nearest surface that it covers the motion for, in metres.
 const NEAREST: f32 = 1.0;
 
-/// A picture to be coded.
+/// A picture to be encoded.
 pub struct Picture {
     /// Both halves.
     pub planes: Planes,

@@ -46,7 +46,7 @@ pub struct BenchArgs {
     /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     viewpoints: Option<u32>,
-    /// bandwidth: frames of the sequence that is coded [default: 30; quick: 8]
+    /// bandwidth: frames of the sequence that is encoded [default: 30; quick: 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     frames: Option<u32>,
     /// Size of each eye's image in pixels [default: 1024x1024; --frame: 1680x1760; quick: 512x512]

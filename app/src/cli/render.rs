@@ -15,7 +15,7 @@ use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
-use crate::cli::video::{self, CodingArgs};
+use crate::cli::video::{self, EncodingArgs};
 use yoro::eyes::{Eye, Pose};
 use yoro_files::interrupt;
 use yoro_gl::Context;
@@ -106,7 +106,7 @@ pub struct RenderArgs {
     #[arg(long, default_value_t = 30, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..=1000))]
     frame_rate: u32,
     #[command(flatten)]
-    coding: CodingArgs,
+    encoding: EncodingArgs,
     /// Print PSNR and SSIM of the synthesized eye
     #[arg(long)]
     measure: bool,
@@ -191,8 +191,8 @@ fn run(args: &RenderArgs) -> anyhow::Result<()> {
     prepared.set_time(args.time)?;
     warn_of_blank(gl, args, &mut prepared, &heads)?;
     if let Some(file) = &args.video {
-        let coding = (args.frame_rate, args.coding);
-        return video::render(gl, file, prepared, (&heads, args.time), (&args.eyes, &options), coding);
+        let encoding = (args.frame_rate, args.encoding);
+        return video::render(gl, file, prepared, (&heads, args.time), (&args.eyes, &options), encoding);
     }
     let PreparedScene { mut scene, mut renderer } = prepared;
     let mut method = stereo::create(gl, args.method, &settings, &options)?;

@@ -11,7 +11,7 @@ use crate::cli::choices;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
-use crate::cli::video::{self, CodingArgs};
+use crate::cli::video::{self, EncodingArgs};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
 use yoro::synthesis::{Edges, SourceMapEntry};
 use yoro_files as files;
@@ -105,7 +105,7 @@ pub struct SynthesizeArgs {
     #[arg(long, value_parser = choices::stored_edges(), default_value = Edges::Hard.name())]
     edges: Edges,
     #[command(flatten)]
-    coding: CodingArgs,
+    encoding: EncodingArgs,
     #[command(flatten)]
     synthesis: SettingOptions<Synthesis>,
     #[command(flatten)]
@@ -195,7 +195,7 @@ fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
         // A wrong file is told before a context is opened.
         Reader::open(file)?.rgbd()?;
         let headless = args.gl.open()?;
-        return video::synthesize(headless.gl(), file, &args.out, &args.synthesis.options(), args.coding);
+        return video::synthesize(headless.gl(), file, &args.out, &args.synthesis.options(), args.encoding);
     }
     let jobs = jobs(args)?;
     let headless = args.gl.open()?;

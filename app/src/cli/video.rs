@@ -18,9 +18,9 @@ use yoro_render::PreparedScene;
 use yoro_render::stereo::{Offline, PipelineOptions, StereoOptions};
 use yoro_video::{Format, Planes, Reader, Rgbd};
 
-/// How videos are coded.
+/// How videos are encoded.
 #[derive(clap::Args, Clone, Copy, Debug)]
-pub struct CodingArgs {
+pub struct EncodingArgs {
     /// Videos: H.264's quantizer, 0 (best) to 51
     #[arg(long, default_value_t = 20, value_name = "QP", value_parser = clap::value_parser!(u8).range(0..=51))]
     pub quantizer: u8,
@@ -33,7 +33,7 @@ pub fn render(
     prepared: PreparedScene,
     (heads, time): (&[Pose], f64),
     (eyes, stereo): (&EyeArgs, &StereoOptions),
-    (frame_rate, coding): (u32, CodingArgs),
+    (frame_rate, encoding): (u32, EncodingArgs),
 ) -> anyhow::Result<()> {
     let PreparedScene { mut scene, mut renderer } = prepared;
     let seconds = |frame: usize| time + frame as f64 / f64::from(frame_rate);
@@ -69,7 +69,7 @@ pub fn render(
         nearest,
         farthest,
     };
-    let format = Format { frame_rate, quantizer: coding.quantizer, frames: heads.len(), rgbd: Some(rgbd) };
+    let format = Format { frame_rate, quantizer: encoding.quantizer, frames: heads.len(), rgbd: Some(rgbd) };
     bar.set_message("video");
     let mut rest = heads.iter().enumerate();
     let bytes = yoro_video::write(file, &format, || -> anyhow::Result<Option<Planes>> {
@@ -97,14 +97,14 @@ pub fn synthesize(
     video: &Path,
     out: &Path,
     options: &PipelineOptions,
-    coding: CodingArgs,
+    encoding: EncodingArgs,
 ) -> anyhow::Result<()> {
     let mut reader = Reader::open(video)?;
     let rgbd = reader.rgbd()?;
     let views = rgbd.views().with_context(|| format!("cannot synthesize {}", video.display()))?;
     let mut offline = Offline::new(gl, options, Edges::Hard)?;
     let (frames, frame_rate) = (reader.frames(), reader.frame_rate());
-    let format = Format { frame_rate, quantizer: coding.quantizer, frames, rgbd: None };
+    let format = Format { frame_rate, quantizer: encoding.quantizer, frames, rgbd: None };
     let bar = progress_bar(frames as u64);
     let bytes = yoro_video::write(out, &format, || -> anyhow::Result<Option<Planes>> {
         interrupt::check()?;

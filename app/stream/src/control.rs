@@ -14,7 +14,7 @@ const CALM: Duration = Duration::from_secs(1);
 /// The fastest round trip is that of the last one or two of these.
 const WINDOW: Duration = Duration::from_secs(5);
 
-/// Decides when a frame is made and how finely it is coded, from the times at which the viewer has decoded frames. All times
+/// Decides when a frame is made and how finely it is encoded, from the times at which the viewer has decoded frames. All times
 /// are of one clock, the server's, so that no clocks need to agree.
 ///
 /// Nothing waits in a queue: while the oldest frame on its way takes too long, none is made, and the next one that is made

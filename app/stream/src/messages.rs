@@ -90,8 +90,8 @@ pub struct FrameHeader {
     pub size: [u16; 2],
     /// Milliseconds that it took to render.
     pub render_ms: f32,
-    /// Milliseconds that it took to code.
-    pub code_ms: f32,
+    /// Milliseconds that it took to encode.
+    pub encode_ms: f32,
     /// H.264's quantizer.
     pub quantizer: u8,
 }
@@ -227,7 +227,7 @@ mod tests {
         content: Content::Depth(EYE, [0.5, 40.0]),
         size: [700, 500],
         render_ms: 3.0,
-        code_ms: 4.0,
+        encode_ms: 4.0,
         quantizer: 24,
     };
 

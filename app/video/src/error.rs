@@ -28,7 +28,7 @@ pub enum VideoError {
     },
     /// The encoder or the decoder refused.
     #[error("H.264: {0}")]
-    Coder(String),
+    Codec(String),
 }
 
 impl VideoError {

@@ -14,9 +14,9 @@ use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
 use crate::record3d::{self, Recording};
-use crate::{Coded, DEPTH_BOX, Decoder, Encoder, Index, Indexer, Planes, Rgbd, VideoError};
+use crate::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Indexer, Planes, Rgbd, VideoError};
 
-/// How a video is coded.
+/// How a video is encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Format {
     /// Pictures a second. Players can start once a second.
@@ -29,7 +29,7 @@ pub struct Format {
     pub rgbd: Option<Rgbd>,
 }
 
-/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the number of bytes of coded pictures.
+/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the number of bytes of encoded pictures.
 /// The file appears when it is complete.
 ///
 /// # Errors
@@ -57,7 +57,7 @@ pub fn write<E: From<VideoError>>(
     }
 }
 
-/// Writes all pictures, and returns the number of bytes of coded pictures.
+/// Writes all pictures, and returns the number of bytes of encoded pictures.
 fn fill<E: From<VideoError>>(
     out: &mut (impl Write + Seek),
     path: &Path,
@@ -124,15 +124,15 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
         if self.frames.is_multiple_of(self.format.frame_rate) {
             self.encoder.force_intra_frame();
         }
-        let coded = self.encoder.encode(picture)?;
+        let encoded = self.encoder.encode(picture)?;
         let failed = |error: &dyn std::fmt::Debug| VideoError::format(self.path, format!("{error:?}"));
-        let units = parse_annexb_nal_units(&coded).map_err(|error| failed(&error))?;
+        let units = parse_annexb_nal_units(&encoded).map_err(|error| failed(&error))?;
         let keyframe = units.iter().any(|unit| unit.nal_unit_type == H264NalUnitType::IdrSlice);
         let sample_entry = match self.frames {
-            0 => Some(SampleEntry::Avc1(self.entry(&coded)?)),
+            0 => Some(SampleEntry::Avc1(self.entry(&encoded)?)),
             _ => None,
         };
-        let data = annexb_to_length_prefixed(&coded, LENGTH_SIZE).map_err(|error| failed(&error))?;
+        let data = annexb_to_length_prefixed(&encoded, LENGTH_SIZE).map_err(|error| failed(&error))?;
         self.out.write_all(&data)?;
         let sample = Sample {
             track_kind: TrackKind::Video,
@@ -151,10 +151,10 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
         Ok(())
     }
 
-    /// Returns the description of the coded pictures, with what their depth means.
-    fn entry(&self, coded: &[u8]) -> Result<Avc1Box, VideoError> {
+    /// Returns the description of the encoded pictures, with what their depth means.
+    fn entry(&self, encoded: &[u8]) -> Result<Avc1Box, VideoError> {
         let config = H264SampleEntryConfig { length_size: LENGTH_SIZE };
-        let mut entry = build_avc1_box_from_annexb(coded, &config)
+        let mut entry = build_avc1_box_from_annexb(encoded, &config)
             .map_err(|error| VideoError::format(self.path, format!("{error:?}")))?;
         if let Some(rgbd) = &self.format.rgbd {
             let payload = serde_json::to_vec(rgbd).expect("numbers have a text");
@@ -274,7 +274,9 @@ impl Reader {
     /// [`VideoError::File`], and [`VideoError::Format`] for a damaged picture or one of another size than its depth
     /// says.
     pub fn read(&mut self) -> Result<Option<Planes>, VideoError> {
-        let Some(&Coded { offset, size, .. }) = self.index.pictures.get(self.read) else { return Ok(None) };
+        let Some(&EncodedPicture { offset, size, .. }) = self.index.pictures.get(self.read) else {
+            return Ok(None);
+        };
         self.read += 1;
         let data = read_at(&mut self.file, offset, size)
             .map_err(|source| FileError::Read { path: self.path.clone(), source })?;
@@ -345,8 +347,8 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("v.mp4");
         fs::write(&path, "old").unwrap();
-        let stopped = write(&path, &FORMAT, || Err(VideoError::Coder("enough".into())));
-        assert!(matches!(stopped, Err(VideoError::Coder(what)) if what == "enough"));
+        let stopped = write(&path, &FORMAT, || Err(VideoError::Codec("enough".into())));
+        assert!(matches!(stopped, Err(VideoError::Codec(what)) if what == "enough"));
         assert_eq!(fs::read(&path).unwrap(), b"old");
     }
 

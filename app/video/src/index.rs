@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "coder")]
+#[cfg(feature = "codec")]
 use shiguredo_mp4::bitstream::h264::LengthSize;
 use shiguredo_mp4::boxes::{Avc1Box, SampleEntry};
 use shiguredo_mp4::codec_string;
@@ -19,17 +19,17 @@ pub struct Indexer {
 /// What is in an MP4 file with H.264.
 pub struct Index {
     path: PathBuf,
-    /// The coded pictures, in the order in which they are decoded.
-    pub pictures: Vec<Coded>,
+    /// The encoded pictures, in the order in which they are decoded.
+    pub pictures: Vec<EncodedPicture>,
     /// Pictures a second, rounded up.
     pub frame_rate: u32,
     pub(crate) rgbd: Option<Rgbd>,
     entry: Box<Avc1Box>,
 }
 
-/// The place of a coded picture in a file.
+/// The place of a encoded picture in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coded {
+pub struct EncodedPicture {
     /// Bytes from the file's beginning.
     pub offset: u64,
     /// Bytes of the picture.
@@ -89,7 +89,7 @@ impl Indexer {
             if sample.data_offset.checked_add(sample.data_size as u64).is_none_or(|end| end > self.length) {
                 return Err(VideoError::format(&self.path, "it is cut off"));
             }
-            pictures.push(Coded {
+            pictures.push(EncodedPicture {
                 offset: sample.data_offset,
                 size: sample.data_size,
                 intra: sample.keyframe,
@@ -113,7 +113,7 @@ impl Index {
         self.rgbd.ok_or_else(|| VideoError::NoDepth { path: self.path.clone() })
     }
 
-    /// Returns the coder's name as browsers take it: `avc1.42C01F`.
+    /// Returns the codec's name as browsers take it: `avc1.42C01F`.
     ///
     /// # Errors
     /// [`VideoError::Format`].
@@ -134,20 +134,20 @@ impl Index {
     }
 
     /// Returns the width and height of the pictures in pixels.
-    #[cfg(feature = "coder")]
+    #[cfg(feature = "codec")]
     pub(crate) fn size(&self) -> [u32; 2] {
         [self.entry.visual.width, self.entry.visual.height].map(u32::from)
     }
 
     /// Returns the parameter sets in the format of Annex B, which come before the first picture.
-    #[cfg(feature = "coder")]
+    #[cfg(feature = "codec")]
     pub(crate) fn parameters(&self) -> Vec<u8> {
         let sets = self.entry.avcc_box.sps_list.iter().chain(&self.entry.avcc_box.pps_list);
         sets.flat_map(|set| [&[0, 0, 0, 1], &set[..]].concat()).collect()
     }
 
     /// Returns how many bytes the length before each NAL unit of a picture has.
-    #[cfg(feature = "coder")]
+    #[cfg(feature = "codec")]
     pub(crate) fn length_size(&self) -> LengthSize {
         match self.entry.avcc_box.length_size_minus_one.get() {
             0 => LengthSize::OneByte,

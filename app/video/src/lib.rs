@@ -4,22 +4,22 @@
 //! says what the depth in one means. [`Indexer`] finds the pictures of a file for those who have a decoder of their own. This
 //! crate must never know who renders or shows a picture.
 
-#[cfg(feature = "coder")]
-mod coder;
+#[cfg(feature = "codec")]
+mod codec;
 mod error;
-#[cfg(feature = "coder")]
+#[cfg(feature = "codec")]
 mod file;
 mod index;
 mod planes;
-#[cfg(feature = "coder")]
+#[cfg(feature = "codec")]
 mod record3d;
 mod rgbd;
 
-#[cfg(feature = "coder")]
-pub use coder::{Decoder, Encoder, LiveEncoder};
+#[cfg(feature = "codec")]
+pub use codec::{Decoder, Encoder, LiveEncoder};
 pub use error::VideoError;
-#[cfg(feature = "coder")]
+#[cfg(feature = "codec")]
 pub use file::{Format, Reader, write};
-pub use index::{Coded, Index, Indexer};
+pub use index::{EncodedPicture, Index, Indexer};
 pub use planes::Planes;
 pub use rgbd::{DEPTH_BOX, Rgbd, depth_luma};

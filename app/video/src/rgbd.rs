@@ -67,7 +67,7 @@ impl Rgbd {
     }
 
     /// Returns colour and depth of a picture, of the size of the rendered eye with its guard band.
-    #[cfg(feature = "coder")]
+    #[cfg(feature = "codec")]
     pub(crate) fn unpack(&self, picture: &Planes) -> (RgbImage, GrayImage) {
         let [color, depth] = picture.halves();
         let size = (self.size[0] + self.guard_columns, self.size[1]);

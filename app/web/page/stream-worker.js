@@ -5,7 +5,7 @@ import * as decoding from './decoding.js';
 /** The kind of a frame's message; what stands before its header is described in app/stream/src/messages.rs. */
 const FRAME = 2;
 const PREFIX = 8;
-/** The decoder takes H.264's constrained baseline profile up to this level (5.1), as the server codes it. */
+/** The decoder takes H.264's constrained baseline profile up to this level (5.1), as the server encodes it. */
 const CODEC = 'avc1.42c033';
 /** After a connection was lost it is tried again after so long, in ms. */
 const AGAIN = 1000;

@@ -174,6 +174,6 @@ function figures() {
   sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
   element('facts').textContent = frames
     ? `Stream: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
-      + `(rendered in ${last.render.toFixed(0)}, coded in ${last.code.toFixed(0)}), ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
+      + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
     : 'Stream: no frames.';
 }

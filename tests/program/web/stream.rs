@@ -358,7 +358,7 @@ fn serve_damage(listener: &TcpListener, connections: &AtomicUsize) -> Option<()>
         let eye_view = EyeView { pose: Pose::IDENTITY, frustum: Frustum::symmetric(1.0, 1.0) };
         let content = Content::Depth(eye_view, [1.0, 10.0]);
         let header =
-            FrameHeader { time: 0.0, content, size: [64, 64], render_ms: 0.0, code_ms: 0.0, quantizer: 24 };
+            FrameHeader { time: 0.0, content, size: [64, 64], render_ms: 0.0, encode_ms: 0.0, quantizer: 24 };
         let data = &[0, 0, 0, 1, 0x65, 1, 2, 3];
         for message in
             [FromServer::Welcome(Pose::IDENTITY), FromServer::Frame { number: 0, intra: true, header, data }]

@@ -4,7 +4,7 @@
 //! Streaming") and compares bit rates alone. Here the receiver's eyes are measured too, so that rates can be held
 //! against each other at equal quality:
 //!
-//! | stream | what is coded | the other eye |
+//! | stream | what is encoded | the other eye |
 //! |---|---|---|
 //! | [`STEREO_RGB`] | both eyes side by side | as decoded |
 //! | [`RGB_DEPTH`] | the dominant eye with its guard band, and its depth as the luma of a second stream | synthesized from both, as decoded |
@@ -13,7 +13,7 @@
 //!
 //! Colour is 4:2:0, BT.601 in full range. Depth is 8 bits, uniform in 1/z between the nearest and the farthest that
 //! the sequence shows (two numbers beside the stream), so that a step is the same disparity everywhere. Pictures are
-//! finished when they are coded: anti-aliased, transparent objects drawn.
+//! finished when they are encoded: anti-aliased, transparent objects drawn.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -44,7 +44,7 @@ pub const MONO_RGB: &str = "mono-rgb";
 pub mod metric {
     /// The quantizer (QP of H.264) of colour.
     pub const QP: &str = "qp";
-    /// Bit rate in kbit/s (1000 bits) at [`super::FRAME_RATE`], the first, intra-coded frame included.
+    /// Bit rate in kbit/s (1000 bits) at [`super::FRAME_RATE`], the first, intra frame included.
     pub const KBIT_S: &str = "kbit_s";
     /// The depth stream's part of the rate, where depth is a stream of its own.
     pub const KBIT_S_DEPTH: &str = "kbit_s_depth";
@@ -53,7 +53,7 @@ pub mod metric {
     pub const PSNR_DOMINANT: &str = "psnr_dominant";
     /// PSNR (RGB) of the other eye after decoding and, where that is so, synthesis, in dB.
     pub const PSNR_OTHER: &str = "psnr_other";
-    /// PSNR of luma of the dominant eye, in dB: video coding's usual measure.
+    /// PSNR of luma of the dominant eye, in dB: video encoding's usual measure.
     pub const PSNR_LUMA_DOMINANT: &str = "psnr_luma_dominant";
     /// PSNR of luma of the other eye, in dB.
     pub const PSNR_LUMA_OTHER: &str = "psnr_luma_other";
@@ -87,7 +87,7 @@ impl Default for BandwidthOptions {
 /// Values by metric, as in a [measurement](super::Measurement).
 pub type Values = BTreeMap<String, Vec<Option<f64>>>;
 
-/// Renders a sequence, codes and decodes it by every stream at every quantizer, and measures both eyes. `pairs` are
+/// Renders a sequence, encodes and decodes it by every stream at every quantizer, and measures both eyes. `pairs` are
 /// the eyes of consecutive frames. `step` is called after each frame of work; an error from it ends the run. The
 /// names are those of the streams.
 ///
@@ -106,8 +106,8 @@ pub fn run(
         [STEREO_RGB, RGB_DEPTH, RGB_DEPTH_PACKED, MONO_RGB].map(|name| (name, Values::new())).to_vec();
     for &quantizer in &options.quantizers {
         for layout in [Layout::Stereo, Layout::TwoStreams, Layout::Packed] {
-            let coded = sequence.code(layout, quantizer, options.depth_offset, &mut receiver, step)?;
-            for (name, stats) in coded {
+            let encoded = sequence.encode(layout, quantizer, options.depth_offset, &mut receiver, step)?;
+            for (name, stats) in encoded {
                 let stream = streams.iter_mut().find(|(stream, _)| *stream == name);
                 stats.push_into(&mut stream.context("every stream has its values")?.1, quantizer);
             }
@@ -130,26 +130,26 @@ enum Layout {
 }
 
 /// An encoder with the decoder at the other end.
-struct Coder {
+struct Codec {
     encoder: Encoder,
     decoder: Decoder,
     bytes: usize,
 }
 
-impl Coder {
-    fn new(quantizer: u8) -> Result<Coder, VideoError> {
-        Ok(Coder { encoder: Encoder::new(quantizer, FRAME_RATE)?, decoder: Decoder::new()?, bytes: 0 })
+impl Codec {
+    fn new(quantizer: u8) -> Result<Codec, VideoError> {
+        Ok(Codec { encoder: Encoder::new(quantizer, FRAME_RATE)?, decoder: Decoder::new()?, bytes: 0 })
     }
 
-    /// Codes the next picture and returns it as decoded.
-    fn code(&mut self, picture: &Planes) -> Result<Planes, VideoError> {
-        let coded = self.encoder.encode(picture)?;
-        self.bytes += coded.len();
-        self.decoder.decode(&coded)
+    /// Encodes the next picture and returns it as decoded.
+    fn encode(&mut self, picture: &Planes) -> Result<Planes, VideoError> {
+        let encoded = self.encoder.encode(picture)?;
+        self.bytes += encoded.len();
+        self.decoder.decode(&encoded)
     }
 }
 
-/// A rendered sequence, as it goes into the coder.
+/// A rendered sequence, as it goes into the encoder.
 struct Sequence {
     frames: Vec<Frame>,
     /// Nearness (0 far plane, 1 near plane) that the smallest and the largest depth sample stand for.
@@ -200,8 +200,8 @@ impl Sequence {
         Ok(Sequence { frames: rendered.into_iter().map(frame).collect(), range })
     }
 
-    /// Codes and decodes all frames and measures both eyes of each stream that comes of it.
-    fn code(
+    /// Encodes and decodes all frames and measures both eyes of each stream that comes of it.
+    fn encode(
         &self,
         layout: Layout,
         quantizer: u8,
@@ -210,8 +210,8 @@ impl Sequence {
         step: &mut dyn FnMut() -> anyhow::Result<()>,
     ) -> anyhow::Result<Vec<(&'static str, StreamStats)>> {
         let depth_quantizer = quantizer.saturating_add_signed(depth_offset).min(51);
-        let mut main = Coder::new(quantizer)?;
-        let mut second = Coder::new(depth_quantizer)?;
+        let mut main = Codec::new(quantizer)?;
+        let mut second = Codec::new(depth_quantizer)?;
         let names: &[&'static str] = match layout {
             Layout::Stereo => &[STEREO_RGB],
             Layout::TwoStreams => &[RGB_DEPTH, MONO_RGB],
@@ -226,13 +226,13 @@ impl Sequence {
             match layout {
                 Layout::Stereo => {
                     let [left, right] = &frame.eyes;
-                    let decoded = main.code(&Planes::of_rgb(left).beside(&Planes::of_rgb(right)))?;
+                    let decoded = main.encode(&Planes::of_rgb(left).beside(&Planes::of_rgb(right)))?;
                     let [left, right] = decoded.halves();
                     eyes.push([left.rgb((width, height)), right.rgb((width, height))]);
                 }
                 Layout::TwoStreams => {
-                    let color = main.code(&Planes::of_rgb(&frame.color))?.rgb(color_size);
-                    let depth = second.code(&Planes::of_gray(&frame.depth))?.gray(color_size);
+                    let color = main.encode(&Planes::of_rgb(&frame.color))?.rgb(color_size);
+                    let depth = second.encode(&Planes::of_gray(&frame.depth))?.gray(color_size);
                     let synthesized = self.synthesize(&frame.views, &color, &depth, receiver)?;
                     let dominant = crop(&color, crop_origin, [width, height]);
                     eyes.push([dominant.clone(), synthesized]);
@@ -240,7 +240,7 @@ impl Sequence {
                 }
                 Layout::Packed => {
                     let planes = Planes::of_rgb(&frame.color).beside(&Planes::of_gray(&frame.depth));
-                    let [color, depth] = main.code(&planes)?.halves();
+                    let [color, depth] = main.encode(&planes)?.halves();
                     let (color, depth) = (color.rgb(color_size), depth.gray(color_size));
                     let synthesized = self.synthesize(&frame.views, &color, &depth, receiver)?;
                     eyes.push([crop(&color, crop_origin, [width, height]), synthesized]);

@@ -93,7 +93,7 @@ pub enum Measure {
     Patchers,
     /// One render shown at other poses.
     Reprojection(Displaced),
-    /// Coded sequences along a piece of the camera path.
+    /// Encoded sequences along a piece of the camera path.
     Bandwidth,
     /// A stream whose frames are shown a number of frames later, at 72 frames a second.
     Stream(usize),
@@ -145,7 +145,7 @@ pub struct Job {
     pub anti_aliasing: Option<AntiAliasing>,
     /// Divisor of the ImBuffer's resolution.
     pub imbuffer: u32,
-    /// Quantizers of coded sequences.
+    /// Quantizers of encoded sequences.
     pub bandwidth: BandwidthOptions,
     /// The kind of measurement.
     pub measure: Measure,
@@ -467,7 +467,7 @@ impl Choices {
             ("dominant eye", eyes.dominant.name().into()),
             ("rounds", self.rounds.to_string()),
             ("viewpoints per scene", self.viewpoints.to_string()),
-            ("frames of coded sequences", self.sequence.to_string()),
+            ("frames of encoded sequences", self.sequence.to_string()),
             ("seed", self.seed.to_string()),
             ("scenes", list(self.scenes.clone())),
             ("contenders", list(self.contenders.iter().map(|c| c.name()).collect())),

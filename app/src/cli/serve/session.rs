@@ -29,7 +29,7 @@ fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
     }
 }
 
-/// Renders, codes and sends.
+/// Renders, encodes and sends.
 pub struct Server {
     pub prepared: PreparedScene,
     pub renderer: FrameRenderer,
@@ -122,7 +122,7 @@ impl Server {
                 content: picture.content,
                 size: picture.size,
                 render_ms: ms(rendered),
-                code_ms: ms(begun.elapsed() - rendered),
+                encode_ms: ms(begun.elapsed() - rendered),
                 quantizer,
             };
             let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
@@ -140,19 +140,19 @@ struct Statistics {
     frames: u32,
     bytes: usize,
     render_ms: f32,
-    code_ms: f32,
+    encode_ms: f32,
 }
 
 impl Statistics {
     fn new() -> Statistics {
-        Statistics { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, code_ms: 0.0 }
+        Statistics { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, encode_ms: 0.0 }
     }
 
     fn add(&mut self, bytes: usize, header: &FrameHeader) {
         self.frames += 1;
         self.bytes += bytes;
         self.render_ms += header.render_ms;
-        self.code_ms += header.code_ms;
+        self.encode_ms += header.encode_ms;
     }
 
     fn print(&mut self, control: &RateControl) {
@@ -168,7 +168,7 @@ impl Statistics {
                 self.bytes as f32 * 8e-6 / seconds,
                 control.quantizer(),
                 self.render_ms / frames,
-                self.code_ms / frames,
+                self.encode_ms / frames,
                 control.round_trip().map_or("never".into(), |time| format!("after {} ms", time.as_millis()))
             );
         }

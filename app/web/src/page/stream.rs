@@ -58,7 +58,7 @@ impl Page {
     }
 
     /// Takes a frame, whose H.264 may be left out, with its decoded picture. Returns the message that confirms it, and six
-    /// numbers: when the pose that it was rendered for was sent, by `performance.now()`; the ms to render and to code it; its
+    /// numbers: when the pose that it was rendered for was sent, by `performance.now()`; the ms to render and to encode it; its
     /// quantizer; width and height of each half.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl Page {
         }
         let decoded = Uint8Array::from(&FromViewer::Decoded(number).to_bytes()[..]);
         let [width, height] = header.size.map(f64::from);
-        let (render, code) = (f64::from(header.render_ms), f64::from(header.code_ms));
+        let (render, code) = (f64::from(header.render_ms), f64::from(header.encode_ms));
         let facts = [header.time, render, code, f64::from(header.quantizer), width, height];
         Ok(Array::of2(&decoded, &facts.into_iter().map(JsValue::from).collect::<Array>()))
     }

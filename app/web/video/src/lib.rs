@@ -60,7 +60,7 @@ impl VideoFile {
             content: Content::Depth(view, [rgbd.nearest, rgbd.farthest]),
             size: source.size.map(|n| n.try_into().unwrap_or(u16::MAX)),
             render_ms: 0.0,
-            code_ms: 0.0,
+            encode_ms: 0.0,
             quantizer: 0,
         };
         let video = Video { index, rgbd, header };
@@ -75,7 +75,7 @@ impl VideoFile {
 
 #[wasm_bindgen]
 impl Video {
-    /// Returns the coder's name, as the browser's decoder takes it.
+    /// Returns the codec's name, as the browser's decoder takes it.
     ///
     /// # Errors
     /// A sentence.
@@ -93,13 +93,13 @@ impl Video {
 
     /// Returns five numbers for each picture: place and length in bytes, 1 for an intra frame, time and duration in seconds.
     pub fn pictures(&self) -> Vec<f64> {
-        let numbers = self.index.pictures.iter().map(|coded| {
+        let numbers = self.index.pictures.iter().map(|encoded| {
             [
-                coded.offset as f64,
-                coded.size as f64,
-                f64::from(u8::from(coded.intra)),
-                coded.time,
-                coded.duration,
+                encoded.offset as f64,
+                encoded.size as f64,
+                f64::from(u8::from(encoded.intra)),
+                encoded.time,
+                encoded.duration,
             ]
         });
         numbers.flatten().collect()

@@ -22,7 +22,7 @@ use yoro_video::{Decoder, LiveEncoder};
 const MODES: [(Mode, &str); 2] = [(Mode::Eyes, "two eyes, rotation"), (Mode::Depth, "one eye and depth")];
 
 impl Runner<'_> {
-    /// Codes a walking head's frames by both modes at each quantizer, and measures both eyes at the poses that the head has
+    /// Encodes a walking head's frames by both modes at each quantizer, and measures both eyes at the poses that the head has
     /// some frames later.
     pub(super) fn stream(
         &mut self,
@@ -41,7 +41,7 @@ impl Runner<'_> {
             interrupt::check()?;
             Ok(groups.render_one(prepared, &pair.view(eye))?.0)
         };
-        let mut same = Measurement::new(&job.setting, "same image, not coded", 0);
+        let mut same = Measurement::new(&job.setting, "same image, not encoded", 0);
         let mut truths = Vec::new();
         for (then, now) in then.iter().zip(now) {
             let truth = [eye(prepared, now, Eye::Left)?, eye(prepared, now, Eye::Right)?];

@@ -14,7 +14,7 @@ impl Encoder {
     /// Starts at `quantizer` (QP, 0 to 51), for `frame_rate` pictures a second. The first picture is an intra frame.
     ///
     /// # Errors
-    /// [`VideoError::Coder`].
+    /// [`VideoError::Codec`].
     pub fn new(quantizer: u8, frame_rate: f32) -> Result<Encoder, VideoError> {
         // Quality is what is asked for, so the quantizer is held and the rate is what comes of it: of the encoder's
         // modes this one moves the quantizer within its range only, and never skips a frame for it.
@@ -30,7 +30,7 @@ impl Encoder {
     /// Returns the next picture in the format of Annex B.
     ///
     /// # Errors
-    /// [`VideoError::Coder`] for a picture that is too large, or of another size than the one before.
+    /// [`VideoError::Codec`] for a picture that is too large, or of another size than the one before.
     pub fn encode(&mut self, picture: &Planes) -> Result<Vec<u8>, VideoError> {
         encode(&mut self.0, picture)
     }
@@ -47,17 +47,17 @@ impl LiveEncoder {
     /// Starts for at most `frame_rate` pictures a second.
     ///
     /// # Errors
-    /// [`VideoError::Coder`].
+    /// [`VideoError::Codec`].
     pub fn new(frame_rate: f32) -> Result<LiveEncoder, VideoError> {
         let encoder = start(config(RateControlMode::Off, frame_rate))?;
         Ok(LiveEncoder { encoder, quantizer: 0, size: [0, 0] })
     }
 
-    /// Returns the next picture in the format of Annex B, coded with `quantizer` (QP, 0 to 51), and true if it is an intra
+    /// Returns the next picture in the format of Annex B, encoded with `quantizer` (QP, 0 to 51), and true if it is an intra
     /// frame: if `intra`, or if its size is another one.
     ///
     /// # Errors
-    /// [`VideoError::Coder`] for a picture that is too large.
+    /// [`VideoError::Codec`] for a picture that is too large.
     pub fn encode(
         &mut self,
         picture: &Planes,
@@ -90,7 +90,7 @@ impl LiveEncoder {
             (*pointer).sSpatialLayers[0].iDLayerQp = quantizer.into();
             got != 0 || api.set_option(ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, pointer.cast()) != 0
         };
-        if failed { Err(VideoError::Coder("the encoder refuses a quantizer".into())) } else { Ok(()) }
+        if failed { Err(VideoError::Codec("the encoder refuses a quantizer".into())) } else { Ok(()) }
     }
 }
 
@@ -112,15 +112,16 @@ fn config(mode: RateControlMode, frame_rate: f32) -> EncoderConfig {
 
 fn start(config: EncoderConfig) -> Result<openh264::encoder::Encoder, VideoError> {
     let encoder = openh264::encoder::Encoder::with_api_config(OpenH264API::from_source(), config);
-    encoder.map_err(|error| coder("the encoder does not start", &error))
+    encoder.map_err(|error| codec_error("the encoder does not start", &error))
 }
 
 fn encode(encoder: &mut openh264::encoder::Encoder, picture: &Planes) -> Result<Vec<u8>, VideoError> {
     let [w, h] = picture.size;
     let planes = (&picture.planes[0][..], &picture.planes[1][..], &picture.planes[2][..]);
     let slices = YUVSlices::new(planes, (w, h), (w, w / 2, w / 2));
-    let bits =
-        encoder.encode(&slices).map_err(|error| coder(&format!("cannot code {w}x{h} pixels"), &error))?;
+    let bits = encoder
+        .encode(&slices)
+        .map_err(|error| codec_error(&format!("cannot encode {w}x{h} pixels"), &error))?;
     Ok(bits.to_vec())
 }
 
@@ -131,23 +132,24 @@ impl Decoder {
     /// Starts a decoder.
     ///
     /// # Errors
-    /// [`VideoError::Coder`].
+    /// [`VideoError::Codec`].
     pub fn new() -> Result<Decoder, VideoError> {
         let decoder = openh264::decoder::Decoder::new();
-        Ok(Decoder(decoder.map_err(|error| coder("the decoder does not start", &error))?))
+        Ok(Decoder(decoder.map_err(|error| codec_error("the decoder does not start", &error))?))
     }
 
     /// Decodes the next picture, which is in the format of Annex B.
     ///
     /// # Errors
-    /// [`VideoError::Coder`] for damaged bytes, and for streams whose pictures do not come in the order in which they are
+    /// [`VideoError::Codec`] for damaged bytes, and for streams whose pictures do not come in the order in which they are
     /// shown.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<Planes, VideoError> {
-        let decoded = self.0.decode(bytes).map_err(|error| coder("a picture cannot be decoded", &error))?;
-        let decoded = decoded.ok_or_else(|| VideoError::Coder("the decoder holds a picture back".into()))?;
+        let decoded =
+            self.0.decode(bytes).map_err(|error| codec_error("a picture cannot be decoded", &error))?;
+        let decoded = decoded.ok_or_else(|| VideoError::Codec("the decoder holds a picture back".into()))?;
         let (w, h) = decoded.dimensions();
         if w % 2 != 0 || h % 2 != 0 {
-            return Err(VideoError::Coder(format!("{w}x{h} pixels are no even size")));
+            return Err(VideoError::Codec(format!("{w}x{h} pixels are no even size")));
         }
         let (sy, su, sv) = decoded.strides();
         let plane = |data: &[u8], stride: usize, width: usize, height: usize| -> Vec<u8> {
@@ -164,8 +166,8 @@ impl Decoder {
     }
 }
 
-fn coder(what: &str, error: &openh264::Error) -> VideoError {
-    VideoError::Coder(format!("{what} ({error})"))
+fn codec_error(what: &str, error: &openh264::Error) -> VideoError {
+    VideoError::Codec(format!("{what} ({error})"))
 }
 
 #[cfg(test)]
@@ -212,9 +214,9 @@ mod tests {
                 (Encoder::new(quantizer, 30.0).unwrap(), Decoder::new().unwrap());
             let (mut bytes, mut quality) = (0, 0.0);
             for frame in &frames {
-                let coded = encoder.encode(&Planes::of_rgb(frame)).unwrap();
-                let decoded = decoder.decode(&coded).unwrap().rgb((64, 48));
-                bytes += coded.len();
+                let encoded = encoder.encode(&Planes::of_rgb(frame)).unwrap();
+                let decoded = decoder.decode(&encoded).unwrap().rgb((64, 48));
+                bytes += encoded.len();
                 quality += psnr(&decoded, frame) / 3.0;
             }
             (bytes, quality)
@@ -236,13 +238,13 @@ mod tests {
             let mut sums = (0, 0.0, false);
             for t in 0..4 {
                 let planes = picture(size, t);
-                let (coded, is_intra) = encoder.encode(&planes, quantizer, intra && t == 0).unwrap();
-                let decoded = decoder.decode(&coded).unwrap();
+                let (encoded, is_intra) = encoder.encode(&planes, quantizer, intra && t == 0).unwrap();
+                let decoded = decoder.decode(&encoded).unwrap();
                 assert_eq!(decoded.size, planes.size);
-                sums.0 += coded.len();
+                sums.0 += encoded.len();
                 sums.1 += psnr(&decoded.planes[0], &planes.planes[0]) / 4.0;
                 // A sequence's parameters stand before each intra frame.
-                assert_eq!(coded[4] & 31 == 7, is_intra);
+                assert_eq!(encoded[4] & 31 == 7, is_intra);
                 sums.2 |= is_intra;
             }
             sums
