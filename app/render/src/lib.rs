@@ -2,7 +2,7 @@
 //!
 //! [`Renderer`] takes a scene and a view and gives colour and depth, deferred or forward. A [`stereo::StereoMethod`] takes
 //! a pair of eyes and fills both images: two real renders, single-pass stereo, hybrid, shading reprojection, mono, or
-//! synthesis, by `yoro`'s pipeline or the paper's.
+//! synthesis, by `yoro`'s pipeline or the paper's. [`StreamedEyes`] makes them of a stream's decoded frames.
 //!
 //! This crate must never know where a GL context comes from, what a viewer's lenses do, or how a result is measured.
 
@@ -11,9 +11,11 @@ mod fixture;
 mod prepared;
 mod render;
 pub mod stereo;
+mod streamed;
 
 pub use prepared::PreparedScene;
 pub use render::{
     DeferredRenderer, DepthCopy, DepthImage, ForwardRenderer, Fxaa, GpuScene, MAX_POINT_LIGHTS, MSAA,
     RenderSettings, RenderedView, Renderer, RendererKind, Selection, ViewTargets,
 };
+pub use streamed::StreamedEyes;

@@ -1,3 +1,5 @@
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Frustum, Pose, View};
 
@@ -107,6 +109,16 @@ pub enum Refusal {
     Version,
 }
 
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Refusal::Token => "The server has been started again: open the link that it prints now.",
+            Refusal::Busy => "Another page shows the stream: close it.",
+            Refusal::Version => "The server has another version of yoro: reload the page.",
+        })
+    }
+}
+
 /// A message to the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FromServer<'a> {
@@ -128,6 +140,13 @@ pub enum FromServer<'a> {
 }
 
 impl FromViewer {
+    /// Returns the first message; none for a token that is not 32 hexadecimal digits.
+    pub fn hello(token: &str) -> Option<FromViewer> {
+        let digits = token.len() == 32 && token.bytes().all(|digit| digit.is_ascii_hexdigit());
+        let token = digits.then(|| u128::from_str_radix(token, 16).ok()).flatten()?.to_be_bytes();
+        Some(FromViewer::Hello { version: VERSION, token })
+    }
+
     /// Returns the message's bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         bytes_of(self)

@@ -230,7 +230,7 @@ impl Page {
             self.measure_again();
         }
         if let Content::Stream(stream) = &self.content
-            && stream.frusta.is_some()
+            && stream.is_whole()
         {
             self.walker = Walker::new(Pose::IDENTITY);
         }

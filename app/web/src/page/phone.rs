@@ -108,7 +108,7 @@ impl Phone {
             Content::Stream(stream) => {
                 self.frame.resize(pair.size).map_err(sentence)?;
                 let to = Eye::BOTH.map(|eye| Destination::whole(self.frame.eye(eye)));
-                stream.render(&pair, &to).map_err(sentence)?;
+                stream.eyes.render(&pair, &to).map_err(sentence)?;
             }
             _ => return Ok(()),
         }

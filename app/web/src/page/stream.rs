@@ -3,7 +3,7 @@
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{Frustum, Pose};
-use yoro_stream::{FromServer, FromViewer, Refusal, VERSION};
+use yoro_stream::{FromServer, FromViewer, Refusal};
 
 use super::error::sentence;
 use super::stream_show::StreamShow;
@@ -15,9 +15,7 @@ impl Page {
     /// Returns the message with which a viewer begins; none for a token that is not 32 hexadecimal digits.
     #[wasm_bindgen(js_name = streamHello)]
     pub fn stream_hello(&self, token: &str) -> Option<Vec<u8>> {
-        let digits = token.len() == 32 && token.bytes().all(|digit| digit.is_ascii_hexdigit());
-        let token = digits.then(|| u128::from_str_radix(token, 16).ok()).flatten()?.to_be_bytes();
-        Some(FromViewer::Hello { version: VERSION, token }.to_bytes())
+        FromViewer::hello(token).map(|hello| hello.to_bytes())
     }
 
     /// Takes the first answer of a server, and shows its stream from now on, from the head's first pose; one that goes on
@@ -37,13 +35,10 @@ impl Page {
                 }
                 return Ok(());
             }
-            Some(FromServer::Refused(Refusal::Busy)) => "Another page shows the stream: close it.",
-            Some(FromServer::Refused(Refusal::Token)) => {
-                "The server has been started again: open the link that it prints now."
-            }
-            _ => "The server has another version of yoro: reload the page.",
+            Some(FromServer::Refused(refusal)) => refusal,
+            _ => Refusal::Version,
         };
-        Err(JsError::new(refused))
+        Err(JsError::new(&refused.to_string()))
     }
 
     /// Shows the stream as a video, whole, from where it was taken: `frusta` are the tangents of left, right, bottom and top of
@@ -53,7 +48,7 @@ impl Page {
         let Content::Stream(stream) = &mut self.content else { return };
         let ([left, right], []) = frusta.as_chunks::<4>() else { return };
         let frustum = |[left, right, bottom, top]: [f32; 4]| Frustum { left, right, bottom, top };
-        stream.frusta = Some([*left, *right].map(frustum));
+        stream.show_whole([*left, *right].map(frustum));
         self.walker = Walker::new(Pose::IDENTITY);
     }
 
@@ -69,7 +64,7 @@ impl Page {
         let Some(FromServer::Frame { number, header, .. }) = FromServer::read(frame) else {
             return Err(JsError::new("A frame of the stream cannot be understood."));
         };
-        if !stream.take(header, planes).map_err(sentence)? {
+        if !stream.eyes.take(header, planes).map_err(sentence)? {
             return Err(JsError::new("A picture of the stream has another size than its frame tells."));
         }
         let decoded = Uint8Array::from(&FromViewer::Decoded(number).to_bytes()[..]);
@@ -83,6 +78,6 @@ impl Page {
     #[wasm_bindgen(js_name = streamRequest)]
     pub fn stream_request(&self, time: f64) -> Option<Vec<u8>> {
         let Content::Stream(stream) = &self.content else { return None };
-        stream.request(time)
+        stream.eyes.request(time).map(|request| FromViewer::Request(request).to_bytes())
     }
 }
