@@ -1,3 +1,4 @@
+use image::GrayImage;
 use openh264::OpenH264API;
 use openh264::encoder::{
     BitRate, Complexity, EncoderConfig, FrameRate, IntraFramePeriod, QpRange, RateControlMode, VuiConfig,
@@ -5,6 +6,7 @@ use openh264::encoder::{
 use openh264::formats::{YUVSlices, YUVSource};
 use openh264_sys2::{ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, SEncParamExt};
 
+use crate::ffmpeg::{Ffmpeg, FfmpegEncoder};
 use crate::{Planes, VideoError};
 
 /// An H.264 encoder at one quantizer.
@@ -36,34 +38,104 @@ impl Encoder {
     }
 }
 
+/// The encoder of a live stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LiveEncoderKind {
+    /// The graphics card's by ffmpeg, where it works; else openh264.
+    Auto,
+    /// openh264, on one core.
+    OpenH264,
+    /// One of ffmpeg's.
+    Ffmpeg(FfmpegEncoder),
+}
+
+/// A picture of a live stream.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LivePicture {
+    /// The picture in the format of Annex B.
+    pub data: Vec<u8>,
+    /// True if it is an intra frame.
+    pub is_intra: bool,
+    /// Its quantizer.
+    pub quantizer: u8,
+}
+
 /// An H.264 encoder whose quantizer and size may change from picture to picture.
-pub struct LiveEncoder {
-    encoder: openh264::encoder::Encoder,
-    quantizer: u8,
-    size: [usize; 2],
+pub enum LiveEncoder {
+    /// openh264.
+    OpenH264(Box<LiveOpenH264>),
+    /// An ffmpeg, which is started again for another size or quantizer.
+    Ffmpeg(FfmpegEncoder, Option<Ffmpeg>),
 }
 
 impl LiveEncoder {
     /// Starts for at most `frame_rate` pictures a second.
     ///
     /// # Errors
-    /// [`VideoError::Codec`].
-    pub fn new(frame_rate: f32) -> Result<LiveEncoder, VideoError> {
-        let encoder = start(config(RateControlMode::Off, frame_rate))?;
-        Ok(LiveEncoder { encoder, quantizer: 0, size: [0, 0] })
+    /// [`VideoError::Codec`] for an encoder that is not there or does not work.
+    pub fn new(kind: LiveEncoderKind, frame_rate: f32) -> Result<LiveEncoder, VideoError> {
+        let ffmpeg = |encoder| {
+            // What a graphics card cannot do shows with the first picture.
+            let gray = Planes::of_gray(&GrayImage::new(256, 256));
+            Ffmpeg::start(encoder, gray.size, 24)?.encode(&gray, true)?;
+            Ok(LiveEncoder::Ffmpeg(encoder, None))
+        };
+        match kind {
+            LiveEncoderKind::Auto => {
+                let card = ffmpeg(FfmpegEncoder::Nvenc).or_else(|_: VideoError| ffmpeg(FfmpegEncoder::Vaapi));
+                card.or_else(|_| LiveEncoder::new(LiveEncoderKind::OpenH264, frame_rate))
+            }
+            LiveEncoderKind::OpenH264 => Ok(LiveEncoder::OpenH264(Box::new(LiveOpenH264::new(frame_rate)?))),
+            LiveEncoderKind::Ffmpeg(encoder) => ffmpeg(encoder),
+        }
     }
 
-    /// Returns the next picture in the format of Annex B, encoded with `quantizer` (QP, 0 to 51), and true if it is an intra
-    /// frame: if `intra`, or if its size is another one.
+    /// Returns the encoder's name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            LiveEncoder::OpenH264(_) => "openh264",
+            LiveEncoder::Ffmpeg(encoder, _) => encoder.name(),
+        }
+    }
+
+    /// Returns the next picture, encoded with `quantizer` (QP, 0 to 51) or up to three steps coarser. It is an intra frame if
+    /// `intra`, if its size is another one, or if the encoder had to be started again.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] for a picture that is too large.
+    /// [`VideoError::Codec`], for a picture that is too large or an encoder that has ended.
     pub fn encode(
         &mut self,
         picture: &Planes,
         quantizer: u8,
         intra: bool,
-    ) -> Result<(Vec<u8>, bool), VideoError> {
+    ) -> Result<LivePicture, VideoError> {
+        match self {
+            LiveEncoder::OpenH264(encoder) => encoder.encode(picture, quantizer, intra),
+            LiveEncoder::Ffmpeg(encoder, running) => {
+                let running = match running.take() {
+                    Some(ffmpeg) if ffmpeg.suits(picture.size, quantizer) => running.insert(ffmpeg),
+                    _ => running.insert(Ffmpeg::start(*encoder, picture.size, quantizer)?),
+                };
+                running.encode(picture, intra)
+            }
+        }
+    }
+}
+
+/// openh264, whose quantizer and size may change from picture to picture.
+pub struct LiveOpenH264 {
+    encoder: openh264::encoder::Encoder,
+    quantizer: u8,
+    size: [usize; 2],
+}
+
+impl LiveOpenH264 {
+    fn new(frame_rate: f32) -> Result<LiveOpenH264, VideoError> {
+        let encoder = start(config(RateControlMode::Off, frame_rate))?;
+        Ok(LiveOpenH264 { encoder, quantizer: 0, size: [0, 0] })
+    }
+
+    fn encode(&mut self, picture: &Planes, quantizer: u8, intra: bool) -> Result<LivePicture, VideoError> {
         let resized = self.size != picture.size;
         if resized {
             // A quantizer can be set only once the encoder has a size, which the first picture gives it.
@@ -76,7 +148,7 @@ impl LiveEncoder {
             self.encoder.force_intra_frame();
         }
         (self.size, self.quantizer) = (picture.size, quantizer);
-        Ok((encode(&mut self.encoder, picture)?, resized || intra))
+        Ok(LivePicture { data: encode(&mut self.encoder, picture)?, is_intra: resized || intra, quantizer })
     }
 
     fn set_quantizer(&mut self, quantizer: u8) -> Result<(), VideoError> {
@@ -227,24 +299,25 @@ mod tests {
         assert_eq!(run(32), middle);
     }
 
-    #[test]
-    fn quantizer_and_size_change_while_it_runs() {
+    /// Checks bits, quality and intra frames while size and quantizer change.
+    fn check_live_encoder(kind: LiveEncoderKind) {
         let picture = |size: u32, t: u32| {
             let noise = |x: u32, y: u32| ((x * 7 + t) ^ (y * 13)) as u8;
             Planes::of_rgb(&RgbImage::from_fn(size, size, |x, y| Rgb([noise(x, y), noise(y, x), 90])))
         };
-        let (mut encoder, mut decoder) = (LiveEncoder::new(30.0).unwrap(), Decoder::new().unwrap());
+        let (mut encoder, mut decoder) = (LiveEncoder::new(kind, 30.0).unwrap(), Decoder::new().unwrap());
         let mut run = |size, quantizer, intra| {
             let mut sums = (0, 0.0, false);
             for t in 0..4 {
                 let planes = picture(size, t);
-                let (encoded, is_intra) = encoder.encode(&planes, quantizer, intra && t == 0).unwrap();
-                let decoded = decoder.decode(&encoded).unwrap();
+                let LivePicture { data, is_intra, .. } =
+                    encoder.encode(&planes, quantizer, intra && t == 0).unwrap();
+                let decoded = decoder.decode(&data).unwrap();
                 assert_eq!(decoded.size, planes.size);
-                sums.0 += encoded.len();
+                sums.0 += data.len();
                 sums.1 += psnr(&decoded.planes[0], &planes.planes[0]) / 4.0;
                 // A sequence's parameters stand before each intra frame.
-                assert_eq!(encoded[4] & 31 == 7, is_intra);
+                assert_eq!(data[4] & 31 == 7, is_intra);
                 sums.2 |= is_intra;
             }
             sums
@@ -252,7 +325,24 @@ mod tests {
         let (fine, coarse, again) = (run(64, 16, false), run(64, 40, false), run(64, 16, false));
         assert!(fine.0 > 2 * coarse.0 && again.0 > 2 * coarse.0, "{fine:?} {coarse:?} {again:?}");
         assert!(fine.1 > coarse.1 + 6.0 && again.1 > coarse.1 + 6.0, "{fine:?} {coarse:?} {again:?}");
-        assert_eq!([fine.2, coarse.2, again.2], [true, false, false], "a new quantizer needs no intra frame");
+        let restarted = kind != LiveEncoderKind::OpenH264;
+        assert_eq!(
+            [fine.2, coarse.2, again.2],
+            [true, restarted, restarted],
+            "intra frames by new quantizers"
+        );
         assert!(run(64, 16, true).2 && run(48, 16, false).2);
+        assert!(!run(48, 16, false).2, "no intra frame that nobody asked for");
+    }
+
+    #[test]
+    fn quantizer_and_size_change_while_it_runs() {
+        check_live_encoder(LiveEncoderKind::OpenH264);
+    }
+
+    #[test]
+    #[ignore = "needs an ffmpeg with libx264 in PATH"]
+    fn quantizer_and_size_change_by_ffmpeg() {
+        check_live_encoder(LiveEncoderKind::Ffmpeg(FfmpegEncoder::X264));
     }
 }

@@ -13,6 +13,7 @@ use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_max
 use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
+use crate::index::{length_size, parameters};
 use crate::record3d::{self, Recording};
 use crate::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Indexer, Planes, Rgbd, VideoError};
 
@@ -226,7 +227,7 @@ impl Reader {
                 found.map(Depth::Hue)
             }
         };
-        let (parameters, decoder) = (index.parameters(), Decoder::new()?);
+        let (parameters, decoder) = (parameters(index.avcc()), Decoder::new()?);
         Ok(Reader { path: path.into(), file, index, read: 0, parameters, decoder, depth })
     }
 
@@ -280,7 +281,7 @@ impl Reader {
         self.read += 1;
         let data = read_at(&mut self.file, offset, size)
             .map_err(|source| FileError::Read { path: self.path.clone(), source })?;
-        let annex_b = length_prefixed_to_annexb(&data, self.index.length_size())
+        let annex_b = length_prefixed_to_annexb(&data, length_size(self.index.avcc()))
             .map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
         let bytes = [std::mem::take(&mut self.parameters), annex_b].concat();
         let picture = self.decoder.decode(&bytes).map_err(|error| VideoError::format(&self.path, error))?;

@@ -1,11 +1,11 @@
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "codec")]
-use shiguredo_mp4::bitstream::h264::LengthSize;
 use shiguredo_mp4::boxes::{Avc1Box, SampleEntry};
 use shiguredo_mp4::codec_string;
 use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
 use shiguredo_mp4::{BoxType, Encode as _, TrackKind};
+#[cfg(feature = "codec")]
+use shiguredo_mp4::{bitstream::h264::LengthSize, boxes::AvccBox};
 
 use crate::{DEPTH_BOX, Rgbd, VideoError};
 
@@ -27,7 +27,7 @@ pub struct Index {
     entry: Box<Avc1Box>,
 }
 
-/// The place of a encoded picture in a file.
+/// The place of an encoded picture in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncodedPicture {
     /// Bytes from the file's beginning.
@@ -139,21 +139,27 @@ impl Index {
         [self.entry.visual.width, self.entry.visual.height].map(u32::from)
     }
 
-    /// Returns the parameter sets in the format of Annex B, which come before the first picture.
+    /// Returns the decoder's configuration.
     #[cfg(feature = "codec")]
-    pub(crate) fn parameters(&self) -> Vec<u8> {
-        let sets = self.entry.avcc_box.sps_list.iter().chain(&self.entry.avcc_box.pps_list);
-        sets.flat_map(|set| [&[0, 0, 0, 1], &set[..]].concat()).collect()
+    pub(crate) fn avcc(&self) -> &AvccBox {
+        &self.entry.avcc_box
     }
+}
 
-    /// Returns how many bytes the length before each NAL unit of a picture has.
-    #[cfg(feature = "codec")]
-    pub(crate) fn length_size(&self) -> LengthSize {
-        match self.entry.avcc_box.length_size_minus_one.get() {
-            0 => LengthSize::OneByte,
-            1 => LengthSize::TwoBytes,
-            _ => LengthSize::FourBytes,
-        }
+/// Returns the parameter sets in the format of Annex B, which come before the first picture.
+#[cfg(feature = "codec")]
+pub fn parameters(avcc: &AvccBox) -> Vec<u8> {
+    let sets = avcc.sps_list.iter().chain(&avcc.pps_list);
+    sets.flat_map(|set| [&[0, 0, 0, 1], &set[..]].concat()).collect()
+}
+
+/// Returns how many bytes the length before each NAL unit of a picture has.
+#[cfg(feature = "codec")]
+pub fn length_size(avcc: &AvccBox) -> LengthSize {
+    match avcc.length_size_minus_one.get() {
+        0 => LengthSize::OneByte,
+        1 => LengthSize::TwoBytes,
+        _ => LengthSize::FourBytes,
     }
 }
 

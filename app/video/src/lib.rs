@@ -8,6 +8,8 @@
 mod codec;
 mod error;
 #[cfg(feature = "codec")]
+mod ffmpeg;
+#[cfg(feature = "codec")]
 mod file;
 mod index;
 mod planes;
@@ -16,8 +18,10 @@ mod record3d;
 mod rgbd;
 
 #[cfg(feature = "codec")]
-pub use codec::{Decoder, Encoder, LiveEncoder};
+pub use codec::{Decoder, Encoder, LiveEncoder, LiveEncoderKind, LivePicture};
 pub use error::VideoError;
+#[cfg(feature = "codec")]
+pub use ffmpeg::FfmpegEncoder;
 #[cfg(feature = "codec")]
 pub use file::{Format, Reader, write};
 pub use index::{EncodedPicture, Index, Indexer};

@@ -25,7 +25,7 @@ use yoro_lab::metrics::{Channels, psnr};
 use yoro_lab::streaming::{FrameRenderer, Mode, Receiver};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_stream::{Content, EyeView, FrameHeader, FromServer, FromViewer, VERSION, ViewRequest};
-use yoro_video::{Decoder, LiveEncoder};
+use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
 
 use super::{GL, Page, Server, close};
 use crate::browser::Browser;
@@ -109,12 +109,13 @@ impl Desktop {
         let request =
             ViewRequest { time: 0.0, eyes, dominant: first.dominant, size: first.size.map(|n| n as u16) };
         let picture = self.renderer.picture(&mut self.prepared, &request).unwrap();
-        let (mut encoder, mut decoder) = (LiveEncoder::new(5.0).unwrap(), Decoder::new().unwrap());
+        let (mut encoder, mut decoder) =
+            (LiveEncoder::new(LiveEncoderKind::OpenH264, 5.0).unwrap(), Decoder::new().unwrap());
         let mut planes = picture.planes.clone();
         // A picture that stands still becomes better for some frames.
         for _ in 0..4 {
-            let (bits, _) = encoder.encode(&picture.planes, QUANTIZER.parse().unwrap(), false).unwrap();
-            planes = decoder.decode(&bits).unwrap();
+            let encoded = encoder.encode(&picture.planes, QUANTIZER.parse().unwrap(), false).unwrap();
+            planes = decoder.decode(&encoded.data).unwrap();
         }
         [0, 1].map(|i| self.receiver.eyes(&planes, &picture.content, picture.size, &pairs[i]).unwrap())
     }

@@ -25,7 +25,7 @@ use crate::cli::settings::{Renderer, SettingOptions};
 use yoro_lab::streaming::{FrameRenderer, Mode};
 use yoro_render::PreparedScene;
 use yoro_stream::Token;
-use yoro_video::LiveEncoder;
+use yoro_video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
 
 /// Stream a scene, rendered on this machine, to a browser that shows both eyes at the head's newest pose
 #[derive(clap::Args, Clone, Debug)]
@@ -41,6 +41,9 @@ pub struct ServeArgs {
     /// H.264's quantizer, 12 (best) to 44; it grows where the connection is too slow
     #[arg(long, default_value_t = 24, value_name = "QP", value_parser = clap::value_parser!(u8).range(12..=44))]
     quantizer: u8,
+    /// What encodes
+    #[arg(long, value_enum, default_value = "auto")]
+    encoder: EncoderArg,
     /// Most frames a second
     #[arg(long, default_value_t = 60, value_name = "HZ", value_parser = clap::value_parser!(u16).range(1..=240))]
     frame_rate: u16,
@@ -69,6 +72,20 @@ enum ModeArg {
     Depth,
     /// Both eyes, corrected by rotation alone
     Eyes,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum EncoderArg {
+    /// A graphics card by ffmpeg, where that works; else openh264
+    Auto,
+    /// openh264, built in
+    Openh264,
+    /// NVIDIA's NVENC, by ffmpeg
+    Nvenc,
+    /// VA-API (Intel, AMD), by ffmpeg
+    Vaapi,
+    /// x264, by ffmpeg
+    X264,
 }
 
 impl Subcommand for ServeArgs {
@@ -101,11 +118,20 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         ModeArg::Depth => Mode::Depth,
         ModeArg::Eyes => Mode::Eyes,
     };
+    let kind = match args.encoder {
+        EncoderArg::Auto => LiveEncoderKind::Auto,
+        EncoderArg::Openh264 => LiveEncoderKind::OpenH264,
+        EncoderArg::Nvenc => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Nvenc),
+        EncoderArg::Vaapi => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Vaapi),
+        EncoderArg::X264 => LiveEncoderKind::Ffmpeg(FfmpegEncoder::X264),
+    };
+    let encoder =
+        LiveEncoder::new(kind, args.frame_rate.into()).context("choose another encoder with --encoder")?;
     let lan = args.lan.map(Lan::new).transpose()?;
     let mut server = Server {
         prepared: PreparedScene::new(headless.gl(), scene, &settings)?,
         renderer: FrameRenderer::new(headless.gl(), mode)?,
-        encoder: LiveEncoder::new(args.frame_rate.into())?,
+        encoder,
         start: Instant::now(),
         limits: Limits { quantizer: args.quantizer, frame_rate: args.frame_rate.into(), size: args.max_size },
     };
@@ -124,7 +150,7 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     };
     let link =
         format!("{scheme}://{}/#stream={:032x}&display=side-by-side", hosts[0], u128::from_be_bytes(token));
-    announce(&link, port, lan.as_ref())?;
+    announce(&link, port, lan.as_ref(), server.encoder.name())?;
     let tls = lan.map(|lan| lan.tls);
     let access = Arc::new(Access::new(token, (scheme, hosts), folder, home, tls));
     let (clients, admitted) = mpsc::channel();
@@ -133,8 +159,8 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     server.serve(&admitted, &access)
 }
 
-/// Says where the stream is seen.
-fn announce(link: &str, port: u16, lan: Option<&Lan>) -> anyhow::Result<()> {
+/// Says where the stream is seen, and what encodes it.
+fn announce(link: &str, port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
     println!("open {link}");
     match lan {
         Some(lan) => {
@@ -151,6 +177,6 @@ fn announce(link: &str, port: u16, lan: Option<&Lan>) -> anyhow::Result<()> {
             "on a phone by cable: adb reverse tcp:{port} tcp:{port}, then the same address there; by Wi-Fi: --lan"
         ),
     }
-    println!("until Ctrl-C");
+    println!("{encoder} encodes, until Ctrl-C");
     Ok(io::stdout().flush()?)
 }

@@ -13,7 +13,7 @@ use yoro_files::interrupt;
 use yoro_lab::streaming::FrameRenderer;
 use yoro_render::PreparedScene;
 use yoro_stream::{FrameHeader, FromServer, FromViewer, RateControl, ViewRequest};
-use yoro_video::LiveEncoder;
+use yoro_video::{LiveEncoder, LivePicture};
 
 /// A viewer that says nothing for so long is gone.
 const SILENCE: Duration = Duration::from_secs(3);
@@ -113,9 +113,8 @@ impl Server {
             self.prepared.set_time(self.start.elapsed().as_secs_f64())?;
             let picture = self.renderer.picture(&mut self.prepared, &request)?;
             let rendered = begun.elapsed();
-            let quantizer = control.quantizer();
-            let (data, is_intra) =
-                self.encoder.encode(&picture.planes, quantizer, number == 0 || picture.new_span)?;
+            let LivePicture { data, is_intra, quantizer } =
+                self.encoder.encode(&picture.planes, control.quantizer(), number == 0 || picture.new_span)?;
             let ms = |time: Duration| time.as_secs_f32() * 1e3;
             let header = FrameHeader {
                 time: request.time,
@@ -163,7 +162,7 @@ impl Statistics {
         if self.frames > 0 {
             let frames = self.frames as f32;
             println!(
-                "{:.0} frames/s, {:.2} Mbit/s, quantizer {}, render {:.1} ms, code {:.1} ms, sent and decoded {}",
+                "{:.0} frames/s, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and decoded {}",
                 frames / seconds,
                 self.bytes as f32 * 8e-6 / seconds,
                 control.quantizer(),

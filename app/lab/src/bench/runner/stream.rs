@@ -17,7 +17,7 @@ use yoro_figures::text::slug;
 use yoro_files::interrupt;
 use yoro_render::PreparedScene;
 use yoro_stream::{EyeView, ViewRequest};
-use yoro_video::{Decoder, LiveEncoder};
+use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
 
 const MODES: [(Mode, &str); 2] = [(Mode::Eyes, "two eyes, rotation"), (Mode::Depth, "one eye and depth")];
 
@@ -63,15 +63,16 @@ impl Runner<'_> {
             for ((_, name), pictures) in MODES.iter().zip(&pictures) {
                 let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
                 let mut measurement = Measurement::new(&job.setting, format!("{name}, QP {quantizer}"), 0);
-                let (mut encoder, mut decoder) = (LiveEncoder::new(HEADSET_RATE as f32)?, Decoder::new()?);
+                let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, HEADSET_RATE as f32)?;
+                let mut decoder = Decoder::new()?;
                 let mut bytes = 0;
                 for (i, picture) in pictures.iter().enumerate() {
                     interrupt::check()?;
-                    let (bits, intra) = encoder.encode(&picture.planes, quantizer, picture.new_span)?;
+                    let encoded = encoder.encode(&picture.planes, quantizer, picture.new_span)?;
                     // A stream begins once.
-                    bytes += if i == 0 { 0 } else { bits.len() };
-                    anyhow::ensure!(i == 0 || !intra, "the distances change within the sequence");
-                    let decoded = decoder.decode(&bits)?;
+                    bytes += if i == 0 { 0 } else { encoded.data.len() };
+                    anyhow::ensure!(i == 0 || !encoded.is_intra, "the distances change within the sequence");
+                    let decoded = decoder.decode(&encoded.data)?;
                     let eyes = receiver.eyes(&decoded, &picture.content, picture.size, &now[i])?;
                     measure(&mut measurement, &eyes, &truths[i])?;
                     if i + 1 == pictures.len() {
