@@ -39,6 +39,9 @@ pub fn error_color(error: f64) -> [u8; 3] {
 
 /// Returns 1 - SSIM of `a` and `b` at each pixel (gaussian window, mean of red, green and blue) as colours, on the fixed
 /// scale from 0 (black) to 1 (pale yellow).
+///
+/// # Errors
+/// [`MetricsError::SizesDiffer`] and [`MetricsError::TooSmall`].
 pub fn error_map(a: &RgbImage, b: &RgbImage) -> Result<RgbImage, MetricsError> {
     let map = dissimilarity_map(a, b)?;
     let width = a.width();

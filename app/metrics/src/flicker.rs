@@ -44,7 +44,7 @@ impl FlickerMeter {
     /// Takes the ground truth of two consecutive frames and their holes (row by row from the top).
     ///
     /// # Errors
-    /// [`MetricsError`] when sizes differ.
+    /// [`MetricsError::SizesDiffer`] and [`MetricsError::MaskSize`].
     pub fn new(truth: [&RgbImage; 2], holes: [&[bool]; 2]) -> Result<FlickerMeter, MetricsError> {
         let [before, after] = truth;
         check_sizes(before, after)?;
@@ -69,6 +69,9 @@ impl FlickerMeter {
     }
 
     /// Returns the flicker of a method's images of the same two frames.
+    ///
+    /// # Errors
+    /// [`MetricsError::SizesDiffer`].
     pub fn flicker(&self, eye: [&RgbImage; 2]) -> Result<Flicker, MetricsError> {
         let [before, after] = eye;
         check_sizes(before, after)?;

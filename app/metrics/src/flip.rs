@@ -13,6 +13,9 @@ pub const FLIP_PIXELS_PER_DEGREE: f64 = 67.020_643_276_582_25;
 /// Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: "FLIP: A Difference Evaluator for
 /// Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020. Both
 /// images are display-referred sRGB. Agrees with the authors' program to 1e-4.
+///
+/// # Errors
+/// [`MetricsError::SizesDiffer`].
 pub fn flip_map(
     test: &RgbImage,
     reference: &RgbImage,

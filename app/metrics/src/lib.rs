@@ -35,6 +35,9 @@ pub struct Quality {
 
 impl Quality {
     /// Measures `a` against `b`.
+    ///
+    /// # Errors
+    /// [`MetricsError::SizesDiffer`] and [`MetricsError::TooSmall`].
     pub fn of(a: &RgbImage, b: &RgbImage, channels: Channels) -> Result<Quality, MetricsError> {
         Ok(Quality {
             psnr: psnr(a, b, channels)?,
@@ -93,6 +96,9 @@ pub struct Comparison {
 
 impl Comparison {
     /// Measures `a` against `b`. `holes`: row by row from the top, true where a pixel was disoccluded.
+    ///
+    /// # Errors
+    /// [`MetricsError::SizesDiffer`], [`MetricsError::TooSmall`] and [`MetricsError::MaskSize`].
     pub fn of(a: &RgbImage, b: &RgbImage, holes: Option<&[bool]>) -> Result<Comparison, MetricsError> {
         let window = SsimWindow::Gaussian11;
         let structure = ssim_map(a, b, window, Channels::Rgb)?;

@@ -48,6 +48,9 @@ impl<'de> Deserialize<'de> for Psnr {
 }
 
 /// Returns the PSNR over the whole image.
+///
+/// # Errors
+/// [`MetricsError::SizesDiffer`].
 pub fn psnr(a: &RgbImage, b: &RgbImage, channels: Channels) -> Result<Psnr, MetricsError> {
     check_sizes(a, b)?;
     let planes = channels.planes();
@@ -61,6 +64,9 @@ pub fn psnr(a: &RgbImage, b: &RgbImage, channels: Channels) -> Result<Psnr, Metr
 }
 
 /// Returns the PSNR (RGB) over the pixels where `selected`, row by row from the top, is true; `None` without any.
+///
+/// # Errors
+/// [`MetricsError::SizesDiffer`] and [`MetricsError::MaskSize`].
 pub fn psnr_where(a: &RgbImage, b: &RgbImage, selected: &[bool]) -> Result<Option<Psnr>, MetricsError> {
     check_sizes(a, b)?;
     check_mask(a, selected)?;

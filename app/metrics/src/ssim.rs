@@ -37,6 +37,9 @@ impl SsimWindow {
 }
 
 /// Returns the mean structural similarity over the image without a border of half a window.
+///
+/// # Errors
+/// [`MetricsError::SizesDiffer`] and [`MetricsError::TooSmall`].
 pub fn ssim(a: &RgbImage, b: &RgbImage, window: SsimWindow, channels: Channels) -> Result<f64, MetricsError> {
     let map = ssim_map(a, b, window, channels)?;
     Ok(mean_inside(&map, a, window, |_| true).expect("an image as large as the window has a middle"))
@@ -44,6 +47,9 @@ pub fn ssim(a: &RgbImage, b: &RgbImage, window: SsimWindow, channels: Channels) 
 
 /// Returns the mean of the SSIM map (RGB) over the pixels where `selected`, row by row from the top, is true, without the
 /// border; `None` without any. The window of a selected pixel also sees its neighbours.
+///
+/// # Errors
+/// [`MetricsError::SizesDiffer`], [`MetricsError::TooSmall`] and [`MetricsError::MaskSize`].
 pub fn ssim_where(
     a: &RgbImage,
     b: &RgbImage,
@@ -57,6 +63,9 @@ pub fn ssim_where(
 
 /// Returns 1 - SSIM at each pixel, row by row from the top: gaussian window, mean of red, green and blue, the image
 /// mirrored at its border. 0 is equal, 1 has nothing in common, above 1 is the opposite (up to 2).
+///
+/// # Errors
+/// [`MetricsError::SizesDiffer`] and [`MetricsError::TooSmall`].
 pub fn dissimilarity_map(a: &RgbImage, b: &RgbImage) -> Result<Vec<f64>, MetricsError> {
     let mut map = ssim_map(a, b, SsimWindow::Gaussian11, Channels::Rgb)?;
     map.par_iter_mut().for_each(|value| *value = 1.0 - *value);

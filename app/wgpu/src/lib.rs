@@ -43,8 +43,6 @@ pub use yoro;
 use yoro::synthesis::{Edges, Strips};
 
 pub use pipeline::{AnyView, Gather, Pipeline};
-#[doc(hidden)]
-pub use shaders::GatherVariant;
 
 /// Errors of creating a pipeline and of recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

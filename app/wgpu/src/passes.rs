@@ -10,10 +10,10 @@ use wgpu::{
     SamplerDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StoreOp,
     TextureFormat, TextureSampleType, TextureView, TextureViewDimension, VertexState,
 };
-use yoro::synthesis::{Edges, Strips};
+use yoro::synthesis::{Edges, PassSet, Strips};
 
 use crate::buffers::{Buffers, layer_formats, map_format};
-use crate::shaders::{self, GatherVariant, Kind};
+use crate::shaders;
 use crate::uniforms::{self, UniformRing};
 use crate::{Options, Source};
 
@@ -64,14 +64,14 @@ pub(crate) struct Groups {
 
 impl Passes {
     /// `uniforms` is the size of the passes' block.
-    pub(crate) fn new(device: &Device, options: &Options, kind: Kind, uniforms: BufferSize) -> Passes {
+    pub(crate) fn new(device: &Device, options: &Options, set: PassSet, uniforms: BufferSize) -> Passes {
         let Options { color_format, depth_format, edges, samples, history } = *options;
         let module = |label, text: &'static str| {
             let source = ShaderSource::Wgsl(text.into());
             device.create_shader_module(ShaderModuleDescriptor { label: Some(label), source })
         };
         let screen = module("yoro screen", shaders::SCREEN);
-        let march_vertex = module("yoro march", shaders::march_vertex(kind));
+        let march_vertex = module("yoro march", shaders::march_vertex(set));
         let hard = edges == Edges::Hard;
         let make = |label, text, bindings: &[u32], formats: &[TextureFormat]| {
             let bindings = bindings.to_vec();
@@ -81,11 +81,9 @@ impl Passes {
         let map = [map_format(edges)];
         let layers = layer_formats(color_format);
         let tile_bindings: &[u32] = if hard { &[DEPTH, UNIFORMS, NEAREST] } else { &[LAYERS, UNIFORMS] };
-        let march_bindings: &[u32] = match (hard, kind) {
-            (_, Kind::AnyView) => &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, LINEAR],
-            (true, Kind::Gather(GatherVariant::ShortWay)) => {
-                &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR]
-            }
+        let march_bindings: &[u32] = match (hard, set) {
+            (_, PassSet::AnyView) => &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, LINEAR],
+            (true, PassSet::GatherOnGpu) => &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR],
             (true, _) => &[DEPTH, COLOR, SPAN_MAP, UNIFORMS, LINEAR],
             (false, _) => &[COLOR, SPAN_MAP, LAYERS, BACKGROUND, UNIFORMS, LINEAR],
         };
@@ -105,10 +103,10 @@ impl Passes {
                 let bindings = [DEPTH, SAMPLE_COLOR, UNIFORMS];
                 make("yoro split", shaders::split_samples(samples), &bindings, &layers)
             }),
-            tiles: make("yoro tiles", shaders::tiles(edges, kind), tile_bindings, &map),
-            spans: make("yoro spans", shaders::spans(edges, kind), &[TILE_MAP, UNIFORMS], &map),
+            tiles: make("yoro tiles", shaders::tiles(edges, set), tile_bindings, &map),
+            spans: make("yoro spans", shaders::spans(edges, set), &[TILE_MAP, UNIFORMS], &map),
             march: {
-                let text = shaders::march(edges, kind, depth_format.is_some(), history);
+                let text = shaders::march(edges, set, depth_format.is_some(), history);
                 let bindings = [march_bindings, recall].concat();
                 let pass = PassMaker { device, options, uniforms, label: "yoro march", bindings };
                 pass.make(&march_vertex, &module("yoro march", text), &[color_format], depth_format)

@@ -2,14 +2,13 @@
 
 use wgpu::{CommandEncoder, Device, DeviceType, Queue, TextureView};
 use yoro::eyes::{PoseWarp, Warp};
-use yoro::synthesis::{Edges, Places, Strips, WarpKind, span_tiles, tiles};
+use yoro::synthesis::{Edges, PassSet, Places, Strips, WarpKind, span_tiles, tiles};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
 use crate::passes::{Drawn, Groups, Passes};
-use crate::shaders::Kind;
 use crate::uniforms::{self, UniformRing};
-use crate::{GatherVariant, History, Options, Source, Target, WgpuError};
+use crate::{History, Options, Source, Target, WgpuError};
 
 /// The bindings of a source that was not used for so many calls are dropped, and with them its textures.
 const KEPT_CALLS: u64 = 32;
@@ -46,21 +45,6 @@ struct Kept {
     used: u64,
 }
 
-impl Gather {
-    /// Does what [`Gather::new`] does on another kind of device: for tests of shaders that this device would not use.
-    ///
-    /// # Errors
-    /// As [`Gather::new`].
-    #[doc(hidden)]
-    pub fn with_variant(
-        device: &Device,
-        options: &Options,
-        variant: GatherVariant,
-    ) -> Result<Gather, WgpuError> {
-        Gather::of_kind(device, options, Kind::Gather(variant))
-    }
-}
-
 impl<W: WarpKind> Pipeline<W> {
     /// Makes everything that does not depend on the textures: the pipelines.
     ///
@@ -69,24 +53,27 @@ impl<W: WarpKind> Pipeline<W> {
     /// [`WgpuError::AnyView`] for what [`AnyView`] cannot, [`WgpuError::Refused`] for whatever else wgpu refuses. In a browser
     /// the device's handler of uncaptured errors is told of such things.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
-        let kind = if W::ANY_VIEW {
-            Kind::AnyView
-        } else if device.adapter_info().device_type == DeviceType::Cpu {
-            Kind::Gather(GatherVariant::Software)
-        } else {
-            Kind::Gather(GatherVariant::ShortWay)
-        };
-        Pipeline::of_kind(device, options, kind)
+        let on_cpu = device.adapter_info().device_type == DeviceType::Cpu;
+        Pipeline::with_passes(device, options, PassSet::of::<W>(on_cpu))
     }
 
-    fn of_kind(device: &Device, options: &Options, kind: Kind) -> Result<Pipeline<W>, WgpuError> {
+    /// Does what [`Pipeline::new`] does with the passes for another device: for tests of shaders that this one would not use.
+    ///
+    /// # Errors
+    /// As [`Pipeline::new`].
+    #[doc(hidden)]
+    pub fn with_passes(
+        device: &Device,
+        options: &Options,
+        passes: PassSet,
+    ) -> Result<Pipeline<W>, WgpuError> {
         if W::ANY_VIEW && (options.edges != Edges::Hard || options.history) {
             return Err(WgpuError::AnyView);
         }
         let checks = Checks::new(device, options)?;
         let (passes, uniforms, strips) = made(device, || {
             (
-                Passes::new(device, options, kind, uniforms::size::<W::Uniforms>()),
+                Passes::new(device, options, passes, uniforms::size::<W::Uniforms>()),
                 UniformRing::new(device, "yoro uniforms"),
                 options.history.then(|| UniformRing::new(device, "yoro strips")),
             )

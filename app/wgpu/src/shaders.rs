@@ -1,25 +1,6 @@
 //! The shaders of the passes as WGSL, compiled beforehand from the files of `yoro-shaders`: `cargo tools wgsl`.
 
-use yoro::synthesis::Edges;
-
-/// The passes of a kind of warp.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Those between parallel eyes.
-    Gather(GatherVariant),
-    /// Those of any view.
-    AnyView,
-}
-
-/// The kind of device that the shaders are written for.
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GatherVariant {
-    /// A CPU rasterizer.
-    Software,
-    /// A GPU.
-    ShortWay,
-}
+use yoro::synthesis::{Edges, PassSet};
 
 pub(crate) const SCREEN: &str = include_str!("wgsl/screen.wgsl");
 
@@ -43,34 +24,34 @@ pub(crate) fn split_samples(samples: u32) -> &'static str {
 }
 
 /// Returns the pass that finds the bounds of tiles.
-pub(crate) fn tiles(edges: Edges, kind: Kind) -> &'static str {
-    match (edges, kind) {
-        (_, Kind::AnyView) => include_str!("wgsl/any-view-tiles.wgsl"),
-        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => include_str!("wgsl/tiles.wgsl"),
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_str!("wgsl/tiles-short.wgsl"),
+pub(crate) fn tiles(edges: Edges, passes: PassSet) -> &'static str {
+    match (edges, passes) {
+        (_, PassSet::AnyView) => include_str!("wgsl/any-view-tiles.wgsl"),
+        (Edges::Hard, PassSet::GatherOnCpu) => include_str!("wgsl/tiles.wgsl"),
+        (Edges::Hard, PassSet::GatherOnGpu) => include_str!("wgsl/tiles-short.wgsl"),
         _ => include_str!("wgsl/layer-tiles.wgsl"),
     }
 }
 
 /// Returns the pass that finds what each tile of the target has to search.
-pub(crate) fn spans(edges: Edges, kind: Kind) -> &'static str {
-    match (edges, kind) {
-        (_, Kind::AnyView) => include_str!("wgsl/any-view-spans.wgsl"),
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_str!("wgsl/spans-short.wgsl"),
+pub(crate) fn spans(edges: Edges, passes: PassSet) -> &'static str {
+    match (edges, passes) {
+        (_, PassSet::AnyView) => include_str!("wgsl/any-view-spans.wgsl"),
+        (Edges::Hard, PassSet::GatherOnGpu) => include_str!("wgsl/spans-short.wgsl"),
         _ => include_str!("wgsl/spans.wgsl"),
     }
 }
 
 /// Returns the vertex shader of the last pass.
-pub(crate) fn march_vertex(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Gather(_) => include_str!("wgsl/march-vertex.wgsl"),
-        Kind::AnyView => SCREEN,
+pub(crate) fn march_vertex(passes: PassSet) -> &'static str {
+    match passes {
+        PassSet::GatherOnCpu | PassSet::GatherOnGpu => include_str!("wgsl/march-vertex.wgsl"),
+        PassSet::AnyView => SCREEN,
     }
 }
 
 /// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
-pub(crate) fn march(edges: Edges, kind: Kind, depth: bool, history: bool) -> &'static str {
+pub(crate) fn march(edges: Edges, passes: PassSet, depth: bool, history: bool) -> &'static str {
     /// The four modules of a source's kind.
     macro_rules! of {
         ($name:literal) => {
@@ -82,11 +63,11 @@ pub(crate) fn march(edges: Edges, kind: Kind, depth: bool, history: bool) -> &'s
             }
         };
     }
-    match (edges, kind) {
-        (_, Kind::AnyView) if depth => include_str!("wgsl/any-view-march-depth.wgsl"),
-        (_, Kind::AnyView) => include_str!("wgsl/any-view-march.wgsl"),
-        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => of!("march"),
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => of!("march-short"),
+    match (edges, passes) {
+        (_, PassSet::AnyView) if depth => include_str!("wgsl/any-view-march-depth.wgsl"),
+        (_, PassSet::AnyView) => include_str!("wgsl/any-view-march.wgsl"),
+        (Edges::Hard, PassSet::GatherOnCpu) => of!("march"),
+        (Edges::Hard, PassSet::GatherOnGpu) => of!("march-short"),
         (Edges::Multisample, _) => of!("layer-march-multisample"),
         _ => of!("layer-march"),
     }

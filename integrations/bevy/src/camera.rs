@@ -193,7 +193,7 @@ pub(crate) fn build(app: &mut App) {
     app.register_type::<StereoCamera>()
         .add_systems(PreUpdate, (forget_removed_cameras, back_to_head.after(update_previous_view_data)))
         .configure_sets(PostUpdate, ShareSystems.before(CameraUpdateSystems))
-        .add_systems(PostUpdate, arrange.before(ShareSystems))
+        .add_systems(PostUpdate, update_cameras.before(ShareSystems))
         .add_systems(
             PostUpdate,
             to_eyes
@@ -207,7 +207,7 @@ pub(crate) fn build(app: &mut App) {
 /// The components of a stereo camera that decide about its arrangement, or are part of it.
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct Parts {
+pub(crate) struct StereoCameraParts {
     entity: Entity,
     pub(crate) eyes: &'static mut Eyes,
     rendering: Rendering,
@@ -219,7 +219,7 @@ pub(crate) struct Parts {
 }
 
 /// Which eyes a camera is to show.
-pub(crate) struct Wanted<'a> {
+pub(crate) struct EyesRequest<'a> {
     pub(crate) mode: StereoMode,
     pub(crate) pair: &'a EyePair,
     pub(crate) guard_distance: f32,
@@ -261,16 +261,16 @@ impl Targets<'_, '_> {
     }
 }
 
-fn arrange(
+fn update_cameras(
     mut commands: Commands,
     targets: Targets,
     mut images: ResMut<Assets<Image>>,
-    mut cameras: Query<(&StereoCamera, Parts)>,
+    mut cameras: Query<(&StereoCamera, StereoCameraParts)>,
     mut others: Query<&mut Camera, Without<StereoCamera>>,
 ) {
     for (stereo, mut parts) in &mut cameras {
         if parts.eyes.arrangement.is_none() || !parts.eyes.renders_to(&parts.target) {
-            show(&mut commands, &mut parts);
+            show_eyes(&mut commands, &mut parts);
         }
         let beside =
             [(parts.eyes.screen, SCREEN_ORDER), (parts.other.map(|other| other.entity), OTHER_EYE_ORDER)];
@@ -289,8 +289,8 @@ fn arrange(
         }
         let pair = stereo.pair([size.x / 2, size.y]);
         let (mode, guard_distance, far) = (stereo.mode, stereo.guard_distance, stereo.far);
-        let wanted = Wanted { mode, pair: &pair, guard_distance, far, format, images: true };
-        parts.arrange(&mut commands, &mut images, &wanted);
+        let request = EyesRequest { mode, pair: &pair, guard_distance, far, format, images: true };
+        parts.arrange(&mut commands, &mut images, &request);
         if let Some(screen) = parts.eyes.screen.filter(|_| parts.eyes.size != size) {
             parts.eyes.size = size;
             // Bevy looks at a camera's target again when its projection changes.
@@ -319,7 +319,7 @@ fn same_clear_color(a: ClearColorConfig, b: ClearColorConfig) -> bool {
 }
 
 /// Shows both eyes where the camera would render to.
-fn show(commands: &mut Commands, parts: &mut PartsItem) {
+fn show_eyes(commands: &mut Commands, parts: &mut StereoCameraPartsItem) {
     let output = parts.target.clone();
     parts.eyes.output = Some(output.clone());
     (parts.eyes.arrangement, parts.eyes.size) = (None, UVec2::ZERO);
@@ -346,22 +346,22 @@ fn show(commands: &mut Commands, parts: &mut PartsItem) {
     parts.eyes.screen = Some(screen.id());
 }
 
-impl PartsItem<'_, '_> {
-    /// Prepares images, projections and the other eye's camera for the eyes that are wanted. Returns that camera if it is new.
+impl StereoCameraPartsItem<'_, '_> {
+    /// Prepares images, projections and the other eye's camera that were requested. Returns that camera if it is new.
     pub(crate) fn arrange(
         &mut self,
         commands: &mut Commands,
         images: &mut Assets<Image>,
-        wanted: &Wanted,
+        request: &EyesRequest,
     ) -> Option<Entity> {
-        let guard = guard_band(wanted.guard_distance);
-        let tried = self.rendering.plan(wanted.mode).map_err(String::from).and_then(|plan| {
-            let views = Views::new(wanted.pair, plan, guard).map_err(|error| error.to_string())?;
+        let guard = guard_band(request.guard_distance);
+        let tried = self.rendering.plan(request.mode).map_err(String::from).and_then(|plan| {
+            let views = Views::new(request.pair, plan, guard).map_err(|error| error.to_string())?;
             Ok((plan, views))
         });
         let (plan, views, reason) = match tried {
             Ok((plan, views)) => (plan, views, None),
-            Err(reason) => (Plan::Rendered, Views::rendered(wanted.pair), Some(reason)),
+            Err(reason) => (Plan::Rendered, Views::rendered(request.pair), Some(reason)),
         };
         if reason != self.eyes.reason {
             if let Some(reason) = &reason {
@@ -374,9 +374,9 @@ impl PartsItem<'_, '_> {
         let arrangement = Arrangement {
             plan,
             samples: self.rendering.samples(),
-            format: wanted.format,
+            format: request.format,
             views: [views.source, views.target].map(still),
-            far: wanted.far,
+            far: request.far,
         };
         let usages = TextureUsages::from(self.camera_3d.depth_texture_usages);
         if !usages.contains(TextureUsages::TEXTURE_BINDING) {
@@ -389,7 +389,7 @@ impl PartsItem<'_, '_> {
 
         let mut image = |view: &View| {
             let [width, height] = view.size;
-            let mut image = Image::new_target_texture(width, height, wanted.format, None);
+            let mut image = Image::new_target_texture(width, height, request.format, None);
             image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
             image.data = None;
             image.copy_on_resize = false;
@@ -397,7 +397,7 @@ impl PartsItem<'_, '_> {
         };
         self.eyes.source = image(&views.source);
         *self.target = RenderTarget::Image(self.eyes.source.clone().into());
-        *self.projection = Projection::custom(EyeProjection::new(&views.source, wanted.far));
+        *self.projection = Projection::custom(EyeProjection::new(&views.source, request.far));
 
         let rendered = plan == Plan::Rendered;
         let kept = self.other.filter(|other| plan.has_other_camera() && other.rendered == rendered);
@@ -425,10 +425,10 @@ impl PartsItem<'_, '_> {
         });
         let entity = new.or(kept.map(|other| other.entity))?;
         commands.entity(entity).try_insert(own);
-        if wanted.images {
+        if request.images {
             self.eyes.other = image(&views.target);
             let target = RenderTarget::Image(self.eyes.other.clone().into());
-            let projection = Projection::custom(EyeProjection::new(&views.target, wanted.far));
+            let projection = Projection::custom(EyeProjection::new(&views.target, request.far));
             commands.entity(entity).try_insert((target, projection));
         }
         new

@@ -37,7 +37,7 @@ use yoro_wgpu::Target;
 use yoro_wgpu::yoro::eyes::{self, EyePair, Frustum, Pose};
 use yoro_wgpu::yoro::glam;
 
-use crate::camera::{Eyes, Parts, Views, Wanted, bevy_transform, guard_band, reversed};
+use crate::camera::{Eyes, EyesRequest, StereoCameraParts, Views, bevy_transform, guard_band, reversed};
 use crate::passes::{Stereo, Synthesis};
 use crate::projection::clip_from_view;
 use crate::shared::{OtherCamera, ShareSystems};
@@ -104,21 +104,21 @@ pub(crate) fn build(app: &mut App) {
         .add_plugins(ExtractComponentPlugin::<XrStereoCamera>::default())
         .add_systems(
             PostUpdate,
-            arrange
+            update_cameras
                 .run_if(should_run_frame_loop)
                 .after(update_views)
                 .before(TransformSystems::Propagate)
                 .before(CameraUpdateSystems)
                 .before(ShareSystems),
         )
-        .add_systems(PreUpdate, rest.run_if(not(should_run_frame_loop)))
-        .add_systems(XrPreDestroySession, stop)
-        .add_observer(end);
+        .add_systems(PreUpdate, pause_cameras.run_if(not(should_run_frame_loop)))
+        .add_systems(XrPreDestroySession, reset_cameras)
+        .add_observer(remove_other_camera);
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
     render
         .add_systems(
             Render,
-            latch
+            use_newest_views
                 .run_if(should_run_frame_loop)
                 .after(update_views_render_world)
                 .in_set(XrRenderSystems::PreRender),
@@ -126,13 +126,13 @@ pub(crate) fn build(app: &mut App) {
         .add_systems(Core3d, fill_layers.after(Core3dSystems::PostProcess).after(upscaling));
 }
 
-fn arrange(
+fn update_cameras(
     mut commands: Commands,
     views: Res<OxrViews>,
     config: Res<OxrCurrentSessionConfig>,
     frame: Res<OxrFrameState>,
     mut images: ResMut<Assets<Image>>,
-    mut cameras: Query<(&XrStereoCamera, &mut Transform, Parts)>,
+    mut cameras: Query<(&XrStereoCamera, &mut Transform, StereoCameraParts)>,
 ) {
     for (stereo, mut transform, mut parts) in &mut cameras {
         let pair = stereo.pair(&views, &config);
@@ -141,7 +141,7 @@ fn arrange(
             parts.camera.is_active = active;
         }
         let Some(pair) = pair else { continue };
-        let wanted = Wanted {
+        let request = EyesRequest {
             mode: stereo.mode,
             pair: &pair,
             guard_distance: stereo.guard_distance,
@@ -149,7 +149,7 @@ fn arrange(
             format: config.format,
             images: false,
         };
-        let new = parts.arrange(&mut commands, &mut images, &wanted);
+        let new = parts.arrange(&mut commands, &mut images, &request);
         let Some(views) = parts.eyes.views else { continue };
         *transform = bevy_transform(&views.source.pose);
         if let Some(other) = new {
@@ -165,7 +165,7 @@ fn arrange(
 }
 
 /// Nothing is rendered without a session.
-fn rest(mut cameras: Query<&mut Camera, With<XrStereoCamera>>) {
+fn pause_cameras(mut cameras: Query<&mut Camera, With<XrStereoCamera>>) {
     for mut camera in &mut cameras {
         if camera.is_active {
             camera.is_active = false;
@@ -174,14 +174,14 @@ fn rest(mut cameras: Query<&mut Camera, With<XrStereoCamera>>) {
 }
 
 /// bevy_mod_openxr removes its cameras at the end of a session.
-fn stop(mut commands: Commands, cameras: Query<Entity, With<XrStereoCamera>>) {
+fn reset_cameras(mut commands: Commands, cameras: Query<Entity, With<XrStereoCamera>>) {
     for entity in &cameras {
         commands.entity(entity).remove::<OtherCamera>().insert(Eyes::default());
     }
 }
 
 /// Removes the other eye's camera.
-fn end(
+fn remove_other_camera(
     removed: On<Remove, XrStereoCamera>,
     mut commands: Commands,
     mut cameras: Query<(&mut Camera, Option<&OtherCamera>)>,
@@ -195,7 +195,7 @@ fn end(
 }
 
 /// Moves the rendered eye to the newest views, those that its image is submitted with.
-fn latch(
+fn use_newest_views(
     views: Res<OxrViews>,
     config: Res<OxrCurrentSessionConfig>,
     root: Res<XrRootTransform>,

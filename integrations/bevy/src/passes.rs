@@ -44,7 +44,7 @@ pub(crate) fn build(app: &mut App) {
                 .before(main_transparent_pass_3d)
                 .in_set(Core3dSystems::MainPass),
         )
-        .add_systems(Core2d, show.in_set(Core2dSystems::EarlyPostProcess));
+        .add_systems(Core2d, show_eyes.in_set(Core2dSystems::EarlyPostProcess));
 }
 
 /// On a stereo camera in the render world: a frame's [`Eyes`].
@@ -62,9 +62,9 @@ pub(crate) struct Stereo {
 #[derive(Component)]
 struct Synthesized;
 
-/// On a camera in the render world that shows the eyes of this stereo camera.
+/// On a camera in the render world that shown the eyes of this stereo camera.
 #[derive(Component)]
-struct Shows(Entity);
+struct ShownEyes(Entity);
 
 fn extract(
     mut commands: Commands,
@@ -96,7 +96,7 @@ fn extract(
     }
     for (entity, screen) in &screens {
         if let Ok(camera) = entities.get(screen.0) {
-            commands.entity(entity).insert(Shows(camera));
+            commands.entity(entity).insert(ShownEyes(camera));
         }
     }
 }
@@ -200,15 +200,15 @@ fn synthesize_opaque(
     synthesis.record(&options, &source, warp, &target);
 }
 
-/// Shows both eyes side by side.
-fn show(
-    view: ViewQuery<(&Shows, &ViewTarget)>,
+/// ShownEyes both eyes side by side.
+fn show_eyes(
+    view: ViewQuery<(&ShownEyes, &ViewTarget)>,
     cameras: Query<(&Stereo, &ViewDepthTexture)>,
     images: Res<RenderAssets<GpuImage>>,
     mut synthesis: Synthesis,
 ) {
-    let (shows, target) = view.into_inner();
-    let Ok((stereo, depth)) = cameras.get(shows.0) else { return };
+    let (shown, target) = view.into_inner();
+    let Ok((stereo, depth)) = cameras.get(shown.0) else { return };
     let Some(source) = images.get(stereo.source) else { return };
     let Views { target: other, crop, dominant, .. } = stereo.views;
     let place = |eye: Eye| [eye.index() as u32 * other.size[0], 0];

@@ -18,6 +18,7 @@ mod forward;
 mod history;
 #[cfg(feature = "gl")]
 mod opengl;
+mod pass_set;
 mod source_map;
 mod uniforms;
 
@@ -25,6 +26,9 @@ pub use edges::Edges;
 pub use history::Strips;
 #[cfg(feature = "gl")]
 pub use opengl::*;
+/// For crates that have the passes on another graphics interface.
+#[doc(hidden)]
+pub use pass_set::PassSet;
 pub use source_map::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE, SourceMapEntry};
 /// For crates that have the passes on another graphics interface.
 #[doc(hidden)]

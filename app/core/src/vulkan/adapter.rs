@@ -23,6 +23,11 @@ impl Adapter {
         Adapter { instance, physical_device, properties }
     }
 
+    /// True if it is a CPU rasterizer.
+    pub(super) fn is_cpu(&self) -> bool {
+        self.properties.device_type == vk::PhysicalDeviceType::CPU
+    }
+
     pub(super) fn memory(&self) -> vk::PhysicalDeviceMemoryProperties {
         // SAFETY: `Adapter::new` asks for a physical device of this instance.
         unsafe { self.instance.get_physical_device_memory_properties(self.physical_device) }

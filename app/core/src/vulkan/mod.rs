@@ -71,8 +71,6 @@ use ash::vk;
 use crate::synthesis::{Edges, Strips};
 
 pub use pipeline::{AnyView, Gather, Pipeline};
-#[doc(hidden)]
-pub use shaders::GatherVariant;
 
 /// Errors of creating a pipeline, of registering images, and of recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -8,11 +8,11 @@ use super::barriers::Barriers;
 use super::commands::Commands;
 use super::objects::Objects;
 use super::pipelines::{PipelineFactory, Pipelines};
-use super::shaders::{self, Kind};
+use super::shaders;
 use super::targets::{Attachments, Intermediate, PassKind, Rendering};
 use super::timer::{Stamp, Timer};
 use super::{ImageState, Options, VulkanError};
-use crate::synthesis::{Edges, span_tiles, tiles};
+use crate::synthesis::{Edges, PassSet, span_tiles, tiles};
 
 /// All passes.
 pub(super) struct Passes {
@@ -75,20 +75,20 @@ impl Passes {
         layout: vk::PipelineLayout,
         memory: &vk::PhysicalDeviceMemoryProperties,
         options: &Options,
-        kind: Kind,
+        set: PassSet,
     ) -> Result<Passes, VulkanError> {
         // SAFETY: the shader modules of pipelines that are complete are not used by any command.
         let shaders = unsafe { Objects::new(objects.device()) };
-        let march_vertex = shaders::march_vertex(kind);
+        let march_vertex = shaders::march_vertex(set);
         let mut factory =
             PipelineFactory { objects, shaders, rendering: &rendering, layout, options, march_vertex };
         let edges = options.edges;
         let depth = options.depth_format.is_some();
         let map = map_kind(edges);
-        let tile_pipelines = factory.pipelines(shaders::tiles(edges, kind), map)?;
-        let spans_pipeline = factory.pipeline(shaders::spans(edges, kind), map, false)?;
+        let tile_pipelines = factory.pipelines(shaders::tiles(edges, set), map)?;
+        let spans_pipeline = factory.pipeline(shaders::spans(edges, set), map, false)?;
         let march =
-            factory.pipelines(shaders::march(edges, kind, depth, options.history), PassKind::Target)?;
+            factory.pipelines(shaders::march(edges, set, depth, options.history), PassKind::Target)?;
         let resolved =
             shaders::split(edges).map(|shader| factory.pipelines(shader, PassKind::Layers)).transpose()?;
         let samples = (edges == Edges::Multisample)
@@ -98,7 +98,7 @@ impl Passes {
 
         let mut intermediate =
             |kind, size| Intermediate::new(objects, &rendering, memory, kind, options, size);
-        let [tile_size, span_size] = map_sizes(options, kind == Kind::AnyView);
+        let [tile_size, span_size] = map_sizes(options, set == PassSet::AnyView);
         let tile_map = intermediate(map, tile_size)?;
         let span_map = intermediate(map, span_size)?;
         let split = match resolved {

@@ -12,7 +12,6 @@ use super::images::{self, Source, Target};
 use super::objects::Objects;
 use super::passes::{Passes, Recorder};
 use super::pipelines::Layouts;
-use super::shaders::{GatherVariant, Kind};
 use super::targets::Rendering;
 use super::timer::{Stamp, Timer};
 use super::{
@@ -20,7 +19,7 @@ use super::{
     VulkanError,
 };
 use crate::eyes::{PoseWarp, Warp};
-use crate::synthesis::{Edges, Places, Strips, WarpKind, span_tiles, tiles};
+use crate::synthesis::{Edges, PassSet, Places, Strips, WarpKind, span_tiles, tiles};
 
 /// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources those of `synthesis::Layers`, with
 /// the split into layers before them.
@@ -62,13 +61,13 @@ impl Gather {
     /// # Safety
     /// As [`Gather::new`].
     #[doc(hidden)]
-    pub unsafe fn with_variant(
+    pub unsafe fn with_passes(
         host: &Host,
         options: &Options,
-        variant: GatherVariant,
+        passes: PassSet,
     ) -> Result<Gather, VulkanError> {
         // SAFETY: the contract of this function is the same.
-        unsafe { Gather::of_kind(host, options, Kind::Gather(variant)) }
+        unsafe { Gather::with_adapter(host, Adapter::new(host), options, passes) }
     }
 }
 
@@ -86,25 +85,22 @@ impl<W: WarpKind> Pipeline<W> {
     pub unsafe fn new(host: &Host, options: &Options) -> Result<Pipeline<W>, VulkanError> {
         // SAFETY: the caller's handles are valid and belong together.
         let adapter = unsafe { Adapter::new(host) };
-        let kind = if W::ANY_VIEW {
-            Kind::AnyView
-        } else if adapter.properties.device_type == vk::PhysicalDeviceType::CPU {
-            Kind::Gather(GatherVariant::Software)
-        } else {
-            Kind::Gather(GatherVariant::ShortWay)
-        };
+        let passes = PassSet::of::<W>(adapter.is_cpu());
         // SAFETY: the contract of this function is the same.
-        unsafe { Pipeline::of_kind(host, options, kind) }
+        unsafe { Pipeline::with_adapter(host, adapter, options, passes) }
     }
 
     /// # Safety
     /// As [`Pipeline::new`].
-    unsafe fn of_kind(host: &Host, options: &Options, kind: Kind) -> Result<Pipeline<W>, VulkanError> {
+    unsafe fn with_adapter(
+        host: &Host,
+        adapter: Adapter,
+        options: &Options,
+        passes: PassSet,
+    ) -> Result<Pipeline<W>, VulkanError> {
         if W::ANY_VIEW && (options.edges != Edges::Hard || options.history) {
             return Err(VulkanError::AnyView);
         }
-        // SAFETY: the caller's handles are valid and belong together.
-        let adapter = unsafe { Adapter::new(host) };
         let family = adapter.graphics_family(host.queue_family)?;
         adapter.check_options(options)?;
 
@@ -116,7 +112,7 @@ impl<W: WarpKind> Pipeline<W> {
         let rendering = unsafe { Rendering::new(host, &mut objects, options)? };
         let layouts = Layouts::new(&mut objects, size_of::<W::Uniforms>(), options.history)?;
         let memory = adapter.memory();
-        let passes = Passes::new(&mut objects, rendering, layouts.pipeline, &memory, options, kind)?;
+        let passes = Passes::new(&mut objects, rendering, layouts.pipeline, &memory, options, passes)?;
         let bytes = size_of::<Strips>() as u64;
         let strips = options.history.then(|| objects.create_uniform_buffer(&memory, bytes)).transpose()?;
         let timer = Timer::new(&mut objects, options.timed_frames, &family, &adapter.properties.limits)?;
@@ -139,6 +135,10 @@ impl<W: WarpKind> Pipeline<W> {
         })
     }
 
+    fn next_id(&self) -> u32 {
+        self.last_id.checked_add(1).unwrap_or(1)
+    }
+
     /// Makes views and descriptors of images to read from.
     ///
     /// # Errors
@@ -152,7 +152,7 @@ impl<W: WarpKind> Pipeline<W> {
         images::check_source(&self.adapter, &self.options, images)?;
         // SAFETY: the caller's images are live, and outlive the objects, which go when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
-        let id = SourceId(self.last_id.checked_add(1).unwrap_or(1));
+        let id = SourceId(self.next_id());
         let source = Source::new(objects, id, images, self.layouts.textures, &self.passes, self.strips)?;
         self.last_id = id.0;
         self.sources.push(source);
@@ -171,7 +171,7 @@ impl<W: WarpKind> Pipeline<W> {
         images::check_target(&self.adapter, &self.options, images)?;
         // SAFETY: the caller's images are live, and outlive the objects, which go when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
-        let id = TargetId(self.last_id.checked_add(1).unwrap_or(1));
+        let id = TargetId(self.next_id());
         let target = Target::new(objects, id, images, &self.passes)?;
         self.last_id = id.0;
         self.targets.push(target);

@@ -1,25 +1,6 @@
 //! The shaders of the passes as SPIR-V, compiled beforehand from the files of `yoro-shaders`: `cargo tools spirv`.
 
-use crate::synthesis::Edges;
-
-/// The passes of a kind of warp.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Those between parallel eyes.
-    Gather(GatherVariant),
-    /// Those of any view.
-    AnyView,
-}
-
-/// The kind of device that the shaders are written for; see [`crate::synthesis::GatherVariant`].
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GatherVariant {
-    /// A CPU rasterizer.
-    Software,
-    /// A GPU.
-    ShortWay,
-}
+use crate::synthesis::{Edges, PassSet};
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
 /// The first pass for depth and colour of all samples.
@@ -36,34 +17,34 @@ pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
 }
 
 /// Returns the pass that finds the bounds of tiles.
-pub(super) fn tiles(edges: Edges, kind: Kind) -> &'static [u8] {
-    match (edges, kind) {
-        (_, Kind::AnyView) => include_bytes!("spirv/any-view-tiles.spv"),
-        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => include_bytes!("spirv/tiles.spv"),
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_bytes!("spirv/tiles-short.spv"),
+pub(super) fn tiles(edges: Edges, passes: PassSet) -> &'static [u8] {
+    match (edges, passes) {
+        (_, PassSet::AnyView) => include_bytes!("spirv/any-view-tiles.spv"),
+        (Edges::Hard, PassSet::GatherOnCpu) => include_bytes!("spirv/tiles.spv"),
+        (Edges::Hard, PassSet::GatherOnGpu) => include_bytes!("spirv/tiles-short.spv"),
         _ => include_bytes!("spirv/layer-tiles.spv"),
     }
 }
 
 /// Returns the pass that finds what each tile of the target has to search.
-pub(super) fn spans(edges: Edges, kind: Kind) -> &'static [u8] {
-    match (edges, kind) {
-        (_, Kind::AnyView) => include_bytes!("spirv/any-view-spans.spv"),
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => include_bytes!("spirv/spans-short.spv"),
+pub(super) fn spans(edges: Edges, passes: PassSet) -> &'static [u8] {
+    match (edges, passes) {
+        (_, PassSet::AnyView) => include_bytes!("spirv/any-view-spans.spv"),
+        (Edges::Hard, PassSet::GatherOnGpu) => include_bytes!("spirv/spans-short.spv"),
         _ => include_bytes!("spirv/spans.spv"),
     }
 }
 
 /// Returns the vertex shader of the last pass.
-pub(super) fn march_vertex(kind: Kind) -> &'static [u8] {
-    match kind {
-        Kind::Gather(_) => include_bytes!("spirv/march-vertex.spv"),
-        Kind::AnyView => SCREEN,
+pub(super) fn march_vertex(passes: PassSet) -> &'static [u8] {
+    match passes {
+        PassSet::GatherOnCpu | PassSet::GatherOnGpu => include_bytes!("spirv/march-vertex.spv"),
+        PassSet::AnyView => SCREEN,
     }
 }
 
 /// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
-pub(super) fn march(edges: Edges, kind: Kind, depth: bool, history: bool) -> &'static [u8] {
+pub(super) fn march(edges: Edges, passes: PassSet, depth: bool, history: bool) -> &'static [u8] {
     /// The four modules of a source's kind.
     macro_rules! of {
         ($name:literal) => {
@@ -75,11 +56,11 @@ pub(super) fn march(edges: Edges, kind: Kind, depth: bool, history: bool) -> &'s
             }
         };
     }
-    match (edges, kind) {
-        (_, Kind::AnyView) if depth => include_bytes!("spirv/any-view-march-depth.spv"),
-        (_, Kind::AnyView) => include_bytes!("spirv/any-view-march.spv"),
-        (Edges::Hard, Kind::Gather(GatherVariant::Software)) => of!("march"),
-        (Edges::Hard, Kind::Gather(GatherVariant::ShortWay)) => of!("march-short"),
+    match (edges, passes) {
+        (_, PassSet::AnyView) if depth => include_bytes!("spirv/any-view-march-depth.spv"),
+        (_, PassSet::AnyView) => include_bytes!("spirv/any-view-march.spv"),
+        (Edges::Hard, PassSet::GatherOnCpu) => of!("march"),
+        (Edges::Hard, PassSet::GatherOnGpu) => of!("march-short"),
         (Edges::Multisample, _) => of!("layer-march-multisample"),
         _ => of!("layer-march"),
     }

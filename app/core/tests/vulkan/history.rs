@@ -2,8 +2,8 @@
 
 use crate::against_opengl::{Gl, RecalledScene, assert_equal, recalled_scenes};
 use crate::harness::{Gpu, READ, Rendering, WRITTEN, with_gpu};
-use crate::{Setup, VARIANTS, allocations};
-use yoro::synthesis::Edges;
+use crate::{Setup, allocations};
+use yoro::synthesis::{Edges, PassSet};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
     Frame, Gather, HistoryImages, ImageState, Options, SourceImages, TargetImages, VulkanError,
@@ -23,9 +23,9 @@ fn what_is_recalled_is_what_opengl_recalls() {
             let options = Options { edges, history: true, ..Setup::PLAIN.options(&warps) };
             // SAFETY: valid handles; everything is executed before it is dropped.
             let mut gather =
-                unsafe { Gather::with_variant(&gpu.host(), &options, VARIANTS[number]).unwrap() };
+                unsafe { Gather::with_passes(&gpu.host(), &options, PassSet::GATHER[number]).unwrap() };
             for scene in &scenes {
-                let what = format!("{edges:?}, {:?}, {}", VARIANTS[number], scene.what);
+                let what = format!("{edges:?}, {:?}, {}", PassSet::GATHER[number], scene.what);
                 let [with, without] = synthesize(gpu, &mut gather, scene);
                 let [want, plain] = opengl.both(scene);
                 let changed = want.chunks(4).zip(plain.chunks(4)).filter(|(a, b)| a != b).count();

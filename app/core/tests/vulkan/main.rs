@@ -17,11 +17,11 @@ use against_opengl::{
 };
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::synthesis::{self, Outputs, SynthesisOptions, WarpKind};
+use yoro::synthesis::{self, Outputs, PassSet, SynthesisOptions, WarpKind};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
-    AnyView, Frame, Gather, GatherVariant, HistoryImages, ImageState, Options, Pipeline, SourceImages,
-    TargetImages, Use, Uses, VulkanError,
+    AnyView, Frame, Gather, HistoryImages, ImageState, Options, Pipeline, SourceImages, TargetImages, Use,
+    Uses, VulkanError,
 };
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Destination};
@@ -53,8 +53,6 @@ static COUNTING: Counting = Counting;
 fn allocations() -> usize {
     ALLOCATIONS.get()
 }
-
-const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
 
 /// The parameters of a synthesis.
 #[derive(Clone, Copy, Debug)]
@@ -197,14 +195,13 @@ fn pictures_equal_those_of_opengl() {
     let gl = Gl::new();
     for rendering in Rendering::ALL {
         with_gpu(rendering, |gpu| {
-            for (number, variant) in VARIANTS.into_iter().enumerate() {
+            for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
                 for (i, (warp, range)) in warps().into_iter().enumerate() {
                     let picture = picture(&warp, range, i as u64);
                     let setup = Setup::PLAIN;
                     // SAFETY: the device outlives it, and everything is executed.
-                    let mut gather = unsafe {
-                        Gather::with_variant(&gpu.host(), &setup.options(&[warp]), variant).unwrap()
-                    };
+                    let mut gather =
+                        unsafe { Gather::with_passes(&gpu.host(), &setup.options(&[warp]), passes).unwrap() };
                     let got = synthesize(gpu, &mut gather, &setup, &picture);
                     let want = gl.run(number, &picture);
                     assert_equal(
@@ -212,7 +209,7 @@ fn pictures_equal_those_of_opengl() {
                         &want.rgba,
                         4,
                         number,
-                        &format!("{rendering:?}, {variant:?}, {warp:?}"),
+                        &format!("{rendering:?}, {passes:?}, {warp:?}"),
                     );
                 }
             }
@@ -245,17 +242,17 @@ fn parts_and_layers_are_found() {
                 ..setup
             },
         ];
-        for (number, variant) in VARIANTS.into_iter().enumerate() {
+        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
             let all: Vec<Warp> = warps.iter().map(|(warp, _)| *warp).collect();
             // SAFETY: the device outlives it, and everything is executed.
             let mut gather =
-                unsafe { Gather::with_variant(&gpu.host(), &setup.options(&all), variant).unwrap() };
+                unsafe { Gather::with_passes(&gpu.host(), &setup.options(&all), passes).unwrap() };
             for (i, (warp, range)) in warps.iter().enumerate() {
                 let picture = picture(warp, *range, 50 + i as u64);
                 let setup = &setups[i % setups.len()];
                 let got = synthesize(gpu, &mut gather, setup, &picture);
                 let want = gl.run(number, &picture);
-                assert_equal(&got.rgba, &want.rgba, 4, number, &format!("{variant:?}, {warp:?}, {setup:?}"));
+                assert_equal(&got.rgba, &want.rgba, 4, number, &format!("{passes:?}, {warp:?}, {setup:?}"));
             }
         }
     });
@@ -338,9 +335,9 @@ fn sizes_and_rectangles_at_random() {
     let gl = Gl::new();
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [96, 70], max_target_size: [96, 70], ..Options::default() };
-        let gathers = VARIANTS.map(|variant| {
+        let gathers = PassSet::GATHER.map(|passes| {
             // SAFETY: the device outlives it, and everything is executed.
-            RefCell::new(unsafe { Gather::with_variant(&gpu.host(), &limits, variant).unwrap() })
+            RefCell::new(unsafe { Gather::with_passes(&gpu.host(), &limits, passes).unwrap() })
         });
         let size = || (1..=96u32, 1..=70u32);
         let margin = || (0..4u32, 0..4u32, 0..4u32, 0..4u32);
@@ -387,9 +384,9 @@ fn near_surfaces_equal_those_of_opengl() {
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [540, 30], max_target_size: [540, 30], ..Options::default() };
         let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
-        for (number, variant) in VARIANTS.into_iter().enumerate() {
+        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
             // SAFETY: the device outlives it, and everything is executed.
-            let mut gather = unsafe { Gather::with_variant(&gpu.host(), &limits, variant).unwrap() };
+            let mut gather = unsafe { Gather::with_passes(&gpu.host(), &limits, passes).unwrap() };
             for (scale, source_margins) in [(300.0, [[0, 0], [0, 0]]), (-300.0, [[7, 3], [5, 2]])] {
                 let warp = Warp {
                     source_size: [520, 24],

@@ -1,12 +1,12 @@
 //! Disocclusions that are looked up in a history: the pictures of OpenGL.
 
-use yoro::synthesis::Edges;
+use yoro::synthesis::{Edges, PassSet};
 use yoro_wgpu::wgpu::{TextureAspect, TextureFormat};
 use yoro_wgpu::{Gather, History, Options, Source, Target};
 
+use crate::Setup;
 use crate::against_opengl::{Gl, RecalledScene, assert_equal, recalled_scenes};
 use crate::harness::{Gpu, depth_of, one_layer, with_gpus};
-use crate::{Setup, VARIANTS};
 
 #[test]
 fn what_is_recalled_is_what_opengl_recalls() {
@@ -19,9 +19,9 @@ fn what_is_recalled_is_what_opengl_recalls() {
     with_gpus(|gpu| {
         for (edges, number, wanted) in &cases {
             let options = Options { edges: *edges, history: true, ..Setup::PLAIN.options() };
-            let mut gather = Gather::with_variant(&gpu.device, &options, VARIANTS[*number]).unwrap();
+            let mut gather = Gather::with_passes(&gpu.device, &options, PassSet::GATHER[*number]).unwrap();
             for (scene, [want, plain]) in scenes.iter().zip(wanted) {
-                let what = format!("{}, {edges:?}, {:?}, {}", gpu.name, VARIANTS[*number], scene.what);
+                let what = format!("{}, {edges:?}, {:?}, {}", gpu.name, PassSet::GATHER[*number], scene.what);
                 let [with, without] = synthesize(gpu, &mut gather, scene);
                 let changed = want.chunks(4).zip(plain.chunks(4)).filter(|(a, b)| a != b).count();
                 assert!(changed > 100, "{what}: {changed} pixels are recalled");

@@ -16,11 +16,9 @@ use against_opengl::{
 };
 use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::synthesis::{self, Edges, Outputs, Strips, SynthesisOptions, WarpKind};
+use yoro::synthesis::{self, Edges, Outputs, PassSet, Strips, SynthesisOptions, WarpKind};
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
-use yoro_wgpu::{AnyView, Gather, GatherVariant, History, Options, Pipeline, Source, Target, WgpuError};
-
-const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
+use yoro_wgpu::{AnyView, Gather, History, Options, Pipeline, Source, Target, WgpuError};
 
 /// The parameters of a synthesis.
 #[derive(Clone, Copy, Debug)]
@@ -59,8 +57,8 @@ impl Setup {
         Setup { source_layer: if gpu.is_opengl() { 0 } else { self.source_layer }, ..*self }
     }
 
-    fn gather(&self, gpu: &Gpu, variant: GatherVariant) -> Gather {
-        Gather::with_variant(&gpu.device, &self.options(), variant).unwrap()
+    fn gather(&self, gpu: &Gpu, passes: PassSet) -> Gather {
+        Gather::with_passes(&gpu.device, &self.options(), passes).unwrap()
     }
 }
 
@@ -136,7 +134,7 @@ fn synthesize<W: WarpKind>(
     Result { rgba, depth }
 }
 
-/// What OpenGL makes of warps, with seeds from `first`, by each of [`VARIANTS`]. It is given the pictures upside down, so that
+/// What OpenGL makes of warps, with seeds from `first`, by each of [`PassSet::GATHER`]. It is given the pictures upside down, so that
 /// the same rows are in one tile as on wgpu, whose rows are counted from the top.
 fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture, [Vec<u8>; 2])> {
     let numbered = warps.iter().zip(first..);
@@ -160,11 +158,11 @@ fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture,
 fn pictures_equal_those_of_opengl() {
     let pictures = on_opengl(&Gl::new(), &warps(), 0);
     with_gpus(|gpu| {
-        for (number, variant) in VARIANTS.into_iter().enumerate() {
-            let mut gather = Setup::PLAIN.gather(gpu, variant);
+        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
+            let mut gather = Setup::PLAIN.gather(gpu, passes);
             for (picture, wanted) in &pictures {
                 let got = synthesize(gpu, &mut gather, &Setup::PLAIN, picture);
-                let what = format!("{}, {variant:?}, {:?}", gpu.name, picture.warp);
+                let what = format!("{}, {passes:?}, {:?}", gpu.name, picture.warp);
                 assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
             }
         }
@@ -183,12 +181,12 @@ fn parts_and_layers_are_found() {
         Setup { source_margins: [[1, 1], [1, 1]], ..setup },
     ];
     with_gpus(|gpu| {
-        for (number, variant) in VARIANTS.into_iter().enumerate() {
-            let mut gather = setup.gather(gpu, variant);
+        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
+            let mut gather = setup.gather(gpu, passes);
             for ((picture, wanted), setup) in pictures.iter().zip(setups.iter().cycle()) {
                 let setup = setup.on(gpu);
                 let got = synthesize(gpu, &mut gather, &setup, picture);
-                let what = format!("{}, {variant:?}, {:?}, {setup:?}", gpu.name, picture.warp);
+                let what = format!("{}, {passes:?}, {:?}, {setup:?}", gpu.name, picture.warp);
                 assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
             }
         }
@@ -239,7 +237,7 @@ fn every_format_is_taken() {
                 target_margins: [[0, 1], [1, 0]],
                 ..Setup::PLAIN
             };
-            let mut gather = setup.gather(gpu, GatherVariant::Software);
+            let mut gather = setup.gather(gpu, PassSet::GatherOnCpu);
             let got = synthesize(gpu, &mut gather, &setup, picture);
             // Ten bits have two of alpha.
             assert_equal(&got.rgba, &wanted.rgba, 3, 0, &format!("{}, {setup:?}", gpu.name));
@@ -263,7 +261,7 @@ fn srgb_is_filtered_in_linear_light() {
     with_gpus(|gpu| {
         let srgb = TextureFormat::Rgba8UnormSrgb;
         let setup = Setup { color: srgb, target: srgb, ..Setup::PLAIN };
-        let got = synthesize(gpu, &mut setup.gather(gpu, GatherVariant::Software), &setup, &picture);
+        let got = synthesize(gpu, &mut setup.gather(gpu, PassSet::GatherOnCpu), &setup, &picture);
         assert_equal(&got.rgba, &want, 4, 0, &gpu.name);
     });
 }
@@ -304,12 +302,12 @@ fn sizes_and_rectangles_at_random() {
     let warps: Vec<_> = setups.iter().map(|(warp, _)| (*warp, range)).collect();
     let pictures = on_opengl(&Gl::new(), &warps, 3);
     with_gpus(|gpu| {
-        for (number, variant) in VARIANTS.into_iter().enumerate() {
-            let mut gather = Setup::PLAIN.gather(gpu, variant);
+        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
+            let mut gather = Setup::PLAIN.gather(gpu, passes);
             for ((picture, wanted), (warp, setup)) in pictures.iter().zip(&setups) {
                 let setup = setup.on(gpu);
                 let got = synthesize(gpu, &mut gather, &setup, picture);
-                let what = format!("{}, {variant:?}, {warp:?}, {setup:?}", gpu.name);
+                let what = format!("{}, {passes:?}, {warp:?}, {setup:?}", gpu.name);
                 assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
             }
         }
@@ -323,7 +321,7 @@ fn calls_of_one_submission_do_not_disturb_each_other() {
     let far = Warp { law: DisparityLaw { scale: 0.25 * near.law.scale, ..near.law }, ..near };
     let pictures = on_opengl(&Gl::new(), &[(near, range), (far, range)], 5);
     with_gpus(|gpu| {
-        let mut gather = Setup::PLAIN.gather(gpu, GatherVariant::Software);
+        let mut gather = Setup::PLAIN.gather(gpu, PassSet::GatherOnCpu);
         let made = [0, 1].map(|number| {
             let picture = &pictures[number].0;
             let color = gpu.texture(Setup::PLAIN.color, picture.warp.source_size, 1);
@@ -448,7 +446,7 @@ fn a_lost_device_is_an_error() {
     }
     let gpu = Gpu::open(Backends::VULKAN).unwrap();
     let (warp, _) = warps()[0];
-    let mut gather = Setup::PLAIN.gather(&gpu, GatherVariant::Software);
+    let mut gather = Setup::PLAIN.gather(&gpu, PassSet::GatherOnCpu);
     let texture = |format, size| one_layer(&gpu.texture(format, size, 1), 0, TextureAspect::All);
     let [color, depth] =
         [Setup::PLAIN.color, Setup::PLAIN.depth].map(|format| texture(format, warp.source_size));
@@ -484,7 +482,7 @@ fn cost_of_the_passes() {
     gpu.upload_depth(&depth, 0, &picture.depth);
     let [color, depth, target] = [color, depth, target].map(|texture| depth_of(&texture, 0));
     let (source, target) = (Source::new(&color, &depth), Target::new(&target));
-    let mut gather = Setup::PLAIN.gather(&gpu, GatherVariant::Software);
+    let mut gather = Setup::PLAIN.gather(&gpu, PassSet::GatherOnCpu);
 
     let mut times: [Vec<f64>; 2] = Default::default();
     for _ in 0..22 {
