@@ -28,7 +28,7 @@ const APIS: [(&str, &str, Macros); 2] = [
 ];
 
 /// Vertex and fragment shader of each file for Godot, which has both in one, and its versions by name and macros.
-const GODOT: [(&str, &str, &str, Versions); 3] = [
+const GODOT: [(&str, &str, &str, Versions); 7] = [
     (
         "tiles.glsl",
         "screen.vert",
@@ -52,6 +52,15 @@ const GODOT: [(&str, &str, &str, Versions); 3] = [
             ("short_map", &["WRITE_DEPTH", "SHORT_WAY", "SOURCE_MAP"]),
         ],
     ),
+    (
+        "march_history.glsl",
+        "synthesis/march.vert",
+        "synthesis/gather/march.frag",
+        &[("every", &["WRITE_DEPTH", "HISTORY"]), ("short", &["WRITE_DEPTH", "SHORT_WAY", "HISTORY"])],
+    ),
+    ("any_view_tiles.glsl", "screen.vert", "synthesis/any_view/tiles.frag", &[("every", &[])]),
+    ("any_view_spans.glsl", "screen.vert", "synthesis/any_view/spans.frag", &[("every", &[])]),
+    ("any_view_march.glsl", "screen.vert", "synthesis/any_view/march.frag", &[("every", &["WRITE_DEPTH"])]),
 ];
 type Versions = &'static [(&'static str, &'static [&'static str])];
 

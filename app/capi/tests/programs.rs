@@ -426,7 +426,9 @@ fn the_kits_shaders_for_godot_compile() {
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
     let mut count = 0;
-    for name in ["tiles", "spans", "march"] {
+    for name in
+        ["tiles", "spans", "march", "march_history", "any_view_tiles", "any_view_spans", "any_view_march"]
+    {
         let text = std::fs::read_to_string(kit.path().join(format!("godot/{name}.glsl"))).unwrap();
         let (versions, stages) = text.split_once("\n#[vertex]\n").unwrap();
         let (vertex, fragment) = stages.split_once("\n#[fragment]\n").unwrap();
@@ -446,7 +448,7 @@ fn the_kits_shaders_for_godot_compile() {
             }
         }
     }
-    assert_eq!(count, 16);
+    assert_eq!(count, 26);
     if !is_here(COMPILER) {
         println!("SKIPPED: {COMPILER} is not here");
     }

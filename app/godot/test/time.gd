@@ -1,6 +1,7 @@
 ## What a frame of the demo costs, on an OpenXR runtime or without one (two viewports are then Godot's stereo). Without arguments
 ## all variants in turn. A runtime paces a program by the frames before, so for the time between frames one variant has a process
-## of its own: `only=NUMBER`. `blocks=COUNT`. With Godot's option `--gpu-profile` also the stages of each viewport. Run it by hand.
+## of its own: `only=NUMBER`. `blocks=COUNT` says how often each has its turn. With Godot's option `--gpu-profile` also the stages
+## of each viewport. Run it by hand.
 extends Node
 
 ## What is set for each; the first one is Godot's stereo.

@@ -49,7 +49,14 @@ pub fn project() -> anyhow::Result<PathBuf> {
 pub fn files() -> anyhow::Result<Vec<(String, PathBuf)>> {
     let mut files = Vec::new();
     list(&root().join("app/godot"), "", &mut files)?;
-    list(&kit::kit()?.join("godot"), &format!("{ADDON}/shaders/"), &mut files)?;
+    let mut kit = Vec::new();
+    list(&kit::kit()?.join("godot"), "", &mut kit)?;
+    for (name, file) in kit {
+        // The add-on has three passes; the others are tested to compile.
+        let used = ["tiles.glsl", "spans.glsl", "march.glsl"].contains(&name.as_str());
+        let folder = if used { format!("{ADDON}/shaders") } else { "test/kit".to_owned() };
+        files.push((format!("{folder}/{name}"), file));
+    }
     Ok(files)
 }
 

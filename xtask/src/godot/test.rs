@@ -21,8 +21,6 @@ struct Scene {
     name: &'static str,
     headset: bool,
     cases: &'static [Case],
-    /// The synthesized eye is not farther from Godot's own: PSNR in dB, SSIM.
-    floor: (f64, f64),
     /// What it says when all is well, by its beginning.
     facts: &'static [&'static str],
 }
@@ -38,13 +36,13 @@ const SCENES: [Scene; 2] = [
             ["ipd0", "left", "ipd0"],
             ["msaa", "left", "msaa"],
             ["glow", "left", "glow"],
+            ["linear", "left", "linear"],
             ["resized", "left", "resized"],
         ],
-        // With 32 pixels for a pattern's square, 75 degrees high: less than in the headset.
-        floor: (32.5, 0.975),
         facts: &[
             "fact warnings 0, transparent 2",
             "fact warnings 2\n",
+            "fact shaders of the kit that the add-on does not use: 5",
             "fact without stereo layers the rendered eye is as before: true",
             "fact preview true",
         ],
@@ -58,7 +56,6 @@ const SCENES: [Scene; 2] = [
             ["swapped", "right", "plain"],
             ["resized", "left", "resized"],
         ],
-        floor: (35.0, 0.975),
         facts: &[
             "fact views 2",
             // Two of the five places are the same, and are left and entered differently.
@@ -69,6 +66,10 @@ const SCENES: [Scene; 2] = [
         ],
     },
 ];
+/// The synthesized eye is not farther from Godot's own: PSNR in dB, before tone mapping and after it, and SSIM.
+const FLOOR: f64 = 35.0;
+const TONE_MAPPED: f64 = 32.5;
+const SIMILAR: f64 = 0.975;
 /// The same image to both eyes is farther away by so many dB.
 const GAIN: f64 = 10.0;
 /// Without a distance between the eyes there is nothing to move.
@@ -232,9 +233,11 @@ fn lag(printed: &str) -> Option<f64> {
 }
 
 fn too_far(scene: &Scene, case: &str, made: Quality, same: Quality) -> Option<String> {
+    // The headset's pictures are copied before tone mapping.
+    let floor = if scene.headset || case == "linear" { FLOOR } else { TONE_MAPPED };
     let sound = match case {
         "ipd0" => made.psnr >= IDENTITY,
-        _ => made.psnr >= scene.floor.0 && made.ssim >= scene.floor.1 && made.psnr >= same.psnr + GAIN,
+        _ => made.psnr >= floor && made.ssim >= SIMILAR && made.psnr >= same.psnr + GAIN,
     };
     (!sound).then(|| format!("{case} is too far from Godot's own eye: {:.2} dB, {:.4}", made.psnr, made.ssim))
 }
@@ -261,7 +264,7 @@ mod tests {
         assert!(missing(&SCENES[1], said).is_empty());
         assert_eq!(missing(&SCENES[1], &said.replace("0.0000001", "0.03")).len(), 1);
         assert_eq!(missing(&SCENES[1], &said.replace("trouble ", "trouble canted")).len(), 1);
-        assert_eq!(missing(&SCENES[0], said).len(), 4);
+        assert_eq!(missing(&SCENES[0], said).len(), 5);
     }
 
     #[test]
@@ -270,6 +273,8 @@ mod tests {
         assert!(too_far(&SCENES[1], "plain", quality(36.0), quality(22.0)).is_none());
         assert!(too_far(&SCENES[1], "plain", quality(34.0), quality(22.0)).is_some());
         assert!(too_far(&SCENES[1], "plain", quality(36.0), quality(30.0)).is_some());
+        assert!(too_far(&SCENES[0], "plain", quality(34.0), quality(22.0)).is_none());
+        assert!(too_far(&SCENES[0], "linear", quality(34.0), quality(22.0)).is_some());
         assert!(too_far(&SCENES[0], "ipd0", quality(36.0), quality(36.0)).is_some());
     }
 }

@@ -23,7 +23,7 @@ enum DebugView {
 	NONE, ## The eyes as they are.
 	HOLES, ## What the rendered eye does not see, and is invented, in magenta.
 	DISPARITY, ## How far surfaces move between the eyes: white is a tenth of the image's width.
-	MADE_EYE, ## The synthesized eye's image to both eyes.
+	SYNTHESIZED, ## The synthesized eye's image to both eyes.
 }
 ## What Godot draws with this camera.
 enum _Drawn {
@@ -33,11 +33,9 @@ enum _Drawn {
 }
 
 ## What is different where both eyes are shown: the sky and screen-space light are the rendered eye's.
-const SHOWN_EXCEPT := {
+const SHOWN_OVERRIDES := {
 	background_mode = Environment.BG_COLOR, ssao_enabled = false, ssil_enabled = false, ssr_enabled = false, sdfgi_enabled = false,
 }
-## A script sees the last frame's eyes, and those of this frame may differ by rounding.
-const _PARALLEL := 1e-3
 ## From this share of the view on that is near, Godot renders both eyes, and does so until less than the second is: yoro's
 ## NearFieldPolicy.
 const _SWITCH_ON := 0.5
@@ -73,9 +71,9 @@ var _eye: YoroEye
 var _put: YoroPut
 var _nearness: YoroNearness
 var _latch: YoroLatch
-var _first: SubViewport
+var _latch_viewport: SubViewport
 var _preview: CanvasLayer
-var _environment := YoroEnvironment.new(SHOWN_EXCEPT)
+var _environment := YoroEnvironment.new(SHOWN_OVERRIDES)
 var _compositor := Compositor.new()
 var _world_effects: Array[CompositorEffect] = []
 var _trouble := ""
@@ -147,7 +145,7 @@ func _ready() -> void:
 
 func _exit_tree() -> void:
 	if not Engine.is_editor_hint():
-		_step_back()
+		_draw_all()
 
 
 func _follow() -> void:
@@ -181,60 +179,43 @@ func _make() -> void:
 	_nearness = YoroNearness.new(_eye.synthesis)
 	_latch = YoroLatch.new()
 	_latch.camera = _eye.camera.get_camera_rid()
-	_first = SubViewport.new()
-	_first.size = Vector2i(2, 2)
+	_latch_viewport = SubViewport.new()
+	_latch_viewport.size = Vector2i(2, 2)
 	# Without anything to be culled.
-	_first.own_world_3d = true
-	_first.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	_latch_viewport.own_world_3d = true
+	_latch_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	var nothing := Camera3D.new()
 	nothing.cull_mask = 0
 	nothing.environment = Environment.new()
 	nothing.compositor = Compositor.new()
 	nothing.compositor.compositor_effects = [_latch]
-	_first.add_child(nothing)
+	_latch_viewport.add_child(nothing)
 	# Viewports beside each other are drawn in this order, and before the one that they are in.
-	add_child(_first, false, Node.INTERNAL_MODE_FRONT)
+	add_child(_latch_viewport, false, Node.INTERNAL_MODE_FRONT)
 	add_child(_eye, false, Node.INTERNAL_MODE_FRONT)
 
 
 func _draw(interface: XRInterface, viewport: Viewport) -> void:
 	var pixels := Vector2i(interface.get_render_target_size() * viewport.scaling_3d_scale)
+	if pixels.x < 1 or pixels.y < 1 or interface.get_view_count() < 2:
+		return
 	var frusta: Array = []
 	var at: Array[Transform3D] = []
 	for view in 2:
-		frusta.append(YoroViews.tangents(interface.get_projection_for_view(view, float(pixels.x) / maxi(pixels.y, 1), near, far)))
+		frusta.append(YoroViews.tangents(interface.get_projection_for_view(view, float(pixels.x) / pixels.y, near, far)))
 		at.append(interface.get_transform_for_view(view, XRServer.world_origin))
-	var other := at[0].affine_inverse() * at[1]
-	var ipd := other.origin.length()
-	if pixels.x < 1 or pixels.y < 1 or interface.get_view_count() < 2:
-		return
-	if not other.basis.is_equal_approx(Basis.IDENTITY) and other.basis.get_rotation_quaternion().get_angle() > _PARALLEL:
-		_refuse("the headset's displays are turned against each other")
-		return
-	if absf(other.origin.y) + absf(other.origin.z) > 0.05 * ipd:
-		_refuse("the headset's eyes do not lie on a horizontal line")
-		return
-	# Godot's cameras have square pixels, a headset's need not be: as fine as the finer side of the headset's, so that one side
-	# is not resampled, and up to one more than covers the eye.
-	var first: Array = frusta[0]
-	var extent := Vector2(first[1] - first[0], first[2] - first[3])
-	var pitches := extent / Vector2(pixels)
-	var pitch := minf(pitches.x, pitches.y)
-	var eye := Vector2i(ceili(extent.x / pitch - 1e-3), ceili(extent.y / pitch - 1e-3))
-	for frustum: Array in frusta:
-		frustum[1] = frustum[0] + eye.x * pitch
-		frustum[3] = frustum[2] - eye.y * pitch
-	var views := YoroViews.of(frusta, ipd * ipd_scale, near, far, dominant_eye, eye, guard_band)
-	if views == null:
-		_refuse("the eyes' fields of view differ in size, or near objects move too far: increase near")
+	var between := at[0].affine_inverse() * at[1]
+	between.origin *= ipd_scale
+	var views := YoroViews.of(frusta, between, near, far, dominant_eye, pixels, guard_band)
+	if views.trouble != "":
+		_refuse(views.trouble)
 		return
 	if _is_near():
 		# Not a fault: nobody is warned.
 		_trouble = "most of the view is near"
-		_step_back(_Drawn.ALL_WATCHED)
+		_draw_all(_Drawn.ALL_WATCHED)
 		return
 	_trouble = ""
-	_put.covered = extent / (Vector2(eye) * pitch)
 	_put.debug_view = debug_view
 	_put.same_image = mode == Mode.SAME_IMAGE
 	_eye.synthesis.map = debug_view == DebugView.HOLES
@@ -242,7 +223,7 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 	_latch.rendered = dominant_eye
 	_eye.follow(self, viewport, effects(false))
 	_eye.draw(views, at[dominant_eye], near, far)
-	_take_part()
+	_draw_stereo_layers()
 
 
 ## True if the view is too near for the synthesis. What is near by the last frames counts.
@@ -271,7 +252,7 @@ func _set_effects(wanted: Array[CompositorEffect]) -> void:
 
 
 ## Tells the renderer what this camera draws itself. The properties stay what they are: they are the user's.
-func _take_part() -> void:
+func _draw_stereo_layers() -> void:
 	_environment.follow(shown_environment(), cull_mask & stereo_layers != 0)
 	var wanted := effects(true)
 	if _watches():
@@ -281,7 +262,7 @@ func _take_part() -> void:
 	var camera := get_camera_rid()
 	RenderingServer.camera_set_cull_mask(camera, cull_mask & stereo_layers)
 	RenderingServer.camera_set_environment(camera, _environment.copy.get_rid() if _environment.copy != null else RID())
-	_first.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	_latch_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	_drawn = _Drawn.STEREO_LAYERS
 
 
@@ -290,11 +271,11 @@ func _refuse(reason: String) -> void:
 	if reason != "" and reason != _trouble:
 		push_warning("YoroCamera3D: Godot renders both eyes, since %s." % reason)
 	_trouble = reason
-	_step_back()
+	_draw_all()
 
 
 ## Lets Godot draw all of both eyes.
-func _step_back(drawn := _Drawn.ALL) -> void:
+func _draw_all(drawn := _Drawn.ALL) -> void:
 	var camera := get_camera_rid()
 	if _drawn == _Drawn.STEREO_LAYERS:
 		_rest()
@@ -313,7 +294,7 @@ func _step_back(drawn := _Drawn.ALL) -> void:
 func _rest() -> void:
 	if _eye != null:
 		_eye.rest()
-		_first.render_target_update_mode = SubViewport.UPDATE_DISABLED
+		_latch_viewport.render_target_update_mode = SubViewport.UPDATE_DISABLED
 
 
 func _show_preview(shown: bool) -> void:

@@ -1,4 +1,4 @@
-## A copy of an environment that follows it, but for some properties.
+## A copy of an environment that follows it but for some properties, which are overridden.
 @tool
 class_name YoroEnvironment
 extends RefCounted
@@ -16,16 +16,16 @@ const _UNLIT := {
 var copy: Environment
 
 var _of: Environment
-var _always_except: Dictionary
-var _except: Dictionary
+var _always: Dictionary
+var _overrides: Dictionary
 var _lit := true
 var _names: PackedStringArray
 var _next := 0
 
 
-func _init(except: Dictionary) -> void:
-	_always_except = except
-	_except = except
+func _init(overrides: Dictionary) -> void:
+	_always = overrides
+	_overrides = overrides
 	for property in ClassDB.class_get_property_list(&"Environment", true):
 		if property.usage & PROPERTY_USAGE_STORAGE:
 			_names.append(property.name)
@@ -36,25 +36,25 @@ func follow(environment: Environment, lit := true) -> void:
 	if environment != _of or lit != _lit:
 		_of = environment
 		_lit = lit
-		_except = _always_except if lit else _always_except.merged(_UNLIT)
+		_overrides = _always if lit else _always.merged(_UNLIT)
 		copy = environment.duplicate() if environment != null else null
 		if copy != null:
-			for name: String in _except:
-				copy.set(name, _except[name])
+			for name: String in _overrides:
+				copy.set(name, _overrides[name])
 			_keep_light()
 	if copy == null:
 		return
 	for i in _EACH_FRAME:
 		var name := _names[_next]
 		_next = (_next + 1) % _names.size()
-		if not _except.has(name) and copy.get(name) != _of.get(name):
+		if not _overrides.has(name) and copy.get(name) != _of.get(name):
 			copy.set(name, _of.get(name))
 			_keep_light()
 
 
 ## Light that comes from the background keeps coming from it.
 func _keep_light() -> void:
-	if _lit and _except.has("background_mode") and _of.background_mode == Environment.BG_SKY:
+	if _lit and _overrides.has("background_mode") and _of.background_mode == Environment.BG_SKY:
 		if _of.ambient_light_source == Environment.AMBIENT_SOURCE_BG:
 			copy.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
 		if _of.reflected_light_source == Environment.REFLECTION_SOURCE_BG:

@@ -4,7 +4,7 @@ class_name YoroEye
 extends SubViewport
 
 ## Done once, for both eyes, where these are shown.
-const _LATER := {glow_enabled = false, adjustment_enabled = false, tonemap_mode = Environment.TONE_MAPPER_LINEAR}
+const _OVERRIDES := {glow_enabled = false, adjustment_enabled = false, tonemap_mode = Environment.TONE_MAPPER_LINEAR}
 ## Settings of the viewport that is shown which concern how things are drawn.
 const _SHARED: PackedStringArray = [
 	"msaa_3d", "use_occlusion_culling", "mesh_lod_threshold", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
@@ -14,7 +14,7 @@ const _SHARED: PackedStringArray = [
 
 var camera := Camera3D.new()
 var synthesis: YoroSynthesis
-var _environment := YoroEnvironment.new(_LATER)
+var _environment := YoroEnvironment.new(_OVERRIDES)
 var _effects: Array[CompositorEffect] = []
 
 

@@ -12,7 +12,7 @@ var eyes: Array[SubViewport] = []
 var source: YoroEye
 var _cameras: Array[Camera3D] = []
 var _puts: Array[YoroPut] = []
-var _environment := YoroEnvironment.new(YoroCamera3D.SHOWN_EXCEPT)
+var _environment := YoroEnvironment.new(YoroCamera3D.SHOWN_OVERRIDES)
 
 
 func _init(of: YoroCamera3D) -> void:
@@ -52,8 +52,9 @@ func _process(_delta: float) -> void:
 	var up := tan(deg_to_rad(camera.fov) / 2.0)
 	var across := up * eye.x / eye.y
 	var frustum: Array[float] = [-across, across, up, -up]
-	var views := YoroViews.of([frustum, frustum], ipd, camera.near, camera.far, camera.dominant_eye, eye, camera.guard_band)
-	var both := views == null or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
+	var between := Transform3D(Basis.IDENTITY, Vector3(ipd, 0.0, 0.0))
+	var views := YoroViews.of([frustum, frustum], between, camera.near, camera.far, camera.dominant_eye, eye, camera.guard_band)
+	var both := views.trouble != "" or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
 	_environment.follow(camera.shown_environment(), camera.cull_mask & camera.stereo_layers != 0)
 	var effects := camera.effects(false)
 	for i in 2:

@@ -7,8 +7,6 @@ extends CompositorEffect
 var synthesis: YoroSynthesis
 ## The eye of a viewport with one view: 0 left, 1 right.
 var eye := 0
-## The share of the eyes' images that the buffers show, from the left and upper edges on.
-var covered := Vector2.ONE
 ## One of [enum YoroCamera3D.DebugView].
 var debug_view := 0
 ## Shows the rendered eye to both eyes.
@@ -29,21 +27,21 @@ func _render_callback(_type: int, data: RenderData) -> void:
 	var two := buffers.get_view_count() > 1
 	for view in buffers.get_view_count():
 		var is_rendered := (view if two else eye) == views.rendered or same_image
-		if debug_view == YoroCamera3D.DebugView.MADE_EYE:
+		if debug_view == YoroCamera3D.DebugView.SYNTHESIZED:
 			is_rendered = false
 		var push := PackedByteArray()
 		push.resize(32)
 		var corner := Vector2(views.crop) if is_rendered else Vector2.ZERO
-		var pitch := covered * Vector2(views.eye_size) / Vector2(buffers.get_internal_size())
+		var pitch := views.covered * Vector2(views.eye_size) / Vector2(buffers.get_internal_size())
 		push.encode_float(0, corner.x)
 		push.encode_float(4, corner.y)
 		push.encode_float(8, pitch.x)
 		push.encode_float(12, pitch.y)
 		push.encode_s32(16, 0 if is_rendered and debug_view == YoroCamera3D.DebugView.HOLES else debug_view)
 		# Disparity of depth 1, as a share of the image's tenth.
-		push.encode_float(20, views.reach / (0.1 * views.eye_size.x))
-		var color := synthesis.rendered_color if is_rendered else synthesis.made_color
-		var depth := synthesis.rendered_depth if is_rendered else synthesis.made_depth
+		push.encode_float(20, views.max_disparity / (0.1 * views.eye_size.x))
+		var color := synthesis.rendered_color if is_rendered else synthesis.synthesized_color
+		var depth := synthesis.rendered_depth if is_rendered else synthesis.synthesized_depth
 		var map := synthesis.source_map if synthesis.source_map.is_valid() else synthesis._tiles
 		# What is there by then is nearer or farther by its depth, which is 1 at the near plane.
 		synthesis.passes.draw("put", [buffers.get_color_layer(view, multisampled), buffers.get_depth_layer(view, multisampled)],

@@ -13,8 +13,8 @@ var passes: YoroPasses
 ## The rendered eye as it was drawn, of [member YoroViews.size], and the other one, of [member YoroViews.eye_size].
 var rendered_color: RID
 var rendered_depth: RID
-var made_color: RID
-var made_depth: RID
+var synthesized_color: RID
+var synthesized_depth: RID
 var source_map: RID
 ## Of the camera, when it was drawn.
 var pose: Transform3D
@@ -24,7 +24,7 @@ var ready := false
 var _tiles: RID
 var _spans: RID
 var _nearest: RID
-var _made_for: Array = []
+var _allocated_for: Array = []
 
 
 func _init(with: YoroPasses) -> void:
@@ -36,20 +36,20 @@ func _init(with: YoroPasses) -> void:
 func _notification(what: int) -> void:
 	if what == NOTIFICATION_PREDELETE and passes != null:
 		# An object that goes can no longer call its own functions.
-		YoroPasses.free_all(passes.device, [made_color, made_depth, source_map, _tiles, _spans, _nearest])
+		YoroPasses.free_all(passes.device, [synthesized_color, synthesized_depth, source_map, _tiles, _spans, _nearest])
 
 
 ## Textures follow the sizes, which change when the viewport's do.
 func _allocate(format: RenderingDevice.DataFormat, multisampled: bool) -> void:
 	var want := [views.size, views.eye_size, format, multisampled, map]
-	if want == _made_for:
+	if want == _allocated_for:
 		return
-	YoroPasses.free_all(passes.device, [made_color, made_depth, source_map, _tiles, _spans, _nearest])
-	_made_for = want
+	YoroPasses.free_all(passes.device, [synthesized_color, synthesized_depth, source_map, _tiles, _spans, _nearest])
+	_allocated_for = want
 	_tiles = passes.texture(views.tile_map, RenderingDevice.DATA_FORMAT_R32G32B32A32_UINT)
 	_spans = passes.texture(views.span_map, RenderingDevice.DATA_FORMAT_R32G32B32A32_UINT)
-	made_color = passes.texture(views.eye_size, format)
-	made_depth = passes.texture(views.eye_size, RenderingDevice.DATA_FORMAT_D32_SFLOAT)
+	synthesized_color = passes.texture(views.eye_size, format)
+	synthesized_depth = passes.texture(views.eye_size, RenderingDevice.DATA_FORMAT_D32_SFLOAT)
 	_nearest = passes.texture(views.size, RenderingDevice.DATA_FORMAT_R32_SFLOAT) if multisampled else RID()
 	source_map = passes.texture(views.eye_size, RenderingDevice.DATA_FORMAT_R32_UINT) if map else RID()
 
@@ -76,7 +76,7 @@ func _render_callback(_type: int, data: RenderData) -> void:
 	var way := "short" if short_way else "every"
 	passes.draw("tiles_" + way, [_tiles], [rendered_depth, rendered_color], views.uniforms)
 	passes.draw("spans_" + way, [_spans], [rendered_depth, rendered_color, _tiles], views.uniforms)
-	var targets: Array[RID] = [made_color, made_depth]
+	var targets: Array[RID] = [synthesized_color, synthesized_depth]
 	if map:
 		targets.insert(1, source_map)
 	passes.draw("march_" + way + ("_map" if map else ""), targets, [rendered_depth, rendered_color, _tiles, _spans],
