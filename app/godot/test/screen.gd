@@ -19,6 +19,7 @@ func _ready() -> void:
 	print("fact warnings %d" % YoroMarks.warnings(room, camera.stereo_layers).size())
 	light.layers |= camera.stereo_layers
 	glass.layers = camera.stereo_layers
+	print("fact served %s" % [_served()])
 	print("fact shaders of the kit that the add-on does not use: %d" % _compiled("res://test/kit"))
 	await _case("plain")
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
@@ -64,6 +65,21 @@ func _ready() -> void:
 	print("fact preview %s" % [camera.preview() == null])
 	print("fact done")
 	get_tree().quit()
+
+
+## Returns for eyes that are parallel, parallel but for rounding, turned, raised and of unlike sizes whether one can be synthesized.
+func _served() -> Array[bool]:
+	var frustum: Array[float] = [-1.0, 1.0, 1.0, -1.0]
+	var wider: Array[float] = [-1.0, 1.1, 1.0, -1.0]
+	var apart := Vector3(0.063, 0.0, 0.0)
+	var parallel := Transform3D(Basis.IDENTITY, apart)
+	var served: Array[bool] = []
+	for eyes: Array in [
+		[parallel, frustum], [Transform3D(Basis(Vector3.UP, 1e-4), apart), frustum],
+		[Transform3D(Basis(Vector3.UP, 0.01), apart), frustum], [parallel.translated(0.02 * Vector3.UP), frustum], [parallel, wider],
+	]:
+		served.append(YoroViews.of([frustum, eyes[1]], eyes[0], 0.1, 60.0, 1, Vector2i(512, 512), 1.0).trouble == "")
+	return served
 
 
 ## Returns how many versions of a folder's shaders Godot compiles, or -1 if one fails.

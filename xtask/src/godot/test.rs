@@ -42,6 +42,7 @@ const SCENES: [Scene; 2] = [
         facts: &[
             "fact warnings 0, transparent 2",
             "fact warnings 2\n",
+            "fact served [true, true, false, false, false]",
             "fact shaders of the kit that the add-on does not use: 5",
             "fact without stereo layers the rendered eye is as before: true",
             "fact preview true",
@@ -264,7 +265,7 @@ mod tests {
         assert!(missing(&SCENES[1], said).is_empty());
         assert_eq!(missing(&SCENES[1], &said.replace("0.0000001", "0.03")).len(), 1);
         assert_eq!(missing(&SCENES[1], &said.replace("trouble ", "trouble canted")).len(), 1);
-        assert_eq!(missing(&SCENES[0], said).len(), 5);
+        assert_eq!(missing(&SCENES[0], said).len(), 6);
     }
 
     #[test]

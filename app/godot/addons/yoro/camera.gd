@@ -29,7 +29,7 @@ enum DebugView {
 enum _Drawn {
 	ALL, ## As without this add-on.
 	ALL_WATCHED, ## The same, and nearness is measured.
-	STEREO_LAYERS, ## Over the eyes that are put there.
+	STEREO_LAYERS, ## What is on the stereo layers, over the eyes that are put there.
 }
 
 ## What is different where both eyes are shown: the sky and screen-space light are the rendered eye's.
@@ -52,8 +52,8 @@ const _SWITCH_OFF := 0.35
 ## keep the headset's in XR.
 @export_range(0.0, 2.0, 0.01) var ipd_scale := 1.0
 ## What is on these layers Godot draws for both eyes. Everything else is drawn once and moved, transparent things with what lies
-## behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu marks both. None is cheaper:
-## then shadow maps are drawn once.
+## behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu marks both. Without
+## any layer shadow maps are drawn once, which is cheaper.
 @export_flags_3d_render var stereo_layers := 0:
 	set(value):
 		stereo_layers = value

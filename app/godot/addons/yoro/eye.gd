@@ -6,7 +6,7 @@ extends SubViewport
 ## Done once, for both eyes, where these are shown.
 const _OVERRIDES := {glow_enabled = false, adjustment_enabled = false, tonemap_mode = Environment.TONE_MAPPER_LINEAR}
 ## Settings of the viewport that is shown which concern how things are drawn.
-const _SHARED: PackedStringArray = [
+const SHARED: PackedStringArray = [
 	"msaa_3d", "use_occlusion_culling", "mesh_lod_threshold", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
 	"positional_shadow_atlas_quad_0", "positional_shadow_atlas_quad_1", "positional_shadow_atlas_quad_2",
 	"positional_shadow_atlas_quad_3", "anisotropic_filtering_level", "texture_mipmap_bias",
@@ -33,7 +33,7 @@ func _init(passes: YoroPasses) -> void:
 ## Takes over how the camera [param like] draws, but for what Godot draws for both eyes, and how [param shown] is drawn to.
 ## [param effects] are drawn before the synthesis.
 func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect]) -> void:
-	for name in _SHARED:
+	for name in SHARED:
 		if get(name) != shown.get(name):
 			set(name, shown.get(name))
 	if world_3d != like.get_world_3d():

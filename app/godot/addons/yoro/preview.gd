@@ -63,7 +63,7 @@ func _process(_delta: float) -> void:
 			eyes[i].size = eye
 		if eyes[i].world_3d != camera.get_world_3d():
 			eyes[i].world_3d = camera.get_world_3d()
-		for name in YoroEye._SHARED:
+		for name in YoroEye.SHARED:
 			if eyes[i].get(name) != camera.get_viewport().get(name):
 				eyes[i].set(name, camera.get_viewport().get(name))
 		shown.set_perspective(camera.fov, camera.near, camera.far)
