@@ -233,6 +233,12 @@ impl RenderTarget {
         Destination { framebuffer: Some(framebuffer.raw), origin: [0, 0], size: self.size }
     }
 
+    /// Returns the whole target without its colour attachments.
+    pub fn depth_only(&self) -> Destination {
+        let framebuffer = self.depth_only.as_ref().unwrap_or(&self.framebuffer);
+        Destination { framebuffer: Some(framebuffer.raw), origin: [0, 0], size: self.size }
+    }
+
     /// Copies a rectangle of colour attachment 0 into a destination of the same size. `crop` is the rectangle's lower left
     /// corner.
     pub fn copy_color(&self, crop: [u32; 2], to: &Destination) {
@@ -276,9 +282,7 @@ impl RenderTarget {
 
     /// Does the same with depth alone.
     pub fn overwrite_depth(&self) {
-        let framebuffer = self.depth_only.as_ref().unwrap_or(&self.framebuffer);
-        let to = Destination { framebuffer: Some(framebuffer.raw), origin: [0, 0], size: self.size };
-        self.gl.overwrite(&to, 0, true);
+        self.gl.overwrite(&self.depth_only(), 0, true);
     }
 
     /// Returns colour texture `i`.

@@ -6,10 +6,10 @@ use image::{GrayImage, Luma, RgbImage};
 
 use crate::dataset::{GroupError, GroupOptions, GroupRenderer};
 use crate::picture;
-use yoro::eyes::{DepthRange, EyePair, EyesError, GuardBand, HeadMotion, PoseWarp, View};
-use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
-use yoro_render::PreparedScene;
+use yoro::eyes::{DepthRange, Eye, EyePair, GuardBand, HeadMotion, View};
+use yoro_gl::{Context, Destination, GlError};
+use yoro_render::stereo::StereoFrame;
+use yoro_render::{PreparedScene, StreamedEyes};
 use yoro_stream::{Content, DepthSpan, EyeView, ViewRequest};
 use yoro_video::{Planes, depth_luma};
 
@@ -20,6 +20,8 @@ pub enum Mode {
     Depth,
     /// Both eyes, turned to the newest pose: the baseline.
     Eyes,
+    /// Both eyes and the depth of one, of which each eye is made at the newest pose.
+    EyesDepth,
 }
 
 /// The largest motion of the head between rendering and display that the guard band covers: 4 degrees, 2 cm.
@@ -29,11 +31,11 @@ const NEAREST: f32 = 1.0;
 
 /// A picture to be encoded.
 pub struct Picture {
-    /// Both halves.
+    /// All parts.
     pub planes: Planes,
     /// What they show.
     pub content: Content,
-    /// Width and height of each half, without what makes them even.
+    /// Width and height of each part, without what makes them even.
     pub size: [u16; 2],
     /// True if the range of depth has changed: the frame must be an intra frame.
     pub new_span: bool,
@@ -56,7 +58,7 @@ impl FrameRenderer {
         Ok(FrameRenderer { groups: GroupRenderer::new(gl, &options)?, span: DepthSpan::default(), mode })
     }
 
-    /// Returns the picture for a request: one eye and its depth, or both eyes.
+    /// Returns the picture for a request.
     ///
     /// # Errors
     /// [`GroupError`] for eyes that cannot be rendered.
@@ -72,26 +74,25 @@ impl FrameRenderer {
             size: request.size.map(u32::from),
             dominant: request.dominant,
         };
-        let guarded = |view: &View, motion: HeadMotion| Ok(motion.guarded(view, NEAREST)?.view);
         let eye_view = |view: &View| EyeView { pose: view.pose, frustum: view.frustum };
         let size = |view: &View| view.size.map(|n| n as u16);
+        let guarded =
+            |view: &View, motion: HeadMotion| Ok::<_, GroupError>(motion.guarded(view, NEAREST)?.view);
         if self.mode == Mode::Eyes {
             let still = HeadMotion { translation: 0.0, ..MOTION };
-            let views = views_of(&pair).map(|view| guarded(&view, still));
-            let [left, right]: [Result<View, EyesError>; 2] = views;
-            let views = [left?, right?];
-            let mut eyes = Vec::new();
-            for view in &views {
-                eyes.push(Planes::of_rgb(&self.groups.render_one(prepared, view)?.0));
-            }
-            let content = Content::Eyes([eye_view(&views[0]), eye_view(&views[1])]);
-            let planes = eyes[0].beside(&eyes[1]);
-            return Ok(Picture { planes, content, size: size(&views[0]), new_span: false });
+            let left = guarded(&pair.view(Eye::Left), still)?;
+            let right = View { size: left.size, ..guarded(&pair.view(Eye::Right), still)? };
+            let planes = self.color(prepared, &left)?.beside(&self.color(prepared, &right)?);
+            let content = Content::Eyes([eye_view(&left), eye_view(&right)]);
+            return Ok(Picture { planes, content, size: size(&left), new_span: false });
         }
-        // Eyes that are not parallel cannot be synthesized from one another: the dominant view is taken as it is.
-        let own =
-            pair.synthesis_views(GuardBand::Distance(NEAREST)).map_or(pair.view(pair.dominant), |v| v.source);
-        let view = guarded(&own, MOTION)?;
+        // Wide enough to synthesize the other eye of it. Eyes that are not parallel cannot be synthesized from one another: they are
+        // taken as they are.
+        let source = |dominant: Eye| {
+            let views = EyePair { dominant, ..pair }.synthesis_views(GuardBand::Distance(NEAREST));
+            guarded(&views.map_or(pair.view(dominant), |views| views.source), MOTION)
+        };
+        let view = source(pair.dominant)?;
         let (color, depth) = self.groups.render_one(prepared, &view)?;
         let far = view.depth.clear_value();
         let distance = |value: f32| view.depth.distance(value);
@@ -103,19 +104,29 @@ impl FrameRenderer {
             Luma([depth_luma(distance(depth.get_pixel(x, y).0[0]), span)])
         });
         let planes = Planes::of_rgb(&color).beside(&Planes::of_gray(&luma));
-        Ok(Picture { planes, content: Content::Depth(eye_view(&view), span), size: size(&view), new_span })
+        let picture =
+            Picture { planes, content: Content::Depth(eye_view(&view), span), size: size(&view), new_span };
+        if self.mode == Mode::Depth {
+            return Ok(picture);
+        }
+        let dominant = pair.dominant;
+        // Mirrored eyes have one size; with another one, pixels that are no squares.
+        let other = View { size: view.size, ..source(dominant.other())? };
+        let planes = picture.planes.beside(&self.color(prepared, &other)?);
+        let mut eyes = [eye_view(&view); 2];
+        eyes[dominant.other().index()] = eye_view(&other);
+        Ok(Picture { planes, content: Content::EyesDepth { dominant, eyes, span }, ..picture })
     }
-}
 
-fn views_of(pair: &EyePair) -> [View; 2] {
-    yoro::eyes::Eye::BOTH.map(|eye| pair.view(eye))
+    fn color(&mut self, prepared: &mut PreparedScene, view: &View) -> Result<Planes, GroupError> {
+        Ok(Planes::of_rgb(&self.groups.render_one(prepared, view)?.0))
+    }
 }
 
 /// Makes eyes of a stream's pictures, as the page does.
 pub struct Receiver {
-    gl: Rc<Context>,
-    any_view: AnyView,
-    shown: RenderTarget,
+    streamed: StreamedEyes,
+    frame: StereoFrame,
 }
 
 impl Receiver {
@@ -124,61 +135,26 @@ impl Receiver {
     /// # Errors
     /// [`GlError`] when the driver refuses.
     pub fn new(gl: &Rc<Context>) -> Result<Receiver, GlError> {
-        Ok(Receiver {
-            gl: gl.clone(),
-            any_view: AnyView::new(gl, &SynthesisOptions::default(), Outputs::default())?,
-            shown: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?,
-        })
+        Ok(Receiver { streamed: StreamedEyes::new(gl)?, frame: StereoFrame::new(gl, [1, 1])? })
     }
 
-    /// Returns both eyes of a pair, made of a picture as it was decoded.
+    /// Returns both eyes of a pair, made of a picture as it was decoded. They are black where they see nothing of it.
     ///
     /// # Errors
-    /// [`GroupError`] for eyes that see nothing of the picture.
+    /// [`GlError`] without memory.
     pub fn eyes(
         &mut self,
         planes: &Planes,
         content: &Content,
         size: [u16; 2],
         pair: &EyePair,
-    ) -> Result<[RgbImage; 2], GroupError> {
-        let [left, right] = planes.halves();
-        let [width, height] = size.map(u32::from);
-        let texture = |format, filter, bytes: &[u8]| -> Result<Texture, GlError> {
-            let texture = Texture::new(&self.gl, [width, height], format, filter)?;
-            texture.upload(bytes);
-            Ok(texture)
-        };
-        let color = |half: &Planes| {
-            let image = half.rgb((width, height));
-            let rgba: Vec<u8> =
-                image.rows().rev().flatten().flat_map(|p| [p.0[0], p.0[1], p.0[2], 255]).collect();
-            texture(Format::Rgba8, Filter::Linear, &rgba)
-        };
-        let gray = right.gray((width, height));
-        let values: Vec<u8> = gray.rows().rev().flatten().map(|p| p.0[0]).collect();
-        let depth = texture(Format::R8, Filter::Nearest, &values)?;
-        let images = match content {
-            Content::Depth(..) => vec![color(&left)?],
-            Content::Eyes(_) => vec![color(&left)?, color(&right)?],
-        };
-        let mut eyes = Vec::new();
-        for (i, target) in views_of(pair).iter().enumerate() {
-            let (image, warp) = match content {
-                Content::Depth(eye_view, span) => {
-                    (&images[0], PoseWarp::new(&eye_view.view(size, *span), target)?)
-                }
-                Content::Eyes(eyes) => {
-                    let source = eyes[i].view(size, [1.0, 2.0]);
-                    (&images[i], PoseWarp::new(&source, target)?.rotation_only())
-                }
-            };
-            self.shown.resize(target.size)?;
-            let source = Source::new(image.raw(), depth.raw());
-            self.any_view.synthesize(source, &warp, &Destination::whole(&self.shown))?;
-            eyes.push(picture::rgb_image(&self.shown.read_rgba8(0, [0, 0], target.size), target.size));
-        }
-        let [left, right] = eyes.try_into().expect("two eyes");
-        Ok([left, right])
+    ) -> Result<[RgbImage; 2], GlError> {
+        let taken = self.streamed.take(*content, size, &planes.planes.concat())?;
+        assert!(taken, "a picture of another size");
+        self.frame.resize(pair.size)?;
+        let to = Eye::BOTH.map(|eye| Destination::whole(self.frame.eye(eye)));
+        self.streamed.render(pair, &to)?;
+        Ok(Eye::BOTH
+            .map(|eye| picture::rgb_image(&self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size), pair.size)))
     }
 }

@@ -2,12 +2,14 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{Eye, EyePair, EyesError, PoseWarp, View};
+use glam::IVec2;
+
+use yoro::eyes::{Eye, EyePair};
 use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
-use yoro_stream::{Content, EyeView, FrameHeader, ViewRequest};
+use yoro_stream::{Content, EyeView, ViewRequest};
 
 /// Shows a stream: takes decoded frames, and makes both eyes of the newest one.
 pub struct StreamedEyes {
@@ -16,17 +18,19 @@ pub struct StreamedEyes {
     any_view: AnyView,
     /// Luma and both colour differences of the newest picture, rows from the top.
     planes: Option<[Texture; 3]>,
-    /// Each eye that is in it; the first is the only one beside a depth.
+    /// Each eye that is in it.
     colors: [RenderTarget; 2],
-    /// The first eye's depth. Two eyes have none: all is taken as far away.
-    depth: Option<Texture>,
-    header: Option<FrameHeader>,
-    /// The first eye's depth as it is uploaded, kept from frame to frame.
-    depth_rows: Vec<u8>,
+    /// The first eye's depth. Two eyes without depth are taken as far away.
+    depth: RenderTarget,
+    /// The second eye as it is synthesized from the first: its depth, which is not in the picture.
+    moved: RenderTarget,
+    newest: Option<(Content, [u16; 2])>,
     /// True if what is beyond the border of a picture is black; otherwise it repeats the border.
     pub framed: bool,
     /// The eyes that were made last.
     pair: Option<EyePair>,
+    /// Pairs of eyes that were made, and the sums of the metres and the radians from the poses of their pictures to their own.
+    corrected: [f32; 3],
 }
 
 impl StreamedEyes {
@@ -35,34 +39,40 @@ impl StreamedEyes {
     /// # Errors
     /// The driver refuses.
     pub fn new(gl: &Rc<Context>) -> Result<StreamedEyes, GlError> {
-        let color = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None);
+        let target = |format, filter, depth| RenderTarget::new(gl, [1, 1], &[(format, filter)], depth);
+        let color = || target(Format::Rgba8, Filter::Linear, None);
+        // Frames and eyes have several sizes in turn.
+        let options = SynthesisOptions { parts: true, ..SynthesisOptions::default() };
         Ok(StreamedEyes {
             gl: gl.clone(),
             decoded: Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?,
-            any_view: AnyView::new(gl, &SynthesisOptions::default(), Outputs::default())?,
+            any_view: AnyView::new(gl, &options, Outputs { depth: true, ..Outputs::default() })?,
             planes: None,
             colors: [color()?, color()?],
-            depth: None,
-            header: None,
-            depth_rows: Vec::new(),
+            depth: target(Format::R8, Filter::Nearest, None)?,
+            moved: target(Format::Rgba8, Filter::Nearest, Some(Format::Depth24))?,
+            newest: None,
             framed: false,
             pair: None,
+            corrected: [0.0; 3],
         })
     }
 
-    /// Takes a decoded picture: three planes one after another, tightly packed. False if they have not the size that the
-    /// header tells.
+    /// Takes a decoded picture, whose parts have this size: three planes one after another, tightly packed, rows from the top.
+    /// False if the planes have another size, or the eyes see too little of each other's view.
     ///
     /// # Errors
     /// The GPU has no memory for it.
-    pub fn take(&mut self, header: FrameHeader, planes: &[u8]) -> Result<bool, GlError> {
-        let [width, height] = header.size.map(u32::from);
-        let [half, rows] = [width, height].map(|n| n.next_multiple_of(2));
-        let luma = (2 * half * rows) as usize;
+    pub fn take(&mut self, content: Content, size: [u16; 2], planes: &[u8]) -> Result<bool, GlError> {
+        let part = size.map(u32::from);
+        let [column, rows] = part.map(|n| n.next_multiple_of(2));
+        let columns = content.parts() * column;
+        let luma = (columns * rows) as usize;
+        let Ok(depth_warp) = content.depth_warp(size) else { return Ok(false) };
         if planes.len() != luma * 3 / 2 {
             return Ok(false);
         }
-        let sizes = [[2 * half, rows], [half, rows / 2], [half, rows / 2]];
+        let sizes = [[columns, rows], [columns / 2, rows / 2], [columns / 2, rows / 2]];
         if self.planes.as_ref().is_none_or(|planes| planes[0].size() != sizes[0]) {
             let plane = |i: usize| Texture::new(&self.gl, sizes[i], Format::R8, Filter::Nearest);
             self.planes = Some([plane(0)?, plane(1)?, plane(2)?]);
@@ -73,56 +83,73 @@ impl StreamedEyes {
         for (texture, bytes) in textures.iter().zip([y, u, v]) {
             texture.upload(bytes);
         }
-        if self.depth.as_ref().is_none_or(|depth| depth.size() != [width, height]) {
-            self.depth = Some(Texture::new(&self.gl, [width, height], Format::R8, Filter::Nearest)?);
-        }
-        let depth = self.depth.as_ref().expect("it has just been made");
-        let (row, right) = (2 * half as usize, half as usize..(half + width) as usize);
-        self.depth_rows.clear();
-        let pictures = match header.content {
-            Content::Depth(..) => {
-                let from_bottom = y.chunks_exact(row).take(height as usize).rev();
-                from_bottom.for_each(|line| self.depth_rows.extend_from_slice(&line[right.clone()]));
-                1
-            }
-            Content::Eyes(_) => {
-                self.depth_rows.resize((width * height) as usize, 0);
-                2
-            }
-        };
-        depth.upload(&self.depth_rows);
-        for (i, color) in self.colors.iter_mut().take(pictures).enumerate() {
-            color.resize([width, height])?;
-            color.bind();
+        let draw = |index: u32, depth: bool, to: &mut RenderTarget| -> Result<(), GlError> {
+            to.resize(part)?;
+            to.overwrite();
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.decoded.bind();
             for (unit, (name, texture)) in ["luma", "blue", "red"].into_iter().zip(textures).enumerate() {
-                self.decoded.texture(name, unit as u32, texture.raw());
+                self.decoded.texture_of(name, unit as u32, texture);
             }
-            self.decoded.set("first_column", i as i32 * half as i32).set("height", height as i32);
-            self.decoded.set("framed", i32::from(self.framed));
+            let size = IVec2::from(part.map(|n| n as i32));
+            self.decoded.set("first_column", (index * column) as i32).set("size", size);
+            self.decoded.set("framed", i32::from(self.framed && !depth)).set("depth", i32::from(depth));
             self.gl.draw_screen();
+            Ok(())
+        };
+        for (color, index) in self.colors.iter_mut().zip(content.eye_parts()) {
+            draw(*index, false, color)?;
         }
-        self.header = Some(header);
+        if let Content::Eyes(_) = content {
+            self.depth.resize(part)?;
+            self.depth.bind();
+            self.gl.clear(None);
+        } else {
+            draw(1, true, &mut self.depth)?;
+        }
+        if let Some(warp) = depth_warp {
+            self.moved.resize(part)?;
+            let source = Source::new(self.colors[0].color(0).raw(), self.depth.color(0).raw());
+            self.any_view.synthesize(source, &warp, &Destination::whole(&self.moved))?;
+        }
+        self.newest = Some((content, size));
         Ok(true)
     }
 
-    /// Makes both eyes; black before the first frame, and where the head has turned away from all that the frame shows.
+    /// Makes both eyes, with their depth where the targets have a depth attachment; black before the first frame, and where the
+    /// head has turned away from all that the frame shows.
     ///
     /// # Errors
     /// The GPU has no memory for it.
     pub fn render(&mut self, pair: &EyePair, to: &[Destination; 2]) -> Result<(), GlError> {
         self.pair = Some(*pair);
+        if let Some((content, _)) = self.newest {
+            let (_, rendered, _) = content.source(pair.dominant);
+            let (from, to) = (rendered.pose, pair.poses[pair.dominant.index()]);
+            let angle = from.orientation.angle_between(to.orientation);
+            let more = [1.0, from.position.distance(to.position), angle];
+            self.corrected = [0, 1, 2].map(|i| self.corrected[i] + more[i]);
+        }
         for eye in Eye::BOTH {
             let to = &to[eye.index()];
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-            self.gl.clear(None);
-            let (Some(header), Some(depth)) = (self.header, &self.depth) else { continue };
-            let Ok((image, warp)) = warp(&header, &pair.view(eye), eye) else { continue };
-            let source = Source::new(self.colors[image].color(0).raw(), depth.raw());
+            self.gl.clear(Some(pair.depth.clear_value()));
+            let Some((content, size)) = self.newest else { continue };
+            let Ok((part, warp)) = content.warp(size, eye, &pair.view(eye)) else { continue };
+            let depth = match content {
+                Content::EyesDepth { .. } if part == 1 => self.moved.depth(),
+                _ => self.depth.color(0),
+            };
+            let source = Source::new(self.colors[part].color(0).raw(), depth.raw());
             self.any_view.synthesize(source, &warp, to)?;
         }
         Ok(())
+    }
+
+    /// Returns the mean metres and radians by which poses were corrected since the last call; none where no eyes were made.
+    pub fn take_correction(&mut self) -> Option<[f32; 2]> {
+        let [pairs, metres, radians] = std::mem::take(&mut self.corrected);
+        (pairs > 0.0).then(|| [metres / pairs, radians / pairs])
     }
 
     /// Returns the request for the eyes that were made last, at a time in milliseconds; none before the first.
@@ -132,16 +159,5 @@ impl StreamedEyes {
             |eye: Eye| EyeView { pose: pair.poses[eye.index()], frustum: pair.frusta[eye.index()] };
         let size = pair.size.map(|n| n.clamp(16, 4096) as u16);
         Some(ViewRequest { time, eyes: Eye::BOTH.map(eye_view), dominant: pair.dominant, size })
-    }
-}
-
-/// Returns which of the frame's images an eye is made of, and how.
-fn warp(header: &FrameHeader, target: &View, eye: Eye) -> Result<(usize, PoseWarp), EyesError> {
-    match header.content {
-        Content::Depth(eye_view, span) => Ok((0, PoseWarp::new(&eye_view.view(header.size, span), target)?)),
-        Content::Eyes(eyes) => {
-            let source = eyes[eye.index()].view(header.size, [1.0, 2.0]);
-            Ok((eye.index(), PoseWarp::new(&source, target)?.rotation_only()))
-        }
     }
 }

@@ -1,7 +1,7 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, Frustum, Pose, View};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyesError, Frustum, Pose, PoseWarp, View};
 
 /// The version of the messages. Other versions are refused.
 pub const VERSION: u16 = 1;
@@ -71,14 +71,80 @@ pub enum FromViewer {
     Decoded(u32),
 }
 
-/// What the two halves of a frame's picture show.
+/// What the parts of a frame's picture show, side by side from the left, all of one size. Eyes are wider than those that were
+/// requested.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Content {
-    /// An eye on the left, wider than the eye that was requested, and its depth as luma on the right: 255 at the first distance
-    /// in metres to 0 at the second, uniform in 1/z.
+    /// An eye, and its depth as luma: 255 at the first distance in metres to 0 at the second, uniform in 1/z.
     Depth(EyeView, [f32; 2]),
-    /// Both eyes.
+    /// The left eye and the right one.
     Eyes([EyeView; 2]),
+    /// The dominant eye, its depth as in [`Content::Depth`], and the other eye.
+    EyesDepth {
+        /// The eye that has depth.
+        dominant: Eye,
+        /// Left and right eye.
+        eyes: [EyeView; 2],
+        /// The distances of the depth.
+        span: [f32; 2],
+    },
+}
+
+impl Content {
+    /// Returns the number of parts.
+    pub fn parts(&self) -> u32 {
+        match self {
+            Content::Depth(..) | Content::Eyes(_) => 2,
+            Content::EyesDepth { .. } => 3,
+        }
+    }
+
+    /// Returns the parts that show eyes.
+    pub fn eye_parts(&self) -> &'static [u32] {
+        match self {
+            Content::Depth(..) => &[0],
+            Content::Eyes(_) => &[0, 1],
+            Content::EyesDepth { .. } => &[0, 2],
+        }
+    }
+
+    /// Returns which of the parts that show eyes an eye is made of, its view, and the distances of its depth, if it has one.
+    pub fn source(&self, eye: Eye) -> (usize, EyeView, Option<[f32; 2]>) {
+        match *self {
+            Content::Depth(eye_view, span) => (0, eye_view, Some(span)),
+            Content::Eyes(eyes) => (eye.index(), eyes[eye.index()], None),
+            Content::EyesDepth { dominant, eyes, span } => {
+                (usize::from(eye != dominant), eyes[eye.index()], Some(span))
+            }
+        }
+    }
+
+    /// Returns the eye that has depth with the warp that moves its depth to the other eye, where that has none of its own.
+    ///
+    /// # Errors
+    /// [`EyesError`] for eyes that see too little of each other's view.
+    pub fn depth_warp(&self, size: [u16; 2]) -> Result<Option<PoseWarp>, EyesError> {
+        let Content::EyesDepth { dominant, eyes, span } = self else { return Ok(None) };
+        let view = |eye: Eye| eyes[eye.index()].view(size, *span);
+        PoseWarp::new(&view(*dominant), &view(dominant.other())).map(Some)
+    }
+
+    /// Returns which of the parts that show eyes a view is made of, and how: by rotation alone without depth.
+    ///
+    /// # Errors
+    /// [`EyesError`] where the view sees too little of the part.
+    pub fn warp(&self, size: [u16; 2], eye: Eye, target: &View) -> Result<(usize, PoseWarp), EyesError> {
+        let (part, eye_view, span) = self.source(eye);
+        let warp = PoseWarp::new(&eye_view.view(size, span.unwrap_or([1.0, 2.0])), target)?;
+        Ok((part, if span.is_some() { warp } else { warp.rotation_only() }))
+    }
+
+    fn is_valid(&self) -> bool {
+        Eye::BOTH.into_iter().all(|eye| {
+            let (_, eye_view, span) = self.source(eye);
+            eye_view.is_valid() && span.is_none_or(|[near, far]| 1e-4 <= near && near < far && far <= 1e6)
+        })
+    }
 }
 
 /// What stands before a frame's H.264.
@@ -88,7 +154,7 @@ pub struct FrameHeader {
     pub time: f64,
     /// What is in it.
     pub content: Content,
-    /// Width and height of each half in pixels, without the padding to an even size.
+    /// Width and height of each part in pixels, without the padding to an even size.
     pub size: [u16; 2],
     /// Milliseconds that it took to render.
     pub render_ms: f32,
@@ -206,13 +272,9 @@ impl<'a> FromServer<'a> {
                 let length = usize::from(u16::from_le_bytes([low, high]));
                 let (header, data) = rest.split_at_checked(length)?;
                 let header: FrameHeader = exact(header)?;
-                let content = match header.content {
-                    Content::Depth(eye_view, [near, far]) => {
-                        eye_view.is_valid() && 1e-4 <= near && near < far && far <= 1e6
-                    }
-                    Content::Eyes(eyes) => eyes.iter().all(EyeView::is_valid),
-                };
-                let valid = content && intra < 2 && header.size.iter().all(|side| SIDES.contains(side));
+                let valid = header.content.is_valid()
+                    && intra < 2
+                    && header.size.iter().all(|side| SIDES.contains(side));
                 let number = u32::from_le_bytes(number);
                 valid.then_some(FromServer::Frame { number, intra: intra == 1, header, data })
             }
@@ -259,8 +321,10 @@ mod tests {
         let eyes = FrameHeader { content: Content::Eyes([EYE; 2]), ..HEADER };
         let frame =
             |header| FromServer::Frame { number: 70_000, intra: true, header, data: &[0, 0, 0, 1, 9] };
+        let content = Content::EyesDepth { dominant: Eye::Right, eyes: [EYE; 2], span: [0.5, 40.0] };
+        let eyes_depth = FrameHeader { content, ..HEADER };
         let refused = FromServer::Refused(Refusal::Busy);
-        vec![FromServer::Welcome(Pose::IDENTITY), refused, frame(HEADER), frame(eyes)]
+        vec![FromServer::Welcome(Pose::IDENTITY), refused, frame(HEADER), frame(eyes), frame(eyes_depth)]
     }
 
     #[test]
@@ -312,7 +376,7 @@ mod tests {
 
         #[test]
         fn damaged_messages_are_read_without_a_panic(
-            which in 0usize..4, damage in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..4),
+            which in 0usize..5, damage in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..4),
         ) {
             for mut bytes in [up()[which % 3].to_bytes(), down()[which].to_bytes()] {
                 for (at, byte) in &damage {

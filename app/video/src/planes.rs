@@ -48,15 +48,14 @@ impl Planes {
         Planes { size: [w, h], planes: [luma, vec![128; w * h / 4], vec![128; w * h / 4]] }
     }
 
-    /// Returns both pictures, of one size, side by side in one.
+    /// Returns both pictures, of one height, side by side in one.
     pub fn beside(&self, right: &Planes) -> Planes {
-        let [w, h] = self.size;
         let planes = std::array::from_fn(|i| {
-            let row = if i == 0 { w } else { w / 2 };
-            let rows = self.planes[i].chunks(row).zip(right.planes[i].chunks(row));
+            let [row, right_row] = [self.size[0], right.size[0]].map(|w| if i == 0 { w } else { w / 2 });
+            let rows = self.planes[i].chunks(row).zip(right.planes[i].chunks(right_row));
             rows.flat_map(|(left, right)| left.iter().chain(right)).copied().collect()
         });
-        Planes { size: [2 * w, h], planes }
+        Planes { size: [self.size[0] + right.size[0], self.size[1]], planes }
     }
 
     /// Returns the two pictures that [`Planes::beside`] put together.

@@ -32,6 +32,9 @@ function controllers(session, before) {
   return { presses, stick };
 }
 
+/** What is shown, in a word or two. */
+const shownBy = () => (app.stream ? 'stream' : inUse());
+
 /** Chooses by devices without buttons of their own: hands, and pinches where a glance points. */
 function listenToHands(session) {
   const isHand = ({ inputSource }) => !inputSource.gamepad;
@@ -125,9 +128,9 @@ async function enter(button) {
         if (times.length >= 36) {
           const mean = times.reduce((sum, ms) => sum + ms, 0) / times.length;
           times.length = 0;
-          text = `${inUse()}\n${mean.toFixed(1)} ms, ${(1000 / mean).toFixed(0)} Hz\n${size.join('x')} per eye`;
+          text = `${shownBy()}\n${mean.toFixed(1)} ms, ${(1000 / mean).toFixed(0)} Hz\n${size.join('x')} per eye`;
         } else if (presses[TRIGGER]) {
-          text = inUse();
+          text = shownBy();
           times.length = 0;
         }
         const fits = headset.draw(app.page, floats, ...size, shown ? text : '');
@@ -183,7 +186,7 @@ export async function offerHeadset() {
       app.busy.stop();
       return;
     }
-    if (!isFree('A headset shows')) return;
+    if (!isFree('A headset shows', true)) return;
     clear();
     button.disabled = true;
     try {

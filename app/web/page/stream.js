@@ -169,11 +169,12 @@ function request() {
 }
 
 function figures() {
-  if (!isThere || !last) return;
+  if (!isThere || !last || !app.page) return;
   const { frames, bytes, skipped, latency } = sums;
   sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
+  const [cm, degrees] = app.page.streamCorrection() ?? [0, 0];
   element('facts').textContent = frames
     ? `Stream: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
-      + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
+      + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), corrected by ${cm.toFixed(1)} cm and ${degrees.toFixed(1)}°, ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
     : 'Stream: no frames.';
 }

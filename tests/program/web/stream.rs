@@ -210,6 +210,24 @@ fn two_eyes_are_turned_with_the_head() {
 }
 
 #[test]
+fn two_eyes_are_moved_with_the_head_by_the_depth_of_one() {
+    let Some((mut page, _)) = open("eyes-depth") else { return };
+    let mut desktop = Desktop::new(Mode::EyesDepth);
+    let [pair, moved] = check(&mut page, &mut desktop);
+    let other = pair.dominant.other();
+    page.evaluate(&format!("yoro.page.walk({STEP}, 0, 0); 0"));
+    let shown = &page.eyes(pair.size)[other.index()];
+    let of = |desktop: &mut Desktop, pair| {
+        let real = desktop.real(pair, other);
+        psnr(shown, &real, Channels::Rgb).unwrap().0
+    };
+    let (here, there) = (of(&mut desktop, &moved), of(&mut desktop, &pair));
+    eprintln!("the other eye after a step: {here:.2} dB, unmoved {there:.2} dB");
+    assert!(here > 30.0 && here > there + 5.0, "{here} dB, unmoved {there} dB");
+    page.browser.expect_silence();
+}
+
+#[test]
 fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
     // Says what is missing.
     let Some(_) = Server::start() else { return };

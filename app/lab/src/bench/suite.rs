@@ -164,7 +164,7 @@ impl Job {
             return bandwidth::steps(self.frames, &self.bandwidth);
         }
         if let Measure::Stream(_) = self.measure {
-            return (self.frames * 2 * STREAM_QUANTIZERS.len()) as u64;
+            return (self.frames * 3 * STREAM_QUANTIZERS.len()) as u64;
         }
         if let Measure::Executed(_) | Measure::Reprojection(_) = self.measure {
             return self.frames as u64;

@@ -72,6 +72,8 @@ enum ModeArg {
     Depth,
     /// Both eyes, corrected by rotation alone
     Eyes,
+    /// Both eyes and the depth of one, of which each eye is made
+    EyesDepth,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -87,6 +89,9 @@ enum EncoderArg {
     /// x264, by ffmpeg
     X264,
 }
+
+/// Most pixels of an eye's longer side with three parts beside each other: hardware decodes no more than 4096 columns.
+const MOST_OF_THREE: u16 = 1024;
 
 impl Subcommand for ServeArgs {
     fn files(&self) -> anyhow::Result<Files> {
@@ -117,6 +122,7 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let mode = match args.mode {
         ModeArg::Depth => Mode::Depth,
         ModeArg::Eyes => Mode::Eyes,
+        ModeArg::EyesDepth => Mode::EyesDepth,
     };
     let kind = match args.encoder {
         EncoderArg::Auto => LiveEncoderKind::Auto,
@@ -127,6 +133,11 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     };
     let encoder =
         LiveEncoder::new(kind, args.frame_rate.into()).context("choose another encoder with --encoder")?;
+    ensure!(
+        mode != Mode::EyesDepth || args.max_size <= MOST_OF_THREE,
+        "browsers do not decode three pictures of {} pixels: give --max-size {MOST_OF_THREE} or less with --mode eyes-depth",
+        args.max_size
+    );
     let lan = args.lan.map(Lan::new).transpose()?;
     let mut server = Server {
         prepared: PreparedScene::new(headless.gl(), scene, &settings)?,

@@ -54,7 +54,7 @@ impl Page {
 
     /// Takes a frame, whose H.264 may be left out, with its decoded picture. Returns the message that confirms it, and six
     /// numbers: when the pose that it was rendered for was sent, by `performance.now()`; the ms to render and to encode it; its
-    /// quantizer; width and height of each half.
+    /// quantizer; width and height of each part.
     ///
     /// # Errors
     /// A sentence, for a frame that cannot be understood.
@@ -64,8 +64,8 @@ impl Page {
         let Some(FromServer::Frame { number, header, .. }) = FromServer::read(frame) else {
             return Err(JsError::new("A frame of the stream cannot be understood."));
         };
-        if !stream.eyes.take(header, planes).map_err(sentence)? {
-            return Err(JsError::new("A picture of the stream has another size than its frame tells."));
+        if !stream.eyes.take(header.content, header.size, planes).map_err(sentence)? {
+            return Err(JsError::new("A picture of the stream is not what its frame tells."));
         }
         let decoded = Uint8Array::from(&FromViewer::Decoded(number).to_bytes()[..]);
         let [width, height] = header.size.map(f64::from);
@@ -79,5 +79,14 @@ impl Page {
     pub fn stream_request(&self, time: f64) -> Option<Vec<u8>> {
         let Content::Stream(stream) = &self.content else { return None };
         stream.eyes.request(time).map(|request| FromViewer::Request(request).to_bytes())
+    }
+
+    /// Returns the mean distance in cm and angle in degrees from the pose that a picture was rendered for to the one that it was shown
+    /// at, of all that was shown since the last call; none if that is nothing.
+    #[wasm_bindgen(js_name = streamCorrection)]
+    pub fn stream_correction(&mut self) -> Option<Vec<f32>> {
+        let Content::Stream(stream) = &mut self.content else { return None };
+        let [metres, radians] = stream.eyes.take_correction()?;
+        Some(vec![metres * 100.0, radians.to_degrees()])
     }
 }

@@ -1,15 +1,15 @@
 //! Both eyes of a headset, in WebXR's terms.
 
 use wasm_bindgen::prelude::*;
-use yoro::eyes::{DepthRange, Eye, EyePair};
-use yoro_gl::{Destination, Format, RenderTarget};
-use yoro_lenses::{Content, Hud, Placement};
+use yoro::eyes::{DepthRange, EyePair};
+use yoro_gl::{Destination, Filter, Format, RenderTarget};
+use yoro_lenses::{Content as HudContent, Hud, Placement};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{Chosen, DepthTarget, EyeTarget, StereoFrame, StereoMethod, Substitute};
+use yoro_render::stereo::{Chosen, DepthTarget, EyeTarget, StereoMethod, Substitute};
 
-use super::Page;
 use super::error::sentence;
 use super::scene_show::SceneShow;
+use super::{Content, Page};
 use crate::settings::Settings;
 use crate::views::{VIEW_FLOATS, view};
 use crate::walker::Walker;
@@ -20,8 +20,8 @@ const DEPTH: DepthRange = DepthRange { near: 0.1, ..DepthRange::PAPER };
 /// The images of a headset, and the renderer for them.
 #[wasm_bindgen]
 pub struct Headset {
-    frame: StereoFrame,
-    depth: [RenderTarget; 2],
+    /// Colour and depth of each eye.
+    eyes: [RenderTarget; 2],
     copy: DepthCopy,
     hud: Hud,
     /// Renders both eyes where neither can be synthesized from the other.
@@ -43,10 +43,12 @@ impl Headset {
     /// A sentence.
     #[wasm_bindgen(constructor)]
     pub fn new(page: &Page) -> Result<Headset, JsError> {
-        let depth = || RenderTarget::new(&page.gl, [1, 1], &[], Some(Format::Depth24)).map_err(sentence);
+        let eye = || {
+            let color = [(Format::Rgba8, Filter::Linear)];
+            RenderTarget::new(&page.gl, [1, 1], &color, Some(Format::Depth24)).map_err(sentence)
+        };
         Ok(Headset {
-            frame: StereoFrame::new(&page.gl, [1, 1]).map_err(sentence)?,
-            depth: [depth()?, depth()?],
+            eyes: [eye()?, eye()?],
             copy: DepthCopy::new(&page.gl).map_err(sentence)?,
             hud: Hud::new(&page.gl).map_err(sentence)?,
             substitute: Substitute::default(),
@@ -73,29 +75,41 @@ impl Headset {
             return Err(JsError::new("The headset's views cannot be understood."));
         };
         let (gl, settings) = (page.gl.clone(), page.settings);
-        let Some(SceneShow { prepared, method, .. }) = page.scene() else { return Ok(true) };
         if !settings.makes_same(&self.settings) {
             (self.substitute, self.settings) = (Substitute::default(), settings);
         }
-        let Headset { frame, depth, copy, hud, substitute, .. } = self;
-        frame.resize(size).map_err(sentence)?;
-        depth.iter_mut().try_for_each(|depth| depth.resize(size)).map_err(sentence)?;
-        let fits = Substitute::reason(settings.choice().first(), &pair).is_none();
-        let method: &mut dyn StereoMethod = match method {
-            // It renders both eyes by itself.
-            Chosen::Auto(auto) => auto.as_mut(),
-            Chosen::Named(method) if fits => method.as_mut(),
-            Chosen::Named(_) => substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?,
-        };
-        let colors = frame.targets();
-        let to = [0, 1].map(|i| EyeTarget {
-            depth: Some(DepthTarget { to: Destination::whole(&depth[i]), copy }),
-            ..colors[i]
-        });
-        method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).map_err(sentence)?;
+        let Headset { eyes: images, copy, hud, substitute, .. } = self;
+        images.iter_mut().try_for_each(|image| image.resize(size)).map_err(sentence)?;
+        let mut fits = true;
+        match &mut page.content {
+            Content::Scene(scene) => {
+                let SceneShow { prepared, method, .. } = &mut **scene;
+                fits = Substitute::reason(settings.choice().first(), &pair).is_none();
+                let method: &mut dyn StereoMethod = match method {
+                    // It renders both eyes by itself.
+                    Chosen::Auto(auto) => auto.as_mut(),
+                    Chosen::Named(method) if fits => method.as_mut(),
+                    Chosen::Named(_) => {
+                        substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?
+                    }
+                };
+                let to = [0, 1].map(|i| EyeTarget {
+                    color: images[i].color_only(),
+                    depth: Some(DepthTarget { to: images[i].depth_only(), copy }),
+                });
+                method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).map_err(sentence)?;
+            }
+            Content::Stream(stream) => {
+                stream
+                    .eyes
+                    .render(&pair, &[0, 1].map(|i| Destination::whole(&images[i])))
+                    .map_err(sentence)?;
+            }
+            _ => return Ok(true),
+        }
         if !text.is_empty() {
-            let panel = hud.set(Content { text, progress: None }, Placement::Below);
-            panel.draw_into_eyes(&pair, &colors.map(|target| target.color));
+            let panel = hud.set(HudContent { text, progress: None }, Placement::Below);
+            panel.draw_into_eyes(&pair, &[0, 1].map(|i| images[i].color_only()));
         }
         Ok(fits)
     }
@@ -103,10 +117,8 @@ impl Headset {
     /// Draws an eye's image and depth, 0 left and 1 right, into the framebuffer that is bound, whose viewport is set to
     /// this.
     pub fn show(&self, page: &Page, eye: usize, x: u32, y: u32, width: u32, height: u32) {
-        let eye = Eye::BOTH[eye.min(1)];
-        let (image, depth) = (self.frame.eye(eye).color(0), &self.depth[eye.index()]);
-        debug_assert_eq!(self.frame.eye(eye).size(), depth.size());
-        page.show.with_depth(image, depth.depth(), [x, y], [width, height]);
+        let image = &self.eyes[eye.min(1)];
+        page.show.with_depth(image.color(0), image.depth(), [x, y], [width, height]);
     }
 }
 

@@ -19,10 +19,15 @@ use yoro_render::PreparedScene;
 use yoro_stream::{EyeView, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
 
-const MODES: [(Mode, &str); 2] = [(Mode::Eyes, "two eyes, rotation"), (Mode::Depth, "one eye and depth")];
+/// The first one is what bits are saved against.
+const MODES: [(Mode, &str); 3] = [
+    (Mode::Eyes, "two eyes, rotation"),
+    (Mode::Depth, "one eye and depth"),
+    (Mode::EyesDepth, "two eyes, depth of one"),
+];
 
 impl Runner<'_> {
-    /// Encodes a walking head's frames by both modes at each quantizer, and measures both eyes at the poses that the head has
+    /// Encodes a walking head's frames by all modes at each quantizer, and measures both eyes at the poses that the head has
     /// some frames later.
     pub(super) fn stream(
         &mut self,
@@ -59,7 +64,7 @@ impl Runner<'_> {
         let mut receiver = Receiver::new(self.gl)?;
         let pictures = MODES.map(|(mode, _)| pictures(self.gl, mode, then, prepared));
         for quantizer in STREAM_QUANTIZERS {
-            let mut rates = Vec::new();
+            let mut baseline = None;
             for ((_, name), pictures) in MODES.iter().zip(&pictures) {
                 let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
                 let mut measurement = Measurement::new(&job.setting, format!("{name}, QP {quantizer}"), 0);
@@ -82,9 +87,9 @@ impl Runner<'_> {
                 }
                 let rate = bytes as f64 * 8e-3 * HEADSET_RATE / (pictures.len() - 1) as f64;
                 measurement.push(KBIT_S, rate);
-                rates.push(rate);
-                if let [two, one] = rates[..] {
-                    measurement.push(metric::SAVED, (1.0 - one / two) * 100.0);
+                match baseline {
+                    Some(baseline) => measurement.push(metric::SAVED, (1.0 - rate / baseline) * 100.0),
+                    None => baseline = Some(rate),
                 }
                 measurements.push(measurement);
             }
