@@ -17,9 +17,10 @@ declare module '*yoro_web.js' {
 declare module '*yoro_web_video.js' {
   class Built { constructor(...all: any[]); [member: string]: any }
   export default function init(options: { module_or_path: URL }): Promise<unknown>;
-  export class VideoFile extends Built {}
+  export class Video extends Built {}
 }
 declare const XRWebGLLayer: any;
+declare class FileReaderSync { readAsArrayBuffer(blob: Blob): ArrayBuffer }
 interface Navigator { xr?: any; userAgentData?: { platform: string } }
 interface ScreenOrientation { lock(orientation: string): Promise<void> }
 interface WebGL2RenderingContext { makeXRCompatible(): Promise<void> }

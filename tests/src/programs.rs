@@ -184,6 +184,7 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
         Program::new(gl, source, &defines)?;
     }
     Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?;
+    Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[("RGB", String::new())])?;
     Program::new(gl, ShaderSource::Screen("viewer/hud.frag"), &[])?;
     Program::new(gl, ShaderSource::Screen("viewer/menu.frag"), &[])?;
     for define in [None, Some("ANAGLYPH"), Some("DIFFERENCE"), Some("WITH_DEPTH"), Some("PACKED_DEPTH")] {

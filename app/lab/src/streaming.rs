@@ -9,7 +9,7 @@ use crate::picture;
 use yoro::eyes::{DepthRange, Eye, EyePair, GuardBand, HeadMotion, View};
 use yoro_gl::{Context, Destination, GlError};
 use yoro_render::stereo::StereoFrame;
-use yoro_render::{PreparedScene, StreamedEyes};
+use yoro_render::{DecodedPicture, PreparedScene, StreamedEyes};
 use yoro_stream::{Content, DepthSpan, EyeView, ViewRequest};
 use yoro_video::{Planes, depth_luma};
 
@@ -149,7 +149,8 @@ impl Receiver {
         size: [u16; 2],
         pair: &EyePair,
     ) -> Result<[RgbImage; 2], GlError> {
-        let taken = self.streamed.take(*content, size, &planes.planes.concat())?;
+        let picture = planes.planes.concat();
+        let taken = self.streamed.take(*content, size, &DecodedPicture::Planes(&picture))?;
         assert!(taken, "a picture of another size");
         self.frame.resize(pair.size)?;
         let to = Eye::BOTH.map(|eye| Destination::whole(self.frame.eye(eye)));

@@ -18,4 +18,4 @@ pub use render::{
     DeferredRenderer, DepthCopy, DepthImage, ForwardRenderer, Fxaa, GpuScene, MAX_POINT_LIGHTS, MSAA,
     RenderSettings, RenderedView, Renderer, RendererKind, Selection, ViewTargets,
 };
-pub use streamed::StreamedEyes;
+pub use streamed::{DecodedPicture, StreamedEyes};

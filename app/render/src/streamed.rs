@@ -11,13 +11,24 @@ use yoro_gl::{
 };
 use yoro_stream::{Content, EyeView, ViewRequest};
 
+/// A decoded picture.
+pub enum DecodedPicture<'a> {
+    /// Luma and both colour differences, one after another, tightly packed, rows from the top.
+    Planes(&'a [u8]),
+    /// Red, green and blue of a picture of this size: the function uploads them into the texture that is bound, rows from the top.
+    Upload([u32; 2], &'a dyn Fn()),
+}
+
 /// Shows a stream: takes decoded frames, and makes both eyes of the newest one.
 pub struct StreamedEyes {
     gl: Rc<Context>,
-    decoded: Program,
+    from_planes: Program,
+    from_rgb: Program,
     any_view: AnyView,
     /// Luma and both colour differences of the newest picture, rows from the top.
     planes: Option<[Texture; 3]>,
+    /// Red, green and blue of a picture that was not taken as planes, rows from the top.
+    rgb: Option<Texture>,
     /// Each eye that is in it.
     colors: [RenderTarget; 2],
     /// The first eye's depth. Two eyes without depth are taken as far away.
@@ -45,9 +56,15 @@ impl StreamedEyes {
         let options = SynthesisOptions { parts: true, ..SynthesisOptions::default() };
         Ok(StreamedEyes {
             gl: gl.clone(),
-            decoded: Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?,
+            from_planes: Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?,
+            from_rgb: Program::new(
+                gl,
+                ShaderSource::Screen("viewer/decoded.frag"),
+                &[("RGB", String::new())],
+            )?,
             any_view: AnyView::new(gl, &options, Outputs { depth: true, ..Outputs::default() })?,
             planes: None,
+            rgb: None,
             colors: [color()?, color()?],
             depth: target(Format::R8, Filter::Nearest, None)?,
             moved: target(Format::Rgba8, Filter::Nearest, Some(Format::Depth24))?,
@@ -58,42 +75,64 @@ impl StreamedEyes {
         })
     }
 
-    /// Takes a decoded picture, whose parts have this size: three planes one after another, tightly packed, rows from the top.
-    /// False if the planes have another size, or the eyes see too little of each other's view.
+    /// Takes a decoded picture, whose parts have this size. False if the picture has another size, or the eyes see too little of
+    /// each other's view.
     ///
     /// # Errors
     /// The GPU has no memory for it.
-    pub fn take(&mut self, content: Content, size: [u16; 2], planes: &[u8]) -> Result<bool, GlError> {
+    pub fn take(
+        &mut self,
+        content: Content,
+        size: [u16; 2],
+        picture: &DecodedPicture,
+    ) -> Result<bool, GlError> {
         let part = size.map(u32::from);
         let [column, rows] = part.map(|n| n.next_multiple_of(2));
-        let columns = content.parts() * column;
-        let luma = (columns * rows) as usize;
+        let whole = [content.parts() * column, rows];
         let Ok(depth_warp) = content.depth_warp(size) else { return Ok(false) };
-        if planes.len() != luma * 3 / 2 {
-            return Ok(false);
-        }
-        let sizes = [[columns, rows], [columns / 2, rows / 2], [columns / 2, rows / 2]];
-        if self.planes.as_ref().is_none_or(|planes| planes[0].size() != sizes[0]) {
-            let plane = |i: usize| Texture::new(&self.gl, sizes[i], Format::R8, Filter::Nearest);
-            self.planes = Some([plane(0)?, plane(1)?, plane(2)?]);
-        }
-        let (y, rest) = planes.split_at(luma);
-        let (u, v) = rest.split_at(luma / 4);
-        let textures = self.planes.as_ref().expect("they have just been made");
-        for (texture, bytes) in textures.iter().zip([y, u, v]) {
-            texture.upload(bytes);
-        }
+        let (program, textures) = match *picture {
+            DecodedPicture::Planes(planes) => {
+                let luma = (whole[0] * whole[1]) as usize;
+                if planes.len() != luma * 3 / 2 {
+                    return Ok(false);
+                }
+                if self.planes.as_ref().is_none_or(|planes| planes[0].size() != whole) {
+                    let plane = |size| Texture::new(&self.gl, size, Format::R8, Filter::Nearest);
+                    let half = whole.map(|n| n / 2);
+                    self.planes = Some([plane(whole)?, plane(half)?, plane(half)?]);
+                }
+                let (y, rest) = planes.split_at(luma);
+                let (u, v) = rest.split_at(luma / 4);
+                let textures = self.planes.as_ref().expect("they have just been made");
+                for (texture, bytes) in textures.iter().zip([y, u, v]) {
+                    texture.upload(bytes);
+                }
+                (&self.from_planes, &textures[..])
+            }
+            DecodedPicture::Upload(size, upload) => {
+                if size != whole {
+                    return Ok(false);
+                }
+                if self.rgb.as_ref().is_none_or(|rgb| rgb.size() != whole) {
+                    self.rgb = Some(Texture::new(&self.gl, whole, Format::Rgba8, Filter::Nearest)?);
+                }
+                let texture = self.rgb.as_ref().expect("it has just been made");
+                texture.bind(0);
+                upload();
+                (&self.from_rgb, std::slice::from_ref(texture))
+            }
+        };
         let draw = |index: u32, depth: bool, to: &mut RenderTarget| -> Result<(), GlError> {
             to.resize(part)?;
             to.overwrite();
             self.gl.set_raster_state(&RasterState::SCREEN);
-            self.decoded.bind();
-            for (unit, (name, texture)) in ["luma", "blue", "red"].into_iter().zip(textures).enumerate() {
-                self.decoded.texture_of(name, unit as u32, texture);
+            program.bind();
+            for (unit, (name, texture)) in ["picture", "blue", "red"].into_iter().zip(textures).enumerate() {
+                program.texture_of(name, unit as u32, texture);
             }
             let size = IVec2::from(part.map(|n| n as i32));
-            self.decoded.set("first_column", (index * column) as i32).set("size", size);
-            self.decoded.set("framed", i32::from(self.framed && !depth)).set("depth", i32::from(depth));
+            program.set("first_column", (index * column) as i32).set("size", size);
+            program.set("framed", i32::from(self.framed && !depth)).set("depth", i32::from(depth));
             self.gl.draw_screen();
             Ok(())
         };

@@ -190,6 +190,9 @@ impl fmt::Display for Refusal {
 pub enum FromServer<'a> {
     /// The answer to a hello: the head's first pose.
     Welcome(Pose),
+    /// The answer to a hello, for a video: it is shown whole, with the left and the right eye's frustum, from the origin. The eye
+    /// is the one that was rendered.
+    Video([Frustum; 2], Eye),
     /// The answer to a hello that is not accepted, and the last message.
     Refused(Refusal),
     /// A frame.
@@ -236,6 +239,7 @@ impl FromViewer {
 const WELCOME: u8 = 0;
 const REFUSED: u8 = 1;
 const FRAME: u8 = 2;
+const VIDEO: u8 = 3;
 /// Bytes before a frame's header: [`FRAME`], 1 for an intra frame, the header's length (16 bits), the number (32 bits), all
 /// little-endian. The page's worker reads these without the module.
 const PREFIX: usize = 8;
@@ -245,6 +249,7 @@ impl<'a> FromServer<'a> {
     pub fn to_bytes(&self) -> Vec<u8> {
         match self {
             FromServer::Welcome(pose) => [vec![WELCOME], bytes_of(pose)].concat(),
+            FromServer::Video(frusta, eye) => [vec![VIDEO], bytes_of(&(frusta, eye))].concat(),
             FromServer::Refused(refusal) => [vec![REFUSED], bytes_of(refusal)].concat(),
             FromServer::Frame { number, intra, header, data } => {
                 let header = bytes_of(header);
@@ -265,6 +270,11 @@ impl<'a> FromServer<'a> {
                 let pose = exact(rest)?;
                 let frustum = Frustum::symmetric(1.0, 1.0);
                 EyeView { pose, frustum }.is_valid().then_some(FromServer::Welcome(pose))
+            }
+            (&VIDEO, rest) => {
+                let (frusta, eye): ([Frustum; 2], Eye) = exact(rest)?;
+                let valid = |frustum| EyeView { pose: Pose::IDENTITY, frustum }.is_valid();
+                frusta.into_iter().all(valid).then_some(FromServer::Video(frusta, eye))
             }
             (&REFUSED, rest) => exact(rest).map(FromServer::Refused),
             (&FRAME, _) => {
@@ -324,7 +334,15 @@ mod tests {
         let content = Content::EyesDepth { dominant: Eye::Right, eyes: [EYE; 2], span: [0.5, 40.0] };
         let eyes_depth = FrameHeader { content, ..HEADER };
         let refused = FromServer::Refused(Refusal::Busy);
-        vec![FromServer::Welcome(Pose::IDENTITY), refused, frame(HEADER), frame(eyes), frame(eyes_depth)]
+        let video = FromServer::Video([EYE.frustum; 2], Eye::Left);
+        vec![
+            FromServer::Welcome(Pose::IDENTITY),
+            video,
+            refused,
+            frame(HEADER),
+            frame(eyes),
+            frame(eyes_depth),
+        ]
     }
 
     #[test]
@@ -376,7 +394,7 @@ mod tests {
 
         #[test]
         fn damaged_messages_are_read_without_a_panic(
-            which in 0usize..5, damage in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..4),
+            which in 0usize..6, damage in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..4),
         ) {
             for mut bytes in [up()[which % 3].to_bytes(), down()[which].to_bytes()] {
                 for (at, byte) in &damage {

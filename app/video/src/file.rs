@@ -1,5 +1,5 @@
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Seek, SeekFrom, Write};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
@@ -13,9 +13,8 @@ use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_max
 use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
-use crate::index::{length_size, parameters};
-use crate::record3d::{self, Recording};
-use crate::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Indexer, Planes, Rgbd, VideoError};
+use crate::index::{length_size, parameters, read_at};
+use crate::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Planes, Rgbd, VideoError};
 
 /// How a video is encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,15 +187,6 @@ pub struct Reader {
     /// Parameter sets in the format of Annex B, which come before the first picture.
     parameters: Vec<u8>,
     decoder: Decoder,
-    depth: Option<Depth>,
-}
-
-/// What depth a video has.
-enum Depth {
-    /// As [`Rgbd::pack`] writes it.
-    Luma(Rgbd),
-    /// As the application Record3D writes it.
-    Hue(Recording),
 }
 
 impl Reader {
@@ -214,21 +204,9 @@ impl Reader {
         };
         let mut file = BufReader::new(File::open(path).map_err(failed)?);
         let length = file.get_ref().metadata().map_err(failed)?.len();
-        let mut indexer = Indexer::new(path, length);
-        while let Some((position, size)) = indexer.needed()? {
-            indexer.take(position, &read_at(&mut file, position, size).map_err(failed)?);
-        }
-        let index = indexer.finish()?;
-        let depth = match index.rgbd {
-            Some(rgbd) => Some(Depth::Luma(rgbd)),
-            None => {
-                let found = record3d::find(&mut file, length, index.size()).map_err(failed)?;
-                let found = found.transpose().map_err(|what| VideoError::format(path, what))?;
-                found.map(Depth::Hue)
-            }
-        };
+        let index = Index::read(path, &mut file, length)?;
         let (parameters, decoder) = (parameters(index.avcc()), Decoder::new()?);
-        Ok(Reader { path: path.into(), file, index, read: 0, parameters, decoder, depth })
+        Ok(Reader { path: path.into(), file, index, read: 0, parameters, decoder })
     }
 
     /// Returns the number of pictures that are still to be read.
@@ -246,10 +224,7 @@ impl Reader {
     /// # Errors
     /// [`VideoError::NoDepth`] for an ordinary video.
     pub fn rgbd(&self) -> Result<Rgbd, VideoError> {
-        match self.depth {
-            Some(Depth::Luma(rgbd) | Depth::Hue(Recording { rgbd, .. })) => Ok(rgbd),
-            None => Err(VideoError::NoDepth { path: self.path.clone() }),
-        }
+        self.index.rgbd()
     }
 
     /// Returns colour and depth of the next picture, or `None` after the last. Depth is as [`Rgbd`] tells.
@@ -258,15 +233,29 @@ impl Reader {
     /// As [`Reader::read`], and [`VideoError::NoDepth`] for an ordinary video.
     pub fn read_rgbd(&mut self) -> Result<Option<(RgbImage, GrayImage)>, VideoError> {
         let rgbd = self.rgbd()?;
-        let Some(picture) = self.read()? else { return Ok(None) };
-        Ok(Some(match self.depth {
-            Some(Depth::Hue(recording)) => {
-                let [hues, color] = picture.halves();
-                let [hues, color] = [hues, color].map(|half| half.rgb(rgbd.size.into()));
-                (color, recording.depth(&hues))
-            }
-            _ => rgbd.unpack(&picture),
-        }))
+        Ok(self.read_packed()?.map(|picture| rgbd.unpack(&picture)))
+    }
+
+    /// Returns the next picture as [`Rgbd::pack`] has it, or `None` after the last.
+    ///
+    /// # Errors
+    /// As [`Reader::read`].
+    pub fn read_packed(&mut self) -> Result<Option<Planes>, VideoError> {
+        Ok(self.read()?.map(|picture| self.index.packed(picture)))
+    }
+
+    /// Returns how long the picture that was read last is shown, in seconds; 0 before the first.
+    pub fn duration(&self) -> f64 {
+        self.read.checked_sub(1).map_or(0.0, |last| self.index.pictures[last].duration)
+    }
+
+    /// Goes back to the first picture.
+    ///
+    /// # Errors
+    /// [`VideoError::Codec`].
+    pub fn rewind(&mut self) -> Result<(), VideoError> {
+        (self.read, self.parameters, self.decoder) = (0, parameters(self.index.avcc()), Decoder::new()?);
+        Ok(())
     }
 
     /// Returns the next picture, or `None` after the last.
@@ -295,13 +284,6 @@ impl Reader {
         }
         Ok(Some(picture))
     }
-}
-
-fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize) -> io::Result<Vec<u8>> {
-    file.seek(SeekFrom::Start(position))?;
-    let mut bytes = vec![0; size];
-    file.read_exact(&mut bytes)?;
-    Ok(bytes)
 }
 
 #[cfg(test)]

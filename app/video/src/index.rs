@@ -1,3 +1,4 @@
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use shiguredo_mp4::boxes::{Avc1Box, SampleEntry};
@@ -7,14 +8,10 @@ use shiguredo_mp4::{BoxType, Encode as _, TrackKind};
 #[cfg(feature = "codec")]
 use shiguredo_mp4::{bitstream::h264::LengthSize, boxes::AvccBox};
 
-use crate::{DEPTH_BOX, Rgbd, VideoError};
+use yoro_files::FileError;
 
-/// Finds out what is in an MP4 file, from the pieces of it that are needed for that.
-pub struct Indexer {
-    path: PathBuf,
-    length: u64,
-    demuxer: Mp4FileDemuxer,
-}
+use crate::record3d::{self, Recording};
+use crate::{DEPTH_BOX, Planes, Rgbd, VideoError};
 
 /// What is in an MP4 file with H.264.
 pub struct Index {
@@ -23,8 +20,16 @@ pub struct Index {
     pub pictures: Vec<EncodedPicture>,
     /// Pictures a second, rounded up.
     pub frame_rate: u32,
-    pub(crate) rgbd: Option<Rgbd>,
+    depth: Option<Depth>,
     entry: Box<Avc1Box>,
+}
+
+/// What depth a video has.
+enum Depth {
+    /// As [`Rgbd::pack`] writes it.
+    Luma(Rgbd),
+    /// As the application Record3D writes it.
+    Hue(Recording),
 }
 
 /// The place of an encoded picture in a file.
@@ -42,40 +47,35 @@ pub struct EncodedPicture {
     pub duration: f64,
 }
 
-impl Indexer {
-    /// Begins with a file of this length in bytes. Errors name `path`.
-    pub fn new(path: &Path, length: u64) -> Indexer {
-        Indexer { path: path.into(), length, demuxer: Mp4FileDemuxer::new() }
-    }
+/// Returns a piece of a file.
+pub(crate) fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize) -> io::Result<Vec<u8>> {
+    file.seek(SeekFrom::Start(position))?;
+    let mut bytes = vec![0; size];
+    file.read_exact(&mut bytes)?;
+    Ok(bytes)
+}
 
-    /// Returns offset and length in bytes of the piece to [take](Indexer::take) next; `None` when [`Indexer::finish`] may be called.
+impl Index {
+    /// Finds out what is in a file of this length in bytes, from the pieces of it that are needed for that. Errors name `path`.
     ///
     /// # Errors
-    /// [`VideoError::Format`] for what is no MP4 file.
-    pub fn needed(&self) -> Result<Option<(u64, usize)>, VideoError> {
-        let Some(required) = self.demuxer.required_input() else { return Ok(None) };
-        let rest = self.length.saturating_sub(required.position);
-        let size = required.size.map_or(rest, |size| size as u64);
-        if size == 0 || size > rest {
-            return Err(VideoError::format(&self.path, "it is no MP4 file, or it is cut off"));
+    /// [`VideoError::File`] when it cannot be read, [`VideoError::Format`] for a damaged file, and for one without H.264.
+    pub fn read(path: &Path, file: &mut (impl Read + Seek), length: u64) -> Result<Index, VideoError> {
+        let failed = |source| VideoError::from(FileError::Read { path: path.into(), source });
+        let mut demuxer = Mp4FileDemuxer::new();
+        while let Some(required) = demuxer.required_input() {
+            let rest = length.saturating_sub(required.position);
+            let size = required.size.map_or(rest, |size| size as u64);
+            if size == 0 || size > rest {
+                return Err(VideoError::format(path, "it is no MP4 file, or it is cut off"));
+            }
+            let data = read_at(file, required.position, size as usize).map_err(failed)?;
+            demuxer.handle_input(Input { position: required.position, data: &data });
         }
-        Ok(Some((required.position, size as usize)))
-    }
-
-    /// Takes a piece.
-    pub fn take(&mut self, position: u64, data: &[u8]) {
-        self.demuxer.handle_input(Input { position, data });
-    }
-
-    /// Returns what is in the file, once nothing is needed.
-    ///
-    /// # Errors
-    /// [`VideoError::Format`] for a damaged file, and for one without H.264.
-    pub fn finish(mut self) -> Result<Index, VideoError> {
-        let damaged = |error: &dyn std::fmt::Debug| VideoError::format(&self.path, format!("{error:?}"));
+        let damaged = |error: &dyn std::fmt::Debug| VideoError::format(path, format!("{error:?}"));
         let mut pictures = Vec::new();
         let mut found = None;
-        while let Some(sample) = self.demuxer.next_sample().map_err(|error| damaged(&error))? {
+        while let Some(sample) = demuxer.next_sample().map_err(|error| damaged(&error))? {
             if sample.track.kind != TrackKind::Video {
                 continue;
             }
@@ -86,8 +86,8 @@ impl Indexer {
                     (Box::new(entry.clone()), rate as u32)
                 });
             }
-            if sample.data_offset.checked_add(sample.data_size as u64).is_none_or(|end| end > self.length) {
-                return Err(VideoError::format(&self.path, "it is cut off"));
+            if sample.data_offset.checked_add(sample.data_size as u64).is_none_or(|end| end > length) {
+                return Err(VideoError::format(path, "it is cut off"));
             }
             pictures.push(EncodedPicture {
                 offset: sample.data_offset,
@@ -97,20 +97,40 @@ impl Indexer {
                 duration: f64::from(sample.duration) / f64::from(ticks),
             });
         }
-        let (entry, frame_rate) =
-            found.ok_or_else(|| VideoError::format(&self.path, "it has no H.264 video"))?;
-        let rgbd = rgbd(&self.path, &entry)?;
-        Ok(Index { path: self.path, pictures, frame_rate, rgbd, entry })
+        let (entry, frame_rate) = found.ok_or_else(|| VideoError::format(path, "it has no H.264 video"))?;
+        let size = [entry.visual.width, entry.visual.height].map(u32::from);
+        let depth = match rgbd(path, &entry)? {
+            Some(rgbd) => Some(Depth::Luma(rgbd)),
+            None => {
+                let recording = record3d::find(file, length, size).map_err(failed)?.transpose();
+                recording.map_err(|what| VideoError::format(path, what))?.map(Depth::Hue)
+            }
+        };
+        Ok(Index { path: path.into(), pictures, frame_rate, depth, entry })
     }
-}
 
-impl Index {
-    /// Returns what the depth in the pictures means, where they have it as [`Rgbd::pack`] has it.
+    /// Returns what the depth in the pictures means.
     ///
     /// # Errors
-    /// [`VideoError::NoDepth`] for other videos.
+    /// [`VideoError::NoDepth`] for an ordinary video.
     pub fn rgbd(&self) -> Result<Rgbd, VideoError> {
-        self.rgbd.ok_or_else(|| VideoError::NoDepth { path: self.path.clone() })
+        match self.depth {
+            Some(Depth::Luma(rgbd) | Depth::Hue(Recording { rgbd, .. })) => Ok(rgbd),
+            None => Err(VideoError::NoDepth { path: self.path.clone() }),
+        }
+    }
+
+    /// True if the pictures have to be [packed](Index::packed) after decoding.
+    pub fn has_hues(&self) -> bool {
+        matches!(self.depth, Some(Depth::Hue(_)))
+    }
+
+    /// Returns a decoded picture as [`Rgbd::pack`] has it.
+    pub fn packed(&self, picture: Planes) -> Planes {
+        match &self.depth {
+            Some(Depth::Hue(recording)) => recording.packed(&picture),
+            _ => picture,
+        }
     }
 
     /// Returns the codec's name as browsers take it: `avc1.42C01F`.
@@ -131,12 +151,6 @@ impl Index {
         let bytes = bytes.map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
         // Length and type stand before it.
         Ok(bytes[8..].to_vec())
-    }
-
-    /// Returns the width and height of the pictures in pixels.
-    #[cfg(feature = "codec")]
-    pub(crate) fn size(&self) -> [u32; 2] {
-        [self.entry.visual.width, self.entry.visual.height].map(u32::from)
     }
 
     /// Returns the decoder's configuration.

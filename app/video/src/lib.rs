@@ -1,7 +1,7 @@
 //! H.264 video in MP4 files, and RGBD videos: one eye with its depth, from which the other eye is synthesized.
 //!
 //! [`Planes`] is a picture as the encoder and the decoder take it; `write` and `Reader` are the files, and [`Rgbd`]
-//! says what the depth in one means. [`Indexer`] finds the pictures of a file for those who have a decoder of their own. This
+//! says what the depth in one means. [`Index`] finds the pictures of a file for those who have a decoder of their own. This
 //! crate must never know who renders or shows a picture.
 
 #[cfg(feature = "codec")]
@@ -13,7 +13,6 @@ mod ffmpeg;
 mod file;
 mod index;
 mod planes;
-#[cfg(feature = "codec")]
 mod record3d;
 mod rgbd;
 
@@ -24,6 +23,6 @@ pub use error::VideoError;
 pub use ffmpeg::FfmpegEncoder;
 #[cfg(feature = "codec")]
 pub use file::{Format, Reader, write};
-pub use index::{EncodedPicture, Index, Indexer};
+pub use index::{EncodedPicture, Index};
 pub use planes::Planes;
 pub use rgbd::{DEPTH_BOX, Rgbd, depth_luma};

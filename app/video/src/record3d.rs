@@ -9,7 +9,7 @@ use image::{GrayImage, Luma, RgbImage};
 use serde::Deserialize;
 use yoro::eyes::Eye;
 
-use crate::Rgbd;
+use crate::{Planes, Rgbd};
 
 /// The beginning of the JSON object.
 const BEGIN: &[u8] = br#"{"intrinsic"#;
@@ -115,8 +115,14 @@ impl Camera {
 }
 
 impl Recording {
+    /// Returns a picture as [`Rgbd::pack`] has it.
+    pub(crate) fn packed(&self, picture: &Planes) -> Planes {
+        let [hues, color] = picture.halves();
+        color.beside(&Planes::of_gray(&self.depth(&hues.rgb(self.rgbd.size.into()))))
+    }
+
     /// Returns the distances that hues stand for, as [`Rgbd`]'s depth. What was not measured is as far as can be.
-    pub(crate) fn depth(&self, hues: &RgbImage) -> GrayImage {
+    fn depth(&self, hues: &RgbImage) -> GrayImage {
         let [low, high] = self.range;
         GrayImage::from_fn(hues.width(), hues.height(), |x, y| {
             let distance = hue(hues.get_pixel(x, y).0).map(|hue| low + hue * (high - low));

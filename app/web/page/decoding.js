@@ -1,5 +1,12 @@
 // Decodes pictures in a worker, and gives the page the newest one.
 
+/**
+ * How the page gets a picture: copied by the processor into planes, or as the browser has it. At first they take turns, then the
+ * one that took less time goes on.
+ */
+const WAYS = ['planes', 'frame'];
+/** Pictures of each way that are timed, after one that is not. */
+const TRIALS = 4;
 /** A decoder that fails before so many pictures would fail again. */
 const STEADY = 30;
 
@@ -8,10 +15,18 @@ let decoder = null;
 let pictures = 0;
 /** The heads of the frames that are being decoded, by number. */
 const heads = new Map();
+/** The number of the newest frame that was decoded. */
+let latest = -1;
 /** The newest decoded frame, if the page is still busy with the one before. */
 let newest = null;
 let pageIsFree = true;
+/** What is done with a picture's planes before the page gets them. @type {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} */
+let pack = null;
 let bytes = 0;
+/** The way that was chosen. @type {string | null} */
+let way = null;
+/** The ms that pictures took, by way. */
+const times = { planes: [], frame: [] };
 let skipped = 0;
 
 /** Counts bytes that have come. @param {number} more */
@@ -23,10 +38,13 @@ export function count(more) {
  * Starts a decoder.
  * @param {VideoDecoderConfig} config
  * @param {() => void} failed it has failed after having worked
+ * @param {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} convert what is done with the planes of each picture
  */
-export function start(config, failed) {
+export function start(config, failed, convert = null) {
+  pack = convert;
   heads.clear();
   pictures = 0;
+  latest = -1;
   const error = ({ message }) => {
     decoder = null;
     if (pictures >= STEADY) failed();
@@ -62,35 +80,76 @@ export function decode(number, intra, head, data) {
   decoder.decode(new EncodedVideoChunk({ type: intra ? 'key' : 'delta', timestamp: number, data }));
 }
 
-/** The page takes the next frame. */
-export function free() {
+addEventListener('message', ({ data }) => {
+  // Tests choose.
+  if (data.way) way = data.way;
+  if (!data.free) return;
+  // The page takes the next frame.
   pageIsFree = true;
+  if (data.took && !way) took(data.took);
   hand();
+});
+
+/** Notes how long a picture took. @param {{way: string, ms: number}} picture */
+function took({ way: its, ms }) {
+  times[its].push(ms);
+  if (WAYS.some((each) => times[each].length <= TRIALS)) return;
+  const [planes, frame] = WAYS.map((each) => times[each].slice(1).sort((a, b) => a - b)[TRIALS / 2]);
+  way = frame < planes ? 'frame' : 'planes';
 }
 
 async function decoded(frame) {
   const head = heads.get(frame.timestamp);
   heads.delete(frame.timestamp);
   pictures += 1;
-  const { width, height } = frame.visibleRect;
-  const [luma, format] = [width * height, frame.format];
+  if (!head) {
+    frame.close();
+    return;
+  }
+  const start = performance.now();
+  // Some pictures have one way alone.
+  const only = pack ? 'planes' : ['I420', 'NV12'].includes(frame.format) ? way : 'frame';
+  const picture = { number: frame.timestamp, head, way: only ?? WAYS[pictures % 2], isTimed: !only };
+  if (picture.way === 'frame') {
+    put({ ...picture, frame, ms: 0 });
+    return;
+  }
+  try {
+    const planes = await copied(frame);
+    put({ ...picture, planes: pack ? pack(planes) : planes, ms: performance.now() - start });
+  } catch (error) {
+    postMessage({ fault: error.message });
+  } finally {
+    frame.close();
+  }
+}
+
+/** Returns the planes of a frame, one after another. @param {VideoFrame} frame */
+async function copied(frame) {
+  const { format, visibleRect } = frame;
+  const { width, height } = visibleRect;
+  const luma = width * height;
   const planes = new Uint8Array((luma * 3) / 2);
   const layout = [{ offset: 0, stride: width }];
   if (format === 'NV12') layout.push({ offset: luma, stride: width });
   else layout.push({ offset: luma, stride: width / 2 }, { offset: (luma * 5) / 4, stride: width / 2 });
-  try {
-    if (format !== 'I420' && format !== 'NV12') throw new Error(`This browser decodes video as ${format}, which the page cannot show.`);
-    await frame.copyTo(planes, { rect: frame.visibleRect, layout });
-    if (format === 'NV12') planes.set(apart(planes.subarray(luma)), luma);
-  } catch (error) {
-    postMessage({ fault: error.message });
-    return;
-  } finally {
-    frame.close();
+  if (format !== 'I420' && format !== 'NV12') throw new Error(`This browser decodes video as ${format}, of which the page reads no depth.`);
+  await frame.copyTo(planes, { rect: visibleRect, layout });
+  if (format === 'NV12') planes.set(apart(planes.subarray(luma)), luma);
+  return planes;
+}
+
+/** Keeps the newest frame until the page takes it. */
+function put(picture) {
+  // Planes come later than the frame after them may.
+  const old = picture.number < latest ? picture : newest;
+  if (old) {
+    skipped += 1;
+    old.frame?.close();
   }
-  if (!head) return;
-  if (newest) skipped += 1;
-  newest = { head, planes };
+  if (old === picture) return;
+  latest = picture.number;
+  newest = picture;
   hand();
 }
 
@@ -109,6 +168,6 @@ function apart(mixed) {
 function hand() {
   if (!newest || !pageIsFree) return;
   pageIsFree = false;
-  postMessage({ ...newest, bytes, skipped }, { transfer: [newest.planes.buffer] });
+  postMessage({ ...newest, bytes, skipped }, { transfer: [newest.frame ?? newest.planes.buffer] });
   [newest, bytes, skipped] = [null, 0, 0];
 }

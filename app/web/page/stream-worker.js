@@ -24,7 +24,6 @@ onmessage = ({ data }) => {
   } else if (data.send && socket?.readyState === WebSocket.OPEN) {
     socket.send(data.send);
   }
-  if (data.free) decoding.free();
 };
 
 function connect() {

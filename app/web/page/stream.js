@@ -100,9 +100,12 @@ function stop() {
   app.settings.stream = null;
 }
 
-function receive({ answer, video, lost, fault, head, planes, bytes, skipped }) {
-  if (!app.page) return;
-  if (answer) welcome(answer, video);
+function receive({ answer, lost, fault, head, way, planes, frame, ms, isTimed, bytes, skipped }) {
+  if (!app.page) {
+    frame?.close();
+    return;
+  }
+  if (answer) welcome(answer);
   if (fault) {
     end();
     say(fault);
@@ -115,8 +118,16 @@ function receive({ answer, video, lost, fault, head, planes, bytes, skipped }) {
     say('The server does not answer; it is tried again each second.');
   }
   if (!head) return;
+  const start = performance.now();
+  let took = null;
   try {
-    const [decoded, [time, render, code, quantizer, width, height]] = app.page.streamFrame(head, planes);
+    const facts = app.page.streamFrame(head, frame ?? planes, frame?.displayWidth ?? 0, frame?.displayHeight ?? 0);
+    const [decoded, [time, render, code, quantizer, width, height]] = facts;
+    if (isTimed) {
+      // Waits for the GPU.
+      app.gl.readPixels(0, 0, 1, 1, app.gl.RGBA, app.gl.UNSIGNED_BYTE, new Uint8Array(4));
+      took = { way, ms: ms + performance.now() - start };
+    }
     const latency = performance.now() - time;
     worker?.postMessage({ send: decoded });
     sums.frames += 1;
@@ -125,19 +136,17 @@ function receive({ answer, video, lost, fault, head, planes, bytes, skipped }) {
     sums.latency += latency;
     last = { render, code, quantizer, width, height };
     app.stream.frames += 1;
+    app.stream.way = way;
     if (!app.busy) changed();
   } finally {
-    worker?.postMessage({ free: true });
+    frame?.close();
+    worker?.postMessage({ free: true, took });
   }
 }
 
-function welcome(answer, video) {
+function welcome(answer) {
   try {
-    app.page.streamBegin(answer);
-    if (video) {
-      app.page.streamFrusta(video.frusta);
-      app.settings.dominant = video.dominant;
-    }
+    app.settings.dominant = app.page.streamBegin(answer) ?? app.settings.dominant;
   } catch (error) {
     // Another page may end; every other refusal would come again.
     if (BUSY.some((byte, i) => answer[i] !== byte)) end();
@@ -148,8 +157,8 @@ function welcome(answer, video) {
   clear();
   loading(null);
   isThere = true;
-  app.stream ??= { frames: 0, there: true, losses: 0, stop, again: () => { if (playing) play(playing); else location.reload(); } };
-  Object.assign(app.stream, { there: true, video: Boolean(video) });
+  app.stream ??= { frames: 0, there: true, losses: 0, way: '', choose: (way) => worker?.postMessage({ way }), stop, again: () => { if (playing) play(playing); else location.reload(); } };
+  Object.assign(app.stream, { there: true, video: Boolean(playing) });
   Object.assign(app, { source: null, facts: null });
   app.settings.scene = null;
   offerOrbit();

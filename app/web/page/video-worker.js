@@ -1,6 +1,6 @@
 // Reads an RGBD video and decodes it at its pace, over and over, away from the page.
 
-import init, { VideoFile } from './yoro_web_video.js';
+import init, { Video } from './yoro_web_video.js';
 import * as decoding from './decoding.js';
 
 /** A picture that is so late, in ms, shifts those after it. */
@@ -13,7 +13,6 @@ let isPlaying = true;
 let goOn = () => {};
 
 onmessage = async ({ data }) => {
-  if (data.free) decoding.free();
   if ('playing' in data) {
     isPlaying = data.playing;
     if (isPlaying) goOn();
@@ -21,7 +20,7 @@ onmessage = async ({ data }) => {
   if (!data.file) return;
   try {
     await init({ module_or_path: new URL('yoro_web_video_bg.wasm', import.meta.url) });
-    await play(data.file, await read(data.file));
+    await play(data.file);
   } catch (error) {
     const full = error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
     postMessage({ fault: full ? `${data.file.name} cannot be read: it is damaged, or there is no memory for it.` : error.message });
@@ -29,32 +28,23 @@ onmessage = async ({ data }) => {
 };
 
 /** Returns the bytes of a part of a file. */
-async function part(file, position, length) {
-  return new Uint8Array(await file.slice(position, position + length).arrayBuffer());
+function part(file, position, length) {
+  return new Uint8Array(new FileReaderSync().readAsArrayBuffer(file.slice(position, position + length)));
 }
 
-/** Returns what is in a file. */
-async function read(file) {
-  const video = new VideoFile(file.name, file.size);
-  for (;;) {
-    const needed = video.needed();
-    if (!needed) return video.finish();
-    const [position, length] = needed;
-    video.take(position, await part(file, position, length));
-  }
-}
-
-async function play(file, video) {
+async function play(file) {
+  const video = new Video(file.name, file.size, (position, length) => part(file, position, length));
   const pictures = video.pictures();
   const count = pictures.length / NUMBERS;
-  postMessage({ answer: video.welcome(), video: { frusta: video.frusta(), dominant: video.isRight() ? 'right' : 'left' } });
+  const pack = video.hasHues() ? (planes) => video.packed(planes) : null;
+  postMessage({ answer: video.welcome() });
   const config = { codec: video.codec(), description: video.description(), optimizeForLatency: true };
-  const begin = () => decoding.start(config, () => postMessage({ fault: 'The browser’s decoder has given up: drop the video again.' }));
+  const begin = () => decoding.start(config, () => postMessage({ fault: 'The browser’s decoder has given up: drop the video again.' }), pack);
   begin();
   for (let number = 0, start = performance.now(); ; number += 1) {
     const at = (number % count) * NUMBERS;
     const [offset, length, intra, time, duration] = pictures.subarray(at, at + NUMBERS);
-    const data = await part(file, offset, length);
+    const data = part(file, offset, length);
     const wait = start + time * 1000 - performance.now();
     if (wait > 0) await new Promise((resolve) => setTimeout(resolve, wait));
     else if (wait < -LATE) start -= wait;

@@ -15,15 +15,16 @@ use yoro_render::{PreparedScene, RenderSettings};
 
 use super::{Page, close};
 
-/// The Immersive Web Emulation Runtime's script; without it the test is to end.
-fn emulator() -> Option<String> {
+/// The script of the Immersive Web Emulation Runtime with a headset; without it the test is to end.
+pub fn emulator() -> Option<String> {
     let Some(path) = env::var_os("YORO_TEST_WEBXR") else {
         let without = env::var_os("YORO_TEST_WITHOUT_WEBXR").is_some();
         assert!(without, "run `cargo xtask test web::`, or set YORO_TEST_WITHOUT_WEBXR=1");
         eprintln!("LEFT OUT: the WebXR emulator could not be fetched");
         return None;
     };
-    Some(std::fs::read_to_string(PathBuf::from(path)).unwrap())
+    let emulator = std::fs::read_to_string(PathBuf::from(path)).unwrap();
+    Some(format!("{emulator}\n{HEADSET}"))
 }
 
 /// A Quest 3 with eyes that see further outwards, and a framebuffer of its own, as real ones have.
@@ -69,8 +70,7 @@ const HEADSET: &str = "
 
 #[test]
 fn a_headset_shows_both_eyes() {
-    let Some(emulator) = emulator() else { return };
-    let script = format!("{emulator}\n{HEADSET}");
+    let Some(script) = emulator() else { return };
     let Some(mut page) = Page::open("#method=conventional&display=left", Some(&script)) else { return };
     // The emulator's displays have the window's size.
     page.browser.resize(400, 240);
@@ -96,18 +96,11 @@ fn a_headset_shows_both_eyes() {
         press(&mut page, "thumbstick");
         let expected = if visit == 0 { "conventional" } else { "instanced" };
         assert_eq!(page.evaluate("yoro.settings.method"), expected);
-        let number = |value: &Value| value.as_f64().unwrap() as f32;
-        let views: Vec<f32> =
-            page.evaluate("[...yoro.busy.views]").as_array().unwrap().iter().map(number).collect();
-        let size: Vec<u64> =
-            page.evaluate("yoro.busy.size").as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
-        let size = [size[0] as u32, size[1] as u32];
-        let desktop = headset_pictures(&views, size);
+        let (views, here) = seen(&mut page);
+        let desktop = headset_pictures(&views, [here[0].width(), here[0].height()]);
         for eye in Eye::BOTH {
-            let read = format!("readLayer({})", eye.index());
-            let bytes = STANDARD.decode(page.evaluate(&read).as_str().unwrap()).unwrap();
             let name = format!("visit {visit}, {}", eye.name());
-            close(&name, &rgb_image(&bytes, size), &desktop[eye.index()]);
+            close(&name, &here[eye.index()], &desktop[eye.index()]);
         }
         if visit == 0 {
             press(&mut page, "trigger");
@@ -127,8 +120,21 @@ fn a_headset_shows_both_eyes() {
     page.browser.expect_silence();
 }
 
+/// What the headset shows: its views, and both eyes' pictures.
+pub fn seen(page: &mut Page) -> (Vec<f32>, [RgbImage; 2]) {
+    let number = |value: &Value| value.as_f64().unwrap() as f32;
+    let views = page.evaluate("[...yoro.busy.views]").as_array().unwrap().iter().map(number).collect();
+    let size = page.evaluate("yoro.busy.size");
+    let size = [0, 1].map(|i| size[i].as_u64().unwrap() as u32);
+    let eyes = Eye::BOTH.map(|eye| {
+        let bytes = page.evaluate(&format!("readLayer({})", eye.index()));
+        rgb_image(&STANDARD.decode(bytes.as_str().unwrap()).unwrap(), size)
+    });
+    (views, eyes)
+}
+
 /// The desktop's pictures for a headset's views at the scene's first viewpoint.
-fn headset_pictures(views: &[f32], size: [u32; 2]) -> [RgbImage; 2] {
+pub fn headset_pictures(views: &[f32], size: [u32; 2]) -> [RgbImage; 2] {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     let settings = RenderSettings::default();

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use image::RgbImage;
+use image::{RgbImage, imageops};
 use rcgen::{KeyPair, PublicKeyData as _};
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, ServerName};
@@ -27,8 +27,9 @@ use yoro_render::{PreparedScene, RenderSettings};
 use yoro_stream::{Content, EyeView, FrameHeader, FromServer, FromViewer, VERSION, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
 
-use super::{GL, Page, Server, close};
+use super::{GL, Page, Server, close, headset};
 use crate::browser::Browser;
+use crate::program::succeed;
 
 const QUANTIZER: &str = "16";
 /// Steps of a head, in metres to the right.
@@ -36,8 +37,12 @@ const STEP: f32 = 0.02;
 
 /// `yoro serve`, until this is dropped.
 fn serve(frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
+    serve_source("prototype", frame_rate, options, home)
+}
+
+fn serve_source(source: &str, frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_yoro"));
-    command.args(["serve", "prototype", "--port", "0", "--max-size", "320", "--quantizer", QUANTIZER]);
+    command.args(["serve", source, "--port", "0", "--max-size", "320", "--quantizer", QUANTIZER]);
     command.args(["--frame-rate", &frame_rate.to_string()]).args(options);
     home.map(|home| command.env("XDG_STATE_HOME", home));
     let mut child: Child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
@@ -194,7 +199,15 @@ fn a_stream_is_shown_at_the_newest_pose_to_one_page_with_the_token() {
     page.evaluate("yoro.stream.frames = 0; const end = Date.now() + 4000; while (Date.now() < end); 0");
     page.until("yoro.stream.losses === 1 && yoro.stream.there && yoro.stream.frames > 2");
     assert_eq!(page.message(), None);
-    page.until("document.getElementById('facts').textContent.includes('frames/s')");
+    page.until("document.getElementById('facts').textContent.includes('corrected by 0.0 cm and 0.0°')");
+    let corrected = format!(
+        "yoro.page.streamCorrection(); yoro.page.walk({STEP}, 0, 0); yoro.page.turn(0.1, 0); yoro.page.draw(64, 48, 0); \
+         yoro.page.turn(-0.1, 0); yoro.page.walk(-{STEP}, 0, 0); [...yoro.page.streamCorrection()].map((n) => n.toFixed(1))"
+    );
+    let corrected = page.evaluate(&corrected);
+    // The turn moves the eye, too, which is beside the neck.
+    let number = |i: usize| corrected[i].as_str().unwrap().parse::<f64>().unwrap();
+    assert!((1.0..4.0).contains(&number(0)) && number(1) == 5.7, "{corrected}");
     page.browser.expect_silence();
 
     page.server.stop();
@@ -215,15 +228,72 @@ fn two_eyes_are_moved_with_the_head_by_the_depth_of_one() {
     let mut desktop = Desktop::new(Mode::EyesDepth);
     let [pair, moved] = check(&mut page, &mut desktop);
     let other = pair.dominant.other();
-    page.evaluate(&format!("yoro.page.walk({STEP}, 0, 0); 0"));
-    let shown = &page.eyes(pair.size)[other.index()];
-    let of = |desktop: &mut Desktop, pair| {
-        let real = desktop.real(pair, other);
-        psnr(shown, &real, Channels::Rgb).unwrap().0
-    };
-    let (here, there) = (of(&mut desktop, &moved), of(&mut desktop, &pair));
-    eprintln!("the other eye after a step: {here:.2} dB, unmoved {there:.2} dB");
-    assert!(here > 30.0 && here > there + 5.0, "{here} dB, unmoved {there} dB");
+    for (step, pair, least) in [(0.0, pair, 38.0), (STEP, moved, 28.0)] {
+        page.evaluate(&format!("yoro.page.walk({step}, 0, 0); 0"));
+        let shown = &page.eyes(pair.size)[other.index()];
+        let real = desktop.real(&pair, other);
+        let db = psnr(shown, &real, Channels::Luma).unwrap().0;
+        eprintln!("the other eye after {step} m: {db:.2} dB");
+        assert!(db > least, "{db} dB after {step} m");
+    }
+    page.browser.expect_silence();
+}
+
+#[test]
+fn a_headset_shows_a_stream() {
+    let Some(script) = headset::emulator() else { return };
+    // Says what is missing.
+    let Some(_) = Server::start() else { return };
+    let Some(mut browser) = Browser::start_with(&GL) else { return };
+    browser.run_before_pages(&script);
+    let (server, link) = serve(5, &[], None);
+    let mut page = follow(browser, server, &link);
+    page.browser.resize(400, 240);
+    page.until("!document.getElementById('headset').disabled");
+    page.evaluate("document.getElementById('headset').click()");
+    // Pictures for its own views have come.
+    page.until("yoro.busy?.frames > 1");
+    page.evaluate("yoro.stream.frames = 0; headset.controllers.right.updateButtonValue('thumbstick', 1); 0");
+    page.until("yoro.stream.frames > 4");
+    assert_eq!(page.message(), None);
+    let (views, eyes) = headset::seen(&mut page);
+    let real = headset::headset_pictures(&views, [eyes[0].width(), eyes[0].height()]);
+    let of = |shown: usize, eye: usize| psnr(&eyes[shown], &real[eye], Channels::Luma).unwrap().0;
+    let (left, right, same) = (of(0, 0), of(1, 1), of(1, 0));
+    eprintln!("left {left:.2} dB, right {right:.2} dB, the same image to both eyes {same:.2} dB");
+    assert!(
+        right > 38.0 && left > 28.0 && left > same + 5.0,
+        "left {left} dB, right {right} dB, same image {same} dB"
+    );
+    page.evaluate("document.getElementById('headset').click()");
+    page.until("yoro.busy === null");
+    page.until("yoro.stream.there");
+    page.browser.expect_silence();
+}
+
+#[test]
+fn a_video_is_streamed_whole() {
+    // Says what is missing.
+    let Some(_) = Server::start() else { return };
+    let Some(browser) = Browser::start_with(&GL) else { return };
+    let dir = tempfile::tempdir().unwrap();
+    succeed(
+        dir.path(),
+        "render prototype --frames 2 --size 192x128 --video v.mp4 --frame-rate 4 --quantizer 16",
+    );
+    let path = dir.path().join("v.mp4");
+    let (server, link) = serve_source(path.to_str().unwrap(), 30, &[], None);
+    let mut page = follow(browser, server, &link);
+    let [_, right] = page.eyes([192, 128]);
+    let mut reader = yoro_video::Reader::open(&path).unwrap();
+    let mut best = 0.0f64;
+    while let Some((color, _)) = reader.read_rgbd().unwrap() {
+        // Its guard band is on the left.
+        let whole = imageops::crop_imm(&color, color.width() - 192, 0, 192, 128).to_image();
+        let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, 184, 120).to_image();
+        best = best.max(psnr(&inner(&right), &inner(&whole), Channels::Rgb).unwrap().0);
+    }
+    assert!(best > 30.0, "{best} dB");
     page.browser.expect_silence();
 }
 

@@ -3,11 +3,12 @@
 use std::time::Duration;
 use std::{fs, thread};
 
-use image::{RgbImage, imageops};
+use image::{Rgb, RgbImage, imageops};
 use serde_json::json;
 use yoro::eyes::Eye;
 use yoro_lab::metrics::{Channels, psnr};
 use yoro_lab::picture;
+use yoro_video::{Format, Planes, Rgbd, VideoError};
 
 use super::{Page, sum};
 use crate::program::succeed;
@@ -79,6 +80,123 @@ fn an_rgbd_video_plays_over_and_over_until_it_is_paused() {
     page.until(&format!("yoro.stream.frames > {frames} + 3"));
     page.choose("scene", "prototype");
     page.until("yoro.source?.builtin === 'prototype' && yoro.stream === null");
+    assert_eq!((page.message(), page.evaluate("yoro.page.takeErrors() ?? null")), (None, json!(null)));
+    page.browser.expect_silence();
+}
+
+/// Squares of one shade, side by side.
+const SQUARE: u32 = 16;
+
+/// All 256 shades, each in a square, as colour and as depth; then coloured squares.
+fn ramp(path: &std::path::Path) {
+    let side = 16 * SQUARE;
+    let rgbd = Rgbd {
+        size: [side; 2],
+        eye: Eye::Right,
+        guard_columns: 0,
+        fov_y: 1.0,
+        outer_inner: None,
+        ipd: 0.063,
+        nearest: 1.0,
+        farthest: 2.0,
+    };
+    let shade = |x: u32, y: u32| (y / SQUARE * 16 + x / SQUARE) as u8;
+    let gray = Planes::of_rgb(&RgbImage::from_fn(side, side, |x, y| Rgb([shade(x, y); 3])));
+    let colors = RgbImage::from_fn(side, side, |x, y| {
+        let shade = shade(x, y);
+        Rgb([shade, shade.wrapping_mul(37), 255 - shade])
+    });
+    let mut pictures = [gray.clone(), Planes::of_rgb(&colors)].map(|color| color.beside(&gray)).into_iter();
+    let format = Format { frame_rate: 1, quantizer: 1, frames: 2, rgbd: Some(rgbd) };
+    yoro_video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
+}
+
+/// Width and height of the pictures of a phone.
+const PHONE: [u32; 2] = [192, 128];
+
+/// A video as Record3D writes it: stripes before a grid, with depth as hue.
+fn record3d(path: &std::path::Path) {
+    let is_near = |x: u32| (64..128).contains(&x);
+    let hues = RgbImage::from_fn(PHONE[0], PHONE[1], |x, _| {
+        let sixths = if is_near(x) { 2.0 } else { 4.5f32 };
+        let channel = |n: f32| {
+            let k = (n + sixths) % 6.0;
+            (255.0 * (1.0 - k.min(4.0 - k).clamp(0.0, 1.0))).round() as u8
+        };
+        Rgb([channel(5.0), channel(3.0), channel(1.0)])
+    });
+    let color = RgbImage::from_fn(PHONE[0], PHONE[1], |x, y| {
+        let shade = if is_near(x) { x / 8 % 2 * 120 + 60 } else { (x / 12 + y / 12) % 2 * 200 + 20 };
+        Rgb([shade as u8; 3])
+    });
+    let mut pictures = [Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))].into_iter();
+    let format = Format { frame_rate: 2, quantizer: 12, frames: 1, rgbd: None };
+    yoro_video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
+    // Focal length and middle in pixels; hues reach to 3 m.
+    let camera = r#"{"intrinsicMatrix":[150,0,0,0,150,0,96,64,1],"rangeOfEncodedDepth":[0,3]}"#;
+    let length = (camera.len() as u32 + 8).to_be_bytes();
+    let file = fs::read(path).unwrap();
+    fs::write(path, [&file[..], &length, b"meta", camera.as_bytes()].concat()).unwrap();
+}
+
+#[test]
+fn pictures_come_as_planes_or_as_the_browser_has_them_and_every_shade_is_exact() {
+    let Some(mut page) = Page::open("#display=side-by-side", None) else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("ramp.mp4");
+    ramp(&path);
+    page.drop_files(&[("ramp.mp4", fs::read(&path).unwrap())]);
+    page.until("yoro.stream?.frames > 0");
+    let side = 16 * SQUARE;
+    let mut seen = Vec::new();
+    for way in ["planes", "frame"] {
+        page.evaluate(&format!("yoro.stream.choose('{way}'); 0"));
+        let mut of_way = [None, None];
+        while of_way.contains(&None) {
+            let before = page.evaluate("yoro.stream.frames").as_u64().unwrap();
+            page.until(&format!("yoro.stream.frames > {before}"));
+            let [_, right] = page.eyes([side; 2]);
+            if page.evaluate("yoro.stream.way") != way {
+                continue;
+            }
+            // The second shade is a gray one.
+            let [r, g, b] = right.get_pixel(SQUARE * 3 / 2, SQUARE / 2).0;
+            of_way[usize::from(r.abs_diff(g).max(g.abs_diff(b)) > 8)] = Some(right);
+        }
+        seen.push(of_way.map(Option::unwrap));
+    }
+    let center = |shade: u32| (shade % 16 * SQUARE + SQUARE / 2, shade / 16 * SQUARE + SQUARE / 2);
+    for [gray, _] in &seen {
+        for shade in 0..256 {
+            let (x, y) = center(shade);
+            assert_eq!(gray.get_pixel(x, y).0, [shade as u8; 3]);
+        }
+    }
+    for shade in 0..256 {
+        let (x, y) = center(shade);
+        let [planes, frame] = [0, 1].map(|way: usize| seen[way][1].get_pixel(x, y).0);
+        let worst = planes.iter().zip(frame).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(worst <= Some(2), "{planes:?} as planes, {frame:?} as the browser has it");
+    }
+    // Record3D's depth is hue.
+    let phone = dir.path().join("phone.mp4");
+    record3d(&phone);
+    page.drop_files(&[("phone.mp4", fs::read(&phone).unwrap())]);
+    page.until("document.getElementById('facts').textContent === 'phone.mp4' && yoro.stream?.frames > 0");
+    let here = page.eyes([PHONE[0], PHONE[1]]);
+    succeed(dir.path(), "synthesize phone.mp4 --out stereo.mp4");
+    let mut reader = yoro_video::Reader::open(&dir.path().join("stereo.mp4")).unwrap();
+    let stereo = reader.read().unwrap().unwrap().rgb((2 * PHONE[0], PHONE[1]));
+    let [left, right] = [0, 1].map(|eye| {
+        let crop = |image: &RgbImage, x: u32| {
+            imageops::crop_imm(image, x + 8, 8, PHONE[0] - 16, PHONE[1] - 16).to_image()
+        };
+        let desktop = crop(&stereo, eye * PHONE[0]);
+        psnr(&crop(&here[eye as usize], 0), &desktop, Channels::Luma).unwrap().0
+    });
+    let same = psnr(&here[0], &here[1], Channels::Luma).unwrap().0;
+    eprintln!("left {left:.1} dB, right {right:.1} dB, both against another {same:.1} dB");
+    assert!(left > 28.0 && right > 30.0 && same < 24.0, "{left} dB, {right} dB, {same} dB");
     assert_eq!((page.message(), page.evaluate("yoro.page.takeErrors() ?? null")), (None, json!(null)));
     page.browser.expect_silence();
 }

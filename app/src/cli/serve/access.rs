@@ -17,7 +17,6 @@ use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
 use super::connection::Connection;
-use yoro::eyes::Pose;
 use yoro_files::http::{self, Request};
 use yoro_stream::{FromServer, FromViewer, Refusal, Token, VERSION};
 
@@ -42,7 +41,7 @@ pub struct Access {
     pub hosts: Vec<String>,
     pub folder: PathBuf,
     /// The head's first pose.
-    pub home: Pose,
+    pub welcome: FromServer<'static>,
     /// How connections are encrypted, if they are.
     pub tls: Option<Arc<ServerConfig>>,
     busy: AtomicBool,
@@ -54,11 +53,11 @@ impl Access {
         token: Token,
         (scheme, hosts): (&'static str, Vec<String>),
         folder: PathBuf,
-        home: Pose,
+        welcome: FromServer<'static>,
         tls: Option<Arc<ServerConfig>>,
     ) -> Access {
         let (busy, pending) = (AtomicBool::new(false), Arc::default());
-        Access { token, scheme, hosts, folder, home, tls, busy, pending }
+        Access { token, scheme, hosts, folder, welcome, tls, busy, pending }
     }
 
     /// Accepts connections for ever, and passes on those that are let in.
@@ -147,7 +146,7 @@ impl Access {
             socket.send(Message::binary(FromServer::Refused(refusal).to_bytes()))?;
             bail!("{refusal:?}");
         }
-        let welcomed = socket.send(Message::binary(FromServer::Welcome(self.home).to_bytes()));
+        let welcomed = socket.send(Message::binary(self.welcome.to_bytes()));
         if welcomed.is_err() {
             self.leave();
         }

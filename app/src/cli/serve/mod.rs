@@ -1,13 +1,15 @@
-//! `yoro serve`: a scene rendered here, seen in a browser.
+//! `yoro serve`: a scene rendered here, or a video, seen in a browser.
 
 mod access;
 mod connection;
 mod lan;
 mod session;
+mod source;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::{Arc, mpsc};
 use std::thread;
 use std::time::Instant;
@@ -17,20 +19,22 @@ use anyhow::{Context as _, ensure};
 use self::access::Access;
 use self::lan::Lan;
 use self::session::{Limits, Server};
+use self::source::{Source, Video};
 use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
 use crate::cli::eyes;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
+use yoro_gl::Context;
 use yoro_lab::streaming::{FrameRenderer, Mode};
 use yoro_render::PreparedScene;
-use yoro_stream::Token;
+use yoro_stream::{FromServer, Token};
 use yoro_video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
 
-/// Stream a scene, rendered on this machine, to a browser that shows both eyes at the head's newest pose
+/// Stream a scene, rendered on this machine, or an RGBD video to a browser that shows both eyes at the head's newest pose
 #[derive(clap::Args, Clone, Debug)]
 pub struct ServeArgs {
-    /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
+    /// A built-in scene (see `yoro scenes`), an OBJ, glTF or GLB file, or an RGBD video (MP4), which is played over and over
     scene: String,
     /// Number of the scene's viewpoint, from 0
     #[arg(long, default_value_t = 0, value_name = "N")]
@@ -66,7 +70,7 @@ pub struct ServeArgs {
     gl: GlArgs,
 }
 
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum ModeArg {
     /// One eye and its depth, of which both eyes are made
     Depth,
@@ -106,9 +110,6 @@ impl Subcommand for ServeArgs {
 }
 
 fn run(args: &ServeArgs) -> anyhow::Result<()> {
-    let settings = args.renderer.render_settings()?;
-    let scene = yoro_scenes::load(&args.scene, yoro_scenes::DEFAULT_SEED, None)?;
-    let home = eyes::scene_pose(&scene, args.pose)?;
     let folder = match &args.page {
         Some(folder) => folder.clone(),
         None => std::env::current_exe()?.ancestors().nth(2).unwrap_or("".as_ref()).join("web"),
@@ -118,12 +119,6 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         "{} has no page: run cargo xtask web, or name its folder with --page",
         folder.display()
     );
-    let headless = args.gl.open()?;
-    let mode = match args.mode {
-        ModeArg::Depth => Mode::Depth,
-        ModeArg::Eyes => Mode::Eyes,
-        ModeArg::EyesDepth => Mode::EyesDepth,
-    };
     let kind = match args.encoder {
         EncoderArg::Auto => LiveEncoderKind::Auto,
         EncoderArg::Openh264 => LiveEncoderKind::OpenH264,
@@ -133,15 +128,19 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     };
     let encoder =
         LiveEncoder::new(kind, args.frame_rate.into()).context("choose another encoder with --encoder")?;
-    ensure!(
-        mode != Mode::EyesDepth || args.max_size <= MOST_OF_THREE,
-        "browsers do not decode three pictures of {} pixels: give --max-size {MOST_OF_THREE} or less with --mode eyes-depth",
-        args.max_size
-    );
     let lan = args.lan.map(Lan::new).transpose()?;
+    // It is dropped after what was made in it.
+    let headless;
+    let (source, welcome) = if is_video(&args.scene) {
+        ensure!(args.mode == ModeArg::Depth, "a video has the depth of one eye: leave --mode out");
+        let (video, welcome) = Video::open(args.scene.as_ref())?;
+        (Source::Video(Box::new(video)), welcome)
+    } else {
+        headless = args.gl.open()?;
+        scene(args, headless.gl())?
+    };
     let mut server = Server {
-        prepared: PreparedScene::new(headless.gl(), scene, &settings)?,
-        renderer: FrameRenderer::new(headless.gl(), mode)?,
+        source,
         encoder,
         start: Instant::now(),
         limits: Limits { quantizer: args.quantizer, frame_rate: args.frame_rate.into(), size: args.max_size },
@@ -163,11 +162,39 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         format!("{scheme}://{}/#stream={:032x}&display=side-by-side", hosts[0], u128::from_be_bytes(token));
     announce(&link, port, lan.as_ref(), server.encoder.name())?;
     let tls = lan.map(|lan| lan.tls);
-    let access = Arc::new(Access::new(token, (scheme, hosts), folder, home, tls));
+    let access = Arc::new(Access::new(token, (scheme, hosts), folder, welcome, tls));
     let (clients, admitted) = mpsc::channel();
     let accepting = access.clone();
     thread::spawn(move || accepting.accept(&listener, &clients));
     server.serve(&admitted, &access)
+}
+
+/// True if a name is a video's.
+fn is_video(name: &str) -> bool {
+    let extension = Path::new(name).extension();
+    extension.is_some_and(|extension| {
+        ["mp4", "m4v", "mov"].iter().any(|video| extension.eq_ignore_ascii_case(video))
+    })
+}
+
+/// Prepares a scene. Returns with it what a page is told that shows it.
+fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServer<'static>)> {
+    let mode = match args.mode {
+        ModeArg::Depth => Mode::Depth,
+        ModeArg::Eyes => Mode::Eyes,
+        ModeArg::EyesDepth => Mode::EyesDepth,
+    };
+    ensure!(
+        mode != Mode::EyesDepth || args.max_size <= MOST_OF_THREE,
+        "browsers do not decode three pictures of {} pixels: give --max-size {MOST_OF_THREE} or less with --mode eyes-depth",
+        args.max_size
+    );
+    let settings = args.renderer.render_settings()?;
+    let scene = yoro_scenes::load(&args.scene, yoro_scenes::DEFAULT_SEED, None)?;
+    let home = eyes::scene_pose(&scene, args.pose)?;
+    let prepared = Box::new(PreparedScene::new(gl, scene, &settings)?);
+    let renderer = Box::new(FrameRenderer::new(gl, mode)?);
+    Ok((Source::Scene { prepared, renderer }, FromServer::Welcome(home)))
 }
 
 /// Says where the stream is seen, and what encodes it.

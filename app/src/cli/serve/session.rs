@@ -9,9 +9,8 @@ use tungstenite::Message;
 
 use super::access::{Access, Socket, web_socket};
 use super::connection::Connection;
+use super::source::Source;
 use yoro_files::interrupt;
-use yoro_lab::streaming::FrameRenderer;
-use yoro_render::PreparedScene;
 use yoro_stream::{FrameHeader, FromServer, FromViewer, RateControl, ViewRequest};
 use yoro_video::{LiveEncoder, LivePicture};
 
@@ -31,8 +30,7 @@ fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
 
 /// Renders, encodes and sends.
 pub struct Server {
-    pub prepared: PreparedScene,
-    pub renderer: FrameRenderer,
+    pub source: Source,
     pub encoder: LiveEncoder,
     pub start: Instant,
     pub limits: Limits,
@@ -103,15 +101,14 @@ impl Server {
             let due = request
                 .filter(|request| Some(request.time) != answered && control.is_due(self.start.elapsed()));
             let Some(mut request) = due else { continue };
-            answered = Some(request.time);
             let longest = request.size[0].max(request.size[1]);
             if longest > self.limits.size {
                 let scale = f32::from(self.limits.size) / f32::from(longest);
                 request.size = request.size.map(|side| ((f32::from(side) * scale) as u16).max(16));
             }
             let begun = Instant::now();
-            self.prepared.set_time(self.start.elapsed().as_secs_f64())?;
-            let picture = self.renderer.picture(&mut self.prepared, &request)?;
+            let Some(picture) = self.source.picture(&request, self.start.elapsed())? else { continue };
+            answered = Some(request.time);
             let rendered = begun.elapsed();
             let LivePicture { data, is_intra, quantizer } =
                 self.encoder.encode(&picture.planes, control.quantizer(), number == 0 || picture.new_span)?;

@@ -45,6 +45,7 @@ enum Content {
 /// Everything that lives in the canvas's context.
 #[wasm_bindgen]
 pub struct Page {
+    context: WebGl2RenderingContext,
     gl: Rc<Context>,
     show: Show,
     settings: Settings,
@@ -64,8 +65,9 @@ impl Page {
     /// A sentence, for a context that cannot render.
     #[wasm_bindgen(constructor)]
     pub fn new(context: WebGl2RenderingContext) -> Result<Page, JsError> {
-        let gl = Context::new(glow::Context::from_webgl2_context(context)).map_err(sentence)?;
+        let gl = Context::new(glow::Context::from_webgl2_context(context.clone())).map_err(sentence)?;
         Ok(Page {
+            context,
             show: Show::new(&gl).map_err(sentence)?,
             settings: Settings::default(),
             walker: Walker::new(Pose::IDENTITY),
@@ -230,7 +232,7 @@ impl Page {
             self.measure_again();
         }
         if let Content::Stream(stream) = &self.content
-            && stream.is_whole()
+            && stream.frusta().is_some()
         {
             self.walker = Walker::new(Pose::IDENTITY);
         }

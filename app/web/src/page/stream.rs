@@ -2,13 +2,31 @@
 
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
-use yoro::eyes::{Frustum, Pose};
+use yoro::eyes::Pose;
+use yoro_render::DecodedPicture;
 use yoro_stream::{FromServer, FromViewer, Refusal};
 
 use super::error::sentence;
 use super::stream_show::StreamShow;
 use super::{Content, Page};
 use crate::walker::Walker;
+
+#[wasm_bindgen]
+extern "C" {
+    /// A WebGL 2 context that uploads a decoded video frame, which web-sys has among its unstable interfaces.
+    type VideoContext;
+    #[wasm_bindgen(method, js_name = texSubImage2D)]
+    fn upload(
+        this: &VideoContext,
+        to: u32,
+        level: i32,
+        x: i32,
+        y: i32,
+        format: u32,
+        kind: u32,
+        frame: &JsValue,
+    );
+}
 
 #[wasm_bindgen]
 impl Page {
@@ -19,54 +37,61 @@ impl Page {
     }
 
     /// Takes the first answer of a server, and shows its stream from now on, from the head's first pose; one that goes on
-    /// after a connection was lost keeps the head where it is.
+    /// after a connection was lost keeps the head where it is. A video is shown whole. Returns the dominant eye that goes with it,
+    /// `left` or `right`; none for a stream that is rendered for the page's.
     ///
     /// # Errors
     /// Why the server refuses, as a sentence.
     #[wasm_bindgen(js_name = streamBegin)]
-    pub fn stream_begin(&mut self, answer: &[u8]) -> Result<(), JsError> {
-        let refused = match FromServer::read(answer) {
-            Some(FromServer::Welcome(head)) => {
-                if !matches!(self.content, Content::Stream(_)) {
-                    self.content = Content::Empty;
-                    self.content = Content::Stream(Box::new(StreamShow::new(&self.gl).map_err(sentence)?));
-                    self.walker = Walker::new(head);
-                    self.orbit(false);
-                }
-                return Ok(());
-            }
-            Some(FromServer::Refused(refusal)) => refusal,
-            _ => Refusal::Version,
+    pub fn stream_begin(&mut self, answer: &[u8]) -> Result<Option<String>, JsError> {
+        let (head, video) = match FromServer::read(answer) {
+            Some(FromServer::Welcome(head)) => (head, None),
+            Some(FromServer::Video(frusta, eye)) => (Pose::IDENTITY, Some((frusta, eye))),
+            Some(FromServer::Refused(refusal)) => return Err(JsError::new(&refusal.to_string())),
+            _ => return Err(JsError::new(&Refusal::Version.to_string())),
         };
-        Err(JsError::new(&refused.to_string()))
+        let frusta = video.map(|(frusta, _)| frusta);
+        if !matches!(&self.content, Content::Stream(stream) if stream.frusta() == frusta) {
+            self.content = Content::Empty;
+            let stream = StreamShow::new(&self.gl, frusta).map_err(sentence)?;
+            self.content = Content::Stream(Box::new(stream));
+            self.walker = Walker::new(head);
+            self.orbit(false);
+        }
+        Ok(video.map(|(_, eye)| eye.name().into()))
     }
 
-    /// Shows the stream as a video, whole, from where it was taken: `frusta` are the tangents of left, right, bottom and top of
-    /// the left eye, then of the right one. Nothing for fewer numbers.
-    #[wasm_bindgen(js_name = streamFrusta)]
-    pub fn stream_frusta(&mut self, frusta: &[f32]) {
-        let Content::Stream(stream) = &mut self.content else { return };
-        let ([left, right], []) = frusta.as_chunks::<4>() else { return };
-        let frustum = |[left, right, bottom, top]: [f32; 4]| Frustum { left, right, bottom, top };
-        stream.show_whole([*left, *right].map(frustum));
-        self.walker = Walker::new(Pose::IDENTITY);
-    }
-
-    /// Takes a frame, whose H.264 may be left out, with its decoded picture. Returns the message that confirms it, and six
+    /// Takes a frame, whose H.264 may be left out, with its decoded picture: a `Uint8Array` of its planes, or a `VideoFrame` of this size
+    /// in pixels. Returns the message that confirms it, and six
     /// numbers: when the pose that it was rendered for was sent, by `performance.now()`; the ms to render and to encode it; its
     /// quantizer; width and height of each part.
     ///
     /// # Errors
     /// A sentence, for a frame that cannot be understood.
     #[wasm_bindgen(js_name = streamFrame)]
-    pub fn stream_frame(&mut self, frame: &[u8], planes: &[u8]) -> Result<Array, JsError> {
+    pub fn stream_frame(
+        &mut self,
+        frame: &[u8],
+        picture: &JsValue,
+        width: u32,
+        height: u32,
+    ) -> Result<Array, JsError> {
         let Content::Stream(stream) = &mut self.content else { return Ok(Array::new()) };
         let Some(FromServer::Frame { number, header, .. }) = FromServer::read(frame) else {
             return Err(JsError::new("A frame of the stream cannot be understood."));
         };
-        if !stream.eyes.take(header.content, header.size, planes).map_err(sentence)? {
+        let context: &VideoContext = self.context.unchecked_ref();
+        let upload = || context.upload(glow::TEXTURE_2D, 0, 0, 0, glow::RGBA, glow::UNSIGNED_BYTE, picture);
+        let planes = picture.dyn_ref().map(Uint8Array::to_vec);
+        let picture = match &planes {
+            Some(planes) => DecodedPicture::Planes(planes),
+            None => DecodedPicture::Upload([width, height], &upload),
+        };
+        if !stream.eyes.take(header.content, header.size, &picture).map_err(sentence)? {
             return Err(JsError::new("A picture of the stream is not what its frame tells."));
         }
+        // An emulated headset clears what is bound before each of its frames: not what has just been drawn.
+        self.gl.bind_framebuffer(None, [0, 0], [1, 1]);
         let decoded = Uint8Array::from(&FromViewer::Decoded(number).to_bytes()[..]);
         let [width, height] = header.size.map(f64::from);
         let (render, code) = (f64::from(header.render_ms), f64::from(header.encode_ms));

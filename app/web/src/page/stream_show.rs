@@ -19,20 +19,19 @@ pub struct StreamShow {
 }
 
 impl StreamShow {
-    pub fn new(gl: &Rc<Context>) -> Result<StreamShow, GlError> {
-        let (eyes, frame) = (StreamedEyes::new(gl)?, StereoFrame::new(gl, [1, 1])?);
-        Ok(StreamShow { eyes, frusta: None, frame })
+    /// Makes what is needed for a stream, or for a video, which is shown whole, with these frusta.
+    ///
+    /// # Errors
+    /// The driver refuses.
+    pub fn new(gl: &Rc<Context>, frusta: Option<[Frustum; 2]>) -> Result<StreamShow, GlError> {
+        let (mut eyes, frame) = (StreamedEyes::new(gl)?, StereoFrame::new(gl, [1, 1])?);
+        eyes.framed = frusta.is_some();
+        Ok(StreamShow { eyes, frusta, frame })
     }
 
-    /// Shows the stream as a video, whole, with these frusta.
-    pub fn show_whole(&mut self, frusta: [Frustum; 2]) {
-        self.frusta = Some(frusta);
-        self.eyes.framed = true;
-    }
-
-    /// True if the stream is shown as a video.
-    pub fn is_whole(&self) -> bool {
-        self.frusta.is_some()
+    /// Returns the frusta of a video.
+    pub fn frusta(&self) -> Option<[Frustum; 2]> {
+        self.frusta
     }
 
     /// Returns where the eyes are shown on parts of a canvas of this size, and the eyes of a head there: the page's, or a

@@ -2,16 +2,13 @@
 
 #![cfg(target_arch = "wasm32")]
 
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
-use yoro::eyes::{Eye, Pose};
 use yoro_stream::{Content, EyeView, FrameHeader, FromServer};
-use yoro_video::{Index, Indexer, Rgbd, VideoError};
-
-/// A file whose content is being found.
-#[wasm_bindgen]
-pub struct VideoFile(Indexer);
+use yoro_video::{Index, Planes, Rgbd, VideoError};
 
 /// A file's content.
 #[wasm_bindgen]
@@ -21,34 +18,44 @@ pub struct Video {
     header: FrameHeader,
 }
 
+/// A file of which JavaScript reads the pieces.
+struct Pieces<'a> {
+    read: &'a Function,
+    position: u64,
+    length: u64,
+}
+
+impl Read for Pieces<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let size = (to.len() as u64).min(self.length.saturating_sub(self.position));
+        let piece = self.read.call2(&JsValue::NULL, &(self.position as f64).into(), &(size as f64).into());
+        let piece = piece.map_err(|_| io::Error::other("the browser does not read it"))?;
+        Uint8Array::new(&piece).copy_to(&mut to[..size as usize]);
+        self.position += size;
+        Ok(size as usize)
+    }
+}
+
+impl Seek for Pieces<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let SeekFrom::Start(position) = to else { return Err(io::ErrorKind::Unsupported.into()) };
+        self.position = position;
+        Ok(position)
+    }
+}
+
 #[wasm_bindgen]
-impl VideoFile {
-    /// Begins with a file of this name and length in bytes.
+impl Video {
+    /// Finds out what is in a file of this name and length in bytes. `read` returns a piece of it, a `Uint8Array`, from a place and a
+    /// length in bytes.
+    ///
+    /// # Errors
+    /// A sentence, for what is no MP4 file, is damaged, or has no H.264 or no depth.
     #[wasm_bindgen(constructor)]
-    pub fn new(name: &str, length: f64) -> VideoFile {
-        VideoFile(Indexer::new(Path::new(name), length as u64))
-    }
-
-    /// Returns place and length in bytes of the piece that is needed next; none if nothing is.
-    ///
-    /// # Errors
-    /// A sentence, for what is no MP4 file.
-    pub fn needed(&self) -> Result<Option<Vec<f64>>, JsError> {
-        let needed = self.0.needed().map_err(sentence)?;
-        Ok(needed.map(|(position, size)| vec![position as f64, size as f64]))
-    }
-
-    /// Takes a piece.
-    pub fn take(&mut self, position: f64, piece: &[u8]) {
-        self.0.take(position as u64, piece);
-    }
-
-    /// Returns what is in the file, once nothing is needed.
-    ///
-    /// # Errors
-    /// A sentence, for a file that is damaged, or has no H.264 or no depth.
-    pub fn finish(self) -> Result<Video, JsError> {
-        let index = self.0.finish().map_err(sentence)?;
+    pub fn new(name: &str, length: f64, read: &Function) -> Result<Video, JsError> {
+        let length = length as u64;
+        let mut file = Pieces { read, position: 0, length };
+        let index = Index::read(Path::new(name), &mut file, length).map_err(sentence)?;
         let rgbd = index.rgbd().map_err(sentence)?;
         let source = rgbd
             .views()
@@ -71,10 +78,26 @@ impl VideoFile {
         }
         Ok(video)
     }
-}
 
-#[wasm_bindgen]
-impl Video {
+    /// True if decoded pictures have to be [packed](Video::packed).
+    #[wasm_bindgen(js_name = hasHues)]
+    pub fn has_hues(&self) -> bool {
+        self.index.has_hues()
+    }
+
+    /// Returns a decoded picture, three planes one after another, with colour and depth where a stream has them; empty for one of
+    /// another size.
+    pub fn packed(&self, planes: &[u8]) -> Vec<u8> {
+        let [width, height] = self.rgbd.size.map(|n| n as usize);
+        let (size, luma) = ([2 * width, height], 2 * width * height);
+        if planes.len() != luma * 3 / 2 || !width.is_multiple_of(2) || !height.is_multiple_of(2) {
+            return Vec::new();
+        }
+        let (y, rest) = planes.split_at(luma);
+        let (u, v) = rest.split_at(luma / 4);
+        self.index.packed(Planes { size, planes: [y, u, v].map(<[u8]>::to_vec) }).planes.concat()
+    }
+
     /// Returns the codec's name, as the browser's decoder takes it.
     ///
     /// # Errors
@@ -107,24 +130,12 @@ impl Video {
 
     /// Returns the message with which a stream begins.
     pub fn welcome(&self) -> Vec<u8> {
-        FromServer::Welcome(Pose::IDENTITY).to_bytes()
+        FromServer::Video(self.rgbd.pair().frusta, self.rgbd.eye).to_bytes()
     }
 
     /// Returns what stands before a frame's picture in a stream.
     pub fn head(&self, number: u32) -> Vec<u8> {
         FromServer::Frame { number, intra: false, header: self.header, data: &[] }.to_bytes()
-    }
-
-    /// Returns the tangents of both eyes' sides: left, right, bottom and top of the left eye, then of the right one.
-    pub fn frusta(&self) -> Vec<f32> {
-        let frusta = self.rgbd.pair().frusta;
-        frusta.iter().flat_map(|f| [f.left, f.right, f.bottom, f.top]).collect()
-    }
-
-    /// True if the right eye is the rendered one.
-    #[wasm_bindgen(js_name = isRight)]
-    pub fn is_right(&self) -> bool {
-        self.rgbd.eye == Eye::Right
     }
 }
 
