@@ -246,7 +246,7 @@ fn a_headset_shows_a_stream() {
     let Some(_) = Server::start() else { return };
     let Some(mut browser) = Browser::start_with(&GL) else { return };
     browser.run_before_pages(&script);
-    let (server, link) = serve(5, &[], None);
+    let (server, link) = serve(15, &[], None);
     let mut page = follow(browser, server, &link);
     page.browser.resize(400, 240);
     page.until("!document.getElementById('headset').disabled");

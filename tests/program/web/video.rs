@@ -107,7 +107,7 @@ fn ramp(path: &std::path::Path) {
         Rgb([shade, shade.wrapping_mul(37), 255 - shade])
     });
     let mut pictures = [gray.clone(), Planes::of_rgb(&colors)].map(|color| color.beside(&gray)).into_iter();
-    let format = Format { frame_rate: 1, quantizer: 1, frames: 2, rgbd: Some(rgbd) };
+    let format = Format { frame_rate: 4, quantizer: 1, frames: 2, rgbd: Some(rgbd) };
     yoro_video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
 }
 
@@ -155,10 +155,10 @@ fn pictures_come_as_planes_or_as_the_browser_has_them_and_every_shade_is_exact()
         while of_way.contains(&None) {
             let before = page.evaluate("yoro.stream.frames").as_u64().unwrap();
             page.until(&format!("yoro.stream.frames > {before}"));
-            let [_, right] = page.eyes([side; 2]);
             if page.evaluate("yoro.stream.way") != way {
                 continue;
             }
+            let [_, right] = page.eyes([side; 2]);
             // The second shade is a gray one.
             let [r, g, b] = right.get_pixel(SQUARE * 3 / 2, SQUARE / 2).0;
             of_way[usize::from(r.abs_diff(g).max(g.abs_diff(b)) > 8)] = Some(right);
