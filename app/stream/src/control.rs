@@ -13,12 +13,18 @@ const MOST_LATE: u32 = 3;
 const CALM: Duration = Duration::from_secs(1);
 /// The fastest round trip is that of the last one or two of these.
 const WINDOW: Duration = Duration::from_secs(5);
+/// Frames may come at so much more than the frame rate: a viewer that asks at this rate by its own clock must not wait for the
+/// server's.
+const ROOM: f32 = 1.05;
+/// Frames that are on their way for so long are given up, where the transport can; the next ones after twice the time, until
+/// one is decoded.
+const GIVE_UP: Duration = Duration::from_millis(500);
 
 /// Decides when a frame is made and how finely it is encoded, from the times at which the viewer has decoded frames. All times
 /// are of one clock, the server's, so that no clocks need to agree.
 ///
 /// Nothing waits in a queue: while the oldest frame on its way takes too long, none is made, and the next one that is made
-/// shows the newest pose.
+/// shows the newest pose. After a frame that is lost or given up comes an intra frame.
 #[derive(Clone, Debug)]
 pub struct RateControl {
     interval: Duration,
@@ -34,13 +40,19 @@ pub struct RateControl {
     late: u32,
     changed: Duration,
     round_trip: Option<Duration>,
+    /// The number of the last intra frame.
+    intra: u32,
+    /// True if the next frame must be an intra frame.
+    needs_intra: bool,
+    give_up: Duration,
+    lost: u32,
 }
 
 impl RateControl {
-    /// Starts with frames of quantizer `min_quantizer`, which is never undercut, at most `frame_rate` a second.
+    /// Starts with frames of quantizer `min_quantizer`, which is never undercut, about `frame_rate` a second at most.
     pub fn new(min_quantizer: u8, frame_rate: f32) -> RateControl {
         RateControl {
-            interval: Duration::from_secs_f32(1.0 / frame_rate),
+            interval: Duration::from_secs_f32(1.0 / (ROOM * frame_rate)),
             min_quantizer,
             quantizer: min_quantizer,
             next: Duration::ZERO,
@@ -50,6 +62,10 @@ impl RateControl {
             late: 0,
             changed: Duration::ZERO,
             round_trip: None,
+            intra: 0,
+            needs_intra: true,
+            give_up: GIVE_UP,
+            lost: 0,
         }
     }
 
@@ -62,7 +78,8 @@ impl RateControl {
             }
             (Some(_), None) => false,
         };
-        now >= self.next && flows
+        // A viewer does not ask at exactly equal times.
+        now + self.interval / 4 >= self.next && flows
     }
 
     /// Returns the quantizer for the next frame.
@@ -75,8 +92,21 @@ impl RateControl {
         self.round_trip
     }
 
+    /// True if the next frame must be an intra frame.
+    pub fn needs_intra(&self) -> bool {
+        self.needs_intra
+    }
+
+    /// Returns the number of frames that the viewer could not decode, or that were given up.
+    pub fn lost(&self) -> u32 {
+        self.lost
+    }
+
     /// Notes that a frame is handed to the transport.
-    pub fn sent(&mut self, number: u32, now: Duration) {
+    pub fn sent(&mut self, number: u32, is_intra: bool, now: Duration) {
+        if is_intra {
+            (self.intra, self.needs_intra) = (number, false);
+        }
         self.in_flight.push_back((number, now));
         self.next = (self.next + self.interval).max(now);
     }
@@ -86,6 +116,7 @@ impl RateControl {
         let Some(at) = self.in_flight.iter().position(|(in_flight, _)| *in_flight == number) else { return };
         // Those before it were not shown.
         let (_, sent) = self.in_flight.drain(..=at).next_back().unwrap_or((number, now));
+        self.give_up = GIVE_UP;
         let round_trip = now.saturating_sub(sent);
         self.round_trip = Some(round_trip);
         if now.saturating_sub(self.window_start) >= WINDOW {
@@ -111,6 +142,33 @@ impl RateControl {
         }
     }
 
+    /// Notes that the viewer misses a frame, and so cannot decode those after it, unless an intra frame is among them.
+    pub fn missing(&mut self, number: u32) {
+        if number >= self.intra {
+            self.drop_from(number);
+        }
+    }
+
+    /// True if what is on its way takes so long that it is given up: none of it is of use any more, as the next frame is an
+    /// intra frame.
+    pub fn gives_up(&mut self, now: Duration) -> bool {
+        let oldest = self.in_flight.front().filter(|_| self.fastest().is_some());
+        let gives_up = oldest.is_some_and(|(_, sent)| now.saturating_sub(*sent) > self.give_up);
+        if gives_up {
+            self.drop_from(0);
+            self.give_up *= 2;
+        }
+        gives_up
+    }
+
+    /// Forgets the frames on their way from a number on.
+    fn drop_from(&mut self, number: u32) {
+        let kept = self.in_flight.partition_point(|(in_flight, _)| *in_flight < number);
+        self.lost = self.lost.saturating_add((self.in_flight.len() - kept) as u32);
+        self.in_flight.clear();
+        self.needs_intra = true;
+    }
+
     fn fastest(&self) -> Option<Duration> {
         self.fastest.iter().flatten().min().copied()
     }
@@ -119,28 +177,41 @@ impl RateControl {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{FromViewer, ReorderBuffer};
     use rand::{Rng as _, SeedableRng as _};
     use rand_pcg::Pcg32;
 
-    /// A link as a reliable stream shows it: what is lost is sent again, and what comes after it waits.
+    /// A link, on which frames take these seconds.
     #[derive(Clone, Copy)]
     struct Link {
         bytes_per_second: f64,
         delay: f64,
         jitter: f64,
-        loss: f64,
+        /// The share of frames of which a part is sent again.
+        again: f64,
+        /// The share of frames that never come.
+        lost: f64,
+        /// True if frames come in order, each after those before it, as by WebSocket. Else each comes on its own, and what is
+        /// given up takes no time any more, as by WebTransport.
+        in_order: bool,
     }
 
-    const LAN: Link = Link { bytes_per_second: 12e6, delay: 0.002, jitter: 0.002, loss: 0.0 };
+    const LAN: Link =
+        Link { bytes_per_second: 12e6, delay: 0.002, jitter: 0.002, again: 0.0, lost: 0.0, in_order: true };
     const FRAME_RATE: f32 = 60.0;
     /// Bytes of a frame at quantizer 20: 24 Mbit/s at 60 Hz.
     const BYTES_AT_20: f64 = 50e3;
+    /// Seconds that a frame takes to decode.
+    const DECODE: f64 = 0.004;
 
     struct Outcome {
         /// Seconds from making to decoding a frame, by the time of making.
         ages: Vec<(f64, f64)>,
         quantizer: u8,
         bytes: f64,
+        intra: u32,
+        /// Frames that the viewer did not decode, as it and the server count them.
+        lost: [u32; 2],
     }
 
     impl Outcome {
@@ -153,42 +224,82 @@ mod tests {
         }
     }
 
-    /// Runs a stream for some virtual seconds over a link that may change with time.
+    /// Runs a stream for some virtual seconds over a link that may change with time. What the viewer decodes has all that it
+    /// refers to.
     fn run(seconds: f64, link: impl Fn(f64) -> Link) -> Outcome {
         let mut control = RateControl::new(20, FRAME_RATE);
+        let mut buffer = ReorderBuffer::default();
         let mut random = Pcg32::seed_from_u64(7);
-        let mut outcome = Outcome { ages: Vec::new(), quantizer: 20, bytes: 0.0 };
+        let mut outcome = Outcome { ages: Vec::new(), quantizer: 20, bytes: 0.0, intra: 0, lost: [0; 2] };
         let (mut free, mut last_arrival) = (0.0f64, 0.0f64);
-        let mut acknowledgements: VecDeque<(f64, u32)> = VecDeque::new();
-        let mut number = 0;
+        // What is on its way, with the time at which it comes: frames, and the viewer's messages.
+        let mut down: Vec<(f64, Frame)> = Vec::new();
+        let mut up: VecDeque<(f64, FromViewer)> = VecDeque::new();
+        let (mut number, mut decoded) = (0, None);
         for millisecond in 0..(seconds * 1e3) as u64 {
             let now = millisecond as f64 * 1e-3;
             let time = Duration::from_secs_f64(now);
-            while let Some((_, number)) = acknowledgements.pop_front_if(|(at, _)| *at <= now) {
-                control.decoded(number, time);
+            let link = link(now);
+            down.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+            let come = down.partition_point(|(at, _)| *at <= now);
+            for (_, frame) in down.drain(..come) {
+                buffer.insert(frame.number, frame.is_intra, frame);
+            }
+            while let Some(frame) = buffer.pop() {
+                assert!(frame.is_intra || decoded.is_some_and(|before| frame.number == before + 1));
+                decoded = Some(frame.number);
+                outcome.ages.push((frame.made, now + DECODE - frame.made));
+                up.push_back((now + DECODE + link.delay, FromViewer::Decoded(frame.number)));
+            }
+            if let Some(missing) = buffer.missing(time) {
+                up.push_back((now + link.delay, FromViewer::Missing(missing)));
+            }
+            while let Some((_, message)) = up.pop_front_if(|(at, _)| *at <= now) {
+                match message {
+                    FromViewer::Decoded(number) => control.decoded(number, time),
+                    FromViewer::Missing(number) => control.missing(number),
+                    _ => unreachable!("the viewer of this test says nothing else"),
+                }
+            }
+            if !link.in_order && control.gives_up(time) {
+                down.clear();
+                free = now;
             }
             if !control.is_due(time) {
                 continue;
             }
-            let link = link(now);
+            let is_intra = control.needs_intra();
             let finer = f64::from(control.quantizer()) - 20.0;
             let mut bytes = BYTES_AT_20 * (-finer / 6.0).exp2() * random.random_range(0.8..1.2);
-            if number == 0 {
+            if is_intra {
                 bytes *= 6.0;
+                outcome.intra += 1;
             }
             free = free.max(now) + bytes / link.bytes_per_second;
-            let again = if random.random_bool(link.loss) { 2.0 * link.delay + 0.02 } else { 0.0 };
-            let arrival = free + link.delay + link.jitter * random.random_range(0.0..1.0) + again;
-            last_arrival = last_arrival.max(arrival);
-            let decoded = last_arrival + 0.004;
-            acknowledgements.push_back((decoded + link.delay, number));
-            outcome.ages.push((now, decoded - now));
+            let again = if random.random_bool(link.again) { 2.0 * link.delay + 0.02 } else { 0.0 };
+            let mut arrival = free + link.delay + link.jitter * random.random_range(0.0..1.0) + again;
+            if link.in_order {
+                last_arrival = last_arrival.max(arrival);
+                arrival = last_arrival;
+            }
+            if !random.random_bool(link.lost) {
+                down.push((arrival, Frame { number, is_intra, made: now }));
+            }
             outcome.bytes += bytes;
-            control.sent(number, time);
+            control.sent(number, is_intra, time);
             number += 1;
         }
         outcome.quantizer = control.quantizer();
+        outcome.lost = [buffer.lost(), control.lost()];
         outcome
+    }
+
+    /// A frame on its way.
+    struct Frame {
+        number: u32,
+        is_intra: bool,
+        /// The time at which it was made, in seconds.
+        made: f64,
     }
 
     #[test]
@@ -231,9 +342,37 @@ mod tests {
 
     #[test]
     fn lost_packets_and_jitter_delay_frames_and_do_not_pile_them_up() {
-        let outcome = run(20.0, |_| Link { delay: 0.01, jitter: 0.01, loss: 0.02, ..LAN });
+        let outcome = run(20.0, |_| Link { delay: 0.01, jitter: 0.01, again: 0.02, ..LAN });
         let (rate, age) = outcome.from(1.0, 20.0);
         assert!(rate > 50.0 && age < 0.08, "{rate} Hz, {age} s");
+    }
+
+    #[test]
+    fn frames_that_overtake_others_cost_no_intra_frame() {
+        let outcome = run(20.0, |_| Link { jitter: 0.03, again: 0.02, in_order: false, ..LAN });
+        let (rate, age) = outcome.from(1.0, 20.0);
+        assert!(rate > 50.0 && age < 0.08, "{rate} Hz, {age} s");
+        assert_eq!((outcome.intra, outcome.lost), (1, [0, 0]));
+    }
+
+    #[test]
+    fn a_lost_frame_costs_an_intra_frame_and_those_that_refer_to_it() {
+        let outcome = run(20.0, |_| Link { lost: 0.01, in_order: false, ..LAN });
+        let (rate, age) = outcome.from(1.0, 20.0);
+        assert!(rate > 45.0 && age < 0.06, "{rate} Hz, {age} s");
+        assert!((2..30).contains(&outcome.intra), "{} intra frames", outcome.intra);
+        let [seen, known] = outcome.lost;
+        assert!(seen > 0 && seen.abs_diff(known) < 10, "{seen} frames are lost, {known} to the server");
+    }
+
+    #[test]
+    fn after_a_gap_the_newest_frame_comes_first_where_others_can_be_given_up() {
+        // For two seconds nothing comes through.
+        let delay = |now| LAN.delay + if (5.0..7.0).contains(&now) { 7.0 - now } else { 0.0 };
+        let outcome = run(10.0, |now| Link { delay: delay(now), in_order: false, ..LAN });
+        assert!(outcome.lost[0] > 0 && outcome.intra < 6, "{:?}, {} intra", outcome.lost, outcome.intra);
+        let (rate, age) = outcome.from(7.1, 10.0);
+        assert!(rate > 57.0 && age < 0.02, "{rate} Hz, {age} s");
     }
 
     #[test]
@@ -243,7 +382,7 @@ mod tests {
         for millisecond in 0..7000 {
             let now = Duration::from_millis(millisecond);
             if control.is_due(now) {
-                control.sent(sent, now);
+                control.sent(sent, sent == 0, now);
                 if millisecond < 5000 {
                     control.decoded(sent, now + Duration::from_millis(6));
                 } else {
@@ -255,5 +394,79 @@ mod tests {
         let now = Duration::from_millis(7000);
         control.decoded(sent - 1, now);
         assert!(control.is_due(now), "the newest frame that was decoded lets the next one be made");
+    }
+
+    /// When a viewer asks for frames.
+    #[derive(Clone, Copy, PartialEq)]
+    enum Asking {
+        /// Every 1/60 s by a timer of its own.
+        Timer,
+        /// At each refresh of its display.
+        Refresh,
+    }
+
+    /// Runs a stream for a virtual minute, with frames that take from `fastest` to `fastest + jitter` seconds from their request.
+    /// Returns the mean age of what is shown, in seconds: the time since the refresh at which its pose was drawn.
+    fn mean_age(asking: Asking, refresh_rate: f64, fastest: f64, jitter: f64) -> f64 {
+        let mut control = RateControl::new(20, FRAME_RATE);
+        let mut random = Pcg32::seed_from_u64(3);
+        let (mut refresh, mut ask, mut pose, mut number) = (0.0, 0.0, 0.0, 0);
+        let (mut request, mut shown, mut sum, mut refreshes) = (None, None, 0.0, 0.0);
+        // Frames that are on their way: the time at which they are decoded, their number and pose.
+        let mut down: Vec<(f64, u32, f64)> = Vec::new();
+        for step in 0..240_000 {
+            let now = f64::from(step) * 0.25e-3;
+            let time = Duration::from_secs_f64(now);
+            for (_, number, pose) in down.extract_if(.., |(at, ..)| *at <= now) {
+                control.decoded(number, time);
+                shown = Some(pose);
+            }
+            if now >= refresh {
+                if let Some(shown) = shown {
+                    sum += refresh - shown;
+                    refreshes += 1.0;
+                }
+                pose = refresh;
+                refresh += 1.0 / refresh_rate;
+                if asking == Asking::Refresh {
+                    ask = now;
+                }
+            }
+            if now >= ask {
+                request = Some(pose);
+                // The clocks differ a little, so that all phases come.
+                ask = if asking == Asking::Timer { ask + 1.001 / 60.0 } else { f64::INFINITY };
+            }
+            if control.is_due(time)
+                && let Some(pose) = request.take()
+            {
+                control.sent(number, number == 0, time);
+                down.push((now + fastest + jitter * random.random_range(0.0..1.0), number, pose));
+                number += 1;
+            }
+        }
+        assert!((54 * 60..64 * 60).contains(&number), "{number} frames in a minute");
+        sum / refreshes
+    }
+
+    #[test]
+    fn what_is_asked_for_at_each_refresh_is_newer_when_it_is_shown() {
+        for (refresh_rate, fastest, jitter, saved) in [
+            (60.0, 0.014, 0.001, 0.01),
+            (60.0, 0.014, 0.006, 0.005),
+            (60.0, 0.027, 0.003, 0.01),
+            (90.0, 0.014, 0.002, 0.0),
+        ] {
+            let [timer, refresh] = [Asking::Timer, Asking::Refresh]
+                .map(|asking| mean_age(asking, refresh_rate, fastest, jitter));
+            println!(
+                "{refresh_rate} Hz, {:.0} to {:.0} ms: {:.1} ms by a timer, {:.1} ms at each refresh",
+                fastest * 1e3,
+                (fastest + jitter) * 1e3,
+                timer * 1e3,
+                refresh * 1e3
+            );
+            assert!(refresh < timer - saved, "{refresh_rate} Hz: {timer} s by a timer, {refresh} s");
+        }
     }
 }

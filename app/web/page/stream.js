@@ -7,8 +7,8 @@ import { changed, startLoop } from './drawing.js';
 import { clear, loading, say } from './messages.js';
 import { sentence } from './sentence.js';
 
-/** Milliseconds from one request to the next. */
-const TICK = 1000 / 60;
+/** Milliseconds after which a server is asked again although nothing is drawn. */
+const PATIENCE = 100;
 /** Milliseconds from one line of figures to the next. */
 const LINE = 1000;
 /** The answer of a server that serves another page; app/stream/src/messages.rs has all. */
@@ -19,9 +19,11 @@ let worker = null;
 let playing = null;
 let isThere = false;
 /** Since the last line of figures. */
-let sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
+let sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
 let last = null;
 let timers = [];
+/** When the server was asked last. */
+let asked = 0;
 
 /** Says why nothing can be decoded here; true if it can. */
 function canDecode() {
@@ -72,10 +74,12 @@ export function follow(token) {
   if (!canDecode()) return;
   loading('Waiting for the stream');
   element('where').textContent = 'The eye comes from the server, which gets to know where your head is.';
-  const begin = { address: `${location.origin.replace(/^http/, 'ws')}/stream`, hello };
+  const begin = { address: `${location.origin.replace(/^http/, 'ws')}/stream`, hello, module: app.module };
   start(new URL('stream-worker.js', import.meta.url));
   worker.postMessage({ begin });
-  timers = [setInterval(request, TICK), setInterval(figures, LINE)];
+  const keepAlive = () => { if (performance.now() - asked > PATIENCE) request(); };
+  timers = [setInterval(keepAlive, PATIENCE), setInterval(figures, LINE)];
+  requestAnimationFrame(refresh);
   // Nobody sees a hidden page: another one may have the stream.
   document.addEventListener('visibilitychange', () => {
     if (!playing) worker?.postMessage(document.hidden ? { end: true } : { begin });
@@ -86,6 +90,7 @@ export function follow(token) {
 function end() {
   worker?.terminate();
   timers.forEach(clearInterval);
+  timers = [];
   worker = null;
   playing = null;
   isThere = false;
@@ -100,11 +105,12 @@ function stop() {
   app.settings.stream = null;
 }
 
-function receive({ answer, lost, fault, head, way, planes, frame, ms, isTimed, bytes, skipped }) {
+function receive({ answer, lost, fault, head, way, planes, frame, ms, isTimed, bytes, skipped, framesLost }) {
   if (!app.page) {
     frame?.close();
     return;
   }
+  sums.lost += framesLost ?? 0;
   if (answer) welcome(answer);
   if (fault) {
     end();
@@ -170,20 +176,28 @@ function welcome(answer) {
 document.addEventListener('visibilitychange', pause);
 element('play').addEventListener('change', pause);
 
+/** Asks at each refresh of the display, once the eyes are drawn: their pose is newest then. */
+function refresh() {
+  if (!timers.length) return;
+  setTimeout(request);
+  requestAnimationFrame(refresh);
+}
+
 /** Asks for the eyes as they were made last. */
 function request() {
   if (!isThere || !app.page || app.source) return;
-  const message = app.page.streamRequest(performance.now());
+  asked = performance.now();
+  const message = app.page.streamRequest(asked);
   if (message) worker.postMessage({ send: message });
 }
 
 function figures() {
   if (!isThere || !last || !app.page) return;
-  const { frames, bytes, skipped, latency } = sums;
-  sums = { frames: 0, bytes: 0, skipped: 0, latency: 0 };
+  const { frames, lost, bytes, skipped, latency } = sums;
+  sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
   const [cm, degrees] = app.page.streamCorrection() ?? [0, 0];
   element('facts').textContent = frames
     ? `Stream: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
-      + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), corrected by ${cm.toFixed(1)} cm and ${degrees.toFixed(1)}°, ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
+      + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), corrected by ${cm.toFixed(1)} cm and ${degrees.toFixed(1)}°, ${lost} lost, ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
     : 'Stream: no frames.';
 }

@@ -4,8 +4,7 @@ use std::io::{BufRead as _, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
 use base64::Engine as _;
@@ -25,7 +24,7 @@ use yoro_lab::metrics::{Channels, psnr};
 use yoro_lab::streaming::{FrameRenderer, Mode, Receiver};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_stream::{Content, EyeView, FrameHeader, FromServer, FromViewer, VERSION, ViewRequest};
-use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
+use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind, Planes};
 
 use super::{GL, Page, Server, close, headset};
 use crate::browser::Browser;
@@ -428,8 +427,9 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     assert!(late < early + (4 << 20), "{early} bytes after a tenth, {late} at the end");
 }
 
-/// Answers like `yoro serve`, with frames that are no H.264, and counts how often it is connected to.
-fn serve_damage(listener: &TcpListener, connections: &AtomicUsize) -> Option<()> {
+/// Answers like `yoro serve`, but leaves out frame 1, and sends no H.264 after frame 3. Passes on what it is told, without
+/// requests.
+fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromViewer>) -> Option<()> {
     let folder = Path::new(env!("CARGO_BIN_EXE_yoro")).ancestors().nth(2).unwrap().join("web");
     let mut open = Vec::new();
     for mut stream in listener.incoming().flatten() {
@@ -438,21 +438,40 @@ fn serve_damage(listener: &TcpListener, connections: &AtomicUsize) -> Option<()>
             http::answer(&mut stream, &request, &folder).ok()?;
             continue;
         };
-        connections.fetch_add(1, Ordering::SeqCst);
         let upgrade = "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade";
         let accept = derive_accept_key(key.as_bytes());
         write!(stream, "{upgrade}\r\nSec-WebSocket-Accept: {accept}\r\n\r\n").ok()?;
         let mut socket = WebSocket::from_raw_socket(stream, Role::Server, None);
-        socket.read().ok()?;
         let eye_view = EyeView { pose: Pose::IDENTITY, frustum: Frustum::symmetric(1.0, 1.0) };
         let content = Content::Depth(eye_view, [1.0, 10.0]);
         let header =
             FrameHeader { time: 0.0, content, size: [64, 64], render_ms: 0.0, encode_ms: 0.0, quantizer: 24 };
-        let data = &[0, 0, 0, 1, 0x65, 1, 2, 3];
-        for message in
-            [FromServer::Welcome(Pose::IDENTITY), FromServer::Frame { number: 0, intra: true, header, data }]
-        {
-            socket.send(Message::binary(message.to_bytes())).ok()?;
+        let picture = Planes::of_gray(&image::GrayImage::new(128, 64));
+        let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, 5.0).unwrap();
+        let mut frame = |number, intra| {
+            let data = &encoder.encode(&picture, 24, intra).unwrap().data;
+            FromServer::Frame { number, intra, header, data }.to_bytes()
+        };
+        let [first, _, second, third] = [0, 1, 2, 3].map(|number| frame(number, number % 3 == 0));
+        let damage = FromServer::Frame { number: 4, intra: true, header, data: &[0, 0, 0, 1, 0x65, 1, 2, 3] };
+        loop {
+            let message = FromViewer::read(&socket.read().ok()?.into_data())?;
+            let answers = match message {
+                FromViewer::Request(_) => continue,
+                FromViewer::Hello { .. } => {
+                    vec![FromServer::Welcome(Pose::IDENTITY).to_bytes(), first.clone()]
+                }
+                FromViewer::Decoded(0) => vec![second.clone()],
+                FromViewer::Missing(1) => vec![third.clone()],
+                _ => vec![damage.to_bytes()],
+            };
+            said.send(message).ok()?;
+            for answer in answers {
+                socket.send(Message::binary(answer)).ok()?;
+            }
+            if message == FromViewer::Decoded(3) {
+                break;
+            }
         }
         open.push(socket);
     }
@@ -460,27 +479,28 @@ fn serve_damage(listener: &TcpListener, connections: &AtomicUsize) -> Option<()>
 }
 
 #[test]
-fn a_browser_that_cannot_decode_says_so_and_stops() {
+fn a_missing_frame_is_named_and_a_browser_that_cannot_decode_says_so_and_stops() {
     // Says what is missing.
     let Some(_) = Server::start() else { return };
     let Some(mut browser) = Browser::start_with(&GL) else { return };
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = format!("http://{}/", listener.local_addr().unwrap());
-    let connections = Arc::new(AtomicUsize::new(0));
-    let counted = connections.clone();
-    std::thread::spawn(move || serve_damage(&listener, &counted));
+    let (tell, said) = mpsc::channel();
+    std::thread::spawn(move || serve_faults(&listener, &tell));
     browser.allow(&address);
     browser.allow(&address.replace("http", "ws"));
     browser.resize(640, 420);
     browser.go(&format!("{address}#stream={:032x}", 1));
-    let said = "document.getElementById('message-text').textContent";
+    let message = "document.getElementById('message-text').textContent";
     let start = Instant::now();
-    while !browser.evaluate(said).as_str().unwrap().contains("cannot decode the H.264 (") {
-        assert!(start.elapsed() < Duration::from_secs(60), "{}", browser.evaluate(said));
+    while !browser.evaluate(message).as_str().unwrap().contains("cannot decode the H.264 (") {
+        assert!(start.elapsed() < Duration::from_secs(60), "{}", browser.evaluate(message));
         std::thread::sleep(Duration::from_millis(100));
     }
     // It would have been back three times.
     std::thread::sleep(Duration::from_secs(3));
-    assert_eq!(connections.load(Ordering::SeqCst), 1);
+    let hello = FromViewer::Hello { version: VERSION, token: 1u128.to_be_bytes() };
+    let expected = [hello, FromViewer::Decoded(0), FromViewer::Missing(1), FromViewer::Decoded(3)];
+    assert_eq!(said.try_iter().collect::<Vec<_>>(), expected);
     browser.expect_silence();
 }

@@ -77,7 +77,7 @@ impl Server {
         // The time of the request that was answered last.
         let mut answered: Option<f64> = None;
         let mut number = 0u32;
-        let mut statistics = Statistics::new();
+        let mut statistics = Statistics::new(0);
         connection.set_timeout(SILENCE);
         let (tell, heard) = mpsc::channel();
         let listener = web_socket(connection.clone());
@@ -90,6 +90,10 @@ impl Server {
                     match message {
                         FromViewer::Request(newest) => request = Some(newest),
                         FromViewer::Decoded(decoded) => control.decoded(decoded, at - self.start),
+                        FromViewer::Missing(missing) => {
+                            log::info!("frame {missing} is missing");
+                            control.missing(missing);
+                        }
                         FromViewer::Hello { .. } => {}
                     }
                     continue;
@@ -111,7 +115,7 @@ impl Server {
             answered = Some(request.time);
             let rendered = begun.elapsed();
             let LivePicture { data, is_intra, quantizer } =
-                self.encoder.encode(&picture.planes, control.quantizer(), number == 0 || picture.new_span)?;
+                self.encoder.encode(&picture.planes, control.quantizer(), control.needs_intra() || picture.new_span)?;
             let ms = |time: Duration| time.as_secs_f32() * 1e3;
             let header = FrameHeader {
                 time: request.time,
@@ -122,7 +126,7 @@ impl Server {
                 quantizer,
             };
             let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
-            control.sent(number, self.start.elapsed());
+            control.sent(number, is_intra, self.start.elapsed());
             socket.send(Message::binary(frame.to_bytes()))?;
             statistics.add(data.len(), &header);
             number = number.wrapping_add(1);
@@ -137,11 +141,13 @@ struct Statistics {
     bytes: usize,
     render_ms: f32,
     encode_ms: f32,
+    /// Frames that were lost before.
+    lost: u32,
 }
 
 impl Statistics {
-    fn new() -> Statistics {
-        Statistics { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, encode_ms: 0.0 }
+    fn new(lost: u32) -> Statistics {
+        Statistics { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, encode_ms: 0.0, lost }
     }
 
     fn add(&mut self, bytes: usize, header: &FrameHeader) {
@@ -159,8 +165,9 @@ impl Statistics {
         if self.frames > 0 {
             let frames = self.frames as f32;
             println!(
-                "{:.0} frames/s, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and decoded {}",
+                "{:.0} frames/s, {} lost, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and decoded {}",
                 frames / seconds,
+                control.lost() - self.lost,
                 self.bytes as f32 * 8e-6 / seconds,
                 control.quantizer(),
                 self.render_ms / frames,
@@ -168,6 +175,6 @@ impl Statistics {
                 control.round_trip().map_or("never".into(), |time| format!("after {} ms", time.as_millis()))
             );
         }
-        *self = Statistics::new();
+        *self = Statistics::new(control.lost());
     }
 }

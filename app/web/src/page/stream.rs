@@ -1,10 +1,12 @@
 //! The interface for JavaScript to a stream. JavaScript has the connection and the decoder.
 
-use js_sys::{Array, Uint8Array};
+use std::time::Duration;
+
+use js_sys::{Array, ArrayBuffer, Uint8Array};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::Pose;
 use yoro_render::DecodedPicture;
-use yoro_stream::{FromServer, FromViewer, Refusal};
+use yoro_stream::{FromServer, FromViewer, Refusal, ReorderBuffer};
 
 use super::error::sentence;
 use super::stream_show::StreamShow;
@@ -113,5 +115,40 @@ impl Page {
         let Content::Stream(stream) = &mut self.content else { return None };
         let [metres, radians] = stream.eyes.take_correction()?;
         Some(vec![metres * 100.0, radians.to_degrees()])
+    }
+}
+
+/// Puts the frames of a connection into their order. Frames are messages, of which only the page knows the content.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct StreamOrder(ReorderBuffer<ArrayBuffer>);
+
+#[wasm_bindgen]
+impl StreamOrder {
+    /// Begins with frame 0.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> StreamOrder {
+        StreamOrder::default()
+    }
+
+    /// Takes a frame that has come.
+    pub fn insert(&mut self, number: u32, intra: bool, frame: ArrayBuffer) {
+        self.0.insert(number, intra, frame);
+    }
+
+    /// Returns the frame that is to be decoded next; none if it is not there.
+    pub fn pop(&mut self) -> Option<ArrayBuffer> {
+        self.0.pop()
+    }
+
+    /// Returns the message that names a missing frame, if one has to be sent at a time in ms.
+    pub fn missing(&mut self, time: f64) -> Option<Vec<u8>> {
+        let number = self.0.missing(Duration::from_secs_f64(time * 1e-3))?;
+        Some(FromViewer::Missing(number).to_bytes())
+    }
+
+    /// Returns the number of frames that were not decoded.
+    pub fn lost(&self) -> u32 {
+        self.0.lost()
     }
 }

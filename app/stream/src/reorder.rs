@@ -1,0 +1,150 @@
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// A missing frame is waited for so long after a newer one has come.
+const PATIENCE: Duration = Duration::from_millis(50);
+/// An intra frame that does not come is asked for again after so long.
+const REPEAT: Duration = Duration::from_millis(250);
+/// The number of frames that may wait for a missing one.
+const MOST_WAITING: usize = 32;
+
+/// Puts a stream's frames into their order at the viewer, as a decoder needs them. What refers to a frame that is lost is not
+/// decoded: an intra frame goes on. All times are of one clock, the viewer's.
+#[derive(Clone, Debug)]
+pub struct ReorderBuffer<T> {
+    /// The number of the frame that is decoded next.
+    next: u32,
+    /// Frames that have come before others, and whether they are intra frames.
+    waiting: BTreeMap<u32, (bool, T)>,
+    /// The time since when the next frame is missed, or at which an intra frame was asked for.
+    since: Option<Duration>,
+    /// True if an intra frame was asked for.
+    asked: bool,
+    lost: u32,
+}
+
+impl<T> Default for ReorderBuffer<T> {
+    /// Returns the buffer of a new connection, which begins with frame 0.
+    fn default() -> ReorderBuffer<T> {
+        ReorderBuffer { next: 0, waiting: BTreeMap::new(), since: None, asked: false, lost: 0 }
+    }
+}
+
+impl<T> ReorderBuffer<T> {
+    /// Takes a frame that has come, in any order.
+    pub fn insert(&mut self, number: u32, is_intra: bool, frame: T) {
+        if number < self.next {
+            return;
+        }
+        if self.waiting.len() == MOST_WAITING {
+            self.waiting.pop_first();
+        }
+        self.waiting.insert(number, (is_intra, frame));
+    }
+
+    /// Returns the frame that is to be decoded next, if it is there.
+    pub fn pop(&mut self) -> Option<T> {
+        if *self.waiting.first_key_value()?.0 != self.next {
+            // The newest intra frame needs none of those before it.
+            let (&intra, _) = self.waiting.iter().rev().find(|(_, (is_intra, _))| *is_intra)?;
+            self.waiting = self.waiting.split_off(&intra);
+            self.lost = self.lost.saturating_add(intra - self.next);
+            self.next = intra;
+        }
+        (self.since, self.asked) = (None, false);
+        let (_, frame) = self.waiting.remove(&self.next)?;
+        self.next = self.next.wrapping_add(1);
+        Some(frame)
+    }
+
+    /// Returns the number of a frame that is lost, when an intra frame is to be asked for. To be called from time to time, after
+    /// all frames were taken that can be decoded.
+    pub fn missing(&mut self, now: Duration) -> Option<u32> {
+        if self.waiting.is_empty() && !self.asked {
+            return None;
+        }
+        let waited = now.saturating_sub(*self.since.get_or_insert(now));
+        if waited < if self.asked { REPEAT } else { PATIENCE } {
+            return None;
+        }
+        (self.since, self.asked) = (Some(now), true);
+        Some(self.next)
+    }
+
+    /// Returns the number of frames that were not decoded, because they or others before them were lost or came late.
+    pub fn lost(&self) -> u32 {
+        self.lost
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(milliseconds: u64) -> Duration {
+        Duration::from_millis(milliseconds)
+    }
+
+    /// Inserts frames that are their own numbers, and returns those that can be decoded then.
+    fn decoded(buffer: &mut ReorderBuffer<u32>, frames: &[(u32, bool)]) -> Vec<u32> {
+        frames.iter().for_each(|(number, is_intra)| buffer.insert(*number, *is_intra, *number));
+        std::iter::from_fn(|| buffer.pop()).collect()
+    }
+
+    #[test]
+    fn frames_that_overtake_others_wait_for_them() {
+        let mut buffer = ReorderBuffer::default();
+        assert_eq!(decoded(&mut buffer, &[(1, false)]), []);
+        assert_eq!(decoded(&mut buffer, &[(0, true)]), [0, 1]);
+        assert_eq!(decoded(&mut buffer, &[(4, false), (3, false), (3, false)]), []);
+        assert_eq!(buffer.missing(ms(0)), None);
+        assert_eq!(buffer.missing(ms(49)), None);
+        assert_eq!(decoded(&mut buffer, &[(2, false)]), [2, 3, 4]);
+        assert_eq!(buffer.missing(ms(99)), None, "nothing is missing any more");
+        assert_eq!(decoded(&mut buffer, &[(6, false)]), []);
+        assert_eq!(buffer.missing(ms(100)), None, "another frame is missing since now");
+        assert_eq!(buffer.lost(), 0);
+    }
+
+    #[test]
+    fn a_lost_frame_is_named_and_an_intra_frame_goes_on() {
+        let mut buffer = ReorderBuffer::default();
+        assert_eq!(decoded(&mut buffer, &[(0, true), (2, false)]), [0]);
+        assert_eq!(buffer.missing(ms(0)), None);
+        assert_eq!(buffer.missing(ms(50)), Some(1));
+        assert_eq!(decoded(&mut buffer, &[(3, false)]), []);
+        assert_eq!(buffer.missing(ms(299)), None);
+        assert_eq!(buffer.missing(ms(300)), Some(1), "the request was lost, too");
+        assert_eq!(decoded(&mut buffer, &[(5, false), (4, true)]), [4, 5]);
+        assert_eq!(buffer.lost(), 3);
+        assert_eq!(decoded(&mut buffer, &[(1, false), (2, true)]), [], "they come too late");
+        assert_eq!(buffer.missing(ms(900)), None);
+    }
+
+    #[test]
+    fn an_intra_frame_waits_for_none() {
+        let mut buffer = ReorderBuffer::default();
+        assert_eq!(decoded(&mut buffer, &[(0, true), (2, true), (3, false)]), [0, 2, 3]);
+        assert_eq!(buffer.lost(), 1);
+        assert_eq!(decoded(&mut buffer, &[(1, false), (4, true), (5, true)]), [4, 5], "none is left out");
+        assert_eq!(buffer.lost(), 1);
+    }
+
+    #[test]
+    fn a_missing_frame_that_comes_after_all_is_decoded() {
+        let mut buffer = ReorderBuffer::default();
+        assert_eq!(decoded(&mut buffer, &[(0, true), (2, false)]), [0]);
+        assert_eq!([0, 50].map(|time| buffer.missing(ms(time))), [None, Some(1)]);
+        assert_eq!(decoded(&mut buffer, &[(1, false)]), [1, 2]);
+        assert_eq!((buffer.missing(ms(900)), buffer.lost()), (None, 0));
+    }
+
+    #[test]
+    fn frames_that_wait_are_limited_in_number() {
+        let mut buffer = ReorderBuffer::default();
+        assert_eq!(decoded(&mut buffer, &[(0, true)]), [0]);
+        (2..1000).for_each(|number| buffer.insert(number, false, number));
+        assert_eq!(buffer.waiting.len(), MOST_WAITING);
+        assert_eq!(decoded(&mut buffer, &[(1, false)]), [1]);
+    }
+}
