@@ -221,6 +221,13 @@ impl Browser {
         self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
     }
 
+    /// Forgets what a test has made fail on purpose.
+    pub fn forget(&mut self) {
+        self.evaluate("0");
+        self.console.clear();
+        self.errors.clear();
+    }
+
     /// Fails if a script threw or something could not be loaded.
     #[track_caller]
     pub fn expect_no_error(&mut self) {

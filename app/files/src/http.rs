@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, Read, Write};
 use std::path::{Component, Path, PathBuf};
 
-/// The content policy of what is served.
-pub const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
+/// The content policy of what is served. A page gets streams from other servers, too.
+pub const POLICY: &str = "default-src 'self'; connect-src 'self' https:; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
 
 /// The longest line of a request that is read, in bytes.
 const MAX_LINE: u64 = 8 << 10;

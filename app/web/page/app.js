@@ -40,7 +40,7 @@ export const app = {
   /** The source that is being loaded. @type {Source | null} */
   wanted: null,
   /** A stream's or a video's state, once it has begun.
-   * @type {{frames: number, there: boolean, losses: number, video?: boolean, way: string, choose: (way: string) => void, stop: () => void, again: () => void} | null} */
+   * @type {{frames: number, there: boolean, losses: number, video?: boolean, ask: () => void, way: string, choose: (way: string) => void, stop: () => void, again: () => void} | null} */
   stream: null,
   /** The module's facts about the scene; null for pictures. */
   facts: null,

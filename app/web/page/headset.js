@@ -134,6 +134,7 @@ async function enter(button) {
           times.length = 0;
         }
         const fits = headset.draw(app.page, floats, ...size, shown ? text : '');
+        app.stream?.ask();
         if (!fits && !run.told) {
           run.told = true;
           say('This headset’s eyes are canted or shifted: both are rendered.');

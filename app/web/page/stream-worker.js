@@ -11,9 +11,19 @@ const CODEC = 'avc1.42c033';
 /** After a connection was lost it is tried again after so long, in ms. */
 const AGAIN = 1000;
 
-/** What the page has said: the server's address, and the message with which to begin. */
+/** A WebTransport that does not come in so long, in ms, is given up. */
+const PATIENCE = 3000;
+
+/** What the page has said: `hello`, the message with which to begin; the `module`; the WebSocket's address as `socket`, and the
+ * WebTransport's `address` with its certificate's `hash` as `transport`, where there are these. */
 let begin;
-let socket = null;
+/** The connection, or the one that is being tried.
+ * @type {{name: string, send: (message: Uint8Array) => void, close: () => void} | null} */
+let connection = null;
+/** True if the WebTransport has failed where there is a WebSocket. */
+let useSocket = false;
+/** True once the server has answered. */
+let answered = false;
 /** Puts this connection's frames into their order. @type {StreamOrder | null} */
 let order = null;
 /** Frames of this connection that are lost. */
@@ -26,31 +36,95 @@ onmessage = async ({ data }) => {
     connect();
   } else if (data.end) {
     begin = null;
-    socket?.close();
-  } else if (data.send && socket?.readyState === WebSocket.OPEN) {
-    socket.send(data.send);
+    connection?.close();
+  } else if (data.send && answered) {
+    connection?.send(data.send);
     miss();
   }
 };
 
 function connect() {
-  if (!begin || socket) return;
-  socket = new WebSocket(begin.address);
-  socket.binaryType = 'arraybuffer';
+  if (!begin || connection) return;
   order = new StreamOrder();
   lost = 0;
-  socket.onopen = () => socket.send(begin.hello);
-  socket.onmessage = ({ data }) => {
-    decoding.count(data.byteLength);
-    if (new Uint8Array(data)[0] === FRAME) take(data);
-    else postMessage({ answer: new Uint8Array(data) });
+  answered = false;
+  try {
+    connection = begin.transport && !useSocket ? openTransport(begin) : openSocket(begin);
+  } catch {
+    postMessage({ fault: 'The link is not whole: open the link that the server prints.' });
+  }
+}
+
+/** Takes a message of the server. @param {ArrayBuffer} message */
+function receive(message) {
+  decoding.count(message.byteLength);
+  if (new Uint8Array(message)[0] === FRAME) {
+    take(message);
+    return;
+  }
+  answered = true;
+  postMessage({ answer: new Uint8Array(message), by: connection.name });
+}
+
+/** The connection has ended. */
+function ended() {
+  connection = null;
+  decoding.end();
+  if (!answered && begin?.transport && begin.socket) {
+    useSocket = !useSocket;
+    if (useSocket) {
+      connect();
+      return;
+    }
+  }
+  answered = false;
+  postMessage({ lost: true });
+  setTimeout(connect, AGAIN);
+}
+
+function openSocket({ socket: address, hello }) {
+  const socket = new WebSocket(address);
+  socket.binaryType = 'arraybuffer';
+  socket.onopen = () => socket.send(hello);
+  socket.onmessage = ({ data }) => receive(data);
+  socket.onclose = ended;
+  const send = (message) => { if (socket.readyState === WebSocket.OPEN) socket.send(message); };
+  return { name: 'WebSocket', send, close: () => socket.close() };
+}
+
+function openTransport({ transport: { address, hash }, hello }) {
+  const transport = new WebTransport(address, {
+    serverCertificateHashes: [{ algorithm: 'sha-256', value: hash }], congestionControl: 'low-latency',
+  });
+  const datagrams = transport.datagrams.writable.getWriter();
+  const whole = (stream) => new Response(stream).arrayBuffer();
+  const ignore = () => {};
+  const run = async () => {
+    await transport.ready;
+    const first = await transport.createBidirectionalStream();
+    const writer = first.writable.getWriter();
+    await writer.write(hello);
+    writer.close().catch(ignore);
+    receive(await whole(first.readable));
+    const streams = transport.incomingUnidirectionalStreams.getReader();
+    for (let next = await streams.read(); !next.done; next = await streams.read()) {
+      // A frame that the server gives up is left out.
+      whole(next.value).then((frame) => { if (connection === self) receive(frame); }, ignore);
+    }
   };
-  socket.onclose = () => {
-    socket = null;
-    decoding.end();
-    postMessage({ lost: true });
-    setTimeout(connect, AGAIN);
+  const self = {
+    name: 'WebTransport',
+    send: (message) => { datagrams.write(message).catch(ignore); },
+    close: () => { try { transport.close(); } catch { /* it has not begun */ } },
   };
+  const timer = setTimeout(() => { if (connection === self && !answered) self.close(); }, PATIENCE);
+  for (const promise of [transport.closed, datagrams.closed]) promise.catch(ignore);
+  run().catch(ignore).finally(() => {
+    clearTimeout(timer);
+    self.close();
+    ended();
+  });
+  return self;
 }
 
 /** Takes a frame, and decodes those whose turn it is. @param {ArrayBuffer} message */
@@ -66,12 +140,12 @@ function take(message) {
 /** Names a frame that is missing. */
 function miss() {
   const missing = order.missing(performance.now());
-  if (missing) socket.send(missing);
+  if (missing) connection?.send(missing);
 }
 
 function decode(message) {
   const view = new DataView(message);
   const [intra, length, number] = [view.getUint8(1) === 1, view.getUint16(2, true), view.getUint32(4, true)];
-  if (!decoding.isStarted()) decoding.start({ codec: CODEC, optimizeForLatency: true }, () => socket?.close());
+  if (!decoding.isStarted()) decoding.start({ codec: CODEC, optimizeForLatency: true }, () => connection?.close());
   decoding.decode(number, intra, new Uint8Array(message.slice(0, PREFIX + length)), new Uint8Array(message, PREFIX + length));
 }

@@ -21,6 +21,8 @@ let isThere = false;
 /** Since the last line of figures. */
 let sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
 let last = null;
+/** The name of the transport. */
+let via = '';
 let timers = [];
 /** When the server was asked last. */
 let asked = 0;
@@ -64,8 +66,13 @@ function pause() {
   if (playing) worker?.postMessage({ playing: element('play').checked && !document.hidden });
 }
 
-/** Follows the stream of a token, from the server that the page comes from. @param {string} token */
-export function follow(token) {
+/**
+ * Follows a stream.
+ * @param {string} stream a token, for the server that the page comes from; or, with commas between them, a server's address, its
+ * certificate's SHA-256 in hexadecimal digits and a token
+ */
+export function follow(stream) {
+  const [token, hash, address] = stream.split(',').reverse();
   const hello = app.page.streamHello(token);
   if (!hello) {
     say('The link’s token is not whole: open the link that the server prints.');
@@ -74,7 +81,20 @@ export function follow(token) {
   if (!canDecode()) return;
   loading('Waiting for the stream');
   element('where').textContent = 'The eye comes from the server, which gets to know where your head is.';
-  const begin = { address: `${location.origin.replace(/^http/, 'ws')}/stream`, hello, module: app.module };
+  const canTransport = address && 'WebTransport' in globalThis;
+  const isOwn = !address || address === location.host;
+  if (!isOwn && !canTransport) {
+    loading(null);
+    say('This browser has no WebTransport, by which pages of other servers get the stream: update it, or use another one.');
+    return;
+  }
+  const bytes = Uint8Array.from(hash?.match(/../g) ?? [], (byte) => parseInt(byte, 16));
+  const begin = {
+    hello,
+    module: app.module,
+    socket: isOwn ? `${location.origin.replace(/^http/, 'ws')}/stream` : null,
+    transport: canTransport ? { address: `https://${address}/stream`, hash: bytes } : null,
+  };
   start(new URL('stream-worker.js', import.meta.url));
   worker.postMessage({ begin });
   const keepAlive = () => { if (performance.now() - asked > PATIENCE) request(); };
@@ -105,13 +125,14 @@ function stop() {
   app.settings.stream = null;
 }
 
-function receive({ answer, lost, fault, head, way, planes, frame, ms, isTimed, bytes, skipped, framesLost }) {
+function receive({ answer, by, lost, fault, head, way, planes, frame, ms, isTimed, bytes, skipped, framesLost }) {
   if (!app.page) {
     frame?.close();
     return;
   }
   sums.lost += framesLost ?? 0;
   if (answer) welcome(answer);
+  if (by) via = by;
   if (fault) {
     end();
     say(fault);
@@ -163,7 +184,7 @@ function welcome(answer) {
   clear();
   loading(null);
   isThere = true;
-  app.stream ??= { frames: 0, there: true, losses: 0, way: '', choose: (way) => worker?.postMessage({ way }), stop, again: () => { if (playing) play(playing); else location.reload(); } };
+  app.stream ??= { frames: 0, there: true, losses: 0, ask: request, way: '', choose: (way) => worker?.postMessage({ way }), stop, again: () => { if (playing) play(playing); else location.reload(); } };
   Object.assign(app.stream, { there: true, video: Boolean(playing) });
   Object.assign(app, { source: null, facts: null });
   app.settings.scene = null;
@@ -183,7 +204,7 @@ function refresh() {
   requestAnimationFrame(refresh);
 }
 
-/** Asks for the eyes as they were made last. */
+/** Asks for the eyes as they were made last. A headset's session asks by itself: the page has no refreshes then. */
 function request() {
   if (!isThere || !app.page || app.source) return;
   asked = performance.now();
@@ -197,7 +218,7 @@ function figures() {
   sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
   const [cm, degrees] = app.page.streamCorrection() ?? [0, 0];
   element('facts').textContent = frames
-    ? `Stream: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
+    ? `Stream by ${via}: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
       + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), corrected by ${cm.toFixed(1)} cm and ${degrees.toFixed(1)}°, ${lost} lost, ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
     : 'Stream: no frames.';
 }

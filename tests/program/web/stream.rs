@@ -1,7 +1,7 @@
 //! A stream from the program to the page.
 
 use std::io::{BufRead as _, BufReader, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{IpAddr, TcpListener, TcpStream, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, mpsc};
@@ -34,16 +34,18 @@ const QUANTIZER: &str = "16";
 /// Steps of a head, in metres to the right.
 const STEP: f32 = 0.02;
 
-/// `yoro serve`, until this is dropped.
-fn serve(frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
-    serve_source("prototype", frame_rate, options, home)
-}
-
-fn serve_source(source: &str, frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
+/// Returns the command `yoro serve`.
+fn command(source: &str, frame_rate: u32, options: &[&str], home: Option<&Path>) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_yoro"));
     command.args(["serve", source, "--port", "0", "--max-size", "320", "--quantizer", QUANTIZER]);
     command.args(["--frame-rate", &frame_rate.to_string()]).args(options);
     home.map(|home| command.env("XDG_STATE_HOME", home));
+    command
+}
+
+/// `yoro serve`, until this is dropped.
+fn serve(frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
+    let mut command = command(frame_rate, options, home);
     let mut child: Child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let first = lines.next().expect("it says where it is").unwrap();
@@ -60,6 +62,11 @@ fn open(mode: &str) -> Option<(Page, String)> {
     let browser = Browser::start_with(&GL)?;
     let (server, link) = serve(5, &["--mode", mode], None);
     Some((follow(browser, server, &link), link))
+}
+
+/// Returns the token in a link.
+fn token(link: &str) -> &str {
+    link.split(['=', '&']).nth(1).unwrap().rsplit(',').next().unwrap()
 }
 
 /// Opens a server's link in a browser, and waits for pictures.
@@ -185,7 +192,7 @@ fn a_stream_is_shown_at_the_newest_pose_to_one_page_with_the_token() {
     eprintln!("the other eye: {made:.2} dB, the same image to both eyes {same:.2} dB");
     assert!(made > 27.0 && made > same + 5.0, "{made} dB, same image {same} dB");
 
-    let token = link.split("stream=").nth(1).unwrap().split('&').next().unwrap();
+    let token = token(&link);
     assert_eq!(knock(&mut page, &"0".repeat(32)), json!([1, 0]), "another token");
     assert_eq!(knock(&mut page, token), json!([1, 1]), "another page is served");
     let host = page.server.address.trim_start_matches("http://").trim_end_matches('/').to_owned();
@@ -194,10 +201,16 @@ fn a_stream_is_shown_at_the_newest_pose_to_one_page_with_the_token() {
         assert!(answer.starts_with("HTTP/1.1 403"), "{answer}");
     }
 
+    lose(&mut page, "WebSocket");
+}
+
+/// Loses the connection, which is found again, and then the server.
+fn lose(page: &mut Page, transport: &str) {
     // A page that is silent for too long is left, and comes back.
     page.evaluate("yoro.stream.frames = 0; const end = Date.now() + 4000; while (Date.now() < end); 0");
     page.until("yoro.stream.losses === 1 && yoro.stream.there && yoro.stream.frames > 2");
     assert_eq!(page.message(), None);
+    page.until(&format!("document.getElementById('facts').textContent.includes('by {transport}: ')"));
     page.until("document.getElementById('facts').textContent.includes('corrected by 0.0 cm and 0.0°')");
     let corrected = format!(
         "yoro.page.streamCorrection(); yoro.page.walk({STEP}, 0, 0); yoro.page.turn(0.1, 0); yoro.page.draw(64, 48, 0); \
@@ -207,6 +220,19 @@ fn a_stream_is_shown_at_the_newest_pose_to_one_page_with_the_token() {
     // The turn moves the eye, too, which is beside the neck.
     let number = |i: usize| corrected[i].as_str().unwrap().parse::<f64>().unwrap();
     assert!((1.0..4.0).contains(&number(0)) && number(1) == 5.7, "{corrected}");
+
+    // A hidden page hangs up, and comes back.
+    let see = |page: &mut Page, hidden: bool| {
+        page.evaluate(&format!(
+            "Object.defineProperty(document, 'hidden', {{ value: {hidden}, configurable: true }}); \
+             document.dispatchEvent(new Event('visibilitychange')); yoro.stream.frames = 0; 0"
+        ));
+    };
+    see(page, true);
+    page.until("yoro.stream.losses === 2 && !yoro.stream.there");
+    see(page, false);
+    page.until("yoro.stream.there && yoro.stream.frames > 2");
+    assert_eq!(page.message(), None);
     page.browser.expect_silence();
 
     page.server.stop();
@@ -299,9 +325,10 @@ fn a_video_is_streamed_whole() {
 #[test]
 fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
     // Says what is missing.
-    let Some(_) = Server::start() else { return };
+    let Some(site) = Server::start() else { return };
     let home = tempfile::tempdir().unwrap();
-    let (server, link) = serve(5, &["--lan=127.0.0.2"], Some(home.path()));
+    let origin = site.address.trim_end_matches('/');
+    let (server, link) = serve(5, &["--lan=127.0.0.2", "--allow-origin", origin], Some(home.path()));
     let host = server.address.strip_prefix("https://").expect("https").trim_end_matches('/').to_owned();
     let port: u16 = host.strip_prefix("127.0.0.2:").expect("the address").parse().unwrap();
     assert!(
@@ -354,14 +381,52 @@ fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
     let Some(browser) = Browser::start_with(&options) else { return };
     let mut page = follow(browser, server, &link);
     assert_eq!(page.evaluate("[location.protocol, isSecureContext]"), json!(["https:", true]));
-    let token = link.split("stream=").nth(1).unwrap().split('&').next().unwrap();
+    let token = token(&link);
     assert_eq!(knock(&mut page, &"0".repeat(32)), json!([1, 0]), "another token");
     assert_eq!(knock(&mut page, token), json!([1, 1]), "another page is served");
-    page.until("document.getElementById('facts').textContent.includes('frames/s')");
-    page.browser.expect_silence();
+    check(&mut page, &mut Desktop::new(Mode::Depth));
+
+    // A certificate of another hash is refused: the WebSocket is there.
+    let (start, rest) = link.split_once(',').unwrap();
+    page.browser.go("about:blank");
+    page.browser.go(&format!("{start},{}{}", "0".repeat(64), &rest[64..]));
+    page.until("document.getElementById('facts')?.textContent.includes('by WebSocket: ')");
+    // A page of another server, whose origin was named.
+    page.browser.allow(&site.address);
+    page.browser.go(&format!("{}#{}", site.address, link.split('#').nth(1).unwrap()));
+    page.until("globalThis.yoro?.stream?.frames > 3");
+    page.browser.forget();
+    lose(&mut page, "WebTransport");
 
     idle.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
     assert_eq!(idle.read(&mut [0]).unwrap(), 0, "it is left after ten seconds");
+}
+
+#[test]
+fn without_an_address_the_one_by_which_others_are_reached_is_served() {
+    // Says what is missing.
+    let Some(_) = Server::start() else { return };
+    let socket = UdpSocket::bind("0.0.0.0:0").unwrap();
+    let own = socket.connect("192.0.2.1:9").and_then(|()| socket.local_addr());
+    let Ok(IpAddr::V4(own)) = own.map(|own| own.ip()) else {
+        eprintln!("SKIPPED: this machine is in no network");
+        return;
+    };
+    let home = tempfile::tempdir().unwrap();
+    if !own.is_private() {
+        let output = command(5, &["--lan"], Some(home.path())).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            !output.status.success() && said.contains(&format!("{own} is open to the internet")),
+            "{said}"
+        );
+        return;
+    }
+    let (server, link) = serve(5, &["--lan"], Some(home.path()));
+    assert!(link.starts_with(&format!("https://{own}:")), "{link}");
+    let host = server.address.strip_prefix("https://").unwrap().trim_end_matches('/');
+    let answer = ask(TcpStream::connect(host).unwrap(), host, "");
+    assert!(!answer.starts_with("HTTP"), "without encryption: {answer}");
 }
 
 /// Returns the resident memory of a process in bytes.
@@ -382,7 +447,7 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     let answer = ask(&mut stream, &host, &format!("Origin: http://{host}\r\n"));
     assert!(answer.starts_with("HTTP/1.1 101"), "{answer}");
     let mut socket = WebSocket::from_raw_socket(stream, Role::Client, None);
-    let token = link.split("stream=").nth(1).unwrap().split('&').next().unwrap();
+    let token = token(&link);
     let token = u128::from_str_radix(token, 16).unwrap().to_be_bytes();
     let say = |socket: &mut WebSocket<TcpStream>, message: FromViewer| {
         socket.send(Message::binary(message.to_bytes())).unwrap();

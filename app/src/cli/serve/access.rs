@@ -10,20 +10,21 @@ use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use rustls::ServerConfig;
 use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
 use super::connection::Connection;
+use super::session::{SILENCE, Transport, Viewer, listen};
 use yoro_files::http::{self, Request};
 use yoro_stream::{FromServer, FromViewer, Refusal, Token, VERSION};
 
 /// The largest message of a viewer, in bytes.
-const MAX_MESSAGE_BYTES: usize = 1 << 12;
+pub const MAX_MESSAGE_BYTES: usize = 1 << 12;
 /// The time for a handshake with its request and the hello after it.
-const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
+pub const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
 /// The time for sending a file.
 const FILE_TIMEOUT: Duration = Duration::from_secs(60);
 /// The number of connections that may wait to be let in, of all machines and of one. A browser opens six for a page's files.
@@ -39,6 +40,8 @@ pub struct Access {
     pub scheme: &'static str,
     /// The names of this server, as browsers call it.
     pub hosts: Vec<String>,
+    /// The origin of another server's page that may show the stream, too.
+    pub origin: Option<String>,
     pub folder: PathBuf,
     /// The head's first pose.
     pub welcome: FromServer<'static>,
@@ -52,25 +55,26 @@ impl Access {
     pub fn new(
         token: Token,
         (scheme, hosts): (&'static str, Vec<String>),
+        origin: Option<String>,
         folder: PathBuf,
         welcome: FromServer<'static>,
         tls: Option<Arc<ServerConfig>>,
     ) -> Access {
         let (busy, pending) = (AtomicBool::new(false), Arc::default());
-        Access { token, scheme, hosts, folder, welcome, tls, busy, pending }
+        Access { token, scheme, hosts, origin, folder, welcome, tls, busy, pending }
     }
 
     /// Accepts connections for ever, and passes on those that are let in.
-    pub fn accept(self: &Arc<Self>, listener: &TcpListener, clients: &mpsc::Sender<Connection>) {
+    pub fn accept(self: &Arc<Self>, listener: &TcpListener, viewers: &mpsc::Sender<Viewer>) {
         for (socket, address) in std::iter::repeat_with(|| listener.accept()).flatten() {
-            let Some(place) = PendingConnections::enter(&self.pending, address.ip()) else {
+            let Some(place) = self.place(address.ip()) else {
                 log::info!("{address} has too many connections");
                 continue;
             };
-            let (access, clients) = (self.clone(), clients.clone());
+            let (access, viewers) = (self.clone(), viewers.clone());
             // A browser keeps some connections open without asking for anything.
             thread::spawn(move || {
-                if let Err(error) = access.answer(socket, &clients) {
+                if let Err(error) = access.answer(socket, &viewers) {
                     log::info!("{address} is not served: {error}");
                 }
                 drop(place);
@@ -78,44 +82,47 @@ impl Access {
         }
     }
 
-    /// The client is gone: another one may come.
-    pub fn leave(&self) {
-        self.busy.store(false, Ordering::SeqCst);
+    /// Returns a place among the connections that wait to be let in; none where there are too many.
+    pub fn place(&self, address: IpAddr) -> Option<Place> {
+        PendingConnections::enter(&self.pending, address)
     }
 
     /// Answers a connection: with a file, or, for a page of this server with the token, by letting it in.
-    fn answer(&self, socket: TcpStream, clients: &mpsc::Sender<Connection>) -> anyhow::Result<()> {
+    fn answer(self: &Arc<Self>, socket: TcpStream, viewers: &mpsc::Sender<Viewer>) -> anyhow::Result<()> {
         let connection = Connection::new(socket, self.tls.as_ref(), HELLO_TIMEOUT)?;
         let request = Request::read(connection.clone())?;
         let admitted = if request.target() == Some("/stream") {
-            self.admit(&connection, &request)
+            self.admit(&connection, &request).map(Some)
         } else {
             connection.set_deadline(FILE_TIMEOUT);
-            Ok(http::answer(&mut connection.clone(), &request, &self.folder).map(|()| false)?)
+            Ok(http::answer(&mut connection.clone(), &request, &self.folder).map(|()| None)?)
         };
-        match admitted {
-            Ok(true) => {
-                if clients.send(connection).is_err() {
-                    self.leave();
-                }
-                Ok(())
-            }
-            other => {
-                connection.close();
-                other.map(drop)
-            }
+        let Ok(Some(seat)) = admitted else {
+            connection.close();
+            return admitted.map(drop);
+        };
+        connection.set_timeout(SILENCE);
+        let (tell, heard) = mpsc::channel();
+        let transport = Transport::WebSocket(Box::new(web_socket(connection.clone())));
+        if viewers.send(Viewer { heard, transport, seat }).is_ok() {
+            thread::spawn(move || listen(web_socket(connection), &tell));
         }
+        Ok(())
     }
 
-    /// Lets a page of this server in that has the token. It is the only one then, until it [leaves](Access::leave).
-    fn admit(&self, connection: &Connection, request: &Request) -> anyhow::Result<bool> {
+    /// True if a page may connect: against other sites' pages and names that are made to lead here, the host that it asks for must
+    /// be this one, and its origin, too, or the one that was named.
+    pub fn allows(&self, host: &str, origin: Option<&str>) -> bool {
+        let is_own = || origin == Some(&format!("{}://{host}", self.scheme));
+        let is_named = || origin.is_some() && origin == self.origin.as_deref();
+        self.hosts.iter().any(|name| name == host) && (is_own() || is_named())
+    }
+
+    /// Lets a page in that has the token.
+    fn admit(self: &Arc<Self>, connection: &Connection, request: &Request) -> anyhow::Result<Seat> {
         let mut connection = connection.clone();
-        let host = request.header("host").unwrap_or_default();
-        // Against WebSocket hijacking by other sites and DNS rebinding: both must be ours.
-        let own = self.hosts.iter().any(|name| name == host)
-            && request.header("origin") == Some(&format!("{}://{host}", self.scheme));
-        let key = request.header("sec-websocket-key").filter(|_| own);
-        let Some(key) = key else {
+        let allowed = self.allows(request.header("host").unwrap_or_default(), request.header("origin"));
+        let Some(key) = request.header("sec-websocket-key").filter(|_| allowed) else {
             connection
                 .write_all(b"HTTP/1.1 403 Forbidden\r\nContent-Length: 0\r\nConnection: close\r\n\r\n")?;
             bail!("it is another site's page");
@@ -127,30 +134,41 @@ impl Access {
         );
         connection.write_all(upgraded.as_bytes())?;
         let mut socket = web_socket(connection);
-        let hello = FromViewer::read(&socket.read()?.into_data());
-        let Some(FromViewer::Hello { version, token }) = hello else {
+        let (answer, admitted) = self.answer_hello(&socket.read()?.into_data())?;
+        socket.send(Message::binary(answer)).context("it has gone again")?;
+        admitted
+    }
+
+    /// Returns the answer to a first message, and, for one with the token while nobody else is served, the seat that lets its sender
+    /// in.
+    ///
+    /// # Errors
+    /// When it is no hello.
+    pub fn answer_hello(self: &Arc<Self>, bytes: &[u8]) -> anyhow::Result<(Vec<u8>, anyhow::Result<Seat>)> {
+        let Some(FromViewer::Hello { version, token }) = FromViewer::read(bytes) else {
             bail!("it does not say hello");
         };
         // In constant time.
         let differs = token.iter().zip(&self.token).fold(0, |differs, (a, b)| differs | (a ^ b));
         let refusal = if version != VERSION {
-            Some(Refusal::Version)
+            Refusal::Version
         } else if differs != 0 {
-            Some(Refusal::Token)
+            Refusal::Token
         } else if self.busy.swap(true, Ordering::SeqCst) {
-            Some(Refusal::Busy)
+            Refusal::Busy
         } else {
-            None
+            return Ok((self.welcome.to_bytes(), Ok(Seat(self.clone()))));
         };
-        if let Some(refusal) = refusal {
-            socket.send(Message::binary(FromServer::Refused(refusal).to_bytes()))?;
-            bail!("{refusal:?}");
-        }
-        let welcomed = socket.send(Message::binary(self.welcome.to_bytes()));
-        if welcomed.is_err() {
-            self.leave();
-        }
-        welcomed.map(|()| true).context("it has gone again")
+        Ok((FromServer::Refused(refusal).to_bytes(), Err(anyhow!("{refusal:?}"))))
+    }
+}
+
+/// The right to be served: when it is dropped, another viewer may come.
+pub struct Seat(Arc<Access>);
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.0.busy.store(false, Ordering::SeqCst);
     }
 }
 
@@ -168,7 +186,7 @@ pub fn web_socket(connection: Connection) -> Socket {
 struct PendingConnections(Mutex<HashMap<IpAddr, usize>>);
 
 /// One of these connections: it is counted until this is dropped.
-struct Place(Arc<PendingConnections>, IpAddr);
+pub struct Place(Arc<PendingConnections>, IpAddr);
 
 impl PendingConnections {
     fn enter(pending: &Arc<PendingConnections>, address: IpAddr) -> Option<Place> {
@@ -209,5 +227,24 @@ mod tests {
         assert!(enter(1).is_some(), "a place is free again");
         let others: Vec<_> = (2..=200).filter_map(enter).collect();
         assert_eq!(taken.len() + others.len(), MAX_PENDING[0]);
+    }
+
+    #[test]
+    fn pages_of_this_server_and_of_the_named_origin_may_connect() {
+        let hosts = vec!["10.0.0.1:80".to_owned()];
+        let origin = Some("https://host".to_owned());
+        let access =
+            Access::new(Token::default(), ("https", hosts), origin, PathBuf::new(), Pose::IDENTITY, None);
+        for (host, origin, allowed) in [
+            ("10.0.0.1:80", Some("https://10.0.0.1:80"), true),
+            ("10.0.0.1:80", Some("https://host"), true),
+            ("10.0.0.1:80", Some("http://10.0.0.1:80"), false),
+            ("10.0.0.1:80", Some("https://host.example"), false),
+            ("10.0.0.1:80", None, false),
+            ("elsewhere", Some("https://host"), false),
+            ("elsewhere", Some("https://elsewhere"), false),
+        ] {
+            assert_eq!(access.allows(host, origin), allowed, "{host}, {origin:?}");
+        }
     }
 }

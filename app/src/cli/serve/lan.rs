@@ -14,13 +14,24 @@ use rcgen::{CertificateParams, DnType, ExtendedKeyUsagePurpose, KeyPair, SanType
 use rustls::ServerConfig;
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
+use wtransport::proto::WEBTRANSPORT_ALPN;
 use yoro_layer::xdg;
 
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
-/// Certificates are valid for so long: Apple's browsers refuse those of more than 825 days.
-const VALID: Duration = Duration::from_secs(397 * 24 * 60 * 60);
-/// A certificate is used for so long.
-const USED: Duration = Duration::from_secs(365 * 24 * 60 * 60);
+/// A kind of certificate.
+struct Kind {
+    /// The end of its file's name.
+    suffix: &'static str,
+    /// The days for which it is valid.
+    valid: u32,
+    /// The days for which it is used.
+    used: u32,
+}
+
+/// For https: Apple's browsers refuse certificates that are valid for more than 825 days.
+const HTTPS: Kind = Kind { suffix: "pem", valid: 397, used: 365 };
+/// For WebTransport: browsers accept one by its hash if it is valid for at most 14 days, with a key on P-256.
+const QUIC: Kind = Kind { suffix: "quic.pem", valid: 14, used: 6 };
 
 /// Where and how a server is reached in the local network.
 pub struct Lan {
@@ -28,6 +39,10 @@ pub struct Lan {
     pub tls: Arc<ServerConfig>,
     /// SHA-256 of the certificate, as browsers show it.
     pub fingerprint: String,
+    /// For WebTransport.
+    pub quic: ServerConfig,
+    /// SHA-256 of WebTransport's certificate, in hexadecimal digits.
+    pub quic_hash: String,
 }
 
 impl Lan {
@@ -51,9 +66,14 @@ impl Lan {
         let folder = xdg::folder("XDG_STATE_HOME", ".local/state")
             .context("neither XDG_STATE_HOME nor HOME is an absolute path; set one of them")?
             .join("yoro/serve");
-        let pem = certificate(&folder, address)?;
-        let certificate = CertificateDer::from_pem_slice(&pem).context("the certificate cannot be read")?;
-        Ok(Lan { address, tls: configure(&pem)?, fingerprint: fingerprint(&certificate) })
+        let [pem, quic_pem] = [certificate(&folder, address, &HTTPS)?, certificate(&folder, address, &QUIC)?];
+        Ok(Lan {
+            address,
+            tls: Arc::new(configure(&pem, b"http/1.1")?),
+            fingerprint: hash(&pem, ":")?,
+            quic: configure(&quic_pem, WEBTRANSPORT_ALPN)?,
+            quic_hash: hash(&quic_pem, "")?.to_lowercase(),
+        })
     }
 }
 
@@ -78,16 +98,16 @@ fn is_local(address: IpAddr) -> bool {
 }
 
 /// Returns key and certificate for an address: those that are kept in the folder, or new ones, which are kept.
-fn certificate(folder: &Path, address: IpAddr) -> anyhow::Result<Vec<u8>> {
+fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Vec<u8>> {
     // Others must not read the key.
     let made = DirBuilder::new().recursive(true).mode(0o700).create(folder);
     made.and_then(|()| fs::set_permissions(folder, fs::Permissions::from_mode(0o700)))
         .with_context(|| format!("{} cannot be made", folder.display()))?;
-    let path = folder.join(format!("{address}.pem"));
+    let path = folder.join(format!("{address}.{}", kind.suffix));
     let age = fs::metadata(&path).and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
-    if age.is_some_and(|age| age < USED)
+    if age.is_some_and(|age| age < kind.used * DAY)
         && let Ok(pem) = fs::read(&path)
-        && configure(&pem).is_ok()
+        && configure(&pem, b"").is_ok()
     {
         return Ok(pem);
     }
@@ -99,15 +119,15 @@ fn certificate(folder: &Path, address: IpAddr) -> anyhow::Result<Vec<u8>> {
     let now = SystemTime::now();
     // Clocks differ.
     params.not_before = (now - DAY).into();
-    params.not_after = (now + VALID - DAY).into();
+    params.not_after = (now + (kind.valid - 1) * DAY).into();
     let pem = [key.serialize_pem(), params.self_signed(&key)?.pem()].concat().into_bytes();
     yoro_files::write(&path, &pem)?;
     Ok(pem)
 }
 
-/// Returns how connections are encrypted with this key and certificate: by TLS 1.3, which each browser that decodes video for
-/// pages has.
-fn configure(pem: &[u8]) -> anyhow::Result<Arc<ServerConfig>> {
+/// Returns how connections of a protocol are encrypted with this key and certificate: by TLS 1.3, which each browser that decodes
+/// video for pages has.
+fn configure(pem: &[u8], protocol: &[u8]) -> anyhow::Result<ServerConfig> {
     let (Ok(key), Ok(certificate)) =
         (PrivateKeyDer::from_pem_slice(pem), CertificateDer::from_pem_slice(pem))
     else {
@@ -118,14 +138,15 @@ fn configure(pem: &[u8]) -> anyhow::Result<Arc<ServerConfig>> {
         .with_protocol_versions(&[&rustls::version::TLS13])?
         .with_no_client_auth()
         .with_single_cert(vec![certificate], key)?;
-    config.alpn_protocols = vec![b"http/1.1".to_vec()];
-    Ok(Arc::new(config))
+    config.alpn_protocols = vec![protocol.to_vec()];
+    Ok(config)
 }
 
-/// Returns the SHA-256 of a certificate as browsers show it.
-fn fingerprint(certificate: &[u8]) -> String {
-    let hash = ring::digest::digest(&ring::digest::SHA256, certificate);
-    hash.as_ref().iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(":")
+/// Returns the SHA-256 of a certificate, its bytes with a separator between them.
+fn hash(pem: &[u8], separator: &str) -> anyhow::Result<String> {
+    let certificate = CertificateDer::from_pem_slice(pem).context("the certificate cannot be read")?;
+    let hash = ring::digest::digest(&ring::digest::SHA256, &certificate);
+    Ok(hash.as_ref().iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(separator))
 }
 
 /// Returns a text as a QR code for a terminal: black on white, whatever its colours are.
@@ -168,10 +189,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("serve");
         let [here, there] = [[10, 0, 0, 1], [10, 0, 0, 2]].map(|octets: [u8; 4]| IpAddr::from(octets));
-        let first = certificate(&folder, here).unwrap();
+        let first = certificate(&folder, here, &HTTPS).unwrap();
         assert_eq!(fs::metadata(&folder).unwrap().permissions().mode() & 0o077, 0, "others read the key");
-        assert_eq!(certificate(&folder, here).unwrap(), first);
-        let other = certificate(&folder, there).unwrap();
+        assert_eq!(certificate(&folder, here, &HTTPS).unwrap(), first);
+        let other = certificate(&folder, there, &HTTPS).unwrap();
         assert_ne!(other, first);
         // A key with another one's certificate is damage, too.
         let half = String::from_utf8(other).unwrap().find("-----BEGIN CERTIFICATE").unwrap();
@@ -180,8 +201,8 @@ mod tests {
             &[&fs::read(folder.join("10.0.0.2.pem")).unwrap()[..half], &first[half..]].concat(),
         ] {
             fs::write(folder.join("10.0.0.1.pem"), damage).unwrap();
-            let new = certificate(&folder, here).unwrap();
-            assert!(new != first && configure(&new).is_ok());
+            let new = certificate(&folder, here, &HTTPS).unwrap();
+            assert!(new != first && configure(&new, b"").is_ok());
         }
     }
 

@@ -5,9 +5,10 @@ mod connection;
 mod lan;
 mod session;
 mod source;
+mod web_transport;
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::{Arc, mpsc};
@@ -58,6 +59,9 @@ pub struct ServeArgs {
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true)]
     #[expect(clippy::option_option, reason = "clap's form of an option whose value may be left out")]
     lan: Option<Option<IpAddr>>,
+    /// Serve a page of this origin (https://HOST), too, to which the program prints a link
+    #[arg(long, value_name = "ORIGIN", requires = "lan", value_parser = origin)]
+    allow_origin: Option<String>,
     /// The port; 0 for a free one
     #[arg(long, default_value_t = 8080)]
     port: u16,
@@ -158,15 +162,47 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         Some(lan) => ("https", vec![SocketAddr::new(lan.address, port).to_string()]),
         None => ("http", ["localhost", "127.0.0.1"].map(|name| format!("{name}:{port}")).to_vec()),
     };
-    let link =
-        format!("{scheme}://{}/#stream={:032x}&display=side-by-side", hosts[0], u128::from_be_bytes(token));
-    announce(&link, port, lan.as_ref(), server.encoder.name())?;
+    let token_text = format!("{:032x}", u128::from_be_bytes(token));
+    let stream = match &lan {
+        Some(lan) => format!("{},{},{token_text}", hosts[0], lan.quic_hash),
+        None => token_text,
+    };
+    let own = format!("{scheme}://{}", hosts[0]);
+    let pages = [Some(&own), args.allow_origin.as_ref()];
+    let links: Vec<String> = pages
+        .into_iter()
+        .flatten()
+        .map(|page| format!("{page}/#stream={stream}&display=side-by-side"))
+        .collect();
+    let quic = match &lan {
+        Some(lan) => {
+            let socket = UdpSocket::bind((lan.address, port)).with_context(|| {
+                format!("{} cannot be served by UDP: name another port with --port", hosts[0])
+            })?;
+            Some((socket, lan.quic.clone()))
+        }
+        None => None,
+    };
+    announce(&links, port, lan.as_ref(), server.encoder.name())?;
     let tls = lan.map(|lan| lan.tls);
-    let access = Arc::new(Access::new(token, (scheme, hosts), folder, welcome, tls));
-    let (clients, admitted) = mpsc::channel();
-    let accepting = access.clone();
-    thread::spawn(move || accepting.accept(&listener, &clients));
-    server.serve(&admitted, &access)
+    let access = Arc::new(Access::new(token, (scheme, hosts), args.allow_origin.clone(), folder, welcome, tls));
+    let (viewers, admitted) = mpsc::channel();
+    if let Some((socket, tls)) = quic {
+        web_transport::accept(access.clone(), socket, tls, viewers.clone())?;
+    }
+    thread::spawn(move || access.accept(&listener, &viewers));
+    server.serve(&admitted)
+}
+
+/// Reads the origin of a page, as browsers tell it.
+fn origin(text: &str) -> Result<String, String> {
+    let host = text.strip_prefix("https://").or(text.strip_prefix("http://")).unwrap_or_default();
+    let is_host = !host.is_empty() && host.chars().all(|c| c.is_ascii_alphanumeric() || "-.:[]".contains(c));
+    if is_host {
+        Ok(text.to_ascii_lowercase())
+    } else {
+        Err("an origin is https://HOST, without a path".into())
+    }
 }
 
 /// True if a name is a video's.
@@ -198,13 +234,15 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
 }
 
 /// Says where the stream is seen, and what encodes it.
-fn announce(link: &str, port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
-    println!("open {link}");
+fn announce(links: &[String], port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
+    for link in links {
+        println!("open {link}");
+        if lan.is_some() && io::stdout().is_terminal() {
+            print!("{}", lan::code(link)?);
+        }
+    }
     match lan {
         Some(lan) => {
-            if io::stdout().is_terminal() {
-                print!("{}", lan::code(link)?);
-            }
             println!(
                 "a browser that has not been here warns that it does not know the certificate, with SHA-256\n{}\n\
                  docs/streaming.md says what to do then, and what it protects from",

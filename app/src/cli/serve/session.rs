@@ -1,29 +1,71 @@
 //! A client's session: what it says, and the frames that it gets.
 
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
 use tungstenite::Message;
 
-use super::access::{Access, Socket, web_socket};
-use super::connection::Connection;
+use super::access::{Seat, Socket};
 use super::source::Source;
+use super::web_transport::Frames;
 use yoro_files::interrupt;
 use yoro_stream::{FrameHeader, FromServer, FromViewer, RateControl, ViewRequest};
 use yoro_video::{LiveEncoder, LivePicture};
 
 /// A viewer that says nothing for so long is gone.
-const SILENCE: Duration = Duration::from_secs(3);
+pub const SILENCE: Duration = Duration::from_secs(3);
 
 /// Passes on a viewer's messages with the time, until a timeout, a lost connection or an invalid message. It has a thread of its own,
 /// so that messages are read while a frame is rendered.
-fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
+pub fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
     while let Ok(message) = socket.read() {
         let Some(message) = FromViewer::read(&message.into_data()) else { return };
         if heard.send((message, Instant::now())).is_err() {
             return;
+        }
+    }
+}
+
+/// A viewer that was let in.
+pub struct Viewer {
+    /// What it says, until it is gone.
+    pub heard: Receiver<(FromViewer, Instant)>,
+    /// How it gets frames.
+    pub transport: Transport,
+    /// Held while it is served.
+    pub seat: Seat,
+}
+
+/// How frames are sent.
+pub enum Transport {
+    /// All in order.
+    WebSocket(Box<Socket>),
+    /// Each on its own.
+    WebTransport(Frames),
+}
+
+impl Transport {
+    fn name(&self) -> &'static str {
+        match self {
+            Transport::WebSocket(_) => "WebSocket",
+            Transport::WebTransport(_) => "WebTransport",
+        }
+    }
+
+    fn send(&mut self, number: u32, bytes: Vec<u8>) -> anyhow::Result<()> {
+        match self {
+            Transport::WebSocket(socket) => socket.send(Message::binary(bytes))?,
+            Transport::WebTransport(frames) => frames.send(number, bytes),
+        }
+        Ok(())
+    }
+
+    /// Ends the connection: its listener ends, too.
+    fn close(&self) {
+        match self {
+            Transport::WebSocket(socket) => socket.get_ref().close(),
+            Transport::WebTransport(frames) => frames.close(),
         }
     }
 }
@@ -48,16 +90,15 @@ pub struct Limits {
 
 impl Server {
     /// Serves one viewer after the other until Ctrl-C.
-    pub fn serve(&mut self, admitted: &Receiver<Connection>, access: &Access) -> anyhow::Result<()> {
+    pub fn serve(&mut self, admitted: &Receiver<Viewer>) -> anyhow::Result<()> {
         loop {
             interrupt::check()?;
             match admitted.recv_timeout(Duration::from_millis(100)) {
-                Ok(connection) => {
-                    println!("a viewer has come");
-                    let ended = self.session(&connection);
-                    // Its listener ends, too.
-                    connection.close();
-                    access.leave();
+                Ok(mut viewer) => {
+                    println!("a viewer has come by {}", viewer.transport.name());
+                    let ended = self.session(&mut viewer);
+                    viewer.transport.close();
+                    drop(viewer.seat);
                     interrupt::check()?;
                     println!(
                         "the viewer has gone{}",
@@ -71,18 +112,14 @@ impl Server {
     }
 
     /// Serves a viewer until it is gone, which is no error.
-    fn session(&mut self, connection: &Connection) -> anyhow::Result<()> {
+    fn session(&mut self, viewer: &mut Viewer) -> anyhow::Result<()> {
+        let Viewer { heard, transport, .. } = viewer;
         let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate);
         let mut request: Option<ViewRequest> = None;
         // The time of the request that was answered last.
         let mut answered: Option<f64> = None;
         let mut number = 0u32;
         let mut statistics = Statistics::new(0);
-        connection.set_timeout(SILENCE);
-        let (tell, heard) = mpsc::channel();
-        let listener = web_socket(connection.clone());
-        thread::spawn(move || listen(listener, &tell));
-        let mut socket = web_socket(connection.clone());
         loop {
             interrupt::check()?;
             match heard.recv_timeout(Duration::from_millis(1)) {
@@ -102,6 +139,11 @@ impl Server {
                 Err(RecvTimeoutError::Disconnected) => return Ok(()),
             }
             statistics.print(&control);
+            if let Transport::WebTransport(frames) = transport
+                && control.gives_up(self.start.elapsed())
+            {
+                frames.give_up(number);
+            }
             let due = request
                 .filter(|request| Some(request.time) != answered && control.is_due(self.start.elapsed()));
             let Some(mut request) = due else { continue };
@@ -114,8 +156,11 @@ impl Server {
             let Some(picture) = self.source.picture(&request, self.start.elapsed())? else { continue };
             answered = Some(request.time);
             let rendered = begun.elapsed();
-            let LivePicture { data, is_intra, quantizer } =
-                self.encoder.encode(&picture.planes, control.quantizer(), control.needs_intra() || picture.new_span)?;
+            let LivePicture { data, is_intra, quantizer } = self.encoder.encode(
+                &picture.planes,
+                control.quantizer(),
+                control.needs_intra() || picture.new_span,
+            )?;
             let ms = |time: Duration| time.as_secs_f32() * 1e3;
             let header = FrameHeader {
                 time: request.time,
@@ -127,7 +172,13 @@ impl Server {
             };
             let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
             control.sent(number, is_intra, self.start.elapsed());
-            socket.send(Message::binary(frame.to_bytes()))?;
+            if let Transport::WebTransport(frames) = transport
+                && is_intra
+            {
+                // Nothing needs those before it.
+                frames.give_up(number);
+            }
+            transport.send(number, frame.to_bytes())?;
             statistics.add(data.len(), &header);
             number = number.wrapping_add(1);
         }

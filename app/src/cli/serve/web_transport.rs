@@ -1,0 +1,165 @@
+//! WebTransport, by QUIC: a stream for each frame to the viewer, and datagrams for what it says.
+
+use std::net::UdpSocket;
+use std::sync::{Arc, mpsc};
+use std::thread;
+use std::time::Instant;
+
+use anyhow::{Context as _, bail};
+use tokio::io::AsyncReadExt as _;
+use tokio::runtime::{Builder, Handle};
+use tokio::sync::watch;
+use tokio::time::timeout;
+use wtransport::config::QuicTransportConfig;
+use wtransport::endpoint::IncomingSession;
+use wtransport::endpoint::endpoint_side::Server;
+use wtransport::{Connection, Endpoint, ServerConfig, VarInt};
+
+use super::access::{Access, HELLO_TIMEOUT, MAX_MESSAGE_BYTES, Seat};
+use super::session::{SILENCE, Transport, Viewer};
+use yoro_stream::FromViewer;
+
+/// Accepts viewers at a socket for ever, and passes on those that are let in.
+///
+/// # Errors
+/// When the system refuses.
+pub fn accept(
+    access: Arc<Access>,
+    socket: UdpSocket,
+    tls: rustls::ServerConfig,
+    viewers: mpsc::Sender<Viewer>,
+) -> anyhow::Result<()> {
+    let runtime = Builder::new_current_thread().enable_all().build()?;
+    // Who is not let in yet must not fill the memory.
+    let mut limits = QuicTransportConfig::default();
+    limits
+        .max_concurrent_bidi_streams(4u8.into())
+        .max_concurrent_uni_streams(8u8.into())
+        .stream_receive_window((MAX_MESSAGE_BYTES as u32).into())
+        .receive_window((16 * MAX_MESSAGE_BYTES as u32).into())
+        .datagram_receive_buffer_size(Some(16 * MAX_MESSAGE_BYTES))
+        .max_idle_timeout(Some(SILENCE.try_into()?));
+    let config =
+        ServerConfig::builder().with_bind_socket(socket).with_custom_tls_and_transport(tls, limits).build();
+    let endpoint = {
+        let _inside = runtime.enter();
+        Endpoint::server(config)?
+    };
+    thread::spawn(move || runtime.block_on(answer_all(&endpoint, &access, &viewers)));
+    Ok(())
+}
+
+async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, viewers: &mpsc::Sender<Viewer>) {
+    loop {
+        let incoming = endpoint.accept().await;
+        let address = incoming.remote_address();
+        if !incoming.remote_address_validated() {
+            // An address that the sender does not have must not take a place.
+            incoming.retry();
+            continue;
+        }
+        let Some(place) = access.place(address.ip()) else {
+            log::info!("{address} has too many connections");
+            incoming.refuse();
+            continue;
+        };
+        let (access, viewers) = (access.clone(), viewers.clone());
+        tokio::spawn(async move {
+            let admitted = timeout(HELLO_TIMEOUT, admit(incoming, &access)).await;
+            drop(place);
+            match admitted.map_err(anyhow::Error::from).flatten() {
+                Ok((connection, seat)) => {
+                    let (tell, heard) = mpsc::channel();
+                    let frames = Frames::new(connection.clone());
+                    // Without a receiver the program ends.
+                    let _ = viewers.send(Viewer { heard, transport: Transport::WebTransport(frames), seat });
+                    listen(&connection, &tell).await;
+                }
+                Err(error) => log::info!("{address} is not served: {error}"),
+            }
+        });
+    }
+}
+
+/// Lets a viewer in, as [`Access`] decides. Its hello and the answer are a stream of their own.
+async fn admit(incoming: IncomingSession, access: &Arc<Access>) -> anyhow::Result<(Connection, Seat)> {
+    let request = incoming.await?;
+    if request.path() != "/stream" || !access.allows(request.authority(), request.origin()) {
+        request.forbidden().await;
+        bail!("it is another site's page");
+    }
+    let connection = request.accept().await?;
+    let (mut answers, hello) = connection.accept_bi().await?;
+    let mut bytes = Vec::new();
+    hello.take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut bytes).await?;
+    let (answer, seat) = access.answer_hello(&bytes)?;
+    answers.write_all(&answer).await?;
+    answers.finish().await?;
+    Ok((connection, seat?))
+}
+
+/// Passes on a viewer's messages with the time, until it is silent, lost or sends something else.
+async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromViewer, Instant)>) {
+    while let Ok(Ok(datagram)) = timeout(SILENCE, connection.receive_datagram()).await {
+        let Some(message) = FromViewer::read(&datagram) else { break };
+        if heard.send((message, Instant::now())).is_err() {
+            break;
+        }
+    }
+    connection.close(VarInt::from_u32(0), b"");
+}
+
+/// Sends frames to a viewer.
+pub struct Frames {
+    runtime: Handle,
+    connection: Connection,
+    /// The number of the oldest frame that is still of use.
+    oldest: watch::Sender<u32>,
+}
+
+impl Frames {
+    /// Sends by a connection of the runtime that this is called in.
+    fn new(connection: Connection) -> Frames {
+        Frames { runtime: Handle::current(), connection, oldest: watch::Sender::new(0) }
+    }
+
+    /// Sends a frame on a stream of its own.
+    pub fn send(&self, number: u32, bytes: Vec<u8>) {
+        let (connection, oldest) = (self.connection.clone(), self.oldest.subscribe());
+        self.runtime.spawn(async move {
+            if let Err(error) = send(&connection, number, &bytes, oldest).await {
+                log::debug!("frame {number} is not sent: {error}");
+            }
+        });
+    }
+
+    /// Stops sending frames before this one.
+    pub fn give_up(&self, number: u32) {
+        self.oldest.send_replace(number);
+    }
+
+    /// Ends the connection.
+    pub fn close(&self) {
+        self.connection.close(VarInt::from_u32(0), b"");
+    }
+}
+
+/// Sends a frame, unless it is given up before all of it has arrived.
+async fn send(
+    connection: &Connection,
+    number: u32,
+    bytes: &[u8],
+    mut oldest: watch::Receiver<u32>,
+) -> anyhow::Result<()> {
+    let mut stream = connection.open_uni().await?.await?;
+    // Those before it come first, as it refers to them.
+    stream.set_priority(i32::MAX - (number % (1 << 30)) as i32);
+    let sending = async {
+        stream.write_all(bytes).await?;
+        stream.finish().await
+    };
+    tokio::select! {
+        sent = sending => sent.context("the viewer is gone"),
+        _ = oldest.wait_for(|oldest| *oldest > number) => Ok(stream.reset(VarInt::from_u32(0))?),
+    }
+}
