@@ -45,7 +45,11 @@ fn command(source: &str, frame_rate: u32, options: &[&str], home: Option<&Path>)
 
 /// `yoro serve`, until this is dropped.
 fn serve(frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
-    let mut command = command(frame_rate, options, home);
+    serve_source("prototype", frame_rate, options, home)
+}
+
+fn serve_source(source: &str, frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
+    let mut command = command(source, frame_rate, options, home);
     let mut child: Child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let first = lines.next().expect("it says where it is").unwrap();
@@ -414,7 +418,7 @@ fn without_an_address_the_one_by_which_others_are_reached_is_served() {
     };
     let home = tempfile::tempdir().unwrap();
     if !own.is_private() {
-        let output = command(5, &["--lan"], Some(home.path())).output().unwrap();
+        let output = command("prototype", 5, &["--lan"], Some(home.path())).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(
             !output.status.success() && said.contains(&format!("{own} is open to the internet")),

@@ -233,8 +233,14 @@ mod tests {
     fn pages_of_this_server_and_of_the_named_origin_may_connect() {
         let hosts = vec!["10.0.0.1:80".to_owned()];
         let origin = Some("https://host".to_owned());
-        let access =
-            Access::new(Token::default(), ("https", hosts), origin, PathBuf::new(), Pose::IDENTITY, None);
+        let access = Access::new(
+            Token::default(),
+            ("https", hosts),
+            origin,
+            PathBuf::new(),
+            FromServer::Welcome(yoro::eyes::Pose::IDENTITY),
+            None,
+        );
         for (host, origin, allowed) in [
             ("10.0.0.1:80", Some("https://10.0.0.1:80"), true),
             ("10.0.0.1:80", Some("https://host"), true),

@@ -185,7 +185,8 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     };
     announce(&links, port, lan.as_ref(), server.encoder.name())?;
     let tls = lan.map(|lan| lan.tls);
-    let access = Arc::new(Access::new(token, (scheme, hosts), args.allow_origin.clone(), folder, welcome, tls));
+    let access =
+        Arc::new(Access::new(token, (scheme, hosts), args.allow_origin.clone(), folder, welcome, tls));
     let (viewers, admitted) = mpsc::channel();
     if let Some((socket, tls)) = quic {
         web_transport::accept(access.clone(), socket, tls, viewers.clone())?;
