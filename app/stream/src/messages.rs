@@ -396,9 +396,11 @@ mod tests {
 
         #[test]
         fn damaged_messages_are_read_without_a_panic(
-            which in 0usize..6, damage in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..4),
+            damage in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..4),
         ) {
-            for mut bytes in [up()[which].to_bytes(), down()[which].to_bytes()] {
+            let up = up().into_iter().map(|message| message.to_bytes());
+            let messages = up.chain(down().into_iter().map(|message| message.to_bytes()));
+            for mut bytes in messages {
                 for (at, byte) in &damage {
                     let at = at % bytes.len();
                     bytes[at] = *byte;
