@@ -29,6 +29,7 @@ use crate::performance::Performance;
 use crate::pulse::Pulse;
 use crate::results;
 use crate::screen::ScreenState;
+use crate::shared::Shared;
 use crate::system::now_ns;
 
 /// The longest wait for a refresh; after it a frame is drawn without one.
@@ -286,10 +287,13 @@ impl Activity {
     fn follow_scan(&mut self) {
         let (Some(scan), Display::Cardboard(cardboard)) = (&self.scan, &mut self.display) else { return };
         let sentence = match scan.outcome() {
-            Some(Ok(uri)) => {
+            Some(Ok(Shared::Viewer(uri))) => {
                 log::info!("scanned: the viewer {uri}");
                 configuration::choose_viewer(cardboard, &uri)
             }
+            Some(Ok(Shared::Stream(address))) => configuration::show_stream(cardboard.viewer_mut(), address),
+            // A code is no file.
+            Some(Ok(Shared::Scene(_))) => String::new(),
             Some(Err(sentence)) => sentence,
             None => {
                 if let Some(picture) = scan.picture() {
@@ -376,6 +380,7 @@ impl Activity {
         let mut viewer = self.configuration.make_viewer(Viewer::new)?;
         viewer.attach(gl.clone())?;
         self.configuration.greet(&mut viewer);
+        self.configuration.show_stream(&mut viewer);
         let options = Options { android: Some(android) };
         let headset = Headset::open(found, &*window, gl, viewer, options)?;
         self.display = Display::Headset(Box::new(headset));
@@ -491,6 +496,7 @@ impl Activity {
             match self.configuration.make_viewer(new) {
                 Ok(mut cardboard) => {
                     self.configuration.begin(&mut cardboard);
+                    self.configuration.show_stream(cardboard.viewer_mut());
                     self.display = Display::Cardboard(Box::new(cardboard));
                 }
                 Err(error) => return self.fail(error.to_string()),

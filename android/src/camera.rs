@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::dynamic::Library;
 use crate::scan::{Luma, best_size};
-use crate::shared::{Shared, viewer_in_text};
+use crate::shared::{Shared, address_in_text};
 
 /// Time between two looks for a new picture.
 const PERIOD: Duration = Duration::from_millis(40);
@@ -30,7 +30,7 @@ pub const REFUSED: &str = "yoro may not use the camera: allow it in the system's
 struct Found {
     /// See [`Luma::shown`].
     picture: Option<Vec<u8>>,
-    outcome: Option<Result<String, String>>,
+    outcome: Option<Result<Shared, String>>,
 }
 
 /// A scan, until this is dropped, which gives the camera back.
@@ -60,8 +60,8 @@ impl Scan {
         lock(&self.found).picture.take()
     }
 
-    /// Returns the viewer's URI that was found, or why there will be none.
-    pub fn outcome(&self) -> Option<Result<String, String>> {
+    /// Returns the viewer or the stream that was found, or why there will be none.
+    pub fn outcome(&self) -> Option<Result<Shared, String>> {
         lock(&self.found).outcome.take()
     }
 }
@@ -80,7 +80,7 @@ fn lock(found: &Mutex<Found>) -> MutexGuard<'_, Found> {
 }
 
 /// Scans until a code is found or nobody waits any longer.
-fn scan(found: &Mutex<Found>, is_over: &AtomicBool, turned: bool) -> Result<Option<String>, String> {
+fn scan(found: &Mutex<Found>, is_over: &AtomicBool, turned: bool) -> Result<Option<Shared>, String> {
     let (start, is_lost) = (Instant::now(), AtomicBool::new(false));
     let functions = Functions::load().ok_or(NONE)?;
     let camera = Camera::open(&functions, &is_lost)?;
@@ -100,10 +100,7 @@ fn scan(found: &Mutex<Found>, is_over: &AtomicBool, turned: bool) -> Result<Opti
             last_picture = Instant::now();
         }
         if let Some(text) = text.flatten() {
-            return viewer_in_text(&text).map(|shared| match shared {
-                Shared::Viewer(uri) => Some(uri),
-                Shared::Scene(_) => None,
-            });
+            return address_in_text(&text).map(Some);
         }
         thread::sleep(PERIOD);
     }

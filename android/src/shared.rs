@@ -10,6 +10,8 @@ use std::thread;
 
 use yoro_lenses::{ViewerParams, read_qr};
 
+use crate::stream;
+
 /// The largest picture and the largest model in bytes.
 const MAX_PICTURE: u64 = 64 << 20;
 const MAX_MODEL: u64 = 1 << 30;
@@ -31,10 +33,12 @@ pub enum Given {
 }
 
 /// What was shared, ready for use.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shared {
     /// A viewer's URI.
     Viewer(String),
+    /// The address of a stream.
+    Stream(stream::Address),
     /// The file name of a model that is in the folder for scenes now.
     Scene(String),
 }
@@ -56,7 +60,7 @@ impl Reading {
         let progress = Arc::downgrade(&bytes);
         let work = move || {
             let read = match (open(), folder) {
-                (Given::Text(text), _) => viewer_in_text(&text),
+                (Given::Text(text), _) => address_in_text(&text),
                 (Given::File(file, name), Some(folder)) => read(file, &name, &folder, &progress),
                 (Given::File(..), None) => {
                     Err("There is no folder for what is shared: make room, and share it again.".into())
@@ -114,11 +118,14 @@ impl<R: Read> Read for Counted<R> {
 /// The longest address that a viewer's code leads to, in bytes.
 const MAX_ADDRESS: usize = 2048;
 
-/// Finds a viewer's URI in a text, among other words.
+/// Finds the address of a stream, or a viewer's URI, in a text, among other words.
 ///
 /// # Errors
 /// A sentence with the remedy.
-pub fn viewer_in_text(text: &str) -> Result<Shared, String> {
+pub fn address_in_text(text: &str) -> Result<Shared, String> {
+    if let Some(stream) = stream::find(text) {
+        return stream.map(Shared::Stream);
+    }
     let is_address = |word: &&str| word.contains('.') && word.contains('/');
     let is_viewer = |word: &&str| is_address(word) && word.contains("/cardboard");
     // Not its brackets, the end of its sentence, or what follows the parameters.
@@ -182,7 +189,7 @@ fn read(mut file: File, name: &str, folder: &Path, bytes: &Weak<AtomicU64>) -> R
     drop(bytes);
     let rgba = small.to_rgba8();
     match read_qr(&rgba, rgba.width() as usize) {
-        Some(text) => viewer_in_text(&text),
+        Some(text) => address_in_text(&text),
         None => {
             Err("No QR code can be read in the shared picture: take it from nearer, straight, in even light."
                 .into())
@@ -234,15 +241,15 @@ mod tests {
     #[test]
     fn a_viewer_is_found_among_words() {
         let viewer = |uri: &str| Ok(Shared::Viewer(uri.into()));
-        assert_eq!(viewer_in_text(&format!("My viewer: {URI} (scanned)")), viewer(URI));
-        assert_eq!(viewer_in_text(&format!("See a.example/x (as {URI}&a,b).")), viewer(URI));
-        assert_eq!(viewer_in_text("http://g.co/cardboard"), viewer("http://g.co/cardboard"));
+        assert_eq!(address_in_text(&format!("My viewer: {URI} (scanned)")), viewer(URI));
+        assert_eq!(address_in_text(&format!("See a.example/x (as {URI}&a,b).")), viewer(URI));
+        assert_eq!(address_in_text("http://g.co/cardboard"), viewer("http://g.co/cardboard"));
         for (text, part) in [
             ("https://goo.gl/abc", "shortened"),
             ("hello", "no address"),
             ("https://google.com/cardboard/cfg?p=%%%", "is not a viewer's URI"),
         ] {
-            let mistake = viewer_in_text(text).unwrap_err();
+            let mistake = address_in_text(text).unwrap_err();
             assert!(mistake.contains(part) && !mistake.contains('\n'), "{mistake}");
         }
     }

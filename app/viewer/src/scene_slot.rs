@@ -77,6 +77,11 @@ impl SceneSlot {
         self.viewpoint = viewpoint;
     }
 
+    /// Shows no scene, and loads none.
+    pub fn put_away(&mut self) {
+        (self.loader, self.failure, self.shown) = (None, None, None);
+    }
+
     /// Starts to load the scene again, unless it is on its way or has failed: there is a new GL context.
     pub fn reload(&mut self) {
         if self.loader.is_none() && self.failure.is_none() {

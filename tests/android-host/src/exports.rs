@@ -100,6 +100,7 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
             crate::android::assets::exports(),
             crate::android::camera::exports(),
             crate::android::choreographer::exports(),
+            crate::android::codec::exports(),
             crate::android::configuration::exports(),
             crate::android::input::exports(),
             crate::android::log::exports(),

@@ -1,8 +1,8 @@
 //! The functions that Android's public libraries offer.
 
-/// The lists that the stand-in NDK is made of. They hold all of EGL, GLES and libandroid, and of libc and libm what
+/// The lists that the stand-in NDK is made of. They hold all of EGL, GLES and libandroid, and of the others what
 /// Rust's std and this project ask for.
-pub const LISTS: [(&str, &str); 8] = [
+pub const LISTS: [(&str, &str); 9] = [
     ("libEGL", include_str!("../../ndk/symbols/libEGL.txt")),
     ("libGLESv2", include_str!("../../ndk/symbols/libGLESv2.txt")),
     ("libGLESv3", include_str!("../../ndk/symbols/libGLESv3.txt")),
@@ -10,6 +10,7 @@ pub const LISTS: [(&str, &str); 8] = [
     ("libc", include_str!("../../ndk/symbols/libc.txt")),
     ("libdl", include_str!("../../ndk/symbols/libdl.txt")),
     ("liblog", include_str!("../../ndk/symbols/liblog.txt")),
+    ("libmediandk", include_str!("../../ndk/symbols/libmediandk.txt")),
     ("libm", include_str!("../../ndk/symbols/libm.txt")),
 ];
 

@@ -14,7 +14,7 @@ use super::report::Report;
 const PACKAGE: &str = "io.github.yoro";
 const LIBRARY: &str = "yoro_android";
 /// Permissions that the application asks for: the camera reads a viewer's code, and OpenXR runtimes may want to be asked.
-const PERMISSIONS: &str = "android.permission.CAMERA org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
+const PERMISSIONS: &str = "android.permission.CAMERA android.permission.INTERNET org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
 /// Headsets by Meta that it has to be made for by name, and all, for those that do not know the later names.
 const DEVICES: [&str; 2] = ["all", "quest3"];
 /// Everything that may change while the activity goes on: locale, touchscreen, keyboard, keyboardHidden, navigation,

@@ -1,16 +1,20 @@
 //! Frames: from what has been loaded to the report, and a log line a second.
 
+use glam::Vec3;
+
 use super::{Attached, Viewer};
 use crate::adaptive::Load;
 use crate::caption::Status;
 use crate::error::ViewerError;
 use crate::frame::{FrameReport, FrameTiming, SceneState};
+use crate::stream::Stream;
 use yoro::choice::Cost;
 use yoro::eyes::EyePair;
 use yoro_gl::Destination;
 use yoro_lenses::{Content, Panel, Placement};
-use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
+use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, StreamFigures, ViewerState};
 use yoro_render::stereo::EyeTarget;
+use yoro_scene::Viewpoint;
 
 /// The images of the eyes are multiples of this many pixels, so that small changes need no new targets.
 const SIZE_STEP: f32 = 16.0;
@@ -23,7 +27,7 @@ impl Viewer {
         self.now_ns = timing.now_ns;
         self.refresh_hz = timing.refresh_hz;
         self.poll_scene();
-        if self.scene.is_shown()
+        if self.scene_state() == SceneState::Ready
             && let Some(text) = std::mem::take(&mut self.start.hint).text(self.made_up_eye())
         {
             self.caption.announce(text, self.now_ns);
@@ -37,8 +41,19 @@ impl Viewer {
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
     pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
         self.stats.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
-        self.method.judge(pair);
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
+        if let Some(stream) = &mut self.stream {
+            let was_shown = stream.is_shown();
+            if let Some(home) = stream.take(self.now_ns)? {
+                let target = home.position + home.orientation * Vec3::NEG_Z;
+                self.scene.set_viewpoints(&[Viewpoint { position: home.position, target }]);
+            }
+            if stream.is_shown() && !was_shown {
+                self.stats.begin(self.now_ns);
+            }
+            return Ok(stream.render(gl, pair, to, self.now_ns)?);
+        }
+        self.method.judge(pair);
         let Some(shown) = self.scene.shown() else {
             for Destination { framebuffer, origin, size } in to.iter().map(|eye| eye.color) {
                 gl.bind_framebuffer(framebuffer, origin, size);
@@ -63,19 +78,22 @@ impl Viewer {
     /// [`ViewerError::NoContext`].
     pub fn hud(&mut self) -> Result<Option<Panel<'_>>, ViewerError> {
         self.write_caption();
+        let is_shown = self.scene_state() == SceneState::Ready;
+        let is_loading = self.is_loading();
+        let has_sentence = self.stream.as_ref().is_some_and(|stream| stream.sentence().is_some());
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         let text = self.caption.text();
         if let Some(question) = self.stats.question() {
             let progress = Some(question.position());
             return Ok(Some(attached.hud.set(Content { text, progress }, Placement::Middle)));
         }
-        let is_empty = !self.scene.is_shown();
-        if !is_empty && !self.caption.is_in_view(self.now_ns) {
+        let is_empty = !is_shown;
+        if !is_empty && !has_sentence && !self.caption.is_in_view(self.now_ns) {
             return Ok(None);
         }
         // To and fro once in two seconds.
         let phase = (self.now_ns.rem_euclid(2_000_000_000)) as f32 * 1e-9;
-        let progress = (is_empty && self.scene.is_loading()).then_some(1.0 - (1.0 - phase).abs());
+        let progress = (is_empty && is_loading).then_some(1.0 - (1.0 - phase).abs());
         let placement = if is_empty { Placement::Middle } else { Placement::Below };
         Ok(Some(attached.hud.set(Content { text, progress }, placement)))
     }
@@ -85,16 +103,21 @@ impl Viewer {
         if let Some(question) = self.stats.question() {
             return question.write(self.caption.text_mut());
         }
-        if let Some(failure) = self.scene.failure() {
-            return self.caption.write_sentence(failure);
+        let sentence = self.stream.as_ref().and_then(Stream::sentence);
+        if let Some(sentence) = self.scene.failure().or(sentence) {
+            return self.caption.write_sentence(sentence);
         }
+        let loading = match &self.stream {
+            Some(stream) => (!stream.is_shown()).then_some("stream"),
+            None => self.scene.is_loading().then(|| self.scene.name()),
+        };
         let status = Status {
             frames: self.stats.last_line(),
             celsius: self.stats.celsius(),
-            method: self.method.method().name(),
+            method: self.method_name(),
             auto: self.method.auto(),
-            pipeline: self.method.pipeline_name(),
-            loading: self.scene.is_loading().then(|| self.scene.name()),
+            pipeline: self.pipeline_name(),
+            loading,
         };
         self.caption.write_status(&status, self.now_ns);
     }
@@ -115,7 +138,7 @@ impl Viewer {
         });
         let gpu_ms = gpu.map(|gpu| gpu.ms);
         let late_refreshes = self.stats.frame(now_ns, refresh_hz, pass_times, u32::from(timed.is_some()));
-        let scene = self.scene.state();
+        let scene = self.scene_state();
         self.method.end_frame(now_ns, refresh_hz, gpu);
         let load = Load { now_ns, refresh_hz, late_refreshes, gpu_ms };
         if self.settings.adaptive && scene == SceneState::Ready && self.method.adapt(&load, &self.settings) {
@@ -142,20 +165,32 @@ impl Viewer {
         self.method.set_thermal_headroom(device.thermal_headroom);
         let state = self.state();
         self.method.begin_second();
+        if let Some(stream) = &mut self.stream {
+            stream.figures = StreamFigures::default();
+        }
         self.stats.line(now_ns, &state, device)
     }
 
     /// Returns the viewer's own part of a log line.
     pub(super) fn state(&self) -> ViewerState {
         ViewerState {
-            method: self.method.method().name().to_owned(),
-            pipeline: self.method.pipeline_name().map(str::to_owned),
-            scene: self.scene.name().to_owned(),
+            method: self.method_name().to_owned(),
+            pipeline: self.pipeline_name().map(str::to_owned),
+            scene: self.scene_name().to_owned(),
             render_scale: self.render_scale(),
             imbuffer: self.method.imbuffer_divisor(&self.settings),
             run: self.settings.run.clone(),
             auto: self.method.reason(),
+            stream: self.stream.as_ref().map(|stream| stream.figures),
         }
+    }
+
+    fn method_name(&self) -> &'static str {
+        if self.stream.is_some() { "stream" } else { self.method.method().name() }
+    }
+
+    fn pipeline_name(&self) -> Option<&'static str> {
+        self.method.pipeline_name().filter(|_| self.stream.is_none())
     }
 
     /// The session since the scene came into view, for the log at its end.

@@ -25,6 +25,7 @@ mod tests;
 
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::caption::Caption;
 use crate::error::ViewerError;
@@ -35,6 +36,7 @@ use crate::method_slot::MethodSlot;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
 use crate::start::StartScreen;
+use crate::stream::{Stream, StreamExchange};
 use yoro::eyes::Pose;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
@@ -68,6 +70,8 @@ pub struct Viewer {
     settings: Settings,
     folders: Vec<PathBuf>,
     scene: SceneSlot,
+    /// In the scene's place.
+    stream: Option<Stream>,
     method: MethodSlot,
     stats: SessionStats,
     caption: Caption,
@@ -97,6 +101,7 @@ impl Viewer {
         Ok(Viewer {
             folders: folders.to_vec(),
             scene: SceneSlot::new(source, settings.viewpoint),
+            stream: None,
             method: MethodSlot::new(&settings),
             stats: SessionStats::default(),
             caption: Caption::new(settings.hud),
@@ -124,8 +129,11 @@ impl Viewer {
         // What a context before this one held.
         self.detach();
         let (hud, board) = (Hud::new(&gl)?, Board::new(&gl)?);
+        match &mut self.stream {
+            Some(stream) => stream.attach(&gl)?,
+            None => self.scene.reload(),
+        }
         self.attached = Some(Attached { hud, board, pass_times: Vec::with_capacity(MOST_PASSES), gl });
-        self.scene.reload();
         Ok(())
     }
 
@@ -134,6 +142,9 @@ impl Viewer {
     pub fn detach(&mut self) {
         self.method.drop_made();
         self.scene.drop_shown();
+        if let Some(stream) = &mut self.stream {
+            stream.detach();
+        }
         self.attached = None;
     }
 
@@ -142,7 +153,24 @@ impl Viewer {
         self.attached.is_some()
     }
 
+    /// Shows a stream in the scene's place, until another scene is chosen.
+    ///
+    /// # Errors
+    /// [`ViewerError::Gl`].
+    pub fn show_stream(&mut self, exchange: Arc<StreamExchange>) -> Result<(), ViewerError> {
+        let mut stream = Stream::new(exchange);
+        if let Some(attached) = &self.attached {
+            stream.attach(&attached.gl)?;
+        }
+        self.method.drop_made();
+        self.scene.put_away();
+        self.stats.expect_scene();
+        self.stream = Some(stream);
+        Ok(())
+    }
+
     fn replace_scene(&mut self, source: SceneSource, viewpoint: usize) {
+        self.stream = None;
         self.scene.replace(source, viewpoint);
         self.stats.expect_scene();
     }
@@ -203,9 +231,9 @@ impl Viewer {
         &self.folders
     }
 
-    /// The scene that is in view or on its way.
+    /// The scene that is in view or on its way; `stream` for a stream.
     pub fn scene_name(&self) -> &str {
-        self.scene.name()
+        if self.stream.is_some() { "stream" } else { self.scene.name() }
     }
 
     /// Time of the last frame in nanoseconds.
@@ -220,12 +248,19 @@ impl Viewer {
 
     /// The state of the scene.
     pub fn scene_state(&self) -> SceneState {
-        self.scene.state()
+        match &self.stream {
+            Some(stream) if stream.is_shown() => SceneState::Ready,
+            Some(_) => SceneState::Loading,
+            None => self.scene.state(),
+        }
     }
 
     /// True while a scene is on its way, also if another one is in view.
     pub fn is_loading(&self) -> bool {
-        self.scene.is_loading()
+        match &self.stream {
+            Some(stream) => !stream.is_shown(),
+            None => self.scene.is_loading(),
+        }
     }
 
     /// The reason why the scene cannot be shown, in one sentence.

@@ -4,6 +4,7 @@ pub mod activity;
 pub mod assets;
 pub mod camera;
 pub mod choreographer;
+pub mod codec;
 pub mod configuration;
 pub mod input;
 pub mod log;

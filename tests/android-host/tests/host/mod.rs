@@ -1,8 +1,8 @@
 //! Runs the simulated Android host and reads its findings.
 
-use std::io::Write;
+use std::io::{BufRead as _, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 
 use image::RgbImage;
 use yoro_android_host::summary::Summary;
@@ -46,6 +46,50 @@ pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
     Some(run(Path::new(env!("CARGO_BIN_EXE_yoro-android-host")), &apk, name, device, steps))
 }
 
+/// `yoro serve` of the tests' scene, until this is dropped.
+pub struct Server {
+    child: Child,
+    /// What it prints.
+    pub link: String,
+}
+
+impl Server {
+    /// Starts it; none, with a loud line, where the program was not built.
+    pub fn start(name: &str, port: &str) -> Option<Server> {
+        let program = Path::new(env!("CARGO_BIN_EXE_yoro-android-host")).with_file_name("yoro");
+        let program = program.exists().then_some(program);
+        let program =
+            program.or_else(|| left_out(name, "there is no program beside the host", "yoro", "builds it"))?;
+        // There is no page to be seen.
+        let page = folder("page");
+        std::fs::create_dir_all(&page).unwrap();
+        std::fs::write(page.join("index.html"), "").unwrap();
+        let mut child = Command::new(program)
+            .args(["serve", "prototype", "--port", port, "--quantizer", "16", "--page"])
+            .arg(page)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let first = lines.next().expect("it says where it is").unwrap();
+        std::thread::spawn(move || lines.for_each(drop));
+        Some(Server { child, link: first.strip_prefix("open ").expect("a link").to_owned() })
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        _ = self.child.kill();
+        _ = self.child.wait();
+    }
+}
+
+/// The folder of a run.
+pub fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
 /// Plays steps after the application has started and its scene is in view; then the user leaves. Nothing may go wrong.
 pub fn show(name: &str, device: &str, steps: &str) -> Option<Run> {
     let run = play(name, device, &format!(r#""launch", {READY}, {steps}, "quit""#))?;
@@ -82,7 +126,7 @@ fn left_out<T>(name: &str, reason: &str, variable: &str, remedy: &str) -> Option
 }
 
 fn run(host: &Path, apk: &Path, name: &str, device: &str, steps: &str) -> Run {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let folder = folder(name);
     _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     let script = folder.join("script.toml");

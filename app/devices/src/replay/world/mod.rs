@@ -450,6 +450,8 @@ impl World {
             performance: None,
             guard_columns: None,
             undrawn: None,
+            stream_fps: None,
+            latency_ms: None,
             auto: None,
         }
     }
