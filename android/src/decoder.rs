@@ -11,7 +11,7 @@ use ndk::media_error::MediaError;
 use crate::stream::Layout;
 
 /// The longest wait for a decoder that has no room for the next frame.
-const BUSY: Duration = Duration::from_millis(500);
+const INPUT_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// A decoder of pictures of one size.
 pub struct Decoder {
@@ -52,7 +52,7 @@ impl Decoder {
     /// The device's reason, or that it has no room.
     pub fn decode(&self, number: u32, data: &[u8]) -> Result<(), String> {
         let DequeuedInputBufferResult::Buffer(mut buffer) =
-            self.codec.dequeue_input_buffer(BUSY).map_err(failed)?
+            self.codec.dequeue_input_buffer(INPUT_TIMEOUT).map_err(failed)?
         else {
             return Err("the decoder stands still.".into());
         };

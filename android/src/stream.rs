@@ -140,15 +140,15 @@ mod client {
     /// The longest wait for what comes, before other things are looked after.
     const TICK: Duration = Duration::from_millis(4);
     /// The longest wait for an answer of the server.
-    const PATIENCE: Duration = Duration::from_secs(3);
-    /// After a connection was lost it is tried again after so long.
-    const AGAIN: Duration = Duration::from_secs(1);
-    /// Nothing was drawn for so long: nobody looks, and another client may have the stream.
-    const UNSEEN: Duration = Duration::from_secs(1);
+    const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
+    /// The wait before a lost connection is tried again.
+    const RETRY_DELAY: Duration = Duration::from_secs(1);
+    /// The time without a drawn frame after which the connection ends, so that another client may have the stream.
+    const IDLE_TIMEOUT: Duration = Duration::from_secs(1);
     /// The longest answer to the request for a WebSocket, in bytes.
-    const MOST: usize = 4096;
-    /// A decoder that fails before so many pictures would fail again.
-    const STEADY: u32 = 30;
+    const MAX_ANSWER_BYTES: usize = 4096;
+    /// Pictures after which a decoder that fails is worth another try.
+    const TRUSTED_AFTER: u32 = 30;
 
     /// Why a connection has ended.
     enum End {
@@ -171,7 +171,7 @@ mod client {
     pub fn run(address: &Address, exchange: &Arc<StreamExchange>) {
         let mut said = String::new();
         while is_wanted(exchange) {
-            if exchange.take_request(UNSEEN).is_none() {
+            if exchange.take_request(IDLE_TIMEOUT).is_none() {
                 continue;
             }
             let end = connect(address).and_then(|socket| follow(socket, exchange));
@@ -188,7 +188,7 @@ mod client {
             if is_over {
                 return;
             }
-            thread::sleep(AGAIN);
+            thread::sleep(RETRY_DELAY);
         }
     }
 
@@ -209,7 +209,8 @@ mod client {
             ))
         };
         let tcp = TcpStream::connect((Ipv4Addr::LOCALHOST, *port)).map_err(|error| unanswered(&error))?;
-        let timeouts = tcp.set_read_timeout(Some(PATIENCE)).and(tcp.set_write_timeout(Some(PATIENCE)));
+        let timeouts =
+            tcp.set_read_timeout(Some(ANSWER_TIMEOUT)).and(tcp.set_write_timeout(Some(ANSWER_TIMEOUT)));
         timeouts.and(tcp.set_nodelay(true)).map_err(tungstenite::Error::Io)?;
         upgrade(&tcp, host).map_err(|error| unanswered(&error))?;
         let mut socket = WebSocket::from_raw_socket(tcp, Role::Client, None);
@@ -225,7 +226,7 @@ mod client {
         );
         tcp.write_all(request.as_bytes())?;
         let mut answer = Vec::new();
-        while !answer.ends_with(b"\r\n\r\n") && answer.len() < MOST {
+        while !answer.ends_with(b"\r\n\r\n") && answer.len() < MAX_ANSWER_BYTES {
             let mut byte = [0];
             tcp.read_exact(&mut byte)?;
             answer.extend(byte);
@@ -270,7 +271,7 @@ mod client {
             if let Some(request) = exchange.take_request(Duration::ZERO) {
                 socket.send(Message::binary(FromViewer::Request(request).to_bytes()))?;
                 asked = Instant::now();
-            } else if asked.elapsed() > UNSEEN || !is_wanted(exchange) {
+            } else if asked.elapsed() > IDLE_TIMEOUT || !is_wanted(exchange) {
                 return Err(End::Unseen);
             }
         }
@@ -316,7 +317,7 @@ mod client {
 
         fn failed(&self, reason: &str) -> End {
             let sentence = format!("The stream cannot be decoded: {reason}");
-            if self.count < STEADY { End::ForGood(sentence) } else { End::Again(sentence) }
+            if self.count < TRUSTED_AFTER { End::ForGood(sentence) } else { End::Again(sentence) }
         }
     }
 }

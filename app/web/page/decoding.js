@@ -7,14 +7,14 @@
 const WAYS = ['planes', 'frame'];
 /** Pictures of each way that are timed, after one that is not. */
 const TRIALS = 4;
-/** A decoder that fails before so many pictures would fail again. */
-const STEADY = 30;
+/** Pictures after which a decoder that fails is worth another try. */
+const TRUSTED_AFTER = 30;
 
 let decoder = null;
 /** Pictures that it has decoded. */
 let pictures = 0;
-/** The heads of the frames that are being decoded, by number. */
-const heads = new Map();
+/** The headers of the frames that are being decoded, by number. */
+const headers = new Map();
 /** The number of the newest frame that was decoded. */
 let latest = -1;
 /** The newest decoded frame, if the page is still busy with the one before. */
@@ -42,12 +42,12 @@ export function count(more) {
  */
 export function start(config, failed, convert = null) {
   pack = convert;
-  heads.clear();
+  headers.clear();
   pictures = 0;
   latest = -1;
   const error = ({ message }) => {
     decoder = null;
-    if (pictures >= STEADY) failed();
+    if (pictures >= TRUSTED_AFTER) failed();
     else postMessage({ fault: `This browser cannot decode the H.264 (${message}): update it, or use another one.` });
   };
   decoder = new VideoDecoder({ output: decoded, error });
@@ -64,7 +64,7 @@ export function end() {
 export const isStarted = () => Boolean(decoder);
 
 /** Waits until few pictures wait for the decoder. */
-export async function calm() {
+export async function queueShrinks() {
   while (decoder?.decodeQueueSize > 2) await new Promise((resolve) => decoder.addEventListener('dequeue', resolve, { once: true }));
 }
 
@@ -76,7 +76,7 @@ export async function calm() {
  * @param {Uint8Array} data
  */
 export function decode(number, intra, head, data) {
-  heads.set(number, head);
+  headers.set(number, head);
   decoder.decode(new EncodedVideoChunk({ type: intra ? 'key' : 'delta', timestamp: number, data }));
 }
 
@@ -87,7 +87,7 @@ addEventListener('message', ({ data }) => {
   // The page takes the next frame.
   pageIsFree = true;
   if (data.took && !way) took(data.took);
-  hand();
+  deliver();
 });
 
 /** Notes how long a picture took. @param {{way: string, ms: number}} picture */
@@ -99,8 +99,8 @@ function took({ way: its, ms }) {
 }
 
 async function decoded(frame) {
-  const head = heads.get(frame.timestamp);
-  heads.delete(frame.timestamp);
+  const head = headers.get(frame.timestamp);
+  headers.delete(frame.timestamp);
   pictures += 1;
   if (!head) {
     frame.close();
@@ -150,7 +150,7 @@ function put(picture) {
   if (old === picture) return;
   latest = picture.number;
   newest = picture;
-  hand();
+  deliver();
 }
 
 /** Returns two planes of samples that take turns. */
@@ -165,7 +165,7 @@ function apart(mixed) {
 }
 
 /** Gives the page the newest frame, once it has taken the one before. */
-function hand() {
+function deliver() {
   if (!newest || !pageIsFree) return;
   pageIsFree = false;
   postMessage({ ...newest, bytes, skipped }, { transfer: [newest.frame ?? newest.planes.buffer] });

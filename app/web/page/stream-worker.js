@@ -8,11 +8,11 @@ const FRAME = 2;
 const PREFIX = 8;
 /** The decoder takes H.264's constrained baseline profile up to this level (5.1), as the server encodes it. */
 const CODEC = 'avc1.42c033';
-/** After a connection was lost it is tried again after so long, in ms. */
-const AGAIN = 1000;
+/** The wait before a lost connection is tried again, in ms. */
+const RETRY_DELAY = 1000;
 
-/** A WebTransport that does not come in so long, in ms, is given up. */
-const PATIENCE = 3000;
+/** The longest wait for a WebTransport, in ms. */
+const CONNECT_TIMEOUT = 3000;
 
 /** What the page has said: `hello`, the message with which to begin; the `module`; the WebSocket's address as `socket`, and the
  * WebTransport's `address` with its certificate's `hash` as `transport`, where there are these. */
@@ -79,7 +79,7 @@ function ended() {
   }
   answered = false;
   postMessage({ lost: true });
-  setTimeout(connect, AGAIN);
+  setTimeout(connect, RETRY_DELAY);
 }
 
 function openSocket({ socket: address, hello }) {
@@ -117,7 +117,7 @@ function openTransport({ transport: { address, hash }, hello }) {
     send: (message) => { datagrams.write(message).catch(ignore); },
     close: () => { try { transport.close(); } catch { /* it has not begun */ } },
   };
-  const timer = setTimeout(() => { if (connection === self && !answered) self.close(); }, PATIENCE);
+  const timer = setTimeout(() => { if (connection === self && !answered) self.close(); }, CONNECT_TIMEOUT);
   for (const promise of [transport.closed, datagrams.closed]) promise.catch(ignore);
   run().catch(ignore).finally(() => {
     clearTimeout(timer);

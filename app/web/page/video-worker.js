@@ -48,7 +48,7 @@ async function play(file) {
     const wait = start + time * 1000 - performance.now();
     if (wait > 0) await new Promise((resolve) => setTimeout(resolve, wait));
     else if (wait < -LATE) start -= wait;
-    await decoding.calm();
+    await decoding.queueShrinks();
     if (!decoding.isStarted()) return;
     decoding.count(length);
     decoding.decode(number, intra === 1, video.head(number), data);
