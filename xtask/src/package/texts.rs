@@ -107,12 +107,14 @@ pub fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
          export PKG_CONFIG_PATH=$PWD/lib/pkgconfig\n\
          FLAGS=\"$(pkg-config --cflags --libs yoro) -Wl,-rpath,$PWD/lib\"\n\
          cc share/yoro/examples/gles.c $FLAGS -lEGL -lGLESv2 -lm -o gles && ./gles\n\
+         cc share/yoro/examples/any_view.c $FLAGS -lEGL -lGLESv2 -lm -o any_view && ./any_view\n\
          cc share/yoro/examples/vulkan.c $FLAGS -lvulkan -lm -o vulkan && ./vulkan\n\
-         cmake -S share/yoro/examples -B build -DCMAKE_PREFIX_PATH=$PWD && cmake --build build    # or both by CMake\n\
+         cmake -S share/yoro/examples -B build -DCMAKE_PREFIX_PATH=$PWD && cmake --build build    # or all by CMake\n\
          ```\n\
          \n\
          They write `gles.png` and `vulkan.png`, both eyes side by side, and print how close the synthesized eye is to a\n\
-         rendered one. A program of your own links `yoro` as they do; `lib/libyoro.a` in place of it needs no `-rpath`.\n\
+         rendered one; `any_view` does so with a view from another pose. A program of your own links `yoro` as they do;\n\
+         `lib/libyoro.a` in place of it needs no `-rpath`.\n\
          \n\
          MIT or Apache 2.0, at your option: `share/doc/yoro`.\n"
     )
