@@ -259,7 +259,7 @@ fn uses_memory_and_times_are_those_of_the_core() {
         assert_eq!(yoro_times(context, &mut times), YORO_OK);
         assert_eq!(yoro_destroy(context), YORO_OK);
     }
-    assert!(times.is_known == 1 && times.march_ns > 0 && times.split_ns < times.march_ns, "{times:?}");
+    assert!(times.is_known == 1 && times.march_ns > 0, "{times:?}");
 }
 
 #[test]

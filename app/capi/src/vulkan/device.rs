@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_char};
 use std::time::Duration;
 
 use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
-use yoro::vulkan::{AnyView, Gather, Host};
+use yoro::vulkan::{AnyView, Gather, Host, PassTimes};
 
 use super::types::{YoroVkInfo, check_format};
 use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroTimes};
@@ -119,18 +119,24 @@ impl Vulkan {
     }
 }
 
-impl Backend for Vulkan {
-    fn times(&mut self) -> Result<Option<YoroTimes>, Failure> {
-        // SAFETY: the header asks that the frame has been executed.
-        let times = unsafe { of_passes!(&self.passes, pass_times()) }?;
+impl From<PassTimes> for YoroTimes {
+    fn from(times: PassTimes) -> YoroTimes {
         let nanoseconds = |time: Duration| time.as_nanos() as u64;
-        Ok(times.map(|times| YoroTimes {
+        YoroTimes {
             split_ns: nanoseconds(times.split),
             tiles_ns: nanoseconds(times.tiles),
             spans_ns: nanoseconds(times.spans),
             march_ns: nanoseconds(times.march),
             ..YoroTimes::UNKNOWN
-        }))
+        }
+    }
+}
+
+impl Backend for Vulkan {
+    fn times(&mut self) -> Result<Option<YoroTimes>, Failure> {
+        // SAFETY: the header asks that the frame has been executed.
+        let times = unsafe { of_passes!(&self.passes, pass_times()) }?;
+        Ok(times.map(YoroTimes::from))
     }
 
     fn api(&self) -> &'static str {
@@ -156,5 +162,17 @@ impl Backend for Vulkan {
             capabilities.set_device(&name.to_string_lossy());
         }
         capabilities
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_pass_has_its_own_time() {
+        let [split, tiles, spans, march] = [1, 2, 3, 4].map(Duration::from_nanos);
+        let times = YoroTimes::from(PassTimes { split, tiles, spans, march });
+        assert_eq!([times.split_ns, times.tiles_ns, times.spans_ns, times.march_ns], [1, 2, 3, 4]);
     }
 }
