@@ -66,19 +66,12 @@ fn main() -> Result<()> {
     // SAFETY: handles of one device, and images that live until everything is executed.
     let (mut gather, frame) = unsafe {
         let mut gather = Gather::new(&engine.host(), &options)?;
-        let source = gather.register_source(&SourceImages {
-            color: layer(&color, COLOR, uploaded, ImageState::SAMPLED),
-            depth: layer(&depth, DEPTH, uploaded, ImageState::SAMPLED),
-            sample_color: None,
-            size: source_size,
-            history: None,
-        })?;
-        let target = gather.register_target(&TargetImages {
-            color: layer(&target, COLOR, ImageState::DISCARDED, downloaded),
-            depth: None,
-            size: target_size,
-        })?;
-        (gather, Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None })
+        let color = layer(&color, COLOR, uploaded, ImageState::SAMPLED);
+        let depth = layer(&depth, DEPTH, uploaded, ImageState::SAMPLED);
+        let source = gather.register_source(&SourceImages::new(color, depth, source_size))?;
+        let target = layer(&target, COLOR, ImageState::DISCARDED, downloaded);
+        let target = gather.register_target(&TargetImages::new(target, target_size))?;
+        (gather, Frame::new(source, target))
     };
 
     // Each frame, in the engine's own command buffer.

@@ -29,25 +29,13 @@
 //! };
 //! // Once for each pair of images that is rendered to, and for each image of a swapchain: views and descriptors.
 //! let image = |image, format, state| LayerImage { image, format, layer: 0, before: state, after: state };
-//! let source = unsafe {
-//!     gather.register_source(&SourceImages {
-//!         color: image(color, vk::Format::R8G8B8A8_SRGB, ImageState::COLOR_ATTACHMENT),
-//!         depth: image(depth, vk::Format::D32_SFLOAT, ImageState::DEPTH_ATTACHMENT),
-//!         sample_color: None,
-//!         size: views.source.size,
-//!         history: None,
-//!     })?
-//! };
-//! let target = unsafe {
-//!     gather.register_target(&TargetImages {
-//!         color: image(target, vk::Format::R8G8B8A8_SRGB, ImageState::COLOR_ATTACHMENT),
-//!         depth: None,
-//!         size: views.target.size,
-//!     })?
-//! };
+//! let color = image(color, vk::Format::R8G8B8A8_SRGB, ImageState::COLOR_ATTACHMENT);
+//! let depth = image(depth, vk::Format::D32_SFLOAT, ImageState::DEPTH_ATTACHMENT);
+//! let target = image(target, vk::Format::R8G8B8A8_SRGB, ImageState::COLOR_ATTACHMENT);
+//! let source = unsafe { gather.register_source(&SourceImages::new(color, depth, views.source.size))? };
+//! let target = unsafe { gather.register_target(&TargetImages::new(target, views.target.size))? };
 //! // Each frame, outside of render passes:
-//! let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None };
-//! unsafe { gather.record(commands, &frame, &views.warp)? };
+//! unsafe { gather.record(commands, &Frame::new(source, target), &views.warp)? };
 //! # Ok(())
 //! # }
 //! ```
@@ -358,6 +346,13 @@ pub struct SourceImages {
     pub history: Option<HistoryImages>,
 }
 
+impl SourceImages {
+    /// Returns a source of two images of this size, without the colours of samples or a history.
+    pub fn new(color: LayerImage, depth: LayerImage, size: [u32; 2]) -> SourceImages {
+        SourceImages { color, depth, sample_color: None, size, history: None }
+    }
+}
+
 /// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HistoryImages {
@@ -379,6 +374,13 @@ pub struct TargetImages {
     pub depth: Option<LayerImage>,
     /// Width and height of the images in pixels; the target is a rectangle of them.
     pub size: [u32; 2],
+}
+
+impl TargetImages {
+    /// Returns a target of an image of this size, without depth.
+    pub fn new(color: LayerImage, size: [u32; 2]) -> TargetImages {
+        TargetImages { color, depth: None, size }
+    }
 }
 
 /// The id of registered [`SourceImages`].
@@ -421,6 +423,13 @@ pub struct Frame {
     /// The views of the strips of [`SourceImages::history`], from the top on, as [`Strips::new`] returns them: its rows, which
     /// are counted from the bottom, are turned inside. None: nothing is looked up.
     pub history: Option<Strips>,
+}
+
+impl Frame {
+    /// Returns a frame that begins at the upper left corner of source and target, and looks nothing up.
+    pub fn new(source: SourceId, target: TargetId) -> Frame {
+        Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None }
+    }
 }
 
 /// The uses of an image before and after one call, in place of those of its [`LayerImage`].

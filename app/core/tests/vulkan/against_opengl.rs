@@ -14,7 +14,9 @@ use std::rc::Rc;
 use rand::{Rng, SeedableRng};
 
 use in_memory::{Former, InMemory, SynthesizedImage};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, PoseWarp, View, Warp};
+use yoro::eyes::{
+    DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, PoseWarp, View, Warp,
+};
 use yoro::synthesis::{
     self, Edges, GatherVariant, Outputs, SourceMapEntry, Strips, SynthesisOptions, WarpKind,
 };
@@ -254,6 +256,53 @@ pub fn warps() -> Vec<(Warp, DepthRange)> {
         warps.extend([(lower, range), (higher, range)]);
     }
     warps
+}
+
+/// Sizes, law and place of a synthesis; margins are what lies around the source and the target in their images.
+#[derive(Debug)]
+pub struct RandomCase {
+    pub warp: Warp,
+    pub source_margins: [[u32; 2]; 2],
+    pub target_margins: [[u32; 2]; 2],
+    pub source_layer: u32,
+    pub target_layer: u32,
+}
+
+/// The depth range of [`random_cases`].
+pub const RANDOM_RANGE: DepthRange =
+    DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
+
+/// Any sizes, rectangles, eyes and laws of up to 96 x 70 pixels. The last two displace by 300 pixels, one of them a part of an
+/// image.
+pub fn random_cases() -> Vec<RandomCase> {
+    let warp = |source_size, target_size, row_offset, offset, scale: f64| Warp {
+        source_size,
+        target_size,
+        law: DisparityLaw { offset, scale },
+        row_offset,
+        // Nearer surfaces lie farther along in forward columns, or there is no law.
+        target_eye: Eye::BOTH[usize::from(scale < 0.0)],
+        convention: RANDOM_RANGE.convention,
+    };
+    let mut rng = rand_pcg::Pcg32::seed_from_u64(11);
+    let small = (0..30).map(|_| {
+        let mut pair = |to: [u32; 2], from: u32| to.map(|n| rng.random_range(from..=n));
+        let (source, target) = (pair([96, 70], 1), pair([96, 70], 1));
+        let [source_margins, target_margins] = [0, 1].map(|_| [pair([3, 3], 0), pair([3, 3], 0)]);
+        let [source_layer, target_layer] = pair([1, 1], 0);
+        let (offset, scale) = (rng.random_range(-40.0..40.0), rng.random_range(-30.0..30.0));
+        let warp = warp(source, target, rng.random_range(-30..30), offset, scale);
+        RandomCase { warp, source_margins, target_margins, source_layer, target_layer }
+    });
+    let wide = [(300.0, [[0, 0], [0, 0]]), (-300.0, [[7, 3], [5, 2]])];
+    let wide = wide.map(|(scale, source_margins)| RandomCase {
+        warp: warp([520, 24], [500, 24], 0, 0.0, scale),
+        source_margins,
+        target_margins: [[0; 2]; 2],
+        source_layer: 0,
+        target_layer: 0,
+    });
+    small.chain(wide).collect()
 }
 
 /// The expected depth of a target, from the columns that OpenGL has written.

@@ -10,7 +10,7 @@ use yoro::vulkan::{
     Frame, Gather, HistoryImages, Host, ImageState, Options, SourceImages, TargetImages, VulkanError,
 };
 
-use super::harness::{Gpu, Rendering, with_gpu};
+use super::harness::{Gpu, Image, Rendering, with_gpu};
 use super::{Setup, warps};
 
 /// The device's own commands.
@@ -127,29 +127,15 @@ fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     // SAFETY: valid handles; everything is executed before it is dropped.
     unsafe {
         let mut gather = Gather::new(host, &options)?;
+        let layer = |image: &Image| image.layer(0, before, after);
+        let [former_color, former_depth] = former.each_ref().map(layer);
         let source = gather.register_source(&SourceImages {
-            color: color.layer(0, before, after),
-            depth: depth.layer(0, before, after),
-            sample_color: (samples > 1).then(|| sample_color.layer(0, before, after)),
-            size: warp.source_size,
-            history: Some(HistoryImages {
-                color: former[0].layer(0, before, after),
-                depth: former[1].layer(0, before, after),
-                size: [16, 16],
-            }),
+            sample_color: (samples > 1).then(|| layer(&sample_color)),
+            history: Some(HistoryImages { color: former_color, depth: former_depth, size: [16, 16] }),
+            ..SourceImages::new(layer(&color), layer(&depth), warp.source_size)
         })?;
-        let target = gather.register_target(&TargetImages {
-            color: target.layer(0, before, after),
-            depth: None,
-            size: warp.target_size,
-        })?;
-        let frame = Frame {
-            source,
-            source_origin: [0, 0],
-            target,
-            target_origin: [0, 0],
-            history: Some(Strips::NONE),
-        };
+        let target = gather.register_target(&TargetImages::new(layer(&target), warp.target_size))?;
+        let frame = Frame { history: Some(Strips::NONE), ..Frame::new(source, target) };
         gpu.run(|commands| gather.record(commands, &frame, &warp))?;
         gather.pass_times()?;
     }
@@ -241,13 +227,8 @@ fn a_format_that_the_device_lacks_is_refused() {
             let with_depth = Options { depth_format: Some(vk::Format::D24_UNORM_S8_UINT), ..options };
             assert_eq!(Gather::new(&host, &with_depth).err(), Some(lacking("a target's depth")));
             let mut gather = Gather::new(&host, &options).unwrap();
-            let mut source = SourceImages {
-                color: color.layer(0, sampled, sampled),
-                depth: depth.layer(0, sampled, sampled),
-                sample_color: None,
-                size: warp.source_size,
-                history: None,
-            };
+            let [color, depth] = [&color, &depth].map(|image| image.layer(0, sampled, sampled));
+            let mut source = SourceImages::new(color, depth, warp.source_size);
             gather.register_source(&source).unwrap();
             source.depth.format = vk::Format::D24_UNORM_S8_UINT;
             assert_eq!(gather.register_source(&source), Err(lacking("a source's depth")));

@@ -55,17 +55,9 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, scene: &RecalledScene) -> [Vec<u8>
     unsafe {
         let source = |before| {
             let [former_color, former_depth] = former.each_ref().map(|image| image.layer(0, before, sampled));
-            SourceImages {
-                color: color.layer(0, before, sampled),
-                depth: depth.layer(0, before, sampled),
-                sample_color: None,
-                size: warp.source_size,
-                history: Some(HistoryImages {
-                    color: former_color,
-                    depth: former_depth,
-                    size: scene.former_size,
-                }),
-            }
+            let [color, depth] = [&color, &depth].map(|image| image.layer(0, before, sampled));
+            let history = HistoryImages { color: former_color, depth: former_depth, size: scene.former_size };
+            SourceImages { history: Some(history), ..SourceImages::new(color, depth, warp.source_size) }
         };
         let first = gather.register_source(&source(WRITTEN)).unwrap();
         let then = gather.register_source(&source(sampled)).unwrap();
@@ -73,16 +65,10 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, scene: &RecalledScene) -> [Vec<u8>
         let none = gather.register_source(&none).unwrap();
         let ids = targets.each_ref().map(|target| {
             let color = target.layer(0, ImageState::DISCARDED, READ);
-            gather.register_target(&TargetImages { color, depth: None, size: warp.target_size }).unwrap()
+            gather.register_target(&TargetImages::new(color, warp.target_size)).unwrap()
         });
         let strips = Some(scene.strips_from_top());
-        let frame = |source, target, history| Frame {
-            source,
-            source_origin: [0, 0],
-            target,
-            target_origin: [0, 0],
-            history,
-        };
+        let frame = |source, target, history| Frame { history, ..Frame::new(source, target) };
         gpu.run(|commands| {
             let allocated = allocations();
             for frame in [frame(first, ids[0], strips), frame(then, ids[1], None), frame(none, ids[1], None)]

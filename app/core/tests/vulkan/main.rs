@@ -7,16 +7,16 @@ mod harness;
 mod history;
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 
-use proptest::test_runner::{Config, TestRunner};
 use rand::{Rng, SeedableRng};
 
 use against_opengl::{
-    Gl, Picture, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture, warps,
+    Gl, Picture, RANDOM_RANGE, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture,
+    random_cases, warps,
 };
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
-use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, GuardBand, Warp};
 use yoro::synthesis::{self, Outputs, PassSet, SynthesisOptions, WarpKind};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
@@ -151,25 +151,18 @@ fn synthesize<W: WarpKind>(
 
     // SAFETY: images that live until everything is executed, in the states that are told.
     unsafe {
-        let source = pipeline
-            .register_source(&SourceImages {
-                color: image(&color, setup.source_layer, setup.states[0]),
-                depth: image(&depth, setup.source_layer, setup.states[1]),
-                sample_color: None,
-                size: source_image,
-                history: None,
-            })
-            .unwrap();
-        let target_id = pipeline
-            .register_target(&TargetImages {
-                color: image(&target, setup.target_layer, [setup.target_before, READ]),
-                depth: target_depth
-                    .as_ref()
-                    .map(|depth| image(depth, setup.target_layer, [ImageState::DISCARDED, READ])),
-                size: target_image,
-            })
-            .unwrap();
-        let frame = Frame { source, source_origin, target: target_id, target_origin, history: None };
+        let source_color = image(&color, setup.source_layer, setup.states[0]);
+        let source_depth = image(&depth, setup.source_layer, setup.states[1]);
+        let source = SourceImages::new(source_color, source_depth, source_image);
+        let source = pipeline.register_source(&source).unwrap();
+        let written = |depth: &Image| image(depth, setup.target_layer, [ImageState::DISCARDED, READ]);
+        let images = TargetImages {
+            color: image(&target, setup.target_layer, [setup.target_before, READ]),
+            depth: target_depth.as_ref().map(written),
+            size: target_image,
+        };
+        let target_id = pipeline.register_target(&images).unwrap();
+        let frame = Frame { source_origin, target_origin, ..Frame::new(source, target_id) };
         gpu.run(|commands| pipeline.record(commands, &frame, warp).unwrap());
         pipeline.release_source(source);
         pipeline.release_target(target_id);
@@ -329,85 +322,30 @@ fn srgb_is_filtered_in_linear_light() {
     });
 }
 
-/// Any sizes, rectangles, eyes and laws.
+/// Any sizes, rectangles, eyes and laws; displacements of up to 300 pixels, where the search passes over tiles.
 #[test]
 fn sizes_and_rectangles_at_random() {
     let gl = Gl::new();
     with_gpu(Rendering::Core, |gpu| {
-        let limits = Options { max_source_size: [96, 70], max_target_size: [96, 70], ..Options::default() };
-        let gathers = PassSet::GATHER.map(|passes| {
-            // SAFETY: the device outlives it, and everything is executed.
-            RefCell::new(unsafe { Gather::with_passes(&gpu.host(), &limits, passes).unwrap() })
-        });
-        let size = || (1..=96u32, 1..=70u32);
-        let margin = || (0..4u32, 0..4u32, 0..4u32, 0..4u32);
-        let strategy = (
-            (size(), size(), -30..30i32, -40.0..40.0f64, -30.0..30.0f64),
-            (margin(), margin(), 0..2u32, 0..2u32, 0..2usize, 0..1000u64),
-        );
-        let config = Config { cases: 60, failure_persistence: None, ..Config::default() };
-        let mut runner = TestRunner::new_with_rng(config, deterministic());
-        let run = runner.run(&strategy, |((source, target, row_offset, offset, scale), rest)| {
-            let (a, b, source_layer, target_layer, number, seed) = rest;
-            // Nearer surfaces lie farther along in forward columns, or there is no law.
-            let target_eye = Eye::BOTH[usize::from(scale < 0.0)];
-            let warp = Warp {
-                source_size: source.into(),
-                target_size: target.into(),
-                law: DisparityLaw { offset, scale },
-                row_offset,
-                target_eye,
-                convention: DepthConvention::Reversed,
-            };
-            let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
-            let picture = picture(&warp, range, seed);
-            let setup = Setup {
-                source_margins: [[a.0, a.1], [a.2, a.3]],
-                target_margins: [[b.0, b.1], [b.2, b.3]],
-                source_layer,
-                target_layer,
-                ..Setup::PLAIN
-            };
-            let got = synthesize(gpu, &mut gathers[number].borrow_mut(), &setup, &picture);
-            let want = gl.run(number, &picture);
-            assert_equal(&got.rgba, &want.rgba, 4, number, &format!("{number}, {seed}, {warp:?}, {setup:?}"));
-            Ok(())
-        });
-        run.unwrap();
-    });
-}
-
-/// Displacements of up to 300 pixels, of a whole source and of a part of one: the search passes over tiles there.
-#[test]
-fn near_surfaces_equal_those_of_opengl() {
-    let gl = Gl::new();
-    with_gpu(Rendering::Core, |gpu| {
-        let limits = Options { max_source_size: [540, 30], max_target_size: [540, 30], ..Options::default() };
-        let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
+        let limits = Options { max_source_size: [540, 70], max_target_size: [540, 70], ..Options::default() };
         for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
             // SAFETY: the device outlives it, and everything is executed.
             let mut gather = unsafe { Gather::with_passes(&gpu.host(), &limits, passes).unwrap() };
-            for (scale, source_margins) in [(300.0, [[0, 0], [0, 0]]), (-300.0, [[7, 3], [5, 2]])] {
-                let warp = Warp {
-                    source_size: [520, 24],
-                    target_size: [500, 24],
-                    law: DisparityLaw { offset: 0.0, scale },
-                    row_offset: 0,
-                    target_eye: Eye::BOTH[usize::from(scale < 0.0)],
-                    convention: DepthConvention::Reversed,
+            for (case, seed) in random_cases().into_iter().zip(3..) {
+                let picture = picture(&case.warp, RANDOM_RANGE, seed);
+                let setup = Setup {
+                    source_margins: case.source_margins,
+                    target_margins: case.target_margins,
+                    source_layer: case.source_layer,
+                    target_layer: case.target_layer,
+                    ..Setup::PLAIN
                 };
-                let picture = picture(&warp, range, 3);
-                let setup = Setup { source_margins, ..Setup::PLAIN };
                 let got = synthesize(gpu, &mut gather, &setup, &picture);
                 let want = gl.run(number, &picture);
-                assert_equal(&got.rgba, &want.rgba, 4, number, &format!("{number}, {warp:?}, {setup:?}"));
+                assert_equal(&got.rgba, &want.rgba, 4, number, &format!("{passes:?}, {case:?}"));
             }
         }
     });
-}
-
-fn deterministic() -> proptest::test_runner::TestRng {
-    proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha)
 }
 
 /// No frame overwrites what an earlier one still reads or writes (the validation layer checks it), and recording allocates
@@ -435,15 +373,8 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
                 });
                 let ids = images.each_ref().map(|(color, depth, target)| {
                     let [color, depth] = [color, depth].map(|image| image.layer(0, sampled, sampled));
-                    let source = SourceImages {
-                        color,
-                        depth,
-                        sample_color: None,
-                        size: warp.source_size,
-                        history: None,
-                    };
-                    let color = target.layer(0, drawn, drawn);
-                    let target = TargetImages { color, depth: None, size: warp.target_size };
+                    let source = SourceImages::new(color, depth, warp.source_size);
+                    let target = TargetImages::new(target.layer(0, drawn, drawn), warp.target_size);
                     (gather.register_source(&source).unwrap(), gather.register_target(&target).unwrap())
                 });
                 gpu.run(|commands| {
@@ -451,14 +382,7 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
                     // The second picture over the first, and the first again.
                     for (source, target) in [(0, 0), (1, 0), (0, 1), (1, 0)] {
                         let (source, target) = (ids[source].0, ids[target].1);
-                        let frame = Frame {
-                            source,
-                            source_origin: [0, 0],
-                            target,
-                            target_origin: [0, 0],
-                            history: None,
-                        };
-                        gather.record(commands, &frame, &warp).unwrap();
+                        gather.record(commands, &Frame::new(source, target), &warp).unwrap();
                     }
                     assert_eq!(allocations(), allocated, "recording allocates");
                 });
@@ -496,13 +420,10 @@ fn uses_differ_from_frame_to_frame() {
             let mut gather = Gather::new(&gpu.host(), &Setup::PLAIN.options(&[warp])).unwrap();
             // In no frame is one of them in the state of its registration.
             let [color, depth] = [&color, &depth].map(|image| image.layer(0, sampled, sampled));
-            let source =
-                SourceImages { color, depth, sample_color: None, size: warp.source_size, history: None };
-            let targets =
-                TargetImages { color: target.layer(0, drawn, drawn), depth: None, size: warp.target_size };
+            let source = SourceImages::new(color, depth, warp.source_size);
+            let targets = TargetImages::new(target.layer(0, drawn, drawn), warp.target_size);
             let source = gather.register_source(&source).unwrap();
-            let target = gather.register_target(&targets).unwrap();
-            let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None };
+            let frame = Frame::new(source, gather.register_target(&targets).unwrap());
             let free = nothing(vk::ImageLayout::GENERAL);
             let source_depth = nothing(vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
             for [before, after, depth_after] in [[WRITTEN, free, source_depth], [free, READ, READ]] {
@@ -587,13 +508,7 @@ fn mistakes_are_refused() {
             let depth = gpu.image(setup.depth, warp.source_size, 1);
             let target = gpu.image(setup.target, warp.target_size, 1);
             let sampled = |image: &Image| image.layer(0, ImageState::SAMPLED, ImageState::SAMPLED);
-            let source = SourceImages {
-                color: sampled(&color),
-                depth: sampled(&depth),
-                sample_color: None,
-                size: warp.source_size,
-                history: None,
-            };
+            let source = SourceImages::new(sampled(&color), sampled(&depth), warp.source_size);
             let former = HistoryImages { color: sampled(&color), depth: sampled(&depth), size: [w, h] };
             let with_history = SourceImages { history: Some(former), ..source };
             assert_eq!(gather.register_source(&with_history), Err(VulkanError::History));
@@ -604,13 +519,13 @@ fn mistakes_are_refused() {
                     .to_string()
                     .starts_with("the Vulkan device cannot use R8G8B8A8_UNORM as a source's depth")
             );
-            let target = TargetImages { color: sampled(&target), depth: None, size: warp.target_size };
+            let target = TargetImages::new(sampled(&target), warp.target_size);
             let with_depth = TargetImages { depth: Some(sampled(&depth)), ..target };
             assert!(matches!(gather.register_target(&with_depth), Err(VulkanError::OtherFormat { .. })));
 
             let source = gather.register_source(&source).unwrap();
             let target = gather.register_target(&target).unwrap();
-            let frame = Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None };
+            let frame = Frame::new(source, target);
             gpu.run(|commands| {
                 let mut record = |frame, warp: Warp| gather.record(commands, &frame, &warp).unwrap_err();
                 let wide = Warp { source_size: [w + 1, h], ..warp };

@@ -167,17 +167,11 @@ impl Synthesizer {
             return Ok(*id);
         }
         let gather = made(&mut self.gather)?;
+        let color = layer_image(job.color, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT);
+        let depth = layer_image(job.depth, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT);
+        let images = SourceImages::new(color, depth, job.color.size);
         // SAFETY: live images, which are forgotten before they are destroyed.
-        let id = unsafe {
-            gather.register_source(&SourceImages {
-                color: layer_image(job.color, ImageState::COLOR_ATTACHMENT, ImageState::COLOR_ATTACHMENT),
-                depth: layer_image(job.depth, ImageState::DEPTH_ATTACHMENT, ImageState::DEPTH_ATTACHMENT),
-                sample_color: None,
-                size: job.color.size,
-                history: None,
-            })
-        };
-        let id = id.map_err(Reason::Synthesis)?;
+        let id = unsafe { gather.register_source(&images) }.map_err(Reason::Synthesis)?;
         self.sources.push((key, id));
         Ok(id)
     }

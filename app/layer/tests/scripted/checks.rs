@@ -113,19 +113,13 @@ pub fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habi
     // SAFETY: the images live until the commands have ended.
     unsafe {
         let mut gather = Gather::new(&gpu.host(), &options).unwrap();
-        let source = SourceImages {
-            color: painted.color().layer(0, READ, READ),
-            depth: painted.depth().layer(0, READ, READ),
-            sample_color: None,
-            size: painted.picture.size,
-            history: None,
-        };
+        let [color, depth] = [painted.color(), painted.depth()].map(|image| image.layer(0, READ, READ));
+        let source = SourceImages::new(color, depth, painted.picture.size);
         let source = gather.register_source(&source).unwrap();
-        let color = target.layer(0, ImageState::DISCARDED, WRITTEN);
-        let target = TargetImages { color, depth: None, size: plan.warp.target_size };
+        let target =
+            TargetImages::new(target.layer(0, ImageState::DISCARDED, WRITTEN), plan.warp.target_size);
         let target = gather.register_target(&target).unwrap();
-        let frame = Frame { source, source_origin: [0; 2], target, target_origin: [0; 2], history: None };
-        gpu.run(|commands| gather.record(commands, &frame, &plan.warp).unwrap());
+        gpu.run(|commands| gather.record(commands, &Frame::new(source, target), &plan.warp).unwrap());
     }
     let (want, got) = (target.read_rgba8(0, WRITTEN), seen.picture(habits.dominant().other().index()));
     let differs = |(a, b): &(&[u8], &[u8])| (0..3).any(|i| a[i].abs_diff(b[i]) > 2);

@@ -12,7 +12,8 @@ use std::time::Instant;
 use rand::{Rng, SeedableRng};
 
 use against_opengl::{
-    Gl, Picture, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture, warps,
+    Gl, Picture, RANDOM_RANGE, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture,
+    random_cases, warps,
 };
 use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
@@ -269,45 +270,22 @@ fn srgb_is_filtered_in_linear_light() {
 /// Any sizes, rectangles, eyes and laws; displacements of up to 300 pixels, where the search passes over tiles.
 #[test]
 fn sizes_and_rectangles_at_random() {
-    let range = DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
-    let warp = |source_size, target_size, row_offset, offset, scale: f64| Warp {
-        source_size,
-        target_size,
-        law: DisparityLaw { offset, scale },
-        row_offset,
-        // Nearer surfaces lie farther along in forward columns, or there is no law.
-        target_eye: Eye::BOTH[usize::from(scale < 0.0)],
-        convention: DepthConvention::Reversed,
-    };
-    let mut rng = rand_pcg::Pcg32::seed_from_u64(11);
-    let mut setups: Vec<(Warp, Setup)> = (0..24)
-        .map(|_| {
-            let mut pair = |to: [u32; 2], from: u32| to.map(|n| rng.random_range(from..=n));
-            let (source, target) = (pair([96, 70], 1), pair([96, 70], 1));
-            let setup = Setup {
-                source_margins: [pair([3, 3], 0), pair([3, 3], 0)],
-                target_margins: [pair([3, 3], 0), pair([3, 3], 0)],
-                source_layer: pair([1, 1], 0)[0],
-                target_layer: pair([1, 1], 0)[0],
-                ..Setup::PLAIN
-            };
-            let (offset, scale) = (rng.random_range(-40.0..40.0), rng.random_range(-30.0..30.0));
-            (warp(source, target, rng.random_range(-30..30), offset, scale), setup)
-        })
-        .collect();
-    for (scale, source_margins) in [(300.0, [[0, 0], [0, 0]]), (-300.0, [[7, 3], [5, 2]])] {
-        let setup = Setup { source_margins, ..Setup::PLAIN };
-        setups.push((warp([520, 24], [500, 24], 0, 0.0, scale), setup));
-    }
-    let warps: Vec<_> = setups.iter().map(|(warp, _)| (*warp, range)).collect();
+    let cases = random_cases();
+    let warps: Vec<_> = cases.iter().map(|case| (case.warp, RANDOM_RANGE)).collect();
     let pictures = on_opengl(&Gl::new(), &warps, 3);
     with_gpus(|gpu| {
         for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
             let mut gather = Setup::PLAIN.gather(gpu, passes);
-            for ((picture, wanted), (warp, setup)) in pictures.iter().zip(&setups) {
-                let setup = setup.on(gpu);
-                let got = synthesize(gpu, &mut gather, &setup, picture);
-                let what = format!("{}, {passes:?}, {warp:?}, {setup:?}", gpu.name);
+            for ((picture, wanted), case) in pictures.iter().zip(&cases) {
+                let setup = Setup {
+                    source_margins: case.source_margins,
+                    target_margins: case.target_margins,
+                    source_layer: case.source_layer,
+                    target_layer: case.target_layer,
+                    ..Setup::PLAIN
+                };
+                let got = synthesize(gpu, &mut gather, &setup.on(gpu), picture);
+                let what = format!("{}, {passes:?}, {case:?}", gpu.name);
                 assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
             }
         }
