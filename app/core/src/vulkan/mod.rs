@@ -45,6 +45,8 @@ mod barriers;
 mod commands;
 mod formats;
 mod images;
+#[cfg(test)]
+mod modules;
 mod objects;
 mod passes;
 mod pipeline;

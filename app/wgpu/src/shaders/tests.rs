@@ -1,56 +1,25 @@
 //! The modules are those of the present shaders, and every back end takes them.
 
+#[path = "../../../core/src/vulkan/modules.rs"]
+mod modules;
+
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context as _, anyhow};
+use modules::{MODULES, Module};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use yoro_tools::compiled::{self, Compiled, Source};
 
-/// A file in `wgsl/` without its ending, the file of `yoro-shaders` that it is made of, and the macros for that.
-type Row = (&'static str, &'static str, &'static [&'static str]);
-
-const MARCH: &str = "synthesis/gather/march.frag";
-const LAYER_MARCH: &str = "synthesis/layers/march.frag";
-const SPANS: &str = "synthesis/gather/spans.frag";
-const SPLIT: &str = "synthesis/layers/split.frag";
-const TILES: &str = "synthesis/gather/tiles.frag";
-const ANY_VIEW: &str = "synthesis/any_view/march.frag";
-const MODULES: [Row; 33] = [
-    ("any-view-march", ANY_VIEW, &[]),
-    ("any-view-march-depth", ANY_VIEW, &["WRITE_DEPTH"]),
-    ("any-view-spans", "synthesis/any_view/spans.frag", &[]),
-    ("any-view-tiles", "synthesis/any_view/tiles.frag", &[]),
-    ("layer-march", LAYER_MARCH, &[]),
-    ("layer-march-history", LAYER_MARCH, &["HISTORY"]),
-    ("layer-march-depth", LAYER_MARCH, &["WRITE_DEPTH"]),
-    ("layer-march-depth-history", LAYER_MARCH, &["WRITE_DEPTH", "HISTORY"]),
-    ("layer-march-multisample", LAYER_MARCH, &["MULTISAMPLE"]),
-    ("layer-march-multisample-history", LAYER_MARCH, &["MULTISAMPLE", "HISTORY"]),
-    ("layer-march-multisample-depth", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH"]),
-    ("layer-march-multisample-depth-history", LAYER_MARCH, &["MULTISAMPLE", "WRITE_DEPTH", "HISTORY"]),
-    ("layer-tiles", "synthesis/layers/tiles.frag", &[]),
-    ("march", MARCH, &["TEXTURE_GATHER"]),
-    ("march-history", MARCH, &["TEXTURE_GATHER", "HISTORY"]),
-    ("march-depth", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH"]),
-    ("march-depth-history", MARCH, &["TEXTURE_GATHER", "WRITE_DEPTH", "HISTORY"]),
-    ("march-short", MARCH, &["TEXTURE_GATHER", "SHORT_WAY"]),
-    ("march-short-history", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "HISTORY"]),
-    ("march-short-depth", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH"]),
-    ("march-short-depth-history", MARCH, &["TEXTURE_GATHER", "SHORT_WAY", "WRITE_DEPTH", "HISTORY"]),
-    ("march-vertex", "synthesis/march.vert", &[]),
-    ("screen", "screen.vert", &[]),
-    ("spans", SPANS, &[]),
-    ("spans-short", SPANS, &["SHORT_WAY"]),
-    ("split-multisample", SPLIT, &["MULTISAMPLE"]),
-    ("split-multisample-two", SPLIT, &["MULTISAMPLE", "TWO"]),
-    ("split-nearest", SPLIT, &[]),
-    ("split-sample", SPLIT, &["FIRST_SAMPLE"]),
-    ("split-samples", SPLIT, &["MULTISAMPLE", "SAMPLE_COLORS"]),
-    ("split-samples-two", SPLIT, &["MULTISAMPLE", "SAMPLE_COLORS", "TWO"]),
-    ("tiles", TILES, &["TEXTURE_GATHER"]),
-    ("tiles-short", TILES, &["TEXTURE_GATHER", "SHORT_WAY"]),
+/// The modules of sources with two samples. In SPIR-V a constant of the pipeline says how many there are.
+const OF_TWO_SAMPLES: [Module; 2] = [
+    ("split-multisample-two", "synthesis/layers/split.frag", &["MULTISAMPLE", "TWO"]),
+    ("split-samples-two", "synthesis/layers/split.frag", &["MULTISAMPLE", "SAMPLE_COLORS", "TWO"]),
 ];
+
+fn all_modules() -> Vec<Module> {
+    [&MODULES[..], &OF_TWO_SAMPLES].concat()
+}
 
 /// Vulkan 1.0's SPIR-V as it was written: names and functions stay, so that a capture can be read.
 const ARGUMENTS: [&str; 1] = ["-V"];
@@ -59,7 +28,7 @@ fn folder() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/wgsl"))
 }
 
-fn source(&(name, file, macros): &Row) -> Source {
+fn source((name, file, macros): Module) -> Source {
     let mut defines = vec![("UNIFORM_BLOCK", "layout(set = 0, binding = 7, std140)".to_owned())];
     let (two, macros): (Vec<&str>, Vec<&str>) = macros.iter().partition(|name| **name == "TWO");
     defines.extend(macros.iter().map(|name| (*name, String::new())));
@@ -146,7 +115,7 @@ fn modules_are_compiled_from_the_present_shaders() {
         command: "cargo tools wgsl",
         compile: wgsl,
     };
-    let sources = MODULES.each_ref().map(source);
+    let sources: Vec<Source> = all_modules().into_iter().map(source).collect();
     if std::env::var_os("YORO_BLESS_WGSL").is_some() {
         compiled.renew(&sources).unwrap();
     }
@@ -156,7 +125,7 @@ fn modules_are_compiled_from_the_present_shaders() {
 /// The modules as drivers get them: Metal's language, HLSL, SPIR-V's way by Vulkan is in the tests of pictures.
 #[test]
 fn modules_are_valid_webgpu_metal_and_hlsl() {
-    for (name, ..) in MODULES {
+    for (name, ..) in all_modules() {
         let text = fs::read_to_string(folder().join(name).with_extension("wgsl")).unwrap();
         let module = naga::front::wgsl::parse_str(&text)
             .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
