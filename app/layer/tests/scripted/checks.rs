@@ -54,11 +54,15 @@ pub fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
     assert!(other > 31.0, "{what}: the other eye's image is none of that eye: {other} dB");
 }
 
-/// The runtime must find nothing wrong, each session must have so many synthesized and other frames, and the last images are
-/// checked as by [`assert_seen`].
-pub fn assert_sessions(seen: &Seen, habits: &Habits, counts: &[[u64; 2]], what: &str) {
+/// The runtime must find nothing wrong, and each session must have so many synthesized and other frames.
+pub fn assert_counts(seen: &Seen, counts: &[[u64; 2]], what: &str) {
     assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
     assert_eq!(seen.counts(), counts, "{what}: {}", seen.said);
+}
+
+/// The checks of [`assert_counts`], and of the last images those of [`assert_seen`].
+pub fn assert_sessions(seen: &Seen, habits: &Habits, counts: &[[u64; 2]], what: &str) {
+    assert_counts(seen, counts, what);
     assert_seen(seen, habits, what);
 }
 

@@ -759,6 +759,11 @@ impl<'a> Client<'a> {
         self.submit(frame, layers.len(), pointers.as_ptr())
     }
 
+    /// Ends a frame with one view.
+    pub fn show(&mut self, frame: Frame, submitted: Submitted) -> Outcome<()> {
+        self.end_frame(frame, &[Layer::Projection(vec![submitted])])
+    }
+
     /// Ends a frame with this many layers, and with a pointer to them that may be null.
     pub fn submit(
         &mut self,

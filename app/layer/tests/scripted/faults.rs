@@ -9,10 +9,10 @@ use openxr_sys as sys;
 use yoro_openxr_stub::log::Entry;
 use yoro_openxr_stub::script::{At, Event, Fault, Script, State, What};
 
-use crate::checks::{assert_seen, assert_sessions};
+use crate::checks::{assert_counts, assert_seen, assert_sessions};
 use crate::client::{Client, DEPTH, Failure, Outcome};
-use crate::habits::{Chains, Habits, SRGB, frames, run, until_over, with_session};
-use crate::world::{script, watched, with_gpu};
+use crate::habits::{Chains, Habits, SRGB, begin_session, frames, run, until_over, with_session};
+use crate::world::{faulty, script, watched, with_gpu};
 
 /// When a function of the runtime fails, once or from then on, the application's call of the same name may fail, as
 /// without the layer, and no other one. After a single failure everything is synthesized again.
@@ -87,12 +87,9 @@ fn a_refused_or_late_runtime_costs_one_frame() {
             ("xrWaitSwapchainImage", 8, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
         ];
         for (call, nth, result, reason) in cases {
-            let fault = Fault { call: call.into(), nth, and_later: false, result: result.into_raw() };
             let habits = Habits { frames: 4, ..Habits::PLAIN };
-            let seen =
-                watched(Script { faults: vec![fault], ..script() }, || drop(run(gpu, &habits).unwrap()));
-            assert!(seen.violations().is_empty(), "{reason}: {:?}", seen.violations());
-            assert_eq!(seen.counts(), [[3, 1]], "{reason}: {}", seen.said);
+            let seen = watched(faulty(call, nth, result), || drop(run(gpu, &habits).unwrap()));
+            assert_counts(&seen, &[[3, 1]], reason);
             assert_eq!(seen.said(reason), 1, "{}", seen.said);
             assert_seen(&seen, &habits, reason);
         }
@@ -118,9 +115,7 @@ fn sessions_and_instances_can_be_lost_in_every_state() {
                 for session in 0..2 {
                     let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
                     let mut life = || -> Outcome<()> {
-                        client.create_session()?;
-                        client.poll()?;
-                        let chains = Chains::new(&client, &habits)?;
+                        let chains = begin_session(&mut client, &habits)?;
                         until_over(&mut client, &chains, &habits, 12)
                     };
                     if let Err(Failure { result, .. }) = life() {
@@ -159,13 +154,7 @@ fn a_release_that_fails_late_costs_one_frame() {
         let habits = Habits::PLAIN;
         let failed = sys::Result::ERROR_RUNTIME_FAILURE;
         // The layer releases its own two images first.
-        let fault = Fault {
-            call: "xrReleaseSwapchainImage".into(),
-            nth: 3,
-            and_later: false,
-            result: failed.into_raw(),
-        };
-        let seen = watched(Script { faults: vec![fault], ..script() }, || {
+        let seen = watched(faulty("xrReleaseSwapchainImage", 3, failed), || {
             let work = |client: &mut Client, chains: &Chains| {
                 let first = frames(client, chains, &habits, 1);
                 assert_eq!(first, Err(Failure { call: "xrEndFrame", result: failed }));
@@ -215,7 +204,6 @@ fn no_lock_is_held_in_the_runtimes_end_of_a_frame() {
             };
             with_session(gpu, &habits, work).unwrap();
         });
-        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[1, 0]], "{}", seen.said);
+        assert_counts(&seen, &[[1, 0]], "another thread");
     });
 }

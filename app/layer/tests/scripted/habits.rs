@@ -5,7 +5,7 @@ use std::ffi::CStr;
 use yoro::eyes::Eye;
 use yoro::vulkan::ash::vk;
 
-use crate::client::{Chain, Client, DEPTH, Layer, Outcome, Part, Planes, Submitted, View};
+use crate::client::{Chain, Client, DEPTH, Frame, Outcome, Part, Planes, Submitted, View};
 use crate::drawing::Drawing;
 use crate::world::uncounted;
 
@@ -94,6 +94,20 @@ pub fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View)
     Ok(Submitted { view, color: chains.part, depth })
 }
 
+/// Begins a session, and makes its swapchains.
+pub fn begin_session(client: &mut Client, habits: &Habits) -> Outcome<Chains> {
+    client.create_session()?;
+    client.poll()?;
+    Chains::new(client, habits)
+}
+
+/// Begins a frame and renders its view. Returns what is to be submitted.
+pub fn begin_rendered(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<(Frame, Submitted)> {
+    let frame = client.begin_frame()?;
+    let view = client.locate(frame)?[0].unwrap().flipped(habits.flips);
+    Ok((frame, render(client, chains, habits, view)?))
+}
+
 /// Runs one frame. Returns true if it was to be rendered.
 pub fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<bool> {
     client.poll()?;
@@ -104,7 +118,7 @@ pub fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<b
     }
     let view = client.locate(frame)?[0].unwrap().flipped(habits.flips);
     let submitted = render(client, chains, habits, view)?;
-    client.end_frame(frame, &[Layer::Projection(vec![submitted])])?;
+    client.show(frame, submitted)?;
     Ok(true)
 }
 
@@ -122,9 +136,7 @@ pub fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Clie
     let layout: &[&CStr] = if habits.upside_down { &[c"XR_FB_composition_layer_image_layout"] } else { &[] };
     let mut client = Client::new(drawing, habits.name, &[&[DEPTH], layout].concat())?;
     client.upside_down = habits.upside_down;
-    client.create_session()?;
-    client.poll()?;
-    let chains = Chains::new(&client, habits)?;
+    let chains = begin_session(&mut client, habits)?;
     frames(&mut client, &chains, habits, habits.frames)?;
     client.destroy_session()?;
     Ok(client)
@@ -137,9 +149,7 @@ pub fn with_session<'a>(
     work: impl FnOnce(&mut Client, &Chains) -> Outcome<()>,
 ) -> Outcome<()> {
     let mut client = Client::new(drawing, habits.name, &[DEPTH])?;
-    client.create_session()?;
-    client.poll()?;
-    let chains = Chains::new(&client, habits)?;
+    let chains = begin_session(&mut client, habits)?;
     frame(&mut client, &chains, habits)?;
     work(&mut client, &chains)?;
     client.destroy_session()

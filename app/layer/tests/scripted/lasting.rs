@@ -1,13 +1,13 @@
 //! Tests of objects that stay after frames, sessions and instances.
 
-use yoro_openxr_stub::script::{Fault, Script};
+use yoro_openxr_stub::script::Script;
 
 use crate::checks::assert_sessions;
 use crate::client::{Client, DEPTH, Layer};
 use crate::drawing::{Drawing, with_gles};
-use crate::habits::{Chains, Habits, frames, render, run, with_session};
+use crate::habits::{Chains, Habits, begin_rendered, begin_session, frames, run, with_session};
 use crate::harness::Gpu;
-use crate::world::{allocations, script, uncounted, watched, with_gpu, with_unwatched_gpu};
+use crate::world::{allocations, faulty, script, uncounted, watched, with_gpu, with_unwatched_gpu};
 
 /// Some programs look for a headset with a first instance, and then create another one.
 #[test]
@@ -62,18 +62,13 @@ fn the_recommended_size_stays_in_an_instance_and_is_right_in_the_next() {
         });
         assert_ne!(exact, [160, 128]);
         // The layer locates views when a session is created; some runtimes fail until it begins.
-        let result = openxr_sys::Result::ERROR_SESSION_NOT_RUNNING.into_raw();
-        let late = Fault { call: "xrLocateViews".into(), nth: 1, and_later: false, result };
-        for faults in [vec![], vec![late]] {
+        let late = faulty("xrLocateViews", 1, openxr_sys::Result::ERROR_SESSION_NOT_RUNNING);
+        for script in [script(), late] {
             forget();
-            assert_eq!(
-                asked(Script { faults: faults.clone(), ..script() }),
-                [160, 128],
-                "1.25 times an eye's width"
-            );
-            assert_eq!(asked(Script { faults: faults.clone(), ..script() }), exact);
+            assert_eq!(asked(script.clone()), [160, 128], "1.25 times an eye's width");
+            assert_eq!(asked(script.clone()), exact);
             // Another eye renders another view.
-            assert_eq!(watched_size(gpu, Script { faults, ..script() }, "left"), [160, 128], "another view");
+            assert_eq!(watched_size(gpu, script, "left"), [160, 128], "another view");
         }
         forget();
     });
@@ -92,9 +87,7 @@ fn one_session_follows_another() {
         let seen = watched(script(), || {
             let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
             for _ in 0..2 {
-                client.create_session().unwrap();
-                client.poll().unwrap();
-                let chains = Chains::new(&client, &habits).unwrap();
+                let chains = begin_session(&mut client, &habits).unwrap();
                 frames(&mut client, &chains, &habits, 2).unwrap();
                 client.destroy_session().unwrap();
             }
@@ -121,9 +114,7 @@ fn steady(drawing: Drawing, script: Script, habits: &Habits, count: u32) {
             for _ in 0..count {
                 let first = allocations();
                 client.poll()?;
-                let frame = client.begin_frame()?;
-                let view = client.locate(frame)?[0].unwrap();
-                let submitted = render(client, chains, habits, view)?;
+                let (frame, submitted) = begin_rendered(client, chains, habits)?;
                 let layers = uncounted(|| [Layer::Projection(vec![submitted])]);
                 client.end_frame(frame, &layers)?;
                 most = most.max(allocations() - first);

@@ -3,12 +3,12 @@
 use openxr_sys as sys;
 use sys::ViewConfigurationType as ViewsOf;
 use yoro_openxr_stub::log;
-use yoro_openxr_stub::script::{At, Event, Fault, Script, What};
+use yoro_openxr_stub::script::{At, Event, Script, What};
 
 use crate::checks::{assert_own_eyes, assert_seen, assert_sessions, psnr, truth};
 use crate::client::{Client, DEPTH, Failure, Layer};
-use crate::habits::{Chains, Habits, frames, render, run, with_session};
-use crate::world::{script, watched, with_gpu};
+use crate::habits::{Chains, Habits, begin_rendered, begin_session, frames, render, run, with_session};
+use crate::world::{faulty, script, watched, with_gpu};
 
 /// An application that renders both views gets the runtime's own; its layers and depth arrive unchanged.
 #[test]
@@ -135,13 +135,7 @@ fn calls_with_unknown_swapchains_reach_the_runtime() {
 fn waiting_for_an_image_releases_no_other_one() {
     with_gpu(|gpu| {
         let failed = sys::Result::ERROR_RUNTIME_FAILURE;
-        let fault = Fault {
-            call: "xrReleaseSwapchainImage".into(),
-            nth: 1,
-            and_later: false,
-            result: failed.into_raw(),
-        };
-        watched(Script { faults: vec![fault], ..script() }, || {
+        watched(faulty("xrReleaseSwapchainImage", 1, failed), || {
             let work = |client: &mut Client, chains: &Chains| {
                 client.acquire_only(&chains.color)?;
                 client.acquire_only(&chains.color)?;
@@ -208,13 +202,11 @@ fn a_layer_of_two_views_is_refused_in_a_session_of_one() {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
             let work = |client: &mut Client, chains: &Chains| {
-                let begun = client.begin_frame()?;
-                let view = client.locate(begun)?[0].unwrap();
-                let submitted = render(client, chains, &habits, view)?;
+                let (begun, submitted) = begin_rendered(client, chains, &habits)?;
                 let wrong = client.end_frame(begun, &[Layer::Projection(vec![submitted; 2])]);
                 let result = sys::Result::ERROR_VALIDATION_FAILURE;
                 assert_eq!(wrong, Err(Failure { call: "xrEndFrame", result }));
-                client.end_frame(begun, &[Layer::Projection(vec![submitted])])
+                client.show(begun, submitted)
             };
             with_session(gpu, &habits, work).unwrap();
         });
@@ -291,14 +283,10 @@ fn extensions_know_the_offered_view() {
             let mut client = Client::new(gpu, habits.name, &extensions).unwrap();
             let [one, two] = [ViewsOf::PRIMARY_MONO, ViewsOf::PRIMARY_STEREO];
             assert_eq!(client.reprojection_modes(one).unwrap(), client.reprojection_modes(two).unwrap());
-            client.create_session().unwrap();
-            client.poll().unwrap();
-            let chains = Chains::new(&client, &habits).unwrap();
+            let chains = begin_session(&mut client, &habits).unwrap();
             frames(&mut client, &chains, &habits, 1).unwrap();
-            let begun = client.begin_frame().unwrap();
-            let view = client.locate(begun).unwrap()[0].unwrap();
-            let submitted = render(&mut client, &chains, &habits, view).unwrap();
-            client.end_frame(begun, &[Layer::Projection(vec![submitted])]).unwrap();
+            let (begun, submitted) = begin_rendered(&mut client, &chains, &habits).unwrap();
+            client.show(begun, submitted).unwrap();
             // The runtime recommends three quarters of an eye's size.
             let [width, height] = client.sizes().unwrap()[0].map(|n| (n * 3).div_ceil(4) as i32);
             assert!(width > 128 * 3 / 4);

@@ -4,16 +4,18 @@ use openxr_sys as sys;
 use sys::{Handle as _, ViewConfigurationType as ViewsOf};
 use yoro::vulkan::ash::vk;
 use yoro_openxr_stub::log;
-use yoro_openxr_stub::script::{Fault, Script};
+use yoro_openxr_stub::script::Script;
 
 use crate::checks::{
-    assert_depth, assert_own_eyes, assert_seen, assert_sessions, assert_synthesized, frustum_of, pose_of,
-    psnr, truth, views_of,
+    assert_counts, assert_depth, assert_own_eyes, assert_seen, assert_sessions, assert_synthesized,
+    frustum_of, pose_of, psnr, truth, views_of,
 };
 use crate::client::{Client, DEPTH, Failure, Layer, Part, Planes, Submitted};
 use crate::drawing::{Drawing, with_gles};
-use crate::habits::{Chains, D32, Habits, SRGB, frame, frames, render, run, with_session};
-use crate::world::{script, watched, with_gpu};
+use crate::habits::{
+    Chains, D32, Habits, SRGB, begin_rendered, begin_session, frame, frames, render, run, with_session,
+};
+use crate::world::{faulty, script, watched, with_gpu};
 
 #[test]
 fn one_view_becomes_the_two_views_of_the_runtime() {
@@ -41,8 +43,7 @@ fn one_view_becomes_the_two_views_of_the_runtime() {
             let mut client = None;
             let script = script();
             let seen = watched(script.clone(), || client = Some(run(gpu, &habits).unwrap()));
-            assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
-            assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+            assert_counts(&seen, &[[3, 0]], what);
             let pixels = if habits.scale == 1.0 { 0.0 } else { 1.0 / habits.scale };
             assert_own_eyes(&seen, &script, pixels, what);
             assert_seen(&seen, &habits, what);
@@ -94,14 +95,10 @@ fn other_layers_stay_as_they_are_and_in_order() {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
             let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
-            client.create_session().unwrap();
-            client.poll().unwrap();
-            let chains = Chains::new(&client, &habits).unwrap();
+            let chains = begin_session(&mut client, &habits).unwrap();
             let panel = client.chain(SRGB, [32, 16], 1).unwrap();
             frames(&mut client, &chains, &habits, 1).unwrap();
-            let frame = client.begin_frame().unwrap();
-            let view = client.locate(frame).unwrap()[0].unwrap();
-            let submitted = render(&mut client, &chains, &habits, view).unwrap();
+            let (frame, submitted) = begin_rendered(&mut client, &chains, &habits).unwrap();
             client.acquire(&panel).unwrap();
             client.release(&panel).unwrap();
             let part = |x| Part { chain: panel.handle, origin: [x, 0], size: [8, 16], layer: 0 };
@@ -166,8 +163,7 @@ fn shrink_replaces_the_tiny_view() {
             }
             client.destroy_session().unwrap();
         });
-        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[3, 0]], "{}", seen.said);
+        assert_counts(&seen, &[[3, 0]], "a tiny view");
         assert_eq!(seen.said("renders a tiny image for the left eye"), 1, "{}", seen.said);
         assert_own_eyes(&seen, &script(), 0.0, "a tiny view");
         assert_seen(&seen, &habits, "a tiny view");
@@ -204,15 +200,11 @@ fn a_view_that_cannot_be_synthesized_is_shown_to_both_eyes() {
         for (reason, habits, spoil) in cases {
             let seen = watched(script(), || {
                 let mut client = Client::new(gpu, habits.name, &[DEPTH]).unwrap();
-                client.create_session().unwrap();
-                client.poll().unwrap();
-                let chains = Chains::new(&client, &habits).unwrap();
+                let chains = begin_session(&mut client, &habits).unwrap();
                 frame(&mut client, &chains, &habits).unwrap();
                 for _ in 0..3 {
-                    let frame = client.begin_frame().unwrap();
-                    let view = client.locate(frame).unwrap()[0].unwrap();
-                    let submitted = render(&mut client, &chains, &habits, view).unwrap();
-                    client.end_frame(frame, &[Layer::Projection(vec![spoil(submitted)])]).unwrap();
+                    let (frame, submitted) = begin_rendered(&mut client, &chains, &habits).unwrap();
+                    client.show(frame, spoil(submitted)).unwrap();
                 }
                 client.destroy_session().unwrap();
             });
@@ -243,7 +235,7 @@ fn overlapping_frames_are_synthesized() {
                     let view = client.locate(now)?[0].unwrap();
                     let submitted = render(client, chains, &habits, view)?;
                     let next = client.wait_frame()?;
-                    client.end_frame(now, &[Layer::Projection(vec![submitted])])?;
+                    client.show(now, submitted)?;
                     client.begin_waited()?;
                     now = next;
                 }
@@ -251,7 +243,7 @@ fn overlapping_frames_are_synthesized() {
                 client.end_frame(now, &[])?;
                 let early = render(client, chains, &habits, view)?;
                 let frame = client.begin_frame()?;
-                client.end_frame(frame, &[Layer::Projection(vec![early])])
+                client.show(frame, early)
             };
             with_session(gpu, &habits, pipelined).unwrap();
         });
@@ -267,21 +259,18 @@ fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
         let habits = Habits::PLAIN;
         let seen = watched(Script { acquires_ahead: true, ..script() }, || {
             let work = |client: &mut Client, chains: &Chains| {
-                let begun = client.begin_frame()?;
-                let view = client.locate(begun)?[0].unwrap();
-                let submitted = render(client, chains, &habits, view)?;
+                let (begun, submitted) = begin_rendered(client, chains, &habits)?;
                 let ahead = client.acquire(&chains.color)?;
-                client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                client.show(begun, submitted)?;
                 let begun = client.begin_frame()?;
-                client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                client.show(begun, submitted)?;
                 client.copy_color(ahead, chains.part);
                 client.release(&chains.color)?;
                 frames(client, chains, &habits, 2)
             };
             with_session(gpu, &habits, work).unwrap();
         });
-        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[2, 2]], "{}", seen.said);
+        assert_counts(&seen, &[[2, 2]], "acquired ahead");
         assert_eq!(seen.said("was not released since the last frame"), 1, "{}", seen.said);
         assert_seen(&seen, &habits, "afterwards");
     });
@@ -296,32 +285,28 @@ fn an_image_that_is_shown_again_stays_stereo() {
             let seen = watched(Script { acquires_ahead: true, ..script() }, || {
                 let work = |client: &mut Client, chains: &Chains| {
                     for _ in 0..3 {
+                        let (begun, submitted) = begin_rendered(client, chains, &habits)?;
+                        client.show(begun, submitted)?;
                         let begun = client.begin_frame()?;
-                        let view = client.locate(begun)?[0].unwrap();
-                        let submitted = render(client, chains, &habits, view)?;
-                        client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
-                        let begun = client.begin_frame()?;
-                        client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                        client.show(begun, submitted)?;
                     }
                     // The next image is acquired, and the old one is shown at another place.
-                    let begun = client.begin_frame()?;
-                    let view = client.locate(begun)?[0].unwrap();
-                    let submitted = render(client, chains, &habits, view)?;
-                    client.end_frame(begun, &[Layer::Projection(vec![submitted])])?;
+                    let (begun, submitted) = begin_rendered(client, chains, &habits)?;
+                    client.show(begun, submitted)?;
                     client.acquire(&chains.color)?;
                     let begun = client.begin_frame()?;
-                    let moved = Submitted { view: view.at(glam::Vec3::new(0.5, 0.25, 1.0)), ..submitted };
-                    client.end_frame(begun, &[Layer::Projection(vec![moved])])?;
+                    let moved =
+                        Submitted { view: submitted.view.at(glam::Vec3::new(0.5, 0.25, 1.0)), ..submitted };
+                    client.show(begun, moved)?;
                     // Other planes make it another view.
                     let begun = client.begin_frame()?;
                     let planes = Planes { near: 0.2, ..Planes::PLAIN };
                     let depth = submitted.depth.map(|(part, _)| (part, planes));
-                    client.end_frame(begun, &[Layer::Projection(vec![Submitted { depth, ..submitted }])])
+                    client.show(begun, Submitted { depth, ..submitted })
                 };
                 with_session(gpu, &habits, work).unwrap();
             });
-            assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-            assert_eq!(seen.counts(), [[8, 1]], "{}", seen.said);
+            assert_counts(&seen, &[[8, 1]], name);
             let frames: Vec<_> = seen.frames().into_iter().map(|layers| views_of(layers)).collect();
             for pair in frames[..8].chunks_exact(2) {
                 let images = |views: &[log::View]| [0, 1].map(|eye| views[eye].image.clone());
@@ -379,8 +364,7 @@ fn flipped(drawing: Drawing, script: &Script, name: &'static str) {
         // The vertical part of the view is not the same up and down.
         script.eyes.iter_mut().for_each(|eye| eye.fov_degrees[2] = 35.0);
         let seen = watched(script, || drop(run(drawing, &habits).unwrap()));
-        assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
-        assert_eq!(seen.counts(), [[3, 0]], "{what}: {}", seen.said);
+        assert_counts(&seen, &[[3, 0]], &what);
         for view in seen.views() {
             let [left, right, up, down] = view.fov_degrees;
             assert_eq!([left > right, down > up], habits.flips, "{what}");
@@ -413,13 +397,11 @@ fn a_frame_that_is_ended_again_is_still_stereo() {
         let habits = Habits::PLAIN;
         let seen = watched(script(), || {
             let work = |client: &mut Client, chains: &Chains| {
-                let begun = client.begin_frame()?;
-                let view = client.locate(begun)?[0].unwrap();
-                let submitted = render(client, chains, &habits, view)?;
-                let wrong = client.end_frame(begun.at_another_time(), &[Layer::Projection(vec![submitted])]);
+                let (begun, submitted) = begin_rendered(client, chains, &habits)?;
+                let wrong = client.show(begun.at_another_time(), submitted);
                 let result = sys::Result::ERROR_TIME_INVALID;
                 assert_eq!(wrong, Err(Failure { call: "xrEndFrame", result }));
-                client.end_frame(begun, &[Layer::Projection(vec![submitted])])
+                client.show(begun, submitted)
             };
             with_session(gpu, &habits, work).unwrap();
         });
@@ -433,10 +415,9 @@ fn a_frame_that_is_ended_again_is_still_stereo() {
 fn depth_that_fails_in_one_format_goes_on_in_another() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        let refused = sys::Result::ERROR_RUNTIME_FAILURE.into_raw();
         // The application makes two, then the layer one for colour and one for depth.
-        let fault = Fault { call: "xrCreateSwapchain".into(), nth: 4, and_later: false, result: refused };
-        let seen = watched(Script { faults: vec![fault], ..script() }, || {
+        let refused = faulty("xrCreateSwapchain", 4, sys::Result::ERROR_RUNTIME_FAILURE);
+        let seen = watched(refused, || {
             let work = |client: &mut Client, chains: &Chains| {
                 frames(client, chains, &habits, 2)?;
                 let other = Habits { formats: [SRGB, vk::Format::D16_UNORM], ..habits };
@@ -446,8 +427,7 @@ fn depth_that_fails_in_one_format_goes_on_in_another() {
             };
             with_session(gpu, &habits, work).unwrap();
         });
-        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[6, 0]], "{}", seen.said);
+        assert_counts(&seen, &[[6, 0]], "two formats of depth");
         let frames = seen.frames();
         let with_depth = frames.iter().map(|layers| views_of(layers).iter().all(|view| view.depth.is_some()));
         assert_eq!(with_depth.collect::<Vec<_>>(), [false, false, true, true, false, false]);
@@ -469,8 +449,7 @@ fn subsampled_images_are_shown_to_both_eyes() {
             };
             with_session(gpu, &habits, work).unwrap();
         });
-        assert!(seen.violations().is_empty(), "{:?}", seen.violations());
-        assert_eq!(seen.counts(), [[0, 2]], "{}", seen.said);
+        assert_counts(&seen, &[[0, 2]], "subsampled");
         assert_eq!(seen.said("subsampled"), 1, "{}", seen.said);
     });
 }

@@ -12,7 +12,7 @@ use std::sync::Once;
 use image::RgbaImage;
 use tempfile::TempDir;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
-use yoro_openxr_stub::script::{Pictures, Script};
+use yoro_openxr_stub::script::{Fault, Pictures, Script};
 
 use crate::harness::{self, Gpu, Rendering};
 
@@ -98,6 +98,12 @@ const FORMATS: [i64; 7] = [43, 37, 50, 44, 124, 126, 130];
 pub fn script() -> Script {
     let pictures = Some(Pictures { folder: "in each run's own".into(), from: 0 });
     Script { formats: FORMATS.into(), pictures, ..Script::default() }.asymmetric()
+}
+
+/// The same with a function of the runtime that fails in its nth call, from 1.
+pub fn faulty(call: &str, nth: u32, result: openxr_sys::Result) -> Script {
+    let fault = Fault { call: call.into(), nth, and_later: false, result: result.into_raw() };
+    Script { faults: vec![fault], ..script() }
 }
 
 /// The results of a run.
