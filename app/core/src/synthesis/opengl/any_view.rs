@@ -9,9 +9,9 @@ use crate::synthesis::PoseUniforms;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
 /// View synthesis for a target in any pose near the source's: tile bounds, tile spans, march. Where both views are
-/// parallel eyes on a level line it shows what [`Gather`](super::Gather) does, within the rounding of positions, and gather is the
-/// fast way. The buffers have 16 bytes per tile of 16 x 8 source pixels, and of as many target pixels. What a call does to the
-/// context's state is in the table of [`Synthesis`](super::Synthesis).
+/// parallel eyes on a level line it shows what [`Gather`](super::Gather) does, within the rounding of positions, and
+/// gather is the fast way. The buffers have 16 bytes per tile of 16 x 8 source pixels, and of as many target pixels.
+/// What a call does to the context's state is in the table of [`Synthesis`](super::Synthesis).
 pub struct AnyView {
     gl: Rc<Context>,
     outputs: Outputs,
@@ -106,12 +106,7 @@ impl AnyView {
     /// Makes a pass's program current, and sets its uniforms and textures.
     fn set(&self, program: &Program, source: Source, warp: &PoseWarp, target: &Destination) {
         program.bind();
-        if self.options.layers {
-            program.texture_array("depth_map", 0, source.depth).texture_array("color_map", 1, source.color);
-            program.set("source_layer", source.layer as i32);
-        } else {
-            program.texture("depth_map", 0, source.depth).texture("color_map", 1, source.color);
-        }
+        self.options.bind_source(program, source);
         let places = source.places(warp.source_size, target, self.options.parts);
         PoseUniforms::new(warp, &places).set(program);
     }

@@ -2,18 +2,15 @@
 
 use std::rc::Rc;
 
-use super::{
-    Outputs, Recall, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source, set_source,
-    set_source_layer,
-};
+use super::{Outputs, Recall, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source};
 use crate::eyes::Warp;
 use crate::synthesis::uniforms::Uniforms;
 use yoro_gl::{
     Capabilities, Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource,
 };
 
-/// Variants of the shaders for kinds of drivers. All give the same picture, within the rounding of positions; where a tile has
-/// a law, within an eighth of a pixel.
+/// Variants of the shaders for kinds of drivers. All give the same picture, within the rounding of positions; where a
+/// tile has a law, within an eighth of a pixel.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GatherVariant {
@@ -106,8 +103,9 @@ impl Gather {
         Gather::with_variant_of(gl, outputs, variant, &SynthesisOptions::default())
     }
 
-    /// Compiles the variant for GPUs with counts in place of colours. Red: steps of the short way (low three bits), then one
-    /// bit each for a hole, for the long way, and for a law. Green: segments. Blue: events. Alpha: steps to a segment's crossing.
+    /// Compiles the variant for GPUs with counts in place of colours. Red: steps of the short way (low three bits),
+    /// then one bit each for a hole, for the long way, and for a law. Green: segments. Blue: events. Alpha: steps to a
+    /// segment's crossing.
     ///
     /// # Errors
     /// Those of [`Gather::with_variant`].
@@ -156,20 +154,23 @@ impl Synthesis for Gather {
         let gl = &self.gl;
         let [tile_size, span_size] = map_sizes(warp);
         let uniforms = Uniforms::of_part(warp, &source.places(warp.source_size, target, self.options.parts));
-        let set_source = if self.options.layers { set_source_layer } else { set_source };
+        let set_source = |program: &Program| {
+            self.options.bind_source(program, source);
+            uniforms.set(program);
+        };
         gl.pass("gather tiles", || {
             self.tile_map.bind_part(tile_size);
-            set_source(self.bounds.bind(), source, &uniforms);
+            set_source(self.bounds.bind());
             gl.draw_screen();
         });
         gl.pass("gather spans", || {
             self.span_map.bind_part(span_size);
-            set_source(self.spans.bind(), source, &uniforms);
+            set_source(self.spans.bind());
             self.spans.texture("tile_map", 2, self.tile_map.color(0).raw());
             gl.draw_screen();
         });
         gl.pass("gather march", || {
-            set_source(self.march.bind(), source, &uniforms);
+            set_source(self.march.bind());
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());
             if let Some(recall) = &self.recall {

@@ -56,9 +56,9 @@ impl Layers {
         Layers::with_options(gl, outputs, &SynthesisOptions { edges, ..SynthesisOptions::default() })
     }
 
-    /// Compiles the passes with counts in place of colours. Red: columns of the march's first loop. Green and blue: pairs of columns
-    /// in which something happens, and all that the second loop passes. Alpha: rows of its fill, and in the highest bit whether the
-    /// source's pixel at this place shows two surfaces. At most 255 each.
+    /// Compiles the passes with counts in place of colours. Red: columns of the march's first loop. Green and blue:
+    /// pairs of columns in which something happens, and all that the second loop passes. Alpha: rows of its fill, and
+    /// in the highest bit whether the source's pixel at this place shows two surfaces. At most 255 each.
     ///
     /// # Errors
     /// Those of [`Layers::new`].
@@ -144,20 +144,11 @@ impl Layers {
             program.texture_multisample("sample_depths", 0, source.depth);
             program.set("from_left", self.left_to_right());
         } else {
-            self.bind(program, "depth_map", 0, source.depth);
+            self.options.bind(program, "depth_map", 0, source.depth);
         }
-        self.bind(program, "color_map", 1, source.color);
+        self.options.bind(program, "color_map", 1, source.color);
         program.set("source_layer", source.layer as i32);
         uniforms.set(program);
-    }
-
-    /// Binds a texture of the source, which is an array with [`SynthesisOptions::layers`].
-    fn bind<'a>(&self, program: &'a Program, name: &str, unit: u32, texture: glow::Texture) -> &'a Program {
-        if self.options.layers {
-            program.texture_array(name, unit, texture)
-        } else {
-            program.texture(name, unit, texture)
-        }
     }
 
     /// Returns the samples, from left to right, of the multisample texture that was bound last, to unit 0.
@@ -202,7 +193,7 @@ impl Synthesis for Layers {
             gl.draw_screen();
         });
         gl.pass("layers march", || {
-            let program = self.bind(self.march.bind(), "color_map", 1, source.color);
+            let program = self.options.bind(self.march.bind(), "color_map", 1, source.color);
             program.set("source_layer", source.layer as i32);
             program.texture("span_map", 2, self.span_map.color(0).raw());
             program.texture("layer_map", 3, layers).texture("back_map", 4, backs);

@@ -48,14 +48,12 @@ impl Outputs {
 
     /// Returns the preprocessor defines that select these outputs in the last pass of a pipeline.
     pub fn defines(self) -> Vec<(&'static str, String)> {
-        let defines = [("WRITE_DEPTH", self.depth), ("SOURCE_MAP", self.source_map)];
-        defines.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| (name, String::new())).collect()
+        defines([("WRITE_DEPTH", self.depth), ("SOURCE_MAP", self.source_map)])
     }
 }
 
-/// The rendered eye: GL names of 2-D textures, or arrays of them, of the same size. Their filters, wrapping, compare mode and
-/// samplers do not
-/// matter.
+/// The rendered eye: GL names of 2-D textures, or arrays of them, of the same size. Their filters, wrapping, compare
+/// mode and samplers do not matter.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
     /// Colour, in any filterable format and any encoding; all four channels are synthesized. For kinds other than
@@ -148,10 +146,10 @@ pub enum GlState {
 /// | polygon mode (desktop) | fill | fill |
 /// | alpha test, polygon stipple (compatibility profile) | off | off |
 ///
-/// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, scissor box,
-/// blend function and equation, stencil function, clear values, other texture targets and units. A pending error stays, except
-/// in browsers, where GL's error flag is read when buffers are allocated. A program that the host has deleted while it was
-/// current goes, as GL says, when another becomes current; `Preserve` then leaves none.
+/// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, scissor
+/// box, blend function and equation, stencil function, clear values, other texture targets and units. A pending error
+/// stays, except in browsers, where GL's error flag is read when buffers are allocated. A program that the host has
+/// deleted while it was current goes, as GL says, when another becomes current; `Preserve` then leaves none.
 ///
 /// The host ensures the rest: transform feedback and conditional rendering are not active, the shading rate is one fragment
 /// a pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the source is attached
@@ -192,7 +190,7 @@ pub struct SynthesisOptions {
 impl SynthesisOptions {
     /// Returns the macro of a last pass that looks disocclusions up.
     fn last_pass_defines(&self) -> Vec<(&'static str, String)> {
-        self.history.then(|| ("HISTORY", String::new())).into_iter().collect()
+        defines([("HISTORY", self.history)])
     }
 
     fn recall(&self, gl: &Rc<Context>) -> Result<Option<Recall>, GlError> {
@@ -201,8 +199,23 @@ impl SynthesisOptions {
 
     /// Returns the preprocessor's macros that select this kind of source.
     fn defines(&self) -> Vec<(&'static str, String)> {
-        let defines = [("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.layers)];
-        defines.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| (name, String::new())).collect()
+        defines([("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.layers)])
+    }
+
+    /// Binds a texture of the source, which is an array with [`SynthesisOptions::layers`]. The program must be current.
+    fn bind<'a>(&self, program: &'a Program, name: &str, unit: u32, texture: glow::Texture) -> &'a Program {
+        if self.layers {
+            program.texture_array(name, unit, texture)
+        } else {
+            program.texture(name, unit, texture)
+        }
+    }
+
+    /// Binds depth and colour of the source to units 0 and 1. The program must be current.
+    fn bind_source(&self, program: &Program, source: Source) {
+        self.bind(program, "depth_map", 0, source.depth);
+        self.bind(program, "color_map", 1, source.color);
+        program.set("source_layer", source.layer as i32);
     }
 
     /// Returns the size of a buffer that holds what is needed, and with parts what it holds already.
@@ -211,8 +224,8 @@ impl SynthesisOptions {
     }
 }
 
-/// Returns the bytes of the buffers that a pipeline has for these sizes, which [`Synthesis::prepare`] allocates: to plan with
-/// before there is one. Drivers add padding.
+/// Returns the bytes of the buffers that a pipeline has for these sizes, which [`Synthesis::prepare`] allocates: to
+/// plan with before there is one. Drivers add padding.
 pub fn buffer_bytes(edges: Edges, warp: &Warp) -> u64 {
     let area = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
     let maps: u64 = map_sizes(warp).map(area).iter().sum();
@@ -253,6 +266,11 @@ pub fn create(
     }
 }
 
+/// Returns the preprocessor's macros that are wanted, each without a value.
+fn defines<const N: usize>(wanted: [(&'static str, bool); N]) -> Vec<(&'static str, String)> {
+    wanted.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| (name, String::new())).collect()
+}
+
 /// Returns the sizes of the maps of tiles and of spans.
 fn map_sizes(warp: &Warp) -> [[u32; 2]; 2] {
     [warp.source_size, [warp.target_size[0], warp.source_size[1]]].map(tiles)
@@ -262,13 +280,6 @@ fn map_sizes(warp: &Warp) -> [[u32; 2]; 2] {
 /// The program must be current.
 pub fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
     program.texture("depth_map", 0, source.depth).texture("color_map", 1, source.color);
-    uniforms.set(program);
-}
-
-/// Does what [`set_source`] does for layers of array textures.
-fn set_source_layer(program: &Program, source: Source, uniforms: &Uniforms) {
-    program.texture_array("depth_map", 0, source.depth).texture_array("color_map", 1, source.color);
-    program.set("source_layer", source.layer as i32);
     uniforms.set(program);
 }
 
