@@ -98,6 +98,22 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
     Some(image)
 }
 
+/// Compiles a program beside the kit's files, by gcc with these options, and returns what it prints. None without gcc.
+fn of_kit(text: &str, options: &[&str]) -> Option<String> {
+    if !is_here("gcc") {
+        println!("SKIPPED: no gcc here");
+        return None;
+    }
+    let kit = tempfile::tempdir().unwrap();
+    kit::write(kit.path()).unwrap();
+    let (file, program) = (kit.path().join("text.c"), kit.path().join("program"));
+    std::fs::write(&file, text).unwrap();
+    let mut command = Command::new("gcc");
+    command.arg("-std=c99").args(options).args(WARNINGS);
+    run(command.arg(&file).arg("-lm").arg("-o").arg(&program));
+    Some(run(&mut Command::new(&program)))
+}
+
 /// With and without Vulkan, which may come later, in C from C89 on and in C++.
 #[test]
 fn the_header_stands_alone() {
@@ -142,7 +158,8 @@ fn the_opengl_es_sample_draws_two_eyes() {
     gles();
 }
 
-/// The figure asked for tells a wrong warp: by rotation alone, without depth, the picture has 22 dB, without the rotation 15 dB.
+/// The figure asked for tells a wrong warp: by rotation alone, without depth, the picture has 22 dB, without the
+/// rotation 15 dB.
 #[test]
 fn the_sample_of_any_view_draws_what_the_new_pose_sees() {
     sample("examples/any_view.c", "GLES3/gl31.h", &["include"], &["-lyoro_c", "-lEGL", "-lGLESv2"]);
@@ -224,10 +241,6 @@ fn the_kit_draws_the_librarys_picture() {
 /// Numbers out of range are refused, and nothing overflows on the way.
 #[test]
 fn the_kit_refuses_what_cannot_be() {
-    if !is_here("gcc") {
-        println!("SKIPPED: no gcc here");
-        return;
-    }
     const TEXT: &str = "#include \"yoro_kit.h\"
         #include <limits.h>
         #include <stdio.h>
@@ -244,16 +257,7 @@ fn the_kit_refuses_what_cannot_be() {
           WITH(e.frusta[0].left = NAN) WITH(e.frusta[1].up = INFINITY) WITH((e.frusta[0].left = -1e9f, e.frusta[0].right = -1e9f + 128))
           return failed;
         }";
-    let kit = tempfile::tempdir().unwrap();
-    kit::write(kit.path()).unwrap();
-    let (text, program) = (kit.path().join("numbers.c"), kit.path().join("numbers"));
-    std::fs::write(&text, TEXT).unwrap();
-    let mut command = Command::new("gcc");
-    command
-        .args(["-std=c99", "-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all"])
-        .args(WARNINGS);
-    run(command.arg(&text).arg("-lm").arg("-o").arg(&program));
-    run(&mut Command::new(&program));
+    of_kit(TEXT, &["-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all"]);
 }
 
 /// All variants of the kit's shaders for Vulkan.
@@ -266,26 +270,25 @@ fn the_kits_shaders_for_vulkan_compile() {
     }
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
+    let compile = |file: &str, macros: &[&str]| {
+        let compiled = kit.path().join("compiled");
+        run(Command::new(COMPILER).args(["-V", "-o"]).arg(compiled).args(macros).arg(kit.path().join(file)));
+    };
     let settings: [&[&str]; 4] =
         [&[], &["-DWRITE_DEPTH"], &["-DWRITE_DEPTH", "-DSHORT_WAY"], &["-DHISTORY", "-DSHORT_WAY"]];
-    for shader in ["screen.vert", "march.vert", "tiles.frag", "spans.frag", "march.frag"] {
-        let settings = if shader.ends_with(".vert") { &settings[..1] } else { &settings[..] };
-        for macros in settings {
-            let mut command = Command::new(COMPILER);
-            command.args(["-V", "-o"]).arg(kit.path().join("compiled")).args(*macros);
-            run(command.arg(kit.path().join("vulkan").join(shader)));
-        }
-    }
     for (shader, settings) in [
+        ("screen.vert", &settings[..1]),
+        ("march.vert", &settings[..1]),
+        ("tiles.frag", &settings[..]),
+        ("spans.frag", &settings[..]),
+        ("march.frag", &settings[..]),
         ("any_view_tiles.frag", &settings[..1]),
         ("any_view_spans.frag", &settings[..1]),
         ("any_view_march.frag", &settings[..2]),
     ] {
-        for macros in settings {
-            let mut command = Command::new(COMPILER);
-            command.args(["-V", "-o"]).arg(kit.path().join("compiled")).args(*macros);
-            run(command.arg(kit.path().join("vulkan").join(shader)));
-        }
+        settings.iter().for_each(|macros| compile(&format!("vulkan/{shader}"), macros));
+    }
+    for shader in ["any_view_tiles.frag", "any_view_spans.frag", "any_view_march.frag"] {
         run(Command::new(COMPILER).arg(kit.path().join("gles").join(shader)));
     }
     // Those of OpenGL ES are compiled where they are drawn with, but for these.
@@ -298,10 +301,6 @@ fn the_kits_shaders_for_vulkan_compile() {
 /// The kit's relation to a history is the core's, with rows from the bottom and from the top.
 #[test]
 fn the_kit_and_the_core_find_the_same_place_in_a_history() {
-    if !is_here("gcc") {
-        println!("SKIPPED: no gcc here");
-        return;
-    }
     const TEXT: &str = "#include \"yoro_kit.h\"
         #include <stdio.h>
         int main(void) {
@@ -318,15 +317,8 @@ fn the_kit_and_the_core_find_the_same_place_in_a_history() {
           }
           return failed;
         }";
-    let kit = tempfile::tempdir().unwrap();
-    kit::write(kit.path()).unwrap();
-    let (text, program) = (kit.path().join("strips.c"), kit.path().join("strips"));
-    std::fs::write(&text, TEXT).unwrap();
-    run(Command::new("gcc").arg("-std=c99").args(WARNINGS).arg(&text).arg("-lm").arg("-o").arg(&program));
-    let output = Command::new(&program).output().unwrap();
-    assert!(output.status.success());
-    let numbers: Vec<f32> =
-        String::from_utf8(output.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect();
+    let Some(printed) = of_kit(TEXT, &[]) else { return };
+    let numbers: Vec<f32> = printed.lines().map(|line| line.parse().unwrap()).collect();
     let view = |orientation: glam::Quat, position: [f32; 3], size| View {
         pose: Pose { orientation, position: position.into() },
         frustum: Frustum { left: -0.8, right: 0.7, bottom: -0.5, top: 0.6 },
@@ -351,10 +343,6 @@ fn the_kit_and_the_core_find_the_same_place_in_a_history() {
 /// The kit's uniforms of any view are the core's, with rows from the bottom and from the top.
 #[test]
 fn the_kit_and_the_core_find_the_same_place_of_any_view() {
-    if !is_here("gcc") {
-        println!("SKIPPED: no gcc here");
-        return;
-    }
     const TEXT: &str = "#include \"yoro_kit.h\"
         #include <stdio.h>
         int main(void) {
@@ -376,15 +364,8 @@ fn the_kit_and_the_core_find_the_same_place_of_any_view() {
           failed |= yoro_kit_any_view(&source, &target, 0.1f, 50, 0, 0, 0, 0, maps, &block);
           return failed;
         }";
-    let kit = tempfile::tempdir().unwrap();
-    kit::write(kit.path()).unwrap();
-    let (text, program) = (kit.path().join("pose.c"), kit.path().join("pose"));
-    std::fs::write(&text, TEXT).unwrap();
-    run(Command::new("gcc").arg("-std=c99").args(WARNINGS).arg(&text).arg("-lm").arg("-o").arg(&program));
-    let output = Command::new(&program).output().unwrap();
-    assert!(output.status.success());
-    let words: Vec<u32> =
-        String::from_utf8(output.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect();
+    let Some(printed) = of_kit(TEXT, &[]) else { return };
+    let words: Vec<u32> = printed.lines().map(|line| line.parse().unwrap()).collect();
     for (down, own) in words.chunks(28).enumerate() {
         let convention = [DepthConvention::Standard, DepthConvention::Reversed][down];
         let view =
