@@ -3,10 +3,10 @@
 //! It takes a file's path in this package, such as `synthesis/gather/march.frag`, a GLSL version and defines, and gives the
 //! text. This crate must never know OpenGL or any other interface to a GPU: it handles text.
 //!
-//! Folders are named after the modules that use them. [`assemble`] resolves each `#include "PATH"` once, and adds `#line`, so
-//! that a driver's messages lead back to file and line ([`Assembled::name_files`]). With the feature `hot-reload` the
-//! environment variable `YORO_SHADERS` may name a folder from which shaders are read instead: a change takes effect at the
-//! next start, without compiling.
+//! Folders are named after the modules that use them. [`assemble`] resolves each `#include "PATH"` once, and adds
+//! `#line`, so that a driver's messages lead back to file and line ([`Assembled::name_files`]). With the feature
+//! `hot-reload` the environment variable `YORO_SHADERS` may name a folder from which shaders are read instead: a change
+//! takes effect at the next start, without compiling.
 
 use std::fmt::Write as _;
 

@@ -259,15 +259,15 @@ typedef uint32_t YoroClip;
  */
 typedef uint32_t YoroEyesFlags;
 /**
- * Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the images
- * with the resulting angles.
+ * Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the
+ * images with the resulting angles.
  */
 #define YORO_EYES_EVEN 1
 /**
- * Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives them even
- * frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such as those of a
- * calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns images back that are
- * submitted with these.
+ * Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives
+ * them even frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such
+ * as those of a calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns
+ * images back that are submitted with these.
  */
 #define YORO_EYES_PARALLEL 2
 
@@ -294,9 +294,10 @@ typedef struct {
 /**
  * The two eyes of a frame, given by poses and angles.
  *
- * Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance apart, so
- * that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the
- * eyes' distance. In larger worlds give poses relative to the head, and move the resulting view matrices by the head's place.
+ * Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance
+ * apart, so that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a
+ * thousandth of the eyes' distance. In larger worlds give poses relative to the head, and move the resulting view
+ * matrices by the head's place.
  */
 typedef struct {
   /**
@@ -481,9 +482,9 @@ typedef struct {
 } YoroViews;
 
 /**
- * The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for column
- * vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11 of a projection is
- * -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
+ * The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for
+ * column vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11
+ * of a projection is -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
  */
 typedef struct {
   /**
@@ -758,8 +759,8 @@ typedef struct {
 } YoroChoice;
 
 /**
- * A history: an image of the synthesized eye that was really rendered, in strips of equally many rows, each in a frame of its
- * own. All but the last have as many rows: the image's divided by the number of strips, rounded up.
+ * A history: an image of the synthesized eye that was really rendered, in strips of equally many rows, each in a frame
+ * of its own. All but the last have as many rows: the image's divided by the number of strips, rounded up.
  */
 typedef struct {
   /**
@@ -798,13 +799,14 @@ typedef struct {
 } YoroHistory;
 
 /**
- * The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record. yoro_strips fills
- * it. It can be copied and kept. It has the layout of the block `History` of the shader kit, in std140.
+ * The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record.
+ * yoro_strips fills it. It can be copied and kept. It has the layout of the block `History` of the shader kit, in
+ * std140.
  */
 typedef struct {
   /**
-   * From a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth, column-major. Zeros
-   * for strips with nothing in them.
+   * From a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth,
+   * column-major. Zeros for strips with nothing in them.
    */
   float to_history[YORO_MOST_STRIPS][16];
   /**
@@ -860,11 +862,11 @@ typedef struct {
 } YoroPoses;
 
 /**
- * The mapping of pixels from a rendered view to one in any pose near it, for yoro_gl_synthesize_pose and yoro_vk_record_pose.
- * yoro_pose_warp fills it. It can be copied and kept.
+ * The mapping of pixels from a rendered view to one in any pose near it, for yoro_gl_synthesize_pose and
+ * yoro_vk_record_pose. yoro_pose_warp fills it. It can be copied and kept.
  *
- * A surface that the target shows at the pixel (x, y), at the distance 1 / k along the axis of its eye, lies in the source at the
- * homogeneous pixel homography * (x, y, 1) + k * epipole.
+ * A surface that the target shows at the pixel (x, y), at the distance 1 / k along the axis of its eye, lies in the
+ * source at the homogeneous pixel homography * (x, y, 1) + k * epipole.
  */
 typedef struct {
   /**
@@ -1011,8 +1013,8 @@ typedef uint32_t YoroGlState;
  */
 #define YORO_GL_STATE_LEAVE 0
 /**
- * All of it is restored. A program that was deleted while it was current goes at the first call, as GL says; none is current
- * then.
+ * All of it is restored. A program that was deleted while it was current goes at the first call, as GL says; none is
+ * current then.
  */
 #define YORO_GL_STATE_PRESERVE 1
 
@@ -1034,8 +1036,8 @@ typedef uint32_t YoroEdges;
  */
 #define YORO_EDGES_SAMPLE 2
 /**
- * Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the colour of
- * all of them. This gives the best picture.
+ * Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the
+ * colour of all of them. This gives the best picture.
  */
 #define YORO_EDGES_MULTISAMPLE 3
 
@@ -1045,8 +1047,8 @@ typedef uint32_t YoroEdges;
 typedef void (*YoroGlProc)(void);
 
 /**
- * Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and others. Cast
- * those of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
+ * Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and
+ * others. Cast those of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
  */
 typedef YoroGlProc (*YoroGlLoader)(const char *name);
 
@@ -1055,8 +1057,9 @@ typedef YoroGlProc (*YoroGlLoader)(const char *name);
  */
 typedef uint32_t YoroGlSourceFlags;
 /**
- * The rendered image is a part of larger textures, of any size up to theirs in each frame: dynamic resolution, or both eyes side
- * by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest sizes.
+ * The rendered image is a part of larger textures, of any size up to theirs in each frame: dynamic resolution, or both
+ * eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
+ * sizes.
  */
 #define YORO_GL_SOURCE_PARTS 1
 /**
@@ -1074,8 +1077,8 @@ typedef uint32_t YoroWarpKind;
  */
 #define YORO_WARP_KIND_EYES 0
 /**
- * To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where both views are
- * parallel eyes the other kind gives the same picture, and is faster.
+ * To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where
+ * both views are parallel eyes the other kind gives the same picture, and is faster.
  */
 #define YORO_WARP_KIND_POSE 1
 
@@ -1121,7 +1124,8 @@ typedef struct {
    */
   YoroGlSourceFlags sources;
   /**
-   * 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then. 0: no times.
+   * 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then.
+   * 0: no times.
    */
   uint32_t timed;
   /**
@@ -1189,14 +1193,14 @@ typedef struct {
    */
   uint32_t image_height;
   /**
-   * The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the framebuffer,
-   * by glFramebufferTextureLayer.
+   * The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the
+   * framebuffer, by glFramebufferTextureLayer.
    */
   uint32_t layer;
   /**
-   * What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with the colour
-   * of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions show what is there. It
-   * holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
+   * What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with
+   * the colour of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions
+   * show what is there. It holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
    */
   uint32_t history_color_texture;
   /**
@@ -1246,9 +1250,10 @@ YoroResult yoro_views_from_eyes(const YoroEyes *eyes,
  * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
  * volume and units of the given ones. Poses are in metres.
  *
- * The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes' distance.
- * Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds give matrices
- * relative to the head: subtract its place from both eyes' places, in 64 bits, before making the matrices.
+ * The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes'
+ * distance. Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds
+ * give matrices relative to the head: subtract its place from both eyes' places, in 64 bits, before making the
+ * matrices.
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
@@ -1277,9 +1282,9 @@ YoroResult yoro_capabilities(YoroContext *context,
 /**
  * Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait.
  *
- * OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be trusted; those
- * of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls of yoro_vk_record ago,
- * on queue families with timestamps.
+ * OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be
+ * trusted; those of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls
+ * of yoro_vk_record ago, on queue families with timestamps.
  *
  * Thread and preconditions are those of yoro_capabilities.
  *
@@ -1294,9 +1299,9 @@ YoroResult yoro_times(YoroContext *context,
 /**
  * Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
  *
- * Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device must have
- * executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL objects that were bound
- * are not bound any more; other GL state stays.
+ * Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device
+ * must have executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL
+ * objects that were bound are not bound any more; other GL state stays.
  *
  * @param context The context, or NULL.
  * @pre context is alive and no other thread uses it.
@@ -1406,9 +1411,9 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone; drivers add
- * padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are 16 bytes for each
- * 16 x 8 pixels of the source, and of the target.
+ * Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone;
+ * drivers add padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are
+ * 16 bytes for each 16 x 8 pixels of the source, and of the target.
  *
  * Call it from any thread. Neither loader nor GL context is needed.
  *
@@ -1447,8 +1452,8 @@ YoroResult yoro_gl_prepare_pose(YoroContext *context, const YoroPoseWarp *warp);
  * Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
  * objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
  *
- * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay the same
- * it allocates and compiles nothing, and does not wait for the GPU.
+ * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay
+ * the same it allocates and compiles nothing, and does not wait for the GPU.
  *
  * @param context The context.
  * @param warp    The warp of YoroViews.
@@ -1529,7 +1534,8 @@ typedef struct {
    */
   uint32_t dynamic_rendering;
   /**
-   * Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled as sRGB.
+   * Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled
+   * as sRGB.
    */
   VkFormat color_format;
   /**
@@ -1680,9 +1686,9 @@ typedef struct {
    */
   uint32_t history_height;
   /**
-   * What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was really
-   * rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so nothing that is drawn
-   * over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
+   * What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was
+   * really rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so
+   * nothing that is drawn over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
    */
   YoroVkImage history_color;
   /**
@@ -1746,9 +1752,10 @@ typedef struct {
 } YoroVkUse;
 
 /**
- * The uses of all images in one call, for engines whose images come from other passes and go to others in each frame. Those of
- * images that were not registered are ignored. A source is still sampled in the layout that it was registered for: if its
- * registered layout before is not one of those that can be sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
+ * The uses of all images in one call, for engines whose images come from other passes and go to others in each frame.
+ * Those of images that were not registered are ignored. A source is still sampled in the layout that it was registered
+ * for: if its registered layout before is not one of those that can be sampled,
+ * VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
  */
 typedef struct {
   /**
@@ -1855,8 +1862,8 @@ YoroResult yoro_vk_create(const YoroVkInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes the buffers of a context will have on the GPU, of the sizes, formats and edges of its options alone;
- * drivers add padding. yoro_capabilities says it of a context that exists.
+ * Returns how many bytes the buffers of a context will have on the GPU, of the sizes, formats and edges of its options
+ * alone; drivers add padding. yoro_capabilities says it of a context that exists.
  *
  * Call it from any thread. No handle of the options is needed.
  *
@@ -1916,12 +1923,13 @@ YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
 YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
 
 /**
- * Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten: barriers, and
- * three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the rendered eye, and before
- * transparent objects and effects that are drawn for each eye. It allocates, compiles and submits nothing, and does not wait.
+ * Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten:
+ * barriers, and three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the
+ * rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
+ * submits nothing, and does not wait.
  *
- * Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings images from
- * their state `before` to their state `after`.
+ * Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings
+ * images from their state `before` to their state `after`.
  *
  * Call it on the thread that may use the context and that records the command buffer.
  *
@@ -1942,8 +1950,8 @@ YoroResult yoro_vk_record(YoroContext *context,
                           const YoroVkFrame *frame);
 
 /**
- * Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
- * three draws. All else is as in yoro_vk_record.
+ * Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE:
+ * barriers and three draws. All else is as in yoro_vk_record.
  *
  * @param context  The context.
  * @param commands A command buffer of the device.

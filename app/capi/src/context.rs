@@ -133,9 +133,9 @@ impl YoroTimes {
 
 /// Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait.
 ///
-/// OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be trusted; those
-/// of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls of yoro_vk_record ago,
-/// on queue families with timestamps.
+/// OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be
+/// trusted; those of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls
+/// of yoro_vk_record ago, on queue families with timestamps.
 ///
 /// Thread and preconditions are those of yoro_capabilities.
 ///
@@ -157,9 +157,9 @@ pub unsafe extern "C" fn yoro_times(context: *mut YoroContext, times: *mut YoroT
 
 /// Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
 ///
-/// Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device must have
-/// executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL objects that were bound
-/// are not bound any more; other GL state stays.
+/// Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device
+/// must have executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL
+/// objects that were bound are not bound any more; other GL state stays.
 ///
 /// @param context The context, or NULL.
 /// @pre context is alive and no other thread uses it.

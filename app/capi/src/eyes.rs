@@ -9,13 +9,13 @@ use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
 /// Bits for changes to eyes that cannot be synthesized as they are.
 pub type YoroEyesFlags = u32;
-/// Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the images
-/// with the resulting angles.
+/// Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the
+/// images with the resulting angles.
 pub const YORO_EYES_EVEN: YoroEyesFlags = 1;
-/// Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives them even
-/// frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such as those of a
-/// calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns images back that are
-/// submitted with these.
+/// Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives
+/// them even frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such
+/// as those of a calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns
+/// images back that are submitted with these.
 pub const YORO_EYES_PARALLEL: YoroEyesFlags = 2;
 
 /// Returns the eyes with the changes that the flags ask for.
@@ -36,9 +36,10 @@ pub(crate) fn with_flags(mut pair: EyePair, flags: YoroEyesFlags) -> Result<EyeP
 
 /// The two eyes of a frame, given by poses and angles.
 ///
-/// Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance apart, so
-/// that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the
-/// eyes' distance. In larger worlds give poses relative to the head, and move the resulting view matrices by the head's place.
+/// Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance
+/// apart, so that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a
+/// thousandth of the eyes' distance. In larger worlds give poses relative to the head, and move the resulting view
+/// matrices by the head's place.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroEyes {

@@ -35,22 +35,23 @@ pub use entry_points::needed_functions;
 
 /// An entry point of any type.
 pub type YoroGlProc = Option<unsafe extern "C" fn()>;
-/// Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and others. Cast
-/// those of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
+/// Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and
+/// others. Cast those of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
 pub type YoroGlLoader = Option<unsafe extern "C" fn(name: *const c_char) -> YoroGlProc>;
 
 /// The treatment of GL state that a call changes.
 pub type YoroGlState = u32;
 /// Some of it stays changed: for engines that set all state that they draw with. library.md lists each state.
 pub const YORO_GL_STATE_LEAVE: YoroGlState = 0;
-/// All of it is restored. A program that was deleted while it was current goes at the first call, as GL says; none is current
-/// then.
+/// All of it is restored. A program that was deleted while it was current goes at the first call, as GL says; none is
+/// current then.
 pub const YORO_GL_STATE_PRESERVE: YoroGlState = 1;
 
 /// Bits for the way in which sources lie in their textures.
 pub type YoroGlSourceFlags = u32;
-/// The rendered image is a part of larger textures, of any size up to theirs in each frame: dynamic resolution, or both eyes side
-/// by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest sizes.
+/// The rendered image is a part of larger textures, of any size up to theirs in each frame: dynamic resolution, or both
+/// eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
+/// sizes.
 pub const YORO_GL_SOURCE_PARTS: YoroGlSourceFlags = 1;
 /// The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview, and of
 /// OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
@@ -79,7 +80,8 @@ pub struct YoroGlInfo {
     pub messages: YoroMessages,
     /// YORO_GL_SOURCE_ bits.
     pub sources: YoroGlSourceFlags,
-    /// 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then. 0: no times.
+    /// 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then.
+    /// 0: no times.
     pub timed: u32,
     /// 1: sources may have a history (YoroGlImages). 0: none has.
     pub history: u32,
@@ -108,9 +110,9 @@ pub unsafe extern "C" fn yoro_gl_create(
     unsafe { create(info, context, |info| info.messages, |info| Gl::new(info)) }
 }
 
-/// Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone; drivers add
-/// padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are 16 bytes for each
-/// 16 x 8 pixels of the source, and of the target.
+/// Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone;
+/// drivers add padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are
+/// 16 bytes for each 16 x 8 pixels of the source, and of the target.
 ///
 /// Call it from any thread. Neither loader nor GL context is needed.
 ///
@@ -172,12 +174,12 @@ pub struct YoroGlImages {
     pub image_width: u32,
     /// Height of the textures in pixels.
     pub image_height: u32,
-    /// The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the framebuffer,
-    /// by glFramebufferTextureLayer.
+    /// The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the
+    /// framebuffer, by glFramebufferTextureLayer.
     pub layer: u32,
-    /// What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with the colour
-    /// of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions show what is there. It
-    /// holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
+    /// What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with
+    /// the colour of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions
+    /// show what is there. It holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
     pub history_color_texture: u32,
     /// The depth of that image, of its size, one value a pixel, with the planes and encoding of the source's.
     pub history_depth_texture: u32,
@@ -228,8 +230,8 @@ pub unsafe extern "C" fn yoro_gl_prepare_pose(
 /// Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
 /// objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
 ///
-/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay the same
-/// it allocates and compiles nothing, and does not wait for the GPU.
+/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay
+/// the same it allocates and compiles nothing, and does not wait for the GPU.
 ///
 /// @param context The context.
 /// @param warp    The warp of YoroViews.

@@ -10,8 +10,8 @@ use crate::views::{YoroView, depth_range};
 /// The largest number of strips in a history.
 pub const YORO_MOST_STRIPS: usize = 8;
 
-/// A history: an image of the synthesized eye that was really rendered, in strips of equally many rows, each in a frame of its
-/// own. All but the last have as many rows: the image's divided by the number of strips, rounded up.
+/// A history: an image of the synthesized eye that was really rendered, in strips of equally many rows, each in a frame
+/// of its own. All but the last have as many rows: the image's divided by the number of strips, rounded up.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroHistory {
@@ -36,13 +36,14 @@ pub struct YoroHistory {
 
 versioned!(YoroHistory);
 
-/// The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record. yoro_strips fills
-/// it. It can be copied and kept. It has the layout of the block `History` of the shader kit, in std140.
+/// The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record.
+/// yoro_strips fills it. It can be copied and kept. It has the layout of the block `History` of the shader kit, in
+/// std140.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YoroStrips {
-    /// From a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth, column-major. Zeros
-    /// for strips with nothing in them.
+    /// From a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth,
+    /// column-major. Zeros for strips with nothing in them.
     pub to_history: [[f32; 16]; YORO_MOST_STRIPS],
     /// Number of strips.
     pub count: u32,
@@ -112,7 +113,8 @@ impl YoroHistory {
 }
 
 impl YoroStrips {
-    /// Returns the core's relation, with rows as they lie in the images. Checks the number, since programs may have made it up.
+    /// Returns the core's relation, with rows as they lie in the images. Checks the number, since programs may have
+    /// made it up.
     pub(crate) fn checked(&self) -> Result<Strips, Failure> {
         if !(1..=YORO_MOST_STRIPS).contains(&(self.count as usize)) || self.reserved != [0; 3] {
             return Err(Failure::value("strips are not those of yoro_strips: fill them in with that"));

@@ -9,9 +9,9 @@ use crate::types::{Clip, YoroClip, YoroEye, YoroRows, clip, eye, rows_down};
 use crate::versioned::{check_reserved, versioned};
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
-/// The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for column
-/// vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11 of a projection is
-/// -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
+/// The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for
+/// column vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11
+/// of a projection is -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroMatrices {
@@ -48,9 +48,10 @@ versioned!(YoroMatrices since flags);
 /// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
 /// volume and units of the given ones. Poses are in metres.
 ///
-/// The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes' distance.
-/// Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds give matrices
-/// relative to the head: subtract its place from both eyes' places, in 64 bits, before making the matrices.
+/// The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes'
+/// distance. Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds
+/// give matrices relative to the head: subtract its place from both eyes' places, in 64 bits, before making the
+/// matrices.
 ///
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
@@ -139,7 +140,8 @@ impl Projection {
     }
 }
 
-/// The contents of a view matrix, for an eye that looks along -Z and, in a left-handed world, with the world's Z axis negated.
+/// The contents of a view matrix, for an eye that looks along -Z and, in a left-handed world, with the world's Z axis
+/// negated.
 #[derive(Clone, Copy, Debug)]
 struct EyeView {
     orientation: DQuat,

@@ -34,11 +34,11 @@ pub struct YoroPoses {
 
 versioned!(YoroPoses);
 
-/// The mapping of pixels from a rendered view to one in any pose near it, for yoro_gl_synthesize_pose and yoro_vk_record_pose.
-/// yoro_pose_warp fills it. It can be copied and kept.
+/// The mapping of pixels from a rendered view to one in any pose near it, for yoro_gl_synthesize_pose and
+/// yoro_vk_record_pose. yoro_pose_warp fills it. It can be copied and kept.
 ///
-/// A surface that the target shows at the pixel (x, y), at the distance 1 / k along the axis of its eye, lies in the source at the
-/// homogeneous pixel homography * (x, y, 1) + k * epipole.
+/// A surface that the target shows at the pixel (x, y), at the distance 1 / k along the axis of its eye, lies in the
+/// source at the homogeneous pixel homography * (x, y, 1) + k * epipole.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroPoseWarp {
@@ -206,7 +206,8 @@ impl YoroPoseWarp {
         }
     }
 
-    /// Returns the core's warp, with rows as they lie in the images. Checks the numbers, since programs may have made them up.
+    /// Returns the core's warp, with rows as they lie in the images. Checks the numbers, since programs may have made
+    /// them up.
     fn checked(&self) -> Result<PoseWarp, Failure> {
         let sizes = [[self.source_width, self.source_height], [self.target_width, self.target_height]];
         let numbers = [&self.homography[..], &self.epipole, &self.source_law, &self.target_law];

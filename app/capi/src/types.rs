@@ -64,8 +64,8 @@ pub const YORO_EDGES_HARD: YoroEdges = 0;
 pub const YORO_EDGES_NEAREST: YoroEdges = 1;
 /// Colour resolved from several samples, depth of the first of them. Drivers that resolve depth themselves leave this.
 pub const YORO_EDGES_SAMPLE: YoroEdges = 2;
-/// Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the colour of
-/// all of them. This gives the best picture.
+/// Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the
+/// colour of all of them. This gives the best picture.
 pub const YORO_EDGES_MULTISAMPLE: YoroEdges = 3;
 
 pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
@@ -82,8 +82,8 @@ pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
 pub type YoroWarpKind = u32;
 /// Between two parallel eyes: YoroWarp.
 pub const YORO_WARP_KIND_EYES: YoroWarpKind = 0;
-/// To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where both views are
-/// parallel eyes the other kind gives the same picture, and is faster.
+/// To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where
+/// both views are parallel eyes the other kind gives the same picture, and is faster.
 pub const YORO_WARP_KIND_POSE: YoroWarpKind = 1;
 
 /// True for any pose.

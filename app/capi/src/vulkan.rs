@@ -37,8 +37,8 @@ pub unsafe extern "C" fn yoro_vk_create(
     unsafe { create(info, context, |info| info.messages, |info| Vulkan::new(info)) }
 }
 
-/// Returns how many bytes the buffers of a context will have on the GPU, of the sizes, formats and edges of its options alone;
-/// drivers add padding. yoro_capabilities says it of a context that exists.
+/// Returns how many bytes the buffers of a context will have on the GPU, of the sizes, formats and edges of its options
+/// alone; drivers add padding. yoro_capabilities says it of a context that exists.
 ///
 /// Call it from any thread. No handle of the options is needed.
 ///
@@ -164,12 +164,13 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
     }
 }
 
-/// Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten: barriers, and
-/// three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the rendered eye, and before
-/// transparent objects and effects that are drawn for each eye. It allocates, compiles and submits nothing, and does not wait.
+/// Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten:
+/// barriers, and three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the
+/// rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
+/// submits nothing, and does not wait.
 ///
-/// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings images from
-/// their state `before` to their state `after`.
+/// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings
+/// images from their state `before` to their state `after`.
 ///
 /// Call it on the thread that may use the context and that records the command buffer.
 ///
@@ -208,8 +209,8 @@ pub unsafe extern "C" fn yoro_vk_record(
     }
 }
 
-/// Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
-/// three draws. All else is as in yoro_vk_record.
+/// Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE:
+/// barriers and three draws. All else is as in yoro_vk_record.
 ///
 /// @param context  The context.
 /// @param commands A command buffer of the device.

@@ -14,7 +14,8 @@ use yoro_context::{Backend, Headless};
 const IMAGE: [u32; 2] = [300, 200];
 const ORIGIN: [u32; 2] = [40, 30];
 
-/// Returns names of a colour texture, which is one colour within the source and another one around it, and of a depth texture.
+/// Returns names of a colour texture, which is one colour within the source and another one around it, and of a depth
+/// texture.
 unsafe fn textures(gl: &glow::Context, views: &YoroViews, target: u32) -> (u32, u32) {
     let [w, h] = [views.source.width, views.source.height].map(|n| n as i32);
     // SAFETY: the context is current; textures and framebuffers are its own.

@@ -415,9 +415,9 @@ impl ForeignTarget {
 }
 
 impl Context {
-    /// Binds a framebuffer and sets the viewport to a rectangle, for draws that write all of it in the first `colors` (two at
-    /// most) colour attachments and, with `depth`, in depth. What the rectangle held is given up on OpenGL ES, so that a
-    /// tile-based GPU need not read it; desktop OpenGL has the call from 4.3 only.
+    /// Binds a framebuffer and sets the viewport to a rectangle, for draws that write all of it in the first `colors`
+    /// (two at most) colour attachments and, with `depth`, in depth. What the rectangle held is given up on OpenGL ES,
+    /// so that a tile-based GPU need not read it; desktop OpenGL has the call from 4.3 only.
     pub fn overwrite(&self, to: &Destination, colors: usize, depth: bool) {
         self.bind_framebuffer(to.framebuffer, to.origin, to.size);
         if self.capabilities().api == GlApi::Desktop {

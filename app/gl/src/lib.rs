@@ -317,8 +317,8 @@ impl Context {
     }
 
     /// Ends a frame, to time every frame without waiting ([`Profiling::Queries`]). Adds the pass times of one frame,
-    /// some frames ago, to `times`, and returns how many calls ago that frame has ended; `None` if there are none. A frame is
-    /// left out if the clock was disturbed or if timer queries are undefined for one of its passes.
+    /// some frames ago, to `times`, and returns how many calls ago that frame has ended; `None` if there are none. A
+    /// frame is left out if the clock was disturbed or if timer queries are undefined for one of its passes.
     pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> Option<u32> {
         self.profiler.borrow_mut().end_frame(&self.raw, times)
     }

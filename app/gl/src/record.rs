@@ -36,7 +36,8 @@ pub enum Shape {
     Mesh {
         /// Number of indices, of all instances together.
         indices: u64,
-        /// Vertices to shade: the indices' share of the mesh's vertices, so that each vertex is shaded once for each instance.
+        /// Vertices to shade: the indices' share of the mesh's vertices, so that each vertex is shaded once for each
+        /// instance.
         vertices: u64,
         /// Bytes of a vertex.
         vertex_bytes: u32,

@@ -2,12 +2,13 @@
 //!
 //! [`Gather`] takes colour and depth of one eye as views of textures, and draws the other eye: the counterpart of
 //! `yoro::vulkan`, from the same shaders. [`yoro::eyes`] says which view to render, and gives the
-//! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp): it draws a view in
-//! any pose near that of the source. wgpu is part of the interface, and is handed on as [`wgpu`].
+//! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp): it draws
+//! a view in any pose near that of the source. wgpu is part of the interface, and is handed on as [`wgpu`].
 //!
 //! Images have wgpu's own orientation, row 0 at the top. Give the warp as
-//! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the bottom, are turned
-//! inside. [`SynthesisViews::dominant_crop_from_top`](yoro::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
+//! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the
+//! bottom, are turned inside.
+//! [`SynthesisViews::dominant_crop_from_top`](yoro::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
 //! dominant eye's own image in the source.
 //!
 //! ```no_run
@@ -173,7 +174,8 @@ fn depth_of(format: &Option<TextureFormat>) -> String {
 /// The formats and the kind of sources for which pipelines are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Format of the targets' colour, any that the device can render to: that of the view, where it differs from the texture's.
+    /// Format of the targets' colour, any that the device can render to: that of the view, where it differs from the
+    /// texture's.
     pub color_format: TextureFormat,
     /// Format of the targets' depth, which is written in the source's encoding; None for colour only.
     pub depth_format: Option<TextureFormat>,
@@ -202,9 +204,9 @@ impl Default for Options {
 /// the usage TEXTURE_BINDING. The source's size is the warp's.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
-    /// Colour in any format that can be filtered: Rgba8Unorm or Rgba8UnormSrgb, Rgb10a2Unorm, Rgba16Float and others. All four
-    /// channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the edges are [`Edges::Hard`]
-    /// it is resolved, with values between 0 and 1.
+    /// Colour in any format that can be filtered: Rgba8Unorm or Rgba8UnormSrgb, Rgb10a2Unorm, Rgba16Float and others.
+    /// All four channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the edges are
+    /// [`Edges::Hard`] it is resolved, with values between 0 and 1.
     pub color: &'a TextureView,
     /// Depth: R32Float, R16Unorm, or any depth format; of one with stencil a view of the depth alone
     /// ([`wgpu::TextureAspect::DepthOnly`]). For [`Edges::Multisample`] it has [`Options::samples`] samples.
@@ -217,17 +219,17 @@ pub struct Source<'a> {
     pub history: Option<History<'a>>,
 }
 
-/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there. Views of
-/// one layer and one mip level, the largest, of 2-D textures of one size, any, with the usage TEXTURE_BINDING.
+/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
+/// Views of one layer and one mip level, the largest, of 2-D textures of one size, any, with the usage TEXTURE_BINDING.
 #[derive(Clone, Copy, Debug)]
 pub struct History<'a> {
-    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes afterwards. In
-    /// the encoding of the source's.
+    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes
+    /// afterwards. In the encoding of the source's.
     pub color: &'a TextureView,
     /// Depth in one of the formats of [`Source::depth`], one value a pixel, with the planes and encoding of the source's.
     pub depth: &'a TextureView,
-    /// The views of its strips, from the top on, as [`Strips::new`] returns them: its rows, which are counted from the bottom,
-    /// are turned inside.
+    /// The views of its strips, from the top on, as [`Strips::new`] returns them: its rows, which are counted from the
+    /// bottom, are turned inside.
     pub strips: Strips,
 }
 

@@ -181,8 +181,8 @@ pub(crate) struct Drawn<'a> {
 }
 
 impl Passes {
-    /// Records all passes for a source of this size in pixels; the sizes of the maps are in tiles. Uniforms and strips are offsets
-    /// in their buffers.
+    /// Records all passes for a source of this size in pixels; the sizes of the maps are in tiles. Uniforms and strips
+    /// are offsets in their buffers.
     pub(crate) fn record(
         &self,
         encoder: &mut CommandEncoder,

@@ -13,12 +13,12 @@ use crate::{History, Options, Source, Target, WgpuError};
 /// The bindings of a source that was not used for so many calls are dropped, and with them its textures.
 const KEPT_CALLS: u64 = 32;
 
-/// The passes between parallel eyes: tile bounds, tile spans, march. For anti-aliased sources there is a split into layers before
-/// them.
+/// The passes between parallel eyes: tile bounds, tile spans, march. For anti-aliased sources there is a split into
+/// layers before them.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of any view: tile bounds, tile spans, march. It draws a view in any pose near the source's, of sources with [`Edges::Hard`] and
-/// without a history.
+/// The passes of any view: tile bounds, tile spans, march. It draws a view in any pose near the source's, of sources
+/// with [`Edges::Hard`] and without a history.
 pub type AnyView = Pipeline<PoseWarp>;
 
 /// The passes of a kind of warp: [`Gather`] or [`AnyView`].
@@ -50,14 +50,15 @@ impl<W: WarpKind> Pipeline<W> {
     ///
     /// # Errors
     /// [`WgpuError::Format`], [`WgpuError::SampleCount`] and [`WgpuError::OpenGl`] for what the device cannot do,
-    /// [`WgpuError::AnyView`] for what [`AnyView`] cannot, [`WgpuError::Refused`] for whatever else wgpu refuses. In a browser
-    /// the device's handler of uncaptured errors is told of such things.
+    /// [`WgpuError::AnyView`] for what [`AnyView`] cannot, [`WgpuError::Refused`] for whatever else wgpu refuses. In a
+    /// browser the device's handler of uncaptured errors is told of such things.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
         let on_cpu = device.adapter_info().device_type == DeviceType::Cpu;
         Pipeline::with_passes(device, options, PassSet::of::<W>(on_cpu))
     }
 
-    /// Does what [`Pipeline::new`] does with the passes for another device: for tests of shaders that this one would not use.
+    /// Does what [`Pipeline::new`] does with the passes for another device: for tests of shaders that this one would
+    /// not use.
     ///
     /// # Errors
     /// As [`Pipeline::new`].
@@ -81,8 +82,8 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(Pipeline { checks, passes, uniforms, strips, buffers: None, kept: Vec::new(), calls: 0 })
     }
 
-    /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Pipeline::record`] does so when it
-    /// meets a size that is larger than all before; called beforehand, no frame has to.
+    /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Pipeline::record`] does so
+    /// when it meets a size that is larger than all before; called beforehand, no frame has to.
     ///
     /// # Errors
     /// [`WgpuError::Refused`] without memory for them.

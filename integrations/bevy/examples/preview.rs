@@ -1,7 +1,7 @@
 //! A room in both eyes, side by side in a window.
 //!
-//! Space shows two rendered eyes while it is held, M changes how the other eye is made, D which eye is rendered, and the arrow
-//! keys move the head.
+//! Space shows two rendered eyes while it is held, M changes how the other eye is made, D which eye is rendered, and
+//! the arrow keys move the head.
 
 mod support;
 

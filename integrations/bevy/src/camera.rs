@@ -47,9 +47,9 @@ impl From<Eye> for eyes::Eye {
 /// Stereo from this `Camera3d`, whose transform is the head's. Both eyes go side by side into the camera's render target,
 /// each as wide as half of it. Distances are in the camera's unit, which is that of the world unless a parent is scaled.
 ///
-/// While this component is there, the camera's projection and render target are the plugin's: set the target anew to show the
-/// eyes elsewhere. Post-processing, anti-aliasing and the like are those of the camera. When the component is removed the
-/// camera gets its target back, and a perspective projection.
+/// While this component is there, the camera's projection and render target are the plugin's: set the target anew to
+/// show the eyes elsewhere. Post-processing, anti-aliasing and the like are those of the camera. When the component is
+/// removed the camera gets its target back, and a perspective projection.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Camera3d, Eyes)]

@@ -58,7 +58,8 @@ pub struct XrStereoCamera {
     pub near: f32,
     /// Distance in metres beyond which objects are culled.
     pub far: f32,
-    /// Distance in metres of the nearest object that is not cut off at the other eye's outer border; infinity for no guard band.
+    /// Distance in metres of the nearest object that is not cut off at the other eye's outer border; infinity for no
+    /// guard band.
     pub guard_distance: f32,
 }
 

@@ -1,4 +1,5 @@
-//! A session with an OpenXR runtime: both layers, against the same eyes rendered by a second stereo camera in the same frames.
+//! A session with an OpenXR runtime: both layers, against the same eyes rendered by a second stereo camera in the same
+//! frames.
 //!
 //! It needs a runtime: `cargo xtask bevy test` starts Monado with a simulated headset.
 

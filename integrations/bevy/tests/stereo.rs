@@ -82,8 +82,8 @@ impl Stage {
         values.map(|[psnr, _]| psnr)
     }
 
-    /// Checks that the finished image is synthesized with temporal anti-aliasing, and that both eyes are rendered where opaque
-    /// surfaces should be.
+    /// Checks that the finished image is synthesized with temporal anti-aliasing, and that both eyes are rendered where
+    /// opaque surfaces should be.
     fn check_temporal_anti_aliasing(&mut self) {
         let settled = |stage: &mut Stage, mode| {
             stage.in_mode(mode);

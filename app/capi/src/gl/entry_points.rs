@@ -1,5 +1,5 @@
-//! The functions of GL that this library calls. glow loads all that there are, and panics in a call of one that its loader did
-//! not return.
+//! The functions of GL that this library calls. glow loads all that there are, and panics in a call of one that its
+//! loader did not return.
 
 use std::ffi::{CStr, c_void};
 

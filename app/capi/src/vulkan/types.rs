@@ -38,7 +38,8 @@ pub struct YoroVkInfo {
     /// 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0: render
     /// passes and framebuffers are used, with the same result.
     pub dynamic_rendering: u32,
-    /// Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled as sRGB.
+    /// Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled
+    /// as sRGB.
     pub color_format: vk::Format,
     /// Format of the targets' depth, which is written in the source's encoding; VK_FORMAT_UNDEFINED for no depth.
     pub depth_format: vk::Format,
@@ -127,9 +128,9 @@ pub struct YoroVkSource {
     pub history_width: u32,
     /// Height of the history's images in pixels.
     pub history_height: u32,
-    /// What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was really
-    /// rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so nothing that is drawn
-    /// over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
+    /// What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was
+    /// really rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so
+    /// nothing that is drawn over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
     pub history_color: YoroVkImage,
     /// The depth of that image, one value a pixel, with the planes and encoding of the source's.
     pub history_depth: YoroVkImage,
@@ -200,9 +201,10 @@ pub struct YoroVkUse {
     pub after: YoroVkState,
 }
 
-/// The uses of all images in one call, for engines whose images come from other passes and go to others in each frame. Those of
-/// images that were not registered are ignored. A source is still sampled in the layout that it was registered for: if its
-/// registered layout before is not one of those that can be sampled, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
+/// The uses of all images in one call, for engines whose images come from other passes and go to others in each frame.
+/// Those of images that were not registered are ignored. A source is still sampled in the layout that it was registered
+/// for: if its registered layout before is not one of those that can be sampled,
+/// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkUses {

@@ -141,18 +141,19 @@ pub struct GuardedView {
 }
 
 impl GuardedView {
-    /// Returns the upper left corner of the original view of this size, in pixels of the wider one, for images whose row 0 is at
-    /// the top.
+    /// Returns the upper left corner of the original view of this size, in pixels of the wider one, for images whose
+    /// row 0 is at the top.
     pub fn crop_from_top(&self, original: [u32; 2]) -> [u32; 2] {
         [self.crop[0], self.view.size[1].saturating_sub(self.crop[1] + original[1])]
     }
 }
 
 impl HeadMotion {
-    /// Returns the view widened on all four sides, by whole pixels, so that it contains what the view shows after any such
-    /// motion, of surfaces at a distance of `nearest` metres or more from its eye. With the angle `a` by which a direction
-    /// turns, the tangent T of a side becomes `tan(atan T + asin(sin a * |(T, U, 1)| / |(T, 1)|))`, U being the larger tangent
-    /// of the other two sides. Translation turns directions by `asin(translation / nearest)` at most.
+    /// Returns the view widened on all four sides, by whole pixels, so that it contains what the view shows after any
+    /// such motion, of surfaces at a distance of `nearest` metres or more from its eye. With the angle `a` by which a
+    /// direction turns, the tangent T of a side becomes `tan(atan T + asin(sin a * |(T, U, 1)| / |(T, 1)|))`, U being
+    /// the larger tangent of the other two sides. Translation turns directions by `asin(translation / nearest)` at
+    /// most.
     ///
     /// # Errors
     /// [`EyesError::Apart`] if it had to see further than 80 degrees to a side; those of [`PoseWarp::new`] for a view that

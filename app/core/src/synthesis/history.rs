@@ -5,13 +5,14 @@ use glam::{DMat4, DVec3, Mat4};
 
 use crate::eyes::View;
 
-/// The relation of the synthesized eye to a history: an image of that eye that was really rendered, in strips of equally many
-/// rows, each in a frame of its own. Inputs of `include/history.glsl` of `yoro-shaders`, with the layout of a std140 block.
+/// The relation of the synthesized eye to a history: an image of that eye that was really rendered, in strips of
+/// equally many rows, each in a frame of its own. Inputs of `include/history.glsl` of `yoro-shaders`, with the layout
+/// of a std140 block.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Strips {
-    /// From a pixel of the target and its depth to a pixel of each strip's image and its depth. Zero for strips with nothing in
-    /// them.
+    /// From a pixel of the target and its depth to a pixel of each strip's image and its depth. Zero for strips with
+    /// nothing in them.
     pub to_history: [Mat4; Strips::MAX],
     /// Number of strips, at least 1.
     pub history_strips: i32,
@@ -25,10 +26,10 @@ impl Strips {
     pub const NONE: Strips =
         Strips { to_history: [Mat4::ZERO; Strips::MAX], history_strips: 1, _padding: [0; 3] };
 
-    /// Returns the relation of a target to the strips of a history, from row 0 of the image on, each by the view of the whole image
-    /// from which it was rendered; `None` if nothing is there. All but the last have as many rows: those of the image divided by the number
-    /// of strips, rounded up. Views have the depth planes and encoding of the target. Strips after the first
-    /// [`Strips::MAX`] are ignored.
+    /// Returns the relation of a target to the strips of a history, from row 0 of the image on, each by the view of the
+    /// whole image from which it was rendered; `None` if nothing is there. All but the last have as many rows: those of
+    /// the image divided by the number of strips, rounded up. Views have the depth planes and encoding of the target.
+    /// Strips after the first [`Strips::MAX`] are ignored.
     pub fn new(target: &View, strips: &[Option<View>]) -> Strips {
         let mut relation =
             Strips { history_strips: strips.len().clamp(1, Strips::MAX) as i32, ..Strips::NONE };
@@ -46,8 +47,8 @@ impl Strips {
         relation
     }
 
-    /// Returns the same relation for images whose rows are counted from the other end, given their heights in pixels: what those
-    /// graphics interfaces use inside whose row 0 is at the top. The order of the strips stays.
+    /// Returns the same relation for images whose rows are counted from the other end, given their heights in pixels:
+    /// what those graphics interfaces use inside whose row 0 is at the top. The order of the strips stays.
     #[doc(hidden)]
     pub fn rows_turned(&self, target_height: u32, history_height: u32) -> Strips {
         let turn = |height: u32| {

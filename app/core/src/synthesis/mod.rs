@@ -9,9 +9,9 @@
 //! | `Gather` | [`Edges::Hard`] | tile bounds, tile spans, march | ES 3.0 |
 //! | `Layers` | anti-aliased sources | split, tile bounds, tile spans, march | ES 3.0, [`Edges::Multisample`] ES 3.1 |
 //!
-//! `AnyView` draws a view in any other pose near the source's, from hard edges: tile bounds, tile spans and a march along a segment
-//! of any direction, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the warp. It needs ES 3.0. `yoro::vulkan` and
-//! `yoro-wgpu` have it, too.
+//! `AnyView` draws a view in any other pose near the source's, from hard edges: tile bounds, tile spans and a march
+//! along a segment of any direction, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the warp. It needs ES 3.0.
+//! `yoro::vulkan` and `yoro-wgpu` have it, too.
 
 mod edges;
 mod forward;

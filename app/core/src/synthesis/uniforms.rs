@@ -62,7 +62,8 @@ uniforms! {
         near_displacement: f32 = "float",
         /// Texture coordinate of the source at forward column x: `columns.x * x + columns.y`.
         columns: Vec2 = "vec2",
-        /// Source column that lands at a fragment by the offset of the displacement alone: `origins.x * gl_FragCoord.x + origins.y`.
+        /// Source column that lands at a fragment by the offset of the displacement alone:
+        /// `origins.x * gl_FragCoord.x + origins.y`.
         origins: Vec2 = "vec2",
         /// Place of a fragment's span in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`. A texture
         /// coordinate; in tiles if the source is a part of its image.
@@ -81,8 +82,8 @@ uniforms! {
 }
 
 uniforms! {
-    /// All uniforms of the passes for any view except textures, with the layout of a std140 block: `include/any_view.glsl` of
-    /// `yoro-shaders`. Rows are counted from row 0, as in [`Uniforms`].
+    /// All uniforms of the passes for any view except textures, with the layout of a std140 block:
+    /// `include/any_view.glsl` of `yoro-shaders`. Rows are counted from row 0, as in [`Uniforms`].
     PoseUniforms {
         /// Size of the source in pixels.
         source_size: IVec2 = "ivec2",

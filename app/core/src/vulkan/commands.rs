@@ -60,8 +60,8 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Writes the block of a history's strips, which the passes of the frame before may still read. A call carries its own block
-    /// to the one buffer: there is nothing to keep until it is executed.
+    /// Writes the block of a history's strips, which the passes of the frame before may still read. A call carries its
+    /// own block to the one buffer: there is nothing to keep until it is executed.
     pub(super) fn write_strips(&self, buffer: vk::Buffer, strips: &Strips) {
         let read = (vk::PipelineStageFlags::FRAGMENT_SHADER, vk::AccessFlags::UNIFORM_READ);
         let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);

@@ -1,15 +1,16 @@
 //! Synthesis on Vulkan: recorded into the caller's command buffer.
 //!
-//! [`Gather`] has the passes of `synthesis::Gather` and, for anti-aliased sources, of `synthesis::Layers`, from the same shaders;
-//! [`AnyView`] those of `synthesis::AnyView`, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the warp. Both are a
-//! [`Pipeline`]. Everything is allocated and compiled in [`Pipeline::new`], [`Pipeline::register_source`] and
-//! [`Pipeline::register_target`]; [`Pipeline::record`] only records: it allocates nothing, submits nothing and waits for nothing.
+//! [`Gather`] has the passes of `synthesis::Gather` and, for anti-aliased sources, of `synthesis::Layers`, from the
+//! same shaders; [`AnyView`] those of `synthesis::AnyView`, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the
+//! warp. Both are a [`Pipeline`]. Everything is allocated and compiled in [`Pipeline::new`],
+//! [`Pipeline::register_source`] and [`Pipeline::register_target`]; [`Pipeline::record`] only records: it allocates
+//! nothing, submits nothing and waits for nothing.
 //!
 //! Source and target images have Vulkan's own orientation, row 0 at the top. Give the [`Warp`](crate::eyes::Warp) as
-//! [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the bottom, are
-//! turned inside. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in that orientation.
-//! [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
-//! dominant eye's own image in it.
+//! [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the
+//! bottom, are turned inside. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in
+//! that orientation. [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is
+//! the place of the dominant eye's own image in it.
 //!
 //! ```no_run
 //! use yoro::eyes::SynthesisViews;
@@ -195,8 +196,8 @@ pub struct Host<'a> {
     /// True if the feature `dynamicRendering` of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled. Without it render passes
     /// and framebuffers are used, with the same result.
     pub dynamic_rendering: bool,
-    /// True if VK_EXT_debug_utils is enabled in the instance: passes then have labels in debuggers. A device's entry points do
-    /// not tell, since validation layers return them without the extension.
+    /// True if VK_EXT_debug_utils is enabled in the instance: passes then have labels in debuggers. A device's entry
+    /// points do not tell, since validation layers return them without the extension.
     pub debug_utils: bool,
 }
 
@@ -225,8 +226,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// Returns the bytes of the intermediate buffers' texels of a [`Gather`] with these options: to plan with before there are
-    /// pipelines. Drivers add padding.
+    /// Returns the bytes of the intermediate buffers' texels of a [`Gather`] with these options: to plan with before
+    /// there are pipelines. Drivers add padding.
     pub fn buffer_bytes(&self) -> u64 {
         self.bytes(false)
     }
@@ -291,8 +292,8 @@ impl ImageState {
                 | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
         ),
     };
-    /// Depth that a render pass resolved from samples into this image. Vulkan does that among the colour attachments' writes,
-    /// in whatever layout.
+    /// Depth that a render pass resolved from samples into this image. Vulkan does that among the colour attachments'
+    /// writes, in whatever layout.
     pub const RESOLVED_DEPTH: ImageState = ImageState {
         layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         ..ImageState::COLOR_ATTACHMENT
@@ -358,10 +359,11 @@ impl SourceImages {
 /// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HistoryImages {
-    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes afterwards. In
-    /// the encoding of the source's.
+    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes
+    /// afterwards. In the encoding of the source's.
     pub color: LayerImage,
-    /// Depth in one of the formats of [`SourceImages::depth`], one value a pixel, with the planes and encoding of the source's.
+    /// Depth in one of the formats of [`SourceImages::depth`], one value a pixel, with the planes and encoding of the
+    /// source's.
     pub depth: LayerImage,
     /// Width and height of the images in pixels, any.
     pub size: [u32; 2],
@@ -422,8 +424,8 @@ pub struct Frame {
     pub target: TargetId,
     /// Upper left corner of the rectangle to write in them, in pixels. Pixels outside of it stay as they are.
     pub target_origin: [u32; 2],
-    /// The views of the strips of [`SourceImages::history`], from the top on, as [`Strips::new`] returns them: its rows, which
-    /// are counted from the bottom, are turned inside. None: nothing is looked up.
+    /// The views of the strips of [`SourceImages::history`], from the top on, as [`Strips::new`] returns them: its
+    /// rows, which are counted from the bottom, are turned inside. None: nothing is looked up.
     pub history: Option<Strips>,
 }
 
@@ -443,7 +445,8 @@ pub struct Use {
     pub after: ImageState,
 }
 
-/// The uses of all images in one call ([`Pipeline::record_with_uses`]). Those of images that are not registered do not matter.
+/// The uses of all images in one call ([`Pipeline::record_with_uses`]). Those of images that are not registered do not
+/// matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Uses {
     /// Of [`SourceImages::color`].

@@ -21,12 +21,12 @@ use super::{
 use crate::eyes::{PoseWarp, Warp};
 use crate::synthesis::{Edges, PassSet, Places, Strips, WarpKind, span_tiles, tiles};
 
-/// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources those of `synthesis::Layers`, with
-/// the split into layers before them.
+/// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources those of
+/// `synthesis::Layers`, with the split into layers before them.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of `synthesis::AnyView`: tile bounds, tile spans, march. It draws a view in any pose near the source's, of sources with
-/// [`Edges::Hard`] and without a history.
+/// The passes of `synthesis::AnyView`: tile bounds, tile spans, march. It draws a view in any pose near the source's,
+/// of sources with [`Edges::Hard`] and without a history.
 pub type AnyView = Pipeline<PoseWarp>;
 
 /// The passes of a kind of warp: [`Gather`] or [`AnyView`].
@@ -76,8 +76,8 @@ impl<W: WarpKind> Pipeline<W> {
     ///
     /// # Errors
     /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::Samples`], [`VulkanError::QueueFamily`] and
-    /// [`VulkanError::DynamicRendering`] for what the device cannot do; [`VulkanError::AnyView`] for what [`AnyView`] cannot;
-    /// errors of Vulkan's commands.
+    /// [`VulkanError::DynamicRendering`] for what the device cannot do; [`VulkanError::AnyView`] for what [`AnyView`]
+    /// cannot; errors of Vulkan's commands.
     ///
     /// # Safety
     /// The host's handles are valid, belong together and outlive the returned value. When that is dropped, no command
@@ -202,8 +202,8 @@ impl<W: WarpKind> Pipeline<W> {
     /// of the command buffer's graphics bind point.
     ///
     /// # Errors
-    /// [`VulkanError::NotRegistered`], [`VulkanError::Size`], [`VulkanError::Rectangle`] and [`VulkanError::History`]; nothing is
-    /// recorded then.
+    /// [`VulkanError::NotRegistered`], [`VulkanError::Size`], [`VulkanError::Rectangle`] and [`VulkanError::History`];
+    /// nothing is recorded then.
     ///
     /// # Safety
     /// The command buffer is of this device, in the recording state, outside of render passes and dynamic rendering,

@@ -296,7 +296,8 @@ fn what_cannot_be_synthesized_is_refused() {
     });
 }
 
-/// Measures the passes of a head that has moved by 2 cm, with the near plane at three distances, whose surfaces stay where they are.
+/// Measures the passes of a head that has moved by 2 cm, with the near plane at three distances, whose surfaces stay
+/// where they are.
 #[test]
 #[ignore = "measures: cargo test -p yoro --test synthesis -- --ignored --nocapture cost_of_any_view"]
 fn cost_of_any_view() {

@@ -272,7 +272,8 @@ fn near_boxes(size: [u32; 2], range: DepthRange, seed: u64, boxes: u32) -> (Vec<
     // Reciprocals of metres. A slanted wall: of a flat one whole columns may be within rounding of a decision.
     let mut nearness: Vec<f32> = (0..w * h).map(|i| 0.2 + 0.05 * (i % w) as f32 / w as f32).collect();
     for _ in 0..boxes {
-        // Off the borders: what lies beside a surface that is cut off there may be filled from elsewhere than the reference does.
+        // Off the borders: what lies beside a surface that is cut off there may be filled from elsewhere than the
+        // reference does.
         let [x, wide] = [w / 4..w / 2, w / 20..w / 3].map(|range| rng.random_range(range));
         // A single one from the lowest row to the topmost: the rows of a tile that has a box above walk like the box's.
         let (y, high) = match boxes {

@@ -103,8 +103,8 @@ fn run(gl: &Rc<Context>, synthesis: &mut dyn Synthesis, source: Source, warp: &W
 
 const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
 
-/// Checks that a picture is another one but for a few pixels whose positions lie within rounding of a decision. `bound` is the
-/// largest difference of columns, in 1/65536 pixel.
+/// Checks that a picture is another one but for a few pixels whose positions lie within rounding of a decision. `bound`
+/// is the largest difference of columns, in 1/65536 pixel.
 fn assert_equal(got: &(Vec<u8>, Vec<u32>), want: &(Vec<u8>, Vec<u32>), bound: u32, what: &str) {
     let far = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
     let colors = got.0.chunks_exact(4).zip(want.0.chunks_exact(4)).filter(|&pair| far(pair)).count();

@@ -1,5 +1,5 @@
-//! Pictures of the passes on another graphics interface against those of OpenGL. All rows are counted from the bottom, places
-//! in images from the top.
+//! Pictures of the passes on another graphics interface against those of OpenGL. All rows are counted from the bottom,
+//! places in images from the top.
 
 #[path = "../synthesis/in_memory.rs"]
 mod in_memory;
@@ -226,8 +226,8 @@ pub fn assert_depth_equal(got: &[f32], want: &[f32], what: &str) {
     assert!(different * 4000 <= got.len(), "{what}: depth of {different} of {} pixels differs", got.len());
 }
 
-/// The largest difference of a channel, by the number of a variant. The two APIs count rows from opposite ends, so that tiles
-/// and their laws are others: an eighth of a pixel, in noise of 255 levels.
+/// The largest difference of a channel, by the number of a variant. The two APIs count rows from opposite ends, so that
+/// tiles and their laws are others: an eighth of a pixel, in noise of 255 levels.
 pub const TOLERANCES: [u8; 2] = [1, 32];
 
 /// Checks that every channel is as good as equal, but for a few pixels whose positions lie within rounding of a decision.
@@ -272,8 +272,8 @@ pub struct RandomCase {
 pub const RANDOM_RANGE: DepthRange =
     DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
 
-/// Any sizes, rectangles, eyes and laws of up to 96 x 70 pixels. The last two displace by 300 pixels, one of them a part of an
-/// image.
+/// Any sizes, rectangles, eyes and laws of up to 96 x 70 pixels. The last two displace by 300 pixels, one of them a
+/// part of an image.
 pub fn random_cases() -> Vec<RandomCase> {
     let warp = |source_size, target_size, row_offset, offset, scale: f64| Warp {
         source_size,

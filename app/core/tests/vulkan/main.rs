@@ -395,8 +395,8 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
     }
 }
 
-/// Frames whose images come from other passes and go to others, and a wait that is a semaphore's: no stages. The validation layer
-/// looks.
+/// Frames whose images come from other passes and go to others, and a wait that is a semaphore's: no stages. The
+/// validation layer looks.
 #[test]
 fn uses_differ_from_frame_to_frame() {
     let gl = Gl::new();

@@ -1,5 +1,5 @@
-//! yoro in an engine on wgpu: the engine has one eye in its own textures, and yoro records the passes that draw the other one
-//! into the engine's command encoder.
+//! yoro in an engine on wgpu: the engine has one eye in its own textures, and yoro records the passes that draw the
+//! other one into the engine's command encoder.
 //!
 //! `cargo run -p yoro-wgpu --example offscreen` writes `out/wgpu.png`, left and right eye side by side, the left one
 //! synthesized, and prints how near it is to the left eye as it really is. `WGPU_BACKEND=gl` chooses another back end.

@@ -155,7 +155,8 @@ fn anti_aliased_sources_give_opengls_pictures() {
                 got.len() / 4
             );
 
-            // The depth is that of the source map's column, but for pixels at silhouettes. A column or a row further it is not.
+            // The depth is that of the source map's column, but for pixels at silhouettes. A column or a row further it
+            // is not.
             let depths = one_depth(&wanted.samples, given.0, warp);
             let picture = Picture { warp: *warp, rgba: Vec::new(), depth: depths };
             let expected = expected_depth(&picture, &wanted.source_map);

@@ -16,8 +16,8 @@ use yoro_wgpu::wgpu::{
     TextureViewDimension, VertexState,
 };
 
-/// A device on one of wgpu's own back ends. It lives as long as the tests: the display of OpenGL's, which it would end, is also
-/// that of the pictures to compare with.
+/// A device on one of wgpu's own back ends. It lives as long as the tests: the display of OpenGL's, which it would end,
+/// is also that of the pictures to compare with.
 pub struct Gpu {
     pub name: String,
     pub device: Device,
@@ -25,8 +25,8 @@ pub struct Gpu {
     _instance: Instance,
 }
 
-/// Runs a test body on wgpu's Vulkan and on its OpenGL, unless tests are to do without. What the body compares with must have
-/// been drawn before: the thread's current context changes.
+/// Runs a test body on wgpu's Vulkan and on its OpenGL, unless tests are to do without. What the body compares with
+/// must have been drawn before: the thread's current context changes.
 pub fn with_gpus(mut body: impl FnMut(&Gpu)) {
     static GPUS: [OnceLock<Result<Gpu, String>>; 2] = [OnceLock::new(), OnceLock::new()];
     for (backend, gpu) in [Backends::VULKAN, Backends::GL].into_iter().zip(&GPUS) {

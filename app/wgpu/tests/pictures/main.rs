@@ -135,8 +135,8 @@ fn synthesize<W: WarpKind>(
     Result { rgba, depth }
 }
 
-/// What OpenGL makes of warps, with seeds from `first`, by each of [`PassSet::GATHER`]. It is given the pictures upside down, so that
-/// the same rows are in one tile as on wgpu, whose rows are counted from the top.
+/// What OpenGL makes of warps, with seeds from `first`, by each of [`PassSet::GATHER`]. It is given the pictures upside
+/// down, so that the same rows are in one tile as on wgpu, whose rows are counted from the top.
 fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture, [Vec<u8>; 2])> {
     let numbered = warps.iter().zip(first..);
     let pictures = numbered.map(|((warp, range), seed)| picture(warp, *range, seed));
