@@ -7,7 +7,6 @@ use std::ffi::{CStr, c_char, c_void};
 use std::num::NonZeroU32;
 use std::rc::Rc;
 
-use yoro::eyes::Warp;
 use yoro::gl::{Context, Destination, GlApi, PassTime, Profiling};
 use yoro::synthesis::{
     self, AnyView, Edges, GlState, History, Outputs, Part, Source, Strips, Synthesis, SynthesisOptions,
@@ -28,7 +27,7 @@ use crate::types::{
     YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFlags, YoroWarpKind, edges, is_pose, other_kind,
 };
 use crate::versioned::{self, versioned};
-use crate::views::YoroWarp;
+use crate::views::{YoroWarp, read_warp};
 
 #[doc(hidden)]
 pub use entry_points::needed_functions;
@@ -521,18 +520,6 @@ impl Gl {
             self.times.drain(..known);
         }
     }
-}
-
-/// Reads a warp.
-///
-/// # Safety
-/// `warp` is null or leads to one.
-unsafe fn read_warp(warp: *const YoroWarp) -> Result<Warp, Failure> {
-    if warp.is_null() {
-        return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of YoroViews"));
-    }
-    // SAFETY: the pointer is not null, so it leads to a warp; alignment is not needed.
-    unsafe { warp.read_unaligned() }.checked()
 }
 
 impl Backend for Gl {

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec4};
 use yoro::eyes::{DepthRange, DisparityLaw, EyePair, Frustum, GuardBand, Pose, View, Warp};
 
-use crate::result::{Failure, YoroMessages, YoroResult, catch_errors};
+use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
 use crate::types::{
     Clip, YORO_DEPTH_REVERSED, YORO_DEPTH_STANDARD, YoroDepth, YoroEye, YoroFov, YoroPose, depth, eye,
 };
@@ -101,7 +101,7 @@ impl YoroWarp {
     }
 
     /// Returns the core's warp. Checks the numbers, since programs may have made them up.
-    pub(crate) fn checked(&self) -> Result<Warp, Failure> {
+    fn checked(&self) -> Result<Warp, Failure> {
         /// The largest size: no driver renders larger images.
         const MAX_SIDE: u32 = 1 << 16;
         let sides = [self.source_width, self.source_height, self.target_width, self.target_height];
@@ -126,6 +126,18 @@ impl YoroWarp {
             Failure::value("the warp has a displacement beyond all images: take it from yoro_views_from_eyes")
         })
     }
+}
+
+/// Reads a warp.
+///
+/// # Safety
+/// `warp` is null or leads to one.
+pub(crate) unsafe fn read_warp(warp: *const YoroWarp) -> Result<Warp, Failure> {
+    if warp.is_null() {
+        return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of YoroViews"));
+    }
+    // SAFETY: the pointer is not null, so it leads to a warp; alignment is not needed.
+    unsafe { warp.read_unaligned() }.checked()
 }
 
 /// Runs the body of a function that fills [`YoroViews`]. `messages` is the callback in `eyes`, and `work_out` does the

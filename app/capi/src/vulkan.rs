@@ -13,7 +13,7 @@ use crate::pose::{YoroPoseWarp, read_pose_warp};
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult};
 use crate::types::other_kind;
 use crate::versioned::{self, Versioned, check_reserved};
-use crate::views::YoroWarp;
+use crate::views::{YoroWarp, read_warp};
 use device::{Passes, Vulkan, of_passes};
 
 pub use types::*;
@@ -194,12 +194,9 @@ pub unsafe extern "C" fn yoro_vk_record(
     // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
-            if warp.is_null() || commands == vk::CommandBuffer::null() {
-                return Err(Failure::new(YORO_ERROR_NULL, "warp or commands is NULL: give both"));
-            }
-            let mut warp = warp.read_unaligned().checked()?;
-            // The core counts these rows from the bottom, and takes row 0 of Vulkan's images as the top.
-            warp.row_offset = warp.target_size[1] as i32 - warp.source_size[1] as i32 - warp.row_offset;
+            check_commands(commands)?;
+            // The core counts a warp's rows from the bottom, and takes row 0 of Vulkan's images as the top.
+            let warp = read_warp(warp)?.rows_from_top();
             let (frame, uses) = vulkan.frame(frame, warp.target_size)?;
             match &mut vulkan.passes {
                 Passes::Eyes(gather) => record(gather, commands, &frame, &warp, uses.as_ref()),
@@ -228,9 +225,7 @@ pub unsafe extern "C" fn yoro_vk_record_pose(
     // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
-            if commands == vk::CommandBuffer::null() {
-                return Err(Failure::new(YORO_ERROR_NULL, "commands is NULL: give a command buffer"));
-            }
+            check_commands(commands)?;
             // As above.
             let warp = read_pose_warp(warp)?.rows_from_top();
             let (frame, uses) = vulkan.frame(frame, warp.target_size)?;
@@ -240,6 +235,13 @@ pub unsafe extern "C" fn yoro_vk_record_pose(
             }
         })
     }
+}
+
+fn check_commands(commands: vk::CommandBuffer) -> Result<(), Failure> {
+    if commands == vk::CommandBuffer::null() {
+        return Err(Failure::new(YORO_ERROR_NULL, "commands is NULL: give a command buffer"));
+    }
+    Ok(())
 }
 
 /// # Safety

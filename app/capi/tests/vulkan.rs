@@ -77,6 +77,22 @@ impl Gpu {
         }
     }
 
+    /// Ends the command buffer, executes it and waits.
+    ///
+    /// # Safety
+    /// It records, and what it uses lives.
+    unsafe fn execute(&self) {
+        // SAFETY: the caller's commands.
+        unsafe {
+            self.device.end_command_buffer(self.commands).unwrap();
+            let buffers = [self.commands];
+            let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
+            let queue = self.device.get_device_queue(0, 0);
+            self.device.queue_submit(queue, &submit, vk::Fence::null()).unwrap();
+            self.device.device_wait_idle().unwrap();
+        }
+    }
+
     fn info(&self) -> YoroVkInfo {
         let mut info: YoroVkInfo = zeroed(|i: &mut YoroVkInfo| &mut i.struct_size);
         // SAFETY: of one signature but for the name of the calling convention, which is C's.
@@ -250,12 +266,7 @@ fn uses_memory_and_times_are_those_of_the_core() {
         let other = YoroVkFrame { reserved: 1, ..frame };
         assert_eq!(yoro_vk_record(context, gpu.commands, &WARP, &other), YORO_ERROR_VALUE);
         assert_eq!(yoro_times(context, null_mut()), YORO_ERROR_NULL);
-        gpu.device.end_command_buffer(gpu.commands).unwrap();
-        let buffers = [gpu.commands];
-        let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
-        let queue = gpu.device.get_device_queue(0, 0);
-        gpu.device.queue_submit(queue, &submit, vk::Fence::null()).unwrap();
-        gpu.device.device_wait_idle().unwrap();
+        gpu.execute();
         assert_eq!(yoro_times(context, &mut times), YORO_OK);
         assert_eq!(yoro_destroy(context), YORO_OK);
     }
@@ -339,12 +350,7 @@ fn a_context_of_any_pose_records_pose_warps() {
         let eyes = create(&gpu.info()).unwrap();
         let of_eyes = registered(&gpu, eyes);
         assert_eq!(yoro_vk_record_pose(eyes, gpu.commands, &warp, &of_eyes), YORO_ERROR_VALUE);
-        gpu.device.end_command_buffer(gpu.commands).unwrap();
-        let buffers = [gpu.commands];
-        let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
-        let queue = gpu.device.get_device_queue(0, 0);
-        gpu.device.queue_submit(queue, &submit, vk::Fence::null()).unwrap();
-        gpu.device.device_wait_idle().unwrap();
+        gpu.execute();
         assert_eq!(yoro_destroy(context), YORO_OK);
         assert_eq!(yoro_destroy(eyes), YORO_OK);
     }
