@@ -155,7 +155,7 @@ pub fn suggest_bindings(
         }
     };
     if let Some(extension) = extension
-        && !known.extensions.iter().any(|enabled| enabled == extension)
+        && !known.has(extension)
     {
         return Err(forbidden(Code::ERROR_PATH_UNSUPPORTED, format!("{profile} without {extension}")));
     }

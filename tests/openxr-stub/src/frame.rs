@@ -12,7 +12,7 @@ use crate::log::{Depth, Entry, Image, Layer, View};
 use crate::script::At;
 use crate::session::{Frame, fill_depth_range, views_of};
 use crate::space::{compose, inverse, pose, raw_pose};
-use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden};
+use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, in_chain};
 
 /// The time of frame 0.
 const BEGINNING_NS: i64 = 1_000_000_000;
@@ -231,22 +231,17 @@ pub unsafe fn submitted(
 
 /// True if a layer's chain says that its images are upside down.
 fn is_upside_down(world: &mut World, layer: &sys::CompositionLayerProjection) -> Result<bool, Refusal> {
-    let mut next = layer.next.cast::<sys::BaseInStructure>();
     // SAFETY: a chain of structures.
-    while let Some(structure) = unsafe { next.as_ref() } {
-        if structure.ty == sys::CompositionLayerImageLayoutFB::TYPE {
-            forbid_if(
-                !world.current()?.extensions.iter().any(|enabled| enabled == IMAGE_LAYOUT),
-                Code::ERROR_VALIDATION_FAILURE,
-                format!("an image's layout without {IMAGE_LAYOUT}"),
-            )?;
-            // SAFETY: of this type.
-            let layout = unsafe { &*next.cast::<sys::CompositionLayerImageLayoutFB>() };
-            return Ok(layout.flags.contains(sys::CompositionLayerImageLayoutFlagsFB::VERTICAL_FLIP));
-        }
-        next = structure.next;
-    }
-    Ok(false)
+    let layout = unsafe {
+        in_chain::<sys::CompositionLayerImageLayoutFB>(layer.next, sys::CompositionLayerImageLayoutFB::TYPE)
+    };
+    let Some(layout) = layout else { return Ok(false) };
+    forbid_if(
+        !world.current()?.has(IMAGE_LAYOUT),
+        Code::ERROR_VALIDATION_FAILURE,
+        format!("an image's layout without {IMAGE_LAYOUT}"),
+    )?;
+    Ok(layout.flags.contains(sys::CompositionLayerImageLayoutFlagsFB::VERTICAL_FLIP))
 }
 
 fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView) -> Result<View, Refusal> {
@@ -266,38 +261,11 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
         format!("the frustum {fov:?} is none"),
     )?;
     let image = submitted_image(world, &view.sub_image, false)?;
-    let mut depth = None;
-    let mut next = view.next.cast::<sys::BaseInStructure>();
-    while !next.is_null() {
-        // SAFETY: a chain of structures.
-        let structure = unsafe { &*next };
-        if structure.ty == sys::CompositionLayerDepthInfoKHR::TYPE {
-            // SAFETY: of this type.
-            let info = unsafe { &*next.cast::<sys::CompositionLayerDepthInfoKHR>() };
-            forbid_if(
-                !world.current()?.extensions.iter().any(|e| e == "XR_KHR_composition_layer_depth"),
-                Code::ERROR_VALIDATION_FAILURE,
-                "depth is submitted without XR_KHR_composition_layer_depth",
-            )?;
-            let range = [info.min_depth, info.max_depth];
-            let near_far = [info.near_z, info.far_z];
-            let sane = (0.0..=1.0).contains(&range[0])
-                && (0.0..=1.0).contains(&range[1])
-                && range[0] < range[1]
-                && near_far[0] > 0.0
-                && near_far[1] > 0.0
-                && near_far[0] != near_far[1];
-            forbid_if(
-                !sane,
-                Code::ERROR_VALIDATION_FAILURE,
-                format!("depth {range:?} stands for {near_far:?} m"),
-            )?;
-            let image = submitted_image(world, &info.sub_image, true)?;
-            // JSON has no infinity.
-            depth = Some(Depth { image, range, near_far: near_far.map(|z| z.min(f32::MAX)) });
-        }
-        next = structure.next;
-    }
+    // SAFETY: a chain of structures.
+    let depth = unsafe {
+        in_chain::<sys::CompositionLayerDepthInfoKHR>(view.next, sys::CompositionLayerDepthInfoKHR::TYPE)
+    };
+    let depth = depth.map(|info| submitted_depth(world, info)).transpose()?;
     let degrees = fov.map(f32::to_degrees);
     Ok(View {
         position: position.to_array(),
@@ -306,6 +274,23 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
         image,
         depth,
     })
+}
+
+fn submitted_depth(world: &mut World, info: &sys::CompositionLayerDepthInfoKHR) -> Result<Depth, Refusal> {
+    forbid_if(
+        !world.current()?.has("XR_KHR_composition_layer_depth"),
+        Code::ERROR_VALIDATION_FAILURE,
+        "depth is submitted without XR_KHR_composition_layer_depth",
+    )?;
+    let (range, near_far) = ([info.min_depth, info.max_depth], [info.near_z, info.far_z]);
+    let sane = range.iter().all(|depth| (0.0..=1.0).contains(depth))
+        && range[0] < range[1]
+        && near_far.iter().all(|z| *z > 0.0)
+        && near_far[0] != near_far[1];
+    forbid_if(!sane, Code::ERROR_VALIDATION_FAILURE, format!("depth {range:?} stands for {near_far:?} m"))?;
+    let image = submitted_image(world, &info.sub_image, true)?;
+    // JSON has no infinity.
+    Ok(Depth { image, range, near_far: near_far.map(|z| z.min(f32::MAX)) })
 }
 
 fn submitted_image(world: &mut World, image: &sys::SwapchainSubImage, depth: bool) -> Result<Image, Refusal> {

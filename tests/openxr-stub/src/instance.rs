@@ -9,7 +9,7 @@ use sys::{Handle, Result as Code};
 
 use crate::log::Entry;
 use crate::script::{At, State};
-use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden};
+use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden, in_chain};
 
 /// The version that negotiation returns.
 pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
@@ -120,14 +120,9 @@ pub fn create_instance(world: &mut World, info: &sys::InstanceCreateInfo, out: &
         )?;
         extensions.push(name);
     }
-    let mut android = false;
-    let mut next = info.next.cast::<sys::BaseInStructure>();
-    while !next.is_null() {
-        // SAFETY: a chain of structures.
-        let structure = unsafe { &*next };
-        android |= structure.ty == sys::StructureType::INSTANCE_CREATE_INFO_ANDROID_KHR;
-        next = structure.next;
-    }
+    let android = sys::StructureType::INSTANCE_CREATE_INFO_ANDROID_KHR;
+    // SAFETY: a chain of structures, which begin with this header.
+    let android = unsafe { in_chain::<sys::BaseInStructure>(info.next, android) }.is_some();
     let handle = world.new_handle();
     let api = format!("{}.{}.{}", api.major(), api.minor(), api.patch());
     world.log.write(&Entry::Instance { application, api, extensions: extensions.clone(), android });

@@ -89,7 +89,7 @@ impl World {
     }
 
     fn reference_spaces(&mut self) -> Result<Vec<sys::ReferenceSpaceType>, Refusal> {
-        let floor = self.current()?.extensions.iter().any(|e| e == "XR_EXT_local_floor");
+        let floor = self.current()?.has("XR_EXT_local_floor");
         let mut types = vec![
             sys::ReferenceSpaceType::VIEW,
             sys::ReferenceSpaceType::LOCAL,

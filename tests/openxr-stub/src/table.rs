@@ -258,7 +258,7 @@ pub unsafe extern "system" fn get_instance_proc_addr(
         }
         let (function, extension) = find(&name).ok_or(sys::Result::ERROR_FUNCTION_UNSUPPORTED)?;
         if let Some(extension) = extension
-            && !world.any_instance(instance)?.extensions.iter().any(|enabled| enabled == extension)
+            && !world.any_instance(instance)?.has(extension)
         {
             return Err(forbidden(
                 sys::Result::ERROR_FUNCTION_UNSUPPORTED,

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
-use std::ffi::c_char;
+use std::ffi::{c_char, c_void};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
@@ -136,6 +136,30 @@ pub struct Instance {
     pub swapchains: HashMap<u64, Swapchain>,
     /// The local space's turn to the left, in radians.
     pub local_yaw: f32,
+}
+
+impl Instance {
+    /// True if the application has enabled an extension.
+    pub fn has(&self, extension: &str) -> bool {
+        self.extensions.iter().any(|enabled| enabled == extension)
+    }
+}
+
+/// Returns the first structure of a type in a chain.
+///
+/// # Safety
+/// `next` begins a chain of structures of the types that they say, and `ty` is that of `T`.
+pub unsafe fn in_chain<'a, T>(next: *const c_void, ty: sys::StructureType) -> Option<&'a T> {
+    let mut next = next.cast::<sys::BaseInStructure>();
+    // SAFETY: every structure of a chain begins with this header.
+    while let Some(structure) = unsafe { next.as_ref() } {
+        if structure.ty == ty {
+            // SAFETY: of this type.
+            return unsafe { next.cast::<T>().as_ref() };
+        }
+        next = structure.next;
+    }
+    None
 }
 
 /// An event for the application.

@@ -270,13 +270,7 @@ impl synthesizer::Synthesizer for Synthesizer {
             let (source, target) = (self.source(job)?, self.target(job)?);
             self.begin(slot)?;
             let gather = made(&mut self.gather)?;
-            let frame = Frame {
-                source,
-                source_origin: job.source.origin,
-                target,
-                target_origin: [0, 0],
-                history: None,
-            };
+            let frame = Frame { source_origin: job.source.origin, ..Frame::new(source, target) };
             gather.record(slot.commands, &frame, job.warp).map_err(Reason::Synthesis)?;
             self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
             self.submit(slot)?;
