@@ -154,6 +154,26 @@ impl Context {
 
     /// Clears the bound framebuffer: all colour attachments to zero, and depth to a value if one is given.
     pub fn clear(&self, depth: Option<f32>) {
+        // SAFETY: a state call with a valid enum.
+        unsafe { self.raw().disable(glow::SCISSOR_TEST) };
+        self.clear_unmasked(depth);
+    }
+
+    /// Clears as [`Context::clear`] does, but a rectangle alone; `origin` is its lower left corner in pixels.
+    pub fn clear_rectangle(&self, origin: [u32; 2], size: [u32; 2], depth: Option<f32>) {
+        let gl = self.raw();
+        let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
+        // SAFETY: state calls with valid enums; sizes are not negative.
+        unsafe {
+            gl.enable(glow::SCISSOR_TEST);
+            gl.scissor(x, y, w, h);
+            self.clear_unmasked(depth);
+            gl.disable(glow::SCISSOR_TEST);
+        }
+    }
+
+    /// Clears what the scissor test lets through.
+    fn clear_unmasked(&self, depth: Option<f32>) {
         self.record_clear(depth.is_some());
         let gl = self.raw();
         let mut mask = glow::COLOR_BUFFER_BIT;
@@ -164,7 +184,6 @@ impl Context {
                 gl.clear_depth_f32(depth);
                 mask |= glow::DEPTH_BUFFER_BIT;
             }
-            gl.disable(glow::SCISSOR_TEST);
             gl.color_mask(true, true, true, true);
             gl.clear_color(0.0, 0.0, 0.0, 0.0);
             gl.clear(mask);

@@ -172,7 +172,8 @@ impl StreamedEyes {
         for eye in Eye::BOTH {
             let to = &to[eye.index()];
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-            self.gl.clear(Some(pair.depth.clear_value()));
+            // The other eye may have the rest of the framebuffer.
+            self.gl.clear_rectangle(to.origin, to.size, Some(pair.depth.clear_value()));
             let Some((content, size)) = self.newest else { continue };
             let Ok((part, warp)) = content.warp(size, eye, &pair.view(eye)) else { continue };
             let depth = match content {
@@ -198,5 +199,47 @@ impl StreamedEyes {
             |eye: Eye| EyeView { pose: pair.poses[eye.index()], frustum: pair.frusta[eye.index()] };
         let size = pair.size.map(|n| n.clamp(16, 4096) as u16);
         Some(ViewRequest { time, eyes: Eye::BOTH.map(eye_view), dominant: pair.dominant, size })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use yoro::eyes::{EyeOptions, Pose};
+    use yoro_context::{Backend, Headless};
+
+    #[test]
+    fn eyes_that_share_a_framebuffer_are_as_those_with_one_each() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let side = 32;
+        let pair = EyeOptions { size: [side; 2], ..EyeOptions::default() }.pair(Pose::IDENTITY);
+        let eye_view =
+            |eye: Eye| EyeView { pose: pair.poses[eye.index()], frustum: pair.frusta[eye.index()] };
+        // The left eye is white, and the right one grey.
+        let row = [[255u8; 32], [100; 32]].concat();
+        let planes = [row.repeat(32), vec![128; 2 * 16 * 32]].concat();
+        let mut eyes = StreamedEyes::new(gl).unwrap();
+        let content = Content::Eyes(Eye::BOTH.map(eye_view));
+        assert!(eyes.take(content, [32; 2], &DecodedPicture::Planes(&planes)).unwrap());
+
+        let target = |width| {
+            let colors = [(Format::Rgba8, Filter::Nearest)];
+            RenderTarget::new(gl, [width, side], &colors, Some(Format::Depth24)).unwrap()
+        };
+        let (own, shared) = ([target(side), target(side)], target(2 * side));
+        eyes.render(&pair, &[0, 1].map(|i| Destination::whole(&own[i]))).unwrap();
+        let half = |i: usize| Destination {
+            origin: [i as u32 * side, 0],
+            size: [side; 2],
+            ..Destination::whole(&shared)
+        };
+        eyes.render(&pair, &[0, 1].map(half)).unwrap();
+        for (i, luma) in [255, 100].into_iter().enumerate() {
+            let pixels = shared.read_rgba8(0, [i as u32 * side, 0], [side; 2]);
+            assert_eq!(pixels, own[i].read_rgba8(0, [0, 0], [side; 2]));
+            let middle = &pixels[(16 * 32 + 16) * 4..][..3];
+            assert!(middle.iter().all(|value| value.abs_diff(luma) < 3), "{middle:?}");
+        }
     }
 }
