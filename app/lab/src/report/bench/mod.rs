@@ -315,7 +315,8 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
     };
     for facts in file.scenes() {
         let folder = picture_folder(&file.path, &facts.setting);
-        if !folder.join("truth.png").is_file() {
+        // Those of a stream show no dominant eye.
+        if !["truth.png", "dominant.png"].iter().all(|name| folder.join(name).is_file()) {
             continue;
         }
         let load = |name: &str| picture::load_color(&folder.join(format!("{name}.png")));

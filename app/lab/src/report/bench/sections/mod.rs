@@ -13,6 +13,7 @@ mod overhead;
 mod patchers;
 mod quality;
 mod section;
+mod stream;
 mod sweeps;
 mod tables;
 
@@ -26,7 +27,7 @@ type MakeSection = fn(&Suite) -> Section;
 
 /// Suites by name in the paper's order, with what makes their sections. One suite can have several: the paper
 /// looks at frame time, quality and overhead of the same eight scenes in three places.
-const ORDER: [(bench::Suite, MakeSection); 14] = [
+const ORDER: [(bench::Suite, MakeSection); 15] = [
     (bench::Suite::Scenes, frame_time::section),
     (bench::Suite::Complexity, complexity::section),
     (bench::Suite::Scenes, quality::section),
@@ -41,6 +42,7 @@ const ORDER: [(bench::Suite, MakeSection); 14] = [
     (bench::Suite::AntiAliasing, labels::anti_aliasing),
     (bench::Suite::Flicker, flicker::section),
     (bench::Suite::Bandwidth, bandwidth::section),
+    (bench::Suite::Stream, stream::section),
 ];
 
 /// The sections of all suites in the paper's order, each with its suite; suites of other names come last.
