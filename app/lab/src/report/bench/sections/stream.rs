@@ -53,8 +53,7 @@ fn bits(suite: &Suite) -> Table {
     push_refusals(&mut table, suite);
     let papers = mean(paper::BANDWIDTH.iter().map(|(_, depth, stereo)| depth / stereo - 1.0));
     table.note = format!(
-        "Mean difference of one eye and depth here {}; the paper's {}, of whole renders without a guard band for motion. The \
-         paper names neither quantizer nor resolution.",
+        "Mean difference of one eye and depth here {}; the paper's {}. The paper names neither quantizer nor resolution.",
         mean(saved).map_or_else(|| "–".into(), |saved| percent(-saved / 100.0)),
         papers.map_or_else(|| "–".into(), percent),
     );
