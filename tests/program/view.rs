@@ -63,10 +63,14 @@ fn objects_keep_their_context() {
 fn timewarp_makes_up_for_a_late_turn() {
     let dir = tempfile::tempdir().unwrap();
     let turned = view(dir.path(), "--no-hud --yaw-degrees 4");
-    let late = view(dir.path(), "--no-hud --late-yaw-degrees 4");
-    let never = view(dir.path(), "--no-hud --late-yaw-degrees 4 --set timewarp=false");
-    let (with, without) = (difference(&turned, &late), difference(&turned, &never));
-    assert!(with < 0.5 * without, "{with} with timewarp, {without} without");
+    let late = |timewarp| {
+        let late = view(dir.path(), &format!("--no-hud --late-yaw-degrees 4 --set timewarp={timewarp}"));
+        difference(&turned, &late)
+    };
+    let [never, rotation, position] = ["off", "rotation", "position"].map(late);
+    assert!(rotation < 0.5 * never, "{rotation} by rotation, {never} without");
+    assert!(position < 0.5 * never, "{position} by position, {never} without");
+    assert_eq!([late("true"), late("false")], [rotation, never], "the names of earlier versions");
 }
 
 /// `yoro view` on a driver that offers nothing newer than this.

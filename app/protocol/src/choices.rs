@@ -145,6 +145,17 @@ choices! {
         Forward = "forward",
     }
 
+    /// How the finished image follows the head after rendering.
+    Timewarp {
+        /// Not at all
+        Off = "off",
+        /// Turned by the head's rotation
+        #[default]
+        Rotation = "rotation",
+        /// Moved by the head's rotation and translation, from the depth of both eyes
+        Position = "position",
+    }
+
     /// Ambient occlusion.
     Ssao {
         /// None

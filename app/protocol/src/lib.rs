@@ -14,7 +14,7 @@ mod value;
 
 pub use choices::{
     AntiAliasing, ChoiceError, DEPTH_BITS, DisplayKind, History, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA,
-    Method, MethodChoice, Performance, Pipeline, RendererKind, Ssao,
+    Method, MethodChoice, Performance, Pipeline, RendererKind, Ssao, Timewarp,
 };
 pub use quantities::{ImBufferSize, Ipd, IpdError, ParseImBufferSizeError, ScreenSize, ScreenSizeError};
 pub use settings::{SETTINGS, Setting, Settings, SettingsError};

@@ -8,7 +8,7 @@ use toml::{Table, Value};
 
 use crate::choices::{
     AntiAliasing, DEPTH_BITS, DisplayKind, History, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method,
-    MethodChoice, Performance, Pipeline, RendererKind, Ssao,
+    MethodChoice, Performance, Pipeline, RendererKind, Ssao, Timewarp,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Row;
@@ -186,8 +186,8 @@ settings! {
         range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
     /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
     "adaptive" adaptive: bool = false,
-    /// Timewarp: turn the finished image to the latest head pose.
-    "timewarp" timewarp: bool = true,
+    /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and draws three passes more in each.
+    "timewarp" timewarp: Timewarp = Timewarp::default(),
     /// Correct the lenses' chromatic aberration.
     "chromatic" chromatic: bool = false,
     /// Show the HUD.

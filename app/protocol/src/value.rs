@@ -161,7 +161,7 @@ macro_rules! named {
             const CHOICES: &'static [Choice] = $choices;
 
             fn read(value: &Value) -> Result<$type, String> {
-                $find(value.as_str().unwrap_or_default())
+                $find(&$crate::value::plain(value))
             }
 
             fn write(&self) -> Option<Value> {
@@ -177,8 +177,12 @@ const FORMER: &[(&str, &str)] = &[(
     "the pipeline rowgroup was taken out: choose gather, which is closer to the truth on every scene",
 )];
 
+/// Names that still mean something: those of the switch that `timewarp` was.
+const RENAMED: &[(&str, &str)] = &[("false", "off"), ("true", "rotation")];
+
 /// Returns the value of a name; the error names all.
 pub(crate) fn find<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, text: &str) -> Result<T, String> {
+    let text = RENAMED.iter().find(|(former, _)| *former == text).map_or(text, |(_, now)| now);
     all.iter().copied().find(|value| name(*value) == text).ok_or_else(|| {
         if let Some((_, remedy)) = FORMER.iter().find(|(former, _)| *former == text) {
             return (*remedy).to_owned();

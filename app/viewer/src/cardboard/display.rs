@@ -6,17 +6,18 @@ use std::rc::Rc;
 use glam::{Quat, Vec2, Vec3};
 
 use super::fence::Fence;
+use super::timewarp::PositionalTimewarp;
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
-use yoro_gl::{Context, Destination};
+use yoro_gl::{Context, Destination, GlError};
 use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
 use yoro_lenses::{Optics, Screen, flat_hit};
-use yoro_protocol::{Ipd, Settings};
+use yoro_protocol::{Ipd, Settings, Timewarp};
 use yoro_render::stereo::StereoFrame;
 
 /// The pixels per inch of a screen that does not know its own.
@@ -39,8 +40,10 @@ struct Attached {
     lens: LensPass,
     /// A fence behind the last frame that was presented.
     presented: Fence,
-    /// Rotation from head to world of the last frame that was rendered.
-    rendered: Option<Quat>,
+    /// Made while the settings ask for it.
+    timewarp: Option<PositionalTimewarp>,
+    /// The last frame that was rendered: rotation from head to world, and its eyes.
+    rendered: Option<(Quat, EyePair)>,
 }
 
 /// A [`Viewer`] on the screen of a phone.
@@ -100,6 +103,7 @@ impl Cardboard {
         self.viewer.attach(gl.clone())?;
         self.attached = Some(Attached {
             frame: StereoFrame::new(&gl, self.eye_size())?,
+            timewarp: self.positional_timewarp(&gl)?,
             lens: LensPass::new(&gl, &self.optics, chromatic)?,
             presented: Fence::new(&gl),
             rendered: None,
@@ -136,6 +140,12 @@ impl Cardboard {
         Ok(())
     }
 
+    /// Makes positional timewarp, if the settings ask for it.
+    fn positional_timewarp(&self, gl: &Rc<Context>) -> Result<Option<PositionalTimewarp>, GlError> {
+        let is_wanted = self.viewer.settings().timewarp == Timewarp::Position;
+        is_wanted.then(|| PositionalTimewarp::new(gl, self.eye_size())).transpose()
+    }
+
     /// Recomputes the lenses.
     fn make_optics(&mut self) -> Result<(), ViewerError> {
         self.optics = Optics::new(&self.params, metres(self.viewer.settings(), &self.screen));
@@ -167,7 +177,14 @@ impl Cardboard {
         } else {
             Some(ViewerParams::find_in(&settings.viewer, folders)?)
         };
+        let timewarp_differs = settings.timewarp != before.timewarp;
         change(&mut self.viewer, settings)?;
+        if timewarp_differs && let Some(gl) = self.attached.as_ref().map(|attached| attached.gl.clone()) {
+            let timewarp = self.positional_timewarp(&gl)?;
+            if let Some(attached) = &mut self.attached {
+                (attached.timewarp, attached.rendered) = (timewarp, None);
+            }
+        }
         let lenses_differ = params.is_some() || optics_differ;
         if let Some(params) = params {
             self.params = params;
@@ -294,13 +311,17 @@ impl Cardboard {
         let pair = self.eyes(head);
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         attached.frame.resize(pair.size)?;
-        let targets = attached.frame.targets();
-        self.viewer.render_eyes(&pair, &targets)?;
-        if let Some(panel) = self.viewer.hud()? {
-            panel.draw_into_eyes(&pair, &targets.map(|target| target.color));
+        match &mut attached.timewarp {
+            Some(timewarp) => {
+                timewarp.resize(pair.size)?;
+                self.viewer.render_eyes(&pair, &timewarp.targets(&attached.frame))?;
+            }
+            None => {
+                self.viewer.render_eyes(&pair, &attached.frame.targets())?;
+                draw_panels(&mut self.viewer, &pair, &attached.frame)?;
+            }
         }
-        self.viewer.draw_menu(&pair, &targets.map(|target| target.color));
-        attached.rendered = Some(head);
+        attached.rendered = Some((head, pair));
         Ok(())
     }
 
@@ -313,8 +334,8 @@ impl Cardboard {
         }
     }
 
-    /// Puts the frame that was rendered last on the screen: through the lenses, turned to the head's newest
-    /// direction. May be called again for the same frame, when the next one is late.
+    /// Puts the frame that was rendered last on the screen: through the lenses, turned to the head's newest direction or, by
+    /// positional timewarp, moved to its newest pose. May be called again for the same frame, when the next one is late.
     ///
     /// # Errors
     /// See [`Viewer::end`].
@@ -324,6 +345,7 @@ impl Cardboard {
         timing: &FrameTiming,
     ) -> Result<FrameReport, ViewerError> {
         let displayed = self.head(timing).1;
+        let now = self.eyes(displayed);
         let corner = self.corner();
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         if self.viewer.is_start_screen() {
@@ -331,10 +353,22 @@ impl Cardboard {
             attached.presented.set();
             return Ok(FrameReport::of_start_screen(self.viewer.scene_state()));
         }
-        let rendered = attached.rendered.unwrap_or(displayed);
-        let timewarp = self.viewer.settings().timewarp;
-        let turn = if timewarp { rendered.inverse() * displayed } else { Quat::IDENTITY };
-        attached.lens.run(attached.frame.images(), turn, window);
+        let mut frame = &attached.frame;
+        let mut turn = Quat::IDENTITY;
+        if let Some((rendered, pair)) = &attached.rendered {
+            if self.viewer.settings().timewarp != Timewarp::Off {
+                turn = rendered.inverse() * displayed;
+            }
+            if let Some(timewarp) = &mut attached.timewarp {
+                let mut shown = pair;
+                let now = EyePair { poses: now.poses, ..*pair };
+                if let Some(moved) = timewarp.run(frame, pair, &now)? {
+                    (frame, shown, turn) = (moved, &now, Quat::IDENTITY);
+                }
+                draw_panels(&mut self.viewer, shown, frame)?;
+            }
+        }
+        attached.lens.run(frame.images(), turn, window);
         self.viewer.draw_corners(corner, window);
         attached.presented.set();
         self.viewer.end(timing)
@@ -376,6 +410,16 @@ impl Cardboard {
             dominant: self.viewer.settings().dominant,
         }
     }
+}
+
+/// Draws the HUD and the menu into both eyes.
+fn draw_panels(viewer: &mut Viewer, pair: &EyePair, frame: &StereoFrame) -> Result<(), ViewerError> {
+    let colors = frame.targets().map(|target| target.color);
+    if let Some(panel) = viewer.hud()? {
+        panel.draw_into_eyes(pair, &colors);
+    }
+    viewer.draw_menu(pair, &colors);
+    Ok(())
 }
 
 /// Returns a head that is turned like this, relative to the viewpoint.

@@ -2,5 +2,6 @@
 
 mod display;
 mod fence;
+mod timewarp;
 
 pub use display::{Cardboard, HeldHead};

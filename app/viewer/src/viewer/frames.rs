@@ -10,10 +10,9 @@ use crate::frame::{FrameReport, FrameTiming, SceneState};
 use crate::stream::Stream;
 use yoro::choice::Cost;
 use yoro::eyes::EyePair;
-use yoro_gl::Destination;
 use yoro_lenses::{Content, Panel, Placement};
 use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, StreamFigures, ViewerState};
-use yoro_render::stereo::EyeTarget;
+use yoro_render::stereo::{DepthTarget, EyeTarget};
 use yoro_scene::Viewpoint;
 
 /// The images of the eyes are multiples of this many pixels, so that small changes need no new targets.
@@ -55,9 +54,13 @@ impl Viewer {
         }
         self.method.judge(pair);
         let Some(shown) = self.scene.shown() else {
-            for Destination { framebuffer, origin, size } in to.iter().map(|eye| eye.color) {
-                gl.bind_framebuffer(framebuffer, origin, size);
-                gl.fill(origin, size, BACKDROP);
+            for EyeTarget { color, depth } in to {
+                if let Some(DepthTarget { to, .. }) = depth {
+                    gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+                    gl.clear_rectangle(to.origin, to.size, Some(pair.depth.clear_value()));
+                }
+                gl.bind_framebuffer(color.framebuffer, color.origin, color.size);
+                gl.fill(color.origin, color.size, BACKDROP);
             }
             return Ok(());
         };

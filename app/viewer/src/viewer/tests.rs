@@ -433,7 +433,7 @@ fn only_settings_that_differ_take_effect() {
     let mut viewer = ready(&headless);
     viewer.event(Event::IpdUp).unwrap();
     let ipd = viewer.viewer().ipd();
-    viewer.configure(with(&viewer, &["method=mono", "timewarp=false", "hud=false"]), &[]).unwrap();
+    viewer.configure(with(&viewer, &["method=mono", "timewarp=position", "hud=false"]), &[]).unwrap();
     assert_eq!(
         (viewer.viewer().method(), viewer.viewer().ipd(), viewer.viewer().caption.is_shown),
         (Method::Mono.into(), ipd, false)

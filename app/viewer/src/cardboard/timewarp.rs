@@ -1,0 +1,124 @@
+//! Positional timewarp: the finished eyes, moved to where the head is when they are shown.
+
+use std::rc::Rc;
+
+use yoro::eyes::{Eye, EyePair, EyesError, PoseWarp};
+use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
+use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
+use yoro_render::DepthCopy;
+use yoro_render::stereo::{DepthTarget, EyeTarget, StereoError, StereoFrame};
+
+/// The depth of both finished eyes, and the pass that moves them. Each eye is synthesized from itself; what it has not seen
+/// is filled like any disocclusion.
+pub(super) struct PositionalTimewarp {
+    depths: [RenderTarget; 2],
+    copy: DepthCopy,
+    any_view: AnyView,
+    moved: StereoFrame,
+}
+
+impl PositionalTimewarp {
+    /// Compiles the passes for eyes of this size in pixels.
+    pub(super) fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<PositionalTimewarp, GlError> {
+        let depth = || RenderTarget::new(gl, size, &[], Some(Format::Depth32F));
+        Ok(PositionalTimewarp {
+            depths: [depth()?, depth()?],
+            copy: DepthCopy::new(gl)?,
+            any_view: AnyView::new(gl, &SynthesisOptions::default(), Outputs::default())?,
+            moved: StereoFrame::new(gl, size)?,
+        })
+    }
+
+    /// Resizes the images; nothing happens at the same size.
+    pub(super) fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
+        self.depths.iter_mut().try_for_each(|depth| depth.resize(size))?;
+        self.moved.resize(size)
+    }
+
+    /// Returns the targets of a frame with the depth that moving it needs.
+    pub(super) fn targets(&self, frame: &StereoFrame) -> [EyeTarget<'_>; 2] {
+        let colors = frame.targets();
+        Eye::BOTH.map(|eye| {
+            let to = Destination::whole(&self.depths[eye.index()]);
+            EyeTarget { depth: Some(DepthTarget { to, copy: &self.copy }), ..colors[eye.index()] }
+        })
+    }
+
+    /// Moves both eyes of a frame from where they were rendered to where they are now. Returns `None` if the head has turned
+    /// so far that the frame shows nothing of what is in view.
+    pub(super) fn run(
+        &mut self,
+        frame: &StereoFrame,
+        rendered: &EyePair,
+        now: &EyePair,
+    ) -> Result<Option<&StereoFrame>, StereoError> {
+        let targets = self.moved.targets();
+        for eye in Eye::BOTH {
+            let warp = match PoseWarp::new(&rendered.view(eye), &now.view(eye)) {
+                Err(EyesError::Apart) => return Ok(None),
+                warp => warp?,
+            };
+            let [color, depth] = [frame.eye(eye).color(0), self.depths[eye.index()].depth()];
+            let source = Source::new(color.raw(), depth.raw());
+            self.any_view.synthesize(source, &warp, &targets[eye.index()].color)?;
+        }
+        Ok(Some(&self.moved))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Quat, Vec3};
+    use yoro::eyes::{DepthRange, Frustum, Pose};
+    use yoro_context::{Backend, Headless};
+
+    use super::*;
+
+    const SIZE: [u32; 2] = [64, 64];
+
+    fn eyes(head: Pose) -> EyePair {
+        EyePair::parallel(
+            head,
+            Frustum::symmetric(1.570_796_4, 1.0),
+            0.06,
+            DepthRange::PAPER,
+            SIZE,
+            Eye::Right,
+        )
+    }
+
+    /// Returns the columns in which a red bar before a blue wall is seen by one eye.
+    fn red(frame: &StereoFrame, eye: Eye) -> Vec<usize> {
+        let row = frame.eye(eye).read_rgba8(0, [0, 32], [SIZE[0], 1]);
+        (0..SIZE[0] as usize).filter(|&x| row[4 * x] > 200).collect()
+    }
+
+    #[test]
+    fn near_things_move_more_than_far_ones() {
+        let headless = Headless::open(Backend::Egl).unwrap();
+        let gl = headless.gl();
+        let frame = StereoFrame::new(gl, SIZE).unwrap();
+        let mut timewarp = PositionalTimewarp::new(gl, SIZE).unwrap();
+        let before = eyes(Pose { position: Vec3::ZERO, orientation: Quat::IDENTITY });
+        // A bar of eight columns a metre away, a wall 50 m away.
+        for target in timewarp.targets(&frame) {
+            let depth = target.depth.unwrap().to;
+            gl.bind_framebuffer(depth.framebuffer, depth.origin, depth.size);
+            gl.clear_rectangle([0, 0], SIZE, Some(before.depth.depth(50.0)));
+            gl.clear_rectangle([28, 0], [8, SIZE[1]], Some(before.depth.depth(1.0)));
+            gl.bind_framebuffer(target.color.framebuffer, [0, 0], SIZE);
+            gl.fill([0, 0], SIZE, [0.0, 0.0, 1.0, 1.0]);
+            gl.fill([28, 0], [8, SIZE[1]], [1.0, 0.0, 0.0, 1.0]);
+        }
+        // A quarter of a metre to the right: by 8 of 32 pixels a tangent, a metre away.
+        let now = eyes(Pose { position: Vec3::X * 0.25, orientation: Quat::IDENTITY });
+        let moved = timewarp.run(&frame, &before, &now).unwrap().unwrap();
+        for eye in Eye::BOTH {
+            assert_eq!(red(&frame, eye), (28..36).collect::<Vec<_>>());
+            assert_eq!(red(moved, eye), (20..28).collect::<Vec<_>>());
+        }
+        let away = eyes(Pose { position: Vec3::ZERO, orientation: Quat::from_rotation_y(2.0) });
+        assert!(timewarp.run(&frame, &before, &away).unwrap().is_none());
+        assert_eq!(gl.take_errors(), None);
+    }
+}
