@@ -29,7 +29,7 @@ pub struct Capabilities {
     pub renderer: String,
     /// GL_VERSION.
     pub version_string: String,
-    /// Compute shaders, image stores: the pipeline `paper` needs them, `gather` does not.
+    /// Compute shaders and image stores.
     pub compute: bool,
     /// Float colour buffers (HDR targets, EXT_color_buffer_float or half_float).
     pub float_render_targets: bool,
@@ -39,7 +39,7 @@ pub struct Capabilities {
     pub max_anisotropy: f32,
     /// Timer queries that can be trusted: present, with bits to count in, and not a CPU rasterizer.
     pub timer_queries: bool,
-    /// The same while both eyes are drawn at once: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
+    /// The same while several views are drawn at once: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
     /// the results undefined.
     pub multiview_timer_queries: bool,
     /// GL_OVR_multiview2 and, outside of browsers, its entry point ([`crate::Context::with_loader`]).

@@ -264,7 +264,7 @@ impl RenderTarget {
     /// Binds the framebuffer and sets the viewport to the whole of it.
     pub fn bind(&self) {
         if self.multiview {
-            self.gl.draws_both_eyes();
+            self.gl.note_multiview();
         }
         self.gl.bind_framebuffer(Some(self.raw()), [0, 0], self.size);
     }

@@ -9,7 +9,7 @@ use crate::{Capabilities, Context, GlApi, GlError};
 /// Number of texture units in use, from unit 0 on.
 const UNITS: usize = 6;
 /// The units that are filtered: the source's colour and a history's.
-const COLOR_UNITS: [u32; 2] = [1, 5];
+const FILTERED_UNITS: [u32; 2] = [1, 5];
 /// The units with multisample textures: the source's depth and colour.
 const MULTISAMPLE_UNITS: [u32; 2] = [0, 3];
 /// The units with array textures: the source's depth and colour.
@@ -255,7 +255,7 @@ impl Context {
                 gl.polygon_mode(glow::FRONT_AND_BACK, glow::FILL);
             }
             for unit in 0..UNITS as u32 {
-                let sampler = if COLOR_UNITS.contains(&unit) { host.linear } else { host.nearest };
+                let sampler = if FILTERED_UNITS.contains(&unit) { host.linear } else { host.nearest };
                 gl.bind_sampler(unit, Some(sampler));
             }
         }

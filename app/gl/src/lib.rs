@@ -3,7 +3,8 @@
 //! A [`Context`] wraps the context that the caller lends; everything else is made in it, deletes itself when dropped, and is
 //! counted, so that leaks show in a test.
 //!
-//! This crate must never know eyes, synthesis, a scene or a window.
+//! Of synthesis it knows one thing: the state that it sets, saves and restores in a host's context
+//! ([`Context::begin_synthesis`], [`HostState`]). It must never know how anything is synthesized, a scene or a window.
 
 mod capabilities;
 mod framebuffer;
@@ -323,9 +324,9 @@ impl Context {
         self.profiler.borrow_mut().end_frame(&self.raw, times)
     }
 
-    /// Notes that both eyes are drawn at once from now on. If timer queries are undefined for that, the frame gets no
-    /// pass times.
-    fn draws_both_eyes(&self) {
+    /// Notes that several views are drawn at once from now on. If timer queries are undefined for that, the frame gets
+    /// no pass times.
+    fn note_multiview(&self) {
         if !self.capabilities.multiview_timer_queries {
             self.profiler.borrow_mut().make_undefined(&self.raw);
         }
