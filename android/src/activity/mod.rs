@@ -4,22 +4,22 @@
 //! are. Everywhere else it is a Cardboard-compatible viewer on Android's window. Which one is decided once, when the
 //! activity comes to the front for the first time.
 
+mod camera;
+mod choice;
+
 use std::path::PathBuf;
 use std::rc::Rc;
-use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
 use yoro_context::android::{Window, WindowError};
 use yoro_gl::{Context, Destination};
-use yoro_lenses::{MotionSample, Rotation, Screen};
-use yoro_protocol::DisplayKind;
+use yoro_lenses::{MotionSample, Screen};
 use yoro_protocol::telemetry::DeviceState;
-use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
-use yoro_viewer::{Action, Cardboard, Event, FrameReport, FrameTiming, Viewer, ViewerError};
+use yoro_viewer::{Action, Cardboard, Event, FrameReport, FrameTiming, ViewerError};
 
-use crate::camera::{REFUSED, Scan};
-use crate::configuration::{self, Configuration};
+use crate::camera::Scan;
+use crate::configuration::Configuration;
 use crate::device::Device;
 use crate::display::{Display, DisplayError};
 use crate::input::Input;
@@ -29,7 +29,6 @@ use crate::performance::Performance;
 use crate::pulse::Pulse;
 use crate::results;
 use crate::screen::ScreenState;
-use crate::shared::Shared;
 use crate::system::now_ns;
 
 /// The longest wait for a refresh; after it a frame is drawn without one.
@@ -43,9 +42,6 @@ const HEADSET_POLL: Duration = Duration::from_millis(10);
 const HEADSET_BACKGROUND_POLL: Duration = Duration::from_millis(100);
 /// The screen of a device that cannot show anything else, display-referred.
 const FAILURE_COLOR: [f32; 3] = [0.45, 0.05, 0.05];
-
-/// The OpenXR runtime. Its library stays in the process and is initialised once, however many activities come and go.
-static RUNTIME: OnceLock<runtime::Runtime> = OnceLock::new();
 
 /// Runs the application until Android destroys the activity or the session is over.
 pub fn run(app: &AndroidApp) {
@@ -264,46 +260,12 @@ impl Activity {
         }
     }
 
-    /// Lets the camera look for a viewer's code, if it may.
-    fn begin_scan(&mut self) {
-        if self.java.may_use_camera() {
-            log::info!("the camera looks for a viewer's code");
-            let is_upside_down = self.screen.rotation() == Rotation::LandscapeRight;
-            self.scan = Some(Scan::begin(is_upside_down));
-        } else {
-            self.say(REFUSED);
-        }
-    }
-
     /// Says a sentence on the start screen.
     fn say(&mut self, sentence: &str) {
         log::info!("{sentence}");
         if let Some(cardboard) = self.display.cardboard_mut() {
             cardboard.viewer_mut().show_start_screen(sentence);
         }
-    }
-
-    /// Shows what the camera sees, and takes the viewer that it finds.
-    fn follow_scan(&mut self) {
-        let (Some(scan), Display::Cardboard(cardboard)) = (&self.scan, &mut self.display) else { return };
-        let sentence = match scan.outcome() {
-            Some(Ok(Shared::Viewer(uri))) => {
-                log::info!("scanned: the viewer {uri}");
-                configuration::choose_viewer(cardboard, &uri)
-            }
-            Some(Ok(Shared::Stream(address))) => configuration::show_stream(cardboard.viewer_mut(), address),
-            // A code is no file.
-            Some(Ok(Shared::Scene(_))) => String::new(),
-            Some(Err(sentence)) => sentence,
-            None => {
-                if let Some(picture) = scan.picture() {
-                    cardboard.viewer_mut().show_camera(&picture);
-                }
-                return;
-            }
-        };
-        self.scan = None;
-        self.say(&sentence);
     }
 
     /// Drops everything on the GPU while the activity is in the background; it is made again with the next window.
@@ -313,104 +275,6 @@ impl Activity {
         } else if let Some(cardboard) = self.display.cardboard_mut() {
             log::info!("Android is short of memory: what is on the GPU is dropped");
             cardboard.detach();
-        }
-    }
-
-    /// Chooses the display, and logs the reason in one line.
-    fn choose_display(&mut self) {
-        if std::mem::replace(&mut self.is_display_chosen, true) {
-            return;
-        }
-        let settings = self.configuration.resolve();
-        if settings.display == DisplayKind::Cardboard {
-            log::info!("display: Cardboard-compatible viewer, since the settings say so");
-            return;
-        }
-        let found = match self.find_runtime() {
-            Ok(found) => found,
-            Err(reason) => {
-                let is_usual = reason.nothing_installed() && settings.display == DisplayKind::Auto;
-                return self.do_without_headset(&reason.to_string(), is_usual);
-            }
-        };
-        let line = found.found().to_string();
-        match self.open_headset(found) {
-            Ok(()) => log::info!("display: headset, by {line}"),
-            Err(reason) => self.do_without_headset(&reason.to_string(), false),
-        }
-    }
-
-    /// Finds the runtime of this device; it is looked for once in the process.
-    fn find_runtime(&self) -> Result<runtime::Runtime, runtime::NotFound> {
-        if let Some(found) = RUNTIME.get() {
-            return Ok(found.clone());
-        }
-        let java = self.java.application_context().map(|context| {
-            // SAFETY: the process's VM, and a global reference that is never given back.
-            unsafe { runtime::JavaContext::new(self.app.vm_as_ptr(), context) }
-        });
-        let found = runtime::find(&runtime::android_places(), &self.java, java.as_ref())?;
-        Ok(RUNTIME.get_or_init(|| found).clone())
-    }
-
-    /// Shows everything on the device's own screen, as there is no headset, or no longer. On a headset the application
-    /// ends instead: its wearer does not see that screen, but an endless sign of loading. `is_usual` is true if nothing
-    /// is wrong: most phones are no headsets.
-    fn do_without_headset(&mut self, reason: &str, is_usual: bool) {
-        if self.java.is_headset() {
-            log::error!("display: none, since {reason}; this is a headset, so the application ends");
-            self.finish();
-        } else if is_usual {
-            log::info!("display: Cardboard-compatible viewer, since {reason}");
-        } else {
-            log::warn!("display: Cardboard-compatible viewer, since {reason}");
-        }
-    }
-
-    fn open_headset(&mut self, found: runtime::Runtime) -> Result<(), DisplayError> {
-        // SAFETY: the process's VM, and a global reference that lives as long as `self.app`.
-        let android = unsafe { Android::new(self.app.vm_as_ptr(), self.app.activity_as_ptr()) };
-        let window = match self.window.take() {
-            Some(window) => window,
-            None => Window::open()?,
-        };
-        let window = self.window.insert(window);
-        let gl = context(&mut self.gl, window)?;
-        self.configuration.check_pictures(gl);
-        let mut viewer = self.configuration.make_viewer(Viewer::new)?;
-        viewer.attach(gl.clone())?;
-        self.configuration.greet(&mut viewer);
-        self.configuration.show_stream(&mut viewer);
-        let options = Options { android: Some(android) };
-        let headset = Headset::open(found, &*window, gl, viewer, options)?;
-        self.display = Display::Headset(Box::new(headset));
-        Ok(())
-    }
-
-    /// One step of the headset: a frame, unless the runtime wants none.
-    fn step_headset(&mut self) {
-        let (Display::Headset(headset), Some(window)) = (&mut self.display, &self.window) else { return };
-        self.input.events.drain(..).for_each(|event| headset.event(event));
-        match headset.step(window) {
-            Ok(Step::Idle) => {}
-            Ok(Step::Frame(frame)) => {
-                if let Some(report) = frame.report {
-                    self.after_frame(&report);
-                }
-            }
-            Ok(Step::Ended) => self.finish(),
-            // The headset is lost for this activity, for instance with its session. It has used neither the window nor
-            // the refreshes and sensors, so both are begun here as if the activity had come to the front just now.
-            Err(error) => {
-                self.summarize();
-                self.is_summarized = false;
-                self.display = Display::None;
-                self.do_without_headset(&error.to_string(), false);
-                self.open_window();
-                if self.is_resumed {
-                    self.resume();
-                }
-            }
         }
     }
 
@@ -635,11 +499,8 @@ impl Activity {
         if is_bright != std::mem::replace(&mut self.is_bright, is_bright) {
             self.java.raise_brightness(is_bright);
         }
-        if wants_scan && self.java.may_use_camera() {
-            self.begin_scan();
-        } else if wants_scan {
-            self.is_asking = true;
-            self.java.ask_for_camera();
+        if wants_scan {
+            self.ask_for_scan();
         }
         Ok(())
     }

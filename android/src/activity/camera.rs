@@ -1,0 +1,55 @@
+//! The camera's part of the activity: it looks for a viewer's code while the start screen is shown.
+
+use yoro_lenses::Rotation;
+
+use super::Activity;
+use crate::camera::{REFUSED, Scan};
+use crate::configuration;
+use crate::display::Display;
+use crate::shared::Shared;
+
+impl Activity {
+    /// Begins a scan, or asks for the permission first.
+    pub(super) fn ask_for_scan(&mut self) {
+        if self.java.may_use_camera() {
+            self.begin_scan();
+        } else {
+            self.is_asking = true;
+            self.java.ask_for_camera();
+        }
+    }
+
+    /// Lets the camera look for a viewer's code, if it may.
+    pub(super) fn begin_scan(&mut self) {
+        if self.java.may_use_camera() {
+            log::info!("the camera looks for a viewer's code");
+            let is_upside_down = self.screen.rotation() == Rotation::LandscapeRight;
+            self.scan = Some(Scan::begin(is_upside_down));
+        } else {
+            self.say(REFUSED);
+        }
+    }
+
+    /// Shows what the camera sees, and takes the viewer that it finds.
+    pub(super) fn follow_scan(&mut self) {
+        let (Some(scan), Display::Cardboard(cardboard)) = (&self.scan, &mut self.display) else { return };
+        let sentence = match scan.outcome() {
+            Some(Ok(Shared::Viewer(uri))) => {
+                log::info!("scanned: the viewer {uri}");
+                configuration::choose_viewer(cardboard, &uri)
+            }
+            Some(Ok(Shared::Stream(address))) => configuration::show_stream(cardboard.viewer_mut(), address),
+            // A code is no file.
+            Some(Ok(Shared::Scene(_))) => String::new(),
+            Some(Err(sentence)) => sentence,
+            None => {
+                if let Some(picture) = scan.picture() {
+                    cardboard.viewer_mut().show_camera(&picture);
+                }
+                return;
+            }
+        };
+        self.scan = None;
+        self.say(&sentence);
+    }
+}

@@ -1,0 +1,114 @@
+//! The choice of the display, and a headset's steps.
+
+use std::sync::OnceLock;
+
+use yoro_context::android::Window;
+use yoro_protocol::DisplayKind;
+use yoro_viewer::Viewer;
+use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
+
+use super::{Activity, context};
+use crate::display::{Display, DisplayError};
+
+/// The OpenXR runtime. Its library stays in the process and is initialised once, however many activities come and go.
+static RUNTIME: OnceLock<runtime::Runtime> = OnceLock::new();
+
+impl Activity {
+    /// Chooses the display, and logs the reason in one line.
+    pub(super) fn choose_display(&mut self) {
+        if std::mem::replace(&mut self.is_display_chosen, true) {
+            return;
+        }
+        let settings = self.configuration.resolve();
+        if settings.display == DisplayKind::Cardboard {
+            log::info!("display: Cardboard-compatible viewer, since the settings say so");
+            return;
+        }
+        let found = match self.find_runtime() {
+            Ok(found) => found,
+            Err(reason) => {
+                let is_usual = reason.nothing_installed() && settings.display == DisplayKind::Auto;
+                return self.do_without_headset(&reason.to_string(), is_usual);
+            }
+        };
+        let line = found.found().to_string();
+        match self.open_headset(found) {
+            Ok(()) => log::info!("display: headset, by {line}"),
+            Err(reason) => self.do_without_headset(&reason.to_string(), false),
+        }
+    }
+
+    /// Finds the runtime of this device; it is looked for once in the process.
+    fn find_runtime(&self) -> Result<runtime::Runtime, runtime::NotFound> {
+        if let Some(found) = RUNTIME.get() {
+            return Ok(found.clone());
+        }
+        let java = self.java.application_context().map(|context| {
+            // SAFETY: the process's VM, and a global reference that is never given back.
+            unsafe { runtime::JavaContext::new(self.app.vm_as_ptr(), context) }
+        });
+        let found = runtime::find(&runtime::android_places(), &self.java, java.as_ref())?;
+        Ok(RUNTIME.get_or_init(|| found).clone())
+    }
+
+    /// Shows everything on the device's own screen, as there is no headset, or no longer. On a headset the application
+    /// ends instead: its wearer does not see that screen, but an endless sign of loading. `is_usual` is true if nothing
+    /// is wrong: most phones are no headsets.
+    fn do_without_headset(&mut self, reason: &str, is_usual: bool) {
+        if self.java.is_headset() {
+            log::error!("display: none, since {reason}; this is a headset, so the application ends");
+            self.finish();
+        } else if is_usual {
+            log::info!("display: Cardboard-compatible viewer, since {reason}");
+        } else {
+            log::warn!("display: Cardboard-compatible viewer, since {reason}");
+        }
+    }
+
+    fn open_headset(&mut self, found: runtime::Runtime) -> Result<(), DisplayError> {
+        // SAFETY: the process's VM, and a global reference that lives as long as `self.app`.
+        let android = unsafe { Android::new(self.app.vm_as_ptr(), self.app.activity_as_ptr()) };
+        let window = match self.window.take() {
+            Some(window) => window,
+            None => Window::open()?,
+        };
+        let window = self.window.insert(window);
+        let gl = context(&mut self.gl, window)?;
+        self.configuration.check_pictures(gl);
+        let mut viewer = self.configuration.make_viewer(Viewer::new)?;
+        viewer.attach(gl.clone())?;
+        self.configuration.greet(&mut viewer);
+        self.configuration.show_stream(&mut viewer);
+        let options = Options { android: Some(android) };
+        let headset = Headset::open(found, &*window, gl, viewer, options)?;
+        self.display = Display::Headset(Box::new(headset));
+        Ok(())
+    }
+
+    /// One step of the headset: a frame, unless the runtime wants none.
+    pub(super) fn step_headset(&mut self) {
+        let (Display::Headset(headset), Some(window)) = (&mut self.display, &self.window) else { return };
+        self.input.events.drain(..).for_each(|event| headset.event(event));
+        match headset.step(window) {
+            Ok(Step::Idle) => {}
+            Ok(Step::Frame(frame)) => {
+                if let Some(report) = frame.report {
+                    self.after_frame(&report);
+                }
+            }
+            Ok(Step::Ended) => self.finish(),
+            // The headset is lost for this activity, for instance with its session. It has used neither the window nor
+            // the refreshes and sensors, so both are begun here as if the activity had come to the front just now.
+            Err(error) => {
+                self.summarize();
+                self.is_summarized = false;
+                self.display = Display::None;
+                self.do_without_headset(&error.to_string(), false);
+                self.open_window();
+                if self.is_resumed {
+                    self.resume();
+                }
+            }
+        }
+    }
+}
