@@ -9,6 +9,7 @@ pub mod decoder;
 pub mod http;
 mod input;
 pub mod interrupt;
+pub mod xdg;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -99,7 +99,7 @@ impl Offer {
             size,
             dominant,
         };
-        let even = own.evened();
+        let even = own.row_aligned();
         let sized = |eyes: EyePair| {
             // Larger frusta at the same pixels per tangent.
             let (old, new) = (own.frusta[dominant.index()], eyes.frusta[dominant.index()]);
@@ -113,7 +113,7 @@ impl Offer {
         let (eyes, views) = match eyes.synthesis_views(guard_band) {
             Ok(views) => (eyes, views),
             Err(error @ (EyesError::Canted { .. } | EyesError::OffAxis { .. })) => {
-                let eyes = sized(own.parallelized().ok_or(error)?);
+                let eyes = sized(own.rectified().ok_or(error)?);
                 (eyes, eyes.synthesis_views(guard_band)?)
             }
             Err(error) => return Err(error),

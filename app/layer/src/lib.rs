@@ -41,7 +41,6 @@ mod structures;
 mod swapchain;
 mod synthesizer;
 mod vulkan;
-pub mod xdg;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -6,7 +6,8 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use crate::{lock, xdg};
+use crate::lock;
+use yoro_files::xdg;
 
 /// The longest line in bytes; the rest is cut off.
 const LONGEST: usize = 1024;

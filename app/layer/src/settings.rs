@@ -8,8 +8,7 @@ use std::str::FromStr;
 use openxr_sys as sys;
 use toml::{Table, Value};
 use yoro::eyes::{Eye, GuardBand};
-
-use crate::xdg;
+use yoro_files::xdg;
 
 /// The place of the configuration with one view in the list of view configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
-
-use crate::xdg;
+use yoro_files::xdg;
 
 /// Returns the path of the sizes, `$XDG_STATE_HOME/yoro/layer-sizes.json` (`~/.local/state` if that is not set); None
 /// without a home, and on Android.

@@ -14,8 +14,9 @@ use super::Subcommand;
 use super::outputs::Files;
 use anyhow::{Context as _, bail};
 use yoro_files as files;
+use yoro_files::xdg;
 use yoro_layer::library::version;
-use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME, xdg};
+use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME};
 
 const LIBRARY: &str = "libyoro_layer.so";
 /// Interval at which the log is checked for more.

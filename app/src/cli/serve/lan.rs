@@ -15,7 +15,7 @@ use rustls::ServerConfig;
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
 use wtransport::proto::WEBTRANSPORT_ALPN;
-use yoro_layer::xdg;
+use yoro_files::xdg;
 
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
 /// A kind of certificate.
