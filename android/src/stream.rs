@@ -6,7 +6,7 @@ use std::sync::Arc;
 #[cfg(target_os = "android")]
 use yoro_viewer::StreamExchange;
 
-use yoro_stream::FromViewer;
+use yoro_stream::FromClient;
 
 /// The name and value of a stream in the address that `yoro serve` prints.
 const MARK: &str = "#stream=";
@@ -21,7 +21,7 @@ pub struct Address {
     /// As the server calls itself, with the port.
     host: String,
     port: u16,
-    hello: FromViewer,
+    hello: FromClient,
 }
 
 impl fmt::Display for Address {
@@ -44,7 +44,7 @@ pub fn find(text: &str) -> Option<Result<Address, String>> {
         let host = place.split_once("http://").ok_or(BY_CABLE)?.1.trim_end_matches('/');
         let (name, port) = host.split_once(':').unwrap_or((host, "80"));
         let port = port.parse().ok().filter(|_| OWN_NAMES.contains(&name)).ok_or(BY_CABLE)?;
-        let hello = FromViewer::hello(token)
+        let hello = FromClient::hello(token)
             .ok_or("The address of the stream is not whole: share the one that yoro serve prints.")?;
         Ok(Address { host: host.to_owned(), port, hello })
     };
@@ -131,7 +131,7 @@ mod client {
 
     use tungstenite::protocol::Role;
     use tungstenite::{Message, WebSocket};
-    use yoro_stream::{FrameHeader, FromServer, FromViewer, Refusal};
+    use yoro_stream::{FrameHeader, FromClient, FromServer, Refusal};
     use yoro_viewer::StreamExchange;
 
     use super::Address;
@@ -266,10 +266,10 @@ mod client {
             }
             while let Some((number, header)) = pictures.next()? {
                 exchange.put(header, &mut pictures.planes);
-                socket.send(Message::binary(FromViewer::Decoded(number).to_bytes()))?;
+                socket.send(Message::binary(FromClient::Decoded(number).to_bytes()))?;
             }
             if let Some(request) = exchange.take_request(Duration::ZERO) {
-                socket.send(Message::binary(FromViewer::Request(request).to_bytes()))?;
+                socket.send(Message::binary(FromClient::Request(request).to_bytes()))?;
                 asked = Instant::now();
             } else if asked.elapsed() > IDLE_TIMEOUT || !is_wanted(exchange) {
                 return Err(End::Unseen);
@@ -330,7 +330,7 @@ mod tests {
 
     #[test]
     fn a_stream_is_found_among_words_and_taken_by_cable_only() {
-        let hello = FromViewer::hello(TOKEN).unwrap();
+        let hello = FromClient::hello(TOKEN).unwrap();
         for (text, host, port) in [
             (
                 format!("open http://localhost:8080/#stream={TOKEN}&display=side-by-side"),

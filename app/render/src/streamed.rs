@@ -192,13 +192,13 @@ impl StreamedEyes {
         (pairs > 0.0).then(|| [metres / pairs, radians / pairs])
     }
 
-    /// Returns the request for the eyes that were made last, at a time in milliseconds; none before the first.
-    pub fn request(&self, time: f64) -> Option<ViewRequest> {
+    /// Returns the request for the eyes that were made last; none before the first.
+    pub fn request(&self, time_ms: f64) -> Option<ViewRequest> {
         let pair = self.pair?;
         let eye_view =
             |eye: Eye| EyeView { pose: pair.poses[eye.index()], frustum: pair.frusta[eye.index()] };
         let size = pair.size.map(|n| n.clamp(16, 4096) as u16);
-        Some(ViewRequest { time, eyes: Eye::BOTH.map(eye_view), dominant: pair.dominant, size })
+        Some(ViewRequest { time_ms, eyes: Eye::BOTH.map(eye_view), dominant: pair.dominant, size })
     }
 }
 

@@ -1,26 +1,28 @@
+//! When a frame of a stream is made, and how finely it is encoded.
+
 use std::collections::VecDeque;
 use std::time::Duration;
 
 /// The largest quantizer that is used: coarser pictures are no use, and frames are left out instead.
 const MAX_QUANTIZER: u8 = 44;
 /// A frame that takes so much longer than the fastest ones has waited in a queue.
-const QUEUEING: Duration = Duration::from_millis(15);
+const LATE_DELAY: Duration = Duration::from_millis(15);
 /// A frame that takes so much longer stands for several late ones.
-const STUCK: Duration = Duration::from_millis(60);
+const STALL_DELAY: Duration = Duration::from_millis(60);
 /// So many late frames in a row make pictures coarser.
-const MOST_LATE: u32 = 3;
+const LATE_FRAMES_LIMIT: u32 = 3;
 /// The quantizer falls by one when the newest frame was not late and the quantizer has not changed for so long.
-const CALM: Duration = Duration::from_secs(1);
+const QUANTIZER_RECOVERY: Duration = Duration::from_secs(1);
 /// The fastest round trip is that of the last one or two of these.
-const WINDOW: Duration = Duration::from_secs(5);
-/// Frames may come at so much more than the frame rate: a viewer that asks at this rate by its own clock must not wait for the
+const ROUND_TRIP_WINDOW: Duration = Duration::from_secs(5);
+/// Frames may come at so much more than the frame rate: a client that asks at this rate by its own clock must not wait for the
 /// server's.
-const ROOM: f32 = 1.05;
+const RATE_HEADROOM: f32 = 1.05;
 /// Frames that are on their way for so long are given up, where the transport can; the next ones after twice the time, until
 /// one is decoded.
-const GIVE_UP: Duration = Duration::from_millis(500);
+const GIVE_UP_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// Decides when a frame is made and how finely it is encoded, from the times at which the viewer has decoded frames. All times
+/// Decides when a frame is made and how finely it is encoded, from the times at which the client has decoded frames. All times
 /// are of one clock, the server's, so that no clocks need to agree.
 ///
 /// Nothing waits in a queue: while the oldest frame on its way takes too long, none is made, and the next one that is made
@@ -52,7 +54,7 @@ impl RateControl {
     /// Starts with frames of quantizer `min_quantizer`, which is never undercut, about `frame_rate` a second at most.
     pub fn new(min_quantizer: u8, frame_rate: f32) -> RateControl {
         RateControl {
-            interval: Duration::from_secs_f32(1.0 / (ROOM * frame_rate)),
+            interval: Duration::from_secs_f32(1.0 / (RATE_HEADROOM * frame_rate)),
             min_quantizer,
             quantizer: min_quantizer,
             next: Duration::ZERO,
@@ -64,7 +66,7 @@ impl RateControl {
             round_trip: None,
             intra: 0,
             needs_intra: true,
-            give_up: GIVE_UP,
+            give_up: GIVE_UP_TIMEOUT,
             lost: 0,
         }
     }
@@ -74,11 +76,11 @@ impl RateControl {
         let flows = match (self.in_flight.front(), self.fastest()) {
             (None, _) => true,
             (Some((_, sent)), Some(fastest)) => {
-                now.saturating_sub(*sent) < fastest + self.interval + 2 * QUEUEING
+                now.saturating_sub(*sent) < fastest + self.interval + 2 * LATE_DELAY
             }
             (Some(_), None) => false,
         };
-        // A viewer does not ask at exactly equal times.
+        // A client does not ask at exactly equal times.
         now + self.interval / 4 >= self.next && flows
     }
 
@@ -97,7 +99,7 @@ impl RateControl {
         self.needs_intra
     }
 
-    /// Returns the number of frames that the viewer could not decode, or that were given up.
+    /// Returns the number of frames that the client could not decode, or that were given up.
     pub fn lost(&self) -> u32 {
         self.lost
     }
@@ -111,38 +113,38 @@ impl RateControl {
         self.next = (self.next + self.interval).max(now);
     }
 
-    /// Notes that the viewer has decoded a frame. Numbers that are not on their way change nothing.
+    /// Notes that the client has decoded a frame. Numbers that are not on their way change nothing.
     pub fn decoded(&mut self, number: u32, now: Duration) {
         let Some(at) = self.in_flight.iter().position(|(in_flight, _)| *in_flight == number) else { return };
         // Those before it were not shown.
         let (_, sent) = self.in_flight.drain(..=at).next_back().unwrap_or((number, now));
-        self.give_up = GIVE_UP;
+        self.give_up = GIVE_UP_TIMEOUT;
         let round_trip = now.saturating_sub(sent);
         self.round_trip = Some(round_trip);
-        if now.saturating_sub(self.window_start) >= WINDOW {
+        if now.saturating_sub(self.window_start) >= ROUND_TRIP_WINDOW {
             self.fastest = [None, self.fastest[0]];
             self.window_start = now;
         }
         self.fastest[0] = Some(self.fastest[0].map_or(round_trip, |fastest| fastest.min(round_trip)));
         let fastest = self.fastest().unwrap_or(round_trip);
         self.late = match round_trip - fastest {
-            waited if waited > STUCK => self.late + MOST_LATE,
-            waited if waited > QUEUEING => self.late + 1,
+            waited if waited > STALL_DELAY => self.late + LATE_FRAMES_LIMIT,
+            waited if waited > LATE_DELAY => self.late + 1,
             _ => 0,
         };
         let since = now.saturating_sub(self.changed);
         // What was on its way at the last change tells nothing about it.
-        if self.late >= MOST_LATE && sent >= self.changed {
+        if self.late >= LATE_FRAMES_LIMIT && sent >= self.changed {
             // Two steps save about a fifth of the bits.
             self.quantizer = (self.quantizer + 2).min(MAX_QUANTIZER.max(self.min_quantizer));
             (self.late, self.changed) = (0, now);
-        } else if self.late == 0 && since >= CALM && self.quantizer > self.min_quantizer {
+        } else if self.late == 0 && since >= QUANTIZER_RECOVERY && self.quantizer > self.min_quantizer {
             self.quantizer -= 1;
             self.changed = now;
         }
     }
 
-    /// Notes that the viewer misses a frame, and so cannot decode those after it, unless an intra frame is among them.
+    /// Notes that the client misses a frame, and so cannot decode those after it, unless an intra frame is among them.
     pub fn missing(&mut self, number: u32) {
         if number >= self.intra {
             self.drop_from(number);
@@ -177,7 +179,7 @@ impl RateControl {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FromViewer, ReorderBuffer};
+    use crate::{FromClient, ReorderBuffer};
     use rand::{Rng as _, SeedableRng as _};
     use rand_pcg::Pcg32;
 
@@ -210,7 +212,7 @@ mod tests {
         quantizer: u8,
         bytes: f64,
         intra: u32,
-        /// Frames that the viewer did not decode, as it and the server count them.
+        /// Frames that the client did not decode, as it and the server count them.
         lost: [u32; 2],
     }
 
@@ -224,7 +226,7 @@ mod tests {
         }
     }
 
-    /// Runs a stream for some virtual seconds over a link that may change with time. What the viewer decodes has all that it
+    /// Runs a stream for some virtual seconds over a link that may change with time. What the client decodes has all that it
     /// refers to.
     fn run(seconds: f64, link: impl Fn(f64) -> Link) -> Outcome {
         let mut control = RateControl::new(20, FRAME_RATE);
@@ -232,9 +234,9 @@ mod tests {
         let mut random = Pcg32::seed_from_u64(7);
         let mut outcome = Outcome { ages: Vec::new(), quantizer: 20, bytes: 0.0, intra: 0, lost: [0; 2] };
         let (mut free, mut last_arrival) = (0.0f64, 0.0f64);
-        // What is on its way, with the time at which it comes: frames, and the viewer's messages.
+        // What is on its way, with the time at which it comes: frames, and the client's messages.
         let mut down: Vec<(f64, Frame)> = Vec::new();
-        let mut up: VecDeque<(f64, FromViewer)> = VecDeque::new();
+        let mut up: VecDeque<(f64, FromClient)> = VecDeque::new();
         let (mut number, mut decoded) = (0, None);
         for millisecond in 0..(seconds * 1e3) as u64 {
             let now = millisecond as f64 * 1e-3;
@@ -249,16 +251,16 @@ mod tests {
                 assert!(frame.is_intra || decoded.is_some_and(|before| frame.number == before + 1));
                 decoded = Some(frame.number);
                 outcome.ages.push((frame.made, now + DECODE - frame.made));
-                up.push_back((now + DECODE + link.delay, FromViewer::Decoded(frame.number)));
+                up.push_back((now + DECODE + link.delay, FromClient::Decoded(frame.number)));
             }
             if let Some(missing) = buffer.missing(time) {
-                up.push_back((now + link.delay, FromViewer::Missing(missing)));
+                up.push_back((now + link.delay, FromClient::Missing(missing)));
             }
             while let Some((_, message)) = up.pop_front_if(|(at, _)| *at <= now) {
                 match message {
-                    FromViewer::Decoded(number) => control.decoded(number, time),
-                    FromViewer::Missing(number) => control.missing(number),
-                    _ => unreachable!("the viewer of this test says nothing else"),
+                    FromClient::Decoded(number) => control.decoded(number, time),
+                    FromClient::Missing(number) => control.missing(number),
+                    _ => unreachable!("the client of this test says nothing else"),
                 }
             }
             if !link.in_order && control.gives_up(time) {
@@ -396,7 +398,7 @@ mod tests {
         assert!(control.is_due(now), "the newest frame that was decoded lets the next one be made");
     }
 
-    /// When a viewer asks for frames.
+    /// When a client asks for frames.
     #[derive(Clone, Copy, PartialEq)]
     enum Asking {
         /// Every 1/60 s by a timer of its own.

@@ -1,3 +1,5 @@
+//! The messages between a client and the server, and their form in bytes.
+
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
@@ -6,7 +8,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyesError, Frustum, Pose, Pos
 /// The version of the messages. Other versions are refused.
 pub const VERSION: u16 = 2;
 
-/// What a viewer must know to be served: 128 random bits.
+/// What a client must know to be served: 128 random bits.
 pub type Token = [u8; 16];
 
 /// A head is no farther from the origin than this, in metres, as on the page.
@@ -42,11 +44,11 @@ impl EyeView {
     }
 }
 
-/// What a viewer shows, and so what the server is to render for.
+/// What a client shows, and so what the server is to render for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ViewRequest {
-    /// Milliseconds of the viewer's clock. The frame that is rendered for it brings them back.
-    pub time: f64,
+    /// Milliseconds of the client's clock. The frame that is rendered for it brings them back.
+    pub time_ms: f64,
     /// Left and right eye at the newest pose of the head.
     pub eyes: [EyeView; 2],
     /// The eye to render.
@@ -57,7 +59,7 @@ pub struct ViewRequest {
 
 /// A message to the server.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum FromViewer {
+pub enum FromClient {
     /// The first message.
     Hello {
         /// [`VERSION`].
@@ -152,8 +154,8 @@ impl Content {
 /// What stands before a frame's H.264.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameHeader {
-    /// [`ViewRequest::time`] of the request that it was rendered for.
-    pub time: f64,
+    /// [`ViewRequest::time_ms`] of the request that it was rendered for.
+    pub time_ms: f64,
     /// What is in it.
     pub content: Content,
     /// Width and height of each part in pixels, without the padding to an even size.
@@ -166,14 +168,14 @@ pub struct FrameHeader {
     pub quantizer: u8,
 }
 
-/// Why a viewer is not served.
+/// Why a client is not served.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Refusal {
     /// The token is another one.
     Token,
-    /// Another viewer is being served.
+    /// Another client is being served.
     Busy,
-    /// The viewer speaks another version.
+    /// The client speaks another version.
     Version,
 }
 
@@ -187,7 +189,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// A message to the viewer.
+/// A message to the client.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FromServer<'a> {
     /// The answer to a hello: the head's first pose.
@@ -210,12 +212,12 @@ pub enum FromServer<'a> {
     },
 }
 
-impl FromViewer {
+impl FromClient {
     /// Returns the first message; none for a token that is not 32 hexadecimal digits.
-    pub fn hello(token: &str) -> Option<FromViewer> {
+    pub fn hello(token: &str) -> Option<FromClient> {
         let digits = token.len() == 32 && token.bytes().all(|digit| digit.is_ascii_hexdigit());
         let token = digits.then(|| u128::from_str_radix(token, 16).ok()).flatten()?.to_be_bytes();
-        Some(FromViewer::Hello { version: VERSION, token })
+        Some(FromClient::Hello { version: VERSION, token })
     }
 
     /// Returns the message's bytes.
@@ -223,13 +225,13 @@ impl FromViewer {
         bytes_of(self)
     }
 
-    /// Reads a message; none for anything that a viewer does not send, or that has numbers out of bounds.
-    pub fn read(bytes: &[u8]) -> Option<FromViewer> {
+    /// Reads a message; none for anything that a client does not send, or that has numbers out of bounds.
+    pub fn read(bytes: &[u8]) -> Option<FromClient> {
         let message = exact(bytes)?;
         let valid = match &message {
-            FromViewer::Request(request) => {
+            FromClient::Request(request) => {
                 let sizes = request.size.iter().all(|side| SIDES.contains(side));
-                request.time.is_finite() && sizes && request.eyes.iter().all(EyeView::is_valid)
+                request.time_ms.is_finite() && sizes && request.eyes.iter().all(EyeView::is_valid)
             }
             _ => true,
         };
@@ -237,7 +239,7 @@ impl FromViewer {
     }
 }
 
-// The first byte of messages to the viewer.
+// The first byte of messages to the client.
 const WELCOME: u8 = 0;
 const REFUSED: u8 = 1;
 const FRAME: u8 = 2;
@@ -314,9 +316,9 @@ mod tests {
     const EYE: EyeView =
         EyeView { pose: Pose::IDENTITY, frustum: Frustum { left: -1.0, right: 0.9, bottom: -0.8, top: 0.7 } };
     const REQUEST: ViewRequest =
-        ViewRequest { time: 12.5, eyes: [EYE; 2], dominant: Eye::Right, size: [640, 480] };
+        ViewRequest { time_ms: 12.5, eyes: [EYE; 2], dominant: Eye::Right, size: [640, 480] };
     const HEADER: FrameHeader = FrameHeader {
-        time: 12.5,
+        time_ms: 12.5,
         content: Content::Depth(EYE, [0.5, 40.0]),
         size: [700, 500],
         render_ms: 3.0,
@@ -324,9 +326,9 @@ mod tests {
         quantizer: 24,
     };
 
-    fn up() -> Vec<FromViewer> {
-        let hello = FromViewer::Hello { version: VERSION, token: [7; 16] };
-        vec![hello, FromViewer::Request(REQUEST), FromViewer::Decoded(9), FromViewer::Missing(10)]
+    fn up() -> Vec<FromClient> {
+        let hello = FromClient::Hello { version: VERSION, token: [7; 16] };
+        vec![hello, FromClient::Request(REQUEST), FromClient::Decoded(9), FromClient::Missing(10)]
     }
 
     fn down() -> Vec<FromServer<'static>> {
@@ -351,9 +353,9 @@ mod tests {
     fn messages_come_back_from_their_bytes_and_from_no_fewer() {
         for message in up() {
             let bytes = message.to_bytes();
-            assert_eq!(FromViewer::read(&bytes), Some(message));
-            assert!((0..bytes.len()).all(|length| FromViewer::read(&bytes[..length]).is_none()));
-            assert_eq!(FromViewer::read(&[bytes, vec![0]].concat()), None, "longer than the message");
+            assert_eq!(FromClient::read(&bytes), Some(message));
+            assert!((0..bytes.len()).all(|length| FromClient::read(&bytes[..length]).is_none()));
+            assert_eq!(FromClient::read(&[bytes, vec![0]].concat()), None, "longer than the message");
         }
         for message in down() {
             let bytes = message.to_bytes();
@@ -369,10 +371,10 @@ mod tests {
         let request = |change: fn(&mut ViewRequest)| {
             let mut request = REQUEST;
             change(&mut request);
-            FromViewer::read(&FromViewer::Request(request).to_bytes())
+            FromClient::read(&FromClient::Request(request).to_bytes())
         };
         assert!(request(|_| {}).is_some());
-        assert_eq!(request(|request| request.time = f64::NAN), None);
+        assert_eq!(request(|request| request.time_ms = f64::NAN), None);
         assert_eq!(request(|request| request.size[1] = 0), None);
         assert_eq!(request(|request| request.size[0] = 5000), None);
         assert_eq!(request(|request| request.eyes[1].pose.position.x = f32::INFINITY), None);
@@ -391,7 +393,7 @@ mod tests {
         /// Nothing that comes over a network is more than a message or none.
         #[test]
         fn any_bytes_are_read_without_a_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
-            let _ = (FromViewer::read(&bytes), FromServer::read(&bytes));
+            let _ = (FromClient::read(&bytes), FromServer::read(&bytes));
         }
 
         #[test]
@@ -405,7 +407,7 @@ mod tests {
                     let at = at % bytes.len();
                     bytes[at] = *byte;
                 }
-                if let Some(FromViewer::Request(request)) = FromViewer::read(&bytes) {
+                if let Some(FromClient::Request(request)) = FromClient::read(&bytes) {
                     prop_assert!(request.eyes.iter().all(EyeView::is_valid));
                 }
                 let _ = FromServer::read(&bytes);

@@ -1,15 +1,17 @@
+//! The order of a stream's frames at the client, and what is done for one that is lost.
+
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// A missing frame is waited for so long after a newer one has come.
-const PATIENCE: Duration = Duration::from_millis(50);
+const REORDER_TIMEOUT: Duration = Duration::from_millis(50);
 /// An intra frame that does not come is asked for again after so long.
-const REPEAT: Duration = Duration::from_millis(250);
+const INTRA_REQUEST_INTERVAL: Duration = Duration::from_millis(250);
 /// The number of frames that may wait for a missing one.
-const MOST_WAITING: usize = 32;
+const MAX_WAITING_FRAMES: usize = 32;
 
-/// Puts a stream's frames into their order at the viewer, as a decoder needs them. What refers to a frame that is lost is not
-/// decoded: an intra frame goes on. All times are of one clock, the viewer's.
+/// Puts a stream's frames into their order at the client, as a decoder needs them. What refers to a frame that is lost is not
+/// decoded: an intra frame goes on. All times are of one clock, the client's.
 #[derive(Clone, Debug)]
 pub struct ReorderBuffer<T> {
     /// The number of the frame that is decoded next.
@@ -36,7 +38,7 @@ impl<T> ReorderBuffer<T> {
         if number < self.next {
             return;
         }
-        if self.waiting.len() == MOST_WAITING {
+        if self.waiting.len() == MAX_WAITING_FRAMES {
             self.waiting.pop_first();
         }
         self.waiting.insert(number, (is_intra, frame));
@@ -64,7 +66,7 @@ impl<T> ReorderBuffer<T> {
             return None;
         }
         let waited = now.saturating_sub(*self.since.get_or_insert(now));
-        if waited < if self.asked { REPEAT } else { PATIENCE } {
+        if waited < if self.asked { INTRA_REQUEST_INTERVAL } else { REORDER_TIMEOUT } {
             return None;
         }
         (self.since, self.asked) = (Some(now), true);
@@ -144,7 +146,7 @@ mod tests {
         let mut buffer = ReorderBuffer::default();
         assert_eq!(decoded(&mut buffer, &[(0, true)]), [0]);
         (2..1000).for_each(|number| buffer.insert(number, false, number));
-        assert_eq!(buffer.waiting.len(), MOST_WAITING);
+        assert_eq!(buffer.waiting.len(), MAX_WAITING_FRAMES);
         assert_eq!(decoded(&mut buffer, &[(1, false)]), [1]);
     }
 }

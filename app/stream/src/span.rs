@@ -1,12 +1,14 @@
+//! The distances that a stream's 8 bits of depth stand for.
+
 /// The distances that the 8 bits of depth are spread over. They change at intra frames only, as a change moves all values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthSpan(Option<[f32; 2]>);
 
 /// The span reaches further than what is seen, by this factor at its near end and its square at the far one, where a step is
 /// long.
-const ROOM: f32 = 1.25;
+const SPAN_MARGIN: f32 = 1.25;
 /// A span is renewed when the nearest surface is farther by more than this factor than when it was chosen: steps are wasted then.
-const WASTE: f32 = 3.0;
+const RENEWAL_FACTOR: f32 = 3.0;
 
 impl DepthSpan {
     /// Returns the span for a frame that shows surfaces from `nearest` to `farthest` metres; with true if it is a new one,
@@ -15,12 +17,15 @@ impl DepthSpan {
         let [near, far] = self.0.unwrap_or([f32::INFINITY, 0.0]);
         let seen = nearest <= farthest;
         // What is beyond the far end is shown there: nobody sees it move, if the end is far enough.
-        let fits = near <= nearest && nearest <= near * WASTE * ROOM && farthest <= far * 2.0;
+        let fits = near <= nearest && nearest <= near * RENEWAL_FACTOR * SPAN_MARGIN && farthest <= far * 2.0;
         if self.0.is_some() && (fits || !seen) {
             return ([near, far], false);
         }
-        let new =
-            if seen { [nearest / ROOM, (farthest * ROOM * ROOM).max(nearest * 2.0)] } else { [1.0, 100.0] };
+        let new = if seen {
+            [nearest / SPAN_MARGIN, (farthest * SPAN_MARGIN * SPAN_MARGIN).max(nearest * 2.0)]
+        } else {
+            [1.0, 100.0]
+        };
         self.0 = Some(new);
         (new, true)
     }

@@ -125,7 +125,7 @@ impl Stream {
         }
         self.sentence.clear();
         self.figures.frames += 1;
-        self.figures.latency_ms += milliseconds(now_ns) - header.time;
+        self.figures.latency_ms += milliseconds(now_ns) - header.time_ms;
         Ok(home)
     }
 

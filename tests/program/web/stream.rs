@@ -23,7 +23,7 @@ use yoro_files::http::{self, Request};
 use yoro_lab::metrics::{Channels, psnr};
 use yoro_lab::streaming::{FrameRenderer, Mode, Receiver};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_stream::{Content, EyeView, FrameHeader, FromServer, FromViewer, VERSION, ViewRequest};
+use yoro_stream::{Content, EyeView, FrameHeader, FromClient, FromServer, VERSION, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind, Planes};
 
 use super::{GL, Page, Server, close, headset};
@@ -122,7 +122,7 @@ impl Desktop {
             |eye: Eye| EyeView { pose: first.poses[eye.index()], frustum: first.frusta[eye.index()] };
         let eyes = Eye::BOTH.map(eye_view);
         let request =
-            ViewRequest { time: 0.0, eyes, dominant: first.dominant, size: first.size.map(|n| n as u16) };
+            ViewRequest { time_ms: 0.0, eyes, dominant: first.dominant, size: first.size.map(|n| n as u16) };
         let picture = self.renderer.picture(&mut self.prepared, &request).unwrap();
         let (mut encoder, mut decoder) =
             (LiveEncoder::new(LiveEncoderKind::OpenH264, 5.0).unwrap(), Decoder::new().unwrap());
@@ -453,10 +453,10 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     let mut socket = WebSocket::from_raw_socket(stream, Role::Client, None);
     let token = token(&link);
     let token = u128::from_str_radix(token, 16).unwrap().to_be_bytes();
-    let say = |socket: &mut WebSocket<TcpStream>, message: FromViewer| {
+    let say = |socket: &mut WebSocket<TcpStream>, message: FromClient| {
         socket.send(Message::binary(message.to_bytes())).unwrap();
     };
-    say(&mut socket, FromViewer::Hello { version: VERSION, token });
+    say(&mut socket, FromClient::Hello { version: VERSION, token });
     let welcome = socket.read().unwrap().into_data();
     let Some(FromServer::Welcome(home)) = FromServer::read(&welcome) else { panic!("no welcome") };
 
@@ -471,16 +471,16 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
         let mut other = eye;
         other.pose.position += home.orientation * (0.063 * glam::Vec3::X);
         let time = f64::from(expected);
-        let request = ViewRequest { time, eyes: [eye, other], dominant: Eye::Right, size: [64, 64] };
-        say(&mut socket, FromViewer::Request(request));
+        let request = ViewRequest { time_ms: time, eyes: [eye, other], dominant: Eye::Right, size: [64, 64] };
+        say(&mut socket, FromClient::Request(request));
         let message = socket.read().unwrap().into_data();
         let Some(FromServer::Frame { number, header, data, .. }) = FromServer::read(&message) else {
             panic!("frame {expected} is no frame")
         };
-        assert_eq!((number, header.time), (expected, time));
+        assert_eq!((number, header.time_ms), (expected, time));
         decoder.decode(data).unwrap();
         bytes += data.len();
-        say(&mut socket, FromViewer::Decoded(number));
+        say(&mut socket, FromClient::Decoded(number));
         if expected == FRAMES / 10 {
             early = resident(server.child.id());
         }
@@ -498,7 +498,7 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
 
 /// Answers like `yoro serve`, but leaves out frame 1, and sends no H.264 after frame 3. Passes on what it is told, without
 /// requests.
-fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromViewer>) -> Option<()> {
+fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromClient>) -> Option<()> {
     let folder = Path::new(env!("CARGO_BIN_EXE_yoro")).ancestors().nth(2).unwrap().join("web");
     let mut open = Vec::new();
     for mut stream in listener.incoming().flatten() {
@@ -513,8 +513,14 @@ fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromViewer>) -> Opti
         let mut socket = WebSocket::from_raw_socket(stream, Role::Server, None);
         let eye_view = EyeView { pose: Pose::IDENTITY, frustum: Frustum::symmetric(1.0, 1.0) };
         let content = Content::Depth(eye_view, [1.0, 10.0]);
-        let header =
-            FrameHeader { time: 0.0, content, size: [64, 64], render_ms: 0.0, encode_ms: 0.0, quantizer: 24 };
+        let header = FrameHeader {
+            time_ms: 0.0,
+            content,
+            size: [64, 64],
+            render_ms: 0.0,
+            encode_ms: 0.0,
+            quantizer: 24,
+        };
         let picture = Planes::of_gray(&image::GrayImage::new(128, 64));
         let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, 5.0).unwrap();
         let mut frame = |number, intra| {
@@ -524,21 +530,21 @@ fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromViewer>) -> Opti
         let [first, _, second, third] = [0, 1, 2, 3].map(|number| frame(number, number % 3 == 0));
         let damage = FromServer::Frame { number: 4, intra: true, header, data: &[0, 0, 0, 1, 0x65, 1, 2, 3] };
         loop {
-            let message = FromViewer::read(&socket.read().ok()?.into_data())?;
+            let message = FromClient::read(&socket.read().ok()?.into_data())?;
             let answers = match message {
-                FromViewer::Request(_) => continue,
-                FromViewer::Hello { .. } => {
+                FromClient::Request(_) => continue,
+                FromClient::Hello { .. } => {
                     vec![FromServer::Welcome(Pose::IDENTITY).to_bytes(), first.clone()]
                 }
-                FromViewer::Decoded(0) => vec![second.clone()],
-                FromViewer::Missing(1) => vec![third.clone()],
+                FromClient::Decoded(0) => vec![second.clone()],
+                FromClient::Missing(1) => vec![third.clone()],
                 _ => vec![damage.to_bytes()],
             };
             said.send(message).ok()?;
             for answer in answers {
                 socket.send(Message::binary(answer)).ok()?;
             }
-            if message == FromViewer::Decoded(3) {
+            if message == FromClient::Decoded(3) {
                 break;
             }
         }
@@ -568,8 +574,8 @@ fn a_missing_frame_is_named_and_a_browser_that_cannot_decode_says_so_and_stops()
     }
     // It would have been back three times.
     std::thread::sleep(Duration::from_secs(3));
-    let hello = FromViewer::Hello { version: VERSION, token: 1u128.to_be_bytes() };
-    let expected = [hello, FromViewer::Decoded(0), FromViewer::Missing(1), FromViewer::Decoded(3)];
+    let hello = FromClient::Hello { version: VERSION, token: 1u128.to_be_bytes() };
+    let expected = [hello, FromClient::Decoded(0), FromClient::Missing(1), FromClient::Decoded(3)];
     assert_eq!(said.try_iter().collect::<Vec<_>>(), expected);
     browser.expect_silence();
 }

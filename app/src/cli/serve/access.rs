@@ -17,11 +17,11 @@ use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
 use super::connection::Connection;
-use super::session::{SILENCE, Transport, Viewer, listen};
+use super::session::{Client, SILENCE, Transport, listen};
 use yoro_files::http::{self, Request};
-use yoro_stream::{FromServer, FromViewer, Refusal, Token, VERSION};
+use yoro_stream::{FromClient, FromServer, Refusal, Token, VERSION};
 
-/// The largest message of a viewer, in bytes.
+/// The largest message of a client, in bytes.
 pub const MAX_MESSAGE_BYTES: usize = 1 << 12;
 /// The time for a handshake with its request and the hello after it.
 pub const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
@@ -65,16 +65,16 @@ impl Access {
     }
 
     /// Accepts connections for ever, and passes on those that are let in.
-    pub fn accept(self: &Arc<Self>, listener: &TcpListener, viewers: &mpsc::Sender<Viewer>) {
+    pub fn accept(self: &Arc<Self>, listener: &TcpListener, clients: &mpsc::Sender<Client>) {
         for (socket, address) in std::iter::repeat_with(|| listener.accept()).flatten() {
             let Some(place) = self.place(address.ip()) else {
                 log::info!("{address} has too many connections");
                 continue;
             };
-            let (access, viewers) = (self.clone(), viewers.clone());
+            let (access, clients) = (self.clone(), clients.clone());
             // A browser keeps some connections open without asking for anything.
             thread::spawn(move || {
-                if let Err(error) = access.answer(socket, &viewers) {
+                if let Err(error) = access.answer(socket, &clients) {
                     log::info!("{address} is not served: {error}");
                 }
                 drop(place);
@@ -88,7 +88,7 @@ impl Access {
     }
 
     /// Answers a connection: with a file, or, for a page of this server with the token, by letting it in.
-    fn answer(self: &Arc<Self>, socket: TcpStream, viewers: &mpsc::Sender<Viewer>) -> anyhow::Result<()> {
+    fn answer(self: &Arc<Self>, socket: TcpStream, clients: &mpsc::Sender<Client>) -> anyhow::Result<()> {
         let connection = Connection::new(socket, self.tls.as_ref(), HELLO_TIMEOUT)?;
         let request = Request::read(connection.clone())?;
         let admitted = if request.target() == Some("/stream") {
@@ -104,7 +104,7 @@ impl Access {
         connection.set_timeout(SILENCE);
         let (tell, heard) = mpsc::channel();
         let transport = Transport::WebSocket(Box::new(web_socket(connection.clone())));
-        if viewers.send(Viewer { heard, transport, seat }).is_ok() {
+        if clients.send(Client { heard, transport, seat }).is_ok() {
             thread::spawn(move || listen(web_socket(connection), &tell));
         }
         Ok(())
@@ -145,7 +145,7 @@ impl Access {
     /// # Errors
     /// When it is no hello.
     pub fn answer_hello(self: &Arc<Self>, bytes: &[u8]) -> anyhow::Result<(Vec<u8>, anyhow::Result<Seat>)> {
-        let Some(FromViewer::Hello { version, token }) = FromViewer::read(bytes) else {
+        let Some(FromClient::Hello { version, token }) = FromClient::read(bytes) else {
             bail!("it does not say hello");
         };
         // In constant time.
@@ -163,7 +163,7 @@ impl Access {
     }
 }
 
-/// The right to be served: when it is dropped, another viewer may come.
+/// The right to be served: when it is dropped, another client may come.
 pub struct Seat(Arc<Access>);
 
 impl Drop for Seat {

@@ -98,6 +98,18 @@ enum EncoderArg {
     X264,
 }
 
+impl EncoderArg {
+    fn kind(self) -> LiveEncoderKind {
+        match self {
+            EncoderArg::Auto => LiveEncoderKind::Auto,
+            EncoderArg::Openh264 => LiveEncoderKind::OpenH264,
+            EncoderArg::Nvenc => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Nvenc),
+            EncoderArg::Vaapi => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Vaapi),
+            EncoderArg::X264 => LiveEncoderKind::Ffmpeg(FfmpegEncoder::X264),
+        }
+    }
+}
+
 /// Most pixels of an eye's longer side with three parts beside each other: hardware decodes no more than 4096 columns.
 const MOST_OF_THREE: u16 = 1024;
 
@@ -123,15 +135,8 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         "{} has no page: run cargo xtask web, or name its folder with --page",
         folder.display()
     );
-    let kind = match args.encoder {
-        EncoderArg::Auto => LiveEncoderKind::Auto,
-        EncoderArg::Openh264 => LiveEncoderKind::OpenH264,
-        EncoderArg::Nvenc => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Nvenc),
-        EncoderArg::Vaapi => LiveEncoderKind::Ffmpeg(FfmpegEncoder::Vaapi),
-        EncoderArg::X264 => LiveEncoderKind::Ffmpeg(FfmpegEncoder::X264),
-    };
-    let encoder =
-        LiveEncoder::new(kind, args.frame_rate.into()).context("choose another encoder with --encoder")?;
+    let encoder = LiveEncoder::new(args.encoder.kind(), args.frame_rate.into())
+        .context("choose another encoder with --encoder")?;
     let lan = args.lan.map(Lan::new).transpose()?;
     // It is dropped after what was made in it.
     let headless;
@@ -154,10 +159,7 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         format!("{} cannot be served: name another port with --port", SocketAddr::new(address, args.port))
     })?;
     let port = listener.local_addr()?.port();
-    let mut token = Token::default();
-    std::fs::File::open("/dev/urandom")
-        .and_then(|mut random| io::Read::read_exact(&mut random, &mut token))
-        .context("/dev/urandom gives no random numbers")?;
+    let token = random_token()?;
     let (scheme, hosts) = match &lan {
         Some(lan) => ("https", vec![SocketAddr::new(lan.address, port).to_string()]),
         None => ("http", ["localhost", "127.0.0.1"].map(|name| format!("{name}:{port}")).to_vec()),
@@ -168,12 +170,9 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
         None => token_text,
     };
     let own = format!("{scheme}://{}", hosts[0]);
-    let pages = [Some(&own), args.allow_origin.as_ref()];
-    let links: Vec<String> = pages
-        .into_iter()
-        .flatten()
-        .map(|page| format!("{page}/#stream={stream}&display=side-by-side"))
-        .collect();
+    let pages = std::iter::once(&own).chain(&args.allow_origin);
+    let links: Vec<String> =
+        pages.map(|page| format!("{page}/#stream={stream}&display=side-by-side")).collect();
     let quic = match &lan {
         Some(lan) => {
             let socket = UdpSocket::bind((lan.address, port)).with_context(|| {
@@ -187,12 +186,20 @@ fn run(args: &ServeArgs) -> anyhow::Result<()> {
     let tls = lan.map(|lan| lan.tls);
     let access =
         Arc::new(Access::new(token, (scheme, hosts), args.allow_origin.clone(), folder, welcome, tls));
-    let (viewers, admitted) = mpsc::channel();
+    let (clients, admitted) = mpsc::channel();
     if let Some((socket, tls)) = quic {
-        web_transport::accept(access.clone(), socket, tls, viewers.clone())?;
+        web_transport::accept(access.clone(), socket, tls, clients.clone())?;
     }
-    thread::spawn(move || access.accept(&listener, &viewers));
+    thread::spawn(move || access.accept(&listener, &clients));
     server.serve(&admitted)
+}
+
+fn random_token() -> anyhow::Result<Token> {
+    let mut token = Token::default();
+    std::fs::File::open("/dev/urandom")
+        .and_then(|mut random| io::Read::read_exact(&mut random, &mut token))
+        .context("/dev/urandom gives no random numbers")?;
+    Ok(token)
 }
 
 /// Reads the origin of a page, as browsers tell it.

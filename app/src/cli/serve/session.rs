@@ -10,27 +10,27 @@ use super::access::{Seat, Socket};
 use super::source::Source;
 use super::web_transport::Frames;
 use yoro_files::interrupt;
-use yoro_stream::{FrameHeader, FromServer, FromViewer, RateControl, ViewRequest};
+use yoro_stream::{FrameHeader, FromClient, FromServer, RateControl, ViewRequest};
 use yoro_video::{LiveEncoder, LivePicture};
 
-/// A viewer that says nothing for so long is gone.
+/// A client that says nothing for so long is gone.
 pub const SILENCE: Duration = Duration::from_secs(3);
 
-/// Passes on a viewer's messages with the time, until a timeout, a lost connection or an invalid message. It has a thread of its own,
+/// Passes on a client's messages with the time, until a timeout, a lost connection or an invalid message. It has a thread of its own,
 /// so that messages are read while a frame is rendered.
-pub fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromViewer, Instant)>) {
+pub fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromClient, Instant)>) {
     while let Ok(message) = socket.read() {
-        let Some(message) = FromViewer::read(&message.into_data()) else { return };
+        let Some(message) = FromClient::read(&message.into_data()) else { return };
         if heard.send((message, Instant::now())).is_err() {
             return;
         }
     }
 }
 
-/// A viewer that was let in.
-pub struct Viewer {
+/// A client that was let in.
+pub struct Client {
     /// What it says, until it is gone.
-    pub heard: Receiver<(FromViewer, Instant)>,
+    pub heard: Receiver<(FromClient, Instant)>,
     /// How it gets frames.
     pub transport: Transport,
     /// Held while it is served.
@@ -89,19 +89,19 @@ pub struct Limits {
 }
 
 impl Server {
-    /// Serves one viewer after the other until Ctrl-C.
-    pub fn serve(&mut self, admitted: &Receiver<Viewer>) -> anyhow::Result<()> {
+    /// Serves one client after the other until Ctrl-C.
+    pub fn serve(&mut self, admitted: &Receiver<Client>) -> anyhow::Result<()> {
         loop {
             interrupt::check()?;
             match admitted.recv_timeout(Duration::from_millis(100)) {
-                Ok(mut viewer) => {
-                    println!("a viewer has come by {}", viewer.transport.name());
-                    let ended = self.session(&mut viewer);
-                    viewer.transport.close();
-                    drop(viewer.seat);
+                Ok(mut client) => {
+                    println!("a client has connected by {}", client.transport.name());
+                    let ended = self.session(&mut client);
+                    client.transport.close();
+                    drop(client.seat);
                     interrupt::check()?;
                     println!(
-                        "the viewer has gone{}",
+                        "the client has gone{}",
                         ended.err().map_or(String::new(), |e| format!(": {e}"))
                     );
                 }
@@ -111,9 +111,9 @@ impl Server {
         }
     }
 
-    /// Serves a viewer until it is gone, which is no error.
-    fn session(&mut self, viewer: &mut Viewer) -> anyhow::Result<()> {
-        let Viewer { heard, transport, .. } = viewer;
+    /// Serves a client until it is gone, which is no error.
+    fn session(&mut self, client: &mut Client) -> anyhow::Result<()> {
+        let Client { heard, transport, .. } = client;
         let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate);
         let mut request: Option<ViewRequest> = None;
         // The time of the request that was answered last.
@@ -125,13 +125,13 @@ impl Server {
             match heard.recv_timeout(Duration::from_millis(1)) {
                 Ok((message, at)) => {
                     match message {
-                        FromViewer::Request(newest) => request = Some(newest),
-                        FromViewer::Decoded(decoded) => control.decoded(decoded, at - self.start),
-                        FromViewer::Missing(missing) => {
+                        FromClient::Request(newest) => request = Some(newest),
+                        FromClient::Decoded(decoded) => control.decoded(decoded, at - self.start),
+                        FromClient::Missing(missing) => {
                             log::info!("frame {missing} is missing");
                             control.missing(missing);
                         }
-                        FromViewer::Hello { .. } => {}
+                        FromClient::Hello { .. } => {}
                     }
                     continue;
                 }
@@ -145,7 +145,7 @@ impl Server {
                 frames.give_up(number);
             }
             let due = request
-                .filter(|request| Some(request.time) != answered && control.is_due(self.start.elapsed()));
+                .filter(|request| Some(request.time_ms) != answered && control.is_due(self.start.elapsed()));
             let Some(mut request) = due else { continue };
             let longest = request.size[0].max(request.size[1]);
             if longest > self.limits.size {
@@ -154,7 +154,7 @@ impl Server {
             }
             let begun = Instant::now();
             let Some(picture) = self.source.picture(&request, self.start.elapsed())? else { continue };
-            answered = Some(request.time);
+            answered = Some(request.time_ms);
             let rendered = begun.elapsed();
             let LivePicture { data, is_intra, quantizer } = self.encoder.encode(
                 &picture.planes,
@@ -163,7 +163,7 @@ impl Server {
             )?;
             let ms = |time: Duration| time.as_secs_f32() * 1e3;
             let header = FrameHeader {
-                time: request.time,
+                time_ms: request.time_ms,
                 content: picture.content,
                 size: picture.size,
                 render_ms: ms(rendered),

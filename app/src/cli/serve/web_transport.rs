@@ -1,4 +1,4 @@
-//! WebTransport, by QUIC: a stream for each frame to the viewer, and datagrams for what it says.
+//! WebTransport, by QUIC: a stream for each frame to the client, and datagrams for what it says.
 
 use std::net::UdpSocket;
 use std::sync::{Arc, mpsc};
@@ -16,10 +16,10 @@ use wtransport::endpoint::endpoint_side::Server;
 use wtransport::{Connection, Endpoint, ServerConfig, VarInt};
 
 use super::access::{Access, HELLO_TIMEOUT, MAX_MESSAGE_BYTES, Seat};
-use super::session::{SILENCE, Transport, Viewer};
-use yoro_stream::FromViewer;
+use super::session::{Client, SILENCE, Transport};
+use yoro_stream::FromClient;
 
-/// Accepts viewers at a socket for ever, and passes on those that are let in.
+/// Accepts clients at a socket for ever, and passes on those that are let in.
 ///
 /// # Errors
 /// When the system refuses.
@@ -27,7 +27,7 @@ pub fn accept(
     access: Arc<Access>,
     socket: UdpSocket,
     tls: rustls::ServerConfig,
-    viewers: mpsc::Sender<Viewer>,
+    clients: mpsc::Sender<Client>,
 ) -> anyhow::Result<()> {
     let runtime = Builder::new_current_thread().enable_all().build()?;
     // Who is not let in yet must not fill the memory.
@@ -45,11 +45,11 @@ pub fn accept(
         let _inside = runtime.enter();
         Endpoint::server(config)?
     };
-    thread::spawn(move || runtime.block_on(answer_all(&endpoint, &access, &viewers)));
+    thread::spawn(move || runtime.block_on(answer_all(&endpoint, &access, &clients)));
     Ok(())
 }
 
-async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, viewers: &mpsc::Sender<Viewer>) {
+async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, clients: &mpsc::Sender<Client>) {
     loop {
         let incoming = endpoint.accept().await;
         let address = incoming.remote_address();
@@ -63,7 +63,7 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, viewers: 
             incoming.refuse();
             continue;
         };
-        let (access, viewers) = (access.clone(), viewers.clone());
+        let (access, clients) = (access.clone(), clients.clone());
         tokio::spawn(async move {
             let admitted = timeout(HELLO_TIMEOUT, admit(incoming, &access)).await;
             drop(place);
@@ -72,7 +72,7 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, viewers: 
                     let (tell, heard) = mpsc::channel();
                     let frames = Frames::new(connection.clone());
                     // Without a receiver the program ends.
-                    let _ = viewers.send(Viewer { heard, transport: Transport::WebTransport(frames), seat });
+                    let _ = clients.send(Client { heard, transport: Transport::WebTransport(frames), seat });
                     listen(&connection, &tell).await;
                 }
                 Err(error) => log::info!("{address} is not served: {error}"),
@@ -81,7 +81,7 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, viewers: 
     }
 }
 
-/// Lets a viewer in, as [`Access`] decides. Its hello and the answer are a stream of their own.
+/// Lets a client in, as [`Access`] decides. Its hello and the answer are a stream of their own.
 async fn admit(incoming: IncomingSession, access: &Arc<Access>) -> anyhow::Result<(Connection, Seat)> {
     let request = incoming.await?;
     if request.path() != "/stream" || !access.allows(request.authority(), request.origin()) {
@@ -98,10 +98,10 @@ async fn admit(incoming: IncomingSession, access: &Arc<Access>) -> anyhow::Resul
     Ok((connection, seat?))
 }
 
-/// Passes on a viewer's messages with the time, until it is silent, lost or sends something else.
-async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromViewer, Instant)>) {
+/// Passes on a client's messages with the time, until it is silent, lost or sends something else.
+async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromClient, Instant)>) {
     while let Ok(Ok(datagram)) = timeout(SILENCE, connection.receive_datagram()).await {
-        let Some(message) = FromViewer::read(&datagram) else { break };
+        let Some(message) = FromClient::read(&datagram) else { break };
         if heard.send((message, Instant::now())).is_err() {
             break;
         }
@@ -109,7 +109,7 @@ async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromViewer, Insta
     connection.close(VarInt::from_u32(0), b"");
 }
 
-/// Sends frames to a viewer.
+/// Sends frames to a client.
 pub struct Frames {
     runtime: Handle,
     connection: Connection,
@@ -159,7 +159,7 @@ async fn send(
         stream.finish().await
     };
     tokio::select! {
-        sent = sending => sent.context("the viewer is gone"),
+        sent = sending => sent.context("the client is gone"),
         _ = oldest.wait_for(|oldest| *oldest > number) => Ok(stream.reset(VarInt::from_u32(0))?),
     }
 }

@@ -137,7 +137,7 @@ fn a_stream_is_in_the_scenes_place_until_a_scene_is_chosen() {
     let frustum = Frustum { left: -2.0, right: 2.0, bottom: -2.0, top: 2.0 };
     let content = Content::Depth(EyeView { frustum, ..request.eyes[1] }, [1.0, 4.0]);
     let header = FrameHeader {
-        time: request.time,
+        time_ms: request.time_ms,
         content,
         size: [64, 64],
         render_ms: 1.0,

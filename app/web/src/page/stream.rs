@@ -6,7 +6,7 @@ use js_sys::{Array, ArrayBuffer, Uint8Array};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::Pose;
 use yoro_render::DecodedPicture;
-use yoro_stream::{FromServer, FromViewer, Refusal, ReorderBuffer};
+use yoro_stream::{FromClient, FromServer, Refusal, ReorderBuffer};
 
 use super::error::sentence;
 use super::stream_show::StreamShow;
@@ -35,7 +35,7 @@ impl Page {
     /// Returns the message with which a viewer begins; none for a token that is not 32 hexadecimal digits.
     #[wasm_bindgen(js_name = streamHello)]
     pub fn stream_hello(&self, token: &str) -> Option<Vec<u8>> {
-        FromViewer::hello(token).map(|hello| hello.to_bytes())
+        FromClient::hello(token).map(|hello| hello.to_bytes())
     }
 
     /// Takes the first answer of a server, and shows its stream from now on, from the head's first pose; one that goes on
@@ -94,10 +94,10 @@ impl Page {
         }
         // An emulated headset clears what is bound before each of its frames: not what has just been drawn.
         self.gl.bind_framebuffer(None, [0, 0], [1, 1]);
-        let decoded = Uint8Array::from(&FromViewer::Decoded(number).to_bytes()[..]);
+        let decoded = Uint8Array::from(&FromClient::Decoded(number).to_bytes()[..]);
         let [width, height] = header.size.map(f64::from);
         let (render, code) = (f64::from(header.render_ms), f64::from(header.encode_ms));
-        let facts = [header.time, render, code, f64::from(header.quantizer), width, height];
+        let facts = [header.time_ms, render, code, f64::from(header.quantizer), width, height];
         Ok(Array::of2(&decoded, &facts.into_iter().map(JsValue::from).collect::<Array>()))
     }
 
@@ -105,7 +105,7 @@ impl Page {
     #[wasm_bindgen(js_name = streamRequest)]
     pub fn stream_request(&self, time: f64) -> Option<Vec<u8>> {
         let Content::Stream(stream) = &self.content else { return None };
-        stream.eyes.request(time).map(|request| FromViewer::Request(request).to_bytes())
+        stream.eyes.request(time).map(|request| FromClient::Request(request).to_bytes())
     }
 
     /// Returns the mean distance in cm and angle in degrees from the pose that a picture was rendered for to the one that it was shown
@@ -144,7 +144,7 @@ impl StreamOrder {
     /// Returns the message that names a missing frame, if one has to be sent at a time in ms.
     pub fn missing(&mut self, time: f64) -> Option<Vec<u8>> {
         let number = self.0.missing(Duration::from_secs_f64(time * 1e-3))?;
-        Some(FromViewer::Missing(number).to_bytes())
+        Some(FromClient::Missing(number).to_bytes())
     }
 
     /// Returns the number of frames that were not decoded.

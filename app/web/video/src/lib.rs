@@ -63,7 +63,7 @@ impl Video {
             .source;
         let view = EyeView { pose: source.pose, frustum: source.frustum };
         let header = FrameHeader {
-            time: 0.0,
+            time_ms: 0.0,
             content: Content::Depth(view, [rgbd.nearest, rgbd.farthest]),
             size: source.size.map(|n| n.try_into().unwrap_or(u16::MAX)),
             render_ms: 0.0,

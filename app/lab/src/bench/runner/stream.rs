@@ -106,7 +106,7 @@ fn pictures(
 ) -> anyhow::Result<Vec<Picture>> {
     let mut renderer = FrameRenderer::new(gl, mode)?;
     let request = |pair: &EyePair| ViewRequest {
-        time: 0.0,
+        time_ms: 0.0,
         eyes: [0, 1].map(|i| EyeView { pose: pair.poses[i], frustum: pair.frusta[i] }),
         dominant: pair.dominant,
         size: pair.size.map(|n| n as u16),
