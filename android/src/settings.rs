@@ -3,10 +3,8 @@
 
 use std::path::PathBuf;
 
-use yoro_protocol::{SETTINGS, Setting, Settings};
+use yoro_protocol::{PROPERTY_PREFIX, SETTINGS, Setting, Settings};
 
-/// The prefix of system properties that are settings: `adb shell setprop debug.yoro.method mono`.
-pub const PROPERTY_PREFIX: &str = "debug.yoro.";
 /// The optional prefix of intent extras; the system's extras contain other dots.
 const EXTRA_PREFIX: &str = "yoro.";
 /// The settings file in the application's external folder.

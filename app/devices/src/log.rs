@@ -6,10 +6,19 @@ use yoro_protocol::telemetry::{LOG_TAG, Pictures, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";
-/// The tags that logcat is asked for: telemetry, Meta's runtime with its clock levels, and the last words of an application
-/// that crashes.
-pub const FILTER: [&str; 6] =
-    ["YORO:V", "VrApi:V", "XrPerformanceManager:V", "AndroidRuntime:E", "DEBUG:F", "*:S"];
+/// Returns the arguments that say which tags logcat gives: telemetry, Meta's runtime with its clock levels, and the last
+/// words of an application that crashes.
+pub fn filter() -> [String; 6] {
+    let all = |tag: &str| format!("{tag}:V");
+    [
+        all(LOG_TAG),
+        all(VRAPI_TAG),
+        all("XrPerformanceManager"),
+        "AndroidRuntime:E".into(),
+        "DEBUG:F".into(),
+        "*:S".into(),
+    ]
+}
 
 /// First words of a simulated log.
 pub const SIMULATED_MARK: &str = "--------- simulated";

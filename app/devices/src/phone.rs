@@ -2,15 +2,13 @@
 
 use super::adb::{Device, DeviceError, serial_number};
 use super::capture::DeviceInfo;
-use yoro_protocol::Settings;
 use yoro_protocol::telemetry::BatteryStatus;
+use yoro_protocol::{PROPERTY_PREFIX, Settings};
 
 /// The application.
 pub const PACKAGE: &str = "io.github.yoro";
 /// Its activity.
 const ACTIVITY: &str = "io.github.yoro/android.app.NativeActivity";
-/// System properties that begin so are settings of the application.
-pub const PROPERTY_PREFIX: &str = "debug.yoro.";
 /// Size that the log's buffer is set to, so that it outlasts a lost connection. Android takes it back when it restarts.
 const LOG_BUFFER: &str = "8M";
 

@@ -305,7 +305,8 @@ impl Device for ProgramDevice {
     fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError> {
         let mut arguments = vec!["logcat", "-v", "threadtime", "-v", "epoch", "-v", "usec"];
         arguments.extend(since.iter().flat_map(|since| ["-T", since]));
-        arguments.extend(log::FILTER);
+        let filter = log::filter();
+        arguments.extend(filter.iter().map(String::as_str));
         let mut command = self.command(arguments);
         let mut child =
             command.stderr(Stdio::null()).spawn().map_err(|error| self.adb.does_not_start(&error))?;

@@ -17,5 +17,6 @@ pub use choices::{
     Method, MethodChoice, Performance, Pipeline, RendererKind, Ssao, Timewarp,
 };
 pub use quantities::{ImBufferSize, Ipd, IpdError, ParseImBufferSizeError, ScreenSize, ScreenSizeError};
-pub use settings::{SETTINGS, Setting, Settings, SettingsError};
+pub use setting::{PROPERTY_PREFIX, Setting};
+pub use settings::{SETTINGS, Settings, SettingsError};
 pub use value::Choice;

@@ -1,11 +1,15 @@
-//! One row of a table of settings.
+//! A setting: one row of the table of settings.
 
 use toml::Value;
 
+use crate::settings::{SETTINGS, Settings};
 use crate::value::{Choice, SettingValue, plain};
 
-/// One setting: what it is called, what it does, and which values it takes.
-pub struct Row<S: 'static> {
+/// The prefix of Android's system properties that are settings: `adb shell setprop debug.yoro.method mono`.
+pub const PROPERTY_PREFIX: &str = "debug.yoro.";
+
+/// One setting of the viewer, a row of [`SETTINGS`]: what it is called, what it does, and which values it takes.
+pub struct Setting {
     /// The key in files, `key=value` texts, intent extras and system properties; the option's name on the command line.
     pub key: &'static str,
     help: &'static str,
@@ -13,40 +17,45 @@ pub struct Row<S: 'static> {
     pub value_name: Option<&'static str>,
     /// The default that `auto` stands for, for settings whose default depends on something else.
     pub auto: Option<&'static str>,
-    /// Help of the command line's option `--no-KEY`, for switches that are on by default.
+    /// Help of the command line's option `--no-KEY`, for those that are `true` by default.
     pub off_help: Option<&'static str>,
     /// The names that a value can have; empty where there are too many to list.
     pub choices: &'static [Choice],
     /// True if the value is `true` or `false`.
-    pub is_switch: bool,
+    pub is_bool: bool,
     /// True if the value may be left to the program, by the value `auto`.
     pub is_optional: bool,
-    get: fn(&S) -> Option<Value>,
-    set: fn(&mut S, &Value) -> Result<(), String>,
-    range: Option<Range<S>>,
+    get: fn(&Settings) -> Option<Value>,
+    set: fn(&mut Settings, &Value) -> Result<(), String>,
+    range: Option<Range>,
 }
 
 /// The values that a setting takes, beyond what its type says.
-struct Range<S> {
-    contains: fn(&S) -> bool,
+struct Range {
+    contains: fn(&Settings) -> bool,
     remedy: &'static str,
 }
 
-impl<S: Clone + Default> Row<S> {
+impl Setting {
+    /// Returns the setting of a key.
+    pub fn find(key: &str) -> Option<&'static Setting> {
+        SETTINGS.iter().find(|setting| setting.key == key)
+    }
+
     pub(crate) const fn new<T: SettingValue>(
         key: &'static str,
         help: &'static str,
-        get: fn(&S) -> Option<Value>,
-        set: fn(&mut S, &Value) -> Result<(), String>,
-    ) -> Row<S> {
-        Row {
+        get: fn(&Settings) -> Option<Value>,
+        set: fn(&mut Settings, &Value) -> Result<(), String>,
+    ) -> Setting {
+        Setting {
             key,
             help,
             value_name: None,
             auto: None,
             off_help: None,
             choices: T::CHOICES,
-            is_switch: T::IS_SWITCH,
+            is_bool: T::IS_BOOL,
             is_optional: T::IS_OPTIONAL,
             get,
             set,
@@ -55,22 +64,22 @@ impl<S: Clone + Default> Row<S> {
     }
 
     /// Takes only the values for which `contains` is true; `remedy` says which these are.
-    pub(crate) const fn range(mut self, contains: fn(&S) -> bool, remedy: &'static str) -> Row<S> {
+    pub(crate) const fn range(mut self, contains: fn(&Settings) -> bool, remedy: &'static str) -> Setting {
         self.range = Some(Range { contains, remedy });
         self
     }
 
-    pub(crate) const fn value_name(mut self, name: &'static str) -> Row<S> {
+    pub(crate) const fn value_name(mut self, name: &'static str) -> Setting {
         self.value_name = Some(name);
         self
     }
 
-    pub(crate) const fn auto(mut self, default: &'static str) -> Row<S> {
+    pub(crate) const fn auto(mut self, default: &'static str) -> Setting {
         self.auto = Some(default);
         self
     }
 
-    pub(crate) const fn off_help(mut self, help: &'static str) -> Row<S> {
+    pub(crate) const fn off_help(mut self, help: &'static str) -> Setting {
         self.off_help = Some(help);
         self
     }
@@ -93,13 +102,13 @@ impl<S: Clone + Default> Row<S> {
         format!("| `{}` | {default} | {}{names} |\n", self.key, self.help())
     }
 
-    /// The default as a text that [`Settings::apply`](crate::Settings::apply) takes.
+    /// The default as a text that [`Settings::apply`] takes.
     pub fn default(&self) -> String {
-        self.text(&S::default())
+        self.text(&Settings::default())
     }
 
-    /// The value in some settings as a text that [`Settings::apply`](crate::Settings::apply) takes.
-    pub fn text(&self, settings: &S) -> String {
+    /// The value in some settings as a text that [`Settings::apply`] takes.
+    pub fn text(&self, settings: &Settings) -> String {
         match self.value(settings) {
             None => "auto".into(),
             Some(Value::Array(list)) => list.iter().map(plain).collect::<Vec<_>>().join(","),
@@ -108,7 +117,7 @@ impl<S: Clone + Default> Row<S> {
     }
 
     /// The value in some settings; `None` if it is left to the program.
-    pub(crate) fn value(&self, settings: &S) -> Option<Value> {
+    pub(crate) fn value(&self, settings: &Settings) -> Option<Value> {
         (self.get)(settings)
     }
 
@@ -116,7 +125,7 @@ impl<S: Clone + Default> Row<S> {
     ///
     /// # Errors
     /// The remedy; the settings stay as they were.
-    pub(crate) fn set(&self, settings: &mut S, value: &Value) -> Result<(), String> {
+    pub(crate) fn set(&self, settings: &mut Settings, value: &Value) -> Result<(), String> {
         let range = self.range.as_ref().filter(|_| self.choices.is_empty());
         let remedy = |reason: String| range.map_or(reason, |range| range.remedy.into());
         let mut changed = settings.clone();
@@ -135,7 +144,7 @@ impl<S: Clone + Default> Row<S> {
     ///
     /// # Errors
     /// The value as it was understood, and the remedy; the settings stay as they were.
-    pub fn parse_into(&self, settings: &mut S, text: &str) -> Result<(), (String, String)> {
+    pub fn parse_into(&self, settings: &mut Settings, text: &str) -> Result<(), (String, String)> {
         let text = text.trim();
         if text.is_empty() {
             return Ok(());

@@ -11,7 +11,7 @@ use crate::choices::{
     MethodChoice, Performance, Pipeline, RendererKind, Ssao, Timewarp,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
-use crate::setting::Row;
+use crate::setting::Setting;
 use crate::value::SettingValue;
 use yoro::eyes::{Eye, GuardBand};
 use yoro::synthesis::Edges;
@@ -62,16 +62,6 @@ pub enum SettingsError {
     /// An override that is not `key=value`.
     #[error("\"{0}\" is not a setting: write key=value, such as method=yoro")]
     NoPair(String),
-}
-
-/// A setting of the viewer: one row of [`SETTINGS`].
-pub type Setting = Row<Settings>;
-
-impl Setting {
-    /// Returns the row of a key.
-    pub fn find(key: &str) -> Option<&'static Setting> {
-        SETTINGS.iter().find(|setting| setting.key == key)
-    }
 }
 
 fn keys() -> String {

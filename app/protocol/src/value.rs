@@ -37,7 +37,7 @@ pub(crate) fn plain(value: &Value) -> String {
 /// A type that settings can have.
 pub(crate) trait SettingValue: Sized {
     const CHOICES: &'static [Choice] = &[];
-    const IS_SWITCH: bool = false;
+    const IS_BOOL: bool = false;
     const IS_OPTIONAL: bool = false;
 
     /// Reads a value; the error is the remedy.
@@ -48,7 +48,7 @@ pub(crate) trait SettingValue: Sized {
 }
 
 impl SettingValue for bool {
-    const IS_SWITCH: bool = true;
+    const IS_BOOL: bool = true;
 
     fn read(value: &Value) -> Result<bool, String> {
         value.as_bool().ok_or_else(|| "give true or false".into())

@@ -133,7 +133,7 @@ impl<G: Group> clap::Args for SettingOptions<G> {
 impl<G: Group> clap::FromArgMatches for SettingOptions<G> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<SettingOptions<G>, clap::Error> {
         let value = |setting: &'static Setting| {
-            let value = if setting.is_switch {
+            let value = if setting.is_bool {
                 matches.get_flag(setting.key).then(|| setting.off_help.is_none().to_string())
             } else {
                 matches.get_one::<String>(setting.key).cloned()
@@ -156,7 +156,7 @@ impl<G: Group> clap::FromArgMatches for SettingOptions<G> {
 /// Returns the option of a setting.
 fn option(setting: &'static Setting) -> Arg {
     let help = setting.help().replace('`', "");
-    if setting.is_switch {
+    if setting.is_bool {
         let (name, help) = match setting.off_help {
             Some(help) => (format!("no-{}", setting.key), help.to_owned()),
             None => (setting.key.to_owned(), help),

@@ -106,8 +106,8 @@ pub struct LineKey {
     pub decimals: usize,
     /// The unit after a number.
     pub unit: &'static str,
-    /// Lines of earlier versions of this program do not have it.
-    came_later: bool,
+    /// True if a line may lack it, as those of earlier versions of this program do.
+    may_be_absent: bool,
     get: fn(&Line) -> Value<'_>,
     /// Takes a text without unit, nothing for a missing value; false if it does not fit.
     set: fn(&mut Line, Option<&str>) -> bool,
@@ -138,7 +138,7 @@ macro_rules! number {
             name: $name,
             decimals: $decimals,
             unit: $unit,
-            came_later: false,
+            may_be_absent: false,
             get: |line| line.$field.map_or(Value::Missing, |value| Value::$kind(value as _)),
             set: |line, text| number(text).map(|value| line.$field = value).is_some(),
         }
@@ -152,7 +152,7 @@ macro_rules! always {
             name: $name,
             decimals: $decimals,
             unit: $unit,
-            came_later: false,
+            may_be_absent: false,
             get: |line| Value::Real(line.$field),
             set: |line, text| number(text).flatten().map(|value| line.$field = value).is_some(),
         }
@@ -166,7 +166,7 @@ macro_rules! name {
             name: $name,
             decimals: 0,
             unit: "",
-            came_later: false,
+            may_be_absent: false,
             get: |line| Value::Text(&line.$field),
             set: |line, text| {
                 line.$field = text.unwrap_or(MISSING).into();
@@ -183,7 +183,7 @@ macro_rules! optional_name {
             name: $name,
             decimals: 0,
             unit: "",
-            came_later: false,
+            may_be_absent: false,
             get: |line| line.$field.as_deref().map_or(Value::Missing, |name| Value::Text(short(name))),
             set: |line, text| {
                 line.$field = text.map(str::to_owned);
@@ -219,23 +219,25 @@ pub const LINE_KEYS: &[LineKey] = &[
     number!("headroom", Real, thermal_headroom, 2, ""),
     always!("scale", render_scale, 2, ""),
     number!("imbuffer", Integer, imbuffer, 0, ""),
-    LineKey { came_later: true, ..number!("frames", Integer, frames, 0, "") },
+    LineKey { may_be_absent: true, ..number!("frames", Integer, frames, 0, "") },
     LineKey {
-        came_later: true,
+        name: "status",
+        decimals: 0,
+        unit: "",
+        may_be_absent: true,
         get: |line| line.status.map_or(Value::Missing, |status| Value::Text(status.name())),
         set: |line, text| {
             line.status = text.and_then(BatteryStatus::from_name);
             line.status.is_some() == text.is_some()
         },
-        ..optional_name!("status", run)
     },
-    LineKey { came_later: true, ..optional_name!("run", run) },
-    LineKey { came_later: true, ..optional_name!("perf", performance) },
-    LineKey { came_later: true, ..number!("guard", Real, guard_columns, 1, "") },
-    LineKey { came_later: true, ..number!("undrawn", Integer, undrawn, 0, "") },
-    LineKey { came_later: true, ..optional_name!("auto", auto) },
-    LineKey { came_later: true, ..number!("stream", Real, stream_fps, 1, "") },
-    LineKey { came_later: true, ..number!("latency", Real, latency_ms, 1, "ms") },
+    LineKey { may_be_absent: true, ..optional_name!("run", run) },
+    LineKey { may_be_absent: true, ..optional_name!("perf", performance) },
+    LineKey { may_be_absent: true, ..number!("guard", Real, guard_columns, 1, "") },
+    LineKey { may_be_absent: true, ..number!("undrawn", Integer, undrawn, 0, "") },
+    LineKey { may_be_absent: true, ..optional_name!("auto", auto) },
+    LineKey { may_be_absent: true, ..number!("stream", Real, stream_fps, 1, "") },
+    LineKey { may_be_absent: true, ..number!("latency", Real, latency_ms, 1, "ms") },
 ];
 
 impl LineKey {
@@ -263,7 +265,7 @@ impl LineKey {
             "FPS" => Ok(rates(reader)?.0),
             REFRESH => Ok(rates(reader)?.1),
             GPU => Ok(gpu_times(reader)?.0),
-            name if self.came_later => Ok(reader.text(name).unwrap_or(MISSING)),
+            name if self.may_be_absent => Ok(reader.text(name).unwrap_or(MISSING)),
             name => reader.text(name),
         }
     }
@@ -490,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_that_came_later_may_be_missing() {
+    fn keys_of_later_versions_may_be_absent() {
         let text = example().to_string();
         let (early, _) = text.split_once(",frames=").unwrap();
         let read: Line = early.parse().unwrap();
