@@ -173,7 +173,7 @@ pub enum FaultKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fault {
-    /// Kind.
+    /// What went wrong.
     pub kind: FaultKind,
     /// Time in seconds since the run began; `None` for a fault of the whole run.
     pub at_s: Option<f64>,

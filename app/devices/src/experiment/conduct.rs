@@ -12,13 +12,11 @@ use crate::adb::{Device, DeviceError};
 use crate::capture::{self, CaptureError, Fault, FaultKind, Outcome, RUN_FILE, RunInfo, Writer};
 use crate::held_settings::{HeldSettings, Wanted};
 use crate::phone::{self, Battery};
-use crate::run::{self, Found, Plan};
+use crate::run::{self, Found, LOST_TIMEOUT_S, Plan};
 use yoro_files::{FileError, interrupt};
 
 /// Interval at which a cooling device is asked for its temperature.
 const COOLING: Duration = Duration::from_secs(5);
-/// Longest time in seconds for which a device may be gone between runs.
-const LOST_TIMEOUT_S: f64 = 300.0;
 
 /// Progress of an experiment on a device.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -99,7 +99,7 @@ impl CoolDown {
 /// A method as the experiment compares it: settings with a name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Entrant {
+pub struct MethodEntry {
     /// Name in tables; where the settings have no `method`, the stereo method itself.
     pub name: String,
     /// Settings of the viewer.
@@ -152,7 +152,7 @@ pub struct Experiment {
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub settings: Table,
     /// The methods.
-    pub method: Vec<Entrant>,
+    pub method: Vec<MethodEntry>,
 }
 
 /// The error when an experiment cannot be made.
@@ -262,12 +262,12 @@ impl Experiment {
             self.cool_down.as_ref().is_none_or(cool),
             "cool-down: celsius and max-seconds must be numbers",
         )?;
-        for (i, entrant) in self.method.iter().enumerate() {
-            ensure(!entrant.name.trim().is_empty(), "a [[method]] has no name: give it one")?;
-            let twin = self.method[..i].iter().any(|other| other.name == entrant.name);
-            ensure(!twin, &format!("two methods are called \"{}\": give each its own name", entrant.name))?;
+        for (i, entry) in self.method.iter().enumerate() {
+            ensure(!entry.name.trim().is_empty(), "a [[method]] has no name: give it one")?;
+            let twin = self.method[..i].iter().any(|other| other.name == entry.name);
+            ensure(!twin, &format!("two methods are called \"{}\": give each its own name", entry.name))?;
             for scene in &self.scenes {
-                self.viewer_settings(entrant, scene).map_err(|error| error.to_string())?;
+                self.viewer_settings(entry, scene).map_err(|error| error.to_string())?;
             }
         }
         for (i, scene) in self.scenes.iter().enumerate() {
@@ -276,7 +276,7 @@ impl Experiment {
                 &format!("the scene \"{scene}\" is listed twice: once is enough"),
             )?;
         }
-        let all = std::iter::once(&self.settings).chain(self.method.iter().map(|entrant| &entrant.settings));
+        let all = std::iter::once(&self.settings).chain(self.method.iter().map(|entry| &entry.settings));
         for key in all.flat_map(Table::keys) {
             let what = format!("the setting \"{key}\" is the experiment's own: leave it out");
             ensure(!RESERVED.contains(&key.as_str()), &what)?;
@@ -285,13 +285,13 @@ impl Experiment {
     }
 
     /// Returns the settings of a method in a scene.
-    fn viewer_settings(&self, entrant: &Entrant, scene: &str) -> Result<Settings, SettingsError> {
+    fn viewer_settings(&self, entry: &MethodEntry, scene: &str) -> Result<Settings, SettingsError> {
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         let pairs = |table: &Table| table.iter().map(|(k, v)| format!("{k}={}", text(v))).collect::<Vec<_>>();
-        let method = format!("method={}", entrant.name);
-        let has_method = self.settings.contains_key("method") || entrant.settings.contains_key("method");
+        let method = format!("method={}", entry.name);
+        let has_method = self.settings.contains_key("method") || entry.settings.contains_key("method");
         let first = (!has_method).then_some(method).into_iter().chain([format!("scene={scene}")]);
-        Settings::resolve(None, first.chain(pairs(&self.settings)).chain(pairs(&entrant.settings)))
+        Settings::resolve(None, first.chain(pairs(&self.settings)).chain(pairs(&entry.settings)))
     }
 
     /// Returns all runs on a device, in their order.
@@ -332,13 +332,13 @@ impl Experiment {
     }
 
     fn planned(&self, order: u32, repetition: u32, scene: usize, method: usize) -> Planned {
-        let (scene, entrant) = (&self.scenes[scene], &self.method[method]);
+        let (scene, entry) = (&self.scenes[scene], &self.method[method]);
         // Checked when the file was read.
-        let settings = self.viewer_settings(entrant, scene).unwrap_or_default();
+        let settings = self.viewer_settings(entry, scene).unwrap_or_default();
         let plan = Plan {
             other: None,
             experiment: Some(self.name.clone()),
-            method: entrant.name.clone(),
+            method: entry.name.clone(),
             settings,
             repetition,
             order,
@@ -348,7 +348,7 @@ impl Experiment {
             refresh_hz: self.refresh_hz,
             power: self.power,
         };
-        let folder = format!("{order:03}-{}-{}-{repetition}", file_name(scene), file_name(&entrant.name));
+        let folder = format!("{order:03}-{}-{}-{repetition}", file_name(scene), file_name(&entry.name));
         Planned { plan, folder }
     }
 

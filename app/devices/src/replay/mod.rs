@@ -3,23 +3,23 @@
 //!
 //! A device plays recorded logs, or generates its own from a seed and made-up figures; its script lists the faults.
 
+mod device;
 mod script;
-mod world;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use device::SimulatedDevice;
 pub use script::{Current, Fault, FaultKind, Load, Phone, Script, Voltage};
-use world::World;
 
 use super::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream};
 use super::log::SIMULATED_MARK;
 
-type Shared = Arc<Mutex<World>>;
+type Shared = Arc<Mutex<SimulatedDevice>>;
 
-fn lock(world: &Shared) -> MutexGuard<'_, World> {
-    world.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock(device: &Shared) -> MutexGuard<'_, SimulatedDevice> {
+    device.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The devices of a script.
@@ -39,7 +39,7 @@ impl Replay {
         let (seed, speed) = (script.seed, script.speed);
         let device = |phone: Phone| {
             let kept = script.state.as_ref().map(|folder| folder.join(format!("{}.json", phone.serial)));
-            (phone.serial.clone(), Arc::new(Mutex::new(World::new(phone, seed, speed, kept))))
+            (phone.serial.clone(), Arc::new(Mutex::new(SimulatedDevice::new(phone, seed, speed, kept))))
         };
         Replay { path: path.into(), devices: script.device.into_iter().map(device).collect() }
     }
@@ -47,29 +47,29 @@ impl Replay {
 
 impl Adb for Replay {
     fn devices(&self) -> Result<Vec<Listed>, DeviceError> {
-        let listed = |(serial, world): &(String, Shared)| {
-            Some(Listed { serial: serial.clone(), state: lock(world).state()? })
+        let listed = |(serial, device): &(String, Shared)| {
+            Some(Listed { serial: serial.clone(), state: lock(device).state()? })
         };
         Ok(self.devices.iter().filter_map(listed).collect())
     }
 
     fn open(&self, serial: &str) -> Box<dyn Device> {
         let known = self.devices.iter().find(|(known, _)| known == serial);
-        let world = known.map_or_else(
+        let device = known.map_or_else(
             || {
                 ::log::debug!("{} has no device {serial}", self.path.display());
                 let phone = Phone { serial: serial.into(), state: "offline".into(), ..Phone::default() };
-                Arc::new(Mutex::new(World::new(phone, 0, None, None)))
+                Arc::new(Mutex::new(SimulatedDevice::new(phone, 0, None, None)))
             },
-            |(_, world)| world.clone(),
+            |(_, device)| device.clone(),
         );
-        Box::new(ReplayDevice { serial: serial.into(), world })
+        Box::new(ReplayDevice { serial: serial.into(), device })
     }
 }
 
 struct ReplayDevice {
     serial: String,
-    world: Shared,
+    device: Shared,
 }
 
 impl Device for ReplayDevice {
@@ -82,43 +82,43 @@ impl Device for ReplayDevice {
     }
 
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError> {
-        lock(&self.world).shell(words)
+        lock(&self.device).shell(words)
     }
 
     fn put(&self, path: &str, text: &str) -> Result<(), DeviceError> {
-        lock(&self.world).put(path, text)
+        lock(&self.device).put(path, text)
     }
 
     fn install(&self, _apk: &Path) -> Result<(), DeviceError> {
-        lock(&self.world).install()
+        lock(&self.device).install()
     }
 
     fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError> {
-        let mut world = lock(&self.world);
-        world.reach()?;
-        let (at, generation) = world.reader(since);
-        Ok(Box::new(ReplayLog { world: self.world.clone(), at, generation, is_new: true }))
+        let mut device = lock(&self.device);
+        device.reach()?;
+        let (at, generation) = device.reader(since);
+        Ok(Box::new(ReplayLog { device: self.device.clone(), at, generation, is_new: true }))
     }
 
     fn is_attended(&self) -> bool {
-        lock(&self.world).is_attended()
+        lock(&self.device).is_attended()
     }
 
     fn reconnect(&self) {}
 
     fn now(&self) -> f64 {
-        lock(&self.world).now()
+        lock(&self.device).now()
     }
 
     fn sleep(&self, time: Duration) {
-        let mut world = lock(&self.world);
-        let to = world.now() + time.as_secs_f64();
-        world.advance(to);
+        let mut device = lock(&self.device);
+        let to = device.now() + time.as_secs_f64();
+        device.advance(to);
     }
 }
 
 struct ReplayLog {
-    world: Shared,
+    device: Shared,
     at: usize,
     generation: u32,
     is_new: bool,
@@ -129,7 +129,7 @@ impl LogStream for ReplayLog {
         if std::mem::take(&mut self.is_new) {
             return LogEvent::Line(format!("{SIMULATED_MARK} by a replay of yoro\n").into());
         }
-        match lock(&self.world).read_log(&mut self.at, self.generation, wait.as_secs_f64()) {
+        match lock(&self.device).read_log(&mut self.at, self.generation, wait.as_secs_f64()) {
             Ok(Some(line)) => LogEvent::Line((line + "\n").into()),
             Ok(None) => LogEvent::Quiet,
             Err(()) => LogEvent::Ended,

@@ -229,7 +229,7 @@ pub enum FaultKind {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Fault {
-    /// The message.
+    /// What goes wrong.
     pub kind: FaultKind,
     /// The start of the application, from 1, in which it happens.
     #[serde(default = "first")]

@@ -10,6 +10,7 @@ use crate::foreign::Subject;
 use crate::phone::{self, PACKAGE};
 use yoro_protocol::Settings;
 
+pub(crate) use session::LOST_TIMEOUT_S;
 pub use session::capture;
 
 /// Another application than this project's.

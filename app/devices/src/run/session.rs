@@ -22,8 +22,8 @@ use yoro_scenes::BUILTINS;
 const START_TIMEOUT_S: f64 = 180.0;
 /// Seconds without a line after which the session checks that the application still runs.
 const SILENCE_S: f64 = 15.0;
-/// Seconds that a lost device may stay away.
-const LOST_TIMEOUT_S: f64 = 300.0;
+/// Seconds that a lost device may stay away, in a run and between runs.
+pub(crate) const LOST_TIMEOUT_S: f64 = 300.0;
 /// Seconds that Android may take to start.
 const BOOT_TIMEOUT_S: f64 = 180.0;
 /// Number of times that the application is started again in one run.

@@ -87,7 +87,7 @@ struct Stored {
 }
 
 /// A simulated device.
-pub struct World {
+pub struct SimulatedDevice {
     script: Phone,
     speed: Option<f64>,
     /// This computer's clock.
@@ -119,9 +119,9 @@ pub struct World {
     random: Pcg64Mcg,
 }
 
-impl World {
+impl SimulatedDevice {
     /// The device of a script, in its initial state but for what an earlier replay has kept in a file.
-    pub fn new(script: Phone, seed: u64, speed: Option<f64>, store: Option<PathBuf>) -> World {
+    pub fn new(script: Phone, seed: u64, speed: Option<f64>, store: Option<PathBuf>) -> SimulatedDevice {
         let first = || Stored {
             settings: script.settings.clone(),
             properties: script.properties.clone(),
@@ -136,7 +136,7 @@ impl World {
         let activity =
             script.foreground.as_ref().map(|package| format!("{package}/.Main")).unwrap_or_default();
         let running = script.running.clone().or(script.foreground.as_ref().map(|_| BTreeMap::new()));
-        let mut world = World {
+        let mut device = SimulatedDevice {
             speed,
             now: BEGIN,
             clock_offset: 0.25,
@@ -165,13 +165,13 @@ impl World {
             let words: Vec<String> =
                 settings.iter().flat_map(|(k, v)| ["--es".into(), k.clone(), v.clone()]).collect();
             let words: Vec<&str> = words.iter().map(String::as_str).collect();
-            match world.start(&activity, &words) {
+            match device.start(&activity, &words) {
                 Ok(said) if !said.starts_with("Error") => {}
                 Ok(said) => ::log::warn!("the replay starts nothing: {}", said.trim()),
                 Err(error) => ::log::warn!("the replay starts nothing: {error}"),
             }
         }
-        world
+        device
     }
 
     /// This computer's clock in seconds since 1970.

@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
-use super::{Application, BOOT_S, LOADING_S, VARIATION, WORN, World};
+use super::{Application, BOOT_S, LOADING_S, SimulatedDevice, VARIATION, WORN};
 use crate::adb::DeviceError;
 use crate::replay::script::Fault;
 use crate::{log, phone};
 use rand::Rng;
 use yoro_files as files;
+use yoro_protocol::PROPERTY_PREFIX;
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{CurrentNormalizer, LOG_TAG, Line};
 
-impl World {
+impl SimulatedDevice {
     /// Installs the application.
     pub fn install(&mut self) -> Result<(), DeviceError> {
         self.reach()?;
@@ -176,7 +177,7 @@ impl World {
         }
         let pairs = extras.chunks_exact(3).map(|words| (words[1].to_owned(), words[2].to_owned()));
         let properties = self.stored.properties.iter().filter_map(|(name, value)| {
-            Some((name.strip_prefix(phone::PROPERTY_PREFIX)?.to_owned(), value.clone()))
+            Some((name.strip_prefix(PROPERTY_PREFIX)?.to_owned(), value.clone()))
         });
         let mut settings = Settings::default();
         for (key, value) in pairs.chain(properties.collect::<Vec<_>>()) {
