@@ -81,7 +81,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
             for (parts, layers) in [(true, false), (false, true), (true, true)] {
                 AnyView::new(
                     gl,
-                    &SynthesisOptions { parts, layers, ..SynthesisOptions::default() },
+                    &SynthesisOptions { parts, array_textures: layers, ..SynthesisOptions::default() },
                     outputs,
                 )?;
             }
@@ -99,7 +99,8 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         if variants == Variants::Extreme && !history {
             continue;
         }
-        let options = SynthesisOptions { parts, layers, history, ..SynthesisOptions::default() };
+        let options =
+            SynthesisOptions { parts, array_textures: layers, history, ..SynthesisOptions::default() };
         for variant in GatherVariant::ALL {
             Gather::with_variant_of(gl, Outputs::default(), variant, &options)?;
         }

@@ -24,14 +24,14 @@ pub(crate) fn with_flags(mut pair: EyePair, flags: YoroEyesFlags) -> Result<EyeP
         return Err(Failure::value(format!("{flags} has bits that are no YORO_EYES_ flags")));
     }
     if flags & YORO_EYES_PARALLEL != 0 {
-        pair = pair.parallelized().ok_or_else(|| {
+        pair = pair.rectified().ok_or_else(|| {
             Failure::new(
                 YORO_ERROR_EYES_CANTED,
                 "the eyes see farther than 80 degrees from their common direction: render both",
             )
         })?;
     }
-    Ok(if flags & YORO_EYES_EVEN != 0 { pair.evened() } else { pair })
+    Ok(if flags & YORO_EYES_EVEN != 0 { pair.row_aligned() } else { pair })
 }
 
 /// The two eyes of a frame, given by poses and angles.

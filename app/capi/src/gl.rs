@@ -380,7 +380,8 @@ impl Gl {
         let context = unsafe { Context::with_loader(entry_points::wrap(load)?, load)? };
         let has = |bit| info.sources & bit != 0;
         let (parts, layers) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
-        let options = SynthesisOptions { edges, gl_state, parts, layers, history: info.history == 1 };
+        let options =
+            SynthesisOptions { edges, gl_state, parts, array_textures: layers, history: info.history == 1 };
         let passes = match pose {
             true => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
             false => Passes::Eyes(synthesis::create(&context, &options, outputs)?),
@@ -438,7 +439,7 @@ impl Gl {
             ));
         }
         let part = self.part(source_size, images)?;
-        if images.layer != 0 && !self.options.layers {
+        if images.layer != 0 && !self.options.array_textures {
             return Err(Failure::value(
                 "layer is for YORO_GL_SOURCE_LAYERS only: set it to 0, or choose array textures",
             ));

@@ -25,9 +25,9 @@ pub(super) fn check_images(
         ));
     }
     let size = source.part.map_or(size, |part| part.image_size);
-    let color_kind = if options.layers { &ARRAY } else { &SINGLE_SAMPLE };
+    let color_kind = if options.array_textures { &ARRAY } else { &SINGLE_SAMPLE };
     let depth_kind = if options.edges == Edges::Multisample { &MULTISAMPLE } else { color_kind };
-    let is_here = |level: &Level| !options.layers || source.layer < level.layers;
+    let is_here = |level: &Level| !options.array_textures || source.layer < level.layers;
     check_texture(context, source.color, "color_texture", color_kind, size, |level| {
         level.is_color() && is_here(level)
     })?;

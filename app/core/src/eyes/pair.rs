@@ -101,8 +101,9 @@ impl EyePair {
         (self.poses[1].position - self.poses[0].position).dot(self.poses[0].right())
     }
 
-    /// Returns the same eyes with frusta of equal width over the same rows. Each frustum contains its original.
-    pub fn evened(&self) -> EyePair {
+    /// Returns the same eyes with frusta of equal width over the same rows, so that rows of pixels are aligned. Each frustum
+    /// contains its original.
+    pub fn row_aligned(&self) -> EyePair {
         let [l, r] = self.frusta;
         let width = l.width().max(r.width());
         let (bottom, top) = (l.bottom.min(r.bottom), l.top.max(r.top));
@@ -113,10 +114,10 @@ impl EyePair {
         EyePair { frusta: self.frusta.map(grown), ..*self }
     }
 
-    /// Returns parallel eyes at the same positions, at right angles to the line between them, with frusta that contain the
-    /// original ones. They serve canted eyes: a view of a parallel eye can be turned back to the canted eye exactly, since
-    /// both have the same centre. `None` if an eye sees further than 80 degrees from the common direction.
-    pub fn parallelized(&self) -> Option<EyePair> {
+    /// Returns the eyes rectified: parallel, at the same positions, at right angles to the line between them, with frusta
+    /// that contain the original ones. They serve canted eyes: a view of a parallel eye can be turned back to the canted
+    /// eye exactly, since both have the same centre. `None` if an eye sees further than 80 degrees from the common direction.
+    pub fn rectified(&self) -> Option<EyePair> {
         let between = self.poses[1].position - self.poses[0].position;
         let x = between.try_normalize().unwrap_or(self.poses[0].right());
         let ahead = self.poses[0].forward() + self.poses[1].forward();
@@ -145,7 +146,7 @@ impl EyePair {
             }
             (pose.orientation, *frustum) = (orientation, seen);
         }
-        Some(eyes.evened())
+        Some(eyes.row_aligned())
     }
 
     /// Returns the focal length along X in pixels.
@@ -439,7 +440,7 @@ mod tests {
         p.frusta[1] = shifted(2.4);
         let error = p.synthesis_views(GuardBand::None).unwrap_err();
         assert!(matches!(error, EyesError::Rows { rows } if (rows - 2.4).abs() < 0.01), "{error}");
-        p.evened().synthesis_views(GuardBand::None).unwrap();
+        p.row_aligned().synthesis_views(GuardBand::None).unwrap();
     }
 
     #[test]
@@ -537,11 +538,11 @@ mod tests {
     }
 
     #[test]
-    fn evened_eyes_contain_the_eyes_and_can_be_synthesized() {
+    fn row_aligned_eyes_contain_the_eyes_and_can_be_synthesized() {
         let mut eyes = pair(Eye::Right);
         eyes.frusta = [Frustum::from_fov(-0.9, 0.7, 0.75, -0.8), Frustum::from_fov(-0.5, 0.8, 0.7, -0.81)];
         assert!(matches!(eyes.synthesis_views(GuardBand::None), Err(EyesError::Density { .. })));
-        let even = eyes.evened();
+        let even = eyes.row_aligned();
         even.synthesis_views(GuardBand::None).unwrap();
         for (grown, own) in even.frusta.iter().zip(&eyes.frusta) {
             assert!(grown.left <= own.left + 1e-6 && grown.right >= own.right - 1e-6, "{grown:?}");
@@ -550,7 +551,7 @@ mod tests {
     }
 
     #[test]
-    fn parallelized_eyes_contain_the_canted_ones() {
+    fn rectified_eyes_contain_the_canted_ones() {
         let mut eyes = pair(Eye::Right);
         eyes.frusta = [Frustum::from_fov(-0.8, 0.7, 0.75, -0.75), Frustum::from_fov(-0.7, 0.8, 0.75, -0.75)];
         // Outwards by 5 degrees each, and the head askew.
@@ -560,7 +561,7 @@ mod tests {
             pose.orientation = head * Quat::from_rotation_y(side * 5f32.to_radians());
         }
         assert!(matches!(eyes.synthesis_views(GuardBand::None), Err(EyesError::Canted { .. })));
-        let parallel = eyes.parallelized().unwrap();
+        let parallel = eyes.rectified().unwrap();
         parallel.synthesis_views(GuardBand::None).unwrap();
         assert!(
             (parallel.ipd() - 0.064).abs() < 1e-6 && parallel.poses[0].position == eyes.poses[0].position
@@ -581,6 +582,6 @@ mod tests {
         }
         // Nearly back to back.
         eyes.poses[1].orientation = Quat::from_rotation_y(-2.5);
-        assert_eq!(eyes.parallelized(), None);
+        assert_eq!(eyes.rectified(), None);
     }
 }

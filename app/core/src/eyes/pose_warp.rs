@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{DepthConvention, EyesError, View};
+use super::{EyesError, View};
 
 /// All that synthesis knows about two views in any poses.
 ///
@@ -40,7 +40,7 @@ impl PoseWarp {
     /// # Errors
     /// [`EyesError::Apart`] if the target sees further than 80 degrees from the source's axis, or only what is beyond the
     /// source's far plane; [`EyesError::Invalid`],
-    /// [`EyesError::NoPixels`], [`EyesError::Empty`] or [`EyesError::Planes`] for a view that is none.
+    /// [`EyesError::NoPixels`], [`EyesError::Empty`] or [`EyesError::Planes`] for an invalid view.
     pub fn new(source: &View, target: &View) -> Result<PoseWarp, EyesError> {
         source.check()?;
         target.check()?;
@@ -70,10 +70,6 @@ impl PoseWarp {
         if near >= f64::from(source.depth.far) {
             return Err(EyesError::Apart);
         }
-        let far_depth = match source.depth.convention {
-            DepthConvention::Standard => 1.0,
-            DepthConvention::Reversed => 0.0,
-        };
         Ok(PoseWarp {
             source_size: source.size,
             target_size: target.size,
@@ -82,7 +78,7 @@ impl PoseWarp {
             source_law: [c, m],
             target_law: [target_c, target_m],
             nearest: (1.0 / near - c) / m,
-            far_depth,
+            far_depth: f64::from(source.depth.clear_value()),
         })
     }
 

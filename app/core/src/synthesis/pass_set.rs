@@ -1,3 +1,5 @@
+//! Which compiled passes serve a kind of warp on a device.
+
 use super::WarpKind;
 
 /// The compiled passes of a pipeline on Vulkan or wgpu.

@@ -133,12 +133,12 @@ fn parts_and_layers_give_the_same_picture() {
                 }
             };
             for (parts, layers) in [(true, false), (false, true), (true, true)] {
-                let options = SynthesisOptions { parts, layers, ..plain };
+                let options = SynthesisOptions { parts, array_textures: layers, ..plain };
                 let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
                 check(&mut *synthesis, 64, &format!("parts {parts}, layers {layers}"), parts, layers);
             }
             // As other drivers would have it.
-            let options = SynthesisOptions { parts: true, layers: true, ..plain };
+            let options = SynthesisOptions { parts: true, array_textures: true, ..plain };
             for variant in [GatherVariant::Plain, GatherVariant::ShortWay] {
                 if edges == Edges::Hard {
                     let mut gather = Gather::with_variant_of(gl, OUTPUTS, variant, &options).unwrap();
@@ -181,7 +181,7 @@ fn the_hosts_array_textures_are_preserved() {
         let options = SynthesisOptions {
             gl_state: GlState::Preserve,
             parts: true,
-            layers: true,
+            array_textures: true,
             ..SynthesisOptions::default()
         };
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
@@ -204,8 +204,11 @@ fn the_hosts_array_textures_are_preserved() {
 #[test]
 fn layers_of_multisample_arrays_are_refused() {
     on_every_backend(|gl| {
-        let options =
-            SynthesisOptions { edges: Edges::Multisample, layers: true, ..SynthesisOptions::default() };
+        let options = SynthesisOptions {
+            edges: Edges::Multisample,
+            array_textures: true,
+            ..SynthesisOptions::default()
+        };
         assert!(matches!(create(gl, &options, OUTPUTS), Err(yoro_gl::GlError::Unsupported(_))));
     });
 }

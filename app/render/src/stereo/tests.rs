@@ -271,7 +271,7 @@ fn an_automatic_band_gives_the_picture_of_a_whole_one() {
             let mut asymmetric = pair(dominant, DepthConvention::Reversed);
             asymmetric.frusta[0].left *= 1.2;
             asymmetric.frusta[1].right *= 1.2;
-            for pair in [pair(dominant, DepthConvention::Standard), asymmetric.evened()] {
+            for pair in [pair(dominant, DepthConvention::Standard), asymmetric.row_aligned()] {
                 let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
                 // A frame is measured two frames later.
                 let [whole, _, part] = [(); 3].map(|()| rig.render(&mut *method, &pair));

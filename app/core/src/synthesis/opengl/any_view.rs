@@ -116,6 +116,6 @@ impl AnyView {
 fn preserving<R>(gl: &Context, options: &SynthesisOptions, body: impl FnOnce() -> R) -> R {
     match options.gl_state {
         GlState::Leave => body(),
-        GlState::Preserve => preserve(gl, Touched { draw_buffers: 1, arrays: options.layers }, body),
+        GlState::Preserve => preserve(gl, Touched { draw_buffers: 1, arrays: options.array_textures }, body),
     }
 }

@@ -100,7 +100,7 @@ impl Layers {
                 gl.capabilities().renderer
             )));
         }
-        if edges == Edges::Multisample && options.layers {
+        if edges == Edges::Multisample && options.array_textures {
             return Err(GlError::Unsupported(
                 "layers of multisample arrays cannot be synthesized; hand over resolved colour and the nearest depth".into(),
             ));

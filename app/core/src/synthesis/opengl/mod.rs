@@ -66,7 +66,7 @@ pub struct Source {
     pub samples: Option<glow::Texture>,
     /// The place of the source in its textures, for a pipeline with [`SynthesisOptions::parts`].
     pub part: Option<Part>,
-    /// The layer of both textures, for a pipeline with [`SynthesisOptions::layers`]; 0 otherwise.
+    /// The layer of both textures, for a pipeline with [`SynthesisOptions::array_textures`]; 0 otherwise.
     pub layer: u32,
     /// What the other eye has seen, for a pipeline with [`SynthesisOptions::history`].
     pub history: Option<History>,
@@ -182,7 +182,7 @@ pub struct SynthesisOptions {
     pub parts: bool,
     /// True if colour and depth are layers of array textures, as those of multiview are ([`Source::layer`]). Not with
     /// [`Edges::Multisample`].
-    pub layers: bool,
+    pub array_textures: bool,
     /// True if sources may have a history ([`Source::history`]).
     pub history: bool,
 }
@@ -199,12 +199,12 @@ impl SynthesisOptions {
 
     /// Returns the preprocessor's macros that select this kind of source.
     fn defines(&self) -> Vec<(&'static str, String)> {
-        defines([("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.layers)])
+        defines([("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.array_textures)])
     }
 
-    /// Binds a texture of the source, which is an array with [`SynthesisOptions::layers`]. The program must be current.
+    /// Binds a texture of the source, which is an array with [`SynthesisOptions::array_textures`]. The program must be current.
     fn bind<'a>(&self, program: &'a Program, name: &str, unit: u32, texture: glow::Texture) -> &'a Program {
-        if self.layers {
+        if self.array_textures {
             program.texture_array(name, unit, texture)
         } else {
             program.texture(name, unit, texture)
@@ -240,7 +240,7 @@ pub fn buffer_bytes(edges: Edges, warp: &Warp) -> u64 {
 /// [`Synthesis::prepare`], or none with [`GlState::Preserve`].
 ///
 /// # Errors
-/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1 or with [`SynthesisOptions::layers`];
+/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1 or with [`SynthesisOptions::array_textures`];
 /// [`GlError::Shader`] if the driver refuses a shader.
 pub fn create(
     gl: &Rc<Context>,
@@ -260,7 +260,7 @@ pub fn create(
     match options.gl_state {
         GlState::Leave => pipeline(),
         GlState::Preserve => {
-            let touched = Touched { draw_buffers, arrays: options.layers };
+            let touched = Touched { draw_buffers, arrays: options.array_textures };
             Ok(Box::new(Preserving::new(gl, touched, pipeline)?))
         }
     }

@@ -236,8 +236,7 @@ impl Shower {
         let (_, image) = self.render(prepared, &source)?;
         let direct = self.show(image, &PoseWarp::new(&source, &target)?)?;
 
-        let mut parallel =
-            eyes.parallelized().ok_or_else(|| anyhow::anyhow!("the eyes are turned too far"))?;
+        let mut parallel = eyes.rectified().ok_or_else(|| anyhow::anyhow!("the eyes are turned too far"))?;
         let (wide, narrow) = (parallel.frusta[Eye::Left.index()], own.frustum);
         parallel.size = [
             (eyes.size[0] as f32 * wide.width() / narrow.width()).ceil() as u32,

@@ -40,7 +40,7 @@ impl Session {
             *frustum = to_frustum(&view.fov)
                 .ok_or_else(|| XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov)))?;
         }
-        // A pose that is none is one that is not known, whatever the flags say.
+        // An invalid pose is not known, whatever the flags say.
         let (Some(left), Some(right)) = (to_pose(&left.pose), to_pose(&right.pose)) else { return Ok(None) };
         let (poses, dominant) = ([left, right], settings.dominant);
         Ok(Some(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant }))
@@ -51,8 +51,8 @@ impl Session {
         let reason = Substitute::reason(viewer.method().first(), &native);
         let aligned = match reason {
             None => None,
-            Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(native.evened()),
-            Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => native.parallelized(),
+            Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(native.row_aligned()),
+            Some(EyesError::Canted { .. } | EyesError::OffAxis { .. }) => native.rectified(),
             Some(_) => None,
         };
         let growth = |eyes: &EyePair| {
