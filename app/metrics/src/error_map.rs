@@ -1,3 +1,5 @@
+//! Error maps: the error at each pixel as a colour.
+
 use image::{Rgb, RgbImage};
 
 use super::input::MetricsError;

@@ -1,3 +1,5 @@
+//! Flicker: the unwanted change from frame to frame.
+
 use image::RgbImage;
 
 use super::input::{MetricsError, check_mask, check_sizes};

@@ -1,3 +1,5 @@
+//! FLIP: the difference that is seen when two images alternate.
+
 use image::RgbImage;
 use rayon::prelude::*;
 

@@ -1,3 +1,5 @@
+//! PSNR: the peak signal-to-noise ratio.
+
 use std::fmt;
 
 use image::RgbImage;

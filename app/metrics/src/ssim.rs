@@ -1,3 +1,5 @@
+//! SSIM: structural similarity.
+
 use image::RgbImage;
 use rayon::prelude::*;
 

@@ -1,3 +1,5 @@
+//! H.264 encoders and decoder, by openh264.
+
 use image::GrayImage;
 use openh264::OpenH264API;
 use openh264::encoder::{

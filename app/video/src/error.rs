@@ -1,3 +1,5 @@
+//! The errors of videos.
+
 use std::path::{Path, PathBuf};
 
 use yoro_files::FileError;

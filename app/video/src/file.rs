@@ -1,3 +1,5 @@
+//! MP4 files: written picture by picture, and read and decoded.
+
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom, Write};
 use std::num::NonZeroU32;

@@ -1,3 +1,5 @@
+//! Where the pictures of an MP4 file are, and what it says of their depth.
+
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 

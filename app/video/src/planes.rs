@@ -1,3 +1,5 @@
+//! Pictures in the form that encoders take: luma and two colour differences.
+
 use image::{GrayImage, Luma, Rgb, RgbImage};
 
 /// A picture as video coders take it, in 4:2:0, rows from the top.

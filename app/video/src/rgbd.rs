@@ -1,3 +1,5 @@
+//! What an RGBD video says of its depth, as a box in the MP4 file.
+
 use image::{GrayImage, Luma, RgbImage};
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{
