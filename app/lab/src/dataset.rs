@@ -165,9 +165,7 @@ impl GroupRenderer {
         pair: &EyePair,
     ) -> Result<SourceImage, GroupError> {
         let views = pair.synthesis_views(self.options.guard_band)?;
-        let color = self.render_view(renderer, scene, &views.source)?;
-        let (color, depth) = (picture::rgb_image(&color, views.source.size), self.depth.read());
-        let depth = depth_image(&depth, views.source.size);
+        let (color, depth) = self.images(renderer, scene, &views.source)?;
         Ok(SourceImage { views, color, depth, depth_range: pair.depth })
     }
 
@@ -180,7 +178,16 @@ impl GroupRenderer {
         prepared: &mut PreparedScene,
         view: &View,
     ) -> Result<(RgbImage, DepthImage), GlError> {
-        let color = self.render_view(&mut prepared.renderer, &prepared.scene, view)?;
+        self.images(&mut prepared.renderer, &prepared.scene, view)
+    }
+
+    fn images(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        view: &View,
+    ) -> Result<(RgbImage, DepthImage), GlError> {
+        let color = self.render_view(renderer, scene, view)?;
         Ok((picture::rgb_image(&color, view.size), depth_image(&self.depth.read(), view.size)))
     }
 

@@ -9,10 +9,11 @@ use std::rc::Rc;
 use anyhow::ensure;
 
 use super::record::metric;
+use super::views::synthesize;
 use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
-use yoro::synthesis::{Gather, Source, Synthesis, Uniforms};
-use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
-use yoro_render::{PreparedScene, Selection, ViewTargets};
+use yoro::synthesis::{Gather, Synthesis, Uniforms};
+use yoro_gl::{Context, Filter, Format, RenderTarget};
+use yoro_render::{PreparedScene, ViewTargets};
 
 /// Costs of the passes' parts on each GPU, by name; written by `cargo tools shader-cost --bless`.
 const COSTS: &str = include_str!("gather-cost.csv");
@@ -241,11 +242,7 @@ impl<S: Synthesis> Counting<S> {
         pair: &EyePair,
     ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
         let views = pair.synthesis_views(GuardBand::Distance(1.0))?;
-        let PreparedScene { renderer, scene } = prepared;
-        let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
-        self.counts.resize(pair.size)?;
-        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
-        self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.counts))?;
+        synthesize(&mut self.synthesis, &mut self.targets, prepared, &views, &mut self.counts)?;
         Ok((views, self.counts.read_rgba8(0, [0, 0], pair.size)))
     }
 }

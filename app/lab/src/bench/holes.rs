@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
+use super::views::synthesize;
 use yoro::eyes::{EyePair, GuardBand};
-use yoro::synthesis::{self, Outputs, SOURCE_MAP_HOLE, Source, Synthesis, SynthesisOptions};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use yoro_render::PreparedScene;
+use yoro::synthesis::{self, Outputs, SOURCE_MAP_HOLE, Synthesis, SynthesisOptions};
+use yoro_gl::{Context, Filter, Format, GlError, RenderTarget};
 use yoro_render::stereo::StereoError;
-use yoro_render::{Selection, ViewTargets};
+use yoro_render::{PreparedScene, ViewTargets};
 
 /// Finds holes from the depth of the dominant eye's own image, without a guard band: one mask for all contenders,
 /// whatever they do about holes. The outer border is part of it.
@@ -38,11 +38,7 @@ impl HoleFinder {
     /// [`StereoError`] for eyes that cannot be synthesized, or when GL refuses.
     pub fn find(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> Result<Vec<bool>, StereoError> {
         let views = pair.synthesis_views(GuardBand::None)?;
-        let PreparedScene { renderer, scene } = prepared;
-        let rendered = renderer.render(&mut self.targets, scene, &views.source, Selection::All)?;
-        self.map.resize(pair.size)?;
-        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
-        self.synthesis.synthesize(source, &views.warp, &Destination::whole(&self.map))?;
+        synthesize(&mut *self.synthesis, &mut self.targets, prepared, &views, &mut self.map)?;
         let entries = self.map.read_u32(1, [0, 0], pair.size);
         let rows = entries.chunks_exact(pair.size[0] as usize).rev();
         Ok(rows.flatten().map(|entry| entry & SOURCE_MAP_HOLE != 0).collect())

@@ -285,20 +285,7 @@ impl Choices {
             Suite::Resolution => self.resolution(plan(both, all)),
             Suite::AntiAliasing => {
                 let baselines = vec![Contender::CONVENTIONAL, Contender::MONO];
-                let contenders = [baselines, Contender::edges()].concat();
-                plan(both, contenders).over(
-                    self.scenes(&every),
-                    SMOOTHING,
-                    |job, (label, renderer, anti_aliasing)| {
-                        job.setting.label = Some(label.to_owned());
-                        job.render.renderer = renderer;
-                        job.anti_aliasing = Some(anti_aliasing);
-                        // Without samples there is one thing to say of edges.
-                        let says_more =
-                            |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
-                        job.contenders.retain(|c| renderer == RendererKind::Forward || !says_more(c));
-                    },
-                )
+                self.anti_aliasing(plan(both, [baselines, Contender::edges()].concat()), &every)
             }
             Suite::Flicker => {
                 // With samples at the edges, flicker depends on what the synthesis is told of them: one pipeline only.
@@ -316,73 +303,17 @@ impl Choices {
             }
             Suite::History => {
                 let contenders = [vec![Contender::MONO], Contender::histories()].concat();
-                let scenes = if self.quick { &QUICK_SCENES[..] } else { &HISTORY_SCENES };
-                plan(Measure::History(Motion::Still), contenders).over(
-                    self.scenes(scenes),
-                    Motion::ALL,
-                    |job, motion| {
-                        job.measure = Measure::History(motion);
-                        job.setting.label = Some(motion.name().to_owned());
-                        job.frames = HISTORY_FRAMES[usize::from(self.quick)];
-                    },
-                )
+                self.history(plan(Measure::History(Motion::Still), contenders))
             }
             Suite::Reprojection => {
-                let late = |motion| [1, 2, 3, 4].map(|frames| Displaced::Late(motion, frames));
-                let poses = [vec![Displaced::Canted], late(Motion::Sway).into(), late(Motion::Walk).into()];
-                let scenes = if self.quick { &QUICK_SCENES[..] } else { &VARIED_SCENES };
-                plan(Measure::Reprojection(Displaced::Canted), Vec::new()).over(
-                    self.scenes(scenes),
-                    poses.concat(),
-                    |job, displaced| {
-                        // Ways to show a render take part, not methods.
-                        job.contenders.clear();
-                        job.measure = Measure::Reprojection(displaced);
-                        job.setting.label = Some(match displaced {
-                            Displaced::Canted => "canted eyes".to_owned(),
-                            Displaced::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
-                        });
-                    },
-                )
+                self.reprojection(plan(Measure::Reprojection(Displaced::Canted), Vec::new()))
             }
             Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
-            Suite::Stream => {
-                let scenes = if self.quick { &QUICK_SCENES[..] } else { &STREAM_SCENES };
-                plan(Measure::Stream(0), Vec::new()).over(self.scenes(scenes), STREAM_DELAYS, |job, late| {
-                    // Modes take part, not methods.
-                    job.contenders.clear();
-                    job.measure = Measure::Stream(late);
-                    job.setting.label = Some(format!("{late} late"));
-                    job.frames = STREAM_FRAMES[usize::from(self.quick)];
-                })
+            Suite::Stream => self.stream(plan(Measure::Stream(0), Vec::new())),
+            Suite::ShaderCost if self.whole_frames => {
+                self.whole_frames(plan(Measure::WholeFrames, vec![Contender::CONVENTIONAL]), &every)
             }
-            Suite::ShaderCost if self.whole_frames => plan(
-                Measure::WholeFrames,
-                vec![Contender::CONVENTIONAL],
-            )
-            .over(self.scenes(&every), RendererKind::ALL, |job, renderer| {
-                job.setting.suite = frame::SUITE.to_owned();
-                job.setting.label = Some(renderer.name().to_owned());
-                job.render.renderer = renderer;
-                job.contenders = frame::contenders(renderer);
-            }),
-            Suite::ShaderCost => {
-                let measure = Measure::Executed(DEVICES[0]);
-                plan(measure, Vec::new()).over(self.scenes(&every), DEVICES, |job, device| {
-                    // GPUs take part, not methods.
-                    job.contenders.clear();
-                    job.measure = Measure::Executed(device);
-                    // Depth is all that counts.
-                    job.render = RenderSettings {
-                        ssao: false,
-                        bloom: false,
-                        shadow_map_size: 0,
-                        ..job.render.clone()
-                    };
-                    job.eyes.size = device.size;
-                    job.setting.label = Some(device.name.to_owned());
-                })
-            }
+            Suite::ShaderCost => self.executed(plan(Measure::Executed(DEVICES[0]), Vec::new()), &every),
             Suite::All => {
                 let each = Suite::ALL.iter().map(|suite| self.jobs(*suite, object));
                 Ok(each.collect::<anyhow::Result<Vec<_>>>()?.concat())
@@ -428,6 +359,41 @@ impl Choices {
         })
     }
 
+    fn anti_aliasing(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        plan.over(self.scenes(scenes), SMOOTHING, |job, (label, renderer, anti_aliasing)| {
+            job.setting.label = Some(label.to_owned());
+            job.render.renderer = renderer;
+            job.anti_aliasing = Some(anti_aliasing);
+            // Without samples there is one thing to say of edges.
+            let says_more = |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
+            job.contenders.retain(|c| renderer == RendererKind::Forward || !says_more(c));
+        })
+    }
+
+    fn history(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+        let scenes = if self.quick { &QUICK_SCENES[..] } else { &HISTORY_SCENES };
+        plan.over(self.scenes(scenes), Motion::ALL, |job, motion| {
+            job.measure = Measure::History(motion);
+            job.setting.label = Some(motion.name().to_owned());
+            job.frames = HISTORY_FRAMES[usize::from(self.quick)];
+        })
+    }
+
+    fn reprojection(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+        let late = |motion| [1, 2, 3, 4].map(|frames| Displaced::Late(motion, frames));
+        let poses = [vec![Displaced::Canted], late(Motion::Sway).into(), late(Motion::Walk).into()];
+        let scenes = if self.quick { &QUICK_SCENES[..] } else { &VARIED_SCENES };
+        plan.over(self.scenes(scenes), poses.concat(), |job, displaced| {
+            // Ways to show a render take part, not methods.
+            job.contenders.clear();
+            job.measure = Measure::Reprojection(displaced);
+            job.setting.label = Some(match displaced {
+                Displaced::Canted => "canted eyes".to_owned(),
+                Displaced::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
+            });
+        })
+    }
+
     fn bandwidth(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
         plan.over(self.scenes(scenes), [()], |job, ()| {
             // Streams take part, not methods.
@@ -436,6 +402,39 @@ impl Choices {
             if self.quick {
                 job.bandwidth.quantizers = vec![22, 28, 34, 40];
             }
+        })
+    }
+
+    fn stream(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+        let scenes = if self.quick { &QUICK_SCENES[..] } else { &STREAM_SCENES };
+        plan.over(self.scenes(scenes), STREAM_DELAYS, |job, late| {
+            // Modes take part, not methods.
+            job.contenders.clear();
+            job.measure = Measure::Stream(late);
+            job.setting.label = Some(format!("{late} late"));
+            job.frames = STREAM_FRAMES[usize::from(self.quick)];
+        })
+    }
+
+    fn whole_frames(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        plan.over(self.scenes(scenes), RendererKind::ALL, |job, renderer| {
+            job.setting.suite = frame::SUITE.to_owned();
+            job.setting.label = Some(renderer.name().to_owned());
+            job.render.renderer = renderer;
+            job.contenders = frame::contenders(renderer);
+        })
+    }
+
+    fn executed(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        plan.over(self.scenes(scenes), DEVICES, |job, device| {
+            // GPUs take part, not methods.
+            job.contenders.clear();
+            job.measure = Measure::Executed(device);
+            // Depth is all that counts.
+            job.render =
+                RenderSettings { ssao: false, bloom: false, shadow_map_size: 0, ..job.render.clone() };
+            job.eyes.size = device.size;
+            job.setting.label = Some(device.name.to_owned());
         })
     }
 

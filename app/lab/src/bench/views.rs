@@ -5,8 +5,11 @@ use anyhow::{bail, ensure};
 use super::motion::Motion;
 use super::record::SceneFacts;
 use super::suite::{Job, Source};
-use yoro::eyes::{EyePair, Pose};
-use yoro_render::PreparedScene;
+use yoro::eyes::{EyePair, Pose, SynthesisViews};
+use yoro::synthesis::{self, Synthesis};
+use yoro_gl::{Destination, RenderTarget};
+use yoro_render::stereo::StereoError;
+use yoro_render::{PreparedScene, Selection, ViewTargets};
 use yoro_scene::CameraPath;
 use yoro_scenes::BUILTINS;
 
@@ -21,6 +24,24 @@ pub(super) const HEADSET_RATE: f64 = 72.0;
 
 /// Frames before the measured ones of a moving head: the history is filled by then.
 const SETTLING: usize = 12;
+
+/// Renders the source of some views and synthesizes the other eye into `to`, which gets that eye's size.
+///
+/// # Errors
+/// [`StereoError`] when GL refuses.
+pub(super) fn synthesize(
+    pipeline: &mut dyn Synthesis,
+    targets: &mut ViewTargets,
+    prepared: &mut PreparedScene,
+    views: &SynthesisViews,
+    to: &mut RenderTarget,
+) -> Result<(), StereoError> {
+    let PreparedScene { renderer, scene } = prepared;
+    let rendered = renderer.render(targets, scene, &views.source, Selection::All)?;
+    to.resize(views.target.size)?;
+    let source = synthesis::Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
+    Ok(pipeline.synthesize(source, &views.warp, &Destination::whole(to))?)
+}
 
 /// Returns `wanted` of `count` indices, evenly spread from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
