@@ -122,14 +122,7 @@ fn run(args: &ViewArgs) -> anyhow::Result<()> {
         frame(&mut viewer)?;
     } else {
         let bar = progress_bar(FRAMES as u64);
-        while viewer.viewer().scene_state() != SceneState::Ready {
-            interrupt::check()?;
-            viewer.viewer_mut().poll_scene();
-            if viewer.viewer().scene_state() == SceneState::Failed {
-                bail!(viewer.viewer().failure().unwrap_or_default().to_owned());
-            }
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        wait_for_first_scene(&mut viewer)?;
         for _ in 0..FRAMES {
             interrupt::check()?;
             frame(&mut viewer)?;
@@ -138,34 +131,10 @@ fn run(args: &ViewArgs) -> anyhow::Result<()> {
         bar.finish_and_clear();
         for act in &args.acts {
             interrupt::check()?;
-            let mut frames = 1;
-            match *act {
-                Act::Event(event) => println!("{}", viewer.event(event)?),
-                Act::Look { yaw, pitch } => {
-                    let turn = Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
-                    viewer.hold_head(Some(HeldHead { rendered: turn, displayed: turn }));
-                }
-                Act::StartScreen => {
-                    viewer.viewer_mut().offer_start_screen();
-                    println!("{}", viewer.viewer_mut().show_start_screen(""));
-                }
-                Act::Touch { x, y } => {
-                    let at = [x * args.screen[0] as f32, y * args.screen[1] as f32];
-                    if let Some(action) = viewer.touch(Some(at))? {
-                        println!("{action}");
-                    }
-                }
-                Act::Wait { seconds } => frames = (seconds * REFRESH_HZ).ceil() as u32,
-            }
-            for _ in 0..frames {
+            for _ in 0..act.begin(&mut viewer, args.screen)? {
                 frame(&mut viewer)?;
             }
-            // Another scene is on its way.
-            while viewer.viewer().is_loading() {
-                interrupt::check()?;
-                viewer.viewer_mut().poll_scene();
-                std::thread::sleep(Duration::from_millis(5));
-            }
+            wait_for_other_scene(&mut viewer)?;
         }
         if let Some(kept) = viewer.viewer_mut().take_kept() {
             kept.iter().for_each(|(key, value)| println!("{key}={value}"));
@@ -180,6 +149,32 @@ fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let pixels = window.read_rgba8(0, [0, 0], args.screen);
     picture::save_color(&args.png, &rgb_image(&pixels, args.screen))?;
     println!("{}", args.png.display());
+    Ok(())
+}
+
+/// Waits until the scene is ready to be drawn.
+fn wait_for_first_scene(viewer: &mut Cardboard) -> anyhow::Result<()> {
+    while viewer.viewer().scene_state() != SceneState::Ready {
+        poll_scene(viewer)?;
+        if viewer.viewer().scene_state() == SceneState::Failed {
+            bail!(viewer.viewer().failure().unwrap_or_default().to_owned());
+        }
+    }
+    Ok(())
+}
+
+/// Waits until the scene that an action has asked for is there, if it has.
+fn wait_for_other_scene(viewer: &mut Cardboard) -> anyhow::Result<()> {
+    while viewer.viewer().is_loading() {
+        poll_scene(viewer)?;
+    }
+    Ok(())
+}
+
+fn poll_scene(viewer: &mut Cardboard) -> anyhow::Result<()> {
+    interrupt::check()?;
+    viewer.viewer_mut().poll_scene();
+    std::thread::sleep(Duration::from_millis(5));
     Ok(())
 }
 
@@ -201,6 +196,31 @@ enum Act {
         x: f32,
         y: f32,
     },
+}
+
+impl Act {
+    /// Begins the action on a screen of this size in pixels. Returns the number of frames that it lasts.
+    fn begin(self, viewer: &mut Cardboard, screen: [u32; 2]) -> anyhow::Result<u32> {
+        match self {
+            Act::Event(event) => println!("{}", viewer.event(event)?),
+            Act::Look { yaw, pitch } => {
+                let turn = Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
+                viewer.hold_head(Some(HeldHead { rendered: turn, displayed: turn }));
+            }
+            Act::StartScreen => {
+                viewer.viewer_mut().offer_start_screen();
+                println!("{}", viewer.viewer_mut().show_start_screen(""));
+            }
+            Act::Touch { x, y } => {
+                let at = [x * screen[0] as f32, y * screen[1] as f32];
+                if let Some(action) = viewer.touch(Some(at))? {
+                    println!("{action}");
+                }
+            }
+            Act::Wait { seconds } => return Ok((seconds * REFRESH_HZ).ceil() as u32),
+        }
+        Ok(1)
+    }
 }
 
 fn parse_act(text: &str) -> Result<Act, String> {
