@@ -10,7 +10,7 @@ use anyhow::bail;
 
 use crate::folders::{make_once, target_folder};
 use crate::monado;
-use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
+use crate::packages::{quoted, write_launcher};
 
 const RELEASE: &str = "sid";
 /// A runtime and an application of different versions do not talk to each other.
@@ -42,13 +42,7 @@ pub fn make() -> anyhow::Result<PathBuf> {
     let root = folder.join("root");
     make_once(&folder, &format!("{RELEASE} {}\n", PACKAGES.join(" ")), || {
         eprintln!("fetching Godot for its tests: 200 MB, once");
-        let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
-        apt.update()?;
-        for package in apt.download(&PACKAGES.map(str::to_owned))? {
-            unpack(&package, &root, &[], &monado::WITHOUT)?;
-        }
-        apt.remove();
-        Ok(())
+        monado::unpack_with_needs(&folder, &root, RELEASE, &PACKAGES.map(str::to_owned))
     })?;
     write_programs(&folder, &root)?;
     Ok(folder)

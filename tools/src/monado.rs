@@ -19,7 +19,7 @@ const MONADO: [&str; 2] = ["monado-service=25.0.0+dfsg-2", "libopenxr1-monado=25
 /// Its drivers: lavapipe, and EGL for the application.
 const MESA: [&str; 5] = ["mesa-vulkan-drivers", "libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri"];
 /// Needed by nothing here, and large.
-pub const WITHOUT: [&str; 12] = [
+const WITHOUT: [&str; 12] = [
     "./usr/share/doc/*",
     "./usr/share/man/*",
     "./usr/share/locale/*",
@@ -65,16 +65,30 @@ pub fn make() -> anyhow::Result<PathBuf> {
     let packages: Vec<String> = MONADO.iter().chain(&MESA).map(|&package| package.to_owned()).collect();
     make_once(&folder, &format!("{RELEASE} {}\n", packages.join(" ")), || {
         eprintln!("fetching Monado for the tests: 170 MB, once");
-        let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[RELEASE])?))?;
-        apt.update()?;
-        for package in apt.download(&packages)? {
-            unpack(&package, &root, &[], &WITHOUT)?;
-        }
-        apt.remove();
-        Ok(())
+        unpack_with_needs(&folder, &root, RELEASE, &packages)
     })?;
     write_programs(&folder, &root)?;
     Ok(folder)
+}
+
+/// Unpacks packages of one of Debian's releases, with all that they need, into `root`. `folder` holds what is downloaded
+/// meanwhile.
+///
+/// # Errors
+/// When they cannot be had.
+pub fn unpack_with_needs(
+    folder: &Path,
+    root: &Path,
+    release: &str,
+    packages: &[String],
+) -> anyhow::Result<()> {
+    let apt = PrivateApt::new(folder.join("apt"), &["amd64"], Some(&debian_sources(&[release])?))?;
+    apt.update()?;
+    for package in apt.download(packages)? {
+        unpack(&package, root, &[], &WITHOUT)?;
+    }
+    apt.remove();
+    Ok(())
 }
 
 /// The beginning of a command line that gives a program the libraries of this root, after those in the folders `first`.

@@ -50,6 +50,13 @@ impl Stage {
     }
 }
 
+/// Returns all scenes with the deferred renderer, and the small one with the forward renderer.
+fn scenes_and_renderers() -> impl Iterator<Item = (Scene, RendererKind)> {
+    let small = scenes().swap_remove(0);
+    let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));
+    deferred.chain([(small, RendererKind::Forward)])
+}
+
 /// Parallel and canted eyes, symmetric and asymmetric frusta, both conventions and dominant eyes; fewer for a scene
 /// that takes longer.
 fn pairs(stage: &Stage) -> Vec<(&'static str, EyePair)> {
@@ -103,9 +110,7 @@ fn single_pass_stereo_equals_two_renders() {
     on_every_backend(|gl| {
         // Anti-aliasing turns one pixel with a differently rounded edge into several.
         let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
-        let small = scenes().swap_remove(0);
-        let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));
-        for (scene, renderer) in deferred.chain([(small, RendererKind::Forward)]) {
+        for (scene, renderer) in scenes_and_renderers() {
             let mut stage = Stage::of(gl, scene, renderer)?;
             for (name, pair) in pairs(&stage) {
                 let expected = stage.render(Method::Conventional, &options, &pair)?;
@@ -198,9 +203,7 @@ fn the_far_field_of_hybrid_is_the_same_for_both_eyes() {
 #[test]
 fn hybrid_with_a_split_is_close_to_conventional() {
     on_every_backend(|gl| {
-        let small = scenes().swap_remove(0);
-        let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));
-        for (scene, renderer) in deferred.chain([(small, RendererKind::Forward)]) {
+        for (scene, renderer) in scenes_and_renderers() {
             let mut stage = Stage::of(gl, scene, renderer)?;
             for (name, pair) in pairs(&stage).into_iter().filter(|(name, _)| *name != "canted") {
                 // Squares and floor of the small scene lie on both sides of 3 metres, the room on both of 7.
