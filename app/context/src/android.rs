@@ -232,7 +232,7 @@ impl Drop for Window {
     }
 }
 
-/// A configuration of exactly 8 bits per channel: EGL lists those with more bits first, which cost more bandwidth
+/// Returns a configuration of exactly 8 bits per channel: EGL lists those with more bits first, which cost more bandwidth
 /// and show no more of an 8-bit picture. Without alpha, if there is one: nothing shines through the window.
 fn choose(egl: &Egl, display: egl::Display, renderable: egl::Int) -> Option<egl::Config> {
     let attributes = [

@@ -117,7 +117,7 @@ impl EglContext {
         [self.display.as_ptr(), self.config.as_ptr(), self.context.as_ptr()]
     }
 
-    /// A GL function by name, or null.
+    /// Returns a GL function by name, or null.
     pub(super) fn entry_point(&self, name: &CStr) -> *const c_void {
         let function = name.to_str().ok().and_then(|name| self.egl.get_proc_address(name));
         function.map_or(std::ptr::null(), |f| f as *const c_void)

@@ -23,7 +23,7 @@ impl Backend {
     /// All of them.
     pub const ALL: [Backend; 3] = [Backend::Auto, Backend::Egl, Backend::Osmesa];
 
-    /// Its name in settings.
+    /// Returns its name in settings.
     pub fn name(self) -> &'static str {
         match self {
             Backend::Auto => "auto",

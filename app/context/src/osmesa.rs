@@ -79,7 +79,7 @@ impl OsmesaContext {
 }
 
 impl OsmesaContext {
-    /// A GL function by name, or null.
+    /// Returns a GL function by name, or null.
     pub(super) fn entry_point(&self, name: &CStr) -> *const c_void {
         // SAFETY: the library is still loaded; the name ends with a zero.
         unsafe { (self.get_proc_address)(name.as_ptr()) }

@@ -374,7 +374,7 @@ pub trait Device: Send {
     /// Tries to reconnect a lost device. The next command shows if that has worked.
     fn reconnect(&self);
 
-    /// Seconds since 1970 by this computer's clock, without jumps.
+    /// Returns the seconds since 1970 by this computer's clock, without jumps.
     fn now(&self) -> f64;
 
     /// Waits, or less if the user asks to stop.

@@ -31,17 +31,17 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// A name or a fact.
+    /// Returns a name or a fact.
     pub fn plain(text: impl Into<String>) -> Cell {
         Cell { text: text.into(), kind: Kind::Plain, span: 1 }
     }
 
-    /// A figure of ours; a dash without one.
+    /// Returns a figure of ours; a dash without one.
     pub fn ours(value: Option<impl Into<String>>) -> Cell {
         Cell { text: or_dash(value), kind: Kind::Ours, span: 1 }
     }
 
-    /// A baseline; a dash without one.
+    /// Returns a baseline; a dash without one.
     pub fn base(value: Option<impl Into<String>>) -> Cell {
         Cell { text: or_dash(value), kind: Kind::Base, span: 1 }
     }

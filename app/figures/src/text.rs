@@ -16,7 +16,7 @@ pub fn short_count(count: u64) -> String {
     }
 }
 
-/// A number with so many decimals.
+/// Returns a number with so many decimals.
 pub fn fixed(value: Option<f64>, decimals: usize) -> Option<String> {
     value.map(|value| format!("{value:.decimals$}"))
 }

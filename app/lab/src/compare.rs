@@ -213,7 +213,7 @@ impl CompareReport {
         Ok(CompareReport { settings: &SETTINGS, pairs, mean, unmatched })
     }
 
-    /// A table for a terminal.
+    /// Returns a table for a terminal.
     pub fn to_text(&self) -> String {
         let names: Vec<String> = self.pairs.iter().map(|pair| pair.name.display().to_string()).collect();
         let mean_name = format!("mean of {}", self.pairs.len());

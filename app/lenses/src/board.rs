@@ -58,7 +58,7 @@ pub fn board_pose(head: Pose) -> Pose {
     Pose { position: head.position + orientation * Vec3::NEG_Z * DISTANCE, orientation }
 }
 
-/// Size of the panel in metres.
+/// Returns the size of the panel in metres.
 pub fn board_metres() -> [f32; 2] {
     let width = 2.0 * DISTANCE * (WIDTH_DEGREES.to_radians() / 2.0).tan();
     [width, width * SIZE[1] as f32 / SIZE[0] as f32]

@@ -174,7 +174,7 @@ impl HeadTracker {
     const LARGEST_NORM_CHANGE: f64 = 0.15;
     const LONGEST_PREDICTION: f64 = 0.1;
 
-    /// A tracker without any sample yet.
+    /// Returns a tracker without any sample yet.
     pub fn new(rotation: Rotation) -> HeadTracker {
         HeadTracker {
             rotation,
@@ -306,7 +306,7 @@ impl HeadTracker {
         self.screen_from_world.is_some()
     }
 
-    /// Time of the newest sample in nanoseconds, 0 without any.
+    /// Returns the time of the newest sample in nanoseconds, 0 without any.
     pub fn newest_ns(&self) -> i64 {
         self.newest_ns
     }

@@ -150,12 +150,12 @@ impl Panel<'_> {
     /// The largest size of a panel in pixels.
     pub const MAX_SIZE: [u32; 2] = [SIZE[0] as u32, SIZE[1] as u32];
 
-    /// Size in pixels.
+    /// Returns the size in pixels.
     pub fn size(&self) -> [u32; 2] {
         [SIZE[0], self.hud.used].map(|n| n as u32)
     }
 
-    /// Size in metres.
+    /// Returns the size in metres.
     pub fn metres(&self) -> [f32; 2] {
         let width = WIDTH * DISTANCE;
         [width, width * self.hud.used as f32 / SIZE[0] as f32]
@@ -195,7 +195,7 @@ impl Panel<'_> {
     }
 }
 
-/// Tangent of the panel's centre.
+/// Returns the tangent of the panel's centre.
 fn below(placement: Placement) -> f32 {
     match placement {
         Placement::Below => -BELOW,
@@ -203,7 +203,7 @@ fn below(placement: Placement) -> f32 {
     }
 }
 
-/// Origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
+/// Returns the origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
 fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([u32; 2], [u32; 2]) {
     let frustum = &pair.frusta[eye.index()];
     let height = WIDTH * used as f32 / SIZE[0] as f32;

@@ -87,7 +87,7 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Width and height in metres; those of a typical phone when `dpi` is implausible.
+    /// Returns the width and height in metres; those of a typical phone when `dpi` is implausible.
     pub fn metres(&self) -> [f32; 2] {
         let metres = [0, 1].map(|i| self.size[i] as f32 / self.dpi[i] * 0.0254);
         // Phones and tablets lie well inside; some devices report 0, or 160 for everything.
@@ -129,12 +129,12 @@ impl Optics {
         &self.params
     }
 
-    /// Width and height of the screen in metres.
+    /// Returns the width and height of the screen in metres.
     pub fn screen(&self) -> [f32; 2] {
         self.screen
     }
 
-    /// Height of the lenses' centres above the screen's lower edge, in metres.
+    /// Returns the height of the lenses' centres above the screen's lower edge, in metres.
     fn lens_height(&self) -> f32 {
         let from_tray = self.params.tray_to_lens - BORDER;
         match self.params.alignment {
@@ -150,7 +150,7 @@ impl Optics {
         Vec2::new(x, self.lens_height())
     }
 
-    /// Half-angles of an eye in radians: left, right, bottom, top. What the lens shows of the screen, but not
+    /// Returns the half-angles of an eye in radians: left, right, bottom, top. What the lens shows of the screen, but not
     /// more than the viewer allows.
     pub fn half_angles(&self, eye: Eye) -> [f32; 4] {
         let [width, height] = self.screen;
@@ -176,7 +176,7 @@ impl Optics {
         Frustum::from_fov(-left, right, top, -bottom)
     }
 
-    /// Pixels of an eye's image at which one of them is one pixel of the screen at the lens's centre.
+    /// Returns the pixels of an eye's image at which one of them is one pixel of the screen at the lens's centre.
     pub fn full_size(&self, screen_pixels: [u32; 2]) -> [f32; 2] {
         let frustum = self.frustum(Eye::Left);
         let per_tangent =

@@ -80,7 +80,7 @@ pub struct ScreenSize {
 pub struct ScreenSizeError;
 
 impl ScreenSize {
-    /// Width and height in metres.
+    /// Returns the width and height in metres.
     pub fn metres(self) -> [f32; 2] {
         self.millimetres.map(|length| length * 1e-3)
     }

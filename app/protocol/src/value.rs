@@ -25,7 +25,7 @@ impl Choice {
     }
 }
 
-/// A value without the quotes of TOML. Numbers are shown as they were given, not as doubles.
+/// Returns a value without the quotes of TOML. Numbers are shown as they were given, not as doubles.
 pub(crate) fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

@@ -26,7 +26,7 @@ const LEAST_FLOOR: f32 = 0.5;
 /// Point lights made up at most; what the renderer takes.
 const MAX_LIGHTS: usize = 16;
 
-/// Viewpoints and a word on how they were found. Models larger than a few metres are walked through: where there
+/// Returns viewpoints and a word on how they were found. Models larger than a few metres are walked through: where there
 /// is a floor with room above and something to see around. Smaller ones, those without such places, and those of which
 /// a walk would show too little are circled.
 pub(super) fn viewpoints(model: &Model, rays: &Rays) -> (Vec<Viewpoint>, &'static str) {
@@ -120,7 +120,7 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
     viewpoints
 }
 
-/// Share of a view of 60 degrees, 0 to 1, that shows the model.
+/// Returns the share of a view of 60 degrees, 0 to 1, that shows the model.
 fn seen(viewpoint: &Viewpoint, rays: &Rays, reach: f32) -> f32 {
     const GRID: usize = 6;
     let orientation = viewpoint.pose().orientation;
@@ -131,7 +131,7 @@ fn seen(viewpoint: &Viewpoint, rays: &Rays, reach: f32) -> f32 {
     hits as f32 / (GRID * GRID) as f32
 }
 
-/// A way from the best place to the nearest that can be seen from there and so on: a camera path along it stays
+/// Returns a way from the best place to the nearest that can be seen from there and so on: a camera path along it stays
 /// clear of walls.
 fn route(places: &[Place], apart: f32, rays: &Rays) -> Vec<Vec3> {
     let mut eyes = vec![places[0].eye];
@@ -147,7 +147,7 @@ fn route(places: &[Place], apart: f32, rays: &Rays) -> Vec<Vec3> {
     eyes
 }
 
-/// Eye positions above every floor of a column, from the top, that has room for a head above.
+/// Returns eye positions above every floor of a column, from the top, that has room for a head above.
 fn floors(bounds: &Bounds, rays: &Rays, column: Vec2, reach: f32) -> impl Iterator<Item = Vec3> {
     let mut found = Vec::new();
     let mut ceiling = f32::INFINITY;
@@ -189,7 +189,7 @@ fn place(eye: Vec3, rays: &Rays, reach: f32) -> Option<Place> {
     (distances[0] >= 0.5).then_some(Place { eye, score })
 }
 
-/// Sun, sky and point lights for a model that states none. Glowing surfaces become point lights. Where the
+/// Returns sun, sky and point lights for a model that states none. Glowing surfaces become point lights. Where the
 /// viewpoints see (almost) no sky, lamps under the ceiling stand in for it, unless surfaces glow.
 pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sky, Vec<PointLight>) {
     let bounds = model.bounds();
@@ -236,7 +236,7 @@ fn lamps(rays: &Rays, viewpoints: &[Viewpoint], reach: f32) -> Vec<PointLight> {
     lights
 }
 
-/// Point lights for the surfaces that emit light, gathered by neighbourhood, brightest first.
+/// Returns point lights for the surfaces that emit light, gathered by neighbourhood, brightest first.
 fn glowing(model: &Model, bounds: &Bounds) -> Vec<PointLight> {
     #[derive(Default)]
     struct Lamp {

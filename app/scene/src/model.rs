@@ -127,12 +127,12 @@ pub struct Model {
 }
 
 impl Model {
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
     }
 
-    /// Smallest box around all vertices; empty (min > max) for an empty model.
+    /// Returns the smallest box around all vertices; empty (min > max) for an empty model.
     pub fn bounds(&self) -> Bounds {
         self.vertices.iter().fold(Bounds::EMPTY, |b, v| b.including(v.position))
     }
@@ -156,7 +156,7 @@ impl Bounds {
         Bounds { min: self.min.min(p), max: self.max.max(p) }
     }
 
-    /// Centre.
+    /// Returns the centre.
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5
     }
@@ -166,7 +166,7 @@ impl Bounds {
         self.min.x > self.max.x
     }
 
-    /// Distance in metres from a point to the box; 0 inside.
+    /// Returns the distance in metres from a point to the box; 0 inside.
     pub fn distance(&self, p: Vec3) -> f32 {
         (self.min - p).max(p - self.max).max(Vec3::ZERO).length()
     }
@@ -199,7 +199,7 @@ impl ShadingStyle {
         ShadingStyle::Anime,
     ];
 
-    /// Its name in files and settings.
+    /// Returns its name in files and settings.
     pub fn name(self) -> &'static str {
         match self {
             ShadingStyle::Realistic => "realistic",

@@ -66,7 +66,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Vec<MtlEntry> {
     }
 }
 
-/// Lines without comments and surrounding blanks, joined where they end in a backslash.
+/// Returns lines without comments and surrounding blanks, joined where they end in a backslash.
 fn statements(text: &str) -> Vec<String> {
     let mut all = Vec::new();
     let mut open = String::new();

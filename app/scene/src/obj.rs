@@ -503,7 +503,7 @@ impl<R: BufRead> Normalizer<R> {
         self.parts.push(key);
     }
 
-    /// An index of a corner, counted from 1; none if it is left out.
+    /// Returns an index of a corner, counted from 1; none if it is left out.
     fn index(&mut self, text: &str, kind: usize, corner: &str) -> Result<Option<usize>, SceneError> {
         let what = ["vertex", "texture coordinate", "normal"][kind];
         if text.is_empty() {
@@ -542,7 +542,7 @@ impl<R: BufRead> Normalizer<R> {
     }
 }
 
-/// A number, also the ways in which C libraries write what is none.
+/// Returns a number, also the ways in which C libraries write what is none.
 fn number(word: &str) -> Option<f32> {
     let none = || {
         let w = word.trim_start_matches(['-', '+']).to_ascii_lowercase();

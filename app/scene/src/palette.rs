@@ -10,7 +10,7 @@ use super::model::{TextureImage, Vertex};
 /// Levels per channel.
 const LEVELS: u32 = 64;
 
-/// All colours of [`LEVELS`] per channel, a block of red and green for every blue, 8 x 8 blocks.
+/// Returns all colours of [`LEVELS`] per channel, a block of red and green for every blue, 8 x 8 blocks.
 pub(super) fn palette() -> TextureImage {
     let edge = LEVELS * 8;
     let level = |i: u32| (i * 255 / (LEVELS - 1)) as u8;
@@ -52,7 +52,7 @@ pub(super) fn paint(
     former
 }
 
-/// Middle of a colour's texel in the palette.
+/// Returns the middle of a colour's texel in the palette.
 fn palette_uv(color: Vec3) -> Vec2 {
     let c = if color.is_finite() { color.clamp(Vec3::ZERO, Vec3::ONE) } else { Vec3::ONE };
     let [r, g, b] = (c * (LEVELS - 1) as f32).round().to_array().map(|l| l as u32);

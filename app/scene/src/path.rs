@@ -77,7 +77,7 @@ pub struct CameraPath {
 }
 
 impl CameraPath {
-    /// A path through these viewpoints; consecutive equal ones count once.
+    /// Returns a path through these viewpoints; consecutive equal ones count once.
     ///
     /// # Panics
     /// Without any viewpoint: a [`crate::Scene`] has at least one.

@@ -105,7 +105,7 @@ fn clean(mesh: &mut RawMesh) {
     }
 }
 
-/// Normal times twice the area; zero where rounding leaves no direction. In f64: f32 underflows on small parts.
+/// Returns the normal times twice the area; zero where rounding leaves no direction. In f64: f32 underflows on small parts.
 fn area_vector([a, b, c]: [Vec3; 3]) -> DVec3 {
     let (u, v) = ((b - a).as_dvec3(), (c - a).as_dvec3());
     let cross = u.cross(v);
@@ -235,7 +235,7 @@ impl Neighbours {
     }
 }
 
-/// One vertex and one index list, sorted by material, parts of one name and material joined, unused vertices left
+/// Returns one vertex and one index list, sorted by material, parts of one name and material joined, unused vertices left
 /// out; otherwise in the order of the file. What moves is a part of its own.
 fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> (Model, Vec<Placed>) {
     let mut placed = Vec::new();

@@ -196,7 +196,7 @@ impl TextureSet {
         }
     }
 
-    /// Width and height; none, with a warning, if the format is unknown.
+    /// Returns the width and height; none, with a warning, if the format is unknown.
     fn size(&self, source: &Source) -> Result<Option<[u32; 2]>, SceneError> {
         let path = self.path(source);
         let found = self.bytes(source).and_then(|bytes| {
@@ -268,7 +268,7 @@ impl TextureSet {
         })
     }
 
-    /// A reader of a picture's encoded bytes: of this type, because the decoders are compiled once for each type.
+    /// Returns a reader of a picture's encoded bytes: of this type, because the decoders are compiled once for each type.
     fn reader<'b>(
         &self,
         source: &Source,
@@ -283,7 +283,7 @@ impl TextureSet {
     }
 }
 
-/// An error of a decoder.
+/// Returns an error of a decoder.
 fn damaged(reason: String) -> ImageError {
     ImageError::Decoding(DecodingError::new(ImageFormatHint::Unknown, reason))
 }
@@ -310,7 +310,7 @@ pub(super) fn unique(taken: &mut HashSet<String>, name: String) -> String {
     std::iter::once(safe.clone()).chain(numbered).find(|n| taken.insert(n.to_lowercase())).unwrap_or(safe)
 }
 
-/// A size scaled down until neither edge is longer than `edge`.
+/// Returns a size scaled down until neither edge is longer than `edge`.
 fn fitted([w, h]: [u32; 2], edge: u32) -> [u32; 2] {
     let longest = w.max(h);
     if longest <= edge {
@@ -404,12 +404,12 @@ fn normal_map(mut image: RgbaImage, strength: f32, surely: bool) -> RgbaImage {
     image
 }
 
-/// One channel from sRGB to linear, both 0 to 1.
+/// Returns one channel from sRGB to linear, both 0 to 1.
 pub(super) fn to_linear(c: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// One channel from linear to sRGB; continues above 1.
+/// Returns one channel from linear to sRGB; continues above 1.
 pub(super) fn to_srgb(c: f32) -> f32 {
     if c <= 0.0031308 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }

@@ -60,7 +60,7 @@ impl SceneSource {
         )))
     }
 
-    /// Everything that there is: the built-in scenes, then the files in the folders and in their folders.
+    /// Returns everything that there is: the built-in scenes, then the files in the folders and in their folders.
     pub fn all(seed: u64, folders: &[PathBuf]) -> Vec<SceneSource> {
         let builtin = BUILTINS.iter().map(|b| SceneSource::Builtin { name: b.name, seed });
         builtin.chain(list_scenes(folders).into_iter().map(SceneSource::File)).collect()

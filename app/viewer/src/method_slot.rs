@@ -114,7 +114,7 @@ impl MethodSlot {
         self.quality.render_scale
     }
 
-    /// Divisor of the ImBuffer's resolution, where there is an ImBuffer of the eye's size.
+    /// Returns the divisor of the ImBuffer's resolution, where there is an ImBuffer of the eye's size.
     pub fn imbuffer_divisor(&self, settings: &Settings) -> Option<u32> {
         match self.options(settings).synthesis.paper.imbuffer {
             ImBufferSize::Divisor(n) if self.method() == Method::Yoro && self.pipeline == Pipeline::Paper => {

@@ -75,7 +75,7 @@ impl Buffers {
         }
     }
 
-    /// Bytes of the texels.
+    /// Returns the bytes of the texels.
     pub(crate) fn bytes(&self) -> u64 {
         let bytes = |view: &TextureView| {
             let (texture, texel) = (view.texture(), view.texture().format().block_copy_size(None));

@@ -184,7 +184,7 @@ fn check_texture(
     Ok(())
 }
 
-/// Width and height of a view's texture.
+/// Returns the width and height of a view's texture.
 pub(crate) fn size(view: &TextureView) -> [u32; 2] {
     [view.texture().width(), view.texture().height()]
 }

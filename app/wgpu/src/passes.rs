@@ -210,14 +210,14 @@ impl Passes {
     }
 }
 
-/// A colour attachment, of which nothing is kept if it is overwritten.
+/// Returns a colour attachment, of which nothing is kept if it is overwritten.
 fn color(view: &TextureView, overwritten: bool) -> RenderPassColorAttachment<'_> {
     let load = if overwritten { LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { LoadOp::Load };
     let ops = Operations { load, store: StoreOp::Store };
     RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
-/// A depth attachment, of which nothing but stencil is kept if it is overwritten.
+/// Returns a depth attachment, of which nothing but stencil is kept if it is overwritten.
 fn depth(view: &TextureView, overwritten: bool) -> RenderPassDepthStencilAttachment<'_> {
     let load = if overwritten { LoadOp::Clear(0.0) } else { LoadOp::Load };
     let stencil = view.texture().format().has_stencil_aspect();

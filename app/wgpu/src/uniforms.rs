@@ -48,7 +48,7 @@ impl<T: NoUninit> UniformRing<T> {
         Ok(offset as u32)
     }
 
-    /// What a group binds of it.
+    /// Returns what a group binds of it.
     pub(crate) fn binding(&self) -> BindingResource<'_> {
         let buffer = &self.buffer;
         BindingResource::Buffer(BufferBinding { buffer, offset: 0, size: Some(size::<T>()) })

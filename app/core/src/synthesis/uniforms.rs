@@ -230,7 +230,7 @@ pub trait WarpKind: Copy {
     /// True for any view: the pipeline takes hard edges without a history.
     const ANY_VIEW: bool;
 
-    /// Width and height of the source and of the target in pixels.
+    /// Returns the width and height of the source and of the target in pixels.
     fn sizes(&self) -> [[u32; 2]; 2];
 
     /// The uniforms for images whose rows are counted from the top.

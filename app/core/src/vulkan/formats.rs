@@ -25,7 +25,7 @@ pub(super) fn background(color: vk::Format) -> vk::Format {
     }
 }
 
-/// Bytes of a texel of [`MAP`], [`LAW_MAP`] or a [`background`] format.
+/// Returns the bytes of a texel of [`MAP`], [`LAW_MAP`] or a [`background`] format.
 pub(super) fn texel_bytes(format: vk::Format) -> u64 {
     match format {
         LAW_MAP => 16,
@@ -34,7 +34,7 @@ pub(super) fn texel_bytes(format: vk::Format) -> u64 {
     }
 }
 
-/// All aspects of a format.
+/// Returns all aspects of a format.
 pub(super) fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     match format {
         vk::Format::D16_UNORM | vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D32_SFLOAT => {

@@ -222,7 +222,7 @@ impl Target {
     }
 }
 
-/// An image with other uses, if there are any.
+/// Returns an image with other uses, if there are any.
 fn used(image: LayerImage, other: Option<Use>) -> LayerImage {
     match other {
         Some(Use { before, after }) => LayerImage { before, after, ..image },

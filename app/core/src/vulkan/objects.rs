@@ -71,7 +71,7 @@ objects! {
 }
 
 impl Objects {
-    /// An empty list.
+    /// Returns an empty list.
     ///
     /// # Safety
     /// Every description that is handed to its methods is valid and names only live objects of `device`. The device
@@ -108,14 +108,14 @@ impl Objects {
         self.keep("vkCreateGraphicsPipelines", made, Object::Pipeline)
     }
 
-    /// A shader module of SPIR-V that needs no capability but Shader.
+    /// Returns a shader module of SPIR-V that needs no capability but Shader.
     pub(super) fn create_shader(&mut self, spirv: &[u8]) -> Result<vk::ShaderModule, VulkanError> {
         let words = ash::util::read_spv(&mut Cursor::new(spirv))
             .map_err(|_| VulkanError::new("vkCreateShaderModule", vk::Result::ERROR_INVALID_SHADER_NV))?;
         self.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&words))
     }
 
-    /// A view of mip level 0 of one layer of an image.
+    /// Returns a view of mip level 0 of one layer of an image.
     pub(super) fn create_view(
         &mut self,
         image: vk::Image,
@@ -132,7 +132,7 @@ impl Objects {
         )
     }
 
-    /// A colour image with memory of its own, to be rendered to and sampled.
+    /// Returns a colour image with memory of its own, to be rendered to and sampled.
     pub(super) fn create_color_image(
         &mut self,
         memory: &vk::PhysicalDeviceMemoryProperties,
@@ -158,7 +158,7 @@ impl Objects {
         Ok(image)
     }
 
-    /// A buffer of uniforms with memory of its own, to be written by commands.
+    /// Returns a buffer of uniforms with memory of its own, to be written by commands.
     pub(super) fn create_uniform_buffer(
         &mut self,
         memory: &vk::PhysicalDeviceMemoryProperties,
@@ -187,7 +187,7 @@ impl Objects {
         self.allocate_memory(&info)
     }
 
-    /// A set of descriptors from a pool that holds one set.
+    /// Returns a set of descriptors from a pool that holds one set.
     pub(super) fn allocate_descriptor_set(
         &mut self,
         layout: vk::DescriptorSetLayout,

@@ -107,7 +107,7 @@ impl PipelineFactory<'_> {
         })
     }
 
-    /// A pipeline that runs a fragment shader in the whole viewport.
+    /// Returns a pipeline that runs a fragment shader in the whole viewport.
     pub(super) fn pipeline(
         &mut self,
         fragment: &[u8],
@@ -136,7 +136,7 @@ impl PipelineFactory<'_> {
         self.create(&stages, kind)
     }
 
-    /// A pipeline of these shaders with the state that all passes share.
+    /// Returns a pipeline of these shaders with the state that all passes share.
     fn create(
         &mut self,
         stages: &[vk::PipelineShaderStageCreateInfo],

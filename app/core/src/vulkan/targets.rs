@@ -32,13 +32,13 @@ impl PassKind {
         }
     }
 
-    /// Bytes of the colour attachments' texels.
+    /// Returns the bytes of the colour attachments' texels.
     pub(super) fn bytes(self, options: &Options, size: [u32; 2]) -> u64 {
         let texels = u64::from(size[0]) * u64::from(size[1]);
         texels * self.formats(options).into_iter().map(texel_bytes).sum::<u64>()
     }
 
-    /// Format of the depth attachment.
+    /// Returns the format of the depth attachment.
     pub(super) fn depth_format(self, options: &Options) -> Option<vk::Format> {
         options.depth_format.filter(|_| self == PassKind::Target)
     }
@@ -226,7 +226,7 @@ impl Attachments {
     }
 }
 
-/// A render pass that changes no layouts and keeps stencil.
+/// Returns a render pass that changes no layouts and keeps stencil.
 fn render_pass(
     objects: &mut Objects,
     kind: PassKind,

@@ -32,7 +32,7 @@ pub(super) struct Timer {
 }
 
 impl Timer {
-    /// None for `frames` 0, and for queue families without timestamps.
+    /// Returns a timer; `None` for `frames` 0, and for queue families without timestamps.
     pub(super) fn new(
         objects: &mut Objects,
         frames: u32,

@@ -302,7 +302,7 @@ impl Run {
         self.exclusions.iter().all(|exclusion| exclusion.power_only && quantity != Quantity::Power)
     }
 
-    /// A name in sentences.
+    /// Returns a name in sentences.
     pub fn name(&self) -> String {
         format!("{}, {}, {}, repetition {}", self.device, self.scene, self.method, self.repetition)
     }
@@ -423,7 +423,7 @@ fn steps(series: &[(f64, f64)], longest: f64) -> impl Iterator<Item = ((f64, f64
     pairs.filter(move |(a, b)| b.0 > a.0 && b.0 - a.0 <= longest)
 }
 
-/// Seconds without gaps, and the number of gaps.
+/// Returns the seconds without gaps, and the number of gaps.
 fn coverage(series: &[(f64, f64)], longest: f64) -> (f64, usize) {
     let covered = steps(series, longest).map(|(a, b)| b.0 - a.0).sum();
     let gaps = series.windows(2).filter(|pair| pair[1].0 - pair[0].0 > longest).count();
@@ -479,7 +479,7 @@ fn mean(series: &[(f64, f64)]) -> Option<f64> {
     (!series.is_empty()).then(|| sum / series.len() as f64)
 }
 
-/// Seconds weigh by their frames.
+/// Returns the mean over seconds, which weigh by their frames.
 fn mean_over_frames(samples: &[&Sample], value: fn(&Sample) -> Option<f64>) -> Option<f64> {
     let pairs = samples.iter().filter_map(|sample| Some((sample.fps?, value(sample)?)));
     let (frames, sum) = pairs.fold((0.0, 0.0), |(frames, sum), (fps, v)| (frames + fps, sum + fps * v));

@@ -55,7 +55,7 @@ impl Plan {
         self.other.as_ref().map_or(PACKAGE, |other| &other.subject.package)
     }
 
-    /// Seconds from the first frame to the end.
+    /// Returns the seconds from the first frame to the end.
     pub fn seconds(&self) -> f64 {
         self.warm_up_s + self.duration_s
     }

@@ -147,7 +147,7 @@ impl Study {
     }
 }
 
-/// A method against the baseline by the answers to one question; `None` if nobody has rated both on all scenes.
+/// Returns a method against the baseline by the answers to one question; `None` if nobody has rated both on all scenes.
 fn compare(ratings: &Ratings, question: &str, method: &str, options: &Options) -> Option<Question> {
     let rows = || ratings.rows.iter().filter(|row| row.question == question);
     let of_pair = || rows().filter(|row| row.method == method || row.method == options.baseline);

@@ -110,7 +110,7 @@ fn draw_legend(root: &Area, lines: &[Vec<(i32, LegendEntry)>], marks: bool) -> D
     Ok(())
 }
 
-/// A line of a method; dashed for the paper's.
+/// Draws a line of a method; dashed for the paper's.
 fn stroke(root: &Area, points: Vec<(i32, i32)>, look: &Look, papers: bool) -> DrawingResult {
     let style = rgb(look.light).stroke_width(4);
     if papers {
@@ -120,7 +120,7 @@ fn stroke(root: &Area, points: Vec<(i32, i32)>, look: &Look, papers: bool) -> Dr
     }
 }
 
-/// A mark of a method; hollow for the paper's.
+/// Draws a mark of a method; hollow for the paper's.
 fn mark(root: &Area, (x, y): (i32, i32), look: &Look, papers: bool) -> DrawingResult {
     let hollow = papers || look.hollow;
     let (color, background) = (rgb(look.light), rgb(palette::BACKGROUND.0));

@@ -116,7 +116,7 @@ pub fn run(
     Ok(streams)
 }
 
-/// Steps that [`run`] takes for a number of frames.
+/// Returns the number of steps that [`run`] takes for a number of frames.
 pub fn steps(frames: usize, options: &BandwidthOptions) -> u64 {
     (frames * (1 + 3 * options.quantizers.len())) as u64
 }

@@ -78,17 +78,17 @@ impl Contender {
         Contender::methods().into_iter().chain(variants).chain(told).chain(Contender::patchers()).collect()
     }
 
-    /// Synthesis with everything that it can be told of the rendered eye's edges.
+    /// Returns synthesis with everything that it can be told of the rendered eye's edges.
     pub fn edges() -> Vec<Contender> {
         Edges::ALL.map(Contender::Edges).to_vec()
     }
 
-    /// Synthesis with each guard band.
+    /// Returns synthesis with each guard band.
     pub fn bands() -> Vec<Contender> {
         Band::ALL.map(Contender::Band).to_vec()
     }
 
-    /// Synthesis without a history and with each.
+    /// Returns synthesis without a history and with each.
     pub fn histories() -> Vec<Contender> {
         History::ALL.map(Contender::History).to_vec()
     }
@@ -99,7 +99,7 @@ impl Contender {
         others.map(Contender::Method).chain(Contender::pipelines()).collect()
     }
 
-    /// Synthesis with each of its pipelines.
+    /// Returns synthesis with each of its pipelines.
     pub fn pipelines() -> Vec<Contender> {
         Pipeline::ALL.map(Contender::Yoro).to_vec()
     }
@@ -109,7 +109,7 @@ impl Contender {
         PatcherKind::ALL.map(Contender::Patcher).to_vec()
     }
 
-    /// Its name in files and on the command line, which stays: `conventional`, `yoro-gather`,
+    /// Returns its name in files and on the command line, which stays: `conventional`, `yoro-gather`,
     /// `yoro-paper-nearest`, `patcher-telea`.
     pub fn name(self) -> String {
         match self {

@@ -267,7 +267,7 @@ impl Meter {
         })
     }
 
-    /// Values of one frame, by metric.
+    /// Returns values of one frame, by metric.
     ///
     /// # Errors
     /// When the eyes cannot be synthesized, or GL refuses.

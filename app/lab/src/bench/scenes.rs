@@ -55,7 +55,7 @@ impl Object {
         Object::new("hare".into(), b.finish())
     }
 
-    /// An object from a file.
+    /// Returns an object from a file.
     pub fn load(path: &Path) -> Result<Object, SceneError> {
         let scene = scene::load(path)?;
         Ok(Object::new(scene.name, scene.model))
@@ -68,7 +68,7 @@ impl Object {
         Object { name, model }
     }
 
-    /// Its number of triangles.
+    /// Returns its number of triangles.
     pub fn triangles(&self) -> usize {
         self.model.triangle_count()
     }
@@ -150,7 +150,7 @@ impl Object {
         }
     }
 
-    /// Triangles of a [`Object::swarm`] of so many copies.
+    /// Returns the number of triangles of a [`Object::swarm`] of so many copies.
     pub fn swarm_triangles(&self, copies: usize) -> usize {
         copies * self.triangles() + 2
     }
@@ -168,7 +168,7 @@ fn coprime_step(cells: usize) -> usize {
     (golden.max(1)..).find(|step| common(*step, cells) == 1).expect("a prime above any number")
 }
 
-/// A room of ten metres, open to the sky.
+/// Returns a room of ten metres, open to the sky.
 fn room() -> Model {
     const HALF: f32 = 5.0;
     const HEIGHT: f32 = 4.0;

@@ -158,7 +158,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Steps of progress: each contender's frames in each round, and getting ready.
+    /// Returns the number of steps of progress: each contender's frames in each round, and getting ready.
     pub fn steps(&self) -> u64 {
         if self.measure == Measure::Bandwidth {
             return bandwidth::steps(self.frames, &self.bandwidth);
@@ -546,7 +546,7 @@ impl Plan<'_> {
     }
 }
 
-/// A built-in scene's name, or a file's stem.
+/// Returns a built-in scene's name, or a file's stem.
 fn scene_name(scene: &str) -> String {
     if BUILTINS.iter().any(|b| b.name == scene) {
         return scene.to_owned();

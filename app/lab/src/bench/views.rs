@@ -57,14 +57,14 @@ pub(super) struct Views {
 }
 
 impl Views {
-    /// Viewpoints of the scene, evenly spread from the first.
+    /// Returns viewpoints of the scene, evenly spread from the first.
     pub fn spread(job: &Job, prepared: &PreparedScene) -> anyhow::Result<Views> {
         let viewpoints = &prepared.scene.viewpoints;
         let keys = spread(viewpoints.len(), job.frames);
         Views::new(job, keys.into_iter().map(|k| (format!("viewpoint {k}"), viewpoints[k].pose())).collect())
     }
 
-    /// Frames from the middle of the camera path on, `step` metres apart.
+    /// Returns frames from the middle of the camera path on, `step` metres apart.
     pub fn along_path(job: &Job, prepared: &PreparedScene, step: f32) -> anyhow::Result<Views> {
         let path = CameraPath::new(&prepared.scene.viewpoints);
         if path.keys().len() < 2 {
@@ -81,7 +81,7 @@ impl Views {
         Views::new(job, (0..job.frames).map(pose).collect())
     }
 
-    /// Frames of a moving head from the middle of the camera path on: the job's, and some before them.
+    /// Returns frames of a moving head from the middle of the camera path on: the job's, and some before them.
     pub fn of_motion(job: &Job, prepared: &PreparedScene, motion: Motion) -> anyhow::Result<Views> {
         let frames = SETTLING + job.frames;
         let walk = Views::along_path(&Job { frames, ..job.clone() }, prepared, HEADSET_STEP)?;

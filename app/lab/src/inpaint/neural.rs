@@ -182,7 +182,7 @@ fn shape_text(shape: &[Dimension]) -> String {
     format!("[{}]", sizes.collect::<Vec<_>>().join(", "))
 }
 
-/// A library's message as part of a sentence.
+/// Returns a library's message as part of a sentence.
 fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }

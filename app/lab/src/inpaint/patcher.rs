@@ -91,7 +91,7 @@ impl PatcherKind {
         PatcherKind::Neural,
     ];
 
-    /// Its name on the command line.
+    /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             PatcherKind::Paper => "paper",

@@ -99,7 +99,7 @@ impl Field {
         filled.repeat_rows()
     }
 
-    /// Five rows of the farther end.
+    /// Returns five rows of the farther end.
     pub fn gather(&self) -> Field {
         let filled = self.each_hole(|x, y| {
             let (edge, end) = match (self.left(x, y), self.right(x, y)) {
@@ -138,7 +138,7 @@ impl Field {
         self
     }
 
-    /// Lower median of the valid ones of 5x5 neighbours.
+    /// Returns the lower median of the valid ones of 5x5 neighbours.
     pub fn median(&self) -> Field {
         let fill = |near: &[(f64, Pixel)]| {
             let middle = |c: usize| {

@@ -52,12 +52,12 @@ impl RunReport {
         page::render(self)
     }
 
-    /// A table of all rows and means, for a README.
+    /// Returns a table of all rows and means, for a README.
     pub fn to_markdown(&self) -> String {
         table::markdown(self)
     }
 
-    /// A short table for a terminal.
+    /// Returns a short table for a terminal.
     pub fn to_text(&self) -> String {
         table::text(self)
     }

@@ -134,7 +134,7 @@ impl Telemetry {
         self.second.elapsed_ns(now_ns) >= PERIOD_NS
     }
 
-    /// Seconds since the first frame.
+    /// Returns the seconds since the first frame.
     pub fn seconds(&self, now_ns: i64) -> f64 {
         self.begin_ns.map_or(0.0, |begin| (now_ns - begin) as f64 * 1e-9)
     }

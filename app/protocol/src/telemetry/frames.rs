@@ -61,7 +61,7 @@ impl FrameStatistics {
         self.last_ns = None;
     }
 
-    /// Time since the period began, in nanoseconds.
+    /// Returns the time since the period began, in nanoseconds.
     pub fn elapsed_ns(&self, now_ns: i64) -> i64 {
         self.begin_ns.map_or(0, |begin| now_ns - begin)
     }

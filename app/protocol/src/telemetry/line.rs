@@ -121,7 +121,7 @@ enum Value<'a> {
     Missing,
 }
 
-/// A number or nothing, from a text or nothing; none if the text is not such a number.
+/// Returns a number or nothing, from a text or nothing; none if the text is not such a number.
 fn number<T: FromStr>(text: Option<&str>) -> Option<Option<T>> {
     text.map(str::parse).transpose().ok()
 }
@@ -241,7 +241,7 @@ pub const LINE_KEYS: &[LineKey] = &[
 ];
 
 impl LineKey {
-    /// Its value as a number; none for names and missing values.
+    /// Returns its value as a number; none for names and missing values.
     pub fn number(&self, line: &Line) -> Option<f64> {
         match (self.get)(line) {
             Value::Real(value) => Some(value),
@@ -259,7 +259,7 @@ impl LineKey {
         }
     }
 
-    /// Its text in a line that was split, with unit.
+    /// Returns its text in a line that was split, with unit.
     fn find<'a>(&self, reader: &Reader<'a>) -> Result<&'a str, LineError> {
         match self.name {
             "FPS" => Ok(rates(reader)?.0),

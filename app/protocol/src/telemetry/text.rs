@@ -89,12 +89,12 @@ impl<'a> Reader<'a> {
         field.and_then(|field| field.value).ok_or(LineError::Missing(key))
     }
 
-    /// Text or nothing.
+    /// Returns text or nothing.
     pub fn word(&self, key: &'static str) -> Result<Option<&'a str>, LineError> {
         Ok(Some(self.text(key)?).filter(|text| *text != MISSING))
     }
 
-    /// A number or nothing.
+    /// Returns a number or nothing.
     pub fn number<T: FromStr>(&self, key: &'static str) -> Result<Option<T>, LineError> {
         let Some(text) = self.word(key)? else { return Ok(None) };
         text.parse().map(Some).map_err(|_| LineError::Value { key, value: text.into() })

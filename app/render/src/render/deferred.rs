@@ -47,7 +47,7 @@ impl LightTargets {
         self.columns.unwrap_or(Columns { drawn: all, always: all })
     }
 
-    /// Scene-referred colour, filtered linearly.
+    /// Returns scene-referred colour, filtered linearly.
     pub fn hdr(&self) -> &Texture {
         self.hdr.color(0)
     }
@@ -72,7 +72,7 @@ impl FinishTargets {
         self.color.resize(size)
     }
 
-    /// Display-referred sRGB colour with luma in alpha, filtered linearly.
+    /// Returns display-referred sRGB colour with luma in alpha, filtered linearly.
     pub fn color(&self) -> &RenderTarget {
         &self.color
     }

@@ -188,7 +188,7 @@ impl ForwardTargets {
 }
 
 impl ViewImages for ForwardTargets {
-    /// Display-referred sRGB, filtered linearly. Alpha is luma; with several samples it is undefined where materials are cut out.
+    /// Returns display-referred sRGB, filtered linearly. Alpha is luma; with several samples it is undefined where materials are cut out.
     fn color(&self) -> &RenderTarget {
         self.developed.as_ref().unwrap_or(&self.resolved)
     }

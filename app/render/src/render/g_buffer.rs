@@ -34,7 +34,7 @@ impl Layout {
     /// Number of layouts.
     pub const COUNT: usize = 4;
 
-    /// Index among the layouts.
+    /// Returns the index among the layouts.
     pub fn index(self) -> usize {
         match self {
             Layout::Single => 0,
@@ -62,13 +62,13 @@ impl Layout {
         }
     }
 
-    /// Columns from the left edge of an eye's image to that of the next. Even, so that the 2x2 pixels that
+    /// Returns the number of columns from the left edge of an eye's image to that of the next. Even, so that the 2x2 pixels that
     /// derivatives are taken of are the same as in a view by itself.
     fn stride(width: u32) -> u32 {
         width.next_multiple_of(2)
     }
 
-    /// Size of the textures for views of `size` pixels.
+    /// Returns the size of the textures for views of `size` pixels.
     pub fn texture_size(self, size: [u32; 2]) -> [u32; 2] {
         match self {
             Layout::DoubleWide(_) => [2 * Layout::stride(size[0]), size[1]],
@@ -76,7 +76,7 @@ impl Layout {
         }
     }
 
-    /// Lower left corner of an eye's image, of `size` pixels.
+    /// Returns the lower left corner of an eye's image, of `size` pixels.
     pub fn origin(self, size: [u32; 2], eye: Eye) -> [u32; 2] {
         match self {
             Layout::DoubleWide(_) => [Layout::stride(size[0]) * eye.index() as u32, 0],
@@ -135,7 +135,7 @@ impl GBuffer {
         self.layout
     }
 
-    /// Its textures.
+    /// Returns its textures.
     pub fn target(&self) -> &RenderTarget {
         &self.target
     }

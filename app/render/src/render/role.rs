@@ -25,7 +25,7 @@ impl RoleKind {
     /// Number of kinds.
     pub const COUNT: usize = 6;
 
-    /// Place among the kinds.
+    /// Returns the place among the kinds.
     pub fn index(self) -> usize {
         self as usize
     }
@@ -98,7 +98,7 @@ impl Role<'_> {
         }
     }
 
-    /// Its kind.
+    /// Returns its kind.
     pub fn kind(&self) -> RoleKind {
         match self {
             Role::Whole => RoleKind::Whole,

@@ -43,7 +43,7 @@ impl Features {
         Features(Features::NAMES.iter().zip(present).fold(0, |bits, ((f, _), on)| bits | (f.0 * on as u8)))
     }
 
-    /// Index among the combinations.
+    /// Returns the index among the combinations.
     pub fn index(self) -> usize {
         self.0 as usize
     }

@@ -110,7 +110,7 @@ impl RenderSettings {
         if is_coarse { Format::Depth16 } else { SAMPLE_DEPTH }
     }
 
-    /// Pixels per texel of ambient occlusion, along each axis.
+    /// Returns the pixels per texel of ambient occlusion, along each axis.
     pub(super) fn ssao_scale(&self) -> u32 {
         if self.ssao_half_size { 2 } else { 1 }
     }

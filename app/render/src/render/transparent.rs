@@ -44,7 +44,7 @@ pub struct DepthImage<'a> {
 }
 
 impl<'a> DepthImage<'a> {
-    /// A texture that has the image's size.
+    /// Returns a texture that has the image's size.
     pub fn whole(texture: &'a Texture) -> DepthImage<'a> {
         DepthImage { texture, origin: [0, 0], layer: None }
     }

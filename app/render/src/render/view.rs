@@ -51,10 +51,10 @@ pub(crate) trait ViewRenderer: Sized {
 
 /// The images of a view that was rendered.
 pub(crate) trait ViewImages {
-    /// Display-referred sRGB colour with luma in alpha, filtered linearly.
+    /// Returns display-referred sRGB colour with luma in alpha, filtered linearly.
     fn color(&self) -> &RenderTarget;
 
-    /// Window depth in the view's convention.
+    /// Returns window depth in the view's convention.
     fn depth(&self) -> &Texture;
 
     /// The window depth of every sample: a float `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples. `None` for

@@ -266,7 +266,7 @@ impl<R: StereoRenderer> Past<R> {
         self.rendered = 0;
     }
 
-    /// What was rendered in the last frame, and what was counted two frames before it.
+    /// Returns what was rendered in the last frame, and what was counted two frames before it.
     pub(super) fn last(&self) -> HistoryUse {
         HistoryUse { rendered: self.rendered, ..self.need.last }
     }

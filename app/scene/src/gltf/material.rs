@@ -82,7 +82,7 @@ struct Surface {
     opacity: f32,
 }
 
-/// A factor from 0 to 1; 1 if it is no number.
+/// Returns a factor from 0 to 1; 1 if it is no number.
 pub(super) fn unit(v: f32) -> f32 {
     if v.is_finite() { v.clamp(0.0, 1.0) } else { 1.0 }
 }

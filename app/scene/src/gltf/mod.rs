@@ -171,7 +171,7 @@ impl Nodes {
     }
 }
 
-/// A node's position, and the direction of its camera or light.
+/// Returns a node's position, and the direction of its camera or light.
 fn placed(to_world: &Mat4) -> (Vec3, Vec3) {
     let forward = to_world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
     (to_world.w_axis.truncate(), forward)

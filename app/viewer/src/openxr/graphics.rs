@@ -42,7 +42,7 @@ impl Android {
 /// The result of xrCreateSession.
 pub(super) type NewSession = (xr::Session<xr::OpenGlEs>, xr::FrameWaiter, xr::FrameStream<xr::OpenGlEs>);
 
-/// xrCreateSession.
+/// Calls xrCreateSession.
 pub(super) fn create_session(
     instance: &xr::Instance,
     system: xr::SystemId,

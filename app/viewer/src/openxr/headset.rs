@@ -249,7 +249,7 @@ impl Headset {
         &mut self.viewer
     }
 
-    /// A description of runtime, system and session.
+    /// Returns a description of runtime, system and session.
     pub fn description(&self) -> &Description {
         &self.description
     }
@@ -259,7 +259,7 @@ impl Headset {
         &self.states
     }
 
-    /// Number of sessions after the first.
+    /// Returns the number of sessions after the first.
     pub fn restarts(&self) -> u32 {
         self.restarts
     }

@@ -41,7 +41,7 @@ pub(super) struct Images {
 }
 
 impl Images {
-    /// xrCreateSwapchain.
+    /// Calls xrCreateSwapchain.
     pub fn new(
         graphics: &dyn Graphics,
         gl: &Rc<Context>,

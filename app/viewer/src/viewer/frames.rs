@@ -206,7 +206,7 @@ impl Viewer {
         self.stats.ratings()
     }
 
-    /// Size in pixels of each eye's image on a display whose full size is `full`.
+    /// Returns the size in pixels of each eye's image on a display whose full size is `full`.
     pub fn eye_size(&self, full: [f32; 2]) -> [u32; 2] {
         // Methods render a guard band beside the image.
         let limit = self.attached.as_ref().map_or(4096, |g| g.gl.capabilities().max_texture_size) / 2;

@@ -16,7 +16,7 @@ const FIRST_HALF: [Quantity; 5] =
 const SECOND_HALF: [Quantity; 5] =
     [Quantity::GpuTime, Quantity::Temperature, Quantity::Rise, Quantity::Cpu, Quantity::Memory];
 
-/// A table in the shape of the paper's for each method, its columns beside ours.
+/// Returns a table in the shape of the paper's for each method, its columns beside ours.
 pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
     let methods = report.devices.iter().flat_map(|device| &device.methods);
     let methods = unique(methods.filter(|method| **method != report.baseline));

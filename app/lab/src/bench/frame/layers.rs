@@ -112,7 +112,7 @@ fn looped(parts: &Parts, trips: &[f64]) -> f64 {
     parts.loops.iter().zip(trips).map(|(body, trips)| body * trips).sum()
 }
 
-/// What a wave executes of the march.
+/// Returns what a wave executes of the march.
 fn march_slots(march: &Parts, wave: &Wave) -> f64 {
     let goes_on = wave.events > 0 || wave.rows > 0;
     let straight = march.straight * if goes_on { 1.0 } else { PLAIN_SHARE };

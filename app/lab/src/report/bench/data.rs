@@ -71,7 +71,7 @@ impl Measured {
         self.rounds.iter().find_map(|(_, values)| values.get(metric)).map_or(&[], Vec::as_slice)
     }
 
-    /// Names of the metrics that it has values of.
+    /// Returns the names of the metrics that it has values of.
     pub fn metrics(&self) -> impl Iterator<Item = &str> {
         self.rounds.iter().flat_map(|(_, values)| values.keys()).map(String::as_str)
     }
@@ -140,14 +140,14 @@ impl SettingData {
 }
 
 impl Suite {
-    /// Names of the contenders, measured or not, in the order of measurement.
+    /// Returns the names of the contenders, measured or not, in the order of measurement.
     pub fn contenders(&self) -> Vec<&str> {
         let measured = self.settings.iter().flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()));
         let refused = self.settings.iter().flat_map(|s| s.unsupported.iter().map(|(name, _)| name.as_str()));
         unique(measured.chain(refused))
     }
 
-    /// Names of the contenders for which a metric was measured.
+    /// Returns the names of the contenders for which a metric was measured.
     pub fn measured(&self, metric: &str) -> Vec<&str> {
         let has = |name: &&str| {
             self.settings.iter().any(|s| s.find(name).is_some_and(|m| !m.samples(metric).is_empty()))
@@ -169,7 +169,7 @@ impl Suite {
         refused.find(|(name, _)| name == contender).map(|(_, reason)| reason.as_str())
     }
 
-    /// A contender's value in each setting, where it has one.
+    /// Returns a contender's value in each setting, where it has one.
     pub fn values(&self, contender: &str, value: impl Fn(&Measured) -> Option<f64>) -> Vec<f64> {
         self.settings.iter().filter_map(|setting| value(setting.find(contender)?)).collect()
     }
@@ -192,7 +192,7 @@ impl Suite {
         points
     }
 
-    /// Labels of a sweep that has no numbers, in order.
+    /// Returns the labels of a sweep that has no numbers, in order.
     pub fn labels(&self) -> Vec<&str> {
         unique(self.settings.iter().filter_map(|setting| setting.setting.label.as_deref()))
     }
@@ -202,7 +202,7 @@ impl Suite {
         unique(self.settings.iter().map(|setting| setting.setting.scene.as_str()))
     }
 
-    /// A curve over the points: at each the mean over the scenes.
+    /// Returns a curve over the points: at each the mean over the scenes.
     pub fn curve(&self, value: impl Fn(&SettingData) -> Option<f64>) -> Vec<(f64, f64)> {
         let at = |point: f64| {
             let here = self.settings.iter().filter(|setting| setting.setting.point == Some(point));

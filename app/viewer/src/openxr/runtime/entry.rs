@@ -18,7 +18,7 @@ const GLOBAL: [&CStr; 3] =
 /// functions in the API carry no context.
 static RUNTIME: AtomicUsize = AtomicUsize::new(0);
 
-/// An entry to the API by a runtime's function.
+/// Returns an entry to the API by a runtime's function.
 ///
 /// # Safety
 /// It is the `xrGetInstanceProcAddr` of a runtime or loader that is never unloaded.

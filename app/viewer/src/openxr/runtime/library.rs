@@ -140,7 +140,7 @@ impl Candidate {
         Failure::Symbol { library: self.library.clone(), symbol, kind }
     }
 
-    /// A function by its name in the specification; the error is the name that was looked for.
+    /// Returns a function by its name in the specification; the error is the name that was looked for.
     ///
     /// # Safety
     /// `T` is the type of the function, and nothing calls it after the library is unloaded.

@@ -96,7 +96,7 @@ pub fn to_pose(pose: &xr::Posef) -> Option<Pose> {
     is_pose.then(|| Pose { position, orientation: orientation / length })
 }
 
-/// A pose of OpenXR.
+/// Returns a pose of OpenXR.
 pub(super) fn from_pose(pose: &Pose) -> xr::Posef {
     let (p, q) = (pose.position, pose.orientation);
     xr::Posef {
@@ -113,7 +113,7 @@ fn to_frustum(fov: &xr::Fovf) -> Option<Frustum> {
     (fits && frustum.width() > 0.0 && frustum.height() > 0.0).then_some(frustum)
 }
 
-/// A field of view.
+/// Returns a field of view.
 pub(super) fn from_frustum(frustum: &Frustum) -> xr::Fovf {
     xr::Fovf {
         angle_left: frustum.left.atan(),

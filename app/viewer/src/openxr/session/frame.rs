@@ -163,13 +163,13 @@ impl Session {
         Ok(Some(quad(&self.spaces.head, images.sub_image(0, panel.size()), pose, metres)))
     }
 
-    /// Size in pixels of each eye in this frame, which is no larger than the images.
+    /// Returns the size in pixels of each eye in this frame, which is no larger than the images.
     fn frame_size(&self, viewer: &Viewer) -> [u32; 2] {
         let wanted = viewer.eye_size(self.description.recommended.map(|n| n as f32));
         [0, 1].map(|i| wanted[i].min(self.description.size[i]))
     }
 
-    /// xrEndFrame.
+    /// Calls xrEndFrame.
     pub(super) fn end_frame(&mut self, time: xr::Time, layers: &Layers) -> Result<(), XrError> {
         let eyes = layers.eyes.as_ref();
         let depth_info = |eye: Eye| {

@@ -96,7 +96,7 @@ impl Session {
     }
 }
 
-/// An instance with the extensions that are of use.
+/// Returns an instance with the extensions that are of use.
 fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance, XrError> {
     let entry = call("xrGetInstanceProcAddr", runtime.entry())?;
     let offered = call("xrEnumerateInstanceExtensionProperties", entry.enumerate_extensions())?;
@@ -209,7 +209,7 @@ impl System {
         self.views == xr::ViewConfigurationType::PRIMARY_STEREO
     }
 
-    /// Size in pixels of the images: what is recommended, scaled.
+    /// Returns the size in pixels of the images: what is recommended, scaled.
     fn image_size(&self, scale: f32, limit: u32) -> [u32; 2] {
         image_size(self.recommended, scale, self.largest.map(|n| n.min(limit)))
     }
@@ -308,7 +308,7 @@ fn ask_refresh_rates(session: &xr::Session<xr::OpenGlEs>) -> Result<Vec<f32>, Xr
     Ok(optional("refresh rates are not known", rates)?.unwrap_or_default())
 }
 
-/// Size of the images: what is recommended, scaled.
+/// Returns the size of the images: what is recommended, scaled.
 fn image_size(recommended: [u32; 2], scale: f32, limit: [u32; 2]) -> [u32; 2] {
     let scaled =
         |n: u32| if scale == 1.0 { n } else { ((n as f32 * scale / SIZE_STEP).ceil() * SIZE_STEP) as u32 };

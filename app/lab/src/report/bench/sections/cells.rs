@@ -17,7 +17,7 @@ pub fn milliseconds(value: f64) -> String {
     if value >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }
 
-/// A share as a signed difference in percent.
+/// Returns a share as a signed difference in percent.
 pub fn percent(share: f64) -> String {
     format!("{:+.1} %", 100.0 * share)
 }
@@ -30,7 +30,7 @@ pub fn psnr_ssim(measured: &Measured) -> Option<String> {
     Some(format!("{psnr} / {ssim:.4}"))
 }
 
-/// A cell of ours, or of the baseline's if the contender is one.
+/// Returns a cell of ours, or of the baseline's if the contender is one.
 pub fn cell(contender: &str, text: Option<String>) -> Cell {
     if [CONVENTIONAL, MONO].contains(&contender) { Cell::base(text) } else { Cell::ours(text) }
 }

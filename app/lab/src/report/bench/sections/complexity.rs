@@ -62,12 +62,12 @@ fn ratios(suite: &Suite, name: &str) -> Curve {
     curve.into_iter().map(|(triangles, ratio)| (triangles / 1e6, ratio)).collect()
 }
 
-/// Values of the paper, one for each of its sizes.
+/// Returns values of the paper, one for each of its sizes.
 fn papers(values: impl IntoIterator<Item = f64>) -> Curve {
     COMPLEXITY.triangles.into_iter().zip(values).collect()
 }
 
-/// A curve for each of the paper's systems, its times passed through `value` with their place.
+/// Returns a curve for each of the paper's systems, its times passed through `value` with their place.
 fn papers_series(value: impl Fn(usize, f64) -> f64) -> Vec<Series> {
     let series = COMPLEXITY.systems.iter().map(|(method, times)| Series {
         method: (*method).into(),
@@ -78,7 +78,7 @@ fn papers_series(value: impl Fn(usize, f64) -> f64) -> Vec<Series> {
     series.collect()
 }
 
-/// A curve for each contender, the first on top.
+/// Returns a curve for each contender, the first on top.
 fn series(suite: &Suite, curve: fn(&Suite, &str) -> Curve) -> Vec<Series> {
     let contenders = suite.measured(metric::FRAME_MS);
     let series = contenders.iter().rev().map(|name| Series {

@@ -10,7 +10,7 @@ pub fn papers_mark(method: &str, value: f64) -> Mark {
     Mark::papers(method, format!("{PAPERS}{}", paper::system(method)), value)
 }
 
-/// A dot plot with a line for each setting.
+/// Returns a dot plot with a line for each setting.
 pub fn scene_dots(
     suite: &Suite,
     axis: Axis,

@@ -58,7 +58,7 @@ impl<'a> Entry<'a> {
         self.settings().filter_map(|setting| Some(value(setting.find(self.name)?))).collect()
     }
 
-    /// Two renders by the same renderer.
+    /// Returns two renders by the same renderer.
     fn baseline(&self) -> Entry<'a> {
         Entry { name: CONVENTIONAL, once: false, ..*self }
     }
@@ -95,7 +95,7 @@ fn pixels(size: [u32; 2]) -> f64 {
     f64::from(size[0]) * f64::from(size[1])
 }
 
-/// Pixels of an eye as it was measured: `512 x 512` in the header.
+/// Returns the number of pixels of an eye as it was measured: `512 x 512` in the header.
 fn measured_pixels(suite: &Suite) -> f64 {
     let size = suite.header.parameters.iter().find(|parameter| parameter.name == "size of each eye, pixels");
     let parts =

@@ -7,7 +7,7 @@ use yoro_figures::grid::{Cell, Table};
 use yoro_figures::stats::{mean, percentile};
 use yoro_figures::text::{fixed, short_count};
 
-/// A table with a row for each setting and a column for each contender; then the mean, and those that were not
+/// Returns a table with a row for each setting and a column for each contender; then the mean, and those that were not
 /// measured.
 pub fn scene_table(
     suite: &Suite,
@@ -108,7 +108,7 @@ pub fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &st
     table
 }
 
-/// A table with a row for each point of a sweep and a column for each contender, means over the scenes; medians
+/// Returns a table with a row for each point of a sweep and a column for each contender, means over the scenes; medians
 /// of times.
 pub fn sweep_table(
     suite: &Suite,
@@ -141,7 +141,7 @@ pub fn sweep_table(
     table
 }
 
-/// A row for each contender and a column for each metric that was measured, means over the settings.
+/// Returns a row for each contender and a column for each metric that was measured, means over the settings.
 pub fn means_table(
     suite: &Suite,
     title: &str,
@@ -171,7 +171,7 @@ pub fn means_table(
     table
 }
 
-/// A row for each setting and contender, a column for each metric: the long form, so that no figure is lost.
+/// Returns a row for each setting and contender, a column for each metric: the long form, so that no figure is lost.
 pub fn metric_table(suite: &Suite, title: &str, contenders: &[&str]) -> Table {
     let metrics = [
         ("PSNR, dB", metric::PSNR, 2),
