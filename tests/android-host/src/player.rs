@@ -122,7 +122,6 @@ impl Player {
             }
             Step::Destroy => self.destroy(),
             Step::InputQueue => self.input_queue(),
-            Step::InputQueueLost => self.input_queue_lost(),
             Step::Window => self.window(),
             Step::WindowLost => self.window_lost(),
             Step::Resize { width, height } => {
@@ -284,9 +283,7 @@ impl Player {
 
     fn destroy(&mut self) {
         self.expect("destroy", self.stage.created && !self.stage.started);
-        if self.queue.is_some() {
-            self.input_queue_lost();
-        }
+        self.input_queue_lost();
         self.event("onDestroy", |callbacks| callbacks.onDestroy);
         self.host.frames.set_open(true);
         self.wait("the end of android_main", |host| !main_runs(host));
@@ -325,9 +322,7 @@ impl Player {
     }
 
     fn input_queue_lost(&mut self) {
-        let Some(queue) = self.queue.take() else {
-            fatal("the script asks for input-queue-lost without a queue")
-        };
+        let Some(queue) = self.queue.take() else { return };
         self.callback("onInputQueueDestroyed", |activity| {
             call!(activity, activity.callbacks.onInputQueueDestroyed, queue)
         });

@@ -110,8 +110,6 @@ pub struct Device {
     pub gles: GlesVersion,
     /// Sensors that the device has.
     pub sensors: Vec<SensorKind>,
-    /// Added to the gyroscope's samples, rad/s, device axes.
-    pub gyroscope_bias: [f32; 3],
     /// Battery; absent for a device without one.
     pub battery: Option<Battery>,
     /// Thermal state.
@@ -176,7 +174,6 @@ impl Default for Device {
                 SensorKind::Gyroscope,
                 SensorKind::Accelerometer,
             ],
-            gyroscope_bias: [0.0; 3],
             battery: Some(Battery::default()),
             thermal: Thermal::default(),
             properties: BTreeMap::new(),
@@ -302,8 +299,6 @@ pub enum Step {
     Resume,
     /// `onInputQueueCreated`.
     InputQueue,
-    /// `onInputQueueDestroyed`.
-    InputQueueLost,
     /// `onNativeWindowCreated`, then `onContentRectChanged` and `onNativeWindowRedrawNeeded`.
     Window,
     /// `onNativeWindowDestroyed`.

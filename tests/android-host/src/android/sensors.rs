@@ -107,7 +107,6 @@ impl Motion {
 /// The sensors of the device and the head they are on.
 pub struct Sensors {
     list: Vec<&'static ASensor>,
-    bias: Vec3,
     motion: Mutex<Motion>,
     queues: Mutex<Vec<&'static ASensorEventQueue>>,
 }
@@ -132,7 +131,7 @@ impl Sensors {
             })
             .collect();
         let still = Motion { from: Quat::IDENTITY, to: Quat::IDENTITY, start: 0, duration: 0 };
-        Self { list, bias: device.gyroscope_bias.into(), motion: Mutex::new(still), queues: Mutex::default() }
+        Self { list, motion: Mutex::new(still), queues: Mutex::default() }
     }
 
     /// Turns the head to an orientation (degrees; yaw to the left, then pitch up, then roll to the left) within `duration` nanoseconds
@@ -165,9 +164,7 @@ impl Sensors {
                     turned = -turned;
                 }
                 let rate = Self::to_device(turned.to_scaled_axis() / (period as f32 * 1e-9));
-                let calibrated = sensor.kind == SensorKind::Gyroscope;
-                let measured = if calibrated { rate } else { rate + self.bias };
-                data[..3].copy_from_slice(&measured.to_array());
+                data[..3].copy_from_slice(&rate.to_array());
             }
         }
         ASensorEvent {
