@@ -1,5 +1,5 @@
-//! The phone's camera, which looks for a viewer's QR code: libcamera2ndk and AImageReader on a thread of their own, since
-//! opening a camera takes a part of a second and reading a code a part of a frame.
+//! The phone's camera, which looks for a viewer's QR code: libcamera2ndk and AImageReader on a thread of their own,
+//! since opening a camera takes a part of a second and reading a code a part of a frame.
 
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::ptr::{self, NonNull};

@@ -131,8 +131,8 @@ impl Configuration {
         }
     }
 
-    /// Begins as a start by hand on a phone does: shows the start screen while something shared is being read, or if no viewer
-    /// was chosen yet. Does nothing for a start by a computer.
+    /// Begins as a start by hand on a phone does: shows the start screen while something shared is being read, or if no
+    /// viewer was chosen yet. Does nothing for a start by a computer.
     pub fn begin(&mut self, cardboard: &mut Cardboard) {
         if !self.is_by_hand() {
             return;
@@ -228,7 +228,8 @@ impl Configuration {
         [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
-    /// Keeps what the menu has changed for the next start; a run with a name leaves nothing behind. True if that was a reset.
+    /// Keeps what the menu has changed for the next start; a run with a name leaves nothing behind. True if that was a
+    /// reset.
     pub fn keep(&mut self, viewer: &mut Viewer) -> bool {
         let Some(kept) = viewer.take_kept() else { return false };
         let is_reset = kept.is_empty();

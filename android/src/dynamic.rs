@@ -1,5 +1,5 @@
-//! Functions that are found by name: those of libandroid that not every version of Android has, and whole libraries that are
-//! rarely used.
+//! Functions that are found by name: those of libandroid that not every version of Android has, and whole libraries
+//! that are rarely used.
 
 use std::ffi::{CStr, c_void};
 use std::mem;

@@ -140,8 +140,8 @@ impl Java {
         answer.unwrap_or_default()
     }
 
-    /// Returns a global JNI reference to the application's context, if Java has one. It lasts as long as the process: for
-    /// libraries that keep it after the activity is gone.
+    /// Returns a global JNI reference to the application's context, if Java has one. It lasts as long as the process:
+    /// for libraries that keep it after the activity is gone.
     pub fn application_context(&self) -> Option<*mut c_void> {
         static CONTEXT: OnceLock<Option<Global<JObject<'static>>>> = OnceLock::new();
         let context = CONTEXT.get_or_init(|| {
@@ -153,8 +153,8 @@ impl Java {
         context.as_ref().map(|context| context.as_raw().cast())
     }
 
-    /// Turns sustained performance mode on or off, where the device has it: clock rates that can be held for long instead of
-    /// high ones that cannot. True if the device has it.
+    /// Turns sustained performance mode on or off, where the device has it: clock rates that can be held for long
+    /// instead of high ones that cannot. True if the device has it.
     pub fn sustain_performance(&self, is_on: bool) -> bool {
         let is_offered = self.ask("the power manager", |env, activity| {
             let name = JString::new(env, "power")?;
@@ -196,8 +196,8 @@ impl Java {
         extras.unwrap_or_default()
     }
 
-    /// True if another application shares something by the intent that started the activity. What is shared while the activity
-    /// lives does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
+    /// True if another application shares something by the intent that started the activity. What is shared while the
+    /// activity lives does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
     pub fn is_given(&self) -> bool {
         let is_given = self.ask("the shared", |env, activity| {
             let intent = activity.get_intent(env)?;
@@ -263,8 +263,8 @@ impl Java {
         answer == Some(GRANTED)
     }
 
-    /// Asks the user whether yoro may use the camera. The answer is there when the activity is in front again; Android gives it
-    /// without a question where the user has refused twice.
+    /// Asks the user whether yoro may use the camera. The answer is there when the activity is in front again; Android
+    /// gives it without a question where the user has refused twice.
     pub fn ask_for_camera(&self) {
         self.on_main_thread("the permission", |env, activity| {
             let names = env.new_object_type_array::<JString>(1, JString::null())?;
@@ -326,7 +326,8 @@ impl Java {
         scenario.flatten()
     }
 
-    /// Opens the file that the intent's data names for a game loop's results; none if it names none, or Android refuses.
+    /// Opens the file that the intent's data names for a game loop's results; none if it names none, or Android
+    /// refuses.
     pub fn results(&self) -> Option<File> {
         let file = self.ask("the game loop's results", |env, activity| {
             let uri = activity.get_intent(env)?.get_data(env)?;

@@ -33,8 +33,8 @@ impl Refresh {
 }
 
 /// Returns the time of a sensor's sample that has just come. Its own time `sample_ns` should be of CLOCK_BOOTTIME. Some
-/// drivers take CLOCK_MONOTONIC, which is behind by the time `slept_ns` that the device has slept. So the clock is the one
-/// on which the sample is younger.
+/// drivers take CLOCK_MONOTONIC, which is behind by the time `slept_ns` that the device has slept. So the clock is the
+/// one on which the sample is younger.
 pub fn sample_time_ns(sample_ns: i64, now_ns: i64, slept_ns: i64) -> i64 {
     let by_boottime = sample_ns - slept_ns;
     if (now_ns - by_boottime).abs() <= (now_ns - sample_ns).abs() { by_boottime } else { sample_ns }

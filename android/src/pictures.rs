@@ -10,8 +10,8 @@ use yoro_protocol::Pipeline;
 use yoro_protocol::telemetry::Pictures;
 use yoro_render::stereo::stills;
 
-/// What each picture has to reach against the stored one, in dB. Two drivers that follow the specification differ in rounding and
-/// in the filtering of textures; a wrong eye, a wrong shift or a missing pass costs more than that.
+/// What each picture has to reach against the stored one, in dB. Two drivers that follow the specification differ in
+/// rounding and in the filtering of textures; a wrong eye, a wrong shift or a missing pass costs more than that.
 const LEAST_DB: f64 = 30.0;
 
 /// Returns a stored picture by its name.

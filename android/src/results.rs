@@ -13,7 +13,8 @@ static FILE: Mutex<Option<File>> = Mutex::new(None);
 
 /// The last lines of the log.
 static RECENT: Mutex<VecDeque<String>> = Mutex::new(VecDeque::new());
-/// The number of those lines, and of the characters of one. An intent holds a text twice, in two bytes a character: 240 kB.
+/// The number of those lines, and of the characters of one. An intent holds a text twice, in two bytes a character: 240
+/// kB.
 const LINES: usize = 200;
 const CHARACTERS: usize = 300;
 

@@ -24,7 +24,8 @@ impl Luma<'_> {
         read_qr_in_luma(&pixels.collect::<Vec<u8>>(), width)
     }
 
-    /// Returns the picture's middle in the size of [`Board::PICTURE`], rows from the bottom. Turned by half a turn if the phone is.
+    /// Returns the picture's middle in the size of [`Board::PICTURE`], rows from the bottom. Turned by half a turn if
+    /// the phone is.
     pub fn shown(&self, is_upside_down: bool) -> Vec<u8> {
         let [columns, rows] = Board::PICTURE.map(|n| n as usize);
         let [width, height] = self.size;
@@ -45,8 +46,8 @@ impl Luma<'_> {
     }
 }
 
-/// Returns the size of pictures to ask a camera for: of those that it offers, the one with most pixels up to 1280 x 960, in
-/// which a code of a hand's width has several pixels a module, or else the smallest.
+/// Returns the size of pictures to ask a camera for: of those that it offers, the one with most pixels up to 1280 x
+/// 960, in which a code of a hand's width has several pixels a module, or else the smallest.
 pub fn best_size(offered: impl Iterator<Item = [i32; 2]>) -> Option<[i32; 2]> {
     const MOST: i64 = 1280 * 960;
     let area = |[width, height]: [i32; 2]| i64::from(width) * i64::from(height);
@@ -82,7 +83,8 @@ mod tests {
     #[test]
     fn the_middle_is_shown_the_right_way_up() {
         let [columns, rows] = Board::PICTURE.map(|n| n as usize);
-        // Twice as wide as the panel's: the left quarter and the right one are cut off. Bright at the upper left of the middle.
+        // Twice as wide as the panel's: the left quarter and the right one are cut off. Bright at the upper left of the
+        // middle.
         let size = [2 * columns, rows];
         let bytes: Vec<u8> = (0..size[0] * size[1])
             .map(|i| {

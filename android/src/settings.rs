@@ -18,7 +18,8 @@ pub type Pair = (String, String);
 pub struct Sources {
     /// A TOML file, which need not exist.
     pub file: Option<PathBuf>,
-    /// What the menu has changed, also before a restart. A run that has a name (`run`, as those of `yoro device`) is without.
+    /// What the menu has changed, also before a restart. A run that has a name (`run`, as those of `yoro device`) is
+    /// without.
     pub menu: Vec<Pair>,
     /// Extras of the intent that started the activity.
     pub extras: Vec<Pair>,

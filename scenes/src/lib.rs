@@ -2,8 +2,8 @@
 //! count.
 //!
 //! [`load`] takes the name of a built-in scene or the path of a file, and returns the scene. Each built-in scene has a
-//! file; [`mod@build`], [`props`], [`sculpt`], [`figure`], [`paint`] and [`motion`] are their common tools. This crate must never know
-//! how a scene is drawn.
+//! file; [`mod@build`], [`props`], [`sculpt`], [`figure`], [`paint`] and [`motion`] are their common tools. This crate
+//! must never know how a scene is drawn.
 
 use std::ops::RangeInclusive;
 use std::path::Path;

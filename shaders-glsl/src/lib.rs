@@ -1,7 +1,7 @@
 //! The GLSL files of yoro, and the assembly of a file and its includes into the text that a driver compiles.
 //!
-//! It takes a file's path in this package, such as `synthesis/gather/march.frag`, a GLSL version and defines, and gives the
-//! text. This crate must never know OpenGL or any other interface to a GPU: it handles text.
+//! It takes a file's path in this package, such as `synthesis/gather/march.frag`, a GLSL version and defines, and gives
+//! the text. This crate must never know OpenGL or any other interface to a GPU: it handles text.
 //!
 //! Folders are named after the modules that use them. [`assemble`] resolves each `#include "PATH"` once, and adds
 //! `#line`, so that a driver's messages lead back to file and line ([`Assembled::name_files`]). With the feature
@@ -131,8 +131,8 @@ impl Assembled {
         &self.files[1..]
     }
 
-    /// Replaces the source string number at the start of each of a driver's messages, `NUMBER:LINE`, by the file's name.
-    /// Mesa and most mobile drivers write messages so.
+    /// Replaces the source string number at the start of each of a driver's messages, `NUMBER:LINE`, by the file's
+    /// name. Mesa and most mobile drivers write messages so.
     pub fn name_files(&self, log: &str) -> String {
         let mut named = String::new();
         for line in log.trim_end_matches(['\0', '\n']).lines() {

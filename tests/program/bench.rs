@@ -286,8 +286,8 @@ fn whole_frames_are_counted_for_every_method_and_gpu() {
             let slots = |contender: &str| sum(contender, &format!("slots/{gpu}/"));
             let two = slots("conventional");
             let [mono, both] = ["mono", "multiview"].map(|contender| slots(contender) / two);
-            // Without vertices, of which so small pictures have many for a pixel: one view for both eyes is half, and both at
-            // once shade the same.
+            // Without vertices, of which so small pictures have many for a pixel: one view for both eyes is half, and
+            // both at once shade the same.
             assert!((0.4..0.6).contains(&mono) && (0.9..1.1).contains(&both), "{gpu}: {mono} {both}");
             assert!(slots(synthesis) > mono * two, "{gpu}");
         }

@@ -261,8 +261,8 @@ fn find() -> Option<PathBuf> {
         .find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
 }
 
-/// Checks what every page of ours must do in a browser: no script error, nothing from elsewhere, all figures there, other
-/// colours in the dark, and no part wider than a narrow window.
+/// Checks what every page of ours must do in a browser: no script error, nothing from elsewhere, all figures there,
+/// other colours in the dark, and no part wider than a narrow window.
 pub fn check_figures(browser: &mut Browser, page: &Path) {
     browser.show(1400, "light");
     browser.open(page);

@@ -41,8 +41,8 @@ fn both_eyes_come_out_of_an_rgbd_video() {
     }
 }
 
-/// A file as the iPhone application Record3D writes it: depth as hue on the left, the camera in the metadata. It is made of
-/// this program's own, whose eye is not widened; no phone has recorded one for this test.
+/// A file as the iPhone application Record3D writes it: depth as hue on the left, the camera in the metadata. It is
+/// made of this program's own, whose eye is not widened; no phone has recorded one for this test.
 #[test]
 fn a_video_of_record3d_becomes_stereo() {
     let dir = tempfile::tempdir().unwrap();

@@ -43,8 +43,8 @@ pub fn on_every_backend(body: impl Fn(&Rc<Context>) -> anyhow::Result<()>) -> an
 /// The variable that is set where the driver was chosen for its multiview.
 pub const MULTIVIEW_EXPECTED: &str = "YORO_TEST_MULTIVIEW_EXPECTED";
 
-/// True if a method is tested with these settings on this driver. Says what the driver lacks, but for multiview, which the
-/// tests in `tests/gl/multiview.rs` bring; what a renderer has on no driver is not worth a word.
+/// True if a method is tested with these settings on this driver. Says what the driver lacks, but for multiview, which
+/// the tests in `tests/gl/multiview.rs` bring; what a renderer has on no driver is not worth a word.
 ///
 /// # Panics
 /// If the driver lacks what it was chosen for.

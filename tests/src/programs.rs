@@ -44,8 +44,8 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     viewer(gl)
 }
 
-/// Values of `PARTS` in `include/segments.glsl`: the law; the short way; the long way to its end; with events, with the fill,
-/// with crossings.
+/// Values of `PARTS` in `include/segments.glsl`: the law; the short way; the long way to its end; with events, with the
+/// fill, with crossings.
 const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
 
 const STYLES: [ShadingStyle; 5] = [

@@ -72,8 +72,8 @@ fn every_link_and_path_leads_somewhere() {
     assert!(lost.is_empty(), "these do not exist:\n{}", lost.join("\n"));
 }
 
-/// docs/performance.md opens with the tables of the measured page that say when synthesis pays. With YORO_BLESS in the environment
-/// they are copied anew.
+/// docs/performance.md opens with the tables of the measured page that say when synthesis pays. With YORO_BLESS in the
+/// environment they are copied anew.
 #[test]
 fn when_it_pays_is_what_was_measured() {
     const BEGIN: &str = "<!-- when it pays: begin -->\n";

@@ -105,8 +105,8 @@ fn newest_libgcc(names: &str) -> Option<String> {
     Some(format!("libgcc-{newest}-dev"))
 }
 
-/// A cargo that compiles and links for arm64 with `--target` [`TRIPLE`], for which it fetches and installs what is missing.
-/// Panics in its programs unwind.
+/// A cargo that compiles and links for arm64 with `--target` [`TRIPLE`], for which it fetches and installs what is
+/// missing. Panics in its programs unwind.
 ///
 /// # Errors
 /// When something cannot be had on this machine.

@@ -1,5 +1,5 @@
-//! The synthesis shaders as SPIR-V and WGSL. They are kept in the repository, so that nobody who builds the libraries needs a
-//! compiler.
+//! The synthesis shaders as SPIR-V and WGSL. They are kept in the repository, so that nobody who builds the libraries
+//! needs a compiler.
 
 use anyhow::bail;
 use yoro_tools::cargo;

@@ -1,5 +1,5 @@
-//! Files that are compiled from the shaders and kept in the repository, so that nobody who builds a library needs a compiler.
-//! Beside them lies the file `SOURCES`: the compiler, and the hash of the text of each.
+//! Files that are compiled from the shaders and kept in the repository, so that nobody who builds a library needs a
+//! compiler. Beside them lies the file `SOURCES`: the compiler, and the hash of the text of each.
 
 use std::env;
 use std::fs;
@@ -49,8 +49,8 @@ impl<F: Fn(&Source) -> anyhow::Result<Vec<u8>>> Compiled<F> {
         folders::write(&self.folder.join("SOURCES"), listed(compiler, sources))
     }
 
-    /// Checks that the folder is made of these shaders. With the compiler that made it they are compiled again; with another
-    /// one, or without, a line on the standard output says that this was left out.
+    /// Checks that the folder is made of these shaders. With the compiler that made it they are compiled again; with
+    /// another one, or without, a line on the standard output says that this was left out.
     ///
     /// # Errors
     /// When a file is not what these shaders become.

@@ -52,8 +52,8 @@ pub fn remove(folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes a file, and the folders that it lies in. Nobody ever sees half of it, whatever other processes and threads write
-/// at the same time.
+/// Writes a file, and the folders that it lies in. Nobody ever sees half of it, whatever other processes and threads
+/// write at the same time.
 ///
 /// # Errors
 /// When it cannot be written.

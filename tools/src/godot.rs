@@ -1,8 +1,9 @@
 //! Godot, a game engine, with the runtime and the Vulkan driver that its tests need.
 //!
-//! Debian's release that [Monado](crate::monado) comes from has an older Godot, so this one is that of Debian's development,
-//! whatever its version is, with all that it needs: the C library, Monado and Mesa of the same day. The packages are only
-//! unpacked. Two programs are left: `godot`, and `monado-service`, which is its OpenXR runtime. Both meet in XDG_RUNTIME_DIR.
+//! Debian's release that [Monado](crate::monado) comes from has an older Godot, so this one is that of Debian's
+//! development, whatever its version is, with all that it needs: the C library, Monado and Mesa of the same day. The
+//! packages are only unpacked. Two programs are left: `godot`, and `monado-service`, which is its OpenXR runtime. Both
+//! meet in XDG_RUNTIME_DIR.
 
 use std::path::{Path, PathBuf};
 

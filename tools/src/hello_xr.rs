@@ -1,9 +1,9 @@
-//! hello_xr, Khronos's example of an OpenXR application, the loader that it comes with, and Khronos's layer that validates what is
-//! called, for the tests of the API layer.
+//! hello_xr, Khronos's example of an OpenXR application, the loader that it comes with, and Khronos's layer that
+//! validates what is called, for the tests of the API layer.
 //!
 //! It comes from Debian's packages, unpacked beside [Monado](crate::monado), and runs with Monado's libraries. Debian's
-//! release that has Monado has an older hello_xr, which knows neither one view nor depth, so this one is that of Debian's
-//! development.
+//! release that has Monado has an older hello_xr, which knows neither one view nor depth, so this one is that of
+//! Debian's development.
 
 use std::path::{Path, PathBuf};
 

@@ -17,7 +17,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Print the cost of the shader programs on mobile GPUs, by Mesa's compilers: instructions, registers, waves, fetches, spills
+    /// Print the cost of the shader programs on mobile GPUs, by Mesa's compilers: instructions, registers, waves,
+    /// fetches, spills
     ShaderCost {
         /// Only programs whose names contain this
         filter: Option<String>,

@@ -1,8 +1,9 @@
 //! Monado, an OpenXR runtime with a simulated headset, for the tests of sessions.
 //!
-//! It comes from Debian's packages, which are only unpacked, with all that they need down to the C library: so it is the same
-//! Monado, and the same Mesa below it, on every machine. Two programs are left: `monado-service` is the runtime's own one, and
-//! `run PROGRAM ...` runs a program of this machine with those libraries and that runtime. Both meet in XDG_RUNTIME_DIR.
+//! It comes from Debian's packages, which are only unpacked, with all that they need down to the C library: so it is
+//! the same Monado, and the same Mesa below it, on every machine. Two programs are left: `monado-service` is the
+//! runtime's own one, and `run PROGRAM ...` runs a program of this machine with those libraries and that runtime. Both
+//! meet in XDG_RUNTIME_DIR.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -71,8 +72,8 @@ pub fn make() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Unpacks packages of one of Debian's releases, with all that they need, into `root`. `folder` holds what is downloaded
-/// meanwhile.
+/// Unpacks packages of one of Debian's releases, with all that they need, into `root`. `folder` holds what is
+/// downloaded meanwhile.
 ///
 /// # Errors
 /// When they cannot be had.
@@ -110,8 +111,8 @@ pub fn linker(root: &Path, first: &[PathBuf]) -> String {
     )
 }
 
-/// The text of a launcher for programs of this machine, with the libraries of this root after those in the folders `first`.
-/// The runtime is Monado, or what XR_RUNTIME_JSON names.
+/// The text of a launcher for programs of this machine, with the libraries of this root after those in the folders
+/// `first`. The runtime is Monado, or what XR_RUNTIME_JSON names.
 pub fn run(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");

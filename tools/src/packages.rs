@@ -10,7 +10,8 @@ use anyhow::{Context as _, bail};
 
 use crate::apt;
 
-/// apt with this machine's sources, or another distribution's, but with a state of its own: for it nothing is installed.
+/// apt with this machine's sources, or another distribution's, but with a state of its own: for it nothing is
+/// installed.
 pub struct PrivateApt {
     folder: PathBuf,
     /// The first is the usual one.
@@ -19,8 +20,8 @@ pub struct PrivateApt {
 }
 
 impl PrivateApt {
-    /// Keeps everything in `folder`, which [`PrivateApt::remove`] removes. `sources` are lines of a sources.list, in place
-    /// of this machine's.
+    /// Keeps everything in `folder`, which [`PrivateApt::remove`] removes. `sources` are lines of a sources.list, in
+    /// place of this machine's.
     ///
     /// # Errors
     /// Without Debian's tools, or when the folder cannot be written.
@@ -123,8 +124,8 @@ impl PrivateApt {
     }
 }
 
-/// Puts a package's files into `root`, without running anything of it: those that fit one of the patterns `only`, if there
-/// are any, and none of the patterns `without`.
+/// Puts a package's files into `root`, without running anything of it: those that fit one of the patterns `only`, if
+/// there are any, and none of the patterns `without`.
 ///
 /// # Errors
 /// When the package is damaged, or there is no room.
@@ -173,7 +174,8 @@ pub fn debian_sources(releases: &[&str]) -> anyhow::Result<String> {
     Ok(releases.iter().map(line).collect())
 }
 
-/// Returns the place of Debian itself among `place component` lines: not that of its security updates, nor somebody else's.
+/// Returns the place of Debian itself among `place component` lines: not that of its security updates, nor somebody
+/// else's.
 fn debian(targets: &str) -> Option<&str> {
     let mut places = targets.lines().filter_map(|line| line.split_once(' '));
     let is_debian = |place: &str| place.trim_end_matches('/').ends_with("/debian");

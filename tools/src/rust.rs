@@ -99,8 +99,8 @@ impl Rust {
         Ok(command)
     }
 
-    /// Makes a command use this Rust: cargo's subcommands take the first cargo in PATH. Variables that the cargo of this
-    /// program has set must not reach it.
+    /// Makes a command use this Rust: cargo's subcommands take the first cargo in PATH. Variables that the cargo of
+    /// this program has set must not reach it.
     ///
     /// # Errors
     /// When PATH cannot be extended.

@@ -110,8 +110,8 @@ enum Task {
         #[arg(long, value_name = "FOLDER")]
         out: Option<PathBuf>,
     },
-    /// Check formatting, clippy, documentation, each library without its default features, the packages to publish, and the
-    /// types of the page's scripts
+    /// Check formatting, clippy, documentation, each library without its default features, the packages to publish, and
+    /// the types of the page's scripts
     Lint,
 }
 

@@ -1,5 +1,5 @@
-//! The system libraries that the program needs: EGL, OpenGL ES, a driver, OSMesa; and those for the tests of Vulkan: a driver
-//! without a GPU, Khronos's validation layer, glslang.
+//! The system libraries that the program needs: EGL, OpenGL ES, a driver, OSMesa; and those for the tests of Vulkan: a
+//! driver without a GPU, Khronos's validation layer, glslang.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -123,8 +123,8 @@ pub fn browser() -> Option<PathBuf> {
     })
 }
 
-/// Installs what tests and shaders of Vulkan need, and tests in C, which no program of the project does; whether the tests
-/// of Vulkan can be run.
+/// Installs what tests and shaders of Vulkan need, and tests in C, which no program of the project does; whether the
+/// tests of Vulkan can be run.
 pub fn vulkan() -> bool {
     let missing = |needs: &mut dyn Iterator<Item = &'static Need>| -> Vec<&Need> {
         let folders = library_folders();

@@ -250,8 +250,8 @@ impl Activity {
         }
     }
 
-    /// Ends an activity that was started by hand when the user leaves it: only a new one sees what other applications share.
-    /// A device that goes to sleep is not left.
+    /// Ends an activity that was started by hand when the user leaves it: only a new one sees what other applications
+    /// share. A device that goes to sleep is not left.
     fn leave(&mut self) {
         let is_left = !self.is_asking && self.java.is_awake();
         if self.configuration.is_by_hand() && !self.display.is_headset() && is_left {

@@ -55,8 +55,8 @@
 #define YORO_MOST_STRIPS 8
 
 /**
- * Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about a
- * second, chooses, and measures again when that may have changed.
+ * Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about
+ * a second, chooses, and measures again when that may have changed.
  *
  * Use it from one thread at a time. It needs no YoroContext.
  */
@@ -65,8 +65,8 @@ typedef struct YoroChooser YoroChooser;
 /**
  * The synthesis in one GL context or on one Vulkan device: compiled shaders and small buffers.
  *
- * Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which the
- * GL context is current; for Vulkan it can be any thread.
+ * Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which
+ * the GL context is current; for Vulkan it can be any thread.
  */
 typedef struct YoroContext YoroContext;
 
@@ -174,8 +174,8 @@ typedef uint32_t YoroEye;
 #define YORO_EYE_RIGHT 1
 
 /**
- * Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out as
- * XrPosef.
+ * Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out
+ * as XrPosef.
  */
 typedef struct {
   /**
@@ -272,8 +272,9 @@ typedef uint32_t YoroEyesFlags;
 #define YORO_EYES_PARALLEL 2
 
 /**
- * Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on the
- * thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same context.
+ * Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on
+ * the thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same
+ * context.
  */
 typedef void (*YoroMessageCallback)(void *user, YoroResult result, const char *sentence);
 
@@ -345,8 +346,8 @@ typedef struct {
    */
   YoroClip clip;
   /**
-   * Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other eye.
-   * Smaller values cost more pixels. 0 for no guard band: the border is filled in.
+   * Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other
+   * eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
    */
   float guard_band;
   /**
@@ -394,11 +395,11 @@ typedef struct {
 } YoroView;
 
 /**
- * The mapping of pixels from the rendered image to the other eye's. yoro_views_from_eyes and yoro_views_from_matrices fill
- * it. It can be copied and kept.
+ * The mapping of pixels from the rendered image to the other eye's. yoro_views_from_eyes and yoro_views_from_matrices
+ * fill it. It can be copied and kept.
  *
- * The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, where depth is the
- * value in the depth buffer.
+ * The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, where depth is
+ * the value in the depth buffer.
  */
 typedef struct {
   /**
@@ -668,13 +669,13 @@ typedef struct {
    */
   int64_t now_ns;
   /**
-   * Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when you
-   * waited for the GPU to measure it.
+   * Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when
+   * you waited for the GPU to measure it.
    */
   float refresh_hz;
   /**
-   * Milliseconds that a frame has taken; 0 if none are known by now. The GPU's time, if there is a timer; else the time
-   * from the beginning of the frame's work to the end of the GPU's, if you wait for that.
+   * Milliseconds that a frame has taken; 0 if none are known by now. The GPU's time, if there is a timer; else the
+   * time from the beginning of the frame's work to the end of the GPU's, if you wait for that.
    */
   float cost_ms;
   /**
@@ -772,8 +773,8 @@ typedef struct {
    */
   uint32_t count;
   /**
-   * From row 0 of the image on, the view of the whole image from which each was rendered: YoroViews' synthesized of that
-   * frame, in the size of the history, all of one size. NULL for a strip with nothing in it.
+   * From row 0 of the image on, the view of the whole image from which each was rendered: YoroViews' synthesized of
+   * that frame, in the size of the history, all of one size. NULL for a strip with nothing in it.
    */
   const YoroView *strips[YORO_MOST_STRIPS];
   /**
@@ -848,7 +849,8 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * The rendered view. Of this and the next one size, pose and angles are read, which may differ; the matrices are not.
+   * The rendered view. Of this and the next one size, pose and angles are read, which may differ; the matrices are
+   * not.
    */
   const YoroView *source;
   /**
@@ -996,7 +998,8 @@ typedef struct {
  */
 typedef uint32_t YoroOutputFlags;
 /**
- * Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent objects.
+ * Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent
+ * objects.
  */
 #define YORO_OUTPUT_DEPTH 1
 /**
@@ -1019,8 +1022,8 @@ typedef uint32_t YoroGlState;
 #define YORO_GL_STATE_PRESERVE 1
 
 /**
- * The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was averaged
- * over samples: it belongs to no surface, and gives halos.
+ * The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was
+ * averaged over samples: it belongs to no surface, and gives halos.
  */
 typedef uint32_t YoroEdges;
 /**
@@ -1063,8 +1066,8 @@ typedef uint32_t YoroGlSourceFlags;
  */
 #define YORO_GL_SOURCE_PARTS 1
 /**
- * The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview, and of
- * OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
+ * The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview,
+ * and of OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
  */
 #define YORO_GL_SOURCE_LAYERS 2
 
@@ -1103,8 +1106,8 @@ typedef struct {
    */
   YoroGlState state;
   /**
-   * 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use it in
-   * development. 0: mistakes are undefined behaviour, as in GL.
+   * 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use
+   * it in development. 0: mistakes are undefined behaviour, as in GL.
    */
   uint32_t check;
   /**
@@ -1147,20 +1150,19 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another target or
-   * size with YORO_GL_SOURCE_ bits). All four channels
-   * are carried over, in any encoding. Filters and sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is
-   * resolved, with values between 0 and 1.
+   * Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another
+   * target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Filters and
+   * sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
    */
   uint32_t color_texture;
   /**
-   * Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or
-   * red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+   * Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as
+   * depth) or red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
    */
   uint32_t depth_texture;
   /**
-   * The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with YORO_OUTPUT_DEPTH
-   * its depth attachment. None of the textures above may be attached to it.
+   * The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with
+   * YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
    */
   uint32_t framebuffer;
   /**
@@ -1172,12 +1174,13 @@ typedef struct {
    */
   uint32_t y;
   /**
-   * For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if it
-   * does not exist any more. Otherwise 0.
+   * For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if
+   * it does not exist any more. Otherwise 0.
    */
   uint32_t sample_color_texture;
   /**
-   * First column of the rendered part in its textures. This and the next three are for YORO_GL_SOURCE_PARTS, otherwise 0.
+   * First column of the rendered part in its textures. This and the next three are for YORO_GL_SOURCE_PARTS,
+   * otherwise 0.
    */
   uint32_t source_x;
   /**
@@ -1218,8 +1221,8 @@ extern "C" {
 #endif /* __cplusplus */
 
 /**
- * Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text lives
- * as long as the library.
+ * Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text
+ * lives as long as the library.
  *
  * Call it from any thread.
  */
@@ -1247,8 +1250,8 @@ YoroResult yoro_views_from_eyes(const YoroEyes *eyes,
                                 YoroViews *views);
 
 /**
- * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
- * volume and units of the given ones. Poses are in metres.
+ * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world,
+ * clip volume and units of the given ones. Poses are in metres.
  *
  * The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes'
  * distance. Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds
@@ -1314,24 +1317,21 @@ YoroResult yoro_destroy(YoroContext *context);
  *
  * Call it from any thread.
  *
- * @param first   The way to begin with, which stays if nothing can be measured: YORO_WAY_TWO_VIEWS or YORO_WAY_SYNTHESIS.
- * @param chooser Receives the chooser; NULL after an error.
- * @pre chooser can be written.
- * @return YORO_ERROR_VALUE, YORO_ERROR_NULL.
+ * @param first   The way to begin with, which stays if nothing can be measured: YORO_WAY_TWO_VIEWS or
+ * YORO_WAY_SYNTHESIS. @param chooser Receives the chooser; NULL after an error. @pre chooser can be written. @return
+ * YORO_ERROR_VALUE, YORO_ERROR_NULL.
  */
 YoroResult yoro_chooser_create(YoroWay first,
                                YoroChooser **chooser);
 
 /**
- * Takes a frame that was handed to the display, and says how to render the next one. It allocates nothing. The first frame
- * is rendered in the way that yoro_chooser_create was given.
+ * Takes a frame that was handed to the display, and says how to render the next one. It allocates nothing. The first
+ * frame is rendered in the way that yoro_chooser_create was given.
  *
- * @param chooser The chooser.
- * @param frame   The frame.
- * @param choice  Filled in; the caller sets struct_size.
- * @pre chooser is alive, and no other thread uses it. The others lead to structures of the size that they state.
- * @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers that
- *         are not finite: such a frame is not counted.
+ * @param chooser The chooser. @param frame   The frame. @param choice  Filled in; the caller sets struct_size. @pre
+ * chooser is alive, and no other thread uses it. The others lead to structures of the size that they state. @return
+ * YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers that are
+ * not finite: such a frame is not counted.
  */
 YoroResult yoro_chooser_end_frame(YoroChooser *chooser,
                                   const YoroFrameEnd *frame,
@@ -1372,11 +1372,9 @@ YoroResult yoro_strips(const YoroHistory *history, const YoroView *synthesized, 
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
- * @param poses The views.
- * @param warp  Filled in.
- * @pre The pointers lead to structures, and `poses` to one of the size that it states.
- * @return YORO_ERROR_VALUE for views that are impossible, or of which the target sees further than 80 degrees from the source's
- *         axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ * @param poses The views. @param warp  Filled in. @pre The pointers lead to structures, and `poses` to one of the size
+ * that it states. @return YORO_ERROR_VALUE for views that are impossible, or of which the target sees further than 80
+ * degrees from the source's axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_pose_warp(const YoroPoses *poses,
                           YoroPoseWarp *warp);
@@ -1386,20 +1384,19 @@ YoroResult yoro_pose_warp(const YoroPoses *poses,
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
- * @param motion  The bounds and the view.
- * @param guarded Filled in; the caller sets struct_size.
- * @pre The pointers lead to structures of the sizes that they state.
- * @return YORO_ERROR_VALUE for a view that is impossible or would have to see further than 80 degrees to a side; YORO_ERROR_NULL,
- *         YORO_ERROR_STRUCT_SIZE.
+ * @param motion  The bounds and the view. @param guarded Filled in; the caller sets struct_size. @pre The pointers
+ * lead to structures of the sizes that they state. @return YORO_ERROR_VALUE for a view that is impossible or would
+ * have to see further than 80 degrees to a side; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_guarded_view(const YoroHeadMotion *motion,
                              YoroGuardedView *guarded);
 
 /**
- * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
- * not in a frame.
+ * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at
+ * start, not in a frame.
  *
- * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag stays.
+ * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag
+ * stays.
  *
  * @param info    The options.
  * @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
@@ -1427,8 +1424,8 @@ YoroResult yoro_gl_buffer_bytes(const YoroGlInfo *info,
                                 uint64_t *bytes);
 
 /**
- * Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the sizes
- * are as before.
+ * Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the
+ * sizes are as before.
  *
  * Thread, GL state and results are those of yoro_gl_synthesize.
  *
@@ -1455,14 +1452,11 @@ YoroResult yoro_gl_prepare_pose(YoroContext *context, const YoroPoseWarp *warp);
  * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay
  * the same it allocates and compiles nothing, and does not wait for the GPU.
  *
- * @param context The context.
- * @param warp    The warp of YoroViews.
- * @param images  The images to read and the place to draw.
- * @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says. Transform
- *      feedback and conditional rendering are not active.
- * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also
- *         YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT;
- *         YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ * @param context The context. @param warp    The warp of YoroViews. @param images  The images to read and the place to
+ * draw. @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says.
+ * Transform feedback and conditional rendering are not active. @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE,
+ * YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT; YORO_ERROR_API,
+ * YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_gl_synthesize(YoroContext *context,
                               const YoroWarp *warp,
@@ -1529,8 +1523,8 @@ typedef struct {
    */
   VkDevice device;
   /**
-   * 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0: render
-   * passes and framebuffers are used, with the same result.
+   * 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0:
+   * render passes and framebuffers are used, with the same result.
    */
   uint32_t dynamic_rendering;
   /**
@@ -1579,8 +1573,8 @@ typedef struct {
    */
   YoroMessages messages;
   /**
-   * For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0 for no
-   * times.
+   * For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0
+   * for no times.
    */
   uint32_t timed_frames;
   /**
@@ -1933,16 +1927,13 @@ YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
  *
  * Call it on the thread that may use the context and that records the command buffer.
  *
- * @param context  The context.
- * @param commands A command buffer of the device.
- * @param warp     The warp of YoroViews, with rows as they lie in the images.
- * @param frame    The images to read and the place to draw.
- * @pre The command buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to
- *      the queue family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is
- *      not active.
- * @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond their
- *         images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
- *         error nothing was recorded.
+ * @param context  The context. @param commands A command buffer of the device. @param warp     The warp of YoroViews,
+ * with rows as they lie in the images. @param frame    The images to read and the place to draw. @pre The command
+ * buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to the queue
+ * family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is not active.
+ * @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond
+ * their images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
+ * error nothing was recorded.
  */
 YoroResult yoro_vk_record(YoroContext *context,
                           VkCommandBuffer commands,

@@ -31,8 +31,8 @@ pub const YORO_REASON_BOTH_HOLD_RATE: YoroReason = 4;
 /// One of the ways could not be measured: it is the way before.
 pub const YORO_REASON_INCOMPARABLE: YoroReason = 5;
 
-/// Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about a
-/// second, chooses, and measures again when that may have changed.
+/// Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about
+/// a second, chooses, and measures again when that may have changed.
 ///
 /// Use it from one thread at a time. It needs no YoroContext.
 pub struct YoroChooser {
@@ -49,11 +49,11 @@ pub struct YoroFrameEnd {
     pub rendered: YoroWay,
     /// The time now, in nanoseconds of a monotonic clock.
     pub now_ns: i64,
-    /// Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when you
-    /// waited for the GPU to measure it.
+    /// Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when
+    /// you waited for the GPU to measure it.
     pub refresh_hz: f32,
-    /// Milliseconds that a frame has taken; 0 if none are known by now. The GPU's time, if there is a timer; else the time
-    /// from the beginning of the frame's work to the end of the GPU's, if you wait for that.
+    /// Milliseconds that a frame has taken; 0 if none are known by now. The GPU's time, if there is a timer; else the
+    /// time from the beginning of the frame's work to the end of the GPU's, if you wait for that.
     pub cost_ms: f32,
     /// The frame that took cost_ms, as the number of frames ended since: 0 for this one. 63 at most.
     pub cost_frames_ago: u32,
@@ -110,10 +110,9 @@ fn way(value: YoroWay) -> Result<Option<Way>, Failure> {
 ///
 /// Call it from any thread.
 ///
-/// @param first   The way to begin with, which stays if nothing can be measured: YORO_WAY_TWO_VIEWS or YORO_WAY_SYNTHESIS.
-/// @param chooser Receives the chooser; NULL after an error.
-/// @pre chooser can be written.
-/// @return YORO_ERROR_VALUE, YORO_ERROR_NULL.
+/// @param first   The way to begin with, which stays if nothing can be measured: YORO_WAY_TWO_VIEWS or
+/// YORO_WAY_SYNTHESIS. @param chooser Receives the chooser; NULL after an error. @pre chooser can be written. @return
+/// YORO_ERROR_VALUE, YORO_ERROR_NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_chooser_create(first: YoroWay, chooser: *mut *mut YoroChooser) -> YoroResult {
     catch_errors(|_| {
@@ -132,15 +131,13 @@ pub unsafe extern "C" fn yoro_chooser_create(first: YoroWay, chooser: *mut *mut 
     })
 }
 
-/// Takes a frame that was handed to the display, and says how to render the next one. It allocates nothing. The first frame
-/// is rendered in the way that yoro_chooser_create was given.
+/// Takes a frame that was handed to the display, and says how to render the next one. It allocates nothing. The first
+/// frame is rendered in the way that yoro_chooser_create was given.
 ///
-/// @param chooser The chooser.
-/// @param frame   The frame.
-/// @param choice  Filled in; the caller sets struct_size.
-/// @pre chooser is alive, and no other thread uses it. The others lead to structures of the size that they state.
-/// @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers that
-///         are not finite: such a frame is not counted.
+/// @param chooser The chooser. @param frame   The frame. @param choice  Filled in; the caller sets struct_size. @pre
+/// chooser is alive, and no other thread uses it. The others lead to structures of the size that they state. @return
+/// YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers that are
+/// not finite: such a frame is not counted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_chooser_end_frame(
     chooser: *mut YoroChooser,

@@ -13,8 +13,8 @@ use crate::versioned::{self, Versioned, versioned};
 
 /// The synthesis in one GL context or on one Vulkan device: compiled shaders and small buffers.
 ///
-/// Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which the
-/// GL context is current; for Vulkan it can be any thread.
+/// Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which
+/// the GL context is current; for Vulkan it can be any thread.
 pub struct YoroContext {
     state: AtomicU8,
     messages: YoroMessages,

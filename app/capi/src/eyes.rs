@@ -65,8 +65,8 @@ pub struct YoroEyes {
     pub rows: YoroRows,
     /// The clip volume of the resulting matrices.
     pub clip: YoroClip,
-    /// Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other eye.
-    /// Smaller values cost more pixels. 0 for no guard band: the border is filled in.
+    /// Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other
+    /// eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
     pub guard_band: f32,
     /// YORO_EYES_ bits.
     pub flags: YoroEyesFlags,

@@ -52,8 +52,8 @@ pub type YoroGlSourceFlags = u32;
 /// eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
 /// sizes.
 pub const YORO_GL_SOURCE_PARTS: YoroGlSourceFlags = 1;
-/// The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview, and of
-/// OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
+/// The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview,
+/// and of OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
 pub const YORO_GL_SOURCE_LAYERS: YoroGlSourceFlags = 2;
 
 /// The options of a context for OpenGL.
@@ -68,8 +68,8 @@ pub struct YoroGlInfo {
     pub outputs: YoroOutputFlags,
     /// The treatment of GL state.
     pub state: YoroGlState,
-    /// 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use it in
-    /// development. 0: mistakes are undefined behaviour, as in GL.
+    /// 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use
+    /// it in development. 0: mistakes are undefined behaviour, as in GL.
     pub check: u32,
     /// The kind of source images; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
     pub edges: YoroEdges,
@@ -90,10 +90,11 @@ pub struct YoroGlInfo {
 
 versioned!(YoroGlInfo since sources);
 
-/// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at start,
-/// not in a frame.
+/// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at
+/// start, not in a frame.
 ///
-/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag stays.
+/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag
+/// stays.
 ///
 /// @param info    The options.
 /// @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
@@ -147,25 +148,25 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
 pub struct YoroGlImages {
     /// sizeof(YoroGlImages).
     pub struct_size: u32,
-    /// Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another target or
-    /// size with YORO_GL_SOURCE_ bits). All four channels
-    /// are carried over, in any encoding. Filters and sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is
-    /// resolved, with values between 0 and 1.
+    /// Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another
+    /// target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Filters and
+    /// sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
     pub color_texture: u32,
-    /// Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as depth) or
-    /// red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+    /// Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as
+    /// depth) or red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
     pub depth_texture: u32,
-    /// The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with YORO_OUTPUT_DEPTH
-    /// its depth attachment. None of the textures above may be attached to it.
+    /// The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with
+    /// YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
     pub framebuffer: u32,
     /// First column of the synthesized image in the framebuffer.
     pub x: u32,
     /// First row of the synthesized image in the framebuffer, counted from the bottom.
     pub y: u32,
-    /// For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if it
-    /// does not exist any more. Otherwise 0.
+    /// For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if
+    /// it does not exist any more. Otherwise 0.
     pub sample_color_texture: u32,
-    /// First column of the rendered part in its textures. This and the next three are for YORO_GL_SOURCE_PARTS, otherwise 0.
+    /// First column of the rendered part in its textures. This and the next three are for YORO_GL_SOURCE_PARTS,
+    /// otherwise 0.
     pub source_x: u32,
     /// First row of the rendered part, counted from the bottom.
     pub source_y: u32,
@@ -188,8 +189,8 @@ pub struct YoroGlImages {
 
 versioned!(YoroGlImages since source_x);
 
-/// Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the sizes
-/// are as before.
+/// Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the
+/// sizes are as before.
 ///
 /// Thread, GL state and results are those of yoro_gl_synthesize.
 ///
@@ -232,14 +233,11 @@ pub unsafe extern "C" fn yoro_gl_prepare_pose(
 /// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay
 /// the same it allocates and compiles nothing, and does not wait for the GPU.
 ///
-/// @param context The context.
-/// @param warp    The warp of YoroViews.
-/// @param images  The images to read and the place to draw.
-/// @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says. Transform
-///      feedback and conditional rendering are not active.
-/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also
-///         YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT;
-///         YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+/// @param context The context. @param warp    The warp of YoroViews. @param images  The images to read and the place to
+/// draw. @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says.
+/// Transform feedback and conditional rendering are not active. @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE,
+/// YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT; YORO_ERROR_API,
+/// YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_synthesize(
     context: *mut YoroContext,

@@ -19,8 +19,8 @@ pub struct YoroHistory {
     pub struct_size: u32,
     /// Number of strips, 1 to YORO_MOST_STRIPS.
     pub count: u32,
-    /// From row 0 of the image on, the view of the whole image from which each was rendered: YoroViews' synthesized of that
-    /// frame, in the size of the history, all of one size. NULL for a strip with nothing in it.
+    /// From row 0 of the image on, the view of the whole image from which each was rendered: YoroViews' synthesized of
+    /// that frame, in the size of the history, all of one size. NULL for a strip with nothing in it.
     pub strips: [*const YoroView; YORO_MOST_STRIPS],
     /// Distance of the near plane, as of the eyes: in metres, more than 0.
     pub near_z: f32,

@@ -1,8 +1,8 @@
 //! The C interface of yoro: the functions and types of `include/yoro.h`, and nothing else.
 //!
-//! Takes pointers and handles of a program in C, checks them, and calls the core; returns a [`YoroResult`]. No panic and
-//! no abort leaves this library, and it has no global state. It must never know what the core must not, nor anything that
-//! the header does not say.
+//! Takes pointers and handles of a program in C, checks them, and calls the core; returns a [`YoroResult`]. No panic
+//! and no abort leaves this library, and it has no global state. It must never know what the core must not, nor
+//! anything that the header does not say.
 //!
 //! Structures begin with their size, so that programs and libraries of different versions agree (`versioned.rs`). The
 //! documentation of the items becomes the header, so it speaks C. The header has them in the order of these modules.

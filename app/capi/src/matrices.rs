@@ -45,8 +45,8 @@ pub struct YoroMatrices {
 
 versioned!(YoroMatrices since flags);
 
-/// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world, clip
-/// volume and units of the given ones. Poses are in metres.
+/// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world,
+/// clip volume and units of the given ones. Poses are in metres.
 ///
 /// The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes'
 /// distance. Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds
@@ -201,8 +201,9 @@ impl Places {
         let [left, right] = views.map(|view| -(view.orientation * view.translation));
         let mut between = right - left;
         let off_axis = between.reject_from_normalized(views[rendered.index()].orientation * DVec3::X);
-        // Each coordinate of a translation is a sum of three products, rounded three times; those of two eyes are off by
-        // six halves of a unit in the last place, in each of two directions off the axis. As much again is for rotations.
+        // Each coordinate of a translation is a sum of three products, rounded three times; those of two eyes are off
+        // by six halves of a unit in the last place, in each of two directions off the axis. As much again is for
+        // rotations.
         if off_axis.length() < 8.0 * ROUNDING * left.length().max(right.length()) {
             between -= off_axis;
         }

@@ -24,7 +24,8 @@ pub struct YoroPoses {
     pub rows: YoroRows,
     /// Zero.
     pub reserved: u32,
-    /// The rendered view. Of this and the next one size, pose and angles are read, which may differ; the matrices are not.
+    /// The rendered view. Of this and the next one size, pose and angles are read, which may differ; the matrices are
+    /// not.
     pub source: *const YoroView,
     /// The view to synthesize.
     pub target: *const YoroView,
@@ -68,11 +69,9 @@ pub struct YoroPoseWarp {
 ///
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
-/// @param poses The views.
-/// @param warp  Filled in.
-/// @pre The pointers lead to structures, and `poses` to one of the size that it states.
-/// @return YORO_ERROR_VALUE for views that are impossible, or of which the target sees further than 80 degrees from the source's
-///         axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+/// @param poses The views. @param warp  Filled in. @pre The pointers lead to structures, and `poses` to one of the size
+/// that it states. @return YORO_ERROR_VALUE for views that are impossible, or of which the target sees further than 80
+/// degrees from the source's axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_pose_warp(poses: *const YoroPoses, warp: *mut YoroPoseWarp) -> YoroResult {
     catch_errors(|told| {
@@ -149,11 +148,9 @@ versioned!(YoroGuardedView);
 ///
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
-/// @param motion  The bounds and the view.
-/// @param guarded Filled in; the caller sets struct_size.
-/// @pre The pointers lead to structures of the sizes that they state.
-/// @return YORO_ERROR_VALUE for a view that is impossible or would have to see further than 80 degrees to a side; YORO_ERROR_NULL,
-///         YORO_ERROR_STRUCT_SIZE.
+/// @param motion  The bounds and the view. @param guarded Filled in; the caller sets struct_size. @pre The pointers
+/// lead to structures of the sizes that they state. @return YORO_ERROR_VALUE for a view that is impossible or would
+/// have to see further than 80 degrees to a side; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_guarded_view(
     motion: *const YoroHeadMotion,

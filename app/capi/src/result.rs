@@ -56,8 +56,9 @@ pub const YORO_ERROR_NOT_REGISTERED: YoroResult = -19;
 /// An error of the library itself. Afterwards the YoroContext returns only this, and can only be destroyed.
 pub const YORO_ERROR_INTERNAL: YoroResult = -20;
 
-/// Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on the
-/// thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same context.
+/// Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on
+/// the thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same
+/// context.
 pub type YoroMessageCallback =
     Option<unsafe extern "C" fn(user: *mut c_void, result: YoroResult, sentence: *const c_char)>;
 
@@ -71,8 +72,8 @@ pub struct YoroMessages {
     pub user: *mut c_void,
 }
 
-/// Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text lives
-/// as long as the library.
+/// Returns a short text for a result, such as "the eyes are canted", and "unknown result" for other numbers. The text
+/// lives as long as the library.
 ///
 /// Call it from any thread.
 #[unsafe(no_mangle)]

@@ -55,8 +55,8 @@ pub const YORO_ROWS_UP: YoroRows = 0;
 /// Row 0 is at the top: Vulkan, Direct3D, image files.
 pub const YORO_ROWS_DOWN: YoroRows = 1;
 
-/// The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was averaged
-/// over samples: it belongs to no surface, and gives halos.
+/// The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was
+/// averaged over samples: it belongs to no surface, and gives halos.
 pub type YoroEdges = u32;
 /// One sample per pixel, of colour and depth.
 pub const YORO_EDGES_HARD: YoroEdges = 0;
@@ -105,13 +105,14 @@ pub(crate) fn other_kind(made_for_pose: bool) -> Failure {
 
 /// Bits for outputs besides colour, and for their encoding.
 pub type YoroOutputFlags = u32;
-/// Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent objects.
+/// Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent
+/// objects.
 pub const YORO_OUTPUT_DEPTH: YoroOutputFlags = 1;
 /// Source and target are both sRGB images: sampling decodes them, and writing encodes.
 pub const YORO_OUTPUT_SRGB: YoroOutputFlags = 2;
 
-/// Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out as
-/// XrPosef.
+/// Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out
+/// as XrPosef.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroPose {

@@ -66,8 +66,8 @@ unsafe fn stated_size<T: Versioned>(pointer: *const T, what: &'static str) -> Re
     Ok(size)
 }
 
-/// Copies a structure that the caller filled. Fields that an older program does not know are zero. Refuses fields that a
-/// newer program sets and this library does not know.
+/// Copies a structure that the caller filled. Fields that an older program does not know are zero. Refuses fields that
+/// a newer program sets and this library does not know.
 ///
 /// # Safety
 /// As [`stated_size`], and as many bytes as the structure states can be read.

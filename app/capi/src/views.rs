@@ -27,11 +27,11 @@ pub struct YoroView {
     pub projection: [f32; 16],
 }
 
-/// The mapping of pixels from the rendered image to the other eye's. yoro_views_from_eyes and yoro_views_from_matrices fill
-/// it. It can be copied and kept.
+/// The mapping of pixels from the rendered image to the other eye's. yoro_views_from_eyes and yoro_views_from_matrices
+/// fill it. It can be copied and kept.
 ///
-/// The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, where depth is the
-/// value in the depth buffer.
+/// The pixel in column x and row y lands in column x + offset + scale * depth and row y + row_offset, where depth is
+/// the value in the depth buffer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroWarp {

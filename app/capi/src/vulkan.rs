@@ -174,16 +174,13 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
 ///
 /// Call it on the thread that may use the context and that records the command buffer.
 ///
-/// @param context  The context.
-/// @param commands A command buffer of the device.
-/// @param warp     The warp of YoroViews, with rows as they lie in the images.
-/// @param frame    The images to read and the place to draw.
-/// @pre The command buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to
-///      the queue family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is
-///      not active.
-/// @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond their
-///         images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
-///         error nothing was recorded.
+/// @param context  The context. @param commands A command buffer of the device. @param warp     The warp of YoroViews,
+/// with rows as they lie in the images. @param frame    The images to read and the place to draw. @pre The command
+/// buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to the queue
+/// family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is not active.
+/// @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond
+/// their images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
+/// error nothing was recorded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_record(
     context: *mut YoroContext,

@@ -249,7 +249,8 @@ fn damaged<T: Copy>(value: &T, damage: &[(usize, u32)], from: usize) -> T {
     let mut copy = *value;
     for &(place, word) in damage {
         let words = (size_of::<T>() - from) / 4;
-        // SAFETY: within the structure, whose fields may be any bits but for pointers, which are before `from` or behind.
+        // SAFETY: within the structure, whose fields may be any bits but for pointers, which are before `from` or
+        // behind.
         unsafe {
             (&raw mut copy).cast::<u8>().add(from + place % words * 4).cast::<u32>().write_unaligned(word)
         };

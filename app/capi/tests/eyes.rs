@@ -48,8 +48,8 @@ fn project(view: &[f32; 16], projection: &[f32; 16], point: DVec3) -> DVec3 {
     clip.truncate() / clip.w
 }
 
-/// Eyes of a calibrated headset: canted, and one of them a third of a millimetre higher. In a right-handed world, and in a
-/// left-handed one in centimetres with eyes that look along +Z.
+/// Eyes of a calibrated headset: canted, and one of them a third of a millimetre higher. In a right-handed world, and
+/// in a left-handed one in centimetres with eyes that look along +Z.
 #[test]
 fn flags_turn_the_matrices_of_canted_and_displaced_eyes() {
     let mut eyes = good_eyes();

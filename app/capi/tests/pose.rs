@@ -1,4 +1,5 @@
-//! A view in any pose near the rendered one: the warp and the guard band are the core's, and so is the picture on OpenGL.
+//! A view in any pose near the rendered one: the warp and the guard band are the core's, and so is the picture on
+//! OpenGL.
 
 mod common;
 

@@ -40,8 +40,8 @@ fn run(command: &mut Command) -> String {
     text
 }
 
-/// Compiles a sample by every installed compiler, runs the first result, checks its figures and picture, and returns the
-/// picture.
+/// Compiles a sample by every installed compiler, runs the first result, checks its figures and picture, and returns
+/// the picture.
 fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> Option<image::RgbImage> {
     if !Path::new("/usr/include").join(header).is_file() {
         println!("SKIPPED: {source} is not compiled: {header} is not here");

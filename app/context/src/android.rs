@@ -232,8 +232,8 @@ impl Drop for Window {
     }
 }
 
-/// Returns a configuration of exactly 8 bits per channel: EGL lists those with more bits first, which cost more bandwidth
-/// and show no more of an 8-bit picture. Without alpha, if there is one: nothing shines through the window.
+/// Returns a configuration of exactly 8 bits per channel: EGL lists those with more bits first, which cost more
+/// bandwidth and show no more of an 8-bit picture. Without alpha, if there is one: nothing shines through the window.
 fn choose(egl: &Egl, display: egl::Display, renderable: egl::Int) -> Option<egl::Config> {
     let attributes = [
         egl::SURFACE_TYPE,

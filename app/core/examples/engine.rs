@@ -48,8 +48,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let target =
         Destination { framebuffer: Some(other.framebuffer), origin: [0, 0], size: views.target.size };
     synthesis.synthesize(textures, &views.warp, &target)?;
-    // The call has changed program, vertex array, texture units 0 to 3, viewport, framebuffer and more: set your own, or
-    // choose `GlState::Preserve` in `SynthesisOptions`. The documentation of `Synthesis` has the table.
+    // The call has changed program, vertex array, texture units 0 to 3, viewport, framebuffer and more: set your own,
+    // or choose `GlState::Preserve` in `SynthesisOptions`. The documentation of `Synthesis` has the table.
 
     // The rendered eye's own image is the part of `source` that starts at `dominant_crop`.
     let right = engine.read(&source, views.dominant_crop);

@@ -181,8 +181,8 @@ fn trace(eye: Vec3, ray: Vec3) -> (Vec3, f32) {
     (color, nearest)
 }
 
-/// An engine as small as can be. Everything is executed when [`Engine::submit`] returns, so that nothing is in use when it
-/// is destroyed.
+/// An engine as small as can be. Everything is executed when [`Engine::submit`] returns, so that nothing is in use when
+/// it is destroyed.
 struct Engine {
     name: String,
     instance: ash::Instance,

@@ -1,10 +1,10 @@
 //! Render one eye, synthesize the other: stereo from the colour and depth of a single view.
 //!
 //! [`eyes`] takes poses and fields of view, and gives the view to render and how its pixels move to the other eye.
-//! [`synthesis`] takes the colour and depth of that view and draws the other eye: on OpenGL (feature `gl`, on by default)
-//! in a context that the caller lends, on Vulkan (feature `vulkan`) into the caller's command buffer.
-//! [`choice`] finds out whether that pays on this device, or two renders are cheaper.
-//! This crate must never know a scene, a renderer, a window, a file or a command line: an engine brings its own.
+//! [`synthesis`] takes the colour and depth of that view and draws the other eye: on OpenGL (feature `gl`, on by
+//! default) in a context that the caller lends, on Vulkan (feature `vulkan`) into the caller's command buffer.
+//! [`choice`] finds out whether that pays on this device, or two renders are cheaper. This crate must never know a
+//! scene, a renderer, a window, a file or a command line: an engine brings its own.
 //!
 //! An engine renders [`eyes::SynthesisViews::source`] with its own code, gives colour and depth to
 //! [`synthesis::Synthesis::synthesize`], and has the other eye in its own framebuffer:

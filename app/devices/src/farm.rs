@@ -1,9 +1,9 @@
 //! Device farms: the command that starts the application's game loops on many devices, and captures of what comes back.
 //!
 //! Firebase Test Lab keeps a folder for each device, `MODEL-VERSION-LOCALE-ORIENTATION`, with the device's log as
-//! `logcat` and the results of scenario N as `game_loop_results/results_scenario_N.json`: the log's lines without times,
-//! whatever that name says. AWS Device Farm has artefacts that are downloaded for each device, with other names. So a
-//! line is known by itself, and names of files only say which files are read.
+//! `logcat` and the results of scenario N as `game_loop_results/results_scenario_N.json`: the log's lines without
+//! times, whatever that name says. AWS Device Farm has artefacts that are downloaded for each device, with other names.
+//! So a line is known by itself, and names of files only say which files are read.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

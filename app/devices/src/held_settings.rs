@@ -15,8 +15,8 @@ const UNSET: &str = "null";
 const QUEST_RATE: &str = "debug.oculus.refreshRate";
 /// Property that lets applications on Meta's headsets continue outside of the boundary.
 const QUEST_BOUNDARY: &str = "debug.oculus.guardian_pause";
-/// Time without a touch until the screen goes off, in milliseconds: a day. While a phone cools, no application holds the
-/// screen on, and with the screen some phones switch adb over Wi-Fi off.
+/// Time without a touch until the screen goes off, in milliseconds: a day. While a phone cools, no application holds
+/// the screen on, and with the screen some phones switch adb over Wi-Fi off.
 const SCREEN_TIMEOUT_MS: &str = "86400000";
 /// Do not disturb, except for alarms (`Global.ZEN_MODE_ALARMS`).
 const ALARMS_ONLY: &str = "3";
@@ -127,7 +127,8 @@ impl HeldSetting {
     }
 }
 
-/// Holds values fixed. [`HeldSettings::restore`] must be called; otherwise the next [`HeldSettings::new`] restores them.
+/// Holds values fixed. [`HeldSettings::restore`] must be called; otherwise the next [`HeldSettings::new`] restores
+/// them.
 #[must_use]
 #[derive(Debug)]
 pub struct HeldSettings {

@@ -6,8 +6,8 @@ use yoro_protocol::telemetry::{LOG_TAG, Pictures, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";
-/// Returns the arguments that say which tags logcat gives: telemetry, Meta's runtime with its clock levels, and the last
-/// words of an application that crashes.
+/// Returns the arguments that say which tags logcat gives: telemetry, Meta's runtime with its clock levels, and the
+/// last words of an application that crashes.
 pub fn filter() -> [String; 6] {
     let all = |tag: &str| format!("{tag}:V");
     [

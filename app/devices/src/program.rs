@@ -97,8 +97,8 @@ impl AdbProgram {
         DeviceError::Server { reason: format!("adb {command} has not ended for {seconds} s") }
     }
 
-    /// Returns adb's own words in a line, without the names that it puts before them (`adb: `, `adb.exe: `, `error: `); none
-    /// where the words are those of a command on the device.
+    /// Returns adb's own words in a line, without the names that it puts before them (`adb: `, `adb.exe: `, `error: `);
+    /// none where the words are those of a command on the device.
     fn own_words<'a>(&self, line: &'a str) -> Option<&'a str> {
         let name = self.program.file_name().unwrap_or_default().to_string_lossy();
         let is_name = |word: &str| [&*name, "adb", "adb.exe", "error"].contains(&word);
@@ -421,8 +421,8 @@ mod tests {
         adb().unreached(stderr, "X")
     }
 
-    /// Texts of adb on Linux and Windows, as issues of scrcpy (1714, 3042), flutter (27456, 125971) and APK-Installer (25)
-    /// quote them.
+    /// Texts of adb on Linux and Windows, as issues of scrcpy (1714, 3042), flutter (27456, 125971) and APK-Installer
+    /// (25) quote them.
     #[test]
     fn adbs_words_about_lost_devices_are_recognised() {
         for said in [

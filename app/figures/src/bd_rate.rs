@@ -15,9 +15,9 @@ pub struct BdRate {
     pub overlap: f64,
 }
 
-/// Returns the mean difference of the rate of `test` against `anchor`. Points are (rate, quality), rate above 0, in any order.
-/// `None` with fewer than four points, or when the curves have no quality in common: then there is no rate at which
-/// they would be equal.
+/// Returns the mean difference of the rate of `test` against `anchor`. Points are (rate, quality), rate above 0, in any
+/// order. `None` with fewer than four points, or when the curves have no quality in common: then there is no rate at
+/// which they would be equal.
 pub fn bd_rate(anchor: &[(f64, f64)], test: &[(f64, f64)]) -> Option<BdRate> {
     let (a, b) = (Curve::fit(anchor)?, Curve::fit(test)?);
     let (low, high) = (a.low.max(b.low), a.high.min(b.high));

@@ -89,9 +89,9 @@ impl Sample {
         (self.n > 1 && self.std > 0.0).then(|| self.mean / self.std)
     }
 
-    /// The interval of d_z at a confidence between 0 and 1: of the noncentral t distributions, those under which the
-    /// t found is not too far out (Steiger and Fouladi 1997). `None` as of [`Sample::t`], and of a confidence so near to 1
-    /// that f64 does not tell it from 1.
+    /// The interval of d_z at a confidence between 0 and 1: of the noncentral t distributions, those under which the t
+    /// found is not too far out (Steiger and Fouladi 1997). `None` as of [`Sample::t`], and of a confidence so near to
+    /// 1 that f64 does not tell it from 1.
     pub fn d_z_interval(&self, confidence: f64) -> Option<Interval> {
         let (t, df) = (self.t(0.0)?, self.df()?);
         let tail = (1.0 - confidence) / 2.0;
@@ -114,8 +114,8 @@ impl Sample {
         Some(power_of_t_test(self.d_z()?, self.n, alpha))
     }
 
-    /// Tests whether the mean lies inside `bounds` by two one-sided t-tests (Schuirmann 1987, Lakens 2017). `None` as of
-    /// [`Sample::t`].
+    /// Tests whether the mean lies inside `bounds` by two one-sided t-tests (Schuirmann 1987, Lakens 2017). `None` as
+    /// of [`Sample::t`].
     pub fn equivalence(&self, bounds: Interval, alpha: f64) -> Option<Equivalence> {
         let df = self.df()?;
         let (t_lower, t_upper) = (self.t(bounds.low)?, self.t(bounds.high)?);
@@ -225,8 +225,8 @@ impl Blocks {
     }
 }
 
-/// Returns the power of the two-sided paired t-test at level `alpha` with `n` pairs, if the true effect is `d_z`; `alpha` of fewer
-/// than two pairs.
+/// Returns the power of the two-sided paired t-test at level `alpha` with `n` pairs, if the true effect is `d_z`;
+/// `alpha` of fewer than two pairs.
 fn power_of_t_test(d_z: f64, n: usize, alpha: f64) -> f64 {
     if n < 2 {
         return alpha;

@@ -151,8 +151,8 @@ const PART: [&str; 2] = [".yoro-", ".part"];
 /// Unfinished files younger than this stay: their writers may be about to lock them.
 const YOUNG: Duration = Duration::from_secs(10);
 
-/// Removes the unfinished files of processes that were killed; looks once into each folder. Those that are being written
-/// are locked.
+/// Removes the unfinished files of processes that were killed; looks once into each folder. Those that are being
+/// written are locked.
 fn sweep(folder: &Path) {
     static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
@@ -173,8 +173,8 @@ fn sweep(folder: &Path) {
     }
 }
 
-/// Opens a file to append to it, and keeps other processes from doing the same until it is closed. It and missing parent
-/// folders are created.
+/// Opens a file to append to it, and keeps other processes from doing the same until it is closed. It and missing
+/// parent folders are created.
 pub fn append(path: &Path) -> Result<fs::File, FileError> {
     if path.is_dir() {
         return Err(FileError::IsFolder { path: path.into() });

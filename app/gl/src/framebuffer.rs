@@ -25,8 +25,8 @@ impl Destination {
 }
 
 impl Context {
-    /// Copies a rectangle of colour to another one of the same size, or stretches it without filtering. Values are copied
-    /// bit by bit, unless only one of the two is stored as sRGB.
+    /// Copies a rectangle of colour to another one of the same size, or stretches it without filtering. Values are
+    /// copied bit by bit, unless only one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
         self.record_copy(from.framebuffer, to.framebuffer, to.size, false);
         let gl = self.raw();
@@ -239,8 +239,8 @@ impl RenderTarget {
         Destination { framebuffer: Some(framebuffer.raw), origin: [0, 0], size: self.size }
     }
 
-    /// Copies a rectangle of colour attachment 0 into a destination of the same size. `crop` is the rectangle's lower left
-    /// corner.
+    /// Copies a rectangle of colour attachment 0 into a destination of the same size. `crop` is the rectangle's lower
+    /// left corner.
     pub fn copy_color(&self, crop: [u32; 2], to: &Destination) {
         self.gl.copy(&Destination { framebuffer: Some(self.raw()), origin: crop, size: to.size }, to);
     }
@@ -358,7 +358,8 @@ pub struct ForeignTarget {
 }
 
 impl ForeignTarget {
-    /// Creates a framebuffer that draws into a 2-D texture, or into a layer of an array texture: colour, or depth alone.
+    /// Creates a framebuffer that draws into a 2-D texture, or into a layer of an array texture: colour, or depth
+    /// alone.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver cannot render to the texture.

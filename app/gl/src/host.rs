@@ -228,8 +228,8 @@ pub struct HostState {
 
 impl Context {
     /// Sets all state that a pipeline relies on and does not set in each pass: everything in the table of
-    /// `yoro::synthesis::Synthesis` except program, vertex array, framebuffer, viewport and textures. `draw_buffers` is the
-    /// number of colour attachments of the target, 1 or 2. With `encode` writes to sRGB framebuffers are encoded.
+    /// `yoro::synthesis::Synthesis` except program, vertex array, framebuffer, viewport and textures. `draw_buffers` is
+    /// the number of colour attachments of the target, 1 or 2. With `encode` writes to sRGB framebuffers are encoded.
     pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
         self.recorded(|recorder| recorder.set_depth_write(false));
         let (gl, host) = (self.raw(), &self.host);

@@ -1,7 +1,7 @@
 //! Objects over [`glow`]: programs, textures, framebuffers, meshes, timers, capabilities.
 //!
-//! A [`Context`] wraps the context that the caller lends; everything else is made in it, deletes itself when dropped, and is
-//! counted, so that leaks show in a test.
+//! A [`Context`] wraps the context that the caller lends; everything else is made in it, deletes itself when dropped,
+//! and is counted, so that leaks show in a test.
 //!
 //! Of synthesis it knows one thing: the state that it sets, saves and restores in a host's context
 //! ([`Context::begin_synthesis`], [`HostState`]). It must never know how anything is synthesized, a scene or a window.
@@ -152,9 +152,9 @@ impl Context {
         Context::with_entry_points(raw, EntryPoints::default(), None)
     }
 
-    /// Like [`Context::new`], with functions that glow does not wrap: multiview, the bits of timer queries, and the state
-    /// of single draw buffers. Without the last [`Context::restore_state`] sets the second draw buffer as the first one
-    /// was. `load` returns an entry point by its name, or null.
+    /// Like [`Context::new`], with functions that glow does not wrap: multiview, the bits of timer queries, and the
+    /// state of single draw buffers. Without the last [`Context::restore_state`] sets the second draw buffer as the
+    /// first one was. `load` returns an entry point by its name, or null.
     ///
     /// # Errors
     /// Those of [`Context::new`].

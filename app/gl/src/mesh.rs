@@ -23,8 +23,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Uploads vertices and indices. `attributes` are the numbers of floats of a vertex's attributes, one after the other,
-    /// for the shader's locations from 0 on.
+    /// Uploads vertices and indices. `attributes` are the numbers of floats of a vertex's attributes, one after the
+    /// other, for the shader's locations from 0 on.
     ///
     /// # Errors
     /// [`GlError::Object`] when the driver has no memory.

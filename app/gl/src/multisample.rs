@@ -13,8 +13,8 @@ enum Image {
     Renderbuffer(glow::Renderbuffer),
 }
 
-/// A framebuffer with several samples of colour and depth in each pixel, 4 bytes each. A tile-based GPU writes all of them
-/// to memory unless they are given up: [`MultisampleTarget::discard`].
+/// A framebuffer with several samples of colour and depth in each pixel, 4 bytes each. A tile-based GPU writes all of
+/// them to memory unless they are given up: [`MultisampleTarget::discard`].
 pub struct MultisampleTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,
@@ -28,8 +28,8 @@ pub struct MultisampleTarget {
 
 impl MultisampleTarget {
     /// Creates a target of `size` pixels with this many samples in each ([`crate::Capabilities::check_samples`]). Both
-    /// formats have 4 bytes and can be rendered to. A `readable` target has textures, for shaders that read single samples
-    /// ([`crate::Capabilities::multisample_textures`]).
+    /// formats have 4 bytes and can be rendered to. A `readable` target has textures, for shaders that read single
+    /// samples ([`crate::Capabilities::multisample_textures`]).
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver lacks this many samples or multisample textures, or cannot render to the
@@ -175,14 +175,14 @@ impl MultisampleTarget {
         self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
     }
 
-    /// Averages the samples into the first colour texture of `to`, which has the same colour format. Its size selects the
-    /// lower left pixels.
+    /// Averages the samples into the first colour texture of `to`, which has the same colour format. Its size selects
+    /// the lower left pixels.
     pub fn resolve_color(&self, to: &RenderTarget) {
         self.blit(to, glow::COLOR_BUFFER_BIT);
     }
 
-    /// Copies the depth of one sample, which the driver chooses, into the depth texture of `to`, which has the same depth
-    /// format. For drivers without multisample textures.
+    /// Copies the depth of one sample, which the driver chooses, into the depth texture of `to`, which has the same
+    /// depth format. For drivers without multisample textures.
     pub fn resolve_depth(&self, to: &RenderTarget) {
         self.blit(to, glow::DEPTH_BUFFER_BIT);
     }
@@ -253,9 +253,9 @@ impl Drop for MultisampleTarget {
     }
 }
 
-/// A framebuffer that renders with several samples a pixel into the textures of a render target. A tile-based GPU keeps the
-/// samples in its tiles and averages them when it writes the tiles: 8 bytes a pixel, whatever the number of samples. The
-/// samples are lost as soon as another framebuffer is bound.
+/// A framebuffer that renders with several samples a pixel into the textures of a render target. A tile-based GPU keeps
+/// the samples in its tiles and averages them when it writes the tiles: 8 bytes a pixel, whatever the number of
+/// samples. The samples are lost as soon as another framebuffer is bound.
 pub struct TileTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,

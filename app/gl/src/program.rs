@@ -182,8 +182,8 @@ impl Drop for Program {
         // SAFETY: created in `new`, deleted once.
         unsafe {
             let gl = self.gl.raw();
-            // A current program would live on, and be a host's to stumble over. In browsers, which have no other host, glow
-            // panics if there is none.
+            // A current program would live on, and be a host's to stumble over. In browsers, which have no other host,
+            // glow panics if there is none.
             let own = Some(self.raw);
             if cfg!(not(target_arch = "wasm32")) && gl.get_parameter_program(glow::CURRENT_PROGRAM) == own {
                 gl.use_program(None);

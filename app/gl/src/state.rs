@@ -53,8 +53,8 @@ impl RasterState {
 }
 
 impl Context {
-    /// Sets depth test, blending and culling. Turns stencil test and dithering off and all writes on. The scissor test is
-    /// off, except within [`Context::within_columns`].
+    /// Sets depth test, blending and culling. Turns stencil test and dithering off and all writes on. The scissor test
+    /// is off, except within [`Context::within_columns`].
     pub fn set_raster_state(&self, state: &RasterState) {
         self.recorded(|recorder| recorder.set_state(state));
         let gl = self.raw();
@@ -88,8 +88,8 @@ impl Context {
         }
     }
 
-    /// Runs `body` with all draws bounded to the columns `[first, end]`, from the left, of any framebuffer; `None` for all
-    /// columns. `body` must set its state by [`Context::set_raster_state`]. Clearing is not bounded.
+    /// Runs `body` with all draws bounded to the columns `[first, end]`, from the left, of any framebuffer; `None` for
+    /// all columns. `body` must set its state by [`Context::set_raster_state`]. Clearing is not bounded.
     pub fn within_columns<R>(&self, columns: Option<[u32; 2]>, body: impl FnOnce() -> R) -> R {
         let before = self.columns.replace(columns);
         let result = body();
@@ -132,7 +132,8 @@ impl Context {
         }
     }
 
-    /// Maps depth in the clip volume, -1 to 1, to this part of the depth buffer's range 0 to 1. Set it back to all of it.
+    /// Maps depth in the clip volume, -1 to 1, to this part of the depth buffer's range 0 to 1. Set it back to all of
+    /// it.
     pub fn set_depth_window(&self, [low, high]: [f32; 2]) {
         // SAFETY: GL clamps the values.
         unsafe { self.raw().depth_range_f32(low, high) }

@@ -273,8 +273,8 @@ pub(crate) fn bind_texture(gl: &Context, unit: u32, target: u32, texture: glow::
 }
 
 impl Context {
-    /// True if the bound texture has its storage. Asks the texture, so that a host's pending error stays. In browsers, where
-    /// glow cannot, the error flag tells.
+    /// True if the bound texture has its storage. Asks the texture, so that a host's pending error stays. In browsers,
+    /// where glow cannot, the error flag tells.
     fn has_storage(&self, target: u32) -> bool {
         let gl = self.raw();
         // SAFETY: a parameter of textures that every context has.

@@ -48,7 +48,8 @@ pub struct Candidate {
 }
 
 impl Plan {
-    /// Returns the number of steps of progress for each scene: preparing, a warm-up, each round's viewpoints, the passes.
+    /// Returns the number of steps of progress for each scene: preparing, a warm-up, each round's viewpoints, the
+    /// passes.
     pub fn steps(&self) -> u64 {
         3 + self.viewpoints as u64 * u64::from(self.rounds)
     }

@@ -86,8 +86,8 @@ impl FrameRenderer {
             let content = Content::Eyes([eye_view(&left), eye_view(&right)]);
             return Ok(Picture { planes, content, size: size(&left), new_span: false });
         }
-        // Wide enough to synthesize the other eye of it. Eyes that are not parallel cannot be synthesized from one another: they are
-        // taken as they are.
+        // Wide enough to synthesize the other eye of it. Eyes that are not parallel cannot be synthesized from one
+        // another: they are taken as they are.
         let source = |dominant: Eye| {
             let views = EyePair { dominant, ..pair }.synthesis_views(GuardBand::Distance(NEAREST));
             guarded(&views.map_or(pair.view(dominant), |views| views.source), MOTION)

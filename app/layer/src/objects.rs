@@ -7,10 +7,10 @@
 //! A thread that holds one of these locks takes only locks further down:
 //!
 //! 1. [`LiveSession::frames`]: the layer's own work in xrEndFrame, and forgetting images.
-//! 2. The state of a swapchain (`swapchain.rs`): which images are acquired. The runtime's acquire and release are called
-//!    under it, so that both sides agree on the order.
-//! 3. The registry below, `Session::offer`, `Session::begun`, `Instance::sizes` and the log's file: held for a look or a
-//!    change. No other lock is taken and no function of the runtime is called under them.
+//! 2. The state of a swapchain (`swapchain.rs`): which images are acquired. The runtime's acquire and release are
+//!    called under it, so that both sides agree on the order.
+//! 3. The registry below, `Session::offer`, `Session::begun`, `Instance::sizes` and the log's file: held for a look or
+//!    a change. No other lock is taken and no function of the runtime is called under them.
 //!
 //! No lock is held while the runtime waits for the display or the compositor: in xrWaitFrame, in the application's
 //! xrWaitSwapchainImage and in the runtime's xrEndFrame. The layer waits for its own images under the first lock, half

@@ -37,8 +37,8 @@ pub struct Settings {
     /// YORO_LAYER_CAPTURE: a folder for pictures of what the runtime gets in one frame.
     #[cfg(feature = "capture")]
     pub capture: Option<PathBuf>,
-    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located, LOCAL space being STAGE. The
-    /// world stands still, so that pictures of two runs can be compared.
+    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located, LOCAL space being STAGE.
+    /// The world stands still, so that pictures of two runs can be compared.
     #[cfg(feature = "capture")]
     pub time: Option<i64>,
 }

@@ -48,8 +48,8 @@ pub trait Synthesizer: Send {
     /// The reason why nothing was submitted.
     ///
     /// # Safety
-    /// The images belong to the session and are not the runtime's at the moment. In Vulkan the source's images are in the
-    /// layouts of attachments; the target's are left in them. No other thread uses the queue or the context.
+    /// The images belong to the session and are not the runtime's at the moment. In Vulkan the source's images are in
+    /// the layouts of attachments; the target's are left in them. No other thread uses the queue or the context.
     unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason>;
 
     /// Forgets a swapchain's images, which are about to be destroyed.

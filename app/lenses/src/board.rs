@@ -44,7 +44,8 @@ const BAR: usize = 6;
 pub struct Tiles {
     /// The lines above the tiles.
     pub heading: String,
-    /// Two lines for each tile, row after row from the upper left; an empty text is no tile. The last row stands at the panel's lower edge.
+    /// Two lines for each tile, row after row from the upper left; an empty text is no tile. The last row stands at the
+    /// panel's lower edge.
     pub tiles: Vec<String>,
     /// The tile that is pointed at, and how far its choice has come, 0 to 1.
     pub pointed: Option<(usize, f32)>,
@@ -214,7 +215,8 @@ impl Board {
         });
     }
 
-    /// Draws the panel flat, as large as a window allows, with or without the camera's picture in its upper right corner.
+    /// Draws the panel flat, as large as a window allows, with or without the camera's picture in its upper right
+    /// corner.
     pub fn draw_flat(&self, window: &Destination, has_picture: bool) {
         let ([x, y], size) = flat_place(window.size);
         let origin = [window.origin[0] + x, window.origin[1] + y];
@@ -283,7 +285,8 @@ fn flat_place(window: [u32; 2]) -> ([u32; 2], [u32; 2]) {
     ([(width - size[0]) / 2, (height - size[1]) / 2].map(|n| n as u32), size.map(|n| n as u32))
 }
 
-/// Returns the place on the flat panel, 0 to 1 from the lower left, of a pixel of the window, counted from the upper left.
+/// Returns the place on the flat panel, 0 to 1 from the lower left, of a pixel of the window, counted from the upper
+/// left.
 pub fn flat_hit(pixel: Vec2, window: [u32; 2]) -> Option<Vec2> {
     let ([left, bottom], size) = flat_place(window);
     let from_corner = Vec2::new(pixel.x - left as f32, window[1] as f32 - pixel.y - bottom as f32);

@@ -342,8 +342,8 @@ fn upright(up: DVec3) -> DQuat {
     }
 }
 
-/// Returns how far a rotation about the neck moves the point between the eyes, in metres, relative to where it would be on
-/// the neck's axis: the rotation of (0, 0.075, -0.080), less (0, 0.075, 0).
+/// Returns how far a rotation about the neck moves the point between the eyes, in metres, relative to where it would be
+/// on the neck's axis: the rotation of (0, 0.075, -0.080), less (0, 0.075, 0).
 pub fn neck_offset(rotation: Quat) -> Vec3 {
     rotation * NECK - Vec3::new(0.0, NECK.y, 0.0)
 }

@@ -171,7 +171,8 @@ impl Panel<'_> {
         self.hud.version
     }
 
-    /// Fills a rectangle of the panel's size, translucent where there are no letters; colour is not multiplied by alpha.
+    /// Fills a rectangle of the panel's size, translucent where there are no letters; colour is not multiplied by
+    /// alpha.
     pub fn draw(&self, to: &Destination) {
         self.hud.gl.pass("hud", || {
             self.hud.gl.set_raster_state(&RasterState::SCREEN);

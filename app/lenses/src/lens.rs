@@ -45,8 +45,8 @@ impl LensPass {
         Ok(LensPass { gl: gl.clone(), program, meshes, frusta, line })
     }
 
-    /// Fills the window from the images of the left and the right eye. `turn` rotates a direction of the head as it is now into the head as it was when the
-    /// frame was rendered.
+    /// Fills the window from the images of the left and the right eye. `turn` rotates a direction of the head as it is
+    /// now into the head as it was when the frame was rendered.
     pub fn run(&self, images: [&Texture; 2], turn: Quat, window: &Destination) {
         let [width, height] = window.size;
         self.gl.pass("lens", || {

@@ -1,9 +1,11 @@
 //! A phone behind the lenses of a Cardboard-compatible viewer, and panels of text and of tiles before both eyes.
 //!
 //! A viewer's parameters and a screen's size come in; frusta, the mesh that undoes the lenses' distortion, and the pass
-//! that draws both eyes through it go out. The parameters are also read from a picture of the viewer's QR code. Motion samples come in, and the head's orientation goes out.
+//! that draws both eyes through it go out. The parameters are also read from a picture of the viewer's QR code. Motion
+//! samples come in, and the head's orientation goes out.
 //!
-//! This crate must never know a renderer, a scene, settings, or where a GL context comes from; it builds for phones and browsers alike.
+//! This crate must never know a renderer, a scene, settings, or where a GL context comes from; it builds for phones and
+//! browsers alike.
 
 mod board;
 mod head;

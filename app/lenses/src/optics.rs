@@ -150,8 +150,8 @@ impl Optics {
         Vec2::new(x, self.lens_height())
     }
 
-    /// Returns the half-angles of an eye in radians: left, right, bottom, top. What the lens shows of the screen, but not
-    /// more than the viewer allows.
+    /// Returns the half-angles of an eye in radians: left, right, bottom, top. What the lens shows of the screen, but
+    /// not more than the viewer allows.
     pub fn half_angles(&self, eye: Eye) -> [f32; 4] {
         let [width, height] = self.screen;
         let bottom = self.lens_height();

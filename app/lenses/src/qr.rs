@@ -9,8 +9,8 @@ pub fn read_qr(rgba: &[u8], width: usize) -> Option<String> {
     read_qr_in_luma(&pixels.iter().map(luma).collect::<Vec<u8>>(), width)
 }
 
-/// Returns the text of the first QR code that can be read in a picture, a byte a pixel with rows from the top; none without
-/// one.
+/// Returns the text of the first QR code that can be read in a picture, a byte a pixel with rows from the top; none
+/// without one.
 pub fn read_qr_in_luma(luma: &[u8], width: usize) -> Option<String> {
     let height = luma.len().checked_div(width)?;
     let mut image = PreparedImage::prepare_from_greyscale(width, height, |x, y| luma[y * width + x]);

@@ -50,8 +50,8 @@ impl Letters {
         &self.0[at.unwrap_or('?' as usize - ' ' as usize)]
     }
 
-    /// Draws at most `columns` characters of a line in white into an image with rows from the top that are `width` pixels
-    /// wide; `origin` is the upper left corner.
+    /// Draws at most `columns` characters of a line in white into an image with rows from the top that are `width`
+    /// pixels wide; `origin` is the upper left corner.
     pub fn draw(&self, line: &str, columns: usize, image: &mut [u8], width: usize, origin: [usize; 2]) {
         for (i, c) in line.chars().take(columns).enumerate() {
             for (y, row) in self.cell(c).chunks_exact(CELL[0]).enumerate() {

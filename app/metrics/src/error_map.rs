@@ -39,8 +39,8 @@ pub fn error_color(error: f64) -> [u8; 3] {
     })
 }
 
-/// Returns 1 - SSIM of `a` and `b` at each pixel (gaussian window, mean of red, green and blue) as colours, on the fixed
-/// scale from 0 (black) to 1 (pale yellow).
+/// Returns 1 - SSIM of `a` and `b` at each pixel (gaussian window, mean of red, green and blue) as colours, on the
+/// fixed scale from 0 (black) to 1 (pale yellow).
 ///
 /// # Errors
 /// [`MetricsError::SizesDiffer`] and [`MetricsError::TooSmall`].

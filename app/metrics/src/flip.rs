@@ -9,8 +9,8 @@ use super::input::{MetricsError, check_sizes};
 /// from 0.7 m. FLIP's published figures are made with it.
 pub const FLIP_PIXELS_PER_DEGREE: f64 = 67.020_643_276_582_25;
 
-/// Returns LDR-FLIP at each pixel, row by row from the top, from 0 (equal) to 1: how large the difference appears that is
-/// seen when `test` and `reference` alternate.
+/// Returns LDR-FLIP at each pixel, row by row from the top, from 0 (equal) to 1: how large the difference appears that
+/// is seen when `test` and `reference` alternate.
 ///
 /// Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: "FLIP: A Difference Evaluator for
 /// Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020. Both

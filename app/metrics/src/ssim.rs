@@ -47,8 +47,8 @@ pub fn ssim(a: &RgbImage, b: &RgbImage, window: SsimWindow, channels: Channels) 
     Ok(mean_inside(&map, a, window, |_| true).expect("an image as large as the window has a middle"))
 }
 
-/// Returns the mean of the SSIM map (RGB) over the pixels where `selected`, row by row from the top, is true, without the
-/// border; `None` without any. The window of a selected pixel also sees its neighbours.
+/// Returns the mean of the SSIM map (RGB) over the pixels where `selected`, row by row from the top, is true, without
+/// the border; `None` without any. The window of a selected pixel also sees its neighbours.
 ///
 /// # Errors
 /// [`MetricsError::SizesDiffer`], [`MetricsError::TooSmall`] and [`MetricsError::MaskSize`].

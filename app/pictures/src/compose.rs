@@ -30,8 +30,8 @@ pub fn cross_eyed(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, Picture
     side_by_side(right, left)
 }
 
-/// Returns an anaglyph for red (left) and cyan (right) glasses: the least-squares projection on linear light of E. Dubois,
-/// "A projection method to generate anaglyph stereo images", ICASSP 2001.
+/// Returns an anaglyph for red (left) and cyan (right) glasses: the least-squares projection on linear light of E.
+/// Dubois, "A projection method to generate anaglyph stereo images", ICASSP 2001.
 pub fn anaglyph(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     const LEFT: [[f32; 3]; 3] = [[0.456, 0.500, 0.176], [-0.040, -0.038, -0.016], [-0.015, -0.021, -0.005]];
     const RIGHT: [[f32; 3]; 3] = [[-0.043, -0.088, -0.002], [0.378, 0.734, -0.018], [-0.072, -0.113, 1.226]];

@@ -67,8 +67,8 @@ where
     Ok(out.into_inner())
 }
 
-/// Returns the image as a JPEG file in memory, `quality` from 1 to 100. An image without pixels, or with more than 65535
-/// in a row or column, cannot be encoded.
+/// Returns the image as a JPEG file in memory, `quality` from 1 to 100. An image without pixels, or with more than
+/// 65535 in a row or column, cannot be encoded.
 pub fn encode_jpeg(image: &RgbImage, quality: u8) -> image::ImageResult<Vec<u8>> {
     let mut out = Vec::new();
     image.write_with_encoder(image::codecs::jpeg::JpegEncoder::new_with_quality(&mut out, quality))?;

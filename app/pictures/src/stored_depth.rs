@@ -48,7 +48,8 @@ pub struct Nearness {
 }
 
 impl StoredDepth {
-    /// Decodes values. `reach` is the focal length in pixels times the IPD in metres: the disparity in pixels at a metre.
+    /// Decodes values. `reach` is the focal length in pixels times the IPD in metres: the disparity in pixels at a
+    /// metre.
     ///
     /// # Errors
     /// [`StoredDepthError`] for values that the encoding does not have.

@@ -139,8 +139,8 @@ impl Setting {
         Ok(())
     }
 
-    /// Changes the value in some settings by a text: a list as in TOML or separated by commas, `auto` to leave it to the
-    /// program, an empty text to change nothing.
+    /// Changes the value in some settings by a text: a list as in TOML or separated by commas, `auto` to leave it to
+    /// the program, an empty text to change nothing.
     ///
     /// # Errors
     /// The value as it was understood, and the remedy; the settings stay as they were.

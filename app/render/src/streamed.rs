@@ -15,7 +15,8 @@ use yoro_stream::{Content, EyeView, ViewRequest};
 pub enum DecodedPicture<'a> {
     /// Luma and both colour differences, one after another, tightly packed, rows from the top.
     Planes(&'a [u8]),
-    /// Red, green and blue of a picture of this size: the function uploads them into the texture that is bound, rows from the top.
+    /// Red, green and blue of a picture of this size: the function uploads them into the texture that is bound, rows
+    /// from the top.
     Upload([u32; 2], &'a dyn Fn()),
 }
 
@@ -40,7 +41,8 @@ pub struct StreamedEyes {
     pub framed: bool,
     /// The eyes that were made last.
     pair: Option<EyePair>,
-    /// Pairs of eyes that were made, and the sums of the metres and the radians from the poses of their pictures to their own.
+    /// Pairs of eyes that were made, and the sums of the metres and the radians from the poses of their pictures to
+    /// their own.
     corrected: [f32; 3],
 }
 
@@ -75,8 +77,8 @@ impl StreamedEyes {
         })
     }
 
-    /// Takes a decoded picture, whose parts have this size. False if the picture has another size, or the eyes see too little of
-    /// each other's view.
+    /// Takes a decoded picture, whose parts have this size. False if the picture has another size, or the eyes see too
+    /// little of each other's view.
     ///
     /// # Errors
     /// The GPU has no memory for it.
@@ -155,8 +157,8 @@ impl StreamedEyes {
         Ok(true)
     }
 
-    /// Makes both eyes, with their depth where the targets have a depth attachment; black before the first frame, and where the
-    /// head has turned away from all that the frame shows.
+    /// Makes both eyes, with their depth where the targets have a depth attachment; black before the first frame, and
+    /// where the head has turned away from all that the frame shows.
     ///
     /// # Errors
     /// The GPU has no memory for it.
@@ -186,7 +188,8 @@ impl StreamedEyes {
         Ok(())
     }
 
-    /// Returns the mean metres and radians by which poses were corrected since the last call; none where no eyes were made.
+    /// Returns the mean metres and radians by which poses were corrected since the last call; none where no eyes were
+    /// made.
     pub fn take_correction(&mut self) -> Option<[f32; 2]> {
         let [pairs, metres, radians] = std::mem::take(&mut self.corrected);
         (pairs > 0.0).then(|| [metres / pairs, radians / pairs])

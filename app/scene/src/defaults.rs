@@ -26,9 +26,9 @@ const LEAST_FLOOR: f32 = 0.5;
 /// Point lights made up at most; what the renderer takes.
 const MAX_LIGHTS: usize = 16;
 
-/// Returns viewpoints and a word on how they were found. Models larger than a few metres are walked through: where there
-/// is a floor with room above and something to see around. Smaller ones, those without such places, and those of which
-/// a walk would show too little are circled.
+/// Returns viewpoints and a word on how they were found. Models larger than a few metres are walked through: where
+/// there is a floor with room above and something to see around. Smaller ones, those without such places, and those of
+/// which a walk would show too little are circled.
 pub(super) fn viewpoints(model: &Model, rays: &Rays) -> (Vec<Viewpoint>, &'static str) {
     let bounds = model.bounds();
     if (bounds.max - bounds.min).max_element() >= ROOM {

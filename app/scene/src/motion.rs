@@ -1,7 +1,8 @@
 //! Motion: what moves in a scene, and where it is at a time.
 //!
-//! Nodes move by keyframes, and carry triangles, joints of skins, and lights. [`Motion::at`] is a pure function of time. It
-//! works out vertices on the CPU, so that every pass draws what moves as it draws everything else, on any driver.
+//! Nodes move by keyframes, and carry triangles, joints of skins, and lights. [`Motion::at`] is a pure function of
+//! time. It works out vertices on the CPU, so that every pass draws what moves as it draws everything else, on any
+//! driver.
 
 use std::ops::Range;
 
@@ -316,8 +317,8 @@ impl Motion {
         moment.nodes
     }
 
-    /// Returns the smallest box around all that triangles reach in the longest loop, as far as 32 looks tell; empty without
-    /// such triangles.
+    /// Returns the smallest box around all that triangles reach in the longest loop, as far as 32 looks tell; empty
+    /// without such triangles.
     pub fn bounds(&self) -> Bounds {
         let mut moment = self.start();
         let longest = self.loops.iter().copied().fold(0.0, f32::max);

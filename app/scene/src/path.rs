@@ -37,7 +37,8 @@ pub fn read(file: &Path) -> Result<Vec<Viewpoint>, PathError> {
     Ok(viewpoints)
 }
 
-/// The farthest place from the origin, in metres: f32 has steps of 8 mm there, an eighth of the distance between the eyes.
+/// The farthest place from the origin, in metres: f32 has steps of 8 mm there, an eighth of the distance between the
+/// eyes.
 pub const FARTHEST: f32 = 1e5;
 
 /// Checks the viewpoints of a file; the error is the fault.

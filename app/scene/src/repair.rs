@@ -57,8 +57,8 @@ pub(super) const NO_NORMAL: Vec3 = Vec3::NAN;
 /// Marks missing texture coordinates.
 pub(super) const NO_UV: Vec2 = Vec2::NAN;
 
-/// Makes the model, and tells where what moves is in it; textures are left to the caller, who must have set the materials'
-/// maps.
+/// Makes the model, and tells where what moves is in it; textures are left to the caller, who must have set the
+/// materials' maps.
 pub(super) fn assemble(
     path: &Path,
     mut meshes: Vec<RawMesh>,
@@ -105,7 +105,8 @@ fn clean(mesh: &mut RawMesh) {
     }
 }
 
-/// Returns the normal times twice the area; zero where rounding leaves no direction. In f64: f32 underflows on small parts.
+/// Returns the normal times twice the area; zero where rounding leaves no direction. In f64: f32 underflows on small
+/// parts.
 fn area_vector([a, b, c]: [Vec3; 3]) -> DVec3 {
     let (u, v) = ((b - a).as_dvec3(), (c - a).as_dvec3());
     let cross = u.cross(v);
@@ -235,8 +236,8 @@ impl Neighbours {
     }
 }
 
-/// Returns one vertex and one index list, sorted by material, parts of one name and material joined, unused vertices left
-/// out; otherwise in the order of the file. What moves is a part of its own.
+/// Returns one vertex and one index list, sorted by material, parts of one name and material joined, unused vertices
+/// left out; otherwise in the order of the file. What moves is a part of its own.
 fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> (Model, Vec<Placed>) {
     let mut placed = Vec::new();
     let mut model = Model { materials, ..Model::default() };

@@ -268,7 +268,8 @@ impl TextureSet {
         })
     }
 
-    /// Returns a reader of a picture's encoded bytes: of this type, because the decoders are compiled once for each type.
+    /// Returns a reader of a picture's encoded bytes: of this type, because the decoders are compiled once for each
+    /// type.
     fn reader<'b>(
         &self,
         source: &Source,

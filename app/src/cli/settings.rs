@@ -237,7 +237,8 @@ impl SettingsArgs {
         self.settings.as_deref()
     }
 
-    /// Returns the settings, which change `defaults`; what has an option of its own, as `key=value`, is stronger than `--set`.
+    /// Returns the settings, which change `defaults`; what has an option of its own, as `key=value`, is stronger than
+    /// `--set`.
     pub fn resolve(
         &self,
         defaults: Settings,

@@ -21,8 +21,8 @@ macro_rules! println {
     ($($text:tt)*) => { print!("{}\n", format_args!($($text)*)) };
 }
 
-/// Writes to standard output. Ends the program if that is not possible: without a word when nobody reads it any more, as
-/// after `| head`.
+/// Writes to standard output. Ends the program if that is not possible: without a word when nobody reads it any more,
+/// as after `| head`.
 pub fn write(text: fmt::Arguments<'_>) {
     let mut out = io::stdout().lock();
     let Err(source) = out.write_fmt(text).and_then(|()| out.flush()) else { return };

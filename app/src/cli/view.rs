@@ -56,8 +56,8 @@ pub struct ViewArgs {
     renderer: SettingOptions<Renderer>,
     #[command(flatten)]
     settings: SettingsArgs,
-    /// What the user does before the picture, in order: `hold` (the menu), `tap`, `press`, `release`, `look:YAW:PITCH` in
-    /// degrees, `wait:SECONDS`, `start` (the start screen), `touch:X:Y` (a finger there, 0 to 1 from the upper left)
+    /// What the user does before the picture, in order: `hold` (the menu), `tap`, `press`, `release`, `look:YAW:PITCH`
+    /// in degrees, `wait:SECONDS`, `start` (the start screen), `touch:X:Y` (a finger there, 0 to 1 from the upper left)
     #[arg(long = "do", value_name = "ACTION,...", value_delimiter = ',', value_parser = parse_act, allow_hyphen_values = true)]
     acts: Vec<Act>,
     /// Draw the loading screen

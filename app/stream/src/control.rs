@@ -15,18 +15,18 @@ const LATE_FRAMES_LIMIT: u32 = 3;
 const QUANTIZER_RECOVERY: Duration = Duration::from_secs(1);
 /// The fastest round trip is that of the last one or two of these.
 const ROUND_TRIP_WINDOW: Duration = Duration::from_secs(5);
-/// Frames may come at so much more than the frame rate: a client that asks at this rate by its own clock must not wait for the
-/// server's.
+/// Frames may come at so much more than the frame rate: a client that asks at this rate by its own clock must not wait
+/// for the server's.
 const RATE_HEADROOM: f32 = 1.05;
-/// Frames that are on their way for so long are given up, where the transport can; the next ones after twice the time, until
-/// one is decoded.
+/// Frames that are on their way for so long are given up, where the transport can; the next ones after twice the time,
+/// until one is decoded.
 const GIVE_UP_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// Decides when a frame is made and how finely it is encoded, from the times at which the client has decoded frames. All times
-/// are of one clock, the server's, so that no clocks need to agree.
+/// Decides when a frame is made and how finely it is encoded, from the times at which the client has decoded frames.
+/// All times are of one clock, the server's, so that no clocks need to agree.
 ///
-/// Nothing waits in a queue: while the oldest frame on its way takes too long, none is made, and the next one that is made
-/// shows the newest pose. After a frame that is lost or given up comes an intra frame.
+/// Nothing waits in a queue: while the oldest frame on its way takes too long, none is made, and the next one that is
+/// made shows the newest pose. After a frame that is lost or given up comes an intra frame.
 #[derive(Clone, Debug)]
 pub struct RateControl {
     interval: Duration,
@@ -151,8 +151,8 @@ impl RateControl {
         }
     }
 
-    /// True if what is on its way takes so long that it is given up: none of it is of use any more, as the next frame is an
-    /// intra frame.
+    /// True if what is on its way takes so long that it is given up: none of it is of use any more, as the next frame
+    /// is an intra frame.
     pub fn gives_up(&mut self, now: Duration) -> bool {
         let oldest = self.in_flight.front().filter(|_| self.fastest().is_some());
         let gives_up = oldest.is_some_and(|(_, sent)| now.saturating_sub(*sent) > self.give_up);
@@ -193,8 +193,8 @@ mod tests {
         again: f64,
         /// The share of frames that never come.
         lost: f64,
-        /// True if frames come in order, each after those before it, as by WebSocket. Else each comes on its own, and what is
-        /// given up takes no time any more, as by WebTransport.
+        /// True if frames come in order, each after those before it, as by WebSocket. Else each comes on its own, and
+        /// what is given up takes no time any more, as by WebTransport.
         in_order: bool,
     }
 
@@ -226,8 +226,8 @@ mod tests {
         }
     }
 
-    /// Runs a stream for some virtual seconds over a link that may change with time. What the client decodes has all that it
-    /// refers to.
+    /// Runs a stream for some virtual seconds over a link that may change with time. What the client decodes has all
+    /// that it refers to.
     fn run(seconds: f64, link: impl Fn(f64) -> Link) -> Outcome {
         let mut control = RateControl::new(20, FRAME_RATE);
         let mut buffer = ReorderBuffer::default();
@@ -407,8 +407,9 @@ mod tests {
         Refresh,
     }
 
-    /// Runs a stream for a virtual minute, with frames that take from `fastest` to `fastest + jitter` seconds from their request.
-    /// Returns the mean age of what is shown, in seconds: the time since the refresh at which its pose was drawn.
+    /// Runs a stream for a virtual minute, with frames that take from `fastest` to `fastest + jitter` seconds from
+    /// their request. Returns the mean age of what is shown, in seconds: the time since the refresh at which its pose
+    /// was drawn.
     fn mean_age(asking: Asking, refresh_rate: f64, fastest: f64, jitter: f64) -> f64 {
         let mut control = RateControl::new(20, FRAME_RATE);
         let mut random = Pcg32::seed_from_u64(3);

@@ -75,8 +75,8 @@ pub enum FromClient {
     Missing(u32),
 }
 
-/// What the parts of a frame's picture show, side by side from the left, all of one size. Eyes are wider than those that were
-/// requested.
+/// What the parts of a frame's picture show, side by side from the left, all of one size. Eyes are wider than those
+/// that were requested.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Content {
     /// An eye, and its depth as luma: 255 at the first distance in metres to 0 at the second, uniform in 1/z.
@@ -112,7 +112,8 @@ impl Content {
         }
     }
 
-    /// Returns which of the parts that show eyes an eye is made of, its view, and the distances of its depth, if it has one.
+    /// Returns which of the parts that show eyes an eye is made of, its view, and the distances of its depth, if it has
+    /// one.
     pub fn source(&self, eye: Eye) -> (usize, EyeView, Option<[f32; 2]>) {
         match *self {
             Content::Depth(eye_view, span) => (0, eye_view, Some(span)),
@@ -123,7 +124,8 @@ impl Content {
         }
     }
 
-    /// Returns the eye that has depth with the warp that moves its depth to the other eye, where that has none of its own.
+    /// Returns the eye that has depth with the warp that moves its depth to the other eye, where that has none of its
+    /// own.
     ///
     /// # Errors
     /// [`EyesError`] for eyes that see too little of each other's view.
@@ -194,8 +196,8 @@ impl fmt::Display for Refusal {
 pub enum FromServer<'a> {
     /// The answer to a hello: the head's first pose.
     Welcome(Pose),
-    /// The answer to a hello, for a video: it is shown whole, with the left and the right eye's frustum, from the origin. The eye
-    /// is the one that was rendered.
+    /// The answer to a hello, for a video: it is shown whole, with the left and the right eye's frustum, from the
+    /// origin. The eye is the one that was rendered.
     Video([Frustum; 2], Eye),
     /// The answer to a hello that is not accepted, and the last message.
     Refused(Refusal),
@@ -244,8 +246,8 @@ const WELCOME: u8 = 0;
 const REFUSED: u8 = 1;
 const FRAME: u8 = 2;
 const VIDEO: u8 = 3;
-/// Bytes before a frame's header: [`FRAME`], 1 for an intra frame, the header's length (16 bits), the number (32 bits), all
-/// little-endian. The page's worker reads these without the module.
+/// Bytes before a frame's header: [`FRAME`], 1 for an intra frame, the header's length (16 bits), the number (32 bits),
+/// all little-endian. The page's worker reads these without the module.
 const PREFIX: usize = 8;
 
 impl<'a> FromServer<'a> {

@@ -10,8 +10,8 @@ const INTRA_REQUEST_INTERVAL: Duration = Duration::from_millis(250);
 /// The number of frames that may wait for a missing one.
 const MAX_WAITING_FRAMES: usize = 32;
 
-/// Puts a stream's frames into their order at the client, as a decoder needs them. What refers to a frame that is lost is not
-/// decoded: an intra frame goes on. All times are of one clock, the client's.
+/// Puts a stream's frames into their order at the client, as a decoder needs them. What refers to a frame that is lost
+/// is not decoded: an intra frame goes on. All times are of one clock, the client's.
 #[derive(Clone, Debug)]
 pub struct ReorderBuffer<T> {
     /// The number of the frame that is decoded next.
@@ -59,8 +59,8 @@ impl<T> ReorderBuffer<T> {
         Some(frame)
     }
 
-    /// Returns the number of a frame that is lost, when an intra frame is to be asked for. To be called from time to time, after
-    /// all frames were taken that can be decoded.
+    /// Returns the number of a frame that is lost, when an intra frame is to be asked for. To be called from time to
+    /// time, after all frames were taken that can be decoded.
     pub fn missing(&mut self, now: Duration) -> Option<u32> {
         if self.waiting.is_empty() && !self.asked {
             return None;

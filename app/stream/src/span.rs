@@ -1,18 +1,20 @@
 //! The distances that a stream's 8 bits of depth stand for.
 
-/// The distances that the 8 bits of depth are spread over. They change at intra frames only, as a change moves all values.
+/// The distances that the 8 bits of depth are spread over. They change at intra frames only, as a change moves all
+/// values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthSpan(Option<[f32; 2]>);
 
-/// The span reaches further than what is seen, by this factor at its near end and its square at the far one, where a step is
-/// long.
+/// The span reaches further than what is seen, by this factor at its near end and its square at the far one, where a
+/// step is long.
 const SPAN_MARGIN: f32 = 1.25;
-/// A span is renewed when the nearest surface is farther by more than this factor than when it was chosen: steps are wasted then.
+/// A span is renewed when the nearest surface is farther by more than this factor than when it was chosen: steps are
+/// wasted then.
 const RENEWAL_FACTOR: f32 = 3.0;
 
 impl DepthSpan {
-    /// Returns the span for a frame that shows surfaces from `nearest` to `farthest` metres; with true if it is a new one,
-    /// and the frame must be an intra frame. A frame without surfaces keeps the span.
+    /// Returns the span for a frame that shows surfaces from `nearest` to `farthest` metres; with true if it is a new
+    /// one, and the frame must be an intra frame. A frame without surfaces keeps the span.
     pub fn fit(&mut self, nearest: f32, farthest: f32) -> ([f32; 2], bool) {
         let [near, far] = self.0.unwrap_or([f32::INFINITY, 0.0]);
         let seen = nearest <= farthest;

@@ -100,8 +100,8 @@ impl LiveEncoder {
         }
     }
 
-    /// Returns the next picture, encoded with `quantizer` (QP, 0 to 51) or up to three steps coarser. It is an intra frame if
-    /// `intra`, if its size is another one, or if the encoder had to be started again.
+    /// Returns the next picture, encoded with `quantizer` (QP, 0 to 51) or up to three steps coarser. It is an intra
+    /// frame if `intra`, if its size is another one, or if the encoder had to be started again.
     ///
     /// # Errors
     /// [`VideoError::Codec`], for a picture that is too large or an encoder that has ended.
@@ -156,8 +156,8 @@ impl LiveOpenH264 {
     fn set_quantizer(&mut self, quantizer: u8) -> Result<(), VideoError> {
         let mut parameters = SEncParamExt::default();
         let pointer = &raw mut parameters;
-        // SAFETY: the encoder has been initialized by a picture; this option reads and writes one `SEncParamExt`, in which only
-        // the layer's quantizer is changed, that no other part of the wrapper relies on.
+        // SAFETY: the encoder has been initialized by a picture; this option reads and writes one `SEncParamExt`, in
+        // which only the layer's quantizer is changed, that no other part of the wrapper relies on.
         let failed = unsafe {
             let api = self.encoder.raw_api();
             let got = api.get_option(ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, pointer.cast());
@@ -215,8 +215,8 @@ impl Decoder {
     /// Decodes the next picture, which is in the format of Annex B.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] for damaged bytes, and for streams whose pictures do not come in the order in which they are
-    /// shown.
+    /// [`VideoError::Codec`] for damaged bytes, and for streams whose pictures do not come in the order in which they
+    /// are shown.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<Planes, VideoError> {
         let decoded =
             self.0.decode(bytes).map_err(|error| codec_error("a picture cannot be decoded", &error))?;

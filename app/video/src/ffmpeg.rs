@@ -1,5 +1,5 @@
-//! H.264 by an ffmpeg process, which reaches the encoders of graphics cards: pictures go in as a live Matroska file, whose
-//! times say which of them are intra frames, and come out as FLV, whose packets say their length.
+//! H.264 by an ffmpeg process, which reaches the encoders of graphics cards: pictures go in as a live Matroska file,
+//! whose times say which of them are intra frames, and come out as FLV, whose packets say their length.
 
 use std::io::{BufWriter, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -17,7 +17,8 @@ use crate::{Planes, VideoError};
 
 /// An encoder takes at most so long for a picture; the first one waits for a graphics card to start.
 const TIMEOUT: Duration = Duration::from_secs(5);
-/// Milliseconds between pictures, as ffmpeg is told. Real times would say nothing to an encoder that keeps its quantizer.
+/// Milliseconds between pictures, as ffmpeg is told. Real times would say nothing to an encoder that keeps its
+/// quantizer.
 const STEP: u64 = 1000;
 /// An intra frame comes so many milliseconds later, by which ffmpeg knows it: see `-force_key_frames`.
 const INTRA: u64 = 500;
@@ -124,8 +125,8 @@ impl Ffmpeg {
         Ok(ffmpeg)
     }
 
-    /// True if it encodes pictures of `size` at `quantizer` or up to three steps coarser. ffmpeg cannot change the quantizer of
-    /// a running encoder, and starting it again takes tenths of a second.
+    /// True if it encodes pictures of `size` at `quantizer` or up to three steps coarser. ffmpeg cannot change the
+    /// quantizer of a running encoder, and starting it again takes tenths of a second.
     pub fn suits(&self, size: [usize; 2], quantizer: u8) -> bool {
         self.size == size && (self.quantizer.saturating_sub(3)..=self.quantizer).contains(&quantizer)
     }
@@ -207,8 +208,8 @@ fn number(name: u32, value: u64) -> Vec<u8> {
     element(name, &value.to_be_bytes())
 }
 
-/// Returns what stands before the pictures of a live Matroska file (RFC 9559): uncompressed, 4:2:0, full range, times in
-/// milliseconds.
+/// Returns what stands before the pictures of a live Matroska file (RFC 9559): uncompressed, 4:2:0, full range, times
+/// in milliseconds.
 fn header([width, height]: [usize; 2]) -> Vec<u8> {
     let file_type = [element(0x4282, b"matroska"), number(0x4287, 4), number(0x4285, 2)].concat();
     let colour = [number(0x55B9, 2), number(0x55B1, 6)].concat();

@@ -31,8 +31,8 @@ pub struct Format {
     pub rgbd: Option<Rgbd>,
 }
 
-/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the number of bytes of encoded pictures.
-/// The file appears when it is complete.
+/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the number of bytes of
+/// encoded pictures. The file appears when it is complete.
 ///
 /// # Errors
 /// [`VideoError`], and whatever `next` returns.

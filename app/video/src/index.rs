@@ -58,10 +58,12 @@ pub(crate) fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize)
 }
 
 impl Index {
-    /// Finds out what is in a file of this length in bytes, from the pieces of it that are needed for that. Errors name `path`.
+    /// Finds out what is in a file of this length in bytes, from the pieces of it that are needed for that. Errors name
+    /// `path`.
     ///
     /// # Errors
-    /// [`VideoError::File`] when it cannot be read, [`VideoError::Format`] for a damaged file, and for one without H.264.
+    /// [`VideoError::File`] when it cannot be read, [`VideoError::Format`] for a damaged file, and for one without
+    /// H.264.
     pub fn read(path: &Path, file: &mut (impl Read + Seek), length: u64) -> Result<Index, VideoError> {
         let failed = |source| VideoError::from(FileError::Read { path: path.into(), source });
         let mut demuxer = Mp4FileDemuxer::new();

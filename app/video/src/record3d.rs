@@ -1,7 +1,8 @@
 //! RGBD videos of the iPhone application Record3D: depth as hue on the left, colour on the right.
 //!
-//! The format is taken from open players, such as Record3D's own for browsers. The hue of a pixel is its distance, from red
-//! at the nearest through green and blue to red at the farthest. A JSON object in the file's metadata describes the camera.
+//! The format is taken from open players, such as Record3D's own for browsers. The hue of a pixel is its distance, from
+//! red at the nearest through green and blue to red at the farthest. A JSON object in the file's metadata describes the
+//! camera.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -85,8 +86,8 @@ fn metadata(file: &mut (impl Read + Seek), length: u64) -> io::Result<Vec<u8>> {
 }
 
 impl Camera {
-    /// Returns what pictures of this size in pixels show. The other eye is as high as the camera, so where the optical axis
-    /// meets the picture counts in width alone.
+    /// Returns what pictures of this size in pixels show. The other eye is as high as the camera, so where the optical
+    /// axis meets the picture counts in width alone.
     fn recording(&self, [width, height]: [u32; 2]) -> Result<Recording, String> {
         let [focal_x, _, _, _, focal_y, _, center_x, ..] = self.intrinsic_matrix;
         let [low, high] = self.range_of_encoded_depth.unwrap_or(DEFAULT_RANGE);

@@ -12,8 +12,8 @@ use crate::Planes;
 pub const DEPTH_BOX: [u8; 16] = *b"yoro RGBD video1";
 
 /// What an RGBD video shows. Its pictures have the rendered eye's colour on the left and its depth, as luma, on the
-/// right. Depth has 8 bits, 0 at [`Rgbd::farthest`] to 255 at [`Rgbd::nearest`], uniform in 1/z: a reversed depth buffer
-/// between these planes.
+/// right. Depth has 8 bits, 0 at [`Rgbd::farthest`] to 255 at [`Rgbd::nearest`], uniform in 1/z: a reversed depth
+/// buffer between these planes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rgbd {
     /// Width and height of each eye in pixels. The rendered eye is wider by its guard band.

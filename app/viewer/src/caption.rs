@@ -39,8 +39,8 @@ impl Caption {
         Caption { is_shown, message: String::new(), message_until_ns: 0, text }
     }
 
-    /// Shows a message for two seconds a line, also where the HUD is hidden; one of several lines takes the HUD's place. An
-    /// empty one takes away the one before.
+    /// Shows a message for two seconds a line, also where the HUD is hidden; one of several lines takes the HUD's
+    /// place. An empty one takes away the one before.
     pub fn announce(&mut self, message: String, now_ns: i64) {
         let lines = message.lines().count() as i64;
         self.message_until_ns = if message.is_empty() { 0 } else { now_ns + lines * MESSAGE_NS };

@@ -4,8 +4,8 @@ use yoro_gl::GlError;
 use yoro_lenses::ParamsError;
 use yoro_render::stereo::StereoError;
 
-/// An error after which the viewer cannot go on. A scene that cannot be loaded is not among these: it is shown in view, see
-/// [`Viewer::failure`](crate::Viewer::failure).
+/// An error after which the viewer cannot go on. A scene that cannot be loaded is not among these: it is shown in view,
+/// see [`Viewer::failure`](crate::Viewer::failure).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewerError {

@@ -1,8 +1,8 @@
 //! The VR viewer: Cardboard phones and OpenXR headsets.
 //!
 //! [`Viewer`] is the whole application without a platform: scene, renderer, stereo method, HUD, settings, statistics.
-//! [`Cardboard`] and [`openxr::Headset`] are the displays; each owns the viewer that draws for it. A platform gives a GL
-//! context, events and somewhere to draw, and gets frames and a log line a second.
+//! [`Cardboard`] and [`openxr::Headset`] are the displays; each owns the viewer that draws for it. A platform gives a
+//! GL context, events and somewhere to draw, and gets frames and a log line a second.
 //!
 //! This crate must never know how a frame is measured against another, a command line, or JNI: it
 //! hands two opaque pointers to OpenXR, and Android answers the trait [`openxr::runtime::Broker`].

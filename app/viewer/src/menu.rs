@@ -98,7 +98,8 @@ impl Menu {
         self.is_pressed = is_pressed && self.board.is_some();
     }
 
-    /// True while two real renders are asked for: the trigger is held on the tile, or it has been looked at long enough.
+    /// True while two real renders are asked for: the trigger is held on the tile, or it has been looked at long
+    /// enough.
     pub fn is_comparing(&self) -> bool {
         matches!(self.pointed, Some((Item::Compare, _))) && (self.is_pressed || self.is_spent)
     }
@@ -108,9 +109,9 @@ impl Menu {
         self.pointed
     }
 
-    /// The user looks somewhere: opens the menu if that was down for long enough, and returns the tile that has been looked
-    /// at for long enough. A ray along the -Z of one of `rays` that meets the panel points in place of the head, and chooses by
-    /// the trigger alone.
+    /// The user looks somewhere: opens the menu if that was down for long enough, and returns the tile that has been
+    /// looked at for long enough. A ray along the -Z of one of `rays` that meets the panel points in place of the head,
+    /// and chooses by the trigger alone.
     pub fn look(&mut self, head: Pose, rays: [Option<Pose>; 2], now_ns: i64) -> Look {
         self.head = Some(head);
         let Some(board) = &self.board else { return self.look_down(head, now_ns) };

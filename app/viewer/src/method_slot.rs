@@ -227,8 +227,8 @@ impl MethodSlot {
         std::mem::replace(&mut self.is_comparing, is_comparing) != is_comparing
     }
 
-    /// Shows the last render again, if the settings' rate of renders asks for that now and the method can. A frame that comes
-    /// less than half a refresh too early for the next render is rendered.
+    /// Shows the last render again, if the settings' rate of renders asks for that now and the method can. A frame that
+    /// comes less than half a refresh too early for the next render is rendered.
     pub fn show_again(
         &mut self,
         settings: &Settings,
@@ -297,8 +297,8 @@ impl MethodSlot {
         }
     }
 
-    /// Lets the controller judge a frame; not while two methods are being measured, which have to have the same size. Returns true if the method has to be made again for another ImBuffer, which the
-    /// controller keeps rare.
+    /// Lets the controller judge a frame; not while two methods are being measured, which have to have the same size.
+    /// Returns true if the method has to be made again for another ImBuffer, which the controller keeps rare.
     pub fn adapt(&mut self, load: &Load, settings: &Settings) -> bool {
         if self.auto().is_some_and(Auto::is_measuring) {
             self.controller.restart();

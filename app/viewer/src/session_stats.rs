@@ -23,8 +23,8 @@ pub(crate) struct SessionStats {
 }
 
 impl SessionStats {
-    /// Begins a session when a scene comes into view, and returns true. A scene that is only back after a lost context goes
-    /// on with its session.
+    /// Begins a session when a scene comes into view, and returns true. A scene that is only back after a lost context
+    /// goes on with its session.
     pub fn begin(&mut self, now_ns: i64) -> bool {
         let is_new = self.begin_ns.is_none();
         if is_new {

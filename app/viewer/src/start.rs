@@ -8,10 +8,11 @@ use yoro_lenses::{HEADING_COLUMNS, PICTURE_COLUMNS, Rotation, TILE_COLUMNS, Tile
 const UPRIGHT: f32 = 0.766;
 /// It lies in landscape again when its top is up or down by less than this: the sine of 30 degrees.
 const LANDSCAPE: f32 = 0.5;
-/// Who reads an upright phone leans it back: its screen points up by this and more, the sine of 15 degrees. Behind lenses, it
-/// points to the eyes of one who lies on a side, and hardly ever up.
+/// Who reads an upright phone leans it back: its screen points up by this and more, the sine of 15 degrees. Behind
+/// lenses, it points to the eyes of one who lies on a side, and hardly ever up.
 const LEANS_BACK: f32 = 0.259;
-/// It lies on a table, neither upright nor in landscape, when its screen points up by more than this: the sine of 70 degrees.
+/// It lies on a table, neither upright nor in landscape, when its screen points up by more than this: the sine of 70
+/// degrees.
 const FLAT: f32 = 0.94;
 /// Standing upright for so long brings the start screen into view, in nanoseconds.
 const UPRIGHT_NS: i64 = 1_000_000_000;
@@ -110,8 +111,8 @@ impl StartScreen {
         }
     }
 
-    /// Notes which way is up in the picture: X to its right, Y to its top, Z out of the screen. True if the phone has come to
-    /// stand upright.
+    /// Notes which way is up in the picture: X to its right, Y to its top, Z out of the screen. True if the phone has
+    /// come to stand upright.
     pub fn tilt(&mut self, up: Vec3, rotation: Rotation, now_ns: i64) -> bool {
         if !self.is_offered || self.is_shown {
             return false;

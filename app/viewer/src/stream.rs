@@ -1,4 +1,5 @@
-//! A stream in the scene's place: its frames come from a thread of the platform, which has the connection and the decoder.
+//! A stream in the scene's place: its frames come from a thread of the platform, which has the connection and the
+//! decoder.
 
 use std::rc::Rc;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -37,8 +38,8 @@ impl StreamExchange {
         self.newest().home = Some(home);
     }
 
-    /// Gives a decoded frame, its three planes one after another, tightly packed. They are exchanged for a buffer that is no
-    /// longer needed.
+    /// Gives a decoded frame, its three planes one after another, tightly packed. They are exchanged for a buffer that
+    /// is no longer needed.
     pub fn put(&self, header: FrameHeader, planes: &mut Vec<u8>) {
         let mut newest = self.newest();
         newest.frame = Some(header);

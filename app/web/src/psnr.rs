@@ -1,6 +1,7 @@
 //! The likeness of two images.
 
-/// Returns the peak signal-to-noise ratio of two RGBA images of one size, without alpha, in dB; infinite for equal images.
+/// Returns the peak signal-to-noise ratio of two RGBA images of one size, without alpha, in dB; infinite for equal
+/// images.
 pub fn psnr(a: &[u8], b: &[u8]) -> f64 {
     debug_assert_eq!(a.len(), b.len());
     let colors = a.iter().zip(b).enumerate().filter(|(i, _)| i % 4 != 3);

@@ -50,8 +50,8 @@ impl Walker {
         self.object = object;
     }
 
-    /// Turns by radians to the left and upwards. Around an object it is the object that seems to turn, under the same hand:
-    /// it stays where it is in the picture.
+    /// Turns by radians to the left and upwards. Around an object it is the object that seems to turn, under the same
+    /// hand: it stays where it is in the picture.
     pub fn turn(&mut self, [left, up]: [f32; 2]) {
         let seen = self.object.map(|object| self.orientation().inverse() * (object - self.position));
         let sign = if self.object.is_some() { -1.0 } else { 1.0 };

@@ -9,7 +9,8 @@ const DELAY: u16 = 15;
 /// The quantizer looks at one of so many pixels: its own choice between quality and time.
 const SPEED: i32 = 10;
 
-/// Returns both eyes in turn for ever, at most `width` pixels wide. `eyes` are RGBA, left and right, rows from the bottom.
+/// Returns both eyes in turn for ever, at most `width` pixels wide. `eyes` are RGBA, left and right, rows from the
+/// bottom.
 ///
 /// # Errors
 /// Those of the encoder: images that are too large for a GIF, or empty.

@@ -19,8 +19,8 @@ pub(crate) fn map_format(edges: Edges) -> TextureFormat {
 
 /// The formats of the surfaces that each source pixel shows and of the colour behind them.
 ///
-/// The colour has the encoding of the source's, because unmixing is right in the space of the resolve. Its alpha holds the
-/// share of the front surface, for which ten-bit formats have no room.
+/// The colour has the encoding of the source's, because unmixing is right in the space of the resolve. Its alpha holds
+/// the share of the front surface, for which ten-bit formats have no room.
 pub(crate) fn layer_formats(color: TextureFormat) -> [TextureFormat; 2] {
     let background = match color {
         TextureFormat::Rgba8UnormSrgb | TextureFormat::Bgra8UnormSrgb => TextureFormat::Rgba8UnormSrgb,

@@ -55,8 +55,8 @@ impl Checks {
         Ok(checks)
     }
 
-    /// Checks a format against what all devices with these features can do. With adapter-specific features only the adapter
-    /// knows, and wgpu says what is wrong.
+    /// Checks a format against what all devices with these features can do. With adapter-specific features only the
+    /// adapter knows, and wgpu says what is wrong.
     fn format(
         &self,
         format: TextureFormat,

@@ -200,8 +200,8 @@ impl Default for Options {
     }
 }
 
-/// The rendered eye and its guard band: views of one layer and one mip level, the largest, of 2-D textures of one size, with
-/// the usage TEXTURE_BINDING. The source's size is the warp's.
+/// The rendered eye and its guard band: views of one layer and one mip level, the largest, of 2-D textures of one size,
+/// with the usage TEXTURE_BINDING. The source's size is the warp's.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
     /// Colour in any format that can be filtered: Rgba8Unorm or Rgba8UnormSrgb, Rgb10a2Unorm, Rgba16Float and others.
@@ -211,7 +211,8 @@ pub struct Source<'a> {
     /// Depth: R32Float, R16Unorm, or any depth format; of one with stencil a view of the depth alone
     /// ([`wgpu::TextureAspect::DepthOnly`]). For [`Edges::Multisample`] it has [`Options::samples`] samples.
     pub depth: &'a TextureView,
-    /// For [`Edges::Multisample`], the texture with as many samples that the colour was resolved from, if it still exists.
+    /// For [`Edges::Multisample`], the texture with as many samples that the colour was resolved from, if it still
+    /// exists.
     pub sample_color: Option<&'a TextureView>,
     /// Upper left corner of the rendered rectangle in the textures, in pixels.
     pub origin: [u32; 2],
@@ -226,7 +227,8 @@ pub struct History<'a> {
     /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes
     /// afterwards. In the encoding of the source's.
     pub color: &'a TextureView,
-    /// Depth in one of the formats of [`Source::depth`], one value a pixel, with the planes and encoding of the source's.
+    /// Depth in one of the formats of [`Source::depth`], one value a pixel, with the planes and encoding of the
+    /// source's.
     pub depth: &'a TextureView,
     /// The views of its strips, from the top on, as [`Strips::new`] returns them: its rows, which are counted from the
     /// bottom, are turned inside.
@@ -241,8 +243,8 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Where the other eye goes: views of one layer of 2-D textures of one size, with the usage RENDER_ATTACHMENT. The target's
-/// size is the warp's.
+/// Where the other eye goes: views of one layer of 2-D textures of one size, with the usage RENDER_ATTACHMENT. The
+/// target's size is the warp's.
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
     /// Colour, in [`Options::color_format`].

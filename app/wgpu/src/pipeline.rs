@@ -23,8 +23,8 @@ pub type AnyView = Pipeline<PoseWarp>;
 
 /// The passes of a kind of warp: [`Gather`] or [`AnyView`].
 ///
-/// All calls share the intermediate buffers: submit what they have recorded to one queue. Up to 64 calls may be recorded
-/// before the first of them is submitted.
+/// All calls share the intermediate buffers: submit what they have recorded to one queue. Up to 64 calls may be
+/// recorded before the first of them is submitted.
 pub struct Pipeline<W: WarpKind> {
     checks: Checks,
     passes: Passes,
@@ -104,8 +104,8 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(())
     }
 
-    /// Records the passes, each of which is a render pass: call it outside of passes. Source and target are as their types
-    /// say; the target is none of the source's textures.
+    /// Records the passes, each of which is a render pass: call it outside of passes. Source and target are as their
+    /// types say; the target is none of the source's textures.
     ///
     /// What is made for the views of a source is kept for the next calls with the same views, until 32 calls in a row
     /// were without them. Buffers are made when sizes are larger than all before.

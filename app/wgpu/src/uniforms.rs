@@ -9,8 +9,8 @@ use wgpu::{
 
 use crate::WgpuError;
 
-/// So many calls can be recorded before the first of them is submitted: what is written for one is in place when the next
-/// submission begins, and must not be overwritten before.
+/// So many calls can be recorded before the first of them is submitted: what is written for one is in place when the
+/// next submission begins, and must not be overwritten before.
 pub(crate) const CALLS: u64 = 64;
 
 /// The bytes of a block.

@@ -44,8 +44,9 @@ impl From<Eye> for eyes::Eye {
     }
 }
 
-/// Stereo from this `Camera3d`, whose transform is the head's. Both eyes go side by side into the camera's render target,
-/// each as wide as half of it. Distances are in the camera's unit, which is that of the world unless a parent is scaled.
+/// Stereo from this `Camera3d`, whose transform is the head's. Both eyes go side by side into the camera's render
+/// target, each as wide as half of it. Distances are in the camera's unit, which is that of the world unless a parent
+/// is scaled.
 ///
 /// While this component is there, the camera's projection and render target are the plugin's: set the target anew to
 /// show the eyes elsewhere. Post-processing, anti-aliasing and the like are those of the camera. When the component is
@@ -66,8 +67,8 @@ pub struct StereoCamera {
     pub near: f32,
     /// Distance beyond which objects are culled.
     pub far: f32,
-    /// Distance of the nearest object that is not cut off at the other eye's outer border: the rendered image is widened by
-    /// a guard band for it. Infinity for none.
+    /// Distance of the nearest object that is not cut off at the other eye's outer border: the rendered image is
+    /// widened by a guard band for it. Infinity for none.
     pub guard_distance: f32,
 }
 
@@ -300,7 +301,8 @@ fn update_cameras(
     }
 }
 
-/// Copies `is_active` and `order` plus an offset from a stereo camera, and for the other eye's camera `clear_color`, too.
+/// Copies `is_active` and `order` plus an offset from a stereo camera, and for the other eye's camera `clear_color`,
+/// too.
 fn follow(camera: &mut Mut<Camera>, stereo: &Camera, offset: isize) {
     if camera.is_active != stereo.is_active || camera.order != stereo.order + offset {
         (camera.is_active, camera.order) = (stereo.is_active, stereo.order + offset);

@@ -1,8 +1,8 @@
 //! Render one eye, synthesize the other: stereo in Bevy from one camera's colour and depth.
 //!
-//! Bevy has no multiview: two cameras run visibility, shadows and all passes twice. [`StereoCamera`] on a `Camera3d` renders
-//! that camera as one eye, a little wider, and makes the other eye's image of it ([`yoro_wgpu`] has the passes). Both are
-//! written side by side into the camera's render target, the left eye in its left half.
+//! Bevy has no multiview: two cameras run visibility, shadows and all passes twice. [`StereoCamera`] on a `Camera3d`
+//! renders that camera as one eye, a little wider, and makes the other eye's image of it ([`yoro_wgpu`] has the
+//! passes). Both are written side by side into the camera's render target, the left eye in its left half.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -21,7 +21,8 @@
 //! [`StereoMode`] says how the other eye is made, and what each way does with transparent objects, post-processing and
 //! anti-aliasing. What cannot be synthesized is rendered twice, with one line in the log that says why.
 //!
-//! With the feature `openxr`, [`XrStereoCamera`](openxr::XrStereoCamera) does the same in a headset, by bevy_mod_openxr.
+//! With the feature `openxr`, [`XrStereoCamera`](openxr::XrStereoCamera) does the same in a headset, by
+//! bevy_mod_openxr.
 
 mod camera;
 #[cfg(feature = "openxr")]
@@ -38,8 +39,8 @@ pub use plan::StereoMode;
 pub use shared::ShareComponent;
 pub use yoro_wgpu;
 
-/// Adds stereo: [`StereoCamera`], and with the feature `openxr` [`XrStereoCamera`](openxr::XrStereoCamera). Add it after
-/// `DefaultPlugins`.
+/// Adds stereo: [`StereoCamera`], and with the feature `openxr` [`XrStereoCamera`](openxr::XrStereoCamera). Add it
+/// after `DefaultPlugins`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct YoroPlugin;
 

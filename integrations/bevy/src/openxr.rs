@@ -43,9 +43,9 @@ use crate::projection::clip_from_view;
 use crate::shared::{OtherCamera, ShareSystems};
 use crate::{Eye, StereoMode};
 
-/// Stereo in the headset from this `Camera3d`. The runtime's views say where the eyes are and what they see; the camera's
-/// transform, projection and render target are the plugin's. It renders while a session does. Despawn the entity to end it:
-/// without this component the camera is inactive.
+/// Stereo in the headset from this `Camera3d`. The runtime's views say where the eyes are and what they see; the
+/// camera's transform, projection and render target are the plugin's. It renders while a session does. Despawn the
+/// entity to end it: without this component the camera is inactive.
 #[derive(Component, Clone, Debug, PartialEq, Reflect, ExtractComponent)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Camera3d, Camera { is_active: false, ..default() }, Eyes, XrTracker)]

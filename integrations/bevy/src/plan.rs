@@ -11,13 +11,13 @@ use yoro_wgpu::yoro::synthesis::Edges;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Debug, PartialEq, Hash, Clone)]
 pub enum StereoMode {
-    /// Opaque surfaces and sky are synthesized; transparent objects, bloom, tone mapping, FXAA and SMAA are drawn for each
-    /// eye by itself. With 4 or 2 samples the synthesis uses the depth of each. Not with temporal anti-aliasing, and with
-    /// `Hdr` not with samples: both eyes are rendered then.
+    /// Opaque surfaces and sky are synthesized; transparent objects, bloom, tone mapping, FXAA and SMAA are drawn for
+    /// each eye by itself. With 4 or 2 samples the synthesis uses the depth of each. Not with temporal anti-aliasing,
+    /// and with `Hdr` not with samples: both eyes are rendered then.
     #[default]
     Opaque,
-    /// The finished image is synthesized: the cheapest way, and it goes with temporal anti-aliasing. Transparent objects
-    /// move with what is behind them, and highlights with their surface.
+    /// The finished image is synthesized: the cheapest way, and it goes with temporal anti-aliasing. Transparent
+    /// objects move with what is behind them, and highlights with their surface.
     Finished,
     /// Both eyes are rendered, for comparison.
     Rendered,

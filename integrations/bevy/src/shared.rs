@@ -26,8 +26,8 @@ pub(crate) struct OtherCamera {
 
 /// Components that both eyes' cameras have.
 pub trait ShareComponent {
-    /// Gives the other eye's camera this component of the rendered camera, whenever it changes: for post-processing of your
-    /// own. Bevy's own components need no call.
+    /// Gives the other eye's camera this component of the rendered camera, whenever it changes: for post-processing of
+    /// your own. Bevy's own components need no call.
     fn share_with_other_eye<C: Component + Clone>(&mut self) -> &mut Self;
 }
 

@@ -28,7 +28,8 @@ use support::{finish, psnr, read, rendered, room, windowless};
 /// Frames that are shown.
 const FRAMES: u32 = 100;
 
-/// Puts textures that can be read in the place of the swapchain's, whose usage forbids it. The runtime shows its own ones.
+/// Puts textures that can be read in the place of the swapchain's, whose usage forbids it. The runtime shows its own
+/// ones.
 fn readable_layers(
     mut images: ResMut<OxrSwapchainImages>,
     config: Res<OxrCurrentSessionConfig>,

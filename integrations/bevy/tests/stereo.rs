@@ -45,9 +45,9 @@ impl Stage {
         self.picture()
     }
 
-    /// Checks the synthesized eye in both modes against the rendered one, by at least these values in dB, and returns the
-    /// values. The rendered eye must be the same with and without synthesis, and the other one nearer to the truth than the
-    /// rendered one in its place. Pictures of all modes are written beside the test.
+    /// Checks the synthesized eye in both modes against the rendered one, by at least these values in dB, and returns
+    /// the values. The rendered eye must be the same with and without synthesis, and the other one nearer to the truth
+    /// than the rendered one in its place. Pictures of all modes are written beside the test.
     fn check(&mut self, what: &str, at_least: [f64; 2]) -> [f64; 2] {
         let truth = self.in_mode(StereoMode::Rendered);
         save(&truth, what, StereoMode::Rendered);

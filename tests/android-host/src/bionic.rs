@@ -225,8 +225,8 @@ unsafe extern "C" fn pthread_create(
     }
 }
 
-/// The application's room for a `pthread_mutex_t` has 40 bytes. glibc's has 48 on arm64, of which it uses 40, but it clears
-/// all of them here.
+/// The application's room for a `pthread_mutex_t` has 40 bytes. glibc's has 48 on arm64, of which it uses 40, but it
+/// clears all of them here.
 unsafe extern "C" fn pthread_mutex_init(
     mutex: *mut [u64; 5],
     attributes: *const libc::pthread_mutexattr_t,

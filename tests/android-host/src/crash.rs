@@ -12,7 +12,8 @@ const STACK: usize = 64 * 1024;
 pub fn install() {
     std::panic::set_hook(Box::new(|panic| fatal(format!("the host itself panicked: {panic}"))));
     for signal in [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT] {
-        // SAFETY: the structure is plain data for which zero is valid; the handler has the type that SA_SIGINFO asks for.
+        // SAFETY: the structure is plain data for which zero is valid; the handler has the type that SA_SIGINFO asks
+        // for.
         unsafe {
             let mut action: libc::sigaction = std::mem::zeroed();
             action.sa_sigaction = crashed as *const () as usize;

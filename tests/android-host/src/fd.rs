@@ -26,7 +26,8 @@ impl EventFd {
     /// Makes it readable.
     pub fn signal(&self) {
         let one = 1u64;
-        // SAFETY: eight bytes are read from a live u64. It fails only when the counter is full, and then it is readable.
+        // SAFETY: eight bytes are read from a live u64. It fails only when the counter is full, and then it is
+        // readable.
         unsafe { libc::write(self.raw(), (&raw const one).cast(), 8) };
     }
 

@@ -370,8 +370,8 @@ fn watch() {
 /// The number of times that entries are counted; the smallest count is taken.
 const LOOKS: usize = 8;
 
-/// Returns the number of entries of a folder that stay: a file that another thread, of the host or of Mesa, has open for
-/// a moment does not count.
+/// Returns the number of entries of a folder that stay: a file that another thread, of the host or of Mesa, has open
+/// for a moment does not count.
 fn held(folder: &str) -> u64 {
     let count = || std::fs::read_dir(folder).map_or(0, |entries| entries.count() as u64);
     let later = || {

@@ -37,8 +37,8 @@ pub struct Loaded {
 }
 
 impl Library {
-    /// Maps and links a library. An import is looked for in the libraries that this one needs; `find` returns the address
-    /// of a symbol that a system library exports.
+    /// Maps and links a library. An import is looked for in the libraries that this one needs; `find` returns the
+    /// address of a symbol that a system library exports.
     ///
     /// # Errors
     /// One sentence on the part that Android or the host would refuse.

@@ -1,8 +1,8 @@
 //! The OpenXR loader of an application that carries an API layer: as much of Khronos's loader as this application uses.
 //!
-//! The layer's library and its manifest come out of its AAR, and are in the application's package as Gradle would put them
-//! there; the library is loaded like the application's own. The loader finds the manifest among the assets, negotiates with
-//! the layer whenever an instance is made, and ends the chain with the simulated runtime.
+//! The layer's library and its manifest come out of its AAR, and are in the application's package as Gradle would put
+//! them there; the library is loaded like the application's own. The loader finds the manifest among the assets,
+//! negotiates with the layer whenever an instance is made, and ends the chain with the simulated runtime.
 
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};

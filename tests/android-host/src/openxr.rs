@@ -1,8 +1,8 @@
 //! A headset: the runtime broker's answers, and the library that they name.
 //!
 //! The library is the simulated runtime of `tests/openxr-stub`, a library of this machine and not of Android, which the
-//! application loads all the same: its functions are called like Android's. Frames go through the same gate as those of a
-//! window.
+//! application loads all the same: its functions are called like Android's. Frames go through the same gate as those of
+//! a window.
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::os::unix::ffi::OsStringExt;

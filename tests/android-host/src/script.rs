@@ -11,7 +11,8 @@
 //! "debug.yoro.scene" = "prototype"
 //! ```
 //!
-//! followed or preceded by `steps = ["launch", { frames = 10 }, { capture = "boot.png" }, "quit"]`. Unknown keys are errors.
+//! followed or preceded by `steps = ["launch", { frames = 10 }, { capture = "boot.png" }, "quit"]`. Unknown keys are
+//! errors.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,8 +26,8 @@ use serde::{Deserialize, Serialize};
 pub struct Script {
     /// Shown in the summary.
     pub name: String,
-    /// Real seconds for which one step, or one callback of the activity, may stand still before the run fails; it may use
-    /// 20 times as much processor time.
+    /// Real seconds for which one step, or one callback of the activity, may stand still before the run fails; it may
+    /// use 20 times as much processor time.
     #[serde(default = "default_timeout")]
     pub patience_seconds: f64,
     /// The device at power-on.
@@ -97,8 +98,8 @@ pub struct Device {
     pub mode: Option<[i32; 2]>,
     /// Refreshes after which the choreographer's timeline says that a frame is seen.
     pub refreshes_ahead: u32,
-    /// Seconds that the device has slept since its boot: CLOCK_BOOTTIME, the sensors' clock, is ahead of CLOCK_MONOTONIC by
-    /// them.
+    /// Seconds that the device has slept since its boot: CLOCK_BOOTTIME, the sensors' clock, is ahead of
+    /// CLOCK_MONOTONIC by them.
     pub slept_seconds: f64,
     /// Features that the package manager says are there, with their versions.
     pub features: BTreeMap<String, i32>,

@@ -50,7 +50,8 @@ pub struct Summary {
     pub captures: Vec<PathBuf>,
     /// The number of lines that each tag logged, errors apart.
     pub log_counts: BTreeMap<String, u64>,
-    /// Lines of the tags `YORO`, the application's, and `yoro`, the API layer's, and every line of priority error and above.
+    /// Lines of the tags `YORO`, the application's, and `yoro`, the API layer's, and every line of priority error and
+    /// above.
     pub log: Vec<LogLine>,
 }
 

@@ -615,7 +615,8 @@ fn submitted(folder: &Path) -> [View; 2] {
 #[test]
 fn one_view_through_the_layer_is_what_the_application_synthesizes() {
     let Some(aar) = layer("layer") else { return };
-    // The application renders multiples of 16 pixels. With these the layer's eyes are some, too: the one view is 192 wide.
+    // The application renders multiples of 16 pixels. With these the layer's eyes are some, too: the one view is 192
+    // wide.
     let mut script = Headset::default().asymmetric();
     script.eyes.iter_mut().for_each(|eye| eye.size = [154, 128]);
     // The dominant eye by default, and set by a property.
@@ -803,8 +804,9 @@ fn by_hand(keys: &str) -> String {
     format!("[device]\n{keys}\n[device.files]\n\"yoro.toml\" = {toml:?}")
 }
 
-/// What a person does first, on a phone without a computer: chooses the viewer by the code before the camera, looks at another
-/// scene, compares, and finds it all again at the next start. Then the phone stands upright, and things are shared.
+/// What a person does first, on a phone without a computer: chooses the viewer by the code before the camera, looks at
+/// another scene, compares, and finds it all again at the next start. Then the phone stands upright, and things are
+/// shared.
 #[test]
 fn a_first_start_by_hand() {
     const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";

@@ -126,7 +126,8 @@ impl Page {
         self.evaluate(said).as_str().map(str::to_owned)
     }
 
-    /// Opens a fragment, loses the context before the first scene is there, and gives it back when its worker has ended.
+    /// Opens a fragment, loses the context before the first scene is there, and gives it back when its worker has
+    /// ended.
     fn go_and_lose(&mut self, address: &str) {
         self.browser.go(&format!("{}{address}", self.server.address));
         self.until("Boolean(globalThis.yoro?.page)");

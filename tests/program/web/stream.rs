@@ -439,7 +439,8 @@ fn resident(id: u32) -> u64 {
     pages.split(' ').nth(1).unwrap().parse::<u64>().unwrap() * 4096
 }
 
-/// A client that decodes every frame takes ten thousand; each shows the newest view that it has asked for or the one before.
+/// A client that decodes every frame takes ten thousand; each shows the newest view that it has asked for or the one
+/// before.
 #[test]
 #[ignore = "takes minutes"]
 fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
@@ -496,8 +497,8 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     assert!(late < early + (4 << 20), "{early} bytes after a tenth, {late} at the end");
 }
 
-/// Answers like `yoro serve`, but leaves out frame 1, and sends no H.264 after frame 3. Passes on what it is told, without
-/// requests.
+/// Answers like `yoro serve`, but leaves out frame 1, and sends no H.264 after frame 3. Passes on what it is told,
+/// without requests.
 fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromClient>) -> Option<()> {
     let folder = Path::new(env!("CARGO_BIN_EXE_yoro")).ancestors().nth(2).unwrap().join("web");
     let mut open = Vec::new();

@@ -161,8 +161,8 @@ fn a_link_sets_everything_and_the_page_lasts() {
     assert_eq!(page.message(), None);
     page.browser.expect_silence();
 
-    // A link's invalid parts are reported, and the rest is applied, also where another scene is chosen while the first one
-    // loads; a host's wrong type for the module does not matter.
+    // A link's invalid parts are reported, and the rest is applied, also where another scene is chosen while the first
+    // one loads; a host's wrong type for the module does not matter.
     let link = "?again#scene=conference&viewpoint=1&ipd=%20&method=none&size=3&anti-aliasing=msaa&toString=1&__proto__=1&at=1e9,,0,0,0";
     page.browser.go(&format!("{}{link}", page.server.address));
     page.until("globalThis.yoro?.wanted?.builtin === 'conference'");

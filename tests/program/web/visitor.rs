@@ -1,4 +1,5 @@
-//! What a visitor is told: which method is cheaper here, why synthesis works; and the camera that reads a viewer's code.
+//! What a visitor is told: which method is cheaper here, why synthesis works; and the camera that reads a viewer's
+//! code.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -46,7 +47,8 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     let options: Vec<&str> = GL.into_iter().chain(seen).collect();
     let Some(mut page) = Page::open_with(&options, "#scale=0.5", None) else { return };
 
-    // A comparison shows what it compares. A picture for itself is drawn by the cheaper method, once both have been measured.
+    // A comparison shows what it compares. A picture for itself is drawn by the cheaper method, once both have been
+    // measured.
     let method = "[yoro.settings.method, yoro.page.methodInUse, yoro.page.reason ?? null]";
     assert_eq!(page.evaluate(method), json!(["auto", "yoro", null]));
     page.browser.resize(320, 300);
@@ -82,7 +84,8 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     page.choose("display", "divider");
     assert_eq!(page.evaluate(method), json!(["auto", "yoro", null]));
 
-    // The sentence below the divider says one thing: the share is that of the times beside it, and the baseline is told.
+    // The sentence below the divider says one thing: the share is that of the times beside it, and the baseline is
+    // told.
     page.until("document.getElementById('figures').textContent.includes('the same image to both eyes')");
     let numbers = page.evaluate(
         "document.getElementById('figures').textContent.match(/[\\d.]+(?= %| ms| dB)/g).map(Number)",

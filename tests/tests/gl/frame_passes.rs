@@ -19,8 +19,8 @@ use yoro_tests::{golden::BLESS, on_every_backend, scene};
 const BEGIN: &str = "<!-- passes: begin -->\n";
 const END: &str = "<!-- passes: end -->";
 
-/// Frames of every method are recorded: their passes are those of the table. With YORO_BLESS in the environment the table is
-/// written anew.
+/// Frames of every method are recorded: their passes are those of the table. With YORO_BLESS in the environment the
+/// table is written anew.
 #[test]
 fn every_pass_reads_and_writes_what_the_documents_say() {
     let headless = Headless::open(Backend::Egl).unwrap();

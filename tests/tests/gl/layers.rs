@@ -258,8 +258,8 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
     })
 }
 
-/// Returns the displacement at which the search for each target tile begins, and its number of columns, as the tile passes
-/// find them in sixteenths of a pixel.
+/// Returns the displacement at which the search for each target tile begins, and its number of columns, as the tile
+/// passes find them in sixteenths of a pixel.
 pub fn spans(layers: &Image<Layer>, width: usize, range: [f64; 2]) -> Image<Option<(f64, i64)>> {
     let [far, near] = range;
     let [w, h] = layers.size;
@@ -339,8 +339,9 @@ impl Composition {
     }
 }
 
-/// Returns the colour between the inner two of four columns, and how many of them are needed. Keys' cubic convolution: "Cubic
-/// Convolution Interpolation for Digital Image Processing" (1981), equation 15 for u(s) with a = -3/4, clamped to the inner two.
+/// Returns the colour between the inner two of four columns, and how many of them are needed. Keys' cubic convolution:
+/// "Cubic Convolution Interpolation for Digital Image Processing" (1981), equation 15 for u(s) with a = -3/4, clamped
+/// to the inner two.
 fn sharp_color(columns: [Color; 4], f: f64) -> (Color, u32) {
     const A: f64 = -0.75;
     let [_, here, next, _] = columns;
@@ -356,7 +357,8 @@ fn sharp_color(columns: [Color; 4], f: f64) -> (Color, u32) {
     (std::array::from_fn(|c| sum[c].clamp(here[c].min(next[c]), here[c].max(next[c]))), 4)
 }
 
-/// Returns the colour of target pixel (t, y), true if more than half of it is filled from beside the hole, and its fetches.
+/// Returns the colour of target pixel (t, y), true if more than half of it is filled from beside the hole, and its
+/// fetches.
 pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Color, bool, Fetches) {
     let last = layers.size[0] as i64 - 1;
     let (mut x, limit) = match span {

@@ -352,8 +352,8 @@ fn vulkan_equals_opengl_for_anti_aliased_sources() {
     }
 }
 
-/// Depth that the host's render pass resolves is the same source as depth that a pass of its own chose from the samples.
-/// Lavapipe has the first sample's depth only, not MIN and MAX.
+/// Depth that the host's render pass resolves is the same source as depth that a pass of its own chose from the
+/// samples. Lavapipe has the first sample's depth only, not MIN and MAX.
 #[test]
 fn depth_that_a_render_pass_resolved_gives_the_same_picture() {
     use vk::ResolveModeFlags as Mode;

@@ -1,4 +1,5 @@
-//! A stand-in for Google's SDK and NDK, made of Debian's clang and Android tools: as much of both as cargo-apk asks for.
+//! A stand-in for Google's SDK and NDK, made of Debian's clang and Android tools: as much of both as cargo-apk asks
+//! for.
 //!
 //! The libraries to link with are empty but for their public names, so that linking fails with any other name: the
 //! device's own libraries take their place when the application starts.

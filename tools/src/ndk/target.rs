@@ -10,12 +10,12 @@ pub const PAGE: u64 = 16 * 1024;
 /// The name of the OpenXR loader that the application looks for in its APK.
 pub const LOADER: &str = "libopenxr_loader.so";
 
-/// Libraries of OpenXR runtimes that lie on a system partition. From target API level 31 on Android refuses to load such
-/// a library for an application that does not name it. Not required: each is on one maker's headsets only.
+/// Libraries of OpenXR runtimes that lie on a system partition. From target API level 31 on Android refuses to load
+/// such a library for an application that does not name it. Not required: each is on one maker's headsets only.
 pub const NATIVE_LIBRARIES: [&str; 2] = ["libopenxr.google.so", "libopenxr_forwardloader.oculus.so"];
 
-/// Properties of the application, by name and value: Android XR starts an OpenXR application in a space of its own only if
-/// it asks for that.
+/// Properties of the application, by name and value: Android XR starts an OpenXR application in a space of its own only
+/// if it asks for that.
 pub const PROPERTIES: [(&str, &str); 1] =
     [("android.window.PROPERTY_XR_ACTIVITY_START_MODE", "XR_ACTIVITY_START_MODE_FULL_SPACE_UNMANAGED")];
 

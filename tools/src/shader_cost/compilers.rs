@@ -1,7 +1,7 @@
 //! Mesa's compilers for mobile GPUs, without the GPUs.
 //!
-//! Debian builds freedreno and panfrost for arm64 only. Their packages are unpacked beside the system, and qemu's user mode
-//! runs them; `mesa-drm-shim` plays the kernel's driver of a GPU that compiles shaders and draws nothing.
+//! Debian builds freedreno and panfrost for arm64 only. Their packages are unpacked beside the system, and qemu's user
+//! mode runs them; `mesa-drm-shim` plays the kernel's driver of a GPU that compiles shaders and draws nothing.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -16,8 +16,8 @@ const G52_LANES: u32 = 8;
 /// Issue slots and texture instructions.
 type Work = [i64; 2];
 
-/// What a program executes once: outside of its loops, and in each of them without the loops inside, in the order of the
-/// listing.
+/// What a program executes once: outside of its loops, and in each of them without the loops inside, in the order of
+/// the listing.
 struct Program<const LOOPS: usize> {
     outside: Work,
     loops: [Work; LOOPS],
@@ -57,8 +57,8 @@ fn parts(table: &Table, gpu: &str) -> anyhow::Result<Vec<(u32, &'static str, Wor
     let (_, events) = program::<2>(table, gpu, &march(14))?;
     let (_, fill) = program::<2>(table, gpu, &march(30))?;
     let (_, all) = program::<3>(table, gpu, &march(62))?;
-    // The loop over segments is the second one, that to a crossing the last. Events are handled in two places: before the
-    // loop, too.
+    // The loop over segments is the second one, that to a crossing the last. Events are handled in two places: before
+    // the loop, too.
     let event = minus(events.loops[1], segments.loops[1]);
     let crossing = minus(all.outside, fill.outside);
     let long = minus(minus(plus(events.outside, crossing), event), short.outside);

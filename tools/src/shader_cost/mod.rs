@@ -1,7 +1,8 @@
 //! `cargo tools shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers and without the GPUs.
 //!
 //! The library makes all programs in a context of this machine, `shader-programs` of tests/ prints their texts, and
-//! [`Compilers`] compile them. What is found is held against `docs/shader-cost.csv`; docs/performance.md says how to read it.
+//! [`Compilers`] compile them. What is found is held against `docs/shader-cost.csv`; docs/performance.md says how to
+//! read it.
 
 mod compilers;
 mod gather;

@@ -1,5 +1,5 @@
-//! Application bundles (.aab), by the layout that Google's bundletool reads: one module, `base`, with manifest and resources as
-//! protocol buffers, and what bundletool is told beside it.
+//! Application bundles (.aab), by the layout that Google's bundletool reads: one module, `base`, with manifest and
+//! resources as protocol buffers, and what bundletool is told beside it.
 
 use std::fs;
 use std::io::{Cursor, Read as _, Write as _};
@@ -113,7 +113,8 @@ pub fn is_bundle(names: impl Fn(&str) -> bool) -> bool {
     names(CONFIG)
 }
 
-/// Adds rows for the layout, and turns the module into an APK without signature, as bundletool would, for the other checks.
+/// Adds rows for the layout, and turns the module into an APK without signature, as bundletool would, for the other
+/// checks.
 ///
 /// # Errors
 /// When aapt2 is missing, or cannot read manifest or resources.

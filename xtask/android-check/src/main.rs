@@ -1,6 +1,6 @@
-//! Archives and libraries for Android. `check APK` checks that Android will install and start it, and a bundle (.aab) too;
-//! `bundle APK AAB` makes a bundle of an APK, `loader LIBRARY` prints
-//! the processor that an OpenXR loader is for, and `pack AAR FOLDER` packs the files of a folder.
+//! Archives and libraries for Android. `check APK` checks that Android will install and start it, and a bundle (.aab)
+//! too; `bundle APK AAB` makes a bundle of an APK, `loader LIBRARY` prints the processor that an OpenXR loader is for,
+//! and `pack AAR FOLDER` packs the files of a folder.
 //!
 //! A program of its own, so that only those who build for Android wait for its dependencies.
 

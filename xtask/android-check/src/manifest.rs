@@ -13,7 +13,8 @@ use super::report::Report;
 
 const PACKAGE: &str = "io.github.yoro";
 const LIBRARY: &str = "yoro_android";
-/// Permissions that the application asks for: the camera reads a viewer's code, and OpenXR runtimes may want to be asked.
+/// Permissions that the application asks for: the camera reads a viewer's code, and OpenXR runtimes may want to be
+/// asked.
 const PERMISSIONS: &str = "android.permission.CAMERA android.permission.INTERNET org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
 /// Headsets by Meta that it has to be made for by name, and all, for those that do not know the later names.
 const DEVICES: [&str; 2] = ["all", "quest3"];
@@ -116,7 +117,8 @@ const fn optional<'a>(attributes: &'a [(&'a str, &'a str)]) -> Rule<'a> {
     rule("uses-feature", attributes, "devices without it would be shut out")
 }
 
-/// An element of the manifest with its attributes; values are texts without quotes, `true`, `false`, or numbers like `0x1d`.
+/// An element of the manifest with its attributes; values are texts without quotes, `true`, `false`, or numbers like
+/// `0x1d`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Element {
     name: String,
@@ -312,7 +314,8 @@ impl Manifest {
     }
 }
 
-/// Reads `"text" (Raw: "text")`, `(type 0x10)0x1d (Raw: "29")`, a boolean `(type 0x12)0x0`, or a resource `@0x7f050000`.
+/// Reads `"text" (Raw: "text")`, `(type 0x10)0x1d (Raw: "29")`, a boolean `(type 0x12)0x0`, or a resource
+/// `@0x7f050000`.
 fn value(dumped: &str) -> &str {
     if let Some(text) = dumped.strip_prefix('"') {
         return text.split('"').next().unwrap_or_default();

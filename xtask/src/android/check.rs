@@ -1,5 +1,5 @@
-//! `yoro-android-check`, which knows archives and libraries. It is a program of its own, so that only those who build for
-//! Android wait for its dependencies.
+//! `yoro-android-check`, which knows archives and libraries. It is a program of its own, so that only those who build
+//! for Android wait for its dependencies.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf, absolute};

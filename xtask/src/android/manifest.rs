@@ -3,8 +3,8 @@
 use anyhow::Context as _;
 use yoro_tools::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
 
-/// Completes the manifest that cargo-apk has written: adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application, and
-/// makes that a game: from API level 36 on Android lets only games keep their orientation on large screens.
+/// Completes the manifest that cargo-apk has written: adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application,
+/// and makes that a game: from API level 36 on Android lets only games keep their orientation on large screens.
 ///
 /// # Errors
 /// When there is no application in it.

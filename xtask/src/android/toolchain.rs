@@ -148,8 +148,8 @@ pub fn ensure(toolchain: &Toolchain, yes: bool) -> anyhow::Result<()> {
     })
 }
 
-/// Describes the toolchain that `cargo xtask apk` would choose, and what it lacks. Returns the text, and true if nothing is
-/// missing.
+/// Describes the toolchain that `cargo xtask apk` would choose, and what it lacks. Returns the text, and true if
+/// nothing is missing.
 ///
 /// # Errors
 /// When the target folder is not known.

@@ -16,7 +16,8 @@ pub struct Quality {
     pub ssim: f64,
 }
 
-/// A case of a scene: its pictures' name, the eye that is synthesized, and the case with Godot's pictures of the same view.
+/// A case of a scene: its pictures' name, the eye that is synthesized, and the case with Godot's pictures of the same
+/// view.
 pub type Case = [&'static str; 3];
 
 /// Returns for each case the synthesized eye and the rendered one, against what Godot draws for the synthesized eye.

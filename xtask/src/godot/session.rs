@@ -51,7 +51,8 @@ impl Session {
         self.godot.join("godot")
     }
 
-    /// Runs Godot with arguments, and returns what it printed. `folder` gets its log, and is where it meets the runtime.
+    /// Runs Godot with arguments, and returns what it printed. `folder` gets its log, and is where it meets the
+    /// runtime.
     ///
     /// # Errors
     /// When it takes longer than `limit`; its end is not looked at.

@@ -1,4 +1,5 @@
-//! The add-on for Godot: a zip whose folders are those of a project, as the Asset Library and the editor's import want it.
+//! The add-on for Godot: a zip whose folders are those of a project, as the Asset Library and the editor's import want
+//! it.
 
 use std::path::{Path, PathBuf};
 

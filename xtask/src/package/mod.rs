@@ -1,5 +1,5 @@
-//! Packages for other people's builds: the C library for Linux and Android, the OpenXR API layer for Android, and the add-on
-//! for Godot.
+//! Packages for other people's builds: the C library for Linux and Android, the OpenXR API layer for Android, and the
+//! add-on for Godot.
 
 mod android;
 mod godot;
@@ -64,8 +64,8 @@ struct Built {
     needs: Vec<String>,
 }
 
-/// Has `cargo` build a package's library; where it is, and what rustc tells. `objects` are linked into it, and `folder` is
-/// where cargo puts things for this target.
+/// Has `cargo` build a package's library; where it is, and what rustc tells. `objects` are linked into it, and `folder`
+/// is where cargo puts things for this target.
 fn compile(
     mut cargo: Command,
     package: &str,

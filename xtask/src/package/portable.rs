@@ -1,4 +1,5 @@
-//! What makes a library run on other people's Linux: old functions of the C library, and nothing of the builder's machine.
+//! What makes a library run on other people's Linux: old functions of the C library, and nothing of the builder's
+//! machine.
 
 use std::env::consts::ARCH;
 use std::ffi::OsStr;
@@ -13,9 +14,9 @@ use yoro_tools::rust::anonymous_paths;
 /// The oldest glibc that packages for Linux run with: Debian 10, Ubuntu 18.10, RHEL 8 and all that is newer.
 pub const OLDEST_GLIBC: (u32, u32) = (2, 28);
 
-/// Rust's std calls `stat64` and `fstat64`, which glibc exports since 2.33. Older ones export what their headers made of
-/// these calls, and newer ones still have it. `gettid` is there since 2.30; std can do without, but LLD does not write that
-/// into the file.
+/// Rust's std calls `stat64` and `fstat64`, which glibc exports since 2.33. Older ones export what their headers made
+/// of these calls, and newer ones still have it. `gettid` is there since 2.30; std can do without, but LLD does not
+/// write that into the file.
 const OLD_FUNCTIONS: &str = r#"
 #if defined(__x86_64__)
 #define BASE "GLIBC_2.2.5"

@@ -1,8 +1,9 @@
 //! All tests of the workspace: cargo compiles them, and several processes at a time run them.
 //!
-//! Beyond `cargo test`: two processes run at a time, since Mesa's rasterizer crashes now and then when two threads of one
-//! process draw; a crash fails one test and the others still run; what fails runs once more, alone; what tests need is fetched
-//! and built. cargo-nextest would do most of it, but depends on 400 packages, which a clean clone would compile first.
+//! Beyond `cargo test`: two processes run at a time, since Mesa's rasterizer crashes now and then when two threads of
+//! one process draw; a crash fails one test and the others still run; what fails runs once more, alone; what tests need
+//! is fetched and built. cargo-nextest would do most of it, but depends on 400 packages, which a clean clone would
+//! compile first.
 
 mod binaries;
 mod equipment;
@@ -28,7 +29,8 @@ use summary::Summary;
 
 /// Tests that must not run beside others, by a part of `program name`.
 ///
-/// Almost none have to: each has folders of its own, ports are pipes, and time is measured in processor time or is simulated.
+/// Almost none have to: each has folders of its own, ports are pipes, and time is measured in processor time or is
+/// simulated.
 const ALONE: [&str; 2] = [
     // A small machine has no memory for two large scenes.
     "yoro-app::program memory::",

@@ -120,8 +120,8 @@ fn whole_lines(bytes: &[u8]) -> usize {
     bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1)
 }
 
-/// Splits a line `test NAME ... REST` into the name and the rest. With one thread, libtest prints the name before the test
-/// runs, so that the test that ends its process is known.
+/// Splits a line `test NAME ... REST` into the name and the rest. With one thread, libtest prints the name before the
+/// test runs, so that the test that ends its process is known.
 fn started(line: &str) -> Option<(&str, &str)> {
     let (name, rest) = line.strip_prefix("test ")?.split_once(" ... ")?;
     Some((name.trim_end_matches(" - should panic"), rest))

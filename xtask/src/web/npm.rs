@@ -15,8 +15,8 @@ pub fn emulator() -> anyhow::Result<PathBuf> {
     fetch("iwer", "iwer@2.5.0", "build/iwer.min.js")
 }
 
-/// Checks the types of the page's scripts by their JSDoc comments. True if nothing was found, or the checker is not to be
-/// had, which is said.
+/// Checks the types of the page's scripts by their JSDoc comments. True if nothing was found, or the checker is not to
+/// be had, which is said.
 ///
 /// # Errors
 /// When Node cannot be started.

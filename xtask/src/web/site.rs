@@ -1,5 +1,5 @@
-//! The files of the page as a host serves them: one document, and a folder for each version of everything else, so that a tab
-//! that is open while a new version comes keeps finding its own files.
+//! The files of the page as a host serves them: one document, and a folder for each version of everything else, so that
+//! a tab that is open while a new version comes keeps finding its own files.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hasher as _};
@@ -42,7 +42,8 @@ pub fn sources() -> PathBuf {
     root().join("app/web/page")
 }
 
-/// Completes a folder in which the module lies in [`VERSION`]: copies the page's sources, and names the version by its content.
+/// Completes a folder in which the module lies in [`VERSION`]: copies the page's sources, and names the version by its
+/// content.
 ///
 /// # Errors
 /// When a file cannot be read or written.

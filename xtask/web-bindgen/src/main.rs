@@ -1,6 +1,6 @@
-//! `yoro-web-bindgen MODULE.wasm FOLDER PAGE`: writes the module and its JavaScript into FOLDER as a browser loads them, and
-//! prints three numbers: the module's bytes, its bytes as transferred, and those of a first visit, which loads the texts in
-//! PAGE, too.
+//! `yoro-web-bindgen MODULE.wasm FOLDER PAGE`: writes the module and its JavaScript into FOLDER as a browser loads
+//! them, and prints three numbers: the module's bytes, its bytes as transferred, and those of a first visit, which
+//! loads the texts in PAGE, too.
 //!
 //! A program of its own, so that only those who build the page wait for its dependencies.
 

@@ -8,7 +8,8 @@ use yoro::synthesis::{Edges, Outputs, Source, SynthesisOptions};
 
 use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT};
 
-/// Checks that textures and framebuffer are as [`YoroGlImages`](super::YoroGlImages) says. Leaves bindings as they were.
+/// Checks that textures and framebuffer are as [`YoroGlImages`](super::YoroGlImages) says. Leaves bindings as they
+/// were.
 pub(super) fn check_images(
     context: &Context,
     options: &SynthesisOptions,
@@ -115,7 +116,8 @@ impl Framebuffer {
     /// None if the context has no such framebuffer.
     fn query(context: &Context, name: Option<glow::NativeFramebuffer>) -> Option<Framebuffer> {
         let gl = context.raw();
-        // SAFETY: queries and bindings of the current context. GL refuses an unknown name with an error, which is taken.
+        // SAFETY: queries and bindings of the current context. GL refuses an unknown name with an error, which is
+        // taken.
         unsafe {
             let bound = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, name);

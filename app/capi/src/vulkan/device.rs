@@ -66,7 +66,8 @@ impl Vulkan {
         if writes_depth {
             check_format(info.depth_format, "depth_format")?;
         }
-        // ash panics in commands that were not found. These lead to all others, or are of the oldest version that is needed.
+        // ash panics in commands that were not found. These lead to all others, or are of the oldest version that is
+        // needed.
         let has = |name: &CStr| {
             // SAFETY: the header asks for a live instance; the name ends with 0.
             unsafe { loader(info.instance, name.as_ptr()) }.is_some()
@@ -87,8 +88,8 @@ impl Vulkan {
         }
         // The loader returns it only if the extension is enabled.
         let debug_utils = has(c"vkCmdBeginDebugUtilsLabelEXT");
-        // SAFETY: both types have the same signature, and "system" is C's calling convention on these platforms. The header
-        // asks for handles that belong together.
+        // SAFETY: both types have the same signature, and "system" is C's calling convention on these platforms. The
+        // header asks for handles that belong together.
         let (instance, device) = unsafe {
             let get_instance_proc_addr = std::mem::transmute::<
                 unsafe extern "C" fn(vk::Instance, *const c_char) -> Option<unsafe extern "C" fn()>,

@@ -35,8 +35,8 @@ pub struct YoroVkInfo {
     pub physical_device: vk::PhysicalDevice,
     /// The device, of version 1.1 or later; no extension and no feature is needed.
     pub device: vk::Device,
-    /// 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0: render
-    /// passes and framebuffers are used, with the same result.
+    /// 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0:
+    /// render passes and framebuffers are used, with the same result.
     pub dynamic_rendering: u32,
     /// Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled
     /// as sRGB.
@@ -61,8 +61,8 @@ pub struct YoroVkInfo {
     pub pipeline_cache: vk::PipelineCache,
     /// The receiver of the sentences of errors, also in later calls.
     pub messages: YoroMessages,
-    /// For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0 for no
-    /// times.
+    /// For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0
+    /// for no times.
     pub timed_frames: u32,
     /// 1: sources may have a history (YoroVkSource). 0: none has.
     pub history: u32,

@@ -1,9 +1,9 @@
 //! Which is cheaper on this device: two renders, or one with synthesis.
 //!
-//! Synthesis costs the same for any scene, so where a view is cheap to render, two renders are cheaper. Nobody knows that
-//! beforehand: it depends on the GPU, the scene, the resolution and the heat. A [`Chooser`] renders both ways in turns for
-//! about a second, takes the cheaper one, and measures again when that may have changed. It has no GL and no clock: it is
-//! told when frames ended and what they cost, and says what to render next.
+//! Synthesis costs the same for any scene, so where a view is cheap to render, two renders are cheaper. Nobody knows
+//! that beforehand: it depends on the GPU, the scene, the resolution and the heat. A [`Chooser`] renders both ways in
+//! turns for about a second, takes the cheaper one, and measures again when that may have changed. It has no GL and no
+//! clock: it is told when frames ended and what they cost, and says what to render next.
 //!
 //! ```
 //! use yoro::choice::{Chooser, Cost, FrameEnd, Way};
@@ -59,11 +59,11 @@ impl Way {
 /// The measured cost of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// The frame, as the number of calls of [`Chooser::end_frame`] since its own: 0 for the frame that ends now. Costs of
-    /// frames more than 63 ago are ignored.
+    /// The frame, as the number of calls of [`Chooser::end_frame`] since its own: 0 for the frame that ends now. Costs
+    /// of frames more than 63 ago are ignored.
     pub frames_ago: u32,
-    /// Milliseconds. The GPU's time for the frame if there is a timer; else the time from the beginning of the frame's work
-    /// to the end of the GPU's, if the host waits for that. One kind only, for both ways.
+    /// Milliseconds. The GPU's time for the frame if there is a timer; else the time from the beginning of the frame's
+    /// work to the end of the GPU's, if the host waits for that. One kind only, for both ways.
     pub ms: f32,
 }
 
@@ -72,8 +72,8 @@ pub struct Cost {
 pub struct FrameEnd {
     /// The time now, in nanoseconds of a monotonic clock.
     pub now_ns: i64,
-    /// Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when the
-    /// host waited for the GPU to measure it.
+    /// Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when
+    /// the host waited for the GPU to measure it.
     pub refresh_hz: f32,
     /// The way in which it was rendered. `None` if that was neither, such as both eyes rendered because synthesis was
     /// not possible: such a frame counts for no way.
@@ -95,8 +95,8 @@ pub enum Reason {
     Similar,
     /// It holds the display's rate, and the other way does not.
     HoldsRate,
-    /// Both ways hold the display's rate, and nothing more is known: the display's pace hides their costs. It is the way
-    /// before.
+    /// Both ways hold the display's rate, and nothing more is known: the display's pace hides their costs. It is the
+    /// way before.
     BothHoldRate,
     /// One of the ways could not be measured: it is the way before.
     Incomparable,
@@ -125,12 +125,12 @@ pub struct Choice {
 ///    costs, frames that miss the display's rate are compared by the time between them; those that hold it tell nothing
 ///    ([`Reason::BothHoldRate`]).
 ///
-/// It measures again when the scene has changed; when the frames' cost or pace has changed by 30 % or the heat by 0.1, but
-/// 30 s after the last measurement at the earliest; and after so long a time (1 to 10 min) that rendering the dearer way
-/// in turns costs 0.2 % of it.
+/// It measures again when the scene has changed; when the frames' cost or pace has changed by 30 % or the heat by 0.1,
+/// but 30 s after the last measurement at the earliest; and after so long a time (1 to 10 min) that rendering the
+/// dearer way in turns costs 0.2 % of it.
 ///
-/// GPU times depend on the clock that the device has chosen. Where it lowers the clock for light loads, both ways appear to
-/// cost nearly the same.
+/// GPU times depend on the clock that the device has chosen. Where it lowers the clock for light loads, both ways
+/// appear to cost nearly the same.
 #[derive(Clone, Debug)]
 pub struct Chooser {
     choice: Choice,
@@ -197,7 +197,8 @@ const MEASURING_NS: i64 = 1000 * MS;
 const WATCH_NS: i64 = 2000 * MS;
 /// Longer times between frames are pauses.
 const PAUSE_NS: i64 = 1000 * MS;
-/// The first frames of a turn, which do not count: caches are cold, and the display still shows frames of the turn before.
+/// The first frames of a turn, which do not count: caches are cold, and the display still shows frames of the turn
+/// before.
 const UNCOUNTED_FRAMES: u32 = 3;
 const TURN_FRAMES: u32 = 7;
 const TURNS: u32 = 6;

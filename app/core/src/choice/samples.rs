@@ -34,8 +34,8 @@ impl Samples {
         self.len
     }
 
-    /// Returns the mean of the middle half; `None` of fewer than four. Unlike a median it tells times apart that a coarse
-    /// clock has rounded.
+    /// Returns the mean of the middle half; `None` of fewer than four. Unlike a median it tells times apart that a
+    /// coarse clock has rounded.
     pub fn middle(&self) -> Option<f32> {
         let mut times = self.times;
         let times = &mut times[..self.len];

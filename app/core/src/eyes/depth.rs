@@ -29,8 +29,8 @@ impl DepthRange {
     pub const PAPER: DepthRange =
         DepthRange { near: 0.3, far: 1000.0, convention: DepthConvention::Standard };
 
-    /// Returns the range of a depth buffer that holds 0 at one distance and 1 at another, in metres: OpenXR's `nearZ` and
-    /// `farZ`. The larger distance, which may be infinite, is the far plane.
+    /// Returns the range of a depth buffer that holds 0 at one distance and 1 at another, in metres: OpenXR's `nearZ`
+    /// and `farZ`. The larger distance, which may be infinite, is the far plane.
     pub fn from_distances(at_0: f32, at_1: f32) -> DepthRange {
         if at_0 <= at_1 {
             DepthRange { near: at_0, far: at_1, convention: DepthConvention::Standard }

@@ -4,8 +4,8 @@ use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// The width by which the dominant view is rendered wider than its eye's image, so that it contains the other eye's outer
-/// border.
+/// The width by which the dominant view is rendered wider than its eye's image, so that it contains the other eye's
+/// outer border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]

@@ -1,7 +1,7 @@
 //! Geometry of the eyes: poses, frusta, depth ranges, and the law that moves a pixel from one eye to the other.
 //!
-//! Units are metres and radians. A world in other units works as well, if all lengths are in that unit. Pixels have their
-//! centre at +0.5. The world is right-handed with Y up, and an eye looks along its own -Z with X to the right.
+//! Units are metres and radians. A world in other units works as well, if all lengths are in that unit. Pixels have
+//! their centre at +0.5. The world is right-handed with Y up, and an eye looks along its own -Z with X to the right.
 
 mod depth;
 mod error;

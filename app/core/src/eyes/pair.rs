@@ -101,8 +101,8 @@ impl EyePair {
         (self.poses[1].position - self.poses[0].position).dot(self.poses[0].right())
     }
 
-    /// Returns the same eyes with frusta of equal width over the same rows, so that rows of pixels are aligned. Each frustum
-    /// contains its original.
+    /// Returns the same eyes with frusta of equal width over the same rows, so that rows of pixels are aligned. Each
+    /// frustum contains its original.
     pub fn row_aligned(&self) -> EyePair {
         let [l, r] = self.frusta;
         let width = l.width().max(r.width());
@@ -114,9 +114,10 @@ impl EyePair {
         EyePair { frusta: self.frusta.map(grown), ..*self }
     }
 
-    /// Returns the eyes rectified: parallel, at the same positions, at right angles to the line between them, with frusta
-    /// that contain the original ones. They serve canted eyes: a view of a parallel eye can be turned back to the canted
-    /// eye exactly, since both have the same centre. `None` if an eye sees further than 80 degrees from the common direction.
+    /// Returns the eyes rectified: parallel, at the same positions, at right angles to the line between them, with
+    /// frusta that contain the original ones. They serve canted eyes: a view of a parallel eye can be turned back to
+    /// the canted eye exactly, since both have the same centre. `None` if an eye sees further than 80 degrees from the
+    /// common direction.
     pub fn rectified(&self) -> Option<EyePair> {
         let between = self.poses[1].position - self.poses[0].position;
         let x = between.try_normalize().unwrap_or(self.poses[0].right());
@@ -230,8 +231,8 @@ impl EyePair {
         let axis = self.poses[self.dominant.index()].right();
         let between = right.position - left.position;
         let off_axis = (between - axis * ipd).length();
-        // Far from the origin rounding displaces the eyes; a four hundredth of their distance moves what is three metres
-        // away by a tenth of a pixel at 2000 pixels and 90 degrees.
+        // Far from the origin rounding displaces the eyes; a four hundredth of their distance moves what is three
+        // metres away by a tenth of a pixel at 2000 pixels and 90 degrees.
         if off_axis > self.rounding() + between.length() / 400.0 {
             return Err(EyesError::OffAxis { off_axis });
         }
@@ -253,8 +254,8 @@ impl EyePair {
         Ok(())
     }
 
-    /// Returns the largest difference between the eyes' positions that their rounding to f32 makes: half a unit in the last
-    /// place for each coordinate, and as much again for the computation of a position.
+    /// Returns the largest difference between the eyes' positions that their rounding to f32 makes: half a unit in the
+    /// last place for each coordinate, and as much again for the computation of a position.
     fn rounding(&self) -> f32 {
         4.0 * f32::EPSILON * self.poses.iter().map(|pose| pose.position.length()).fold(0.0, f32::max)
     }
@@ -283,7 +284,8 @@ pub struct SynthesisViews {
 }
 
 impl SynthesisViews {
-    /// Returns the upper left corner of the dominant eye's own image, in pixels of a source image with row 0 at the top.
+    /// Returns the upper left corner of the dominant eye's own image, in pixels of a source image with row 0 at the
+    /// top.
     pub fn dominant_crop_from_top(&self) -> [u32; 2] {
         let [left, bottom] = self.dominant_crop;
         [left, self.source.size[1] - self.target.size[1] - bottom]

@@ -6,10 +6,10 @@ use super::{EyesError, View};
 
 /// All that synthesis knows about two views in any poses.
 ///
-/// The point at inverse distance k from the target's eye, along its viewing axis, that the target shows at the pixel p lies
-/// in the source at the pixel `homography * p + k * epipole`: homogeneous pixels, counted from the lower left corner, with
-/// the third component `source distance / target distance` (Hartley and Zisserman, Multiple View Geometry, equation 9.7).
-/// `synthesis::AnyView` draws the target on OpenGL, `vulkan::AnyView` on Vulkan.
+/// The point at inverse distance k from the target's eye, along its viewing axis, that the target shows at the pixel p
+/// lies in the source at the pixel `homography * p + k * epipole`: homogeneous pixels, counted from the lower left
+/// corner, with the third component `source distance / target distance` (Hartley and Zisserman, Multiple View Geometry,
+/// equation 9.7). `synthesis::AnyView` draws the target on OpenGL, `vulkan::AnyView` on Vulkan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseWarp {
     /// Size of the source in pixels.
@@ -18,8 +18,8 @@ pub struct PoseWarp {
     pub target_size: [u32; 2],
     /// The homography of the rotation between the views, from target to source.
     pub homography: DMat3,
-    /// Place of the target's eye in the source image. Its third component is the distance, in metres, by which that eye is
-    /// further ahead.
+    /// Place of the target's eye in the source image. Its third component is the distance, in metres, by which that eye
+    /// is further ahead.
     pub epipole: DVec3,
     /// `(c, m)` of the source's `1 / distance = c + m * depth`.
     pub source_law: [f64; 2],
@@ -35,12 +35,13 @@ pub struct PoseWarp {
 const LEAST_COSINE: f64 = 0.173_648;
 
 impl PoseWarp {
-    /// Returns the warp from a rendered view to another one. They may have different poses, frusta, sizes and depth planes.
+    /// Returns the warp from a rendered view to another one. They may have different poses, frusta, sizes and depth
+    /// planes.
     ///
     /// # Errors
-    /// [`EyesError::Apart`] if the target sees further than 80 degrees from the source's axis, or only what is beyond the
-    /// source's far plane; [`EyesError::Invalid`],
-    /// [`EyesError::NoPixels`], [`EyesError::Empty`] or [`EyesError::Planes`] for an invalid view.
+    /// [`EyesError::Apart`] if the target sees further than 80 degrees from the source's axis, or only what is beyond
+    /// the source's far plane; [`EyesError::Invalid`], [`EyesError::NoPixels`], [`EyesError::Empty`] or
+    /// [`EyesError::Planes`] for an invalid view.
     pub fn new(source: &View, target: &View) -> Result<PoseWarp, EyesError> {
         source.check()?;
         target.check()?;
@@ -55,7 +56,8 @@ impl PoseWarp {
         // Differences of positions first: they are small where positions are large.
         let moved = to_source * (target.pose.position.as_dvec3() - source.pose.position.as_dvec3());
         let pixels = pixels_of(source);
-        // Views of one orientation, frustum and size have no rounding between them: pixels that stay are taken as they are.
+        // Views of one orientation, frustum and size have no rounding between them: pixels that stay are taken as they
+        // are.
         let homography = if (source.pose.orientation, source.frustum, source.size)
             == (target.pose.orientation, target.frustum, target.size)
         {
@@ -82,8 +84,8 @@ impl PoseWarp {
         })
     }
 
-    /// Returns the warp that moves pixels by rotation alone, as if all surfaces were at an infinite distance: what remains
-    /// without depth.
+    /// Returns the warp that moves pixels by rotation alone, as if all surfaces were at an infinite distance: what
+    /// remains without depth.
     pub fn rotation_only(&self) -> PoseWarp {
         PoseWarp { epipole: DVec3::ZERO, ..*self }
     }
@@ -152,8 +154,8 @@ impl HeadMotion {
     /// most.
     ///
     /// # Errors
-    /// [`EyesError::Apart`] if it had to see further than 80 degrees to a side; those of [`PoseWarp::new`] for a view that
-    /// is none.
+    /// [`EyesError::Apart`] if it had to see further than 80 degrees to a side; those of [`PoseWarp::new`] for a view
+    /// that is none.
     pub fn guarded(&self, view: &View, nearest: f32) -> Result<GuardedView, EyesError> {
         view.check()?;
         let shift = f64::from(self.translation) / f64::from(nearest);

@@ -18,8 +18,8 @@ impl Pose {
     /// The pose at the origin that looks along -Z.
     pub const IDENTITY: Pose = Pose { position: Vec3::ZERO, orientation: Quat::IDENTITY };
 
-    /// Returns a pose at `position` that looks at `target`, with the world's Y up. A pose that looks straight up or down has
-    /// -Z as its up direction.
+    /// Returns a pose at `position` that looks at `target`, with the world's Y up. A pose that looks straight up or
+    /// down has -Z as its up direction.
     pub fn look_at(position: Vec3, target: Vec3) -> Pose {
         let forward = (target - position).try_normalize().unwrap_or(Vec3::NEG_Z);
         let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
@@ -77,8 +77,8 @@ impl Frustum {
         Frustum { left: -right, right, bottom: -top, top }
     }
 
-    /// Returns the frustum of OpenXR's `XrFovf`: angles in radians from the axis, `left` and `down` negative if the frustum
-    /// contains the axis.
+    /// Returns the frustum of OpenXR's `XrFovf`: angles in radians from the axis, `left` and `down` negative if the
+    /// frustum contains the axis.
     pub fn from_fov(angle_left: f32, angle_right: f32, angle_up: f32, angle_down: f32) -> Frustum {
         Frustum {
             left: angle_left.tan(),
@@ -117,8 +117,8 @@ pub struct View {
 }
 
 impl View {
-    /// Returns the matrix from local to clip space, for OpenGL's default clip volume (-w..w on each axis). The depth buffer
-    /// then has the values of [`DepthRange`], in both conventions.
+    /// Returns the matrix from local to clip space, for OpenGL's default clip volume (-w..w on each axis). The depth
+    /// buffer then has the values of [`DepthRange`], in both conventions.
     pub fn projection(&self) -> Mat4 {
         let f = &self.frustum;
         let (c, m) = self.depth.inverse_distance_law();
@@ -132,14 +132,14 @@ impl View {
         )
     }
 
-    /// Returns the matrix from local to clip space for Vulkan: y points down, depth is 0..w, and the image has row 0 at the
-    /// top. The depth buffer then has the values of [`DepthRange`], in both conventions.
+    /// Returns the matrix from local to clip space for Vulkan: y points down, depth is 0..w, and the image has row 0 at
+    /// the top. The depth buffer then has the values of [`DepthRange`], in both conventions.
     pub fn vulkan_projection(&self) -> Mat4 {
         Mat4::from_diagonal(Vec4::new(1.0, -1.0, 1.0, 1.0)) * self.wgpu_projection()
     }
 
-    /// Returns the matrix from local to clip space for wgpu, WebGPU, Metal and Direct3D: y points up, depth is 0..w, and the
-    /// image has row 0 at the top. The depth buffer then has the values of [`DepthRange`], in both conventions.
+    /// Returns the matrix from local to clip space for wgpu, WebGPU, Metal and Direct3D: y points up, depth is 0..w,
+    /// and the image has row 0 at the top. The depth buffer then has the values of [`DepthRange`], in both conventions.
     pub fn wgpu_projection(&self) -> Mat4 {
         let to_wgpu =
             Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, 0.5, 0.0), Vec4::new(0.0, 0.0, 0.5, 1.0));

@@ -3,8 +3,8 @@
 use super::{DepthConvention, Eye, EyesError};
 
 /// The displacement of a pixel as an affine function of the value in the depth buffer, in pixels:
-/// `x_target = x_source + offset + scale * depth`. This is the paper's Eq. 5 for parallel eyes. It holds for pixel indices
-/// and for pixel centres alike.
+/// `x_target = x_source + offset + scale * depth`. This is the paper's Eq. 5 for parallel eyes. It holds for pixel
+/// indices and for pixel centres alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DisparityLaw {
@@ -42,9 +42,9 @@ pub struct Warp {
 const MAX_OFFSET: f64 = (1 << 20) as f64;
 
 impl Warp {
-    /// The largest displacement beyond that of the far plane, in pixels, that the shaders can store: 16 bits in units of
-    /// 1/16 pixel (`include/tiles.glsl` of `yoro-shaders`). It bounds only images that are wider, since a surface that moves
-    /// across the whole image is not seen.
+    /// The largest displacement beyond that of the far plane, in pixels, that the shaders can store: 16 bits in units
+    /// of 1/16 pixel (`include/tiles.glsl` of `yoro-shaders`). It bounds only images that are wider, since a surface
+    /// that moves across the whole image is not seen.
     pub const MAX_DISPLACEMENT: f64 = 4095.0;
 
     /// Returns the displacements of the far plane and of the near plane in pixels, in forward columns: the direction in
@@ -84,8 +84,8 @@ impl Warp {
 }
 
 /// Returns the paper's minimum object distance `D = IPD / 2 * cot(fov / 2)` in metres, for an angle in radians (section
-/// "Impact of Object Distance"). For an IPD of 75 mm and 60 degrees it is 0.065 m, not the 0.129 m that the text states:
-/// that value is [`full_overlap_distance`].
+/// "Impact of Object Distance"). For an IPD of 75 mm and 60 degrees it is 0.065 m, not the 0.129 m that the text
+/// states: that value is [`full_overlap_distance`].
 pub fn minimum_object_distance(ipd: f32, fov: f32) -> f32 {
     0.5 * ipd / (0.5 * fov).tan()
 }

@@ -13,8 +13,8 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Edges {
-    /// One sample per pixel: every pixel shows one surface. Resolved colour with each pixel's nearest depth is close to it,
-    /// at an eighth of the cost of the other kinds.
+    /// One sample per pixel: every pixel shows one surface. Resolved colour with each pixel's nearest depth is close to
+    /// it, at an eighth of the cost of the other kinds.
     #[default]
     Hard,
     /// Resolved (anti-aliased) colour; depth of each pixel's nearest sample.

@@ -2,8 +2,8 @@
 
 use crate::eyes::{Eye, Warp};
 
-/// [`DisparityLaw`](crate::eyes::DisparityLaw) in forward columns (`include/warp.glsl`). Columns are mirrored for the right
-/// eye, so that a larger displacement always means nearer.
+/// [`DisparityLaw`](crate::eyes::DisparityLaw) in forward columns (`include/warp.glsl`). Columns are mirrored for the
+/// right eye, so that a larger displacement always means nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ForwardLaw {
     pub offset: f64,

@@ -67,7 +67,8 @@ impl Strips {
     }
 }
 
-/// Returns the matrix from a view's local space to its pixels, rows from the bottom, and stored depth. w is the distance.
+/// Returns the matrix from a view's local space to its pixels, rows from the bottom, and stored depth. w is the
+/// distance.
 fn window(view: &View) -> DMat4 {
     let [width, height] = view.size.map(f64::from);
     let half = DVec3::new(0.5 * width, 0.5 * height, 0.5);

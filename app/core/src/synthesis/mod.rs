@@ -1,8 +1,8 @@
 //! Colour and depth of one eye in, the other eye out.
 //!
-//! On OpenGL (feature `gl`) [`create`] compiles a pipeline, which takes two textures, a [`Warp`](crate::eyes::Warp) and a
-//! framebuffer; `examples/engine.rs` shows it in a foreign engine. On Vulkan the same passes are in `yoro::vulkan`, on
-//! wgpu in the crate `yoro-wgpu`.
+//! On OpenGL (feature `gl`) [`create`] compiles a pipeline, which takes two textures, a [`Warp`](crate::eyes::Warp) and
+//! a framebuffer; `examples/engine.rs` shows it in a foreign engine. On Vulkan the same passes are in `yoro::vulkan`,
+//! on wgpu in the crate `yoro-wgpu`.
 //!
 //! | pipeline | for | passes, all fragment shaders | needs |
 //! |---|---|---|---|

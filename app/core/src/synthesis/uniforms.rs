@@ -142,8 +142,8 @@ impl Uniforms {
         Uniforms::of_part(warp, &places)
     }
 
-    /// Returns the uniforms for these places. Columns and rows are affine in `gl_FragCoord`. Their factors are computed here
-    /// and not by each fragment, and in f64, since they are differences of large numbers.
+    /// Returns the uniforms for these places. Columns and rows are affine in `gl_FragCoord`. Their factors are computed
+    /// here and not by each fragment, and in f64, since they are differences of large numbers.
     #[doc(hidden)]
     pub fn of_part(warp: &Warp, places: &Places) -> Uniforms {
         let law = ForwardLaw::new(warp);

@@ -6,7 +6,8 @@ use super::commands::Commands;
 use super::formats::{aspects, range};
 use super::{ImageState, LayerImage};
 
-/// The most barriers of a frame: three source images, two of a history, two target images, and four intermediate images.
+/// The most barriers of a frame: three source images, two of a history, two target images, and four intermediate
+/// images.
 const MAX: usize = 11;
 
 /// Barriers that are recorded with one command.

@@ -139,7 +139,8 @@ impl Source {
         Ok(Source { id, images: *images, textures: set, _objects: objects })
     }
 
-    /// The images in a call with these uses, or those of their registration, and the states in which the passes read them.
+    /// The images in a call with these uses, or those of their registration, and the states in which the passes read
+    /// them.
     pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
         let SourceImages { color, depth, sample_color, history, .. } = self.images;
         let uses = uses.map(|uses| {
@@ -212,8 +213,8 @@ impl Target {
         Ok(Target { id, images: *images, attachments, _objects: objects })
     }
 
-    /// The images in a call with these uses, or those of their registration, and the states in which the last pass writes
-    /// them.
+    /// The images in a call with these uses, or those of their registration, and the states in which the last pass
+    /// writes them.
     pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
         let color = used(self.images.color, uses.map(|uses| uses.target_color));
         let depth = self.images.depth.map(|depth| used(depth, uses.map(|uses| uses.target_depth)));

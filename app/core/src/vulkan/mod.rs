@@ -134,7 +134,8 @@ pub enum VulkanError {
     /// A source has the colour of its samples, which only [`Edges::Multisample`] uses.
     #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
     SampleColors,
-    /// A source has a history, but [`Options::history`] is off; or a frame has one, but its source was registered without.
+    /// A source has a history, but [`Options::history`] is off; or a frame has one, but its source was registered
+    /// without.
     #[error(
         "a history is for pipelines made with one, of sources registered with its images; give both, or none"
     )]
@@ -193,8 +194,8 @@ pub struct Host<'a> {
     pub device: &'a ash::Device,
     /// Family of the queue to which the command buffers are submitted; it has graphics.
     pub queue_family: u32,
-    /// True if the feature `dynamicRendering` of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled. Without it render passes
-    /// and framebuffers are used, with the same result.
+    /// True if the feature `dynamicRendering` of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled. Without it render
+    /// passes and framebuffers are used, with the same result.
     pub dynamic_rendering: bool,
     /// True if VK_EXT_debug_utils is enabled in the instance: passes then have labels in debuggers. A device's entry
     /// points do not tell, since validation layers return them without the extension.
@@ -218,8 +219,8 @@ pub struct Options {
     pub samples: u32,
     /// True if sources may have a history ([`SourceImages::history`]).
     pub history: bool,
-    /// The number of frames after which [`Pipeline::pass_times`] returns the times of one: at least the frames in flight. 0
-    /// for no times.
+    /// The number of frames after which [`Pipeline::pass_times`] returns the times of one: at least the frames in
+    /// flight. 0 for no times.
     pub timed_frames: u32,
     /// A pipeline cache, or null.
     pub pipeline_cache: vk::PipelineCache,
@@ -304,8 +305,8 @@ impl ImageState {
         stages: vk::PipelineStageFlags::FRAGMENT_SHADER,
         access: vk::AccessFlags::SHADER_READ,
     };
-    /// Its contents are not needed: UNDEFINED, for a target that is overwritten entirely, and that was drawn to, sampled or
-    /// copied from before.
+    /// Its contents are not needed: UNDEFINED, for a target that is overwritten entirely, and that was drawn to,
+    /// sampled or copied from before.
     pub const DISCARDED: ImageState = ImageState {
         layout: vk::ImageLayout::UNDEFINED,
         stages: vk::PipelineStageFlags::from_raw(
@@ -318,8 +319,8 @@ impl ImageState {
 /// One layer of an image, mip level 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerImage {
-    /// A 2-D image, without multisampling unless stated otherwise. Its usage includes SAMPLED for a source, COLOR_ATTACHMENT
-    /// or DEPTH_STENCIL_ATTACHMENT for a target.
+    /// A 2-D image, without multisampling unless stated otherwise. Its usage includes SAMPLED for a source,
+    /// COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
     pub image: vk::Image,
     /// Format of its view: the image's, or a compatible one if the image is MUTABLE_FORMAT.
     pub format: vk::Format,
@@ -335,13 +336,14 @@ pub struct LayerImage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceImages {
     /// Colour in any format that can be filtered: R8G8B8A8_UNORM or _SRGB, A2B10G10R10_UNORM, R16G16B16A16_SFLOAT and
-    /// others. All four channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the edges
-    /// are [`Edges::Hard`] it is resolved, with values between 0 and 1.
+    /// others. All four channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the
+    /// edges are [`Edges::Hard`] it is resolved, with values between 0 and 1.
     pub color: LayerImage,
-    /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or R32_SFLOAT. The stencil aspect is
-    /// not read. For [`Edges::Multisample`] it has [`Options::samples`] samples.
+    /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or R32_SFLOAT. The stencil aspect
+    /// is not read. For [`Edges::Multisample`] it has [`Options::samples`] samples.
     pub depth: LayerImage,
-    /// For [`Edges::Multisample`], the image with as many samples that the colour was resolved from, if it still exists.
+    /// For [`Edges::Multisample`], the image with as many samples that the colour was resolved from, if it still
+    /// exists.
     pub sample_color: Option<LayerImage>,
     /// Width and height of the images in pixels; the source is a rectangle of them.
     pub size: [u32; 2],

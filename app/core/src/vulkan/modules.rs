@@ -1,4 +1,5 @@
-//! The modules that are compiled beforehand, to SPIR-V here and to WGSL in yoro-wgpu: for the tests, which compile them.
+//! The modules that are compiled beforehand, to SPIR-V here and to WGSL in yoro-wgpu: for the tests, which compile
+//! them.
 
 /// The name of a compiled module, the file of `yoro-shaders` that it is made of, and the macros for that.
 pub type Module = (&'static str, &'static str, &'static [&'static str]);

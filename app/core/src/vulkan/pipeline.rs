@@ -142,8 +142,8 @@ impl<W: WarpKind> Pipeline<W> {
     /// Makes views and descriptors of images to read from.
     ///
     /// # Errors
-    /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::SampleColors`] and [`VulkanError::History`]; errors of
-    /// Vulkan's commands.
+    /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::SampleColors`] and [`VulkanError::History`];
+    /// errors of Vulkan's commands.
     ///
     /// # Safety
     /// The images are as [`SourceImages`] and [`LayerImage`](super::LayerImage) say, and live until this id is released
@@ -219,8 +219,8 @@ impl<W: WarpKind> Pipeline<W> {
         unsafe { self.record_passes(commands, frame, warp, None) }
     }
 
-    /// Does what [`Pipeline::record`] does for images whose uses before and after differ from frame to frame. A source is
-    /// still sampled in the layout that its [`LayerImage::before`](super::LayerImage::before) asks for.
+    /// Does what [`Pipeline::record`] does for images whose uses before and after differ from frame to frame. A source
+    /// is still sampled in the layout that its [`LayerImage::before`](super::LayerImage::before) asks for.
     ///
     /// # Errors
     /// Those of [`Pipeline::record`].

@@ -102,7 +102,8 @@ fn a_history_of_this_frame_is_the_truth() {
             let [before, after] =
                 [&plain, &rgba].map(|image| holes.iter().filter(|i| off(image, **i) <= 2).count());
             assert!(holes.len() > 300, "{what}: {} holes", holes.len());
-            // Beside a foreground, some show a silhouette that is blended over them; layers blend whatever covers a part.
+            // Beside a foreground, some show a silhouette that is blended over them; layers blend whatever covers a
+            // part.
             let least = if what == "layers" { 13 } else { 17 };
             assert!(20 * after > least * holes.len(), "{what}: {after} of {}, {before} before", holes.len());
             let worse =
@@ -176,8 +177,8 @@ impl Lookup<'_> {
         None
     }
 
-    /// Returns the surface's distance and its place, for a pixel whose background and foreground have these distances, and
-    /// `seen`, the nearest distance that the rendered eye sees where a surface of some distance would be.
+    /// Returns the surface's distance and its place, for a pixel whose background and foreground have these distances,
+    /// and `seen`, the nearest distance that the rendered eye sees where a surface of some distance would be.
     fn recall(
         &self,
         pixel: [f64; 2],

@@ -1,6 +1,7 @@
 //! The laws that every pipeline keeps, on every GL backend here; and pictures to try them with.
 //!
-//! [`laws!`](crate::laws!) makes a test of each. The pipeline of `yoro` and the paper's in `yoro-render` share this file.
+//! [`laws!`](crate::laws!) makes a test of each. The pipeline of `yoro` and the paper's in `yoro-render` share this
+//! file.
 
 use std::fmt;
 use std::rc::Rc;

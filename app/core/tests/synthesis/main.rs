@@ -54,8 +54,8 @@ fn fetch(rgba: &[u8], source: f64, mirrored: bool) -> [f64; 4] {
 
 type Reference = fn(&[f64], usize) -> Vec<Entry>;
 
-/// Largest distance in pixels of a source column from the reference's. Rounding, and an eighth of a pixel where a tile has a
-/// law: a sixteenth of the tiles' planes, and one of the law (`PLANAR` in `include/planes.glsl`).
+/// Largest distance in pixels of a source column from the reference's. Rounding, and an eighth of a pixel where a tile
+/// has a law: a sixteenth of the tiles' planes, and one of the law (`PLANAR` in `include/planes.glsl`).
 fn bound(variant: GatherVariant) -> f64 {
     if variant == GatherVariant::ShortWay { 0.125 } else { 2e-3 }
 }
@@ -174,8 +174,9 @@ fn gather_is_its_reference() {
     });
 }
 
-/// Boxes as near as 5 cm before a far wall: the search passes over what lies between the tiles that land in a pixel, and
-/// finds what the reference finds that looks at every column, and to the pixel what the variant finds that does, too.
+/// Boxes as near as 5 cm before a far wall: the search passes over what lies between the tiles that land in a pixel,
+/// and finds what the reference finds that looks at every column, and to the pixel what the variant finds that does,
+/// too.
 #[test]
 fn near_surfaces_are_found_in_few_steps() {
     let frustum = Frustum { left: -1.1, right: 1.1, bottom: -0.16, top: 0.16 };
@@ -212,8 +213,8 @@ fn near_surfaces_are_found_in_few_steps() {
     });
 }
 
-/// A floor and two walls that meet in a corner: many tiles have a law. Sizes are odd, and the target has rows beyond the
-/// source.
+/// A floor and two walls that meet in a corner: many tiles have a law. Sizes are odd, and the target has rows beyond
+/// the source.
 #[test]
 fn tiles_with_laws_are_their_reference() {
     on_every_backend(|gl| {

@@ -15,7 +15,8 @@ pub struct Image {
     pub depth: Vec<f32>,
 }
 
-/// Synthesizes from images in memory, the source being a part of larger textures if `part` has its corner and their size.
+/// Synthesizes from images in memory, the source being a part of larger textures if `part` has its corner and their
+/// size.
 pub fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: Option<Part>) -> Image {
     let size = part.map_or(warp.source_size, |part| part.image_size);
     let texture = |format, bytes: &[u8]| {

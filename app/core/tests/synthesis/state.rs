@@ -25,7 +25,8 @@ pub fn warp(size: [u32; 2]) -> Warp {
     eyes.synthesis_views(GuardBand::Pixels(9)).unwrap().warp
 }
 
-/// The objects that an engine lends: textures without filters of their own use, one of them to be compared, and a target.
+/// The objects that an engine lends: textures without filters of their own use, one of them to be compared, and a
+/// target.
 pub struct Lent {
     color: Texture,
     depth: Texture,

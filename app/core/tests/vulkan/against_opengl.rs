@@ -230,7 +230,8 @@ pub fn assert_depth_equal(got: &[f32], want: &[f32], what: &str) {
 /// tiles and their laws are others: an eighth of a pixel, in noise of 255 levels.
 pub const TOLERANCES: [u8; 2] = [1, 32];
 
-/// Checks that every channel is as good as equal, but for a few pixels whose positions lie within rounding of a decision.
+/// Checks that every channel is as good as equal, but for a few pixels whose positions lie within rounding of a
+/// decision.
 pub fn assert_equal(got: &[u8], want: &[u8], channels: usize, number: usize, what: &str) {
     assert_eq!(got.len(), want.len());
     let most = TOLERANCES[number];

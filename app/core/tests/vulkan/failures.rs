@@ -142,8 +142,8 @@ fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     Ok(())
 }
 
-/// Each call of each command fails once with each error. The error is returned, and no object is left behind: the validation
-/// layer would report it when the device is destroyed.
+/// Each call of each command fails once with each error. The error is returned, and no object is left behind: the
+/// validation layer would report it when the device is destroyed.
 #[test]
 fn every_failure_comes_back_as_an_error() {
     with_gpu(Rendering::RenderPasses, |gpu| {

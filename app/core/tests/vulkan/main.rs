@@ -348,8 +348,8 @@ fn sizes_and_rectangles_at_random() {
     });
 }
 
-/// No frame overwrites what an earlier one still reads or writes (the validation layer checks it), and recording allocates
-/// nothing.
+/// No frame overwrites what an earlier one still reads or writes (the validation layer checks it), and recording
+/// allocates nothing.
 #[test]
 fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
     let gl = Gl::new();

@@ -35,8 +35,8 @@ pub struct Script {
     pub seed: u64,
     /// Seconds of the replay in a real second; as fast as it goes if there is none.
     pub speed: Option<f64>,
-    /// A folder, relative to the script, in which the devices keep settings, properties and files from one replay to the
-    /// next; each replay is the first if there is none.
+    /// A folder, relative to the script, in which the devices keep settings, properties and files from one replay to
+    /// the next; each replay is the first if there is none.
     pub state: Option<PathBuf>,
     /// The devices.
     #[serde(default)]
@@ -83,8 +83,8 @@ pub struct Phone {
     pub kernel_battery: bool,
     /// True if the values of `dumpsys battery` were set by hand.
     pub battery_held: bool,
-    /// Somebody plugs a charger in where no application runs and the level is below this percentage, and takes it off at
-    /// 95 %; nobody does without it.
+    /// Somebody plugs a charger in where no application runs and the level is below this percentage, and takes it off
+    /// at 95 %; nobody does without it.
     pub charged_below: Option<f64>,
     /// True if the screen lock asks for a PIN.
     pub secure_lock: bool,

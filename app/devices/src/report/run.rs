@@ -97,8 +97,8 @@ impl Quantity {
         self.row().2
     }
 
-    /// True if two values are compared as a ratio. Temperatures have no zero to divide by, and stale frames may be none:
-    /// they are compared as differences.
+    /// True if two values are compared as a ratio. Temperatures have no zero to divide by, and stale frames may be
+    /// none: they are compared as differences.
     pub fn is_ratio(self) -> bool {
         self.row().3
     }
@@ -438,7 +438,8 @@ fn integrate(power: &[(f64, f64)], longest: f64) -> Option<Integrated> {
     (seconds > 0.0).then(|| Integrated { milliwatts: millijoules / seconds, seconds })
 }
 
-/// Measures power between the counter's first and last step, where its value is exact. Steps inside a gap have no known time.
+/// Measures power between the counter's first and last step, where its value is exact. Steps inside a gap have no known
+/// time.
 fn count(
     charge: &[(f64, f64)],
     voltage: &[(f64, f64)],

@@ -109,7 +109,8 @@ impl Plan {
         Plan { seed, trials, balanced_at }
     }
 
-    /// Returns the CSV table `participant,trial,scene,method,settings`, the settings as `key=value` with spaces between.
+    /// Returns the CSV table `participant,trial,scene,method,settings`, the settings as `key=value` with spaces
+    /// between.
     pub fn to_csv(&self) -> String {
         let head = ["participant", "trial", "scene", "method", "settings"].map(str::to_owned);
         let rows = self.trials.iter().map(|trial| {

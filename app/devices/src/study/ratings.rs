@@ -136,8 +136,8 @@ impl Collected {
         }
     }
 
-    /// Returns the table that [`Ratings::read`] takes, with the trials. A method that was rated with several pipelines is
-    /// several methods.
+    /// Returns the table that [`Ratings::read`] takes, with the trials. A method that was rated with several pipelines
+    /// is several methods.
     pub fn to_csv(&self) -> String {
         let mut pipelines: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
         for rating in &self.ratings {

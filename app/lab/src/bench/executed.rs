@@ -1,7 +1,7 @@
 //! Estimate of the synthesis's execution on GPUs that are not here.
 //!
-//! The parts of `gather` are counted where they run, in its own shaders on real frames. Each GPU runs a part as often as
-//! the slowest pixel of a wave; the sizes of the parts are those that Mesa's compilers make of the same text
+//! The parts of `gather` are counted where they run, in its own shaders on real frames. Each GPU runs a part as often
+//! as the slowest pixel of a wave; the sizes of the parts are those that Mesa's compilers make of the same text
 //! (`docs/shader-cost.csv`). Rates of GPUs are assumptions: [`DEVICES`].
 
 use std::rc::Rc;
@@ -21,13 +21,14 @@ const COSTS: &str = include_str!("gather-cost.csv");
 pub(super) const TILE: [u32; 2] = [16, 8];
 /// Row pairs of a tile: trips of its loop.
 const TILE_TRIPS: f64 = TILE[1] as f64 / 2.0;
-/// Bytes that are read and written for each pixel, every texel once: depth for the tiles, colour, target, and both maps.
+/// Bytes that are read and written for each pixel, every texel once: depth for the tiles, colour, target, and both
+/// maps.
 const BYTES: f64 = 4.0 + 4.0 + 4.0 + 2.0 * 2.0 * 16.0 / (TILE[0] * TILE[1]) as f64;
 /// The march's depth, where a tile has no law.
 const DEPTH_BYTES: f64 = 4.0;
 
-/// A GPU, and the size of an eye on the device that has it. The rates are assumptions from public figures, one issue slot
-/// for each lane and clock.
+/// A GPU, and the size of an eye on the device that has it. The rates are assumptions from public figures, one issue
+/// slot for each lane and clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Device {
     /// Name in results.
@@ -159,8 +160,8 @@ impl Costs {
         }
     }
 
-    /// Returns what a wave executes for each of its pixels at least: of each part as much as the pixel that runs it most often.
-    /// Lanes that run parts at different times wait for each other, too.
+    /// Returns what a wave executes for each of its pixels at least: of each part as much as the pixel that runs it
+    /// most often. Lanes that run parts at different times wait for each other, too.
     fn march(&self, trips: Trips) -> Work {
         let runs = [
             ("march: law", trips.law),
@@ -197,7 +198,8 @@ impl Counts<'_> {
     }
 }
 
-/// Returns the mean over the columns of tiles of the target: trips of the loop of the second pass (`synthesis/gather/spans.frag`).
+/// Returns the mean over the columns of tiles of the target: trips of the loop of the second pass
+/// (`synthesis/gather/spans.frag`).
 pub(super) fn span_trips(views: &SynthesisViews) -> f64 {
     let warp = &views.warp;
     let Uniforms { near_displacement, far_displacement, .. } = Uniforms::new(warp, [0, 0]);

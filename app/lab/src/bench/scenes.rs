@@ -102,8 +102,8 @@ impl Object {
         }
     }
 
-    /// Returns `copies` of the object before a wall, all in view and equally large on the screen, near and far. `places`
-    /// is the number there will be at most: those of a smaller swarm stand where they do in a larger one.
+    /// Returns `copies` of the object before a wall, all in view and equally large on the screen, near and far.
+    /// `places` is the number there will be at most: those of a smaller swarm stand where they do in a larger one.
     pub fn swarm(&self, copies: usize, places: usize) -> Scene {
         let mut b = SceneBuilder::new();
         let bricks = paint::bricks("wall", 512, 3, vec3(0.55, 0.42, 0.36), vec3(0.7, 0.68, 0.64), [8, 16]);

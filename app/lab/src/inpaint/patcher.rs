@@ -115,9 +115,9 @@ pub struct Reprojected {
 }
 
 impl Reprojected {
-    /// Makes an image of display-referred colour, a mask ([`HOLE`] and [`VALID`]; anything but 0 is valid), and disparity in pixels,
-    /// larger for nearer surfaces, all as seen from `eye`. What colour and disparity say in holes is thrown away: both
-    /// are 0 there afterwards.
+    /// Makes an image of display-referred colour, a mask ([`HOLE`] and [`VALID`]; anything but 0 is valid), and
+    /// disparity in pixels, larger for nearer surfaces, all as seen from `eye`. What colour and disparity say in holes
+    /// is thrown away: both are 0 there afterwards.
     ///
     /// # Errors
     /// [`InpaintError::SizesDiffer`]; [`InpaintError::NothingValid`] when nothing but holes is given.
@@ -146,7 +146,8 @@ impl Reprojected {
         Ok(Reprojected { color, mask, disparity, eye })
     }
 
-    /// Makes an image of the output of a synthesis pipeline, without what it has filled in. Disparity is 0 at the far plane.
+    /// Makes an image of the output of a synthesis pipeline, without what it has filled in. Disparity is 0 at the far
+    /// plane.
     ///
     /// # Errors
     /// [`InpaintError::NothingValid`] when the source is not seen at all.
@@ -178,7 +179,8 @@ impl Reprojected {
         &self.mask
     }
 
-    /// Returns disparity in pixels, larger for nearer surfaces; affine in inverse depth. 0 in holes, where it means nothing.
+    /// Returns disparity in pixels, larger for nearer surfaces; affine in inverse depth. 0 in holes, where it means
+    /// nothing.
     pub fn disparity(&self) -> &DepthImage {
         &self.disparity
     }
@@ -234,7 +236,8 @@ pub trait Patcher {
     fn patch(&mut self, image: &Reprojected) -> Result<Patched, InpaintError>;
 }
 
-/// Returns for each row itself if it is `known`, or else the nearest known row; the upper one when two are equally near.
+/// Returns for each row itself if it is `known`, or else the nearest known row; the upper one when two are equally
+/// near.
 pub(super) fn nearest_rows(height: u32, known: impl Fn(u32) -> bool) -> Vec<u32> {
     let nearest = |y: u32| {
         let around = |d: u32| [y.checked_sub(d), (y + d < height).then_some(y + d)];

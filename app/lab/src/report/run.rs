@@ -179,8 +179,8 @@ pub struct MethodMean {
 }
 
 impl RunReport {
-    /// Returns one row for each method on each scene, in the report's order. A method without any view of a scene has no
-    /// row there.
+    /// Returns one row for each method on each scene, in the report's order. A method without any view of a scene has
+    /// no row there.
     pub fn rows(&self) -> Vec<Row> {
         self.scenes.iter().flat_map(SceneReport::rows).collect()
     }

@@ -38,7 +38,8 @@ impl Rewritten {
     /// Returns the application's layers with the rewritten ones in place of those of this number of views.
     ///
     /// # Safety
-    /// The layers are those of a call of xrEndFrame; all of them that have this number of views were pushed in their order.
+    /// The layers are those of a call of xrEndFrame; all of them that have this number of views were pushed in their
+    /// order.
     pub unsafe fn link(&mut self, layers: Layers, views: usize) -> Layers<'_> {
         for (projection, eyes) in self.projections.iter_mut().zip(&mut self.eyes) {
             for (view, depth) in eyes.views.iter_mut().zip(eyes.depths.iter().flatten()) {

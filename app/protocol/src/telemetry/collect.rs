@@ -114,7 +114,8 @@ impl Telemetry {
         }
     }
 
-    /// Adds the columns that a frame drew of a guard band that sets its own width, and the pixels at the border that were filled.
+    /// Adds the columns that a frame drew of a guard band that sets its own width, and the pixels at the border that
+    /// were filled.
     pub fn guard_band(&mut self, columns: u32, undrawn: u32) {
         let sum = self.guard_band.get_or_insert_default();
         sum.frames += 1;

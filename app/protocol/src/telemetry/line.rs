@@ -88,7 +88,8 @@ pub struct Line {
     pub performance: Option<String>,
     /// Columns of the guard band that were drawn per frame; missing where it does not set its own width.
     pub guard_columns: Option<f64>,
-    /// Pixels at the other eye's border that lay in the guard band but were not drawn, in this second; they were filled.
+    /// Pixels at the other eye's border that lay in the guard band but were not drawn, in this second; they were
+    /// filled.
     pub undrawn: Option<u64>,
     /// With `method=auto`: why [`Line::method`] is in use, such as `6.1/8.9ms`; missing for a method that was named.
     pub auto: Option<String>,

@@ -1,4 +1,5 @@
-//! The line of a pipeline's pictures: `pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true`.
+//! The line of a pipeline's pictures:
+//! `pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true`.
 //!
 //! Like the keys of [`Line`](super::Line), these are a promise to scripts.
 

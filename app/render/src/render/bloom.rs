@@ -74,8 +74,8 @@ impl BloomPass {
         });
     }
 
-    /// Computes the bloom of a part of a display-referred source, to which `exposure` was applied. The part has the lower
-    /// left corner `origin` and this size in pixels, and in it only columns `[first, end]` count.
+    /// Computes the bloom of a part of a display-referred source, to which `exposure` was applied. The part has the
+    /// lower left corner `origin` and this size in pixels, and in it only columns `[first, end]` count.
     pub fn run_display_referred(
         &self,
         targets: &BloomTargets,

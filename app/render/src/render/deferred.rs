@@ -96,8 +96,8 @@ impl ViewImages for DeferredTargets {
     }
 }
 
-/// Returns the format of scene-referred colour. EXT_color_buffer_half_float alone has half floats, but no packed ones, so that
-/// the driver is tried.
+/// Returns the format of scene-referred colour. EXT_color_buffer_half_float alone has half floats, but no packed ones,
+/// so that the driver is tried.
 pub fn hdr_format(gl: &Rc<Context>) -> Format {
     if !gl.capabilities().float_render_targets {
         return Format::Rgba8;
@@ -186,8 +186,8 @@ impl DeferredRenderer {
         Ok(())
     }
 
-    /// Clears a g-buffer and draws a part of the scene into it, in one view or in both eyes. `mark` may mark pixels before
-    /// that. The g-buffer fits the views, and its layout is prepared.
+    /// Clears a g-buffer and draws a part of the scene into it, in one view or in both eyes. `mark` may mark pixels
+    /// before that. The g-buffer fits the views, and its layout is prepared.
     pub(crate) fn draw(
         &self,
         g_buffer: &GBuffer,
@@ -243,8 +243,8 @@ impl DeferredRenderer {
         self.tonemap.run(&targets.color, (light.hdr(), drawn), glow, self.common.settings.exposure);
     }
 
-    /// Draws the transparent part of a scene, if there is any, over a finished image of `view`, rendered or synthesized.
-    /// `depth` is its window depth.
+    /// Draws the transparent part of a scene, if there is any, over a finished image of `view`, rendered or
+    /// synthesized. `depth` is its window depth.
     pub(crate) fn draw_transparent(
         &self,
         to: &Destination,

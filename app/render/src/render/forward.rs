@@ -162,8 +162,8 @@ impl ViewRenderer for ForwardRenderer {
 
 /// Views in parts.
 impl ForwardRenderer {
-    /// Fits targets to a view that is completed at once, so that no sample is needed afterwards; with `depth` that of each
-    /// pixel is.
+    /// Fits targets to a view that is completed at once, so that no sample is needed afterwards; with `depth` that of
+    /// each pixel is.
     fn fit_for_all(&self, targets: &mut ForwardTargets, view: &View, depth: bool) -> Result<(), GlError> {
         targets.request = ViewRequest::default();
         // Outlines read the samples, and a tile's depth is lost: EXT_multisampled_render_to_texture2 discards it.
@@ -175,8 +175,8 @@ impl ForwardRenderer {
         self.develop.is_some()
     }
 
-    /// Resumes drawing into the kept samples of a view, after synthesis: near objects and transparent surfaces. Resolves colour
-    /// again, and with `depth` the depth.
+    /// Resumes drawing into the kept samples of a view, after synthesis: near objects and transparent surfaces.
+    /// Resolves colour again, and with `depth` the depth.
     pub(crate) fn resume_samples(
         &self,
         targets: &ForwardTargets,
@@ -243,8 +243,8 @@ impl ForwardRenderer {
         Ok(())
     }
 
-    /// Renders what lies in a slice over the part of another view whose lower left corner is given, and transparent surfaces
-    /// over both. With `depth` the targets have that of opaque surfaces afterwards.
+    /// Renders what lies in a slice over the part of another view whose lower left corner is given, and transparent
+    /// surfaces over both. With `depth` the targets have that of opaque surfaces afterwards.
     pub(crate) fn render_near(
         &self,
         targets: &mut ForwardTargets,
@@ -269,8 +269,8 @@ impl ForwardRenderer {
         Ok(())
     }
 
-    /// Renders both eyes at once: all of the scene, side by side in targets of such a layout. With `depth` these have that
-    /// of opaque surfaces afterwards. [`ForwardRenderer::develop`] ends each eye.
+    /// Renders both eyes at once: all of the scene, side by side in targets of such a layout. With `depth` these have
+    /// that of opaque surfaces afterwards. [`ForwardRenderer::develop`] ends each eye.
     pub(crate) fn render_both(
         &self,
         targets: &mut ForwardTargets,

@@ -108,8 +108,8 @@ impl ForwardRenderer {
         self.copy((color, depth), crop);
     }
 
-    /// Softens the edges of the depth that later surfaces are tested against, after [`ForwardRenderer::load`] of an image
-    /// whose own edges are soft.
+    /// Softens the edges of the depth that later surfaces are tested against, after [`ForwardRenderer::load`] of an
+    /// image whose own edges are soft.
     pub(super) fn soften(&self, targets: &ForwardTargets, depth: &Texture, view: &View) {
         let Some(program) = &self.soften else { return };
         targets.bind(view.size);
@@ -170,8 +170,8 @@ impl ForwardRenderer {
         self.common.gl.set_viewport(origin, view.size);
     }
 
-    /// Averages the samples, and takes their nearest depth if `depth` is wanted, or if outlines need it. Samples that are not
-    /// to be kept are given up.
+    /// Averages the samples, and takes their nearest depth if `depth` is wanted, or if outlines need it. Samples that
+    /// are not to be kept are given up.
     pub(super) fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool, keep: KeptSamples) {
         let depth = depth || (self.ink && !targets.is_readable());
         if let Some(tile) = targets.tile() {
@@ -185,8 +185,8 @@ impl ForwardRenderer {
         }
     }
 
-    /// Does the same as [`ForwardRenderer::resolve`] into another image, which has the view's size, 8-bit colour and float
-    /// depth.
+    /// Does the same as [`ForwardRenderer::resolve`] into another image, which has the view's size, 8-bit colour and
+    /// float depth.
     pub(super) fn resolve_to(
         &self,
         targets: &ForwardTargets,
@@ -228,8 +228,8 @@ impl ForwardRenderer {
         }
     }
 
-    /// Adds bloom and outlines to an eye's image, where there are any. With `again` the bloom is that of the time before.
-    /// [`ViewImages::color`] is that eye's then, until another eye is developed.
+    /// Adds bloom and outlines to an eye's image, where there are any. With `again` the bloom is that of the time
+    /// before. [`ViewImages::color`] is that eye's then, until another eye is developed.
     pub(crate) fn develop(&self, targets: &ForwardTargets, view: &View, eye: Eye, again: bool) {
         let (Some(program), Some(to)) = (&self.develop, &targets.developed) else { return };
         let source = targets.resolved.color(0);

@@ -84,8 +84,9 @@ impl ForwardTargets {
         })
     }
 
-    /// Fits the targets to views of `size` pixels; nothing is done when they fit already. With `is_developed` there is room
-    /// for bloom and outlines. With `in_tile` no sample is needed once they are drawn, so that all may stay in tiles.
+    /// Fits the targets to views of `size` pixels; nothing is done when they fit already. With `is_developed` there is
+    /// room for bloom and outlines. With `in_tile` no sample is needed once they are drawn, so that all may stay in
+    /// tiles.
     pub fn fit(&mut self, size: [u32; 2], is_developed: bool, in_tile: bool) -> Result<(), GlError> {
         let whole = self.layout.texture_size(size);
         self.resolved.resize(whole)?;
@@ -109,7 +110,8 @@ impl ForwardTargets {
         Ok(())
     }
 
-    /// Fills the resolved colour left of the columns `[first, end]` with the first of them, and right of them with the last.
+    /// Fills the resolved colour left of the columns `[first, end]` with the first of them, and right of them with the
+    /// last.
     pub fn repeat_columns(&mut self, [first, end]: [u32; 2]) -> Result<(), GlError> {
         let [width, height] = self.resolved.size();
         if self.column.is_none() {
@@ -188,7 +190,8 @@ impl ForwardTargets {
 }
 
 impl ViewImages for ForwardTargets {
-    /// Returns display-referred sRGB, filtered linearly. Alpha is luma; with several samples it is undefined where materials are cut out.
+    /// Returns display-referred sRGB, filtered linearly. Alpha is luma; with several samples it is undefined where
+    /// materials are cut out.
     fn color(&self) -> &RenderTarget {
         self.developed.as_ref().unwrap_or(&self.resolved)
     }

@@ -71,7 +71,8 @@ fn straight_on(convention: DepthConvention) -> View {
     }
 }
 
-/// The pixel's share of `b`, where it is a mix of `a` and `b` in display values; by the channel that tells them apart most.
+/// The pixel's share of `b`, where it is a mix of `a` and `b` in display values; by the channel that tells them apart
+/// most.
 fn share(pixel: &[u8], a: &[u8], b: &[u8]) -> f32 {
     let channel = (0..3).max_by_key(|&i| a[i].abs_diff(b[i])).unwrap();
     let of = |p: &[u8]| f32::from(p[channel]);
@@ -98,8 +99,8 @@ fn forward_lights_as_deferred_does() {
         let far_off =
             expected.chunks(4).zip(ours.chunks(4)).filter(|(a, b)| differences(&a[..3], &b[..3]) > 4);
         let share = far_off.count() as f64 / pixels as f64;
-        // Measured: none; cartoon 0.5 %, where rounding moves the border of a band; anime 4.2 %, where ink takes a share of
-        // the lit surface's colour instead of its albedo's.
+        // Measured: none; cartoon 0.5 %, where rounding moves the border of a band; anime 4.2 %, where ink takes a
+        // share of the lit surface's colour instead of its albedo's.
         let bound = match style {
             ShadingStyle::Anime => 0.06,
             ShadingStyle::Cartoon => 0.01,

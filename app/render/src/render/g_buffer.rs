@@ -62,8 +62,8 @@ impl Layout {
         }
     }
 
-    /// Returns the number of columns from the left edge of an eye's image to that of the next. Even, so that the 2x2 pixels that
-    /// derivatives are taken of are the same as in a view by itself.
+    /// Returns the number of columns from the left edge of an eye's image to that of the next. Even, so that the 2x2
+    /// pixels that derivatives are taken of are the same as in a view by itself.
     fn stride(width: u32) -> u32 {
         width.next_multiple_of(2)
     }

@@ -77,7 +77,8 @@ impl Reach {
         self.is_between(self.center.y, tangent(row), tangent(row + 1))
     }
 
-    /// True if the light reaches between the planes through the eye at two tangents. `across` is its centre's coordinate.
+    /// True if the light reaches between the planes through the eye at two tangents. `across` is its centre's
+    /// coordinate.
     fn is_between(&self, across: f32, low: f32, high: f32) -> bool {
         // Distance of the centre from the plane, on the side of larger tangents.
         let beyond = |tangent: f32| (across + tangent * self.center.z) / (1.0 + tangent * tangent).sqrt();

@@ -6,8 +6,8 @@ use super::cluster::{Batch, Cluster, VERTEX_ATTRIBUTES};
 use yoro_gl::{Context, GlError, Mesh};
 use yoro_scene::{Model, Moment, Motion, Part};
 
-/// Vertices that are worked out on the CPU and rewritten whenever the time changes. Each part of the model that moves is a
-/// cluster with the bounds of the mesh that it belongs to.
+/// Vertices that are worked out on the CPU and rewritten whenever the time changes. Each part of the model that moves
+/// is a cluster with the bounds of the mesh that it belongs to.
 pub struct Moving {
     pub motion: Motion,
     pub moment: Moment,

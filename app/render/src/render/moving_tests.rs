@@ -16,7 +16,8 @@ fn track(values: &[f32]) -> Option<Track> {
     Some(Track { times: vec![0.0, 2.0], values: values.to_vec(), ..Track::default() })
 }
 
-/// The small scene, in which a cube comes from behind the eye, the fence turns, a pane of glass rises and a lamp goes by.
+/// The small scene, in which a cube comes from behind the eye, the fence turns, a pane of glass rises and a lamp goes
+/// by.
 fn moving() -> Scene {
     let mut scene = scene(ShadingStyle::Realistic);
     let glass = scene.model.vertices.len();
@@ -53,7 +54,8 @@ fn picture(gl: &std::rc::Rc<yoro_gl::Context>, prepared: &mut PreparedScene) -> 
     picture
 }
 
-/// What has moved looks as if it had been there from the start: surfaces, shadows, light, glass, and what comes into view.
+/// What has moved looks as if it had been there from the start: surfaces, shadows, light, glass, and what comes into
+/// view.
 #[test]
 fn a_scene_that_moved_is_the_scene_as_it_stands() {
     let head = open();

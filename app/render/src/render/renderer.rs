@@ -16,8 +16,8 @@ use yoro_gl::{Context, GlError, RenderTarget, Texture};
 
 /// A renderer of one scene: programs for the scene's style and materials, and its shadow map.
 ///
-/// Single views are ready after [`Renderer::new`]. A stereo method compiles the rest once, with its first frame of the scene
-/// or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
+/// Single views are ready after [`Renderer::new`]. A stereo method compiles the rest once, with its first frame of the
+/// scene or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
 pub enum Renderer {
     /// [`RendererKind::Deferred`].
     Deferred(Box<DeferredRenderer>),
@@ -83,8 +83,8 @@ impl Renderer {
         })
     }
 
-    /// Moves everything in a scene to where it is at a time in seconds, and draws its shadow map again. A scene in which
-    /// nothing moves, or that is there already, costs nothing.
+    /// Moves everything in a scene to where it is at a time in seconds, and draws its shadow map again. A scene in
+    /// which nothing moves, or that is there already, costs nothing.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for another scene than the renderer was made for.
@@ -100,8 +100,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Renders the opaque part of a scene: colour and depth. Where nothing is drawn, depth keeps its far value and colour is
-    /// the sky.
+    /// Renders the opaque part of a scene: colour and depth. Where nothing is drawn, depth keeps its far value and
+    /// colour is the sky.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for another scene than the renderer was made for; as [`RenderTarget::new`].

@@ -6,10 +6,11 @@ use yoro::eyes::{Frustum, View};
 /// Columns of a view that is not needed as a whole: each `[first, end]`, counted from the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
-    /// The columns to draw. In the others depth is the far plane's, and colour that of the nearest column that is drawn.
+    /// The columns to draw. In the others depth is the far plane's, and colour that of the nearest column that is
+    /// drawn.
     pub drawn: [u32; 2],
-    /// The columns that are drawn in every frame. Ambient occlusion and bloom do not reach into them from beside, so that
-    /// they do not depend on what is drawn there.
+    /// The columns that are drawn in every frame. Ambient occlusion and bloom do not reach into them from beside, so
+    /// that they do not depend on what is drawn there.
     pub always: [u32; 2],
 }
 
@@ -21,8 +22,9 @@ pub enum PixelDepth {
     /// The nearest of each pixel's samples.
     #[default]
     Nearest,
-    /// The depth of each pixel's first sample, as drivers resolve it: the only one without multisample textures. Not with
-    /// [`RenderSettings::depth_bits`](super::RenderSettings::depth_bits) of 16: drivers copy between equal formats.
+    /// The depth of each pixel's first sample, as drivers resolve it: the only one without multisample textures. Not
+    /// with [`RenderSettings::depth_bits`](super::RenderSettings::depth_bits) of 16: drivers copy between equal
+    /// formats.
     FirstSample,
 }
 
@@ -36,7 +38,8 @@ pub struct KeptSamples {
     pub depth: bool,
 }
 
-/// The part of a scene that is drawn, and what is read of it afterwards. The default is all opaque surfaces, and their depth.
+/// The part of a scene that is drawn, and what is read of it afterwards. The default is all opaque surfaces, and their
+/// depth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ViewRequest {
     /// The objects to draw.

@@ -152,8 +152,8 @@ impl GpuScene {
         self.id
     }
 
-    /// Uploads a scene as it stands at time 0, and sorts its triangles into clusters. Its memory is freed as soon as GL has
-    /// copied it.
+    /// Uploads a scene as it stands at time 0, and sorts its triangles into clusters. Its memory is freed as soon as GL
+    /// has copied it.
     ///
     /// # Errors
     /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::OutOfMemory`] without memory.
@@ -221,8 +221,8 @@ impl GpuScene {
         self.times_moved
     }
 
-    /// Moves everything to where it is at a time in seconds; false if it is there already. A renderer's shadow map has to be
-    /// drawn again then.
+    /// Moves everything to where it is at a time in seconds; false if it is there already. A renderer's shadow map has
+    /// to be drawn again then.
     pub(super) fn set_time(&mut self, seconds: f64) -> bool {
         let Some(moving) = &mut self.moving else { return false };
         let moved = moving.set_time(seconds, &mut self.clusters);

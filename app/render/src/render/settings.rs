@@ -4,8 +4,8 @@ use yoro_gl::{Capabilities, Format, GlError};
 use yoro_protocol::{DEPTH_BITS, Settings, Ssao};
 pub use yoro_protocol::{MAX_POINT_LIGHTS, MSAA, RendererKind};
 
-/// The format of each sample's depth in the forward renderer: float for both conventions, as synthesized images have it,
-/// whose depth is loaded. With 16 bits surfaces that lie close together would show through one another.
+/// The format of each sample's depth in the forward renderer: float for both conventions, as synthesized images have
+/// it, whose depth is loaded. With 16 bits surfaces that lie close together would show through one another.
 pub(super) const SAMPLE_DEPTH: Format = Format::Depth32F;
 
 /// Settings of the renderer.
@@ -103,8 +103,8 @@ impl RenderSettings {
         capabilities.check_samples(samples)
     }
 
-    /// Returns the format of the one depth in each pixel of the forward renderer, where shaders can read the samples or not.
-    /// Drivers copy depth between equal formats only.
+    /// Returns the format of the one depth in each pixel of the forward renderer, where shaders can read the samples or
+    /// not. Drivers copy depth between equal formats only.
     pub(super) fn depth_format(&self, readable: bool) -> Format {
         let is_coarse = self.depth_bits == 16 && self.samples() > 1 && readable;
         if is_coarse { Format::Depth16 } else { SAMPLE_DEPTH }

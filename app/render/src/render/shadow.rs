@@ -114,8 +114,8 @@ impl ShadowMap {
     }
 }
 
-/// Returns the orthographic projection along the sun's rays, and its box's extent in metres. It contains the scene, or the
-/// surroundings of the viewpoints of a large scene.
+/// Returns the orthographic projection along the sun's rays, and its box's extent in metres. It contains the scene, or
+/// the surroundings of the viewpoints of a large scene.
 fn light_box(scene: Bounds, viewpoints: &[Viewpoint], sun: Vec3) -> (Mat4, Vec3) {
     let sun = sun.normalize_or(Vec3::Y);
     let rotation = Pose::look_at(Vec3::ZERO, -sun).view_matrix();

@@ -56,7 +56,8 @@ pub struct SsaoPass {
 }
 
 impl SsaoPass {
-    /// Compiles occlusion by surfaces within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a role.
+    /// Compiles occlusion by surfaces within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a
+    /// role.
     pub fn new(gl: &Rc<Context>, radius: f32, scale: u32, role: RoleKind) -> Result<SsaoPass, GlError> {
         let defines =
             [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned()), ("SCALE", scale.to_string())];
@@ -79,8 +80,8 @@ impl SsaoPass {
         })
     }
 
-    /// Computes the occlusion of the pixels that the role lights; that of others is undefined. Surfaces beside the columns
-    /// `[first, end]` that are always drawn occlude nothing in them.
+    /// Computes the occlusion of the pixels that the role lights; that of others is undefined. Surfaces beside the
+    /// columns `[first, end]` that are always drawn occlude nothing in them.
     pub fn run(
         &self,
         targets: &SsaoTargets,

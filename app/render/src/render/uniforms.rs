@@ -39,8 +39,8 @@ pub fn set_view(program: &Program, view: &View) {
         .set("far_depth", view.depth.clear_value());
 }
 
-/// Returns rays at distance 1 along the viewing axis, in world axes. Columns: the ray through the middle of the lower left
-/// pixel, the step to the next pixel on the right, and the step to the next one above.
+/// Returns rays at distance 1 along the viewing axis, in world axes. Columns: the ray through the middle of the lower
+/// left pixel, the step to the next pixel on the right, and the step to the next one above.
 pub fn pixel_rays(view: &View) -> Mat3 {
     let f = &view.frustum;
     let [right, up] = [f.width() / view.size[0] as f32, f.height() / view.size[1] as f32];

@@ -57,9 +57,9 @@ pub(crate) trait ViewImages {
     /// Returns window depth in the view's convention.
     fn depth(&self) -> &Texture;
 
-    /// The window depth of every sample: a float `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples. `None` for
-    /// one sample a pixel, for drivers without such textures, and if samples are not kept. It shows opaque surfaces alone
-    /// until drawing resumes.
+    /// The window depth of every sample: a float `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples. `None`
+    /// for one sample a pixel, for drivers without such textures, and if samples are not kept. It shows opaque surfaces
+    /// alone until drawing resumes.
     fn depth_samples(&self) -> Option<glow::Texture> {
         None
     }

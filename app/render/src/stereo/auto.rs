@@ -73,10 +73,12 @@ impl Chosen {
     }
 }
 
-/// Conventional and yoro, of which a [`Chooser`] takes the cheaper one. Both stay ready, so that a change costs nothing.
+/// Conventional and yoro, of which a [`Chooser`] takes the cheaper one. Both stay ready, so that a change costs
+/// nothing.
 ///
-/// The cost of a frame is its GPU time where passes are timed ([`Context::times_passes`]). Elsewhere the GPU is waited for
-/// before and after the eyes of each frame while a choice is being made, and the clock gives CPU and GPU time together.
+/// The cost of a frame is its GPU time where passes are timed ([`Context::times_passes`]). Elsewhere the GPU is waited
+/// for before and after the eyes of each frame while a choice is being made, and the clock gives CPU and GPU time
+/// together.
 pub struct Auto {
     gl: Rc<Context>,
     methods: [Box<dyn StereoMethod>; 2],
@@ -121,8 +123,8 @@ impl Auto {
         self.chooser.scene_changed();
     }
 
-    /// Ends a frame that was handed to the display at `now_ns`; `gpu` is the GPU time of a frame, if one is known by now.
-    /// [`FrameEnd`] describes them all.
+    /// Ends a frame that was handed to the display at `now_ns`; `gpu` is the GPU time of a frame, if one is known by
+    /// now. [`FrameEnd`] describes them all.
     pub fn end_frame(&mut self, now_ns: i64, refresh_hz: f32, gpu: Option<Cost>, heat: Option<f32>) {
         let (refresh_hz, cost) = match self.clock_ms.take() {
             Some(ms) => (0.0, Some(Cost { frames_ago: 0, ms })),
@@ -154,7 +156,8 @@ impl StereoMethod for Auto {
         let is_fit = Substitute::reason(Method::Yoro, pair).is_none();
         let way = if is_fit { wanted } else { Way::TwoViews };
         if std::mem::take(&mut self.is_new) && is_fit {
-            // Everything that the other method needs is made now, while the scene comes into view, and not in its first turn.
+            // Everything that the other method needs is made now, while the scene comes into view, and not in its first
+            // turn.
             self.methods[way.other().index()].render_to(renderer, scene, pair, to)?;
         }
         let is_clocked = self.chooser.is_measuring() && !self.gl.times_passes();

@@ -1,5 +1,5 @@
-//! The columns of a guard band that the other eye will see, from the surfaces that an earlier frame showed at its border
-//! and from the head's motion since.
+//! The columns of a guard band that the other eye will see, from the surfaces that an earlier frame showed at its
+//! border and from the head's motion since.
 
 use glam::Vec3;
 
@@ -50,8 +50,8 @@ pub(super) struct Border {
     ipd: f32,
 }
 
-/// The motion of surfaces at the border from one frame to another, in columns outwards. Ranges are the least and the most of
-/// all rows of the border, as far out and in as the band is wide.
+/// The motion of surfaces at the border from one frame to another, in columns outwards. Ranges are the least and the
+/// most of all rows of the border, as far out and in as the band is wide.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     /// Motion of surfaces at infinity.
@@ -157,7 +157,8 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// Reads the texels of `stereo/border_profile.frag`. Returns `None` for the zeros of a driver that could not give them.
+    /// Reads the texels of `stereo/border_profile.frag`. Returns `None` for the zeros of a driver that could not give
+    /// them.
     pub(super) fn read(texels: &[u8], border: Border, drawn: u32, step: u32) -> Option<Profile> {
         let mut profile = Profile { border, drawn, undrawn: 0, step, disparities: [0.0; CELLS] };
         for (i, texel) in texels.chunks_exact(4).enumerate() {

@@ -19,7 +19,8 @@ impl<R: RendererOfKind> Conventional<R> {
         Ok(Conventional { targets: R::targets(setup.gl, setup.settings)?, finish: Finish::new(setup)? })
     }
 
-    /// Renders both eyes, the dominant one last. `rendered` is called after each one with its images, which have depth if `reads_depth` says so.
+    /// Renders both eyes, the dominant one last. `rendered` is called after each one with its images, which have depth
+    /// if `reads_depth` says so.
     pub(super) fn render_eyes(
         &mut self,
         frame: &Frame<R>,

@@ -12,9 +12,11 @@ use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 
 /// Bytes of a profile; `stereo/border_profile.frag`.
 const BYTES: usize = CELLS * BANDS * 4;
-/// This part of the band is drawn in every frame. Ambient occlusion and bloom, which reach far, stop there in all frames.
+/// This part of the band is drawn in every frame. Ambient occlusion and bloom, which reach far, stop there in all
+/// frames.
 const PART: u32 = 4;
-/// Least columns of that part: a pixel depends on those that filters reach, ambient occlusion at half size (5) and FXAA (4).
+/// Least columns of that part: a pixel depends on those that filters reach, ambient occlusion at half size (5) and FXAA
+/// (4).
 const REACH: u32 = 10;
 
 /// Returns the columns of a band that are drawn in every frame.
@@ -53,8 +55,8 @@ impl AutoGuardBand {
         })
     }
 
-    /// Returns the columns of the source to draw in a frame of a scene. All are drawn where something moves in the band or
-    /// beside it: earlier frames do not tell where that is.
+    /// Returns the columns of the source to draw in a frame of a scene. All are drawn where something moves in the band
+    /// or beside it: earlier frames do not tell where that is.
     pub(super) fn columns(&mut self, pair: &EyePair, views: &SynthesisViews, scene: &GpuScene) -> Columns {
         let border = Border::new(pair, views);
         let mut texels = [0u8; BYTES];

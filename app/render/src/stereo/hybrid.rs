@@ -96,8 +96,8 @@ impl Fields {
     }
 }
 
-/// Returns the pixel of the far field that belongs to each eye's lower left pixel. It is rounded: where frusta differ by a
-/// fraction, the far field is off by at most half a pixel, about as much as it leaves out anyway.
+/// Returns the pixel of the far field that belongs to each eye's lower left pixel. It is rounded: where frusta differ
+/// by a fraction, the far field is off by at most half a pixel, about as much as it leaves out anyway.
 fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
     Eye::BOTH.map(|eye| {
         let (frustum, size) = (&pair.frusta[eye.index()], far.size.map(|n| n as f32));
@@ -254,8 +254,8 @@ impl FieldTargets for DeferredFields {
 
 /// The samples of an eye and of the far field.
 ///
-/// Each eye begins with its part of the far field, colour and depth; its near field is drawn over that, sample by sample,
-/// so that its edges are as smooth as any.
+/// Each eye begins with its part of the far field, colour and depth; its near field is drawn over that, sample by
+/// sample, so that its edges are as smooth as any.
 pub(super) struct ForwardFields {
     eye: ForwardTargets,
     far: ForwardTargets,

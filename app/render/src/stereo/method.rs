@@ -82,8 +82,8 @@ pub struct GuardBandUse {
     pub columns: u32,
     /// Columns of the whole band.
     pub most: u32,
-    /// Pixels at the other eye's border that were filled because their surfaces lie in the part of the band that was not
-    /// drawn: an estimate from the outermost column that was drawn.
+    /// Pixels at the other eye's border that were filled because their surfaces lie in the part of the band that was
+    /// not drawn: an estimate from the outermost column that was drawn.
     pub undrawn: u32,
 }
 
@@ -109,8 +109,8 @@ pub trait StereoMethod {
         Ok(())
     }
 
-    /// Returns the use of the guard band two frames before the last one, which is measured by now. `None` for methods and
-    /// settings that always draw all of it, and before anything was measured.
+    /// Returns the use of the guard band two frames before the last one, which is measured by now. `None` for methods
+    /// and settings that always draw all of it, and before anything was measured.
     fn guard_band(&self) -> Option<GuardBandUse> {
         None
     }
@@ -139,8 +139,8 @@ pub trait StereoMethod {
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError>;
 
-    /// Shows the last frame's render once more, at the poses that the eyes have now. Returns false, with nothing drawn, if
-    /// the method cannot, or if the last render does not reach as far: render a frame then.
+    /// Shows the last frame's render once more, at the poses that the eyes have now. Returns false, with nothing drawn,
+    /// if the method cannot, or if the last render does not reach as far: render a frame then.
     ///
     /// # Errors
     /// As [`StereoMethod::render_to`].

@@ -19,7 +19,8 @@ pub(super) enum DepthMap<'a> {
     Samples(glow::Texture),
 }
 
-/// Measures the fraction of a view that is nearer than a distance. The result comes two frames late, so that nothing waits.
+/// Measures the fraction of a view that is nearer than a distance. The result comes two frames late, so that nothing
+/// waits.
 pub(super) struct NearFraction {
     gl: Rc<Context>,
     resolved: Program,

@@ -23,8 +23,8 @@ fn lacking_forward(method: Method) -> Option<&'static str> {
 }
 
 impl RenderSettings {
-    /// Checks that a driver can run a method with this renderer. What a pipeline of [`Method::Yoro`] needs is its own to
-    /// check.
+    /// Checks that a driver can run a method with this renderer. What a pipeline of [`Method::Yoro`] needs is its own
+    /// to check.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] with what is missing and the remedy.
@@ -59,7 +59,8 @@ pub struct PipelineOptions {
 }
 
 impl PipelineOptions {
-    /// Compiles the pipeline for a source with these edges, and with or without a history, which only [`Pipeline::Gather`] has.
+    /// Compiles the pipeline for a source with these edges, and with or without a history, which only
+    /// [`Pipeline::Gather`] has.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for [`Pipeline::Paper`] or [`Edges::Multisample`] without OpenGL ES 3.1, and for
@@ -130,10 +131,10 @@ impl Default for StereoOptions {
 }
 
 impl StereoOptions {
-    /// Returns the meaning of edges for the synthesis. The default depends on the samples of a pixel: if shaders can read them,
-    /// their nearest depth is taken for that of a hard edge, which costs an eighth of what layers do (docs/method.md). Else
-    /// there is the first one's depth, which would leave outlines of objects where they were. Pipelines other than gather
-    /// know one surface a pixel.
+    /// Returns the meaning of edges for the synthesis. The default depends on the samples of a pixel: if shaders can
+    /// read them, their nearest depth is taken for that of a hard edge, which costs an eighth of what layers do
+    /// (docs/method.md). Else there is the first one's depth, which would leave outlines of objects where they were.
+    /// Pipelines other than gather know one surface a pixel.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for [`Edges::Multisample`] of one sample.
@@ -150,8 +151,8 @@ impl StereoOptions {
         }
     }
 
-    /// The options that the viewer's settings ask for, with a pipeline that may be another one than that of the settings
-    /// where the driver cannot do that.
+    /// The options that the viewer's settings ask for, with a pipeline that may be another one than that of the
+    /// settings where the driver cannot do that.
     pub fn of_settings(settings: &Settings, pipeline: Pipeline) -> StereoOptions {
         let options = StereoOptions::of_pipeline(pipeline);
         let paper = PaperOptions {

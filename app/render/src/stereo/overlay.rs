@@ -61,8 +61,8 @@ pub(super) trait Overlay: Sized {
 
     fn new(setup: &Setup) -> Result<Self, GlError>;
 
-    /// Draws over one eye, and returns its part without the guard band. `targets` are those of the rendered eye, which comes
-    /// first: what they hold may be gone after the synthesized one.
+    /// Draws over one eye, and returns its part without the guard band. `targets` are those of the rendered eye, which
+    /// comes first: what they hold may be gone after the synthesized one.
     fn draw<'a>(
         &'a mut self,
         frame: &Frame<Self::Renderer>,
@@ -130,8 +130,8 @@ impl Overlay for DeferredOverlay {
         }
         let depth = depth.map(|depth| DepthImage { origin, ..DepthImage::whole(depth) });
         if let Some(depth) = depth.filter(|_| over.transparent) {
-            // Depth is read in the shader, so only the colour of the layer may be attached. Nothing reads the guard band
-            // from here on.
+            // Depth is read in the shader, so only the colour of the layer may be attached. Nothing reads the guard
+            // band from here on.
             let onto = Destination { origin, size: pair.size, ..color.color_only() };
             renderer.draw_transparent(&onto, depth, scene, &pair.view(eye));
         }
@@ -175,7 +175,8 @@ impl Composite {
     }
 }
 
-/// Drawing resumes in the samples of the rendered eye, then in those of the other eye, which begins as it was synthesized.
+/// Drawing resumes in the samples of the rendered eye, then in those of the other eye, which begins as it was
+/// synthesized.
 pub(super) struct ForwardOverlay;
 
 impl Overlay for ForwardOverlay {

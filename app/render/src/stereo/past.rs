@@ -1,5 +1,5 @@
-//! What the other eye has really seen: strips of it that are rendered besides, for the disocclusions of this frame and of later
-//! ones.
+//! What the other eye has really seen: strips of it that are rendered besides, for the disocclusions of this frame and
+//! of later ones.
 
 use std::rc::Rc;
 
@@ -23,7 +23,8 @@ const GROWTH: f32 = 0.1;
 /// A strip is given up when the head has moved by so many metres from where it was rendered, or turned by so much.
 const LEAP: f32 = 0.5;
 const TURN: f32 = std::f32::consts::FRAC_PI_4;
-/// A strip is given up when the scene has moved so often since it was rendered, which it has not while rounds follow one another.
+/// A strip is given up when the scene has moved so often since it was rendered, which it has not while rounds follow
+/// one another.
 const MOVED: u64 = Strips::MAX as u64;
 
 /// The history of one method.

@@ -4,8 +4,8 @@ use std::rc::Rc;
 
 use yoro_gl::{Context, Filter, Format, GlError, PixelBuffer, RenderTarget};
 
-/// An RGBA8 image that is drawn once a frame and read two frames later. By then the GPU is done with it, where the display
-/// paces it. A `T` says what was drawn.
+/// An RGBA8 image that is drawn once a frame and read two frames later. By then the GPU is done with it, where the
+/// display paces it. A `T` says what was drawn.
 pub(super) struct Readback<T> {
     image: RenderTarget,
     buffers: [(PixelBuffer, Option<T>); 2],
@@ -36,8 +36,8 @@ impl<T> Readback<T> {
         self.first ^= 1;
     }
 
-    /// Returns what was drawn two [`Readback::start`]s ago, once. Its texels come in `bytes`: zeros if the driver cannot give
-    /// them.
+    /// Returns what was drawn two [`Readback::start`]s ago, once. Its texels come in `bytes`: zeros if the driver
+    /// cannot give them.
     pub(super) fn take(&mut self, bytes: &mut [u8]) -> Option<T> {
         let (buffer, kept) = &mut self.buffers[self.first];
         let drawn = kept.take()?;

@@ -19,8 +19,8 @@ const METRES_PER_SECOND: f32 = 1.0;
 /// Distance in metres of the nearest surfaces that a guard band without a distance is made for.
 const NEAREST: f32 = 1.0;
 
-/// One render with a guard band on all four sides, and any number of frames that show it: each eye is synthesized from its
-/// colour and depth. Surfaces stand still meanwhile; transparent ones and highlights move with what is behind them.
+/// One render with a guard band on all four sides, and any number of frames that show it: each eye is synthesized from
+/// its colour and depth. Surfaces stand still meanwhile; transparent ones and highlights move with what is behind them.
 pub struct Reprojected<R: ViewRenderer> {
     gl: Rc<Context>,
     guard_band: GuardBand,

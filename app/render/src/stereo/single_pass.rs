@@ -1,5 +1,5 @@
-//! Both eyes in one set of draw calls: instancing into double-wide targets, or GL_OVR_multiview2 into a layered g-buffer.
-//! All later passes run for each eye.
+//! Both eyes in one set of draw calls: instancing into double-wide targets, or GL_OVR_multiview2 into a layered
+//! g-buffer. All later passes run for each eye.
 
 use super::finish::{EyeImage, Finish};
 use super::frame::{Frame, FrameMethod, Setup};

@@ -8,8 +8,9 @@ use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro_gl::Context;
 use yoro_scene::Scene;
 
-/// Renders the right eye of a scene's first viewpoint, synthesizes the left one by each pipeline, and returns both, left first:
-/// RGBA with rows from the bottom, `size` squared pixels with 60 degrees to see. Every pipeline has the default settings.
+/// Renders the right eye of a scene's first viewpoint, synthesizes the left one by each pipeline, and returns both,
+/// left first: RGBA with rows from the bottom, `size` squared pixels with 60 degrees to see. Every pipeline has the
+/// default settings.
 ///
 /// # Errors
 /// [`StereoError`]: the driver refuses the scene, a shader or an image.

@@ -5,8 +5,8 @@ use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro_gl::GlError;
 use yoro_protocol::Method;
 
-/// Renders both eyes where neither can be synthesized from the other, as with canted eyes. Nothing is compiled before it
-/// is needed.
+/// Renders both eyes where neither can be synthesized from the other, as with canted eyes. Nothing is compiled before
+/// it is needed.
 #[derive(Default)]
 pub struct Substitute(Option<Box<dyn StereoMethod>>);
 

@@ -200,7 +200,8 @@ impl<R: StereoRenderer> Synthesized<R> {
         self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample)
     }
 
-    /// Starts to measure what later frames depend on: how wide the guard band must be, and how much of the view is near.
+    /// Starts to measure what later frames depend on: how wide the guard band must be, and how much of the view is
+    /// near.
     fn measure(&mut self, frame: &Frame<R>, views: &SynthesisViews) {
         let samples = self.depth_samples();
         if let Some(auto) = &mut self.auto_guard_band {

@@ -471,7 +471,8 @@ fn the_nearest_depth_is_resolved_only_where_it_is_read() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// A copy is 8 bytes a pixel. Glass is drawn over both eyes, and who wants an eye's depth gets it from the image beside it.
+/// A copy is 8 bytes a pixel. Glass is drawn over both eyes, and who wants an eye's depth gets it from the image beside
+/// it.
 #[test]
 fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
     let head = Headless::open(Backend::Egl).unwrap();
@@ -490,7 +491,8 @@ fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Looking around: samples are kept, and the other eye copied, where glass changes either eye, and hardly anywhere else.
+/// Looking around: samples are kept, and the other eye copied, where glass changes either eye, and hardly anywhere
+/// else.
 #[test]
 fn glass_out_of_view_costs_nothing() {
     let head = Headless::open(Backend::Egl).unwrap();
@@ -590,7 +592,8 @@ fn first_and_nearest_samples_measure_the_same_near_fraction() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Both eyes as [`Synthesized`] makes them of samples when only some columns are drawn: the rendered one, the other one.
+/// Both eyes as [`Synthesized`] makes them of samples when only some columns are drawn: the rendered one, the other
+/// one.
 fn of_columns(
     gl: &Rc<Context>,
     (renderer, scene): (&ForwardRenderer, &GpuScene),
@@ -706,7 +709,8 @@ fn a_history_shows_what_is_uncovered_and_is_renewed_by_need() {
                         let eyes = [&images[other][..], &plain[other][..]];
                         let [with, plain] = errors_where_different(eyes, &truth[other]);
                         let share = with as f64 / plain as f64;
-                        // At half the resolution, posts of seven pixels before a plain wall come out no better than filled.
+                        // At half the resolution, posts of seven pixels before a plain wall come out no better than
+                        // filled.
                         let is_better = share < 0.8 || history == History::Half;
                         assert!(is_better, "{what}: {share} of the error is left");
                     }

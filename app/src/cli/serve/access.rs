@@ -1,5 +1,5 @@
-//! Who gets in: pages of this server that have the token, one at a time. Clients without the token are limited in the number of
-//! connections and in time.
+//! Who gets in: pages of this server that have the token, one at a time. Clients without the token are limited in the
+//! number of connections and in time.
 
 use std::collections::HashMap;
 use std::io::Write as _;
@@ -27,7 +27,8 @@ pub const MAX_MESSAGE_BYTES: usize = 1 << 12;
 pub const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
 /// The time for sending a file.
 const FILE_TIMEOUT: Duration = Duration::from_secs(60);
-/// The number of connections that may wait to be let in, of all machines and of one. A browser opens six for a page's files.
+/// The number of connections that may wait to be let in, of all machines and of one. A browser opens six for a page's
+/// files.
 const MAX_PENDING: [usize; 2] = [64, 16];
 
 /// A client's connection, once it speaks WebSocket.
@@ -110,8 +111,8 @@ impl Access {
         Ok(())
     }
 
-    /// True if a page may connect: against other sites' pages and names that are made to lead here, the host that it asks for must
-    /// be this one, and its origin, too, or the one that was named.
+    /// True if a page may connect: against other sites' pages and names that are made to lead here, the host that it
+    /// asks for must be this one, and its origin, too, or the one that was named.
     pub fn allows(&self, host: &str, origin: Option<&str>) -> bool {
         let is_own = || origin == Some(&format!("{}://{host}", self.scheme));
         let is_named = || origin.is_some() && origin == self.origin.as_deref();
@@ -139,8 +140,8 @@ impl Access {
         admitted
     }
 
-    /// Returns the answer to a first message, and, for one with the token while nobody else is served, the seat that lets its sender
-    /// in.
+    /// Returns the answer to a first message, and, for one with the token while nobody else is served, the seat that
+    /// lets its sender in.
     ///
     /// # Errors
     /// When it is no hello.
@@ -180,8 +181,8 @@ pub fn web_socket(connection: Connection) -> Socket {
     WebSocket::from_raw_socket(connection, Role::Server, Some(limits))
 }
 
-/// The number of connections that have not been let in, by the address that they come from: one machine must not keep others from
-/// connecting.
+/// The number of connections that have not been let in, by the address that they come from: one machine must not keep
+/// others from connecting.
 #[derive(Default)]
 struct PendingConnections(Mutex<HashMap<IpAddr, usize>>);
 

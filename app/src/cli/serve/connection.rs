@@ -33,8 +33,8 @@ struct Tls {
 }
 
 impl Connection {
-    /// Takes a connection over, encrypted where there is a configuration. The timeout is for all that is read and written
-    /// together.
+    /// Takes a connection over, encrypted where there is a configuration. The timeout is for all that is read and
+    /// written together.
     ///
     /// # Errors
     /// When the connection is lost.

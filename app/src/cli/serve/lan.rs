@@ -46,8 +46,8 @@ pub struct Lan {
 }
 
 impl Lan {
-    /// Takes the address that was named, or that of the default route, with the certificate that was made for it before, or a
-    /// new one.
+    /// Takes the address that was named, or that of the default route, with the certificate that was made for it
+    /// before, or a new one.
     ///
     /// # Errors
     /// A sentence: no such address, or nowhere to keep the certificate.
@@ -85,8 +85,8 @@ fn own_address() -> Option<IpAddr> {
     Some(socket.local_addr().ok()?.ip()).filter(|address| !address.is_loopback())
 }
 
-/// True for addresses that the internet does not reach: of private networks, of one link, of this machine, and those that
-/// providers and private overlay networks share (100.64.0.0/10).
+/// True for addresses that the internet does not reach: of private networks, of one link, of this machine, and those
+/// that providers and private overlay networks share (100.64.0.0/10).
 fn is_local(address: IpAddr) -> bool {
     match address {
         IpAddr::V4(v4) => {
@@ -125,8 +125,8 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
     Ok(pem)
 }
 
-/// Returns how connections of a protocol are encrypted with this key and certificate: by TLS 1.3, which each browser that decodes
-/// video for pages has.
+/// Returns how connections of a protocol are encrypted with this key and certificate: by TLS 1.3, which each browser
+/// that decodes video for pages has.
 fn configure(pem: &[u8], protocol: &[u8]) -> anyhow::Result<ServerConfig> {
     let (Ok(key), Ok(certificate)) =
         (PrivateKeyDer::from_pem_slice(pem), CertificateDer::from_pem_slice(pem))

@@ -32,10 +32,12 @@ use yoro_render::PreparedScene;
 use yoro_stream::{FromServer, Token};
 use yoro_video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
 
-/// Stream a scene, rendered on this machine, or an RGBD video to a browser that shows both eyes at the head's newest pose
+/// Stream a scene, rendered on this machine, or an RGBD video to a browser that shows both eyes at the head's newest
+/// pose
 #[derive(clap::Args, Clone, Debug)]
 pub struct ServeArgs {
-    /// A built-in scene (see `yoro scenes`), an OBJ, glTF or GLB file, or an RGBD video (MP4), which is played over and over
+    /// A built-in scene (see `yoro scenes`), an OBJ, glTF or GLB file, or an RGBD video (MP4), which is played over and
+    /// over
     scene: String,
     /// Number of the scene's viewpoint, from 0
     #[arg(long, default_value_t = 0, value_name = "N")]
@@ -55,7 +57,8 @@ pub struct ServeArgs {
     /// Most pixels of an eye's longer side
     #[arg(long, default_value_t = 1024, value_name = "N", value_parser = clap::value_parser!(u16).range(64..=1400))]
     max_size: u16,
-    /// Serve to the local network by https, at this address of this machine [default: the one by which it reaches others]
+    /// Serve to the local network by https, at this address of this machine [default: the one by which it reaches
+    /// others]
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true)]
     #[expect(clippy::option_option, reason = "clap's form of an option whose value may be left out")]
     lan: Option<Option<IpAddr>>,

@@ -16,8 +16,8 @@ use yoro_video::{LiveEncoder, LivePicture};
 /// A client that says nothing for so long is gone.
 pub const SILENCE: Duration = Duration::from_secs(3);
 
-/// Passes on a client's messages with the time, until a timeout, a lost connection or an invalid message. It has a thread of its own,
-/// so that messages are read while a frame is rendered.
+/// Passes on a client's messages with the time, until a timeout, a lost connection or an invalid message. It has a
+/// thread of its own, so that messages are read while a frame is rendered.
 pub fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromClient, Instant)>) {
     while let Ok(message) = socket.read() {
         let Some(message) = FromClient::read(&message.into_data()) else { return };

@@ -25,9 +25,9 @@ const LET_GO: f32 = 0.4;
 /// A stick that stays pushed repeats, in nanoseconds.
 const REPEAT_NS: i64 = 250_000_000;
 
-/// Pico's controllers (XR_BD_controller_interaction; the last one is what the runtime of Pico 4 Ultra reports). They have
-/// all the inputs of Touch controllers. A runtime maps those of other controllers onto them by `simple_controller` alone,
-/// which has neither stick nor squeeze.
+/// Pico's controllers (XR_BD_controller_interaction; the last one is what the runtime of Pico 4 Ultra reports). They
+/// have all the inputs of Touch controllers. A runtime maps those of other controllers onto them by `simple_controller`
+/// alone, which has neither stick nor squeeze.
 const PICO: [&str; 3] = [
     "/interaction_profiles/bytedance/pico_neo3_controller",
     "/interaction_profiles/bytedance/pico4_controller",

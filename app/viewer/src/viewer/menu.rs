@@ -14,8 +14,8 @@ const QUALITIES: [(&str, f32, bool, u32); 3] =
     [("saving", 0.7, true, 2), ("balanced", 1.0, false, 4), ("best", 1.4, false, 4)];
 
 impl Viewer {
-    /// Says where the head is, relative to the viewpoint, and the rays of controllers, each along its pose's -Z. Opens the menu
-    /// when the user has looked down for a second, and returns what was chosen by looking.
+    /// Says where the head is, relative to the viewpoint, and the rays of controllers, each along its pose's -Z. Opens
+    /// the menu when the user has looked down for a second, and returns what was chosen by looking.
     ///
     /// # Errors
     /// See [`Viewer::event`].

@@ -84,7 +84,8 @@ impl Viewer {
         self.start.is_scanning
     }
 
-    /// Shows on the start screen what the phone's camera sees: luma of [`yoro_lenses::Board::PICTURE`] pixels, rows from the bottom.
+    /// Shows on the start screen what the phone's camera sees: luma of [`yoro_lenses::Board::PICTURE`] pixels, rows
+    /// from the bottom.
     pub fn show_camera(&mut self, picture: &[u8]) {
         if !std::mem::replace(&mut self.start.is_scanning, true) {
             self.write_start_screen();

@@ -119,8 +119,8 @@ impl Bench {
         Ok(())
     }
 
-    /// Ends timed frames. Returns the GPU time of each pass in ms, the mean of the frames whose results have come, as JSON;
-    /// `{}` for none.
+    /// Ends timed frames. Returns the GPU time of each pass in ms, the mean of the frames whose results have come, as
+    /// JSON; `{}` for none.
     #[wasm_bindgen(js_name = takePasses)]
     pub fn take_passes(&mut self) -> String {
         self.gl.set_profiling(Profiling::Off);

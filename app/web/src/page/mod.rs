@@ -102,8 +102,8 @@ impl Page {
         vec![self.gl.object_count() as f64, self.gl.texture_bytes() as f64 / f64::from(1 << 20)]
     }
 
-    /// Returns the methods with the renderer of these choices (JSON, as [`Page::configure`] takes it) as JSON: `[{"name",
-    /// "reason"}]`. There is a reason where browser or renderer cannot do the method.
+    /// Returns the methods with the renderer of these choices (JSON, as [`Page::configure`] takes it) as JSON:
+    /// `[{"name", "reason"}]`. There is a reason where browser or renderer cannot do the method.
     ///
     /// # Errors
     /// A sentence.
@@ -143,9 +143,9 @@ impl Page {
         Ok(())
     }
 
-    /// Shows a scene as [`work`] packs it, from its first viewpoint. Returns facts about it as JSON: `{"name",
-    /// "standsFor", "style", "triangles", "lights", "viewpoints", "object", "moves"}`: `object` is true for what is seen from outside, around
-    /// which the head then goes.
+    /// Shows a scene as [`work`] packs it, from its first viewpoint. Returns facts about it as JSON:
+    /// `{"name", "standsFor", "style", "triangles", "lights", "viewpoints", "object", "moves"}`: `object` is true for
+    /// what is seen from outside, around which the head then goes.
     ///
     /// # Errors
     /// A sentence, when the GPU cannot take it; nothing is shown then.
@@ -288,8 +288,8 @@ impl Page {
         Ok(())
     }
 
-    /// Ends a frame that was handed to the display at `now_ms` of the page's clock. `refresh_hz` are the refreshes of the
-    /// display per second, 0 if unknown.
+    /// Ends a frame that was handed to the display at `now_ms` of the page's clock. `refresh_hz` are the refreshes of
+    /// the display per second, 0 if unknown.
     #[wasm_bindgen(js_name = endFrame)]
     pub fn end_frame(&mut self, now_ms: f64, refresh_hz: f32) {
         if let Content::Scene(scene) = &mut self.content {
@@ -335,8 +335,8 @@ impl Page {
         drawn
     }
 
-    /// Shows the images of the last [`Page::draw`] on the canvas, without rendering. `divider` is the share of the width
-    /// that shows the real image, where the display compares it with the method's.
+    /// Shows the images of the last [`Page::draw`] on the canvas, without rendering. `divider` is the share of the
+    /// width that shows the real image, where the display compares it with the method's.
     pub fn show(&self, width: u32, height: u32, divider: f32) {
         let Settings { display, dominant, .. } = self.settings;
         let canvas = [width, height];
@@ -359,8 +359,8 @@ impl Page {
         }
     }
 
-    /// Renders the picture of the last [`Page::draw`] `count` times more, by two renders or by the method, and waits for the
-    /// GPU: to be timed. Nothing without a display that needs both.
+    /// Renders the picture of the last [`Page::draw`] `count` times more, by two renders or by the method, and waits
+    /// for the GPU: to be timed. Nothing without a display that needs both.
     ///
     /// # Errors
     /// A sentence.
@@ -369,8 +369,8 @@ impl Page {
     }
 
     /// Returns the PSNR in dB against the real image of the eye that is not dominant: of the method's image, and of the
-    /// dominant eye's (the same image to both eyes), all as last drawn. It is infinite for equal images, and none without a
-    /// display that needs the real image. Waits for the GPU.
+    /// dominant eye's (the same image to both eyes), all as last drawn. It is infinite for equal images, and none
+    /// without a display that needs the real image. Waits for the GPU.
     #[wasm_bindgen(getter)]
     pub fn psnr(&self) -> Option<Vec<f64>> {
         let Content::Scene(scene) = &self.content else { return None };

@@ -80,7 +80,8 @@ impl Phone {
         self.head.turn(orientation([alpha, beta, gamma], screen));
     }
 
-    /// Draws both eyes of the head through the lenses, on a canvas of this size. `scale` is a share of the full resolution.
+    /// Draws both eyes of the head through the lenses, on a canvas of this size. `scale` is a share of the full
+    /// resolution.
     ///
     /// # Errors
     /// A sentence.

@@ -101,7 +101,8 @@ impl SceneShow {
         truth.method.render(renderer, scene, &pair, &mut truth.frame)
     }
 
-    /// Renders the last frame `count` times more, by the method or really, and waits for the GPU. Nothing without a truth.
+    /// Renders the last frame `count` times more, by the method or really, and waits for the GPU. Nothing without a
+    /// truth.
     ///
     /// # Errors
     /// The method's.

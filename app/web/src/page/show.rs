@@ -101,8 +101,8 @@ impl Show {
         self.run(&self.anaglyph, left, Some(("second", right)), to, 0..to.size[0]);
     }
 
-    /// Shows the real image left of the divider. Right of it is the method's image, or the difference of both: black for
-    /// none, white from a quarter of the range on.
+    /// Shows the real image left of the divider. Right of it is the method's image, or the difference of both: black
+    /// for none, white from a quarter of the range on.
     fn divided(&self, real: &Texture, made: &Texture, difference: bool, to: &Destination, divider: u32) {
         let [width, _] = to.size;
         let divider = divider.min(width);

@@ -38,9 +38,9 @@ impl Page {
         FromClient::hello(token).map(|hello| hello.to_bytes())
     }
 
-    /// Takes the first answer of a server, and shows its stream from now on, from the head's first pose; one that goes on
-    /// after a connection was lost keeps the head where it is. A video is shown whole. Returns the dominant eye that goes with it,
-    /// `left` or `right`; none for a stream that is rendered for the page's.
+    /// Takes the first answer of a server, and shows its stream from now on, from the head's first pose; one that goes
+    /// on after a connection was lost keeps the head where it is. A video is shown whole. Returns the dominant eye that
+    /// goes with it, `left` or `right`; none for a stream that is rendered for the page's.
     ///
     /// # Errors
     /// Why the server refuses, as a sentence.
@@ -63,10 +63,10 @@ impl Page {
         Ok(video.map(|(_, eye)| eye.name().into()))
     }
 
-    /// Takes a frame, whose H.264 may be left out, with its decoded picture: a `Uint8Array` of its planes, or a `VideoFrame` of this size
-    /// in pixels. Returns the message that confirms it, and six
-    /// numbers: when the pose that it was rendered for was sent, by `performance.now()`; the ms to render and to encode it; its
-    /// quantizer; width and height of each part.
+    /// Takes a frame, whose H.264 may be left out, with its decoded picture: a `Uint8Array` of its planes, or a
+    /// `VideoFrame` of this size in pixels. Returns the message that confirms it, and six numbers: when the pose that
+    /// it was rendered for was sent, by `performance.now()`; the ms to render and to encode it; its quantizer; width
+    /// and height of each part.
     ///
     /// # Errors
     /// A sentence, for a frame that cannot be understood.
@@ -108,8 +108,8 @@ impl Page {
         stream.eyes.request(time).map(|request| FromClient::Request(request).to_bytes())
     }
 
-    /// Returns the mean distance in cm and angle in degrees from the pose that a picture was rendered for to the one that it was shown
-    /// at, of all that was shown since the last call; none if that is nothing.
+    /// Returns the mean distance in cm and angle in degrees from the pose that a picture was rendered for to the one
+    /// that it was shown at, of all that was shown since the last call; none if that is nothing.
     #[wasm_bindgen(js_name = streamCorrection)]
     pub fn stream_correction(&mut self) -> Option<Vec<f32>> {
         let Content::Stream(stream) = &mut self.content else { return None };

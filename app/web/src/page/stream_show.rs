@@ -34,8 +34,8 @@ impl StreamShow {
         self.frusta
     }
 
-    /// Returns where the eyes are shown on parts of a canvas of this size, and the eyes of a head there: the page's, or a
-    /// video's, whole and with black beside them.
+    /// Returns where the eyes are shown on parts of a canvas of this size, and the eyes of a head there: the page's, or
+    /// a video's, whole and with black beside them.
     pub fn place(&self, settings: &Settings, head: Pose, part: [u32; 2]) -> (Layout, EyePair) {
         let Some(frusta) = self.frusta else {
             let layout = Layout { origin: [0, 0], size: part, step: part[0], divider: 0 };

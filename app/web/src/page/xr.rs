@@ -57,8 +57,8 @@ impl Headset {
     }
 
     /// Renders both eyes into images of this size: `views` has 23 floats for each, the left one first: position,
-    /// orientation (x, y, z, w) and projection matrix. `text` hangs before the eyes, four lines at most. False when both
-    /// were rendered because neither can be synthesized from the other.
+    /// orientation (x, y, z, w) and projection matrix. `text` hangs before the eyes, four lines at most. False when
+    /// both were rendered because neither can be synthesized from the other.
     ///
     /// # Errors
     /// A sentence.

@@ -1,4 +1,5 @@
-//! RGBD videos for the page: where the pictures of a file are, and what they show, in a stream's messages. The page decodes them.
+//! RGBD videos for the page: where the pictures of a file are, and what they show, in a stream's messages. The page
+//! decodes them.
 
 #![cfg(target_arch = "wasm32")]
 
@@ -46,8 +47,8 @@ impl Seek for Pieces<'_> {
 
 #[wasm_bindgen]
 impl Video {
-    /// Finds out what is in a file of this name and length in bytes. `read` returns a piece of it, a `Uint8Array`, from a place and a
-    /// length in bytes.
+    /// Finds out what is in a file of this name and length in bytes. `read` returns a piece of it, a `Uint8Array`, from
+    /// a place and a length in bytes.
     ///
     /// # Errors
     /// A sentence, for what is no MP4 file, is damaged, or has no H.264 or no depth.
@@ -85,8 +86,8 @@ impl Video {
         self.index.has_hues()
     }
 
-    /// Returns a decoded picture, three planes one after another, with colour and depth where a stream has them; empty for one of
-    /// another size.
+    /// Returns a decoded picture, three planes one after another, with colour and depth where a stream has them; empty
+    /// for one of another size.
     pub fn packed(&self, planes: &[u8]) -> Vec<u8> {
         let [width, height] = self.rgbd.size.map(|n| n as usize);
         let (size, luma) = ([2 * width, height], 2 * width * height);
@@ -114,7 +115,8 @@ impl Video {
         self.index.description().map_err(sentence)
     }
 
-    /// Returns five numbers for each picture: place and length in bytes, 1 for an intra frame, time and duration in seconds.
+    /// Returns five numbers for each picture: place and length in bytes, 1 for an intra frame, time and duration in
+    /// seconds.
     pub fn pictures(&self) -> Vec<f64> {
         let numbers = self.index.pictures.iter().map(|encoded| {
             [

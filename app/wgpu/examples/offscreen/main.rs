@@ -80,7 +80,8 @@ impl Stereo {
             .await?;
         let engine = Engine::new(device, queue);
 
-        // Where the eyes are, and what the depth buffer means. With OpenXR, poses and frusta are those of the two views.
+        // Where the eyes are, and what the depth buffer means. With OpenXR, poses and frusta are those of the two
+        // views.
         let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
         let head = Pose { position: [0.0, 1.6, 2.0].into(), ..Pose::IDENTITY };
         let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);

@@ -1,5 +1,5 @@
-//! A browser's own compiler takes all modules, and its WebGPU draws OpenGL's picture with them. The page has the passes in
-//! JavaScript. The example is the crate itself, compiled for browsers.
+//! A browser's own compiler takes all modules, and its WebGPU draws OpenGL's picture with them. The page has the passes
+//! in JavaScript. The example is the crate itself, compiled for browsers.
 
 #[path = "../../../core/tests/vulkan/against_opengl.rs"]
 #[expect(dead_code, reason = "shared with tests that use all of it")]

@@ -1,4 +1,5 @@
-//! libcamera2ndk.so and AImageReader of libmediandk.so: one camera at the back, whose pictures are a picture of the script's.
+//! libcamera2ndk.so and AImageReader of libmediandk.so: one camera at the back, whose pictures are a picture of the
+//! script's.
 
 #![allow(non_snake_case)]
 

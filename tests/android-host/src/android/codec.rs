@@ -1,4 +1,5 @@
-//! AMediaCodec and AMediaFormat of libmediandk.so: a decoder of H.264, by openh264, whose pictures are semi-planar and padded.
+//! AMediaCodec and AMediaFormat of libmediandk.so: a decoder of H.264, by openh264, whose pictures are semi-planar and
+//! padded.
 
 #![allow(non_snake_case)]
 

@@ -74,8 +74,8 @@ struct QueueState {
 }
 
 impl AInputQueue {
-    /// The process's one, emptied: activities come one after the other, and an application may hold the pointer a little
-    /// longer than it should.
+    /// The process's one, emptied: activities come one after the other, and an application may hold the pointer a
+    /// little longer than it should.
     pub fn fresh() -> &'static Self {
         static QUEUE: OnceLock<AInputQueue> = OnceLock::new();
         let queue = QUEUE.get_or_init(|| Self { event: EventFd::new(), state: Mutex::default() });

@@ -1,5 +1,5 @@
-//! ALooper. A thread that waits in its looper lets virtual time pass: to the next sensor event or display refresh, or to
-//! the end of the wait.
+//! ALooper. A thread that waits in its looper lets virtual time pass: to the next sensor event or display refresh, or
+//! to the end of the wait.
 
 #![allow(non_snake_case)]
 

@@ -1,5 +1,5 @@
-//! ASensorManager: a gyroscope and an accelerometer on a head that moves as the script says. Samples come on the virtual
-//! clock, at the rate that the application asked for.
+//! ASensorManager: a gyroscope and an accelerometer on a head that moves as the script says. Samples come on the
+//! virtual clock, at the rate that the application asked for.
 //!
 //! The phone is held in landscape, its left side down (`ROTATION_90`): the device's x axis points up, its y axis to the
 //! head's left, its z axis backwards, to the eyes.
@@ -134,8 +134,8 @@ impl Sensors {
         Self { list, motion: Mutex::new(still), queues: Mutex::default() }
     }
 
-    /// Turns the head to an orientation (degrees; yaw to the left, then pitch up, then roll to the left) within `duration` nanoseconds
-    /// from `now` on, at first faster and faster, then slower.
+    /// Turns the head to an orientation (degrees; yaw to the left, then pitch up, then roll to the left) within
+    /// `duration` nanoseconds from `now` on, at first faster and faster, then slower.
     pub fn turn(&self, yaw: f32, pitch: f32, roll: f32, now: u64, duration: u64) {
         self.fill(now);
         let to = Quat::from_euler(EulerRot::YXZ, yaw.to_radians(), pitch.to_radians(), roll.to_radians());

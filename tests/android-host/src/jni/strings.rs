@@ -16,7 +16,8 @@ use crate::host::{fatal, host, lock};
 /// Buffers of `GetStringUTFChars` and `GetStringChars` by address.
 static CHARACTERS: Mutex<Option<HashMap<usize, Box<[u8]>>>> = Mutex::new(None);
 
-// Strings. JNI's "modified UTF-8" equals UTF-8 but for NUL and characters beyond the basic plane, which do not occur here.
+// Strings. JNI's "modified UTF-8" equals UTF-8 but for NUL and characters beyond the basic plane, which do not occur
+// here.
 
 fn string(handle: jobject) -> String {
     get(handle, "a string function").text().unwrap_or_default().to_owned()

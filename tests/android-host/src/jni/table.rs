@@ -335,8 +335,8 @@ unsafe fn arguments(signature: &str, values: *const jvalue) -> Vec<Value> {
     let mut result = Vec::new();
     let mut rest = parameters.chars().peekable();
     while let Some(kind) = rest.next() {
-        // SAFETY: there is a value for each parameter, of the type that the signature says. A boolean is read as a byte, so
-        // that no caller's mistake makes it something else.
+        // SAFETY: there is a value for each parameter, of the type that the signature says. A boolean is read as a
+        // byte, so that no caller's mistake makes it something else.
         let value = unsafe { &*values.add(result.len()) };
         // SAFETY: as above.
         result.push(unsafe {

@@ -14,16 +14,16 @@ use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarg
 /// Number of draw buffers that the passes use: the split pass writes two.
 pub(super) const DRAW_BUFFERS: u32 = 2;
 
-/// Samples from left to right in the standard patterns of 2 and 4 samples (Vulkan's `standardSampleLocations`). Each sample
-/// stands for the nearest stripes of the pixel.
+/// Samples from left to right in the standard patterns of 2 and 4 samples (Vulkan's `standardSampleLocations`). Each
+/// sample stands for the nearest stripes of the pixel.
 const STANDARD_2: IVec4 = IVec4::new(1, 1, 0, 0);
 const STANDARD_4: IVec4 = IVec4::new(2, 0, 3, 1);
 
 /// Split, tile bounds, tile spans, march over layers.
 ///
-/// The split pass finds the one or two surfaces that each source pixel shows, and writes 8 bytes per source pixel. The march
-/// composes the surfaces that cover a target pixel, front to back, so that the synthesized eye is as anti-aliased as the
-/// rendered one.
+/// The split pass finds the one or two surfaces that each source pixel shows, and writes 8 bytes per source pixel. The
+/// march composes the surfaces that cover a target pixel, front to back, so that the synthesized eye is as anti-aliased
+/// as the rendered one.
 pub struct Layers {
     gl: Rc<Context>,
     outputs: Outputs,
@@ -50,8 +50,8 @@ impl Layers {
     /// Compiles the passes.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for [`Edges::Hard`], which needs [`super::Gather`], and for [`Edges::Multisample`] without
-    /// OpenGL ES 3.1; [`GlError::Shader`] if the driver refuses a shader.
+    /// [`GlError::Unsupported`] for [`Edges::Hard`], which needs [`super::Gather`], and for [`Edges::Multisample`]
+    /// without OpenGL ES 3.1; [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, outputs: Outputs, edges: Edges) -> Result<Layers, GlError> {
         Layers::with_options(gl, outputs, &SynthesisOptions { edges, ..SynthesisOptions::default() })
     }

@@ -29,14 +29,14 @@ pub struct Outputs {
     /// Write the synthesized eye's depth, in the source's encoding, to the target's depth attachment: for transparent
     /// objects, near objects and compositors.
     pub depth: bool,
-    /// Write the source map to colour attachment 1 ([`yoro_gl::Format::R32Ui`]). Bit 31 marks a hole; the other bits are the
-    /// source column of the pixel, or of the edge it was filled from, in 1/65536 pixel. The column is counted from the left
-    /// for a synthesized left eye and from the right for a right eye.
+    /// Write the source map to colour attachment 1 ([`yoro_gl::Format::R32Ui`]). Bit 31 marks a hole; the other bits
+    /// are the source column of the pixel, or of the edge it was filled from, in 1/65536 pixel. The column is counted
+    /// from the left for a synthesized left eye and from the right for a right eye.
     /// [`SourceMapEntry`](super::SourceMapEntry) decodes it.
     pub source_map: bool,
     /// Encode colour for an sRGB target: set it if source and target are both sRGB textures
-    /// ([`yoro_gl::Format::Srgb8Alpha8`]), which sampling decodes. Otherwise encoding is off and values are stored as they
-    /// are sampled. OpenGL ES without `EXT_sRGB_write_control` always encodes for sRGB targets.
+    /// ([`yoro_gl::Format::Srgb8Alpha8`]), which sampling decodes. Otherwise encoding is off and values are stored as
+    /// they are sampled. OpenGL ES without `EXT_sRGB_write_control` always encodes for sRGB targets.
     pub srgb: bool,
 }
 
@@ -59,8 +59,8 @@ pub struct Source {
     /// Colour, in any filterable format and any encoding; all four channels are synthesized. For kinds other than
     /// [`Edges::Hard`] it is resolved, with values from 0 to 1.
     pub color: glow::Texture,
-    /// Depth: a depth texture, a depth-stencil texture whose depth is sampled, or a float texture. A multisample texture
-    /// for [`Edges::Multisample`].
+    /// Depth: a depth texture, a depth-stencil texture whose depth is sampled, or a float texture. A multisample
+    /// texture for [`Edges::Multisample`].
     pub depth: glow::Texture,
     /// For [`Edges::Multisample`], the multisample texture that the colour was resolved from, if it still exists.
     pub samples: Option<glow::Texture>,
@@ -75,7 +75,8 @@ pub struct Source {
 /// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
 #[derive(Clone, Copy, Debug)]
 pub struct History {
-    /// Colour: what synthesis takes, so without what is drawn over both eyes afterwards. In the encoding of the source's.
+    /// Colour: what synthesis takes, so without what is drawn over both eyes afterwards. In the encoding of the
+    /// source's.
     pub color: glow::Texture,
     /// Depth, of the same size, one value a pixel, with the planes and encoding of the source's.
     pub depth: glow::Texture,
@@ -119,10 +120,10 @@ pub enum GlState {
 
 /// A pipeline that synthesizes the other eye.
 ///
-/// The context must be current on the calling thread. The picture does not depend on its state: a call sets all state that
-/// it relies on. Afterwards the state is as [`SynthesisOptions::gl_state`] says: with [`GlState::Leave`] as in the table,
-/// with [`GlState::Preserve`] as before the call. State that is not in the table is neither read nor changed. State that a
-/// context lacks, by version or extension, is neither set nor queried.
+/// The context must be current on the calling thread. The picture does not depend on its state: a call sets all state
+/// that it relies on. Afterwards the state is as [`SynthesisOptions::gl_state`] says: with [`GlState::Leave`] as in the
+/// table, with [`GlState::Preserve`] as before the call. State that is not in the table is neither read nor changed.
+/// State that a context lacks, by version or extension, is neither set nor queried.
 ///
 /// | state | set to | afterwards |
 /// |---|---|---|
@@ -151,12 +152,12 @@ pub enum GlState {
 /// stays, except in browsers, where GL's error flag is read when buffers are allocated. A program that the host has
 /// deleted while it was current goes, as GL says, when another becomes current; `Preserve` then leaves none.
 ///
-/// The host ensures the rest: transform feedback and conditional rendering are not active, the shading rate is one fragment
-/// a pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the source is attached
-/// to it. An active occlusion query counts the passes' fragments.
+/// The host ensures the rest: transform feedback and conditional rendering are not active, the shading rate is one
+/// fragment a pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the source
+/// is attached to it. An active occlusion query counts the passes' fragments.
 pub trait Synthesis {
-    /// Allocates intermediate buffers for images of these sizes, for which it binds framebuffers and a 2-D texture to the
-    /// active unit. Costs nothing if the sizes are the same as before. [`Synthesis::synthesize`] calls it.
+    /// Allocates intermediate buffers for images of these sizes, for which it binds framebuffers and a 2-D texture to
+    /// the active unit. Costs nothing if the sizes are the same as before. [`Synthesis::synthesize`] calls it.
     ///
     /// # Errors
     /// [`GlError`] if the sizes are beyond the driver's limits.
@@ -177,8 +178,8 @@ pub struct SynthesisOptions {
     pub edges: Edges,
     /// The effect of calls on the host's GL state.
     pub gl_state: GlState,
-    /// True if sources may be parts of their textures ([`Source::part`]) and change their size from frame to frame, as with
-    /// dynamic resolution: buffers then only grow, so that no frame allocates after one of the largest size.
+    /// True if sources may be parts of their textures ([`Source::part`]) and change their size from frame to frame, as
+    /// with dynamic resolution: buffers then only grow, so that no frame allocates after one of the largest size.
     pub parts: bool,
     /// True if colour and depth are layers of array textures, as those of multiview are ([`Source::layer`]). Not with
     /// [`Edges::Multisample`].
@@ -202,7 +203,8 @@ impl SynthesisOptions {
         defines([("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.array_textures)])
     }
 
-    /// Binds a texture of the source, which is an array with [`SynthesisOptions::array_textures`]. The program must be current.
+    /// Binds a texture of the source, which is an array with [`SynthesisOptions::array_textures`]. The program must be
+    /// current.
     fn bind<'a>(&self, program: &'a Program, name: &str, unit: u32, texture: glow::Texture) -> &'a Program {
         if self.array_textures {
             program.texture_array(name, unit, texture)
@@ -240,8 +242,8 @@ pub fn buffer_bytes(edges: Edges, warp: &Warp) -> u64 {
 /// [`Synthesis::prepare`], or none with [`GlState::Preserve`].
 ///
 /// # Errors
-/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1 or with [`SynthesisOptions::array_textures`];
-/// [`GlError::Shader`] if the driver refuses a shader.
+/// [`GlError::Unsupported`] for [`Edges::Multisample`] without OpenGL ES 3.1 or with
+/// [`SynthesisOptions::array_textures`]; [`GlError::Shader`] if the driver refuses a shader.
 pub fn create(
     gl: &Rc<Context>,
     options: &SynthesisOptions,
@@ -276,8 +278,8 @@ fn map_sizes(warp: &Warp) -> [[u32; 2]; 2] {
     [warp.source_size, [warp.target_size[0], warp.source_size[1]]].map(tiles)
 }
 
-/// Sets the uniforms and textures that `include/warp.glsl` declares, for a pass of a pipeline. Uses texture units 0 and 1.
-/// The program must be current.
+/// Sets the uniforms and textures that `include/warp.glsl` declares, for a pass of a pipeline. Uses texture units 0 and
+/// 1. The program must be current.
 pub fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
     program.texture("depth_map", 0, source.depth).texture("color_map", 1, source.color);
     uniforms.set(program);
@@ -293,7 +295,8 @@ impl Recall {
         Ok(Recall { nothing: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)? })
     }
 
-    /// Sets what `include/history.glsl` declares, with depth in a unit that is not filtered. The program must be current.
+    /// Sets what `include/history.glsl` declares, with depth in a unit that is not filtered. The program must be
+    /// current.
     fn set(&self, program: &Program, history: Option<History>, depth_unit: u32) {
         let nothing = self.nothing.color(0).raw();
         let none = History { color: nothing, depth: nothing, strips: Strips::NONE };

@@ -63,7 +63,8 @@ impl Costs {
         Ok(Costs { rows, lanes: if gpu == "g52" { 8 } else { 16 } })
     }
 
-    /// Returns the cost of a program's fragment shader; of one with some maps, between that without maps and that with all.
+    /// Returns the cost of a program's fragment shader; of one with some maps, between that without maps and that with
+    /// all.
     ///
     /// # Errors
     /// When the table lacks the shader.
@@ -126,8 +127,8 @@ impl Costs {
             .sum()
     }
 
-    /// Returns the row of a shader that is most like a program's. The table has each style and each way to draw both eyes, but
-    /// not both together, and no scene without a sun.
+    /// Returns the row of a shader that is most like a program's. The table has each style and each way to draw both
+    /// eyes, but not both together, and no scene without a sun.
     fn find(&self, program: &ProgramRecipe, stage: &str, maps: bool) -> Option<&Row> {
         let file = program.files.last()?;
         let has = |text: &&&str| {

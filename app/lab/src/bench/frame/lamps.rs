@@ -26,8 +26,8 @@ pub fn wave_size(lanes: u32) -> [u32; 2] {
 }
 
 impl Lamps {
-    /// Finds the lights of each pixel from its depth, rows from the bottom. Beyond the first 32 lights none is found: no built-in
-    /// scene has more in reach of a wave.
+    /// Finds the lights of each pixel from its depth, rows from the bottom. Beyond the first 32 lights none is found:
+    /// no built-in scene has more in reach of a wave.
     pub fn new(view: &View, depth: &[f32], lights: &[PointLight]) -> Lamps {
         let [width, height] = view.size;
         let local: Vec<(Vec3, f32)> = lights

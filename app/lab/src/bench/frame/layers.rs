@@ -10,7 +10,8 @@ use yoro::synthesis::{Edges, Layers};
 use yoro_gl::Context;
 use yoro_render::PreparedScene;
 
-/// Share of the march's text outside of loops that waves run which end in the first loop: an estimate from the listings.
+/// Share of the march's text outside of loops that waves run which end in the first loop: an estimate from the
+/// listings.
 const PLAIN_SHARE: f64 = 0.5;
 
 /// Counts loops of the march over layers. All kinds of edges count as [`Edges::Nearest`] do.
@@ -63,8 +64,8 @@ impl LayerCounts {
         let tiles = costs.parts("synthesis/layers/tiles.frag", &[])?;
         let spans = costs.parts("synthesis/gather/spans.frag", &[])?;
         let march = costs.parts("synthesis/layers/march.frag", macros)?;
-        // Trips of the loops of a pixel with two surfaces: taps of the estimates, those where nothing else is found (not
-        // counted), neighbours. Of all samples: taps.
+        // Trips of the loops of a pixel with two surfaces: taps of the estimates, those where nothing else is found
+        // (not counted), neighbours. Of all samples: taps.
         let trips: &[f64] = if edges == Edges::Multisample { &[8.0] } else { &[12.0, 0.0, 2.0] };
         let of_split = |wave: &Wave| split.straight + if wave.split { looped(&split, trips) } else { 0.0 };
         let tile = 1.0 / f64::from(TILE[0] * TILE[1]);

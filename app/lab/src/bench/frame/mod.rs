@@ -1,9 +1,9 @@
 //! The cost of whole stereo frames on mobile GPUs that need not be here: `yoro bench shader-cost --frame`.
 //!
-//! A frame is rendered here and [recorded](yoro_gl::Context::record): its passes, their images, and the samples that pass
-//! each depth test. `costs` knows what Mesa's compilers make of each shader, `traffic` what a tile-based GPU moves between
-//! its tiles and memory, `lamps` how many lights a wave computes, and `executed` beside it what the synthesis executes.
-//! `model` adds up.
+//! A frame is rendered here and [recorded](yoro_gl::Context::record): its passes, their images, and the samples that
+//! pass each depth test. `costs` knows what Mesa's compilers make of each shader, `traffic` what a tile-based GPU moves
+//! between its tiles and memory, `lamps` how many lights a wave computes, and `executed` beside it what the synthesis
+//! executes. `model` adds up.
 
 mod costs;
 mod lamps;
@@ -28,7 +28,8 @@ pub use traffic::{Piece, Traffic, pieces};
 pub const SUITE: &str = "shader-cost-frame";
 /// Pixels of an eye: Quest 3's.
 pub const SIZE: [u32; 2] = [1680, 1760];
-/// The contender that is made of the record of [`Method::Instanced`]: both draw the same pixels, and differ in vertices.
+/// The contender that is made of the record of [`Method::Instanced`]: both draw the same pixels, and differ in
+/// vertices.
 pub const MULTIVIEW: &str = "multiview";
 
 /// The GPUs, with rates that are assumptions from public figures.

@@ -17,11 +17,12 @@ pub const SYNTHESIS: [&str; 2] = ["gather ", "layers "];
 pub const VERTICES: &str = "vertices";
 /// The same with each vertex shaded once for both eyes, as multiview's draw calls allow.
 pub const VERTICES_ONCE: &str = "vertices once";
-/// Fragments of a surface drawn with several samples, for each pixel that it covers: an assumption, since edges between triangles
-/// are shaded once for each of them.
+/// Fragments of a surface drawn with several samples, for each pixel that it covers: an assumption, since edges between
+/// triangles are shaded once for each of them.
 const EDGE_FRAGMENTS: f64 = 1.05;
 
-/// The costs of a frame for each pixel of an eye, by metric: `slots/a740/g-buffer`, `bytes/g-buffer`, `fragments/g-buffer`.
+/// The costs of a frame for each pixel of an eye, by metric: `slots/a740/g-buffer`, `bytes/g-buffer`,
+/// `fragments/g-buffer`.
 pub type Frame = BTreeMap<String, f64>;
 
 /// What is needed to tell the costs of recorded frames.
@@ -84,8 +85,8 @@ impl FrameModel {
         Ok(metrics)
     }
 
-    /// Returns the costs of the same frame by multiview: the record is that of [`yoro_render::stereo::Method::Instanced`], which
-    /// draws the same pixels.
+    /// Returns the costs of the same frame by multiview: the record is that of
+    /// [`yoro_render::stereo::Method::Instanced`], which draws the same pixels.
     ///
     /// # Errors
     /// Those of [`FrameModel::frame`].

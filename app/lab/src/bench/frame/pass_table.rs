@@ -13,7 +13,8 @@ struct Line {
     methods: Vec<(String, u32)>,
 }
 
-/// Returns the table in Markdown: a row for each kind of work on a framebuffer, for frames with the names of their methods.
+/// Returns the table in Markdown: a row for each kind of work on a framebuffer, for frames with the names of their
+/// methods.
 pub fn pass_table(frames: &[(RendererKind, String, Vec<Piece>)]) -> String {
     let mut lines: Vec<Line> = Vec::new();
     for (renderer, method, pieces) in frames {

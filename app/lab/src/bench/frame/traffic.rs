@@ -2,13 +2,14 @@
 //!
 //! From a [record](yoro_gl::Context::record) by these laws:
 //!
-//! 1. Draw calls into one framebuffer, one after the other, are one piece of work: their images stay in the tiles meanwhile.
-//! 2. An image is read into the tiles at the start, unless it is cleared, or first drawn by a triangle that covers the view,
-//!    without blending or a test against its depth.
+//! 1. Draw calls into one framebuffer, one after the other, are one piece of work: their images stay in the tiles
+//!    meanwhile.
+//! 2. An image is read into the tiles at the start, unless it is cleared, or first drawn by a triangle that covers the
+//!    view, without blending or a test against its depth.
 //! 3. It is written to memory at the end if anything was drawn into it, unless it is given up.
 //! 4. Samples are averaged in the tiles if that is the next thing after drawing them.
-//! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads a texel of each texture for each
-//!    fragment, and so does everything of the shadow map.
+//! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads a texel of each texture for
+//!    each fragment, and so does everything of the shadow map.
 
 use std::rc::Rc;
 
@@ -137,8 +138,8 @@ pub fn fragments(draw: &Draw) -> f64 {
     draw.samples_passed.map_or(pixels(draw.area), |passed| passed as f64 / f64::from(samples))
 }
 
-/// Returns the texels of a texture that a triangle reads that covers a view of this size. Two views may lie side by side in the
-/// texture, and it may be larger or smaller than the view.
+/// Returns the texels of a texture that a triangle reads that covers a view of this size. Two views may lie side by
+/// side in the texture, and it may be larger or smaller than the view.
 fn texels_once(image: &Image, area: [u32; 2]) -> f64 {
     let scale = (f64::from(image.size[1]) / f64::from(area[1].max(1))).round().max(1.0);
     let part = [0, 1].map(|i| f64::from(image.size[i]).min(f64::from(area[i]) * scale));

@@ -84,8 +84,8 @@ impl Runner<'_> {
         self.finish_round(job, 0, field.first, measurements)
     }
 
-    /// Renders every contender's frames in their order, each once, as a viewer does, and compares them once the history is
-    /// filled.
+    /// Renders every contender's frames in their order, each once, as a viewer does, and compares them once the history
+    /// is filled.
     pub(super) fn history(
         &mut self,
         job: &Job,
@@ -189,8 +189,8 @@ impl Runner<'_> {
     }
 }
 
-/// The columns at the outer border of the eye that is not dominant for which surfaces at half a metre need a guard band:
-/// the widest that is measured.
+/// The columns at the outer border of the eye that is not dominant for which surfaces at half a metre need a guard
+/// band: the widest that is measured.
 fn border(image: &RgbImage, pair: &EyePair) -> anyhow::Result<RgbImage> {
     let width = pair.synthesis_views(Band::HalfMetre.guard_band())?.guard_columns.min(image.width());
     let left = match pair.dominant.other() {

@@ -27,8 +27,8 @@ const MODES: [(Mode, &str); 3] = [
 ];
 
 impl Runner<'_> {
-    /// Encodes a walking head's frames by all modes at each quantizer, and measures both eyes at the poses that the head has
-    /// some frames later.
+    /// Encodes a walking head's frames by all modes at each quantizer, and measures both eyes at the poses that the
+    /// head has some frames later.
     pub(super) fn stream(
         &mut self,
         job: &Job,

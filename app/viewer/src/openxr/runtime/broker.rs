@@ -11,8 +11,8 @@ pub type Rows = Vec<Vec<Option<String>>>;
 
 /// Asks content providers, which on Android takes Java: `ContentResolver.query`.
 pub trait Broker {
-    /// Returns all rows of the table at `uri`, with `columns` as texts (`Cursor.getString`; nothing for null and for a column
-    /// that the table does not have); none where no provider answers (a null cursor).
+    /// Returns all rows of the table at `uri`, with `columns` as texts (`Cursor.getString`; nothing for null and for a
+    /// column that the table does not have); none where no provider answers (a null cursor).
     ///
     /// # Errors
     /// The system's message, an exception for instance.

@@ -1,8 +1,8 @@
 //! The runtime's `xrGetInstanceProcAddr` as the crate `openxr` needs it.
 //!
-//! Khronos's loader answers for the functions that need no instance by itself, so that a runtime may never have been asked
-//! for them with one. The crate does ask so when it has made an instance, and takes a success without a function for
-//! impossible. Between them stands a function of our own.
+//! Khronos's loader answers for the functions that need no instance by itself, so that a runtime may never have been
+//! asked for them with one. The crate does ask so when it has made an instance, and takes a success without a function
+//! for impossible. Between them stands a function of our own.
 
 use std::ffi::{CStr, c_char};
 use std::mem;

@@ -28,7 +28,8 @@
 //! ```
 //!
 //! The module uses nothing of the rest of this crate, only `openxr`, `libloading`, `serde`, `serde_json` and
-//! `thiserror`. Sources: OpenXR specification, "Loader Runtime Interaction", and the Khronos loader's documented search.
+//! `thiserror`. Sources: OpenXR specification, "Loader Runtime Interaction", and the Khronos loader's documented
+//! search.
 
 mod broker;
 mod entry;
@@ -99,8 +100,8 @@ impl Runtime {
     }
 
     /// The entry to the API, as the crate `openxr` has it. On Android nothing is left to initialise: instances are
-    /// created with `openxr::AndroidPlatformInfo`. Of several runtimes in one process, instances go to the one whose entry
-    /// was asked for last.
+    /// created with `openxr::AndroidPlatformInfo`. Of several runtimes in one process, instances go to the one whose
+    /// entry was asked for last.
     pub fn entry(&self) -> openxr::Result<openxr::Entry> {
         // SAFETY: the function is what the runtime itself offers as xrGetInstanceProcAddr, and its library is never
         // unloaded.

@@ -86,8 +86,8 @@ impl Session {
     }
 }
 
-/// Returns a pose of this library; `None` if the numbers are no pose. The specification lets a runtime be off unit length by a
-/// hundredth, and some are off by more, so the quaternion is normalised.
+/// Returns a pose of this library; `None` if the numbers are no pose. The specification lets a runtime be off unit
+/// length by a hundredth, and some are off by more, so the quaternion is normalised.
 pub fn to_pose(pose: &xr::Posef) -> Option<Pose> {
     let (p, q) = (pose.position, pose.orientation);
     let (position, orientation) = (Vec3::new(p.x, p.y, p.z), Quat::from_xyzw(q.x, q.y, q.z, q.w));

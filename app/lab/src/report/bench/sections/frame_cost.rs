@@ -83,8 +83,8 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// The mean of a metric of a pass. There are as many vertices in a frame of any size: they are counted for each pixel of an eye of
-/// [`frame::SIZE`].
+/// The mean of a metric of a pass. There are as many vertices in a frame of any size: they are counted for each pixel
+/// of an eye of [`frame::SIZE`].
 fn value(suite: &Suite, measured: &Measured, metric: &str) -> Option<f64> {
     let scale =
         if metric.contains(frame::VERTICES) { measured_pixels(suite) / pixels(frame::SIZE) } else { 1.0 };
@@ -109,8 +109,8 @@ fn average(values: &[f64]) -> f64 {
 
 /// The cost of surfaces, in slots for each pixel of an eye, from which on a method is cheaper than two renders.
 ///
-/// Two renders cost `x * surfaces[0] + rest[0]` and the method `x * surfaces[1] + rest[1]`, where surfaces cost `x` times what they
-/// do in the scenes. `None` if the method is never cheaper.
+/// Two renders cost `x * surfaces[0] + rest[0]` and the method `x * surfaces[1] + rest[1]`, where surfaces cost `x`
+/// times what they do in the scenes. `None` if the method is never cheaper.
 fn break_even(surfaces: [f64; 2], rest: [f64; 2]) -> Option<f64> {
     let saved = surfaces[0] - surfaces[1];
     (saved > 0.0).then(|| 0.5 * surfaces[0] * (rest[1] - rest[0]) / saved)
