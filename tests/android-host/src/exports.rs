@@ -97,7 +97,6 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
         [
             crate::bionic::exports(),
             crate::android::activity::exports(),
-            crate::android::assets::exports(),
             crate::android::camera::exports(),
             crate::android::choreographer::exports(),
             crate::android::codec::exports(),
@@ -107,7 +106,6 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
             crate::android::looper::exports(),
             crate::android::sensors::exports(),
             crate::android::thermal::exports(),
-            crate::android::trace::exports(),
             crate::android::window::exports(),
             crate::graphics::egl::exports(),
         ]

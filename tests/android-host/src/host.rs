@@ -9,12 +9,10 @@ use std::sync::{Mutex, MutexGuard, OnceLock};
 use std::time::{Duration, Instant};
 
 use crate::android::activity::Directories;
-use crate::android::assets::Assets;
 use crate::android::camera::Camera;
 use crate::android::input::InputCounts;
 use crate::android::log::Log;
 use crate::android::sensors::Sensors;
-use crate::android::thermal::ThermalListeners;
 use crate::android::window::Window;
 use crate::clock::Clock;
 use crate::frames::Frames;
@@ -44,7 +42,6 @@ pub struct Host {
     /// liblog.
     pub log: Log,
     /// AAssetManager.
-    pub assets: Assets,
     /// The camera.
     pub camera: Camera,
     /// AInputQueue.
@@ -52,7 +49,6 @@ pub struct Host {
     /// ASensorManager.
     pub sensors: Sensors,
     /// AThermal.
-    pub thermal_listeners: ThermalListeners,
     /// ANativeWindow.
     pub window: Window,
     /// EGL and OpenGL ES.
@@ -128,12 +124,7 @@ impl Host {
     ///
     /// # Errors
     /// EGL or the folders cannot be set up.
-    pub fn install(
-        script: &Script,
-        assets: Assets,
-        verbose: bool,
-        report: Report,
-    ) -> anyhow::Result<&'static Self> {
+    pub fn install(script: &Script, verbose: bool, report: Report) -> anyhow::Result<&'static Self> {
         let device = script.device.clone();
         let host = Self {
             battery: Mutex::new(device.battery.clone()),
@@ -143,11 +134,9 @@ impl Host {
             clock: Clock::new(device.refresh_hz, device.slept_seconds),
             frames: Frames::new(),
             log: Log::new(verbose),
-            assets,
             camera: Camera::new(&device),
             input: InputCounts::default(),
             sensors: Sensors::new(&device),
-            thermal_listeners: ThermalListeners::default(),
             window: Window::new(device.width, device.height),
             graphics: Graphics::new(device.gles)?,
             jni: Jni::new(),

@@ -37,7 +37,6 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::android::activity::OnCreate;
-use crate::android::assets::Assets;
 use crate::apk::Apk;
 use crate::host::{ABI, Host, Report};
 use crate::library::Library;
@@ -53,12 +52,10 @@ use crate::script::Script;
 pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Result<std::convert::Infallible> {
     let started = Instant::now();
     std::fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
-    let mut apk = Apk::read(apk_path, ABI)?;
+    let apk = Apk::read(apk_path, ABI)?;
     let headset = script.device.openxr.as_ref();
     let layer = headset.and_then(|headset| headset.layer.as_deref());
     let layer = layer.map(|path| Apk::read_aar(path, ABI)).transpose()?;
-    // A package also has the assets of its dependencies.
-    apk.assets.extend(layer.iter().flat_map(|layer| layer.assets.clone()));
     let report = Report {
         apk: apk_path.to_owned(),
         script: script.name.clone(),
@@ -74,7 +71,7 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
         // SAFETY: the process has one thread.
         unsafe { openxr::install(headset) }?;
     }
-    let host = Host::install(script, Assets::new(apk.assets), verbose, report)?;
+    let host = Host::install(script, verbose, report)?;
     let sdk = host.device.sdk;
     let load = |(name, bytes): &(String, Vec<u8>)| -> Result<Library> {
         let loaded = Library::load(name, bytes, |library, symbol| exports::find(library, symbol, sdk))?;

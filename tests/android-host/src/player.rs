@@ -264,7 +264,7 @@ impl Player {
                 externalDataPath: host.directories.external().as_ptr(),
                 sdkVersion: host.device.sdk,
                 instance: std::ptr::null_mut(),
-                assetManager: &raw const host.assets,
+                assetManager: std::ptr::dangling(),
                 obbPath: host.directories.external().as_ptr(),
             },
             callbacks: Callbacks::default(),
@@ -450,16 +450,15 @@ impl Player {
         let (width, height) = self.host.window.size();
         let (x, y) = (x * width as f32, y * height as f32);
         let down = self.host.clock.now();
-        self.send(AInputEvent::Motion { action: MotionAction::Down, x, y, down, time: down });
+        self.send(AInputEvent::Motion { action: MotionAction::Down, x, y, time: down });
         self.until(down + duration);
-        self.send(AInputEvent::Motion { action: MotionAction::Up, x, y, down, time: self.host.clock.now() });
+        self.send(AInputEvent::Motion { action: MotionAction::Up, x, y, time: self.host.clock.now() });
         self.frames(2);
     }
 
     fn key(&mut self, key: Key) {
-        let down_time = self.host.clock.now();
         for down in [true, false] {
-            self.send(AInputEvent::Key { down, code: key.code(), down_time, time: self.host.clock.now() });
+            self.send(AInputEvent::Key { down, code: key.code(), time: self.host.clock.now() });
             if !self.finish_asked() {
                 self.frames(1);
             }
@@ -487,7 +486,6 @@ impl Player {
 
     fn thermal(&mut self, thermal: &Thermal) {
         *lock(&self.host.thermal) = thermal.clone();
-        self.host.thermal_listeners.tell(thermal.status);
     }
 
     fn capture(&mut self, name: PathBuf) {

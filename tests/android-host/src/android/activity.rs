@@ -11,7 +11,6 @@ use anyhow::{Context, Result};
 use jni_sys::{JNIEnv, JavaVM, jobject};
 use tempfile::TempDir;
 
-use crate::android::assets::Assets;
 use crate::android::input::AInputQueue;
 use crate::android::window::Window;
 use crate::exports::{Export, System, exports};
@@ -72,7 +71,7 @@ pub struct ANativeActivity {
     pub externalDataPath: *const c_char,
     pub sdkVersion: i32,
     pub instance: *mut c_void,
-    pub assetManager: *const Assets,
+    pub assetManager: *const c_void,
     pub obbPath: *const c_char,
 }
 
@@ -132,8 +131,8 @@ impl Directories {
 /// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
-        ANativeActivity_finish, ANativeActivity_hideSoftInput, ANativeActivity_setWindowFlags, ANativeActivity_setWindowFormat,
-        ANativeActivity_showSoftInput,
+        ANativeActivity_finish, ANativeActivity_setWindowFlags,
+
     ]]
 }
 
@@ -143,9 +142,3 @@ extern "C" fn ANativeActivity_finish(_activity: *mut ANativeActivity) {
 }
 
 extern "C" fn ANativeActivity_setWindowFlags(_activity: *mut ANativeActivity, _add: u32, _remove: u32) {}
-
-extern "C" fn ANativeActivity_setWindowFormat(_activity: *mut ANativeActivity, _format: i32) {}
-
-extern "C" fn ANativeActivity_showSoftInput(_activity: *mut ANativeActivity, _flags: u32) {}
-
-extern "C" fn ANativeActivity_hideSoftInput(_activity: *mut ANativeActivity, _flags: u32) {}

@@ -2,7 +2,7 @@
 
 #![allow(non_snake_case)]
 
-use std::ffi::{c_long, c_void};
+use std::ffi::c_void;
 
 use crate::android::looper::{self, ALooper};
 use crate::exports::{Export, System, exports};
@@ -10,7 +10,6 @@ use crate::host::{fatal, host, lock};
 
 type FrameCallback = unsafe extern "C" fn(nanoseconds: i64, data: *mut c_void);
 type VsyncCallback = unsafe extern "C" fn(frame: *const FrameData, data: *mut c_void);
-type RefreshRateCallback = unsafe extern "C" fn(period: i64, data: *mut c_void);
 
 /// A callback that waits for its refresh.
 #[derive(Clone, Copy)]
@@ -27,7 +26,6 @@ unsafe impl Send for Pending {}
 enum Kind {
     Frame(FrameCallback),
     Vsync(VsyncCallback),
-    RefreshRate(RefreshRateCallback),
 }
 
 /// `AChoreographerFrameCallbackData`: one timeline, shown two refreshes later, or as the script says.
@@ -51,7 +49,6 @@ pub fn run(looper: &ALooper, now: u64) -> bool {
             match callback.callback {
                 Kind::Frame(function) => function(callback.due as i64, callback.data),
                 Kind::Vsync(function) => function(&FrameData { time: callback.due, period }, callback.data),
-                Kind::RefreshRate(function) => function(period as i64, callback.data),
             }
         }
     }
@@ -63,12 +60,9 @@ pub fn next(looper: &ALooper) -> Option<u64> {
     lock(&looper.choreographer).iter().map(|callback| callback.due).min()
 }
 
-fn post(choreographer: *mut ALooper, callback: Kind, data: *mut c_void, delay_milliseconds: u64) {
+fn post(choreographer: *mut ALooper, callback: Kind, data: *mut c_void) {
     let clock = &host().clock;
-    let due = match callback {
-        Kind::RefreshRate(_) => clock.now(),
-        _ => clock.next_refresh(clock.now() + delay_milliseconds * 1_000_000),
-    };
+    let due = clock.next_refresh(clock.now());
     // SAFETY: a choreographer is its thread's looper, which lives as long as the thread.
     lock(&unsafe { &*choreographer }.choreographer).push(Pending { due, callback, data });
 }
@@ -76,13 +70,11 @@ fn post(choreographer: *mut ALooper, callback: Kind, data: *mut c_void, delay_mi
 /// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![
-        System::Android, 24: [AChoreographer_getInstance, AChoreographer_postFrameCallback, AChoreographer_postFrameCallbackDelayed];
-        System::Android, 29: [AChoreographer_postFrameCallback64, AChoreographer_postFrameCallbackDelayed64];
-        System::Android, 30: [AChoreographer_registerRefreshRateCallback, AChoreographer_unregisterRefreshRateCallback];
+        System::Android, 24: [AChoreographer_getInstance, AChoreographer_postFrameCallback];
+        System::Android, 29: [AChoreographer_postFrameCallback64];
         System::Android, 33: [
             AChoreographer_postVsyncCallback, AChoreographerFrameCallbackData_getFrameTimeNanos,
-            AChoreographerFrameCallbackData_getFrameTimelinesLength, AChoreographerFrameCallbackData_getPreferredFrameTimelineIndex,
-            AChoreographerFrameCallbackData_getFrameTimelineVsyncId,
+            AChoreographerFrameCallbackData_getPreferredFrameTimelineIndex,
             AChoreographerFrameCallbackData_getFrameTimelineExpectedPresentationTimeNanos,
             AChoreographerFrameCallbackData_getFrameTimelineDeadlineNanos,
         ];
@@ -101,7 +93,7 @@ extern "C" fn AChoreographer_postFrameCallback(
     callback: FrameCallback,
     data: *mut c_void,
 ) {
-    post(choreographer, Kind::Frame(callback), data, 0);
+    post(choreographer, Kind::Frame(callback), data);
 }
 
 extern "C" fn AChoreographer_postFrameCallback64(
@@ -109,25 +101,7 @@ extern "C" fn AChoreographer_postFrameCallback64(
     callback: FrameCallback,
     data: *mut c_void,
 ) {
-    post(choreographer, Kind::Frame(callback), data, 0);
-}
-
-extern "C" fn AChoreographer_postFrameCallbackDelayed(
-    choreographer: *mut ALooper,
-    callback: FrameCallback,
-    data: *mut c_void,
-    delay: c_long,
-) {
-    post(choreographer, Kind::Frame(callback), data, delay.max(0) as u64);
-}
-
-extern "C" fn AChoreographer_postFrameCallbackDelayed64(
-    choreographer: *mut ALooper,
-    callback: FrameCallback,
-    data: *mut c_void,
-    delay: u32,
-) {
-    post(choreographer, Kind::Frame(callback), data, u64::from(delay));
+    post(choreographer, Kind::Frame(callback), data);
 }
 
 extern "C" fn AChoreographer_postVsyncCallback(
@@ -135,44 +109,15 @@ extern "C" fn AChoreographer_postVsyncCallback(
     callback: VsyncCallback,
     data: *mut c_void,
 ) {
-    post(choreographer, Kind::Vsync(callback), data, 0);
-}
-
-/// Called once: the display of this device never changes its rate.
-extern "C" fn AChoreographer_registerRefreshRateCallback(
-    choreographer: *mut ALooper,
-    callback: RefreshRateCallback,
-    data: *mut c_void,
-) {
-    post(choreographer, Kind::RefreshRate(callback), data, 0);
-}
-
-extern "C" fn AChoreographer_unregisterRefreshRateCallback(
-    choreographer: *mut ALooper,
-    callback: RefreshRateCallback,
-    data: *mut c_void,
-) {
-    // SAFETY: as in `post`.
-    lock(&unsafe { &*choreographer }.choreographer).retain(|pending| !matches!(pending.callback, Kind::RefreshRate(function) if std::ptr::fn_addr_eq(function, callback) && pending.data == data));
+    post(choreographer, Kind::Vsync(callback), data);
 }
 
 extern "C" fn AChoreographerFrameCallbackData_getFrameTimeNanos(data: &FrameData) -> i64 {
     data.time as i64
 }
 
-extern "C" fn AChoreographerFrameCallbackData_getFrameTimelinesLength(_data: &FrameData) -> usize {
-    1
-}
-
 extern "C" fn AChoreographerFrameCallbackData_getPreferredFrameTimelineIndex(_data: &FrameData) -> usize {
     0
-}
-
-extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineVsyncId(
-    data: &FrameData,
-    _index: usize,
-) -> i64 {
-    (data.time / data.period) as i64
 }
 
 extern "C" fn AChoreographerFrameCallbackData_getFrameTimelineExpectedPresentationTimeNanos(

@@ -35,8 +35,6 @@ pub enum AInputEvent {
         /// Pixels from the top.
         y: f32,
         /// Nanoseconds.
-        down: u64,
-        /// Nanoseconds.
         time: u64,
     },
     /// A button.
@@ -45,8 +43,6 @@ pub enum AInputEvent {
         down: bool,
         /// `AKEYCODE_*`.
         code: c_int,
-        /// Nanoseconds.
-        down_time: u64,
         /// Nanoseconds.
         time: u64,
     },
@@ -101,19 +97,11 @@ impl AInputQueue {
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [
-            AInputQueue_attachLooper, AInputQueue_detachLooper, AInputQueue_finishEvent, AInputQueue_getEvent, AInputQueue_hasEvents,
-            AInputQueue_preDispatchEvent, AInputEvent_getDeviceId, AInputEvent_getSource, AInputEvent_getType, AKeyEvent_getAction,
-            AKeyEvent_getDownTime, AKeyEvent_getEventTime, AKeyEvent_getFlags, AKeyEvent_getKeyCode, AKeyEvent_getMetaState,
-            AKeyEvent_getRepeatCount, AKeyEvent_getScanCode, AMotionEvent_getAction, AMotionEvent_getAxisValue, AMotionEvent_getButtonState,
-            AMotionEvent_getDownTime, AMotionEvent_getEdgeFlags, AMotionEvent_getEventTime, AMotionEvent_getFlags,
-            AMotionEvent_getHistorySize, AMotionEvent_getMetaState, AMotionEvent_getOrientation, AMotionEvent_getPointerCount,
-            AMotionEvent_getPointerId, AMotionEvent_getPressure, AMotionEvent_getRawX, AMotionEvent_getRawY, AMotionEvent_getSize,
-            AMotionEvent_getToolMajor, AMotionEvent_getToolMinor, AMotionEvent_getToolType, AMotionEvent_getTouchMajor,
-            AMotionEvent_getTouchMinor, AMotionEvent_getX, AMotionEvent_getXOffset, AMotionEvent_getXPrecision, AMotionEvent_getY,
-            AMotionEvent_getYOffset, AMotionEvent_getYPrecision,
+            AInputQueue_attachLooper, AInputQueue_detachLooper, AInputQueue_finishEvent, AInputQueue_getEvent,
+            AInputQueue_preDispatchEvent, AInputEvent_getSource, AInputEvent_getType, AKeyEvent_getAction,
+            AKeyEvent_getEventTime, AKeyEvent_getKeyCode, AKeyEvent_getRepeatCount, AMotionEvent_getAction,
+            AMotionEvent_getAxisValue, AMotionEvent_getEventTime, AMotionEvent_getPointerCount,
         ];
-        System::Android, 31: [AInputEvent_release];
-        System::Android, 33: [AMotionEvent_getActionButton, AMotionEvent_getClassification];
     ]
 }
 
@@ -132,10 +120,6 @@ extern "C" fn AInputQueue_detachLooper(queue: &AInputQueue) {
     if let Some(looper) = lock(&queue.state).looper.take() {
         looper.remove(queue.event.raw());
     }
-}
-
-extern "C" fn AInputQueue_hasEvents(queue: &AInputQueue) -> i32 {
-    i32::from(!lock(&queue.state).events.is_empty())
 }
 
 unsafe extern "C" fn AInputQueue_getEvent(queue: &AInputQueue, out: *mut *mut AInputEvent) -> i32 {
@@ -166,10 +150,6 @@ unsafe extern "C" fn AInputQueue_finishEvent(_queue: &AInputQueue, event: *mut A
     drop(unsafe { Box::from_raw(event) });
 }
 
-extern "C" fn AInputEvent_release(_event: &AInputEvent) {
-    host().violation("AInputEvent_release of an event that came from a queue: finish it instead");
-}
-
 /// `AINPUT_EVENT_TYPE_KEY` is 1, `_MOTION` 2.
 extern "C" fn AInputEvent_getType(event: &AInputEvent) -> i32 {
     match event {
@@ -184,10 +164,6 @@ extern "C" fn AInputEvent_getSource(event: &AInputEvent) -> i32 {
         AInputEvent::Key { .. } => 0x101,
         AInputEvent::Motion { .. } => 0x1002,
     }
-}
-
-extern "C" fn AInputEvent_getDeviceId(_event: &AInputEvent) -> i32 {
-    1
 }
 
 /// Defines getters of one kind of event; calling one for the other kind is a violation and gives zero.
@@ -209,66 +185,24 @@ macro_rules! getters {
 getters! {
     AKeyEvent_getAction: AInputEvent::Key { down, .. } => i32::from(!*down), i32;
     AKeyEvent_getKeyCode: AInputEvent::Key { code, .. } => *code, i32;
-    AKeyEvent_getDownTime: AInputEvent::Key { down_time, .. } => *down_time as i64, i64;
     AKeyEvent_getEventTime: AInputEvent::Key { time, .. } => *time as i64, i64;
-    AKeyEvent_getFlags: AInputEvent::Key { .. } => 8, i32;
-    AKeyEvent_getMetaState: AInputEvent::Key { .. } => 0, i32;
     AKeyEvent_getRepeatCount: AInputEvent::Key { .. } => 0, i32;
-    AKeyEvent_getScanCode: AInputEvent::Key { .. } => 0, i32;
     AMotionEvent_getAction: AInputEvent::Motion { action, .. } => *action as i32, i32;
-    AMotionEvent_getActionButton: AInputEvent::Motion { .. } => 0, i32;
-    AMotionEvent_getButtonState: AInputEvent::Motion { .. } => 0, i32;
-    AMotionEvent_getClassification: AInputEvent::Motion { .. } => 0, i32;
-    AMotionEvent_getDownTime: AInputEvent::Motion { down, .. } => *down as i64, i64;
-    AMotionEvent_getEdgeFlags: AInputEvent::Motion { .. } => 0, i32;
     AMotionEvent_getEventTime: AInputEvent::Motion { time, .. } => *time as i64, i64;
-    AMotionEvent_getFlags: AInputEvent::Motion { .. } => 0, i32;
-    AMotionEvent_getHistorySize: AInputEvent::Motion { .. } => 0, usize;
-    AMotionEvent_getMetaState: AInputEvent::Motion { .. } => 0, i32;
     AMotionEvent_getPointerCount: AInputEvent::Motion { .. } => 1, usize;
-    AMotionEvent_getXOffset: AInputEvent::Motion { .. } => 0.0, f32;
-    AMotionEvent_getYOffset: AInputEvent::Motion { .. } => 0.0, f32;
-    AMotionEvent_getXPrecision: AInputEvent::Motion { .. } => 1.0, f32;
-    AMotionEvent_getYPrecision: AInputEvent::Motion { .. } => 1.0, f32;
 }
 
-/// Defines getters of the one finger; an index beyond it is a violation and gives zero.
-macro_rules! pointer_getters {
-    ($($name:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
-        $(extern "C" fn $name(event: &AInputEvent, index: usize) -> $type {
-            match event {
-                $pattern if index == 0 => $value,
-                _ => {
-                    host().violation(concat!(stringify!($name), " of a pointer that the event does not have"));
-                    <$type>::default()
-                }
-            }
-        })*
-    };
-}
-
-pointer_getters! {
-    AMotionEvent_getPointerId: AInputEvent::Motion { .. } => 0, i32;
-    AMotionEvent_getToolType: AInputEvent::Motion { .. } => 1, i32;
-    AMotionEvent_getX: AInputEvent::Motion { x, .. } => *x, f32;
-    AMotionEvent_getY: AInputEvent::Motion { y, .. } => *y, f32;
-    AMotionEvent_getRawX: AInputEvent::Motion { x, .. } => *x, f32;
-    AMotionEvent_getRawY: AInputEvent::Motion { y, .. } => *y, f32;
-    AMotionEvent_getPressure: AInputEvent::Motion { .. } => 1.0, f32;
-    AMotionEvent_getSize: AInputEvent::Motion { .. } => 0.1, f32;
-    AMotionEvent_getTouchMajor: AInputEvent::Motion { .. } => 10.0, f32;
-    AMotionEvent_getTouchMinor: AInputEvent::Motion { .. } => 10.0, f32;
-    AMotionEvent_getToolMajor: AInputEvent::Motion { .. } => 10.0, f32;
-    AMotionEvent_getToolMinor: AInputEvent::Motion { .. } => 10.0, f32;
-    AMotionEvent_getOrientation: AInputEvent::Motion { .. } => 0.0, f32;
-}
-
-/// `AMOTION_EVENT_AXIS_X` is 0, `_Y` 1, `_PRESSURE` 2; a finger has no others.
+/// `AMOTION_EVENT_AXIS_X` is 0, `_Y` 1, `_PRESSURE` 2; a finger has no others. An index beyond the one finger is a violation and
+/// gives zero.
 extern "C" fn AMotionEvent_getAxisValue(event: &AInputEvent, axis: i32, index: usize) -> f32 {
-    match axis {
-        0 => AMotionEvent_getX(event, index),
-        1 => AMotionEvent_getY(event, index),
-        2 => AMotionEvent_getPressure(event, index),
-        _ => 0.0,
+    match (event, axis) {
+        (AInputEvent::Motion { x, .. }, 0) if index == 0 => *x,
+        (AInputEvent::Motion { y, .. }, 1) if index == 0 => *y,
+        (AInputEvent::Motion { .. }, 2) if index == 0 => 1.0,
+        (AInputEvent::Motion { .. }, _) if index == 0 => 0.0,
+        _ => {
+            host().violation("AMotionEvent_getAxisValue of a pointer that the event does not have");
+            0.0
+        }
     }
 }

@@ -113,7 +113,6 @@ impl Log {
 pub fn exports() -> Vec<Export> {
     exports![
         System::Log, 1: [__android_log_assert, __android_log_buf_write, __android_log_write];
-        System::Log, 30: [__android_log_is_loggable, __android_log_get_minimum_priority];
     ]
 }
 
@@ -147,12 +146,4 @@ unsafe extern "C" fn __android_log_assert(
     // SAFETY: null or terminated strings by contract.
     let (condition, tag, format) = unsafe { (text(condition), text(tag), text(format)) };
     fatal(format!("the application called __android_log_assert({condition:?}, {tag:?}, {format:?})"))
-}
-
-extern "C" fn __android_log_is_loggable(_priority: c_int, _tag: *const c_char, _default: c_int) -> c_int {
-    1
-}
-
-extern "C" fn __android_log_get_minimum_priority() -> c_int {
-    2
 }

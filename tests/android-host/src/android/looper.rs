@@ -235,8 +235,8 @@ pub fn prepare() -> &'static ALooper {
 /// Returns the functions of this module that libandroid.so exports.
 pub fn exports() -> Vec<Export> {
     exports![System::Android, 1: [
-        ALooper_acquire, ALooper_addFd, ALooper_forThread, ALooper_pollAll, ALooper_pollOnce, ALooper_prepare, ALooper_release,
-        ALooper_removeFd, ALooper_wake,
+        ALooper_acquire, ALooper_addFd, ALooper_forThread, ALooper_pollOnce, ALooper_prepare, ALooper_release,
+        ALooper_wake,
     ]]
 }
 
@@ -279,11 +279,6 @@ unsafe extern "C" fn ALooper_addFd(
     // SAFETY: a live looper by contract.
     unsafe { &*looper }.add(fd, ident, events, callback, data);
     1
-}
-
-unsafe extern "C" fn ALooper_removeFd(looper: *const ALooper, fd: c_int) -> c_int {
-    // SAFETY: a live looper by contract.
-    c_int::from(unsafe { &*looper }.remove(fd))
 }
 
 unsafe extern "C" fn ALooper_wake(looper: *const ALooper) {
@@ -350,22 +345,5 @@ impl ALooper {
         let mut fds = self.descriptors(&lock(&self.entries));
         // SAFETY: pointer and length belong to one live vector.
         unsafe { libc::poll(fds.as_mut_ptr(), fds.len() as _, milliseconds) > 0 }
-    }
-}
-
-/// Polls like `pollOnce` until an entry has an identifier. Newer Androids lack it, and android-activity does not use
-/// it.
-unsafe extern "C" fn ALooper_pollAll(
-    timeout: c_int,
-    out_fd: *mut c_int,
-    out_events: *mut c_int,
-    out_data: *mut *mut c_void,
-) -> c_int {
-    loop {
-        // SAFETY: the out pointers are passed on as they came.
-        let result = unsafe { ALooper_pollOnce(timeout, out_fd, out_events, out_data) };
-        if result != POLL_CALLBACK {
-            return result;
-        }
     }
 }

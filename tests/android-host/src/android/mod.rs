@@ -1,7 +1,6 @@
 //! libandroid.so, liblog.so, and what there is of libcamera2ndk.so and libmediandk.so.
 
 pub mod activity;
-pub mod assets;
 pub mod camera;
 pub mod choreographer;
 pub mod codec;
@@ -11,5 +10,4 @@ pub mod log;
 pub mod looper;
 pub mod sensors;
 pub mod thermal;
-pub mod trace;
 pub mod window;

@@ -31,7 +31,6 @@ const MIN_PERIOD: u64 = 5_000_000;
 pub struct ASensor {
     kind: SensorKind,
     name: &'static CStr,
-    string_type: &'static CStr,
 }
 
 impl ASensor {
@@ -118,16 +117,12 @@ impl Sensors {
             .sensors
             .iter()
             .map(|kind| {
-                let (name, string_type) = match kind {
-                    SensorKind::Accelerometer => {
-                        (c"Simulated accelerometer", c"android.sensor.accelerometer")
-                    }
-                    SensorKind::Gyroscope => (c"Simulated gyroscope", c"android.sensor.gyroscope"),
-                    SensorKind::GyroscopeUncalibrated => {
-                        (c"Simulated gyroscope, uncalibrated", c"android.sensor.gyroscope_uncalibrated")
-                    }
+                let name = match kind {
+                    SensorKind::Accelerometer => c"Simulated accelerometer",
+                    SensorKind::Gyroscope => c"Simulated gyroscope",
+                    SensorKind::GyroscopeUncalibrated => c"Simulated gyroscope, uncalibrated",
                 };
-                &*Box::leak(Box::new(ASensor { kind: *kind, name, string_type }))
+                &*Box::leak(Box::new(ASensor { kind: *kind, name }))
             })
             .collect();
         let still = Motion { from: Quat::IDENTITY, to: Quat::IDENTITY, start: 0, duration: 0 };
@@ -220,14 +215,10 @@ impl Sensors {
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [
-            ASensorEventQueue_disableSensor, ASensorEventQueue_enableSensor, ASensorEventQueue_getEvents, ASensorEventQueue_hasEvents,
-            ASensorEventQueue_registerSensor, ASensorEventQueue_setEventRate, ASensorManager_createEventQueue,
-            ASensorManager_destroyEventQueue, ASensorManager_getDefaultSensor, ASensorManager_getInstance,
-            ASensorManager_getInstanceForPackage, ASensorManager_getSensorList, ASensor_getFifoMaxEventCount,
-            ASensor_getFifoReservedEventCount, ASensor_getMinDelay, ASensor_getName, ASensor_getReportingMode, ASensor_getResolution,
-            ASensor_getStringType, ASensor_getType, ASensor_getVendor, ASensor_isWakeUpSensor,
+            ASensorEventQueue_disableSensor, ASensorEventQueue_getEvents, ASensorEventQueue_registerSensor,
+            ASensorManager_createEventQueue, ASensorManager_destroyEventQueue, ASensorManager_getDefaultSensor,
+            ASensorManager_getInstance, ASensorManager_getInstanceForPackage, ASensor_getMinDelay, ASensor_getName,
         ];
-        System::Android, 29: [ASensor_getHandle];
     ]
 }
 
@@ -237,18 +228,6 @@ extern "C" fn ASensorManager_getInstance() -> *const Sensors {
 
 extern "C" fn ASensorManager_getInstanceForPackage(_package: *const c_char) -> *const Sensors {
     &raw const host().sensors
-}
-
-unsafe extern "C" fn ASensorManager_getSensorList(
-    _manager: *const c_void,
-    list: *mut *const &'static ASensor,
-) -> c_int {
-    let sensors = &host().sensors.list;
-    if !list.is_null() {
-        // SAFETY: not null, so the caller gives room for one pointer; the list lives as long as the process.
-        unsafe { list.write(sensors.as_ptr()) };
-    }
-    sensors.len() as c_int
 }
 
 extern "C" fn ASensorManager_getDefaultSensor(_manager: *const c_void, kind: c_int) -> *const ASensor {
@@ -316,11 +295,6 @@ impl ASensorEventQueue {
     }
 }
 
-extern "C" fn ASensorEventQueue_enableSensor(queue: &ASensorEventQueue, sensor: &ASensor) -> c_int {
-    queue.enable(sensor, None);
-    0
-}
-
 extern "C" fn ASensorEventQueue_registerSensor(
     queue: &ASensorEventQueue,
     sensor: &ASensor,
@@ -331,27 +305,9 @@ extern "C" fn ASensorEventQueue_registerSensor(
     0
 }
 
-extern "C" fn ASensorEventQueue_setEventRate(
-    queue: &ASensorEventQueue,
-    sensor: &ASensor,
-    period_us: i32,
-) -> c_int {
-    if !lock(&queue.state).enabled.contains_key(&sensor.type_number()) {
-        return -libc::EINVAL;
-    }
-    queue.enable(sensor, Some(period_us.max(0) as u64 * 1000));
-    0
-}
-
 extern "C" fn ASensorEventQueue_disableSensor(queue: &ASensorEventQueue, sensor: &ASensor) -> c_int {
     lock(&queue.state).enabled.remove(&sensor.type_number());
     0
-}
-
-extern "C" fn ASensorEventQueue_hasEvents(queue: &ASensorEventQueue) -> c_int {
-    let host = host();
-    host.sensors.fill(host.clock.now());
-    c_int::from(!lock(&queue.state).pending.is_empty())
 }
 
 unsafe extern "C" fn ASensorEventQueue_getEvents(
@@ -377,45 +333,8 @@ extern "C" fn ASensor_getName(sensor: &ASensor) -> *const c_char {
     sensor.name.as_ptr()
 }
 
-extern "C" fn ASensor_getVendor(_sensor: &ASensor) -> *const c_char {
-    c"simulated".as_ptr()
-}
-
-extern "C" fn ASensor_getType(sensor: &ASensor) -> c_int {
-    sensor.type_number()
-}
-
-extern "C" fn ASensor_getHandle(sensor: &ASensor) -> c_int {
-    sensor.type_number()
-}
-
-extern "C" fn ASensor_getStringType(sensor: &ASensor) -> *const c_char {
-    sensor.string_type.as_ptr()
-}
-
-extern "C" fn ASensor_getResolution(_sensor: &ASensor) -> f32 {
-    1e-3
-}
-
 extern "C" fn ASensor_getMinDelay(_sensor: &ASensor) -> c_int {
     (MIN_PERIOD / 1000) as c_int
-}
-
-extern "C" fn ASensor_getFifoMaxEventCount(_sensor: &ASensor) -> c_int {
-    FIFO as c_int
-}
-
-extern "C" fn ASensor_getFifoReservedEventCount(_sensor: &ASensor) -> c_int {
-    0
-}
-
-/// `AREPORTING_MODE_CONTINUOUS`.
-extern "C" fn ASensor_getReportingMode(_sensor: &ASensor) -> c_int {
-    0
-}
-
-extern "C" fn ASensor_isWakeUpSensor(_sensor: &ASensor) -> bool {
-    false
 }
 
 #[cfg(test)]

@@ -3,27 +3,10 @@
 #![allow(non_snake_case)]
 
 use std::ffi::{c_int, c_void};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::exports::{Export, System, exports};
 use crate::host::{host, lock};
-
-type StatusCallback = unsafe extern "C" fn(data: *mut c_void, status: c_int);
-
-/// Listeners of the thermal status.
-#[derive(Default)]
-pub struct ThermalListeners(Mutex<Vec<(StatusCallback, usize)>>);
-
-impl ThermalListeners {
-    /// Tells them a new status.
-    pub fn tell(&self, status: i32) {
-        for (callback, data) in lock(&self.0).clone() {
-            // SAFETY: the application's function, with the data that it gave for it.
-            unsafe { callback(data as *mut c_void, status) };
-        }
-    }
-}
 
 /// The time at which the headroom was last asked for, in nanoseconds; Android gives no answer before a second has
 /// passed.
@@ -33,14 +16,12 @@ static LAST_HEADROOM: AtomicU64 = AtomicU64::new(0);
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 30: [
-            AThermal_acquireManager, AThermal_getCurrentThermalStatus, AThermal_registerThermalStatusListener, AThermal_releaseManager,
-            AThermal_unregisterThermalStatusListener,
+            AThermal_acquireManager, AThermal_getCurrentThermalStatus, AThermal_releaseManager,
         ];
         System::Android, 31: [AThermal_getThermalHeadroom];
         System::Android, 33: [
             APerformanceHint_closeSession, APerformanceHint_createSession, APerformanceHint_getManager,
-            APerformanceHint_getPreferredUpdateRateNanos, APerformanceHint_reportActualWorkDuration,
-            APerformanceHint_updateTargetWorkDuration,
+            APerformanceHint_reportActualWorkDuration,
         ];
     ]
 }
@@ -73,26 +54,6 @@ pub fn headroom() -> f32 {
     lock(&host().thermal).headroom
 }
 
-extern "C" fn AThermal_registerThermalStatusListener(
-    _manager: *mut c_void,
-    callback: StatusCallback,
-    data: *mut c_void,
-) -> c_int {
-    lock(&host().thermal_listeners.0).push((callback, data as usize));
-    0
-}
-
-extern "C" fn AThermal_unregisterThermalStatusListener(
-    _manager: *mut c_void,
-    callback: StatusCallback,
-    data: *mut c_void,
-) -> c_int {
-    let mut listeners = lock(&host().thermal_listeners.0);
-    let before = listeners.len();
-    listeners.retain(|(known, with)| !(std::ptr::fn_addr_eq(*known, callback) && *with == data as usize));
-    if listeners.len() < before { 0 } else { libc::EINVAL }
-}
-
 extern "C" fn APerformanceHint_getManager() -> *mut c_void {
     std::ptr::dangling_mut()
 }
@@ -115,15 +76,7 @@ extern "C" fn APerformanceHint_closeSession(_session: *mut c_void) {
     host().count("performance hint sessions", -1);
 }
 
-extern "C" fn APerformanceHint_getPreferredUpdateRateNanos(_manager: *mut c_void) -> i64 {
-    host().clock.period() as i64
-}
-
 extern "C" fn APerformanceHint_reportActualWorkDuration(_session: *mut c_void, nanoseconds: i64) -> c_int {
     host().request("work duration");
-    if nanoseconds > 0 { 0 } else { libc::EINVAL }
-}
-
-extern "C" fn APerformanceHint_updateTargetWorkDuration(_session: *mut c_void, nanoseconds: i64) -> c_int {
     if nanoseconds > 0 { 0 } else { libc::EINVAL }
 }

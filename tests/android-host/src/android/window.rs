@@ -12,8 +12,6 @@ use crate::host::host;
 pub struct Window {
     width: AtomicI32,
     height: AtomicI32,
-    format: AtomicI32,
-    data_space: AtomicI32,
     references: AtomicI64,
     alive: AtomicBool,
 }
@@ -24,8 +22,6 @@ impl Window {
         Self {
             width: width.into(),
             height: height.into(),
-            format: AtomicI32::new(1),
-            data_space: AtomicI32::new(0),
             references: AtomicI64::new(0),
             alive: AtomicBool::new(false),
         }
@@ -69,12 +65,9 @@ impl Window {
 pub fn exports() -> Vec<Export> {
     exports![
         System::Android, 1: [
-            ANativeWindow_acquire, ANativeWindow_getFormat, ANativeWindow_getHeight, ANativeWindow_getWidth, ANativeWindow_release,
-            ANativeWindow_setBuffersGeometry,
+            ANativeWindow_acquire, ANativeWindow_release, ANativeWindow_setBuffersGeometry,
         ];
-        System::Android, 28: [ANativeWindow_getBuffersDataSpace, ANativeWindow_setBuffersDataSpace];
         System::Android, 30: [ANativeWindow_setFrameRate];
-        System::Android, 31: [ANativeWindow_setFrameRateWithChangeStrategy];
     ]
 }
 
@@ -99,57 +92,24 @@ extern "C" fn ANativeWindow_release(window: &Window) {
     window.reference(-1);
 }
 
-extern "C" fn ANativeWindow_getWidth(window: &Window) -> i32 {
-    known(window);
-    window.size().0
-}
-
-extern "C" fn ANativeWindow_getHeight(window: &Window) -> i32 {
-    known(window);
-    window.size().1
-}
-
-extern "C" fn ANativeWindow_getFormat(window: &Window) -> i32 {
-    known(window);
-    window.format.load(Ordering::Relaxed)
-}
-
 /// Zero for both sizes is the window's own; a smaller buffer that the display scales is not simulated.
-extern "C" fn ANativeWindow_setBuffersGeometry(window: &Window, width: i32, height: i32, format: i32) -> i32 {
+extern "C" fn ANativeWindow_setBuffersGeometry(
+    window: &Window,
+    width: i32,
+    height: i32,
+    _format: i32,
+) -> i32 {
     known(window);
     if (width, height) != (0, 0) && (width, height) != window.size() {
         host().violation(format!(
             "ANativeWindow_setBuffersGeometry({width}, {height}): the host does not simulate scaled buffers"
         ));
     }
-    if format != 0 {
-        window.format.store(format, Ordering::Relaxed);
-    }
     0
-}
-
-extern "C" fn ANativeWindow_setBuffersDataSpace(window: &Window, data_space: i32) -> i32 {
-    known(window);
-    window.data_space.store(data_space, Ordering::Relaxed);
-    0
-}
-
-extern "C" fn ANativeWindow_getBuffersDataSpace(window: &Window) -> i32 {
-    known(window);
-    window.data_space.load(Ordering::Relaxed)
 }
 
 extern "C" fn ANativeWindow_setFrameRate(window: &Window, rate: f32, _compatibility: i8) -> c_int {
     known(window);
     host().request(format!("{rate} Hz"));
     0
-}
-
-extern "C" fn ANativeWindow_setFrameRateWithChangeStrategy(
-    window: &Window,
-    rate: f32,
-    compatibility: i8,
-    _strategy: i8,
-) -> c_int {
-    ANativeWindow_setFrameRate(window, rate, compatibility)
 }

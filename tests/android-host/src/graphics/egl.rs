@@ -10,8 +10,8 @@ use std::sync::atomic::Ordering;
 
 use anyhow::{Context, Result};
 use khronos_egl::{
-    ALPHA_SIZE, BAD_ALLOC, BAD_ATTRIBUTE, BAD_MATCH, BAD_NATIVE_WINDOW, BAD_SURFACE, Boolean, CONTEXT_LOST,
-    CONTEXT_MAJOR_VERSION, CONTEXT_MINOR_VERSION, DRAW, GL_COLORSPACE, HEIGHT, NATIVE_VISUAL_ID, NONE,
+    ALPHA_SIZE, BAD_ALLOC, BAD_MATCH, BAD_NATIVE_WINDOW, BAD_SURFACE, Boolean, CONTEXT_LOST,
+    CONTEXT_MAJOR_VERSION, CONTEXT_MINOR_VERSION, GL_COLORSPACE, HEIGHT, NATIVE_VISUAL_ID, NONE,
     OPENGL_ES3_BIT, PBUFFER_BIT, RENDERABLE_TYPE, SUCCESS, SURFACE_TYPE, TRUE, WIDTH, WINDOW_BIT,
 };
 
@@ -80,21 +80,12 @@ mesa! {
         eglMakeCurrent(display: Handle, draw: Handle, read: Handle, context: Handle) -> Boolean;
         eglQuerySurface(display: Handle, surface: Handle, attribute: i32, value: *mut i32) -> Boolean;
         eglReleaseThread() -> Boolean;
-        eglSurfaceAttrib(display: Handle, surface: Handle, attribute: i32, value: i32) -> Boolean;
         eglSwapBuffers(display: Handle, surface: Handle) -> Boolean;
-        eglTerminate(display: Handle) -> Boolean;
     }
     passed_on {
         eglBindAPI(api: u32) -> Boolean;
-        eglGetConfigs(display: Handle, configs: *mut Handle, size: i32, count: *mut i32) -> Boolean;
         eglInitialize(display: Handle, major: *mut i32, minor: *mut i32) -> Boolean;
-        eglQueryAPI() -> u32;
-        eglQueryContext(display: Handle, context: Handle, attribute: i32, value: *mut i32) -> Boolean;
-        eglQueryString(display: Handle, name: i32) -> *const c_char;
         eglSwapInterval(display: Handle, interval: i32) -> Boolean;
-        eglWaitClient() -> Boolean;
-        eglWaitGL() -> Boolean;
-        eglWaitNative(engine: i32) -> Boolean;
     }
 }
 
@@ -118,14 +109,13 @@ pub struct ContextState {
 
 #[derive(Clone, Copy, Default)]
 struct Current {
-    display: Handle,
     draw: Handle,
     read: Handle,
     context: Handle,
 }
 
 thread_local! {
-    static CURRENT: Cell<Current> = const { Cell::new(Current { display: 0, draw: 0, read: 0, context: 0 }) };
+    static CURRENT: Cell<Current> = const { Cell::new(Current { draw: 0, read: 0, context: 0 }) };
     /// An error of the host's own, which hides Mesa's.
     static ERROR: Cell<i32> = const { Cell::new(SUCCESS) };
 }
@@ -173,11 +163,9 @@ fn value(pairs: &[(i32, i32)], name: i32) -> Option<i32> {
 /// Returns the functions that libEGL.so exports.
 pub fn exports() -> Vec<Export> {
     exports![System::Egl, 1: [
-        eglBindAPI, eglChooseConfig, eglCreateContext, eglCreatePbufferSurface, eglCreatePlatformWindowSurface, eglCreateWindowSurface,
-        eglDestroyContext, eglDestroySurface, eglGetConfigAttrib, eglGetConfigs, eglGetCurrentContext, eglGetCurrentDisplay,
-        eglGetCurrentSurface, eglGetDisplay, eglGetError, eglGetPlatformDisplay, eglGetProcAddress, eglInitialize, eglMakeCurrent,
-        eglQueryAPI, eglQueryContext, eglQueryString, eglQuerySurface, eglReleaseThread, eglSurfaceAttrib, eglSwapBuffers,
-        eglSwapInterval, eglTerminate, eglWaitClient, eglWaitGL, eglWaitNative,
+        eglBindAPI, eglChooseConfig, eglCreateContext, eglCreatePbufferSurface, eglCreateWindowSurface, eglDestroyContext,
+        eglDestroySurface, eglGetConfigAttrib, eglGetCurrentContext, eglGetDisplay, eglGetError, eglGetProcAddress, eglInitialize,
+        eglMakeCurrent, eglQuerySurface, eglReleaseThread, eglSwapBuffers, eglSwapInterval,
     ]]
 }
 
@@ -192,38 +180,6 @@ extern "C" fn eglGetError() -> i32 {
 extern "C" fn eglGetDisplay(_native: *mut c_void) -> Handle {
     // SAFETY: the platform takes no native display and no attributes.
     unsafe { (real().eglGetPlatformDisplay)(PLATFORM_SURFACELESS, std::ptr::null_mut(), std::ptr::null()) }
-}
-
-extern "C" fn eglGetPlatformDisplay(
-    _platform: u32,
-    native: *mut c_void,
-    _attributes: *const isize,
-) -> Handle {
-    eglGetDisplay(native)
-}
-
-unsafe extern "C" fn eglTerminate(display: Handle) -> Boolean {
-    let graphics = &host().graphics;
-    let current = CURRENT.get();
-    lock(&graphics.surfaces).retain(|handle, surface| {
-        let stays = *handle == current.draw || *handle == current.read;
-        if !stays && surface.is_window {
-            host().window.reference(-1);
-        }
-        stays
-    });
-    let mut groups = Vec::new();
-    lock(&graphics.contexts).retain(|handle, context| {
-        groups.push((context.group, *handle == current.context));
-        *handle == current.context
-    });
-    for (group, stays) in groups {
-        if !stays {
-            graphics.group_gone(group);
-        }
-    }
-    // SAFETY: the caller fulfils EGL's contract.
-    unsafe { (real().eglTerminate)(display) }
 }
 
 unsafe extern "C" fn eglChooseConfig(
@@ -388,27 +344,6 @@ unsafe extern "C" fn eglCreateWindowSurface(
     handle
 }
 
-unsafe extern "C" fn eglCreatePlatformWindowSurface(
-    display: Handle,
-    config: Handle,
-    window: *const Window,
-    attributes: *const isize,
-) -> Handle {
-    let mut narrow = Vec::new();
-    let mut next = attributes;
-    // SAFETY: null, or attributes that end in EGL_NONE, by contract.
-    while !next.is_null() && unsafe { *next } != NONE as isize {
-        // SAFETY: a name is followed by its value.
-        unsafe {
-            narrow.extend([*next as i32, *next.add(1) as i32]);
-            next = next.add(2);
-        }
-    }
-    narrow.push(NONE);
-    // SAFETY: the list ends in EGL_NONE; the rest is the caller's.
-    unsafe { eglCreateWindowSurface(display, config, window, narrow.as_ptr()) }
-}
-
 unsafe extern "C" fn eglDestroySurface(display: Handle, surface: Handle) -> Boolean {
     ERROR.set(SUCCESS);
     let host = host();
@@ -443,7 +378,7 @@ unsafe extern "C" fn eglMakeCurrent(display: Handle, draw: Handle, read: Handle,
     // SAFETY: same contract as the caller's, with the surfaces' real handles.
     let result = unsafe { (real().eglMakeCurrent)(display, draw_buffer, read_buffer, context) };
     if result == TRUE {
-        CURRENT.set(Current { display, draw, read, context });
+        CURRENT.set(Current { draw, read, context });
         let first = lock(&graphics.contexts)
             .get_mut(&context)
             .is_some_and(|context| !std::mem::replace(&mut context.seen, true));
@@ -465,14 +400,6 @@ extern "C" fn eglGetCurrentContext() -> Handle {
     CURRENT.get().context
 }
 
-extern "C" fn eglGetCurrentDisplay() -> Handle {
-    CURRENT.get().display
-}
-
-extern "C" fn eglGetCurrentSurface(which: i32) -> Handle {
-    if which == DRAW { CURRENT.get().draw } else { CURRENT.get().read }
-}
-
 unsafe extern "C" fn eglQuerySurface(
     display: Handle,
     surface: Handle,
@@ -485,20 +412,6 @@ unsafe extern "C" fn eglQuerySurface(
     };
     // SAFETY: same contract as the caller's, with the surface's real handle.
     unsafe { (real().eglQuerySurface)(display, pbuffer, attribute, value) }
-}
-
-unsafe extern "C" fn eglSurfaceAttrib(
-    display: Handle,
-    surface: Handle,
-    attribute: i32,
-    value: i32,
-) -> Boolean {
-    ERROR.set(SUCCESS);
-    let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else {
-        return fail(BAD_ATTRIBUTE);
-    };
-    // SAFETY: same contract as the caller's, with the surface's real handle.
-    unsafe { (real().eglSurfaceAttrib)(display, pbuffer, attribute, value) }
 }
 
 unsafe extern "C" fn eglSwapBuffers(display: Handle, surface: Handle) -> Boolean {
