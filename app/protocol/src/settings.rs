@@ -139,10 +139,10 @@ settings! {
     /// How the synthesis reads the rendered eye's edges.
     "edges" edges: Option<Edges> = None;
         auto("hard; sample with several samples on OpenGL ES 3.0"),
-    /// What the other eye has really seen fills what is uncovered: while that grows, an eighth of its rows is rendered besides
-    /// in each frame. Not with the paper's pipeline.
+    /// Fill disocclusions with what the other eye has really seen: strips of it, an eighth of its rows, are rendered in the
+    /// frames in which more is uncovered. Not with the paper's pipeline.
     "history" history: History = History::Off,
-    /// Hybrid near field: render objects nearer than this (metres) for both eyes.
+    /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;
         value_name("METRES");
         range(|s| s.near_field.is_none_or(is_positive), "give metres above 0, or auto"),
