@@ -2,7 +2,7 @@
 //!
 //! It takes Android's window, sensors, touch, settings and the state of battery and heat, and gives them to
 //! [`yoro_viewer`], which is the application itself. It must know neither how eyes are synthesized nor how they are
-//! measured. On other systems only the parts without Android are built, for their tests.
+//! measured, but for `pictures`, which compares a driver's pictures with stored ones. On other systems only the parts without Android are built, for their tests.
 
 #[cfg(any(target_os = "android", test))]
 mod game_loop;

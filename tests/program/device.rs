@@ -236,7 +236,10 @@ fn mistakes_and_conditions_are_one_sentence() {
         .env_remove("ANDROID_SDK_ROOT")
         .output();
     let said = String::from_utf8(homeless.unwrap().stderr).unwrap();
-    assert!(said.starts_with("error: adb was not found in PATH and ANDROID_HOME: install"), "{said}");
+    assert!(
+        said.starts_with("error: adb was not found in PATH, ANDROID_HOME and ANDROID_SDK_ROOT: install"),
+        "{said}"
+    );
     succeed(at, "device run talk --seconds 5 --replay s.toml --out once");
     run(at, "device run talk --seconds 5 --replay s.toml --out once").refuses(&["once holds a run already"]);
     let before = fs::read(at.join("once/run.json")).unwrap();

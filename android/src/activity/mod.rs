@@ -5,7 +5,7 @@
 //! activity comes to the front for the first time.
 
 mod camera;
-mod choice;
+mod headset;
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -533,7 +533,7 @@ impl Activity {
         let rendered = now_ns();
         cardboard.wait();
         let waited = now_ns();
-        // Turns the image to the head's present direction.
+        // The newest samples: timewarp uses them.
         feed(cardboard);
         let destination = Destination { framebuffer: None, origin: [0, 0], size: screen.size };
         let report = cardboard.present(&destination, &timing(waited))?;

@@ -14,6 +14,7 @@
 //! This crate must not depend on OpenGL, rendering or the command line.
 
 pub mod adb;
+pub mod adb_program;
 pub mod capture;
 pub mod experiment;
 pub mod farm;
@@ -24,7 +25,6 @@ mod latin_square;
 pub mod log;
 pub mod mean_power;
 pub mod phone;
-pub mod program;
 pub mod reading;
 pub mod replay;
 pub mod report;

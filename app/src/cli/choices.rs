@@ -67,5 +67,5 @@ pub fn patcher() -> impl TypedValueParser<Value = PatcherKind> {
 
 /// The suites of `yoro bench`.
 pub fn suite() -> impl TypedValueParser<Value = Suite> {
-    choice(Suite::ALL.iter().copied().chain([Suite::All]), Suite::name, Suite::about)
+    choice(Suite::EACH.iter().copied().chain([Suite::All]), Suite::name, Suite::about)
 }

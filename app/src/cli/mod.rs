@@ -1,4 +1,4 @@
-//! The subcommands of the program `yoro`, one file each.
+//! The subcommands of the program `yoro`, and what they share.
 
 #[macro_use]
 pub mod terminal;

@@ -1,7 +1,7 @@
 //! Which is cheaper on this device: two renders, or one with synthesis.
 //!
 //! Synthesis costs the same for any scene, so where a view is cheap to render, two renders are cheaper. Nobody knows
-//! that beforehand: it depends on the GPU, the scene, the resolution and the heat. A [`Chooser`] renders both ways in
+//! that beforehand: it depends on the GPU, the scene, the resolution and the heat. A [`Chooser`] asks for both ways in
 //! turns for about a second, takes the cheaper one, and measures again when that may have changed. It has no GL and no
 //! clock: it is told when frames ended and what they cost, and says what to render next.
 //!
@@ -115,8 +115,8 @@ pub struct Choice {
 
 /// Measures both ways in turns, and chooses the cheaper one.
 ///
-/// A measurement takes a second, or six turns of 7 frames if that is longer, after a quarter of a second without. The
-/// ways take turns of an eighth of a second; the first three frames of a turn do not count. Times are means of the
+/// A measurement begins a quarter of a second after the first frame, and takes a second, or six turns of 7 frames if that
+/// is longer. The ways take turns of an eighth of a second; the first three frames of a turn do not count. Times are means of the
 /// middle half, so that spikes do not count either.
 ///
 /// 1. If one way holds the display's rate and the other does not, it is chosen. A way holds it if the time between its
@@ -215,7 +215,7 @@ const SHORTEST_REST_NS: i64 = 30_000 * MS;
 const REST_NS: [i64; 2] = [60_000 * MS, 600_000 * MS];
 /// Changes of cost, pace and heat that are worth another measurement.
 const DRIFT: f32 = 1.3;
-const WARMER: f32 = 0.1;
+const HEAT_DRIFT: f32 = 0.1;
 
 impl Chooser {
     /// Begins with a way, and measures as soon as frames come.
@@ -348,11 +348,11 @@ impl Chooser {
             Phase::Resting { since_ns, until_ns } => {
                 let (has_rested, is_due) = (now_ns - *since_ns >= SHORTEST_REST_NS, now_ns >= *until_ns);
                 let heat = end.heat.filter(|heat| heat.is_finite());
-                let is_warmer =
-                    self.heat.zip(heat).is_some_and(|(before, now)| (now - before).abs() >= WARMER);
+                let heat_has_drifted =
+                    self.heat.zip(heat).is_some_and(|(before, now)| (now - before).abs() >= HEAT_DRIFT);
                 self.heat = self.heat.or(heat);
                 let has_drifted = self.watch.has_drifted(now_ns);
-                if is_due || (has_rested && (has_drifted || is_warmer)) {
+                if is_due || (has_rested && (has_drifted || heat_has_drifted)) {
                     self.measure(end);
                 }
             }

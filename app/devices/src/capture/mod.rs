@@ -2,7 +2,7 @@
 //!
 //! `run.json` is a [`RunInfo`]; `log.txt` holds the raw lines of logcat as they came; `samples.csv` one [`Sample`] a
 //! row, under the column names of the OVR Metrics Tool where that has the quantity in a documented unit. An empty cell
-//! is a value that the device does not give. While a run lasts, both grow line by line; `run.json` is replaced as a
+//! is a value that the device does not give. While a run lasts, `log.txt` and `samples.csv` grow line by line; `run.json` is replaced as a
 //! whole whenever there is news, and says until the end that the run was cut off.
 
 mod sample;
@@ -55,7 +55,7 @@ pub enum CaptureError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A file of another kind has a name of the capture's.
+    /// An unrelated file has the name of one of the capture's files.
     #[error("{} is there already, and the capture would replace it: name another folder", path.display())]
     Occupied {
         /// The file.

@@ -31,8 +31,8 @@ macro_rules! suites {
         }
 
         impl Suite {
-            /// All suites, in the order of the paper.
-            pub const ALL: &[Suite] = &[$(Suite::$variant),*];
+            /// Each suite, in the order in which [`Suite::All`] runs them.
+            pub const EACH: &[Suite] = &[$(Suite::$variant),*];
 
             /// Returns its name on the command line and in files.
             pub fn name(self) -> &'static str {
@@ -70,7 +70,7 @@ suites! {
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
     Bandwidth "bandwidth" "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
-    ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs that need not be here",
+    ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on five, none of which need be here",
 }
 
 /// The kind of measurement.
@@ -97,7 +97,7 @@ pub enum Measure {
     Bandwidth,
     /// A stream whose frames are shown a number of frames later, at 72 frames a second.
     Stream(usize),
-    /// An estimate for a GPU that need not be here.
+    /// Instructions that `gather` executes: an estimate for a GPU that need not be here.
     Executed(Device),
     /// The same of whole frames, for several.
     WholeFrames,
@@ -315,7 +315,7 @@ impl Choices {
             }
             Suite::ShaderCost => self.executed(plan(Measure::Executed(DEVICES[0]), Vec::new()), &every),
             Suite::All => {
-                let each = Suite::ALL.iter().map(|suite| self.jobs(*suite, object));
+                let each = Suite::EACH.iter().map(|suite| self.jobs(*suite, object));
                 Ok(each.collect::<anyhow::Result<Vec<_>>>()?.concat())
             }
         }

@@ -144,7 +144,7 @@ impl StereoMethod for Auto {
         self.methods[self.rendered?.index()].guard_band()
     }
 
-    /// Renders eyes that cannot be synthesized conventionally.
+    /// Where neither eye can be synthesized from the other, renders both.
     fn render_to(
         &mut self,
         renderer: &mut Renderer,

@@ -1,4 +1,4 @@
-//! The stereo methods: ways to make the two eyes of a frame, one file each.
+//! The stereo methods: ways to make the two eyes of a frame.
 
 mod auto;
 mod border;

@@ -7,7 +7,7 @@ use anyhow::bail;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use yoro_devices::adb::{self, Adb, Device, DeviceError};
-use yoro_devices::program::AdbProgram;
+use yoro_devices::adb_program::AdbProgram;
 use yoro_devices::replay::Replay;
 use yoro_files::interrupt;
 
@@ -16,7 +16,7 @@ use crate::cli::message;
 /// The source of devices.
 #[derive(clap::Args, Clone, Debug)]
 pub struct SourceArgs {
-    /// The program adb [default: the one in PATH or below ANDROID_HOME]
+    /// The program adb [default: the one in PATH, or below ANDROID_HOME or ANDROID_SDK_ROOT]
     #[arg(long, value_name = "FILE")]
     pub adb: Option<PathBuf>,
     /// Simulated devices: a script, or a folder of captures to replay. Their results are marked as simulated

@@ -28,8 +28,8 @@ const USUAL_DPI: f32 = 400.0;
 pub struct HeldHead {
     /// Rotation from head to world at which frames are rendered.
     pub rendered: Quat,
-    /// Rotation from head to world at which they are shown: another one than `rendered` is what timewarp
-    /// makes up for.
+    /// Rotation from head to world at which they are shown. If it differs from `rendered`, timewarp corrects the
+    /// difference.
     pub displayed: Quat,
 }
 
@@ -46,7 +46,7 @@ struct Attached {
     rendered: Option<(Quat, EyePair)>,
 }
 
-/// A [`Viewer`] on the screen of a phone.
+/// The application on the screen of a phone, behind the lenses of a Cardboard-compatible viewer.
 ///
 /// ```text
 /// new ──> attach(gl) ──> [ sensor()* ── event()* ── render() ── wait() ── sensor()* ── present() ]*
@@ -62,7 +62,7 @@ pub struct Cardboard {
 }
 
 impl Cardboard {
-    /// Puts a screen into a viewer and starts to load the scene in the background. `folders` are where scenes and
+    /// Makes the application for this screen, and starts to load the scene in the background. `folders` are where scenes and
     /// viewer files given by name are looked for.
     ///
     /// # Errors
@@ -334,8 +334,8 @@ impl Cardboard {
         }
     }
 
-    /// Puts the frame that was rendered last on the screen: through the lenses, turned to the head's newest direction or, by
-    /// positional timewarp, moved to its newest pose. May be called again for the same frame, when the next one is late.
+    /// Puts the frame that was rendered last on the screen, through the lenses. Timewarp turns it to the head's newest
+    /// direction or moves it to its newest pose, as the settings say.
     ///
     /// # Errors
     /// See [`Viewer::end`].

@@ -1,4 +1,4 @@
-//! The choice of the display, and a headset's steps.
+//! A headset: whether it is the display, and its steps.
 
 use std::sync::OnceLock;
 

@@ -34,7 +34,8 @@ pub struct AdbProgram {
 }
 
 impl AdbProgram {
-    /// Finds the program (the one given, in `PATH`, or in `ANDROID_HOME`) and starts its server.
+    /// Finds adb (the file given, in `PATH`, or in `platform-tools` of `ANDROID_HOME` or `ANDROID_SDK_ROOT`) and starts its
+    /// server.
     pub fn find(given: Option<&Path>) -> Result<AdbProgram, DeviceError> {
         let name = format!("adb{}", env::consts::EXE_SUFFIX);
         let program = match given {
@@ -49,7 +50,8 @@ impl AdbProgram {
         };
         // Without its folder, a program is looked for in PATH.
         let program = program.map(|path| std::path::absolute(&path).unwrap_or(path));
-        let looked = given.map_or("PATH and ANDROID_HOME".into(), |path| path.display().to_string());
+        let looked =
+            given.map_or("PATH, ANDROID_HOME and ANDROID_SDK_ROOT".into(), |path| path.display().to_string());
         let program = program.ok_or(DeviceError::NoAdb { looked })?;
         let adb = AdbProgram { program, server_timeout: SERVER_TIMEOUT };
         adb.start_server()?;
