@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -86,8 +86,7 @@ pub fn interrupt(folder: &Path, line: &str, begun: impl Fn() -> bool) -> Run {
         assert_eq!(child.try_wait().unwrap(), None, "yoro {line}: it has ended by itself");
         thread::sleep(Duration::from_millis(20));
     }
-    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
-    assert!(killed.success());
+    press_ctrl_c(&child);
     let start = Instant::now();
     while child.try_wait().unwrap().is_none() {
         if start.elapsed() > Duration::from_secs(20) {
@@ -99,4 +98,10 @@ pub fn interrupt(folder: &Path, line: &str, begun: impl Fn() -> bool) -> Run {
     let run = Run::new(child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(130), "yoro {line}: {}", run.stderr);
     run
+}
+
+/// Sends a running program what Ctrl-C sends.
+pub fn press_ctrl_c(child: &Child) {
+    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    assert!(killed.success());
 }

@@ -91,24 +91,25 @@ pub struct Limits {
 impl Server {
     /// Serves one client after the other until Ctrl-C.
     pub fn serve(&mut self, admitted: &Receiver<Client>) -> anyhow::Result<()> {
-        loop {
-            interrupt::check()?;
+        while !interrupt::requested() {
             match admitted.recv_timeout(Duration::from_millis(100)) {
                 Ok(mut client) => {
                     println!("a client has connected by {}", client.transport.name());
                     let ended = self.session(&mut client);
                     client.transport.close();
                     drop(client.seat);
-                    interrupt::check()?;
-                    println!(
-                        "the client has gone{}",
-                        ended.err().map_or(String::new(), |e| format!(": {e}"))
-                    );
+                    if !interrupt::requested() {
+                        println!(
+                            "the client has gone{}",
+                            ended.err().map_or(String::new(), |e| format!(": {e}"))
+                        );
+                    }
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => bail!("the port is closed"),
             }
         }
+        Ok(())
     }
 
     /// Serves a client until it is gone, which is no error.
