@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] is the
-//! interface to devices: [`program`] implements it with the program adb, [`replay`] with a script. [`follow`] reads a
+//! interface to devices: [`adb_program`] implements it with the program adb, [`replay`] with a script. [`follow`] reads a
 //! log across lost connections, [`reading`] parses its lines into samples ([`foreign`] finds the lines of other
 //! applications), [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and
 //! [`report`] computes figures from them. [`study`] plans and analyses user studies.
