@@ -66,7 +66,15 @@ impl Monado {
         }
         let monado = Monado { programs, folder, _service: service };
         let folder = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-        let manifest = yoro_layer::manifest(&folder.join("libyoro_layer.so"), yoro_layer::Kind::Explicit);
+        let layer = folder.join("libyoro_layer.so");
+        // Its name does not depend on its features: a `cargo build` beside the tests replaces it.
+        let contains = |name: &[u8]| fs::read(&layer).unwrap().windows(name.len()).any(|part| part == name);
+        assert!(
+            contains(b"YORO_LAYER_CAPTURE"),
+            "{} lacks feature `capture`: compile the tests again",
+            layer.display()
+        );
+        let manifest = yoro_layer::manifest(&layer, yoro_layer::Kind::Explicit);
         fs::write(monado.folder.path().join(yoro_layer::MANIFEST), manifest).unwrap();
         monado.add(MEASURED, &folder.join("../examples/libmeasured.so"));
         monado.add(VALIDATION, &monado.validation());
