@@ -38,7 +38,7 @@ pub struct Test {
     pub seconds: f64,
 }
 
-/// A line, and when it was there, in seconds since the process was started.
+/// A line, and when its beginning was there, in seconds since the process was started.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// Without its end.
@@ -90,6 +90,8 @@ fn output(mut command: Command, folder: &Path, start: Instant) -> io::Result<(Ve
     let mut child = command.spawn()?;
     let (mut lines, mut bytes) = (Vec::new(), Vec::new());
     let (mut last, mut mention, mut timed_out) = (Instant::now(), SLOW, false);
+    // When the beginning of a line without an end was there: the name of a test that prints nothing until it ends.
+    let mut begun = None;
     loop {
         // This order matters: output before the end is read after it.
         let status = child.try_wait()?;
@@ -99,8 +101,13 @@ fn output(mut command: Command, folder: &Path, start: Instant) -> io::Result<(Ve
         let whole = if status.is_some() { bytes.len() } else { whole_lines(&bytes) };
         let text = String::from_utf8_lossy(&bytes[..whole]).into_owned();
         let at = start.elapsed().as_secs_f64();
-        lines.extend(text.lines().map(|line| Line { text: line.to_owned(), at }));
+        for line in text.lines() {
+            lines.push(Line { text: line.to_owned(), at: begun.take().unwrap_or(at) });
+        }
         bytes.drain(..whole);
+        if !bytes.is_empty() {
+            begun.get_or_insert(at);
+        }
         if let Some(status) = status {
             return Ok((lines, status, timed_out));
         }
@@ -284,6 +291,7 @@ mod tests {
                     crash) kill -SEGV $$ ;;
                     fail) echo FAILED; printf 'why it fails\nfailures:\n    fail\n' >&2; code=101 ;;
                     leave) sleep 5 & echo ok ;;
+                    slow) sleep 0.3; echo ok ;;
                     *) echo ok ;;
                 esac
             done
@@ -301,6 +309,13 @@ mod tests {
         assert!(crashed.trouble.unwrap().contains("signal: 11"));
         let absent = run(Command::new("/no/such/program"), Some(&names("a")), &std::env::temp_dir());
         assert_eq!(outcomes(&absent), "a Failed, !");
+    }
+
+    #[test]
+    fn the_time_of_a_test_that_prints_nothing_is_its_own() {
+        let finished = run_script("a slow b");
+        let [a, slow, b] = [0, 1, 2].map(|test| finished.tests[test].seconds);
+        assert!(slow > 0.25 && a < slow && b < slow, "{a} s, {slow} s, {b} s");
     }
 
     #[test]
