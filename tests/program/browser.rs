@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 /// Names under which distributions install it.
 const PROGRAMS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// An answer that takes longer is none.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// The longest wait for an answer.
+const TIMEOUT: Duration = Duration::from_secs(120);
 
 /// A browser with one page.
 pub struct Browser {
@@ -119,7 +119,7 @@ impl Browser {
 
     /// Returns the next message; keeps events about errors and loading.
     fn receive(&mut self) -> Value {
-        let message = self.messages.recv_timeout(PATIENCE).expect("the browser answers");
+        let message = self.messages.recv_timeout(TIMEOUT).expect("the browser answers");
         let parameters = &message["params"];
         match message["method"].as_str() {
             Some("Page.loadEventFired") => self.loads += 1,

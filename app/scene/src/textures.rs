@@ -35,7 +35,7 @@ pub(super) enum Source {
     Memory(usize),
 }
 
-/// The making of a texture from pictures. Numbers are the bits of f32, so that equal recipes make one texture.
+/// How a texture is made from pictures. Numbers are the bits of f32, so that equal recipes make one texture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Recipe {
     /// The picture as it is.

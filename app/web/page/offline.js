@@ -2,8 +2,8 @@
 
 const CACHE = 'yoro VERSION';
 const FILES = ['./', 'icon.svg', 'manifest.webmanifest', /* FILES */];
-/** A network that takes longer than this, in ms, is none, where the file is kept. */
-const PATIENCE = 4000;
+/** The longest wait for the network where the file is kept, in ms. */
+const NETWORK_TIMEOUT = 4000;
 
 self.addEventListener('install', (event) => {
   event.waitUntil(caches.open(CACHE).then((cache) => cache.addAll(FILES)).then(() => self.skipWaiting()));
@@ -20,7 +20,7 @@ self.addEventListener('activate', (event) => {
 /** Returns the network's answer, or fails after a while. */
 function ask(request) {
   return new Promise((resolve, reject) => {
-    setTimeout(() => reject(new Error('The network does not answer.')), PATIENCE);
+    setTimeout(() => reject(new Error('The network does not answer.')), NETWORK_TIMEOUT);
     fetch(request).then(resolve, reject);
   });
 }

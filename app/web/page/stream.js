@@ -7,10 +7,10 @@ import { changed, startLoop } from './drawing.js';
 import { clear, loading, say } from './messages.js';
 import { sentence } from './sentence.js';
 
-/** Milliseconds after which a server is asked again although nothing is drawn. */
-const PATIENCE = 100;
-/** Milliseconds from one line of figures to the next. */
-const LINE = 1000;
+/** The longest time between two requests to a server, in ms: it is asked although nothing is drawn. */
+const REQUEST_INTERVAL = 100;
+/** The time from one line of figures to the next, in ms. */
+const FIGURES_INTERVAL = 1000;
 /** The answer of a server that serves another page; app/stream/src/messages.rs has all. */
 const BUSY = [1, 1];
 
@@ -22,7 +22,7 @@ let isThere = false;
 let sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
 let last = null;
 /** The name of the transport. */
-let via = '';
+let transport = '';
 let timers = [];
 /** When the server was asked last. */
 let asked = 0;
@@ -97,8 +97,8 @@ export function follow(stream) {
   };
   start(new URL('stream-worker.js', import.meta.url));
   worker.postMessage({ begin });
-  const keepAlive = () => { if (performance.now() - asked > PATIENCE) request(); };
-  timers = [setInterval(keepAlive, PATIENCE), setInterval(figures, LINE)];
+  const keepAlive = () => { if (performance.now() - asked > REQUEST_INTERVAL) request(); };
+  timers = [setInterval(keepAlive, REQUEST_INTERVAL), setInterval(figures, FIGURES_INTERVAL)];
   requestAnimationFrame(refresh);
   // Nobody sees a hidden page: another one may have the stream.
   document.addEventListener('visibilitychange', () => {
@@ -132,7 +132,7 @@ function receive({ answer, by, lost, fault, head, way, planes, frame, ms, isTime
   }
   sums.lost += framesLost ?? 0;
   if (answer) welcome(answer);
-  if (by) via = by;
+  if (by) transport = by;
   if (fault) {
     end();
     say(fault);
@@ -218,7 +218,7 @@ function figures() {
   sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
   const [cm, degrees] = app.page.streamCorrection() ?? [0, 0];
   element('facts').textContent = frames
-    ? `Stream by ${via}: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
+    ? `Stream by ${transport}: ${frames} frames/s, ${((bytes * 8) / 1e6).toFixed(2)} Mbit/s, ${(latency / frames).toFixed(0)} ms from the pose to its picture `
       + `(rendered in ${last.render.toFixed(0)}, encoded in ${last.code.toFixed(0)}), corrected by ${cm.toFixed(1)} cm and ${degrees.toFixed(1)}°, ${lost} lost, ${skipped} skipped, ${last.width}x${last.height}, quantizer ${last.quantizer}.`
     : 'Stream: no frames.';
 }

@@ -51,7 +51,7 @@ impl<W: WarpKind> Pipeline<W> {
     /// # Errors
     /// [`WgpuError::Format`], [`WgpuError::SampleCount`] and [`WgpuError::OpenGl`] for what the device cannot do,
     /// [`WgpuError::AnyView`] for what [`AnyView`] cannot, [`WgpuError::Refused`] for whatever else wgpu refuses. In a
-    /// browser the device's handler of uncaptured errors is told of such things.
+    /// browser the device's handler of uncaptured errors gets those.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
         let on_cpu = device.adapter_info().device_type == DeviceType::Cpu;
         Pipeline::with_passes(device, options, PassSet::of::<W>(on_cpu))

@@ -288,9 +288,9 @@ impl Choices {
                 self.anti_aliasing(plan(both, [baselines, Contender::edges()].concat()), &every)
             }
             Suite::Flicker => {
-                // With samples at the edges, flicker depends on what the synthesis is told of them: one pipeline only.
-                let told = || [vec![Contender::MONO], Contender::edges()].concat();
-                let contenders = if self.render.is_forward() { told() } else { synthesis() };
+                // With samples at the edges, flicker depends on how the synthesis reads them: one pipeline only.
+                let edges = || [vec![Contender::MONO], Contender::edges()].concat();
+                let contenders = if self.render.is_forward() { edges() } else { synthesis() };
                 plan(Measure::Flicker, contenders).over(self.varied(), [()], |job, ()| {
                     job.frames = FLICKER_FRAMES[usize::from(self.quick)];
                 })
