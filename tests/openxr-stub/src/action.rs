@@ -1,15 +1,13 @@
 //! Actions: the input of controllers, from the script.
 
 use std::collections::HashMap;
-use std::ffi::c_char;
 
 use openxr_sys as sys;
 use sys::{Handle, Result as Code};
 
 use crate::instance::text;
-use crate::log::Entry;
 use crate::script::State;
-use crate::world::{Answer, Array, DONE, Instance, Refusal, World, forbid_if, forbidden, found};
+use crate::world::{Answer, DONE, Refusal, World, forbid_if, forbidden, found};
 
 /// The actions of an instance.
 #[derive(Default)]
@@ -178,9 +176,7 @@ pub fn suggest_bindings(
         )?;
         bindings.push((binding.action.into_raw(), path));
     }
-    let paths = bindings.iter().map(|(_, path)| path.clone()).collect();
-    known.actions.bindings.insert(profile.clone(), bindings);
-    world.log.write(&Entry::Bindings { profile, paths });
+    known.actions.bindings.insert(profile, bindings);
     DONE
 }
 
@@ -349,20 +345,6 @@ pub fn get_action_state_boolean(
     })
 }
 
-pub fn get_action_state_float(
-    world: &mut World,
-    session: sys::Session,
-    info: &sys::ActionStateGetInfo,
-    out: &mut sys::ActionStateFloat,
-) -> Answer {
-    let values = state(world, session, info, sys::ActionType::FLOAT_INPUT)?;
-    let time = sys::Time::from_nanos(world.current()?.actions.changed_at);
-    put_state(values.map(|both| both.map(|value| value[0])), 0.0, |now, changed, active| {
-        out.current_state = now;
-        (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
-    })
-}
-
 pub fn get_action_state_vector2f(
     world: &mut World,
     session: sys::Session,
@@ -375,87 +357,4 @@ pub fn get_action_state_vector2f(
         out.current_state = sys::Vector2f { x, y };
         (out.changed_since_last_sync, out.is_active, out.last_change_time) = (changed, active, time);
     })
-}
-
-pub fn get_action_state_pose(
-    world: &mut World,
-    session: sys::Session,
-    info: &sys::ActionStateGetInfo,
-    out: &mut sys::ActionStatePose,
-) -> Answer {
-    let values = state(world, session, info, sys::ActionType::POSE_INPUT)?;
-    out.is_active = values.is_some().into();
-    DONE
-}
-
-pub fn get_current_interaction_profile(
-    world: &mut World,
-    session: sys::Session,
-    _: sys::Path,
-    out: &mut sys::InteractionProfileState,
-) -> Answer {
-    forbid_if(!world.session(session)?.attached, Code::ERROR_ACTIONSET_NOT_ATTACHED, "no set is attached")?;
-    let profile = world.profile.clone();
-    let instance = world.current()?;
-    let known = profile.and_then(|profile| instance.paths.iter().position(|path| *path == profile));
-    out.interaction_profile = sys::Path::from_raw(known.map_or(0, |i| i as u64 + 1));
-    DONE
-}
-
-fn bound_paths(instance: &Instance, action: sys::Action, profile: Option<&str>) -> Vec<sys::Path> {
-    let bindings = profile.and_then(|profile| instance.actions.bindings.get(profile));
-    let bound = bindings.into_iter().flatten().filter(|(handle, _)| *handle == action.into_raw());
-    bound
-        .filter_map(|(_, path)| instance.paths.iter().position(|known| known == path))
-        .map(|index| sys::Path::from_raw(index as u64 + 1))
-        .collect()
-}
-
-pub fn enumerate_bound_sources(
-    world: &mut World,
-    session: sys::Session,
-    info: &sys::BoundSourcesForActionEnumerateInfo,
-    sources: Array<sys::Path>,
-) -> Answer {
-    world.session(session)?;
-    let action = info.action;
-    let profile = world.profile.clone();
-    let instance = world.current()?;
-    instance.actions.check(action)?;
-    let paths = bound_paths(instance, action, profile.as_deref());
-    sources.fill(&paths, |to, from| *to = *from)
-}
-
-pub fn get_input_source_localized_name(
-    world: &mut World,
-    session: sys::Session,
-    info: &sys::InputSourceLocalizedNameGetInfo,
-    buffer: Array<c_char>,
-) -> Answer {
-    world.session(session)?;
-    let path = info.source_path;
-    let name = world.current()?.path(path).unwrap_or_default().to_owned();
-    buffer.fill_text(&name)
-}
-
-pub fn apply_haptic_feedback(
-    world: &mut World,
-    session: sys::Session,
-    info: &sys::HapticActionInfo,
-    _: *const sys::HapticBaseHeader,
-) -> Answer {
-    world.session(session)?;
-    world.current()?.actions.check(info.action)?;
-    world.log.write(&Entry::Request { what: "haptic".into(), value: 1.0 });
-    world.success()
-}
-
-pub fn stop_haptic_feedback(
-    world: &mut World,
-    session: sys::Session,
-    info: &sys::HapticActionInfo,
-) -> Answer {
-    world.session(session)?;
-    world.current()?.actions.check(info.action)?;
-    world.success()
 }

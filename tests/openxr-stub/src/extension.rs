@@ -18,12 +18,6 @@ pub fn enumerate_display_refresh_rates(
     rates.fill(&world.script.refresh_rates, |to, from| *to = *from)
 }
 
-pub fn get_display_refresh_rate(world: &mut World, session: sys::Session, rate: &mut f32) -> Answer {
-    world.session(session)?;
-    *rate = world.refresh_rate;
-    DONE
-}
-
 pub fn request_display_refresh_rate(world: &mut World, session: sys::Session, rate: f32) -> Answer {
     world.session(session)?;
     forbid_if(

@@ -53,7 +53,6 @@ pub fn wait_frame(
     out: &mut sys::FrameState,
 ) -> Answer {
     running(world, session)?;
-    let should_render_from = world.script.should_render_from;
     world.frames += 1;
     let number = world.frame();
     world.happen(|at| matches!(at, At::Frame(n) if *n == number));
@@ -66,7 +65,8 @@ pub fn wait_frame(
         "the last frame that was waited for has not begun: a real runtime would wait for ever",
     )?;
     let visible = matches!(known.state, crate::script::State::Visible | crate::script::State::Focused);
-    let should_render = visible && known.frames.count >= should_render_from;
+    // A session's first frame is not rendered.
+    let should_render = visible && known.frames.count > 0;
     known.frames.count += 1;
     known.frames.waited = Some(Frame { number, time, should_render });
     out.predicted_display_time = time;

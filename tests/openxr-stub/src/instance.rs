@@ -163,32 +163,6 @@ pub fn get_instance_properties(
     DONE
 }
 
-pub fn result_to_string(
-    world: &mut World,
-    instance: sys::Instance,
-    value: sys::Result,
-    buffer: *mut c_char,
-) -> Answer {
-    world.instance(instance)?;
-    // SAFETY: the buffer has this size.
-    let buffer = unsafe { std::slice::from_raw_parts_mut(buffer, sys::MAX_RESULT_STRING_SIZE) };
-    put_text(buffer, &format!("{value:?}"));
-    DONE
-}
-
-pub fn structure_type_to_string(
-    world: &mut World,
-    instance: sys::Instance,
-    value: sys::StructureType,
-    buffer: *mut c_char,
-) -> Answer {
-    world.instance(instance)?;
-    // SAFETY: the buffer has this size.
-    let buffer = unsafe { std::slice::from_raw_parts_mut(buffer, sys::MAX_STRUCTURE_NAME_SIZE) };
-    put_text(buffer, &format!("{value:?}"));
-    DONE
-}
-
 pub fn get_system(
     world: &mut World,
     instance: sys::Instance,
@@ -261,17 +235,6 @@ impl Instance {
     }
 }
 
-pub fn path_to_string(
-    world: &mut World,
-    instance: sys::Instance,
-    path: sys::Path,
-    buffer: Array<c_char>,
-) -> Answer {
-    let text = world.instance(instance)?.path(path).map(str::to_owned);
-    let text = text.ok_or_else(|| forbidden(Code::ERROR_PATH_INVALID, "not a path"))?;
-    buffer.fill_text(&text)
-}
-
 /// Writes an event to the buffer, which has room for each of them.
 fn tell<T: Copy>(buffer: &mut sys::EventDataBuffer, event: T) -> Answer {
     const { assert!(size_of::<T>() <= size_of::<sys::EventDataBuffer>()) };
@@ -301,7 +264,6 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
     let Some(event) = known.events.pop_front() else {
         world.idle_polls += 1;
         let polls = world.idle_polls;
-        world.happen(|at| matches!(at, At::Poll(n) if *n <= polls));
         let known = world.any_instance(instance)?;
         if let Some(session) = &mut known.session {
             session.put_on_again(polls, &mut known.events);

@@ -26,10 +26,8 @@ pub enum Entry {
     State { state: State },
     /// A frame has ended.
     Frame { frame: u32, should_render: bool, layers: Vec<Layer> },
-    /// The application requested something: a display rate, a performance level, the end of the session, haptics.
+    /// The application requested something: a display rate, a performance level, the end of the session.
     Request { what: String, value: f64 },
-    /// The application suggested bindings.
-    Bindings { profile: String, paths: Vec<String> },
     /// An event of the script has happened.
     Scripted { what: String },
     /// A call failed because of the script.

@@ -32,16 +32,12 @@ pub struct Script {
     pub position: [f32; 3],
     /// The head's turn to the left.
     pub yaw_degrees: f32,
-    /// The additional turn in each frame.
-    pub yaw_per_frame_degrees: f32,
     /// Frames without a valid pose of the head.
     pub untracked: Vec<u32>,
     /// Frames in which the views' quaternions have this length instead of 1, and are called valid.
     pub quaternion_lengths: Vec<(u32, f32)>,
     /// True if `xrGetInstanceProcAddr` with an instance succeeds but returns null for functions that need none.
     pub no_globals: bool,
-    /// The first frame of a session with `shouldRender`, counted from 0.
-    pub should_render_from: u32,
     /// The display's rates in hertz; it begins with the first.
     pub refresh_rates: Vec<f32>,
     /// Events and losses.
@@ -101,8 +97,6 @@ pub enum At {
     Frame(u32),
     /// The application gets the event of this state.
     State(State),
-    /// The application has asked for events this often while there was none.
-    Poll(u32),
 }
 
 /// `XrSessionState`.
@@ -216,11 +210,9 @@ impl Default for Script {
             ipd: vec![(0, 0.063)],
             position: [0.0, 1.6, 0.0],
             yaw_degrees: 0.0,
-            yaw_per_frame_degrees: 0.0,
             untracked: Vec::new(),
             quaternion_lengths: Vec::new(),
             no_globals: false,
-            should_render_from: 1,
             refresh_rates: vec![72.0, 80.0, 90.0, 120.0],
             events: Vec::new(),
             faults: Vec::new(),

@@ -253,21 +253,6 @@ pub fn enumerate_view_configurations(
     types.fill(&offered, |to, from| *to = *from)
 }
 
-pub fn get_view_configuration_properties(
-    world: &mut World,
-    instance: sys::Instance,
-    system: sys::SystemId,
-    configuration: sys::ViewConfigurationType,
-    properties: &mut sys::ViewConfigurationProperties,
-) -> Answer {
-    world.instance(instance)?;
-    check_system(system)?;
-    views_of(world, configuration)?;
-    properties.view_configuration_type = configuration;
-    properties.fov_mutable = sys::TRUE;
-    DONE
-}
-
 /// The recommended planes in metres of XR_EXT_view_configuration_depth_range, whose structure is filled even without
 /// it.
 const DEPTH_RANGE: (f32, f32) = (0.1, 50.0);

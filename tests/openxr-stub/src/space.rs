@@ -5,7 +5,7 @@ use openxr_sys as sys;
 use sys::{Handle, Result as Code};
 
 use crate::script::Aim;
-use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, found};
+use crate::world::{Answer, DONE, Refusal, World, forbid_if, found};
 
 /// A rotation, then a translation: from a space to its parent.
 pub type Pose = (Quat, Vec3);
@@ -108,16 +108,6 @@ impl World {
     }
 }
 
-pub fn enumerate_reference_spaces(
-    world: &mut World,
-    session: sys::Session,
-    out: Array<sys::ReferenceSpaceType>,
-) -> Answer {
-    world.session(session)?;
-    let types = world.reference_spaces()?;
-    out.fill(&types, |to, from| *to = *from)
-}
-
 pub fn create_reference_space(
     world: &mut World,
     session: sys::Session,
@@ -179,15 +169,4 @@ pub fn locate_space(
         out.location_flags = sys::SpaceLocationFlags::EMPTY;
     }
     world.success()
-}
-
-pub fn get_reference_space_bounds_rect(
-    world: &mut World,
-    session: sys::Session,
-    _: sys::ReferenceSpaceType,
-    bounds: &mut sys::Extent2Df,
-) -> Answer {
-    world.session(session)?;
-    *bounds = sys::Extent2Df::default();
-    Ok(Code::SPACE_BOUNDS_UNAVAILABLE)
 }

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
-use std::ffi::{c_char, c_void};
+use std::ffi::c_void;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
@@ -57,14 +57,6 @@ impl<T> Array<T> {
             }
         }
         DONE
-    }
-}
-
-impl Array<c_char> {
-    /// Writes a text, which ends in zero.
-    pub fn fill_text(self, text: &str) -> Answer {
-        let characters: Vec<c_char> = text.bytes().chain([0]).map(|c| c as c_char).collect();
-        self.fill(&characters, |to, from| *to = *from)
     }
 }
 
@@ -405,8 +397,6 @@ impl World {
 
     /// Returns the head's pose in the floor's space.
     pub fn head(&self) -> (Quat, Vec3) {
-        let turns = self.frame() as f32;
-        let yaw = self.script.yaw_degrees + turns * self.script.yaw_per_frame_degrees;
-        (Quat::from_rotation_y(yaw.to_radians()), self.script.position.into())
+        (Quat::from_rotation_y(self.script.yaw_degrees.to_radians()), self.script.position.into())
     }
 }
