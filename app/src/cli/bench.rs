@@ -113,63 +113,59 @@ impl Subcommand for BenchArgs {
         Ok(files)
     }
 
+    /// Measures, appends to the file of results, and prints a short table.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Measures, appends to the file of results, and prints a short table.
-fn run(args: &BenchArgs) -> anyhow::Result<()> {
-    let choices = args.choices()?;
-    yoro_scenes::check(&choices.scenes, choices.seed)?;
-    let path = args.path.as_deref().map(yoro_scene::path::read).transpose()?;
-    if path.is_none() {
-        choices.scenes.iter().for_each(|scene| warn_without_camera(Path::new(scene)));
-    }
-    let object = args.object.as_deref().map(Object::load).transpose()?;
-    let object = LazyObject::new(Box::new(|| object.unwrap_or_else(Object::hare)));
-    let jobs = jobs(args, &choices, &object)?;
-    let headless = args.open()?;
-    let gl = headless.gl();
-    let out = args.out();
-    let (writer, before) = Writer::open(&out, &header(args, &choices, gl))?;
-    let finished = jobs.iter().filter(|job| before.rounds(&job.setting) >= job.rounds).count();
-    if finished > 0 {
-        log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
-    }
-    let bar = progress_bar(jobs.iter().map(Job::steps).sum());
-    let bounds = Bounds {
-        memory_mib: args.max_memory_mib.map_or_else(
-            || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available),
-            |mib| mib as f64,
-        ),
-        frame: Duration::from_millis(args.max_frame_ms),
-    };
-    let patchers = PatcherOptions { model: args.model.clone() };
-    let inputs = Inputs { choices: &choices, object: &object, path: path.as_deref(), bounds, patchers };
-    let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
-    for job in &jobs {
-        if let Err(error) = runner.run(job) {
-            bar.finish_and_clear();
-            if error.is::<Interrupted>() {
-                bail!(
-                    "interrupted: the finished rounds are in {}; the same command with --out {} goes on",
-                    out.display(),
-                    out.display()
-                );
-            }
-            return Err(error.context(format!("cannot measure {}", job.setting)));
+        let choices = self.choices()?;
+        yoro_scenes::check(&choices.scenes, choices.seed)?;
+        let path = self.path.as_deref().map(yoro_scene::path::read).transpose()?;
+        if path.is_none() {
+            choices.scenes.iter().for_each(|scene| warn_without_camera(Path::new(scene)));
         }
+        let object = self.object.as_deref().map(Object::load).transpose()?;
+        let object = LazyObject::new(Box::new(|| object.unwrap_or_else(Object::hare)));
+        let jobs = jobs(self, &choices, &object)?;
+        let headless = self.open()?;
+        let gl = headless.gl();
+        let out = self.out();
+        let (writer, before) = Writer::open(&out, &header(self, &choices, gl))?;
+        let finished = jobs.iter().filter(|job| before.rounds(&job.setting) >= job.rounds).count();
+        if finished > 0 {
+            log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
+        }
+        let bar = progress_bar(jobs.iter().map(Job::steps).sum());
+        let bounds = Bounds {
+            memory_mib: self.max_memory_mib.map_or_else(
+                || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available),
+                |mib| mib as f64,
+            ),
+            frame: Duration::from_millis(self.max_frame_ms),
+        };
+        let patchers = PatcherOptions { model: self.model.clone() };
+        let inputs = Inputs { choices: &choices, object: &object, path: path.as_deref(), bounds, patchers };
+        let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
+        for job in &jobs {
+            if let Err(error) = runner.run(job) {
+                bar.finish_and_clear();
+                if error.is::<Interrupted>() {
+                    bail!(
+                        "interrupted: the finished rounds are in {}; the same command with --out {} goes on",
+                        out.display(),
+                        out.display()
+                    );
+                }
+                return Err(error.context(format!("cannot measure {}", job.setting)));
+            }
+        }
+        bar.finish_and_clear();
+        let results = bench::Results::read(&out)?;
+        if self.frame {
+            print!("{}", BenchReport::new(vec![results])?.to_markdown(None));
+        } else {
+            print!("{}", bench::text(&results));
+        }
+        println!("results: {}", out.display());
+        Ok(())
     }
-    bar.finish_and_clear();
-    let results = bench::Results::read(&out)?;
-    if args.frame {
-        print!("{}", BenchReport::new(vec![results])?.to_markdown(None));
-    } else {
-        print!("{}", bench::text(&results));
-    }
-    println!("results: {}", out.display());
-    Ok(())
 }
 
 impl BenchArgs {

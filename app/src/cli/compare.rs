@@ -52,18 +52,14 @@ impl Subcommand for CompareArgs {
         Ok(files)
     }
 
+    /// Compares and prints; error maps are written if asked for.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        let report = CompareReport::of(&self.inputs())?;
+        for path in &report.unmatched {
+            log::warn!("{} has no partner and is left out", path.display());
+        }
+        let text = if self.json { serde_json::to_string_pretty(&report)? + "\n" } else { report.to_text() };
+        print!("{text}");
+        Ok(())
     }
-}
-
-/// Compares and prints; error maps are written if asked for.
-fn run(args: &CompareArgs) -> anyhow::Result<()> {
-    let report = CompareReport::of(&args.inputs())?;
-    for path in &report.unmatched {
-        log::warn!("{} has no partner and is left out", path.display());
-    }
-    let text = if args.json { serde_json::to_string_pretty(&report)? + "\n" } else { report.to_text() };
-    print!("{text}");
-    Ok(())
 }

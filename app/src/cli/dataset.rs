@@ -169,48 +169,44 @@ impl Subcommand for DatasetArgs {
         Ok(files)
     }
 
+    /// Makes the missing groups.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Makes the missing groups.
-fn run(args: &DatasetArgs) -> anyhow::Result<()> {
-    args.eyes.check()?;
-    ensure!(
-        args.eyes.half_angles_degrees.is_none(),
-        "--half-angles-degrees cannot be used here: `yoro synthesize` reads the groups and takes symmetric frusta; leave it out"
-    );
-    args.patcher.check()?;
-    let path = args.path.as_deref().map(path::read).transpose()?;
-    let names = args.names();
-    // Names and folders are checked before hours of work.
-    let groups = args.groups as usize;
-    let all = 0..names.len() * groups;
-    let part = args.shard.map_or(all.clone(), |shard| shard.part(all.len()));
-    let jobs = names
-        .iter()
-        .zip(0..)
-        .map(|(name, at)| {
-            let within = |position: usize| position.clamp(at * groups, (at + 1) * groups) - at * groups;
-            Job::new(args, name, path.as_deref(), within(part.start) as u32..within(part.end) as u32)
-        })
-        .collect::<anyhow::Result<Vec<Job>>>()?;
-    let total = part.len() as u64;
-    let missing: u64 = jobs.iter().map(|job| job.missing.len() as u64).sum();
-    let bar = progress_bar(total);
-    bar.set_position(total - missing);
-    if missing > 0 {
-        let headless = args.gl.open()?;
-        let gl = headless.gl();
-        let mut patcher = args.patcher.create(gl)?;
-        for job in &jobs {
-            job.run(args, gl, path.as_deref(), &mut patcher, &bar)?;
+        self.eyes.check()?;
+        ensure!(
+            self.eyes.half_angles_degrees.is_none(),
+            "--half-angles-degrees cannot be used here: `yoro synthesize` reads the groups and takes symmetric frusta; leave it out"
+        );
+        self.patcher.check()?;
+        let path = self.path.as_deref().map(path::read).transpose()?;
+        let names = self.names();
+        // Names and folders are checked before hours of work.
+        let groups = self.groups as usize;
+        let all = 0..names.len() * groups;
+        let part = self.shard.map_or(all.clone(), |shard| shard.part(all.len()));
+        let jobs = names
+            .iter()
+            .zip(0..)
+            .map(|(name, at)| {
+                let within = |position: usize| position.clamp(at * groups, (at + 1) * groups) - at * groups;
+                Job::new(self, name, path.as_deref(), within(part.start) as u32..within(part.end) as u32)
+            })
+            .collect::<anyhow::Result<Vec<Job>>>()?;
+        let total = part.len() as u64;
+        let missing: u64 = jobs.iter().map(|job| job.missing.len() as u64).sum();
+        let bar = progress_bar(total);
+        bar.set_position(total - missing);
+        if missing > 0 {
+            let headless = self.gl.open()?;
+            let gl = headless.gl();
+            let mut patcher = self.patcher.create(gl)?;
+            for job in &jobs {
+                job.run(self, gl, path.as_deref(), &mut patcher, &bar)?;
+            }
         }
+        bar.finish_and_clear();
+        println!("{total} groups in {} ({missing} new)", self.out.display());
+        Ok(())
     }
-    bar.finish_and_clear();
-    println!("{total} groups in {} ({missing} new)", args.out.display());
-    Ok(())
 }
 
 fn group_options(args: &DatasetArgs) -> GroupOptions {

@@ -20,52 +20,48 @@ impl Subcommand for InfoArgs {
         Ok(Files::default())
     }
 
+    /// Prints one block per backend. Fails only when no backend works.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Prints one block per backend. Fails only when no backend works.
-fn run(args: &InfoArgs) -> anyhow::Result<()> {
-    let backends = match args.gl.backend {
-        Backend::Auto => vec![("egl", Backend::Egl), ("osmesa", Backend::Osmesa)],
-        Backend::Egl => vec![("egl", Backend::Egl)],
-        Backend::Osmesa => vec![("osmesa", Backend::Osmesa)],
-    };
-    let mut found = serde_json::Map::new();
-    let mut failures = Vec::new();
-    for (name, backend) in backends {
-        match Headless::open(backend) {
-            Ok(headless) => {
-                let capabilities = headless.gl().capabilities();
-                if !args.json {
-                    println!("{name}: {}", capabilities.summary());
-                    println!(
-                        "  vendor {}, textures up to {} pixels",
-                        capabilities.vendor, capabilities.max_texture_size
-                    );
-                    println!(
-                        "  {} KiB of shared memory per workgroup",
-                        capabilities.max_compute_shared_memory / 1024
-                    );
+        let backends = match self.gl.backend {
+            Backend::Auto => vec![("egl", Backend::Egl), ("osmesa", Backend::Osmesa)],
+            Backend::Egl => vec![("egl", Backend::Egl)],
+            Backend::Osmesa => vec![("osmesa", Backend::Osmesa)],
+        };
+        let mut found = serde_json::Map::new();
+        let mut failures = Vec::new();
+        for (name, backend) in backends {
+            match Headless::open(backend) {
+                Ok(headless) => {
+                    let capabilities = headless.gl().capabilities();
+                    if !self.json {
+                        println!("{name}: {}", capabilities.summary());
+                        println!(
+                            "  vendor {}, textures up to {} pixels",
+                            capabilities.vendor, capabilities.max_texture_size
+                        );
+                        println!(
+                            "  {} KiB of shared memory per workgroup",
+                            capabilities.max_compute_shared_memory / 1024
+                        );
+                    }
+                    found.insert(name.into(), serde_json::to_value(capabilities)?);
                 }
-                found.insert(name.into(), serde_json::to_value(capabilities)?);
-            }
-            Err(error) => {
-                if !args.json {
-                    println!("{name}: {error}");
+                Err(error) => {
+                    if !self.json {
+                        println!("{name}: {error}");
+                    }
+                    failures.push(error);
                 }
-                failures.push(error);
             }
         }
+        if found.is_empty()
+            && let Some(error) = failures.pop()
+        {
+            return Err(error.into());
+        }
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(&found)?);
+        }
+        Ok(())
     }
-    if found.is_empty()
-        && let Some(error) = failures.pop()
-    {
-        return Err(error.into());
-    }
-    if args.json {
-        println!("{}", serde_json::to_string_pretty(&found)?);
-    }
-    Ok(())
 }

@@ -165,35 +165,27 @@ impl Subcommand for LayerArgs {
     }
 
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Runs the subcommand.
-///
-/// # Errors
-/// When a file cannot be found, written or removed, or the program cannot be started.
-fn run(args: &LayerArgs) -> anyhow::Result<()> {
-    match &args.task {
-        Task::Run { library, program } => run_program(&library.find()?, program),
-        Task::Install { implicit, library } => install(*implicit, &library.find()?),
-        Task::Status => status(),
-        Task::Log { follow } => show_log(*follow),
-        Task::Remove => {
-            let data = data()?;
-            let all = [manifest_path(&data, false), manifest_path(&data, true), library_path(&data)];
-            let mut any = false;
-            for path in all {
-                if remove(&path)? {
-                    println!("removed {}", path.display());
-                    remove_empty_folders(&path, &data);
-                    any = true;
+        match &self.task {
+            Task::Run { library, program } => run_program(&library.find()?, program),
+            Task::Install { implicit, library } => install(*implicit, &library.find()?),
+            Task::Status => status(),
+            Task::Log { follow } => show_log(*follow),
+            Task::Remove => {
+                let data = data()?;
+                let all = [manifest_path(&data, false), manifest_path(&data, true), library_path(&data)];
+                let mut any = false;
+                for path in all {
+                    if remove(&path)? {
+                        println!("removed {}", path.display());
+                        remove_empty_folders(&path, &data);
+                        any = true;
+                    }
                 }
+                if !any {
+                    println!("{NAME} is not installed");
+                }
+                Ok(())
             }
-            if !any {
-                println!("{NAME} is not installed");
-            }
-            Ok(())
         }
     }
 }

@@ -160,83 +160,79 @@ impl Subcommand for RenderArgs {
         Ok(files)
     }
 
+    /// Renders and writes the pictures.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        self.eyes.check()?;
+        let settings = self.renderer.render_settings()?;
+        let scene = yoro_scenes::load(&self.scene, self.seed, self.style)?;
+        let path = CameraPath::new(&scene.viewpoints);
+        let heads = match (eyes::viewpoint(self.position, self.target), self.frames) {
+            (Some(viewpoint), _) => vec![viewpoint.pose()],
+            (None, Some(n)) => path.poses(n as usize),
+            (None, None) => vec![eyes::scene_pose(&scene, self.pose)?],
+        };
+        let options = self.stereo.options();
+        log::info!("{options:?}");
+        log::info!("{}", self.eyes.distances(options.guard_band));
+        let headless = self.gl.open()?;
+        let gl = headless.gl();
+        settings.supports(self.method, gl.capabilities())?;
+        let mut prepared = PreparedScene::new(gl, scene, &settings)?;
+        prepared.set_time(self.time)?;
+        warn_of_blank(gl, self, &mut prepared, &heads)?;
+        if let Some(file) = &self.video {
+            let encoding = (self.frame_rate, self.encoding);
+            return video::render(gl, file, prepared, (&heads, self.time), (&self.eyes, &options), encoding);
+        }
+        let PreparedScene { mut scene, mut renderer } = prepared;
+        let mut method = stereo::create(gl, self.method, &settings, &options)?;
+        let measured = self.measure || self.outputs.iter().any(|o| o.needs_truth());
+        let mut truth =
+            measured.then(|| stereo::create(gl, Method::Conventional, &settings, &options)).transpose()?;
+        method.prepare(&mut renderer, &scene)?;
+        let mut frame = StereoFrame::new(gl, self.eyes.size)?;
+        let mut reports = Vec::new();
+        let bar = progress_bar(heads.len() as u64);
+        for (i, &head) in heads.iter().enumerate() {
+            interrupt::check()?;
+            let pair = self.eyes.pair(head);
+            let start = Instant::now();
+            renderer.set_time(&mut scene, self.time + i as f64 / f64::from(self.frame_rate))?;
+            method.render(&mut renderer, &scene, &pair, &mut frame)?;
+            gl.finish();
+            let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+            let eyes = Eye::BOTH.map(|eye| picture::eye_image(&frame, eye));
+            let second = pair.dominant.other();
+            let mut quality = None;
+            let mut truth_image = None;
+            if let Some(truth) = &mut truth {
+                truth.render(&mut renderer, &scene, &pair, &mut frame)?;
+                let real = picture::eye_image(&frame, second);
+                quality = Some([
+                    Quality::of(&eyes[second.index()], &real, Channels::Rgb)?,
+                    Quality::of(&eyes[pair.dominant.index()], &real, Channels::Rgb)?,
+                ]);
+                truth_image = Some(real);
+            }
+            let stem = frame_stem(&scene.name, i, heads.len());
+            let mut pictures = Vec::new();
+            for &output in &self.outputs {
+                let path = eyes::picture_path(&self.out, &stem, output.name());
+                picture::save_color(&path, &compose(output, &eyes, second, truth_image.as_ref())?)?;
+                pictures.push(path);
+            }
+            let [quality, same_image] = quality.map_or([None, None], |q| q.map(Some));
+            reports.push(FrameReport { frame: i, milliseconds, pictures, quality, same_image });
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        print(self, &reports)
     }
 }
 
 /// Returns the name of a frame's pictures.
 fn frame_stem(scene: &str, frame: usize, frames: usize) -> String {
     if frames > 1 { format!("{scene}-{frame:04}") } else { scene.to_owned() }
-}
-
-/// Renders and writes the pictures.
-fn run(args: &RenderArgs) -> anyhow::Result<()> {
-    args.eyes.check()?;
-    let settings = args.renderer.render_settings()?;
-    let scene = yoro_scenes::load(&args.scene, args.seed, args.style)?;
-    let path = CameraPath::new(&scene.viewpoints);
-    let heads = match (eyes::viewpoint(args.position, args.target), args.frames) {
-        (Some(viewpoint), _) => vec![viewpoint.pose()],
-        (None, Some(n)) => path.poses(n as usize),
-        (None, None) => vec![eyes::scene_pose(&scene, args.pose)?],
-    };
-    let options = args.stereo.options();
-    log::info!("{options:?}");
-    log::info!("{}", args.eyes.distances(options.guard_band));
-    let headless = args.gl.open()?;
-    let gl = headless.gl();
-    settings.supports(args.method, gl.capabilities())?;
-    let mut prepared = PreparedScene::new(gl, scene, &settings)?;
-    prepared.set_time(args.time)?;
-    warn_of_blank(gl, args, &mut prepared, &heads)?;
-    if let Some(file) = &args.video {
-        let encoding = (args.frame_rate, args.encoding);
-        return video::render(gl, file, prepared, (&heads, args.time), (&args.eyes, &options), encoding);
-    }
-    let PreparedScene { mut scene, mut renderer } = prepared;
-    let mut method = stereo::create(gl, args.method, &settings, &options)?;
-    let measured = args.measure || args.outputs.iter().any(|o| o.needs_truth());
-    let mut truth =
-        measured.then(|| stereo::create(gl, Method::Conventional, &settings, &options)).transpose()?;
-    method.prepare(&mut renderer, &scene)?;
-    let mut frame = StereoFrame::new(gl, args.eyes.size)?;
-    let mut reports = Vec::new();
-    let bar = progress_bar(heads.len() as u64);
-    for (i, &head) in heads.iter().enumerate() {
-        interrupt::check()?;
-        let pair = args.eyes.pair(head);
-        let start = Instant::now();
-        renderer.set_time(&mut scene, args.time + i as f64 / f64::from(args.frame_rate))?;
-        method.render(&mut renderer, &scene, &pair, &mut frame)?;
-        gl.finish();
-        let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-        let eyes = Eye::BOTH.map(|eye| picture::eye_image(&frame, eye));
-        let second = pair.dominant.other();
-        let mut quality = None;
-        let mut truth_image = None;
-        if let Some(truth) = &mut truth {
-            truth.render(&mut renderer, &scene, &pair, &mut frame)?;
-            let real = picture::eye_image(&frame, second);
-            quality = Some([
-                Quality::of(&eyes[second.index()], &real, Channels::Rgb)?,
-                Quality::of(&eyes[pair.dominant.index()], &real, Channels::Rgb)?,
-            ]);
-            truth_image = Some(real);
-        }
-        let stem = frame_stem(&scene.name, i, heads.len());
-        let mut pictures = Vec::new();
-        for &output in &args.outputs {
-            let path = eyes::picture_path(&args.out, &stem, output.name());
-            picture::save_color(&path, &compose(output, &eyes, second, truth_image.as_ref())?)?;
-            pictures.push(path);
-        }
-        let [quality, same_image] = quality.map_or([None, None], |q| q.map(Some));
-        reports.push(FrameReport { frame: i, milliseconds, pictures, quality, same_image });
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    print(args, &reports)
 }
 
 /// Warns if pictures will show nothing of the scene.

@@ -43,30 +43,26 @@ impl Subcommand for ReportArgs {
         Ok(files)
     }
 
+    /// Reads the results, writes the report and prints where it is.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        let results = self.files.iter().map(|path| Results::read(path)).collect::<Result<Vec<_>, _>>()?;
+        let report = BenchReport::new(results)?;
+        // Figures are drawn for a while; a folder that cannot be is told at once.
+        for folder in [Some(&self.out), self.figures.as_ref(), self.results.as_ref()].into_iter().flatten() {
+            files::create_folder(folder)?;
+        }
+        let places =
+            Places { report: &self.out, figures: self.figures.as_deref(), results: self.results.as_deref() };
+        let written = report.write(places)?;
+        println!("page:    {}", written.page.display());
+        println!("tables:  {}", written.results.display());
+        println!("summary: {}", written.summary.display());
+        if let Some(folder) = &self.figures {
+            println!("figures: {} in {}", written.figures.len(), folder.display());
+        }
+        if let Some(folder) = &self.results {
+            println!("suites:  {} in {}", written.suites.len(), folder.display());
+        }
+        Ok(())
     }
-}
-
-/// Reads the results, writes the report and prints where it is.
-fn run(args: &ReportArgs) -> anyhow::Result<()> {
-    let results = args.files.iter().map(|path| Results::read(path)).collect::<Result<Vec<_>, _>>()?;
-    let report = BenchReport::new(results)?;
-    // Figures are drawn for a while; a folder that cannot be is told at once.
-    for folder in [Some(&args.out), args.figures.as_ref(), args.results.as_ref()].into_iter().flatten() {
-        files::create_folder(folder)?;
-    }
-    let places =
-        Places { report: &args.out, figures: args.figures.as_deref(), results: args.results.as_deref() };
-    let written = report.write(places)?;
-    println!("page:    {}", written.page.display());
-    println!("tables:  {}", written.results.display());
-    println!("summary: {}", written.summary.display());
-    if let Some(folder) = &args.figures {
-        println!("figures: {} in {}", written.figures.len(), folder.display());
-    }
-    if let Some(folder) = &args.results {
-        println!("suites:  {} in {}", written.suites.len(), folder.display());
-    }
-    Ok(())
 }

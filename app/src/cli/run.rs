@@ -100,47 +100,43 @@ impl Subcommand for RunArgs {
         Ok(files)
     }
 
+    /// Measures, writes the report and prints its table.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        self.eyes.check()?;
+        let settings = self.renderer.render_settings()?;
+        let names = self.names();
+        yoro_scenes::check(&names, self.seed)?;
+        files::create_folder(&self.out)?;
+        let headless = self.gl.open()?;
+        let gl = headless.gl();
+        for method in &self.methods {
+            settings.supports(*method, gl.capabilities())?;
+        }
+        let plan = plan(self, &settings);
+        let bar = progress_bar(names.len() as u64 * plan.steps());
+        let mut scenes = Vec::new();
+        for name in &names {
+            scenes.push(plan.measure(gl, name, &bar)?);
+        }
+        bar.finish_and_clear();
+        let report = RunReport {
+            title: "yoro: one render, two eyes".into(),
+            machine: machine::describe(gl.capabilities()),
+            parameters: parameters(self, &settings),
+            timing_method: timing_method(self, gl),
+            scenes,
+        };
+        write_pictures(self, &report)?;
+        let page = report.write(&self.out)?;
+        if self.json {
+            print!("{}", report.to_json()?);
+        } else {
+            print!("{}", report.to_text());
+            println!("\npictures: {}", self.out.join("*.png").display());
+            println!("report:   {}", page.display());
+        }
+        Ok(())
     }
-}
-
-/// Measures, writes the report and prints its table.
-fn run(args: &RunArgs) -> anyhow::Result<()> {
-    args.eyes.check()?;
-    let settings = args.renderer.render_settings()?;
-    let names = args.names();
-    yoro_scenes::check(&names, args.seed)?;
-    files::create_folder(&args.out)?;
-    let headless = args.gl.open()?;
-    let gl = headless.gl();
-    for method in &args.methods {
-        settings.supports(*method, gl.capabilities())?;
-    }
-    let plan = plan(args, &settings);
-    let bar = progress_bar(names.len() as u64 * plan.steps());
-    let mut scenes = Vec::new();
-    for name in &names {
-        scenes.push(plan.measure(gl, name, &bar)?);
-    }
-    bar.finish_and_clear();
-    let report = RunReport {
-        title: "yoro: one render, two eyes".into(),
-        machine: machine::describe(gl.capabilities()),
-        parameters: parameters(args, &settings),
-        timing_method: timing_method(args, gl),
-        scenes,
-    };
-    write_pictures(args, &report)?;
-    let page = report.write(&args.out)?;
-    if args.json {
-        print!("{}", report.to_json()?);
-    } else {
-        print!("{}", report.to_text());
-        println!("\npictures: {}", args.out.join("*.png").display());
-        println!("report:   {}", page.display());
-    }
-    Ok(())
 }
 
 /// The methods to be measured, each once.

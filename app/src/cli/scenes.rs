@@ -44,19 +44,15 @@ impl Subcommand for ScenesArgs {
         Ok(Files::default())
     }
 
+    /// Prints a table, or exports.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Prints a table, or exports.
-fn run(args: &ScenesArgs) -> anyhow::Result<()> {
-    match &args.command {
-        Some(Command::Export(export)) => run_export(export),
-        None if args.json => list_json(),
-        None => {
-            list();
-            Ok(())
+        match &self.command {
+            Some(Command::Export(export)) => run_export(export),
+            None if self.json => list_json(),
+            None => {
+                list();
+                Ok(())
+            }
         }
     }
 }

@@ -184,37 +184,39 @@ impl Subcommand for SynthesizeArgs {
         Ok(files)
     }
 
+    /// Synthesizes one image or a folder of them.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        if let Some(file) = &self.video {
+            // A wrong file is told before a context is opened.
+            Reader::open(file)?.rgbd()?;
+            let headless = self.gl.open()?;
+            return video::synthesize(
+                headless.gl(),
+                file,
+                &self.out,
+                &self.synthesis.options(),
+                self.encoding,
+            );
+        }
+        let jobs = jobs(self)?;
+        let headless = self.gl.open()?;
+        let mut offline = Offline::new(headless.gl(), &self.synthesis.options(), self.edges)?;
+        let mut patcher = self.patcher.create(headless.gl())?;
+        let bar = progress_bar(jobs.len() as u64);
+        let mut written = Vec::new();
+        for job in &jobs {
+            interrupt::check()?;
+            bar.set_message(job.color.display().to_string());
+            written = run_job(self, job, &mut offline, &mut patcher)?;
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        match jobs.as_slice() {
+            [_] => written.iter().for_each(|path| println!("{}", path.display())),
+            _ => println!("{} images in {}", jobs.len(), self.out.display()),
+        }
+        Ok(())
     }
-}
-
-/// Synthesizes one image or a folder of them.
-fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
-    if let Some(file) = &args.video {
-        // A wrong file is told before a context is opened.
-        Reader::open(file)?.rgbd()?;
-        let headless = args.gl.open()?;
-        return video::synthesize(headless.gl(), file, &args.out, &args.synthesis.options(), args.encoding);
-    }
-    let jobs = jobs(args)?;
-    let headless = args.gl.open()?;
-    let mut offline = Offline::new(headless.gl(), &args.synthesis.options(), args.edges)?;
-    let mut patcher = args.patcher.create(headless.gl())?;
-    let bar = progress_bar(jobs.len() as u64);
-    let mut written = Vec::new();
-    for job in &jobs {
-        interrupt::check()?;
-        bar.set_message(job.color.display().to_string());
-        written = run_job(args, job, &mut offline, &mut patcher)?;
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    match jobs.as_slice() {
-        [_] => written.iter().for_each(|path| println!("{}", path.display())),
-        _ => println!("{} images in {}", jobs.len(), args.out.display()),
-    }
-    Ok(())
 }
 
 fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {

@@ -93,63 +93,60 @@ impl Subcommand for ViewArgs {
         Ok(files)
     }
 
+    /// Draws and writes the picture.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Draws and writes the picture.
-fn run(args: &ViewArgs) -> anyhow::Result<()> {
-    if !files::has_extension(&args.png, &["png"]) {
-        return Err(PictureError::Extension { path: args.png.clone(), allowed: ".png" }.into());
-    }
-    let screen = Screen { size: args.screen, dpi: [args.dpi; 2], rotation: Rotation::LandscapeLeft };
-    let mut viewer = Cardboard::new(args.resolve()?, screen, &[])?;
-    viewer.hold_head(Some(args.head()));
-    let headless = args.gl.open()?;
-    let gl = headless.gl();
-    viewer.attach(gl.clone())?;
-    let window = RenderTarget::new(gl, args.screen, &[(Format::Rgba8, Filter::Nearest)], None)?;
-    let to = Destination::whole(&window);
-    let period_ns = (1e9 / REFRESH_HZ) as i64;
-    let mut now_ns = 0;
-    let mut frame = |viewer: &mut Cardboard| {
-        now_ns += period_ns;
-        let timing = FrameTiming { now_ns, expected_display_ns: now_ns + period_ns, refresh_hz: REFRESH_HZ };
-        viewer.frame(&to, &timing)
-    };
-    if args.loading {
-        frame(&mut viewer)?;
-    } else {
-        let bar = progress_bar(FRAMES as u64);
-        wait_for_first_scene(&mut viewer)?;
-        for _ in 0..FRAMES {
-            interrupt::check()?;
-            frame(&mut viewer)?;
-            bar.inc(1);
+        if !files::has_extension(&self.png, &["png"]) {
+            return Err(PictureError::Extension { path: self.png.clone(), allowed: ".png" }.into());
         }
-        bar.finish_and_clear();
-        for act in &args.acts {
-            interrupt::check()?;
-            for _ in 0..act.begin(&mut viewer, args.screen)? {
+        let screen = Screen { size: self.screen, dpi: [self.dpi; 2], rotation: Rotation::LandscapeLeft };
+        let mut viewer = Cardboard::new(self.resolve()?, screen, &[])?;
+        viewer.hold_head(Some(self.head()));
+        let headless = self.gl.open()?;
+        let gl = headless.gl();
+        viewer.attach(gl.clone())?;
+        let window = RenderTarget::new(gl, self.screen, &[(Format::Rgba8, Filter::Nearest)], None)?;
+        let to = Destination::whole(&window);
+        let period_ns = (1e9 / REFRESH_HZ) as i64;
+        let mut now_ns = 0;
+        let mut frame = |viewer: &mut Cardboard| {
+            now_ns += period_ns;
+            let timing =
+                FrameTiming { now_ns, expected_display_ns: now_ns + period_ns, refresh_hz: REFRESH_HZ };
+            viewer.frame(&to, &timing)
+        };
+        if self.loading {
+            frame(&mut viewer)?;
+        } else {
+            let bar = progress_bar(FRAMES as u64);
+            wait_for_first_scene(&mut viewer)?;
+            for _ in 0..FRAMES {
+                interrupt::check()?;
+                frame(&mut viewer)?;
+                bar.inc(1);
+            }
+            bar.finish_and_clear();
+            for act in &self.acts {
+                interrupt::check()?;
+                for _ in 0..act.begin(&mut viewer, self.screen)? {
+                    frame(&mut viewer)?;
+                }
+                wait_for_other_scene(&mut viewer)?;
+            }
+            if let Some(kept) = viewer.viewer_mut().take_kept() {
+                kept.iter().for_each(|(key, value)| println!("{key}={value}"));
+            }
+            if !self.acts.is_empty() {
                 frame(&mut viewer)?;
             }
-            wait_for_other_scene(&mut viewer)?;
         }
-        if let Some(kept) = viewer.viewer_mut().take_kept() {
-            kept.iter().for_each(|(key, value)| println!("{key}={value}"));
+        if let Some(errors) = gl.take_errors() {
+            bail!("the GL driver reports {errors}: please report this as a bug");
         }
-        if !args.acts.is_empty() {
-            frame(&mut viewer)?;
-        }
+        let pixels = window.read_rgba8(0, [0, 0], self.screen);
+        picture::save_color(&self.png, &rgb_image(&pixels, self.screen))?;
+        println!("{}", self.png.display());
+        Ok(())
     }
-    if let Some(errors) = gl.take_errors() {
-        bail!("the GL driver reports {errors}: please report this as a bug");
-    }
-    let pixels = window.read_rgba8(0, [0, 0], args.screen);
-    picture::save_color(&args.png, &rgb_image(&pixels, args.screen))?;
-    println!("{}", args.png.display());
-    Ok(())
 }
 
 /// Waits until the scene is ready to be drawn.

@@ -182,56 +182,52 @@ impl Subcommand for XrArgs {
         Ok(files)
     }
 
+    /// Shows the scene until the user, the runtime or --frames ends it.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        let settings = self.resolve()?;
+        let runtime = self.find_runtime()?;
+        let found = runtime.found().to_string();
+        log::info!("{found}");
+        if let Some(folder) = &self.capture {
+            files::create_folder(folder)?;
+        }
+        let headless = self.gl.open()?;
+        let gl = headless.gl();
+        for method in &self.methods {
+            RenderSettings::of_settings(&settings).supports(method.first(), gl.capabilities())?;
+        }
+        let mut viewer = Viewer::new(settings, &[])?;
+        viewer.attach(gl.clone())?;
+        let graphics = HeadlessGraphics::new(&headless)?;
+        let mut headset = Headset::open(runtime, &graphics, gl, viewer, Options::default())?;
+        let run = show(self, &graphics, &mut headset);
+        let summary = run.map(|(methods, empty_frames)| XrSummary {
+            found,
+            description: headset.description().clone(),
+            scene: headset.viewer().scene_name().to_owned(),
+            states: headset.states().to_vec(),
+            restarts: headset.restarts(),
+            empty_frames,
+            methods,
+        });
+        // Framebuffers are deleted while the context is current.
+        drop(headset);
+        let summary = summary?;
+        if let Some(errors) = gl.take_errors() {
+            bail!("the GL driver reports {errors}: please report this as a bug");
+        }
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(&summary)?);
+        } else {
+            print!("{summary}");
+        }
+        Ok(())
     }
 }
 
 /// Returns the path of an eye's last frame.
 fn capture_path(folder: &Path, method: MethodChoice, eye: Eye) -> PathBuf {
     folder.join(format!("{}.{}.png", method.name(), eye.name()))
-}
-
-/// Shows the scene until the user, the runtime or --frames ends it.
-fn run(args: &XrArgs) -> anyhow::Result<()> {
-    let settings = args.resolve()?;
-    let runtime = args.find_runtime()?;
-    let found = runtime.found().to_string();
-    log::info!("{found}");
-    if let Some(folder) = &args.capture {
-        files::create_folder(folder)?;
-    }
-    let headless = args.gl.open()?;
-    let gl = headless.gl();
-    for method in &args.methods {
-        RenderSettings::of_settings(&settings).supports(method.first(), gl.capabilities())?;
-    }
-    let mut viewer = Viewer::new(settings, &[])?;
-    viewer.attach(gl.clone())?;
-    let graphics = HeadlessGraphics::new(&headless)?;
-    let mut headset = Headset::open(runtime, &graphics, gl, viewer, Options::default())?;
-    let run = show(args, &graphics, &mut headset);
-    let summary = run.map(|(methods, empty_frames)| XrSummary {
-        found,
-        description: headset.description().clone(),
-        scene: headset.viewer().scene_name().to_owned(),
-        states: headset.states().to_vec(),
-        restarts: headset.restarts(),
-        empty_frames,
-        methods,
-    });
-    // Framebuffers are deleted while the context is current.
-    drop(headset);
-    let summary = summary?;
-    if let Some(errors) = gl.take_errors() {
-        bail!("the GL driver reports {errors}: please report this as a bug");
-    }
-    if args.json {
-        println!("{}", serde_json::to_string_pretty(&summary)?);
-    } else {
-        print!("{summary}");
-    }
-    Ok(())
 }
 
 fn show(

@@ -35,38 +35,34 @@ impl Subcommand for ExperimentArgs {
         Ok(Files::default())
     }
 
+    /// Makes the runs on each device.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Makes the runs on each device.
-fn run(args: &ExperimentArgs) -> anyhow::Result<()> {
-    let mut experiment = Experiment::read(&args.file)?;
-    experiment.power &= !args.plugged;
-    if args.dry_run {
-        print_plan(&experiment, &args.which.serials);
-        return Ok(());
-    }
-    let devices = args.which.choose()?;
-    let default = || Path::new("out/device").join(experiment::file_name(&experiment.name));
-    let out = args.out.clone().unwrap_or_else(default);
-    let _claim = experiment.claim(&out, &args.file)?;
-    each(devices, |device, bar| {
-        let progress = experiment::conduct(device, &experiment, &out, bar)?;
-        if progress.failed.is_empty() {
-            return Ok(progress.to_string());
+        let mut experiment = Experiment::read(&self.file)?;
+        experiment.power &= !self.plugged;
+        if self.dry_run {
+            print_plan(&experiment, &self.which.serials);
+            return Ok(());
         }
-        let (folder, reason) = &progress.failed[0];
-        bail!(
-            "{}: {progress}, the first because {reason} ({}); the same command tries again",
-            device.serial(),
-            folder.display()
-        )
-    })?;
-    println!("captures: {}", out.display());
-    println!("report:   yoro device report {}", out.display());
-    Ok(())
+        let devices = self.which.choose()?;
+        let default = || Path::new("out/device").join(experiment::file_name(&experiment.name));
+        let out = self.out.clone().unwrap_or_else(default);
+        let _claim = experiment.claim(&out, &self.file)?;
+        each(devices, |device, bar| {
+            let progress = experiment::conduct(device, &experiment, &out, bar)?;
+            if progress.failed.is_empty() {
+                return Ok(progress.to_string());
+            }
+            let (folder, reason) = &progress.failed[0];
+            bail!(
+                "{}: {progress}, the first because {reason} ({}); the same command tries again",
+                device.serial(),
+                folder.display()
+            )
+        })?;
+        println!("captures: {}", out.display());
+        println!("report:   yoro device report {}", out.display());
+        Ok(())
+    }
 }
 
 /// Power of a phone that renders stereo, in watts: a guess until it is measured, for the plan only.

@@ -27,23 +27,19 @@ impl Subcommand for InstallArgs {
         Ok(Files::default())
     }
 
+    /// Installs it on each device.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        let built = || BUILT.iter().map(Path::new).find(|path| path.is_file()).unwrap_or(Path::new(BUILT[0]));
+        let apk = self.apk.as_deref().unwrap_or_else(built);
+        ensure!(
+            apk.is_file(),
+            "there is no APK at {}: make one by cargo xtask apk --release, or give --apk FILE",
+            apk.display()
+        );
+        each(self.which.choose()?, |device, bar| {
+            bar.set_message("installing");
+            device.install(apk)?;
+            Ok(format!("installed {}", apk.display()))
+        })
     }
-}
-
-/// Installs it on each device.
-fn run(args: &InstallArgs) -> anyhow::Result<()> {
-    let built = || BUILT.iter().map(Path::new).find(|path| path.is_file()).unwrap_or(Path::new(BUILT[0]));
-    let apk = args.apk.as_deref().unwrap_or_else(built);
-    ensure!(
-        apk.is_file(),
-        "there is no APK at {}: make one by cargo xtask apk --release, or give --apk FILE",
-        apk.display()
-    );
-    each(args.which.choose()?, |device, bar| {
-        bar.set_message("installing");
-        device.install(apk)?;
-        Ok(format!("installed {}", apk.display()))
-    })
 }

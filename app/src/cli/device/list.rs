@@ -18,33 +18,29 @@ impl Subcommand for ListArgs {
         Ok(Files::default())
     }
 
+    /// Prints a table.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Prints a table.
-fn run(args: &ListArgs) -> anyhow::Result<()> {
-    let adb = args.source.open()?;
-    let devices = adb.devices()?;
-    if devices.is_empty() {
-        return Err(DeviceError::NoDevice.into());
-    }
-    println!(
-        "{:<22} {:<14} {:<36} {:<8} {:>7} {:>7}  {:<8} YORO",
-        "SERIAL", "STATE", "DEVICE", "ANDROID", "BATTERY", "TEMP", "PLUGGED"
-    );
-    for listed in devices {
-        let mut row = format!("{:<22} {:<14}", listed.serial, listed.state.name());
-        if listed.state == State::Ready {
-            match details(&*adb.open(&listed.serial)) {
-                Ok(details) => row += &details,
-                Err(error) => row += &format!(" {error}"),
-            }
+        let adb = self.source.open()?;
+        let devices = adb.devices()?;
+        if devices.is_empty() {
+            return Err(DeviceError::NoDevice.into());
         }
-        println!("{}", row.trim_end());
+        println!(
+            "{:<22} {:<14} {:<36} {:<8} {:>7} {:>7}  {:<8} YORO",
+            "SERIAL", "STATE", "DEVICE", "ANDROID", "BATTERY", "TEMP", "PLUGGED"
+        );
+        for listed in devices {
+            let mut row = format!("{:<22} {:<14}", listed.serial, listed.state.name());
+            if listed.state == State::Ready {
+                match details(&*adb.open(&listed.serial)) {
+                    Ok(details) => row += &details,
+                    Err(error) => row += &format!(" {error}"),
+                }
+            }
+            println!("{}", row.trim_end());
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 fn details(device: &dyn Device) -> Result<String, DeviceError> {

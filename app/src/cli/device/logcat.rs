@@ -71,16 +71,12 @@ impl Subcommand for LogcatArgs {
         Ok(Files::default())
     }
 
+    /// Follows or reads, and prints the faults.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Follows or reads, and prints the faults.
-fn run(args: &LogcatArgs) -> anyhow::Result<()> {
-    match &args.file {
-        Some(file) => saved(args, file),
-        None => live(args),
+        match &self.file {
+            Some(file) => saved(self, file),
+            None => live(self),
+        }
     }
 }
 

@@ -36,38 +36,34 @@ impl Subcommand for ReportArgs {
         Ok(Files::default())
     }
 
+    /// Reads the captures, writes the report and prints what matters.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-/// Reads the captures, writes the report and prints what matters.
-fn run(args: &ReportArgs) -> anyhow::Result<()> {
-    let mut sets = Vec::new();
-    for folder in &args.folders {
-        let mut captures = Vec::new();
-        for run in capture::find(std::slice::from_ref(folder))? {
-            let capture = capture::read(&run)?;
-            captures.push((run, capture));
+        let mut sets = Vec::new();
+        for folder in &self.folders {
+            let mut captures = Vec::new();
+            for run in capture::find(std::slice::from_ref(folder))? {
+                let capture = capture::read(&run)?;
+                captures.push((run, capture));
+            }
+            sets.push(captures);
         }
-        sets.push(captures);
+        let cells: BTreeMap<String, u32> = self.cells.iter().cloned().collect();
+        for serial in cells.keys() {
+            let is_known = sets.iter().flatten().any(|(_, capture)| capture.info.device.serial == *serial);
+            ensure!(
+                is_known,
+                "there is no capture of a device {serial}: run.json names each device's serial number"
+            );
+        }
+        files::create_folder(&self.out)?;
+        let report = DeviceReport::new(&sets, &self.baseline, &cells, machine::made_by());
+        let written = report.write(&self.out)?;
+        print!("{}", report.to_text());
+        println!("page:   {}", written.page.display());
+        println!("tables: {}", written.markdown.display());
+        println!("json:   {}", written.json.display());
+        Ok(())
     }
-    let cells: BTreeMap<String, u32> = args.cells.iter().cloned().collect();
-    for serial in cells.keys() {
-        let is_known = sets.iter().flatten().any(|(_, capture)| capture.info.device.serial == *serial);
-        ensure!(
-            is_known,
-            "there is no capture of a device {serial}: run.json names each device's serial number"
-        );
-    }
-    files::create_folder(&args.out)?;
-    let report = DeviceReport::new(&sets, &args.baseline, &cells, machine::made_by());
-    let written = report.write(&args.out)?;
-    print!("{}", report.to_text());
-    println!("page:   {}", written.page.display());
-    println!("tables: {}", written.markdown.display());
-    println!("json:   {}", written.json.display());
-    Ok(())
 }
 
 fn parse_cells(text: &str) -> Result<(String, u32), String> {

@@ -75,52 +75,48 @@ impl Subcommand for RunArgs {
         Ok(Files::default())
     }
 
+    /// Makes the run on each device.
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
+        let other = self.package.as_ref().zip(self.activity.as_ref()).map(|(package, activity)| Other {
+            subject: Subject {
+                package: package.clone(),
+                process: self.log_process.as_ref().unwrap_or(package).clone(),
+            },
+            activity: activity.clone(),
+        });
+        let settings = match &other {
+            Some(_) => Settings { scene: self.scene.clone().unwrap_or_default(), ..Settings::default() },
+            None => {
+                let named = [("scene", &self.scene), ("method", &self.method)];
+                let named =
+                    named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
+                let overrides = self.overrides.iter().cloned().chain(named);
+                Settings::measured().changed(self.settings.as_deref(), overrides)?
+            }
+        };
+        let method = self.name.clone().or(self.method.clone().filter(|_| other.is_some()));
+        let plan = Plan {
+            other,
+            experiment: None,
+            method: method.unwrap_or_else(|| settings.method.name().into()),
+            settings,
+            repetition: self.repetition,
+            order: 1,
+            duration_s: f64::from(self.seconds),
+            warm_up_s: f64::from(self.warm_up_seconds),
+            warmest_celsius: None,
+            refresh_hz: self.refresh_hz.map(f64::from),
+            power: !self.plugged,
+        };
+        let wanted = Wanted { brightness: self.brightness, refresh_hz: self.refresh_hz.map(f64::from) };
+        let devices = self.which.choose()?;
+        let is_only = devices.len() == 1;
+        each(devices, |device, bar| {
+            let folder = folder_of(&self.out, device.serial(), is_only);
+            bar.set_length(plan.seconds() as u64);
+            one(device, &plan, &wanted, &folder, bar)
+        })
     }
-}
-
-/// Makes the run on each device.
-fn run(args: &RunArgs) -> anyhow::Result<()> {
-    let other = args.package.as_ref().zip(args.activity.as_ref()).map(|(package, activity)| Other {
-        subject: Subject {
-            package: package.clone(),
-            process: args.log_process.as_ref().unwrap_or(package).clone(),
-        },
-        activity: activity.clone(),
-    });
-    let settings = match &other {
-        Some(_) => Settings { scene: args.scene.clone().unwrap_or_default(), ..Settings::default() },
-        None => {
-            let named = [("scene", &args.scene), ("method", &args.method)];
-            let named =
-                named.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value.as_ref()?)));
-            let overrides = args.overrides.iter().cloned().chain(named);
-            Settings::measured().changed(args.settings.as_deref(), overrides)?
-        }
-    };
-    let method = args.name.clone().or(args.method.clone().filter(|_| other.is_some()));
-    let plan = Plan {
-        other,
-        experiment: None,
-        method: method.unwrap_or_else(|| settings.method.name().into()),
-        settings,
-        repetition: args.repetition,
-        order: 1,
-        duration_s: f64::from(args.seconds),
-        warm_up_s: f64::from(args.warm_up_seconds),
-        warmest_celsius: None,
-        refresh_hz: args.refresh_hz.map(f64::from),
-        power: !args.plugged,
-    };
-    let wanted = Wanted { brightness: args.brightness, refresh_hz: args.refresh_hz.map(f64::from) };
-    let devices = args.which.choose()?;
-    let is_only = devices.len() == 1;
-    each(devices, |device, bar| {
-        let folder = folder_of(&args.out, device.serial(), is_only);
-        bar.set_length(plan.seconds() as u64);
-        one(device, &plan, &wanted, &folder, bar)
-    })
 }
 
 fn one(

@@ -124,77 +124,77 @@ impl Subcommand for ServeArgs {
     }
 
     fn run(&self) -> anyhow::Result<()> {
-        run(self)
-    }
-}
-
-fn run(args: &ServeArgs) -> anyhow::Result<()> {
-    let folder = match &args.page {
-        Some(folder) => folder.clone(),
-        None => std::env::current_exe()?.ancestors().nth(2).unwrap_or("".as_ref()).join("web"),
-    };
-    ensure!(
-        folder.join("index.html").is_file(),
-        "{} has no page: run cargo xtask web, or name its folder with --page",
-        folder.display()
-    );
-    let encoder = LiveEncoder::new(args.encoder.kind(), args.frame_rate.into())
-        .context("choose another encoder with --encoder")?;
-    let lan = args.lan.map(Lan::new).transpose()?;
-    // It is dropped after what was made in it.
-    let headless;
-    let (source, welcome) = if is_video(&args.scene) {
-        ensure!(args.mode == ModeArg::Depth, "a video has the depth of one eye: leave --mode out");
-        let (video, welcome) = Video::open(args.scene.as_ref())?;
-        (Source::Video(Box::new(video)), welcome)
-    } else {
-        headless = args.gl.open()?;
-        scene(args, headless.gl())?
-    };
-    let mut server = Server {
-        source,
-        encoder,
-        start: Instant::now(),
-        limits: Limits { quantizer: args.quantizer, frame_rate: args.frame_rate.into(), size: args.max_size },
-    };
-    let address = lan.as_ref().map_or(Ipv4Addr::LOCALHOST.into(), |lan| lan.address);
-    let listener = TcpListener::bind((address, args.port)).with_context(|| {
-        format!("{} cannot be served: name another port with --port", SocketAddr::new(address, args.port))
-    })?;
-    let port = listener.local_addr()?.port();
-    let token = random_token()?;
-    let (scheme, hosts) = match &lan {
-        Some(lan) => ("https", vec![SocketAddr::new(lan.address, port).to_string()]),
-        None => ("http", ["localhost", "127.0.0.1"].map(|name| format!("{name}:{port}")).to_vec()),
-    };
-    let token_text = format!("{:032x}", u128::from_be_bytes(token));
-    let stream = match &lan {
-        Some(lan) => format!("{},{},{token_text}", hosts[0], lan.quic_hash),
-        None => token_text,
-    };
-    let own = format!("{scheme}://{}", hosts[0]);
-    let pages = std::iter::once(&own).chain(&args.allow_origin);
-    let links: Vec<String> =
-        pages.map(|page| format!("{page}/#stream={stream}&display=side-by-side")).collect();
-    let quic = match &lan {
-        Some(lan) => {
-            let socket = UdpSocket::bind((lan.address, port)).with_context(|| {
-                format!("{} cannot be served by UDP: name another port with --port", hosts[0])
-            })?;
-            Some((socket, lan.quic.clone()))
+        let folder = match &self.page {
+            Some(folder) => folder.clone(),
+            None => std::env::current_exe()?.ancestors().nth(2).unwrap_or("".as_ref()).join("web"),
+        };
+        ensure!(
+            folder.join("index.html").is_file(),
+            "{} has no page: run cargo xtask web, or name its folder with --page",
+            folder.display()
+        );
+        let encoder = LiveEncoder::new(self.encoder.kind(), self.frame_rate.into())
+            .context("choose another encoder with --encoder")?;
+        let lan = self.lan.map(Lan::new).transpose()?;
+        // It is dropped after what was made in it.
+        let headless;
+        let (source, welcome) = if is_video(&self.scene) {
+            ensure!(self.mode == ModeArg::Depth, "a video has the depth of one eye: leave --mode out");
+            let (video, welcome) = Video::open(self.scene.as_ref())?;
+            (Source::Video(Box::new(video)), welcome)
+        } else {
+            headless = self.gl.open()?;
+            scene(self, headless.gl())?
+        };
+        let mut server = Server {
+            source,
+            encoder,
+            start: Instant::now(),
+            limits: Limits {
+                quantizer: self.quantizer,
+                frame_rate: self.frame_rate.into(),
+                size: self.max_size,
+            },
+        };
+        let address = lan.as_ref().map_or(Ipv4Addr::LOCALHOST.into(), |lan| lan.address);
+        let listener = TcpListener::bind((address, self.port)).with_context(|| {
+            format!("{} cannot be served: name another port with --port", SocketAddr::new(address, self.port))
+        })?;
+        let port = listener.local_addr()?.port();
+        let token = random_token()?;
+        let (scheme, hosts) = match &lan {
+            Some(lan) => ("https", vec![SocketAddr::new(lan.address, port).to_string()]),
+            None => ("http", ["localhost", "127.0.0.1"].map(|name| format!("{name}:{port}")).to_vec()),
+        };
+        let token_text = format!("{:032x}", u128::from_be_bytes(token));
+        let stream = match &lan {
+            Some(lan) => format!("{},{},{token_text}", hosts[0], lan.quic_hash),
+            None => token_text,
+        };
+        let own = format!("{scheme}://{}", hosts[0]);
+        let pages = std::iter::once(&own).chain(&self.allow_origin);
+        let links: Vec<String> =
+            pages.map(|page| format!("{page}/#stream={stream}&display=side-by-side")).collect();
+        let quic = match &lan {
+            Some(lan) => {
+                let socket = UdpSocket::bind((lan.address, port)).with_context(|| {
+                    format!("{} cannot be served by UDP: name another port with --port", hosts[0])
+                })?;
+                Some((socket, lan.quic.clone()))
+            }
+            None => None,
+        };
+        announce(&links, port, lan.as_ref(), server.encoder.name())?;
+        let tls = lan.map(|lan| lan.tls);
+        let access =
+            Arc::new(Access::new(token, (scheme, hosts), self.allow_origin.clone(), folder, welcome, tls));
+        let (clients, admitted) = mpsc::channel();
+        if let Some((socket, tls)) = quic {
+            web_transport::accept(access.clone(), socket, tls, clients.clone())?;
         }
-        None => None,
-    };
-    announce(&links, port, lan.as_ref(), server.encoder.name())?;
-    let tls = lan.map(|lan| lan.tls);
-    let access =
-        Arc::new(Access::new(token, (scheme, hosts), args.allow_origin.clone(), folder, welcome, tls));
-    let (clients, admitted) = mpsc::channel();
-    if let Some((socket, tls)) = quic {
-        web_transport::accept(access.clone(), socket, tls, clients.clone())?;
+        thread::spawn(move || access.accept(&listener, &clients));
+        server.serve(&admitted)
     }
-    thread::spawn(move || access.accept(&listener, &clients));
-    server.serve(&admitted)
 }
 
 fn random_token() -> anyhow::Result<Token> {
