@@ -3,12 +3,20 @@
 use std::rc::Rc;
 
 use glow::HasContext as _;
-use yoro::eyes::DepthRange;
-use yoro::synthesis::Source;
-use yoro_gl::{Context, Filter, Format, Texture};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
+use yoro::synthesis::{Edges, Layers, Outputs, Source, Synthesis as _};
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 
 /// The standard pattern of four samples: places in the pixel, in pixels from its upper left corner.
 pub const STANDARD: [[f64; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
+
+/// The ways to hand over the same picture: the meaning of its edges, and true if the samples' colours come with it.
+pub const GIVEN: [(Edges, bool); 4] = [
+    (Edges::Nearest, false),
+    (Edges::Sample, false),
+    (Edges::Multisample, false),
+    (Edges::Multisample, true),
+];
 
 /// Colour and depth of four samples of each pixel. Rows run from the bottom, as in GL.
 #[derive(Clone, Debug)]
@@ -35,6 +43,48 @@ impl Samples {
             .map(|i| self.depth.iter().map(|d| d[i]).reduce(choose).unwrap_or_default())
             .collect()
     }
+
+    /// The depth of each pixel that a source without multisampled depth has, for these edges.
+    pub fn one_depth(&self, edges: Edges, convention: DepthConvention) -> Vec<f32> {
+        match (edges, convention) {
+            (Edges::Sample, _) => self.depth[0].clone(),
+            (_, DepthConvention::Standard) => self.chosen_depth(|a, b| a < b),
+            (_, DepthConvention::Reversed) => self.chosen_depth(|a, b| a > b),
+        }
+    }
+}
+
+/// A warp between eyes of 150x50 pixels, and a picture for its source.
+pub fn example(dominant: Eye, convention: DepthConvention, guard: GuardBand) -> (Warp, Samples) {
+    let depth = DepthRange { near: 0.3, far: 100.0, convention };
+    let frustum = Frustum::symmetric(1.2, 3.0);
+    let eyes = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
+    let warp = eyes.synthesis_views(guard).unwrap().warp;
+    (warp, picture(warp.source_size, depth, warp.target_eye == Eye::Right))
+}
+
+/// Synthesizes on OpenGL what is [`GIVEN`]. Returns RGBA and the source map.
+pub fn on_opengl(
+    gl: &Rc<Context>,
+    samples: &Samples,
+    (edges, colors): (Edges, bool),
+    warp: &Warp,
+) -> (Vec<u8>, Vec<u32>) {
+    let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
+    let target = RenderTarget::new(gl, warp.target_size, &formats, None).unwrap();
+    let multisampled = Multisampled::new(gl, samples).unwrap();
+    let single = Texture::new(gl, samples.size, Format::R32F, Filter::Nearest).unwrap();
+    let source = match edges {
+        Edges::Multisample => multisampled.source(colors),
+        _ => {
+            single.upload(bytemuck::cast_slice(&samples.one_depth(edges, warp.convention)));
+            Source::new(multisampled.resolved().raw(), single.raw())
+        }
+    };
+    let outputs = Outputs { source_map: true, ..Outputs::default() };
+    let mut pipeline = Layers::new(gl, outputs, edges).unwrap();
+    pipeline.synthesize(source, warp, &Destination::whole(&target)).unwrap();
+    (target.read_rgba8(0, [0, 0], warp.target_size), target.read_u32(1, [0, 0], warp.target_size))
 }
 
 /// Slanted rectangles before a slanted background, seen by four samples of each pixel.

@@ -2,11 +2,11 @@
 
 use std::rc::Rc;
 
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::synthesis::{Edges, Layers, Outputs, SOURCE_MAP_HOLE, Source, Synthesis as _};
-use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
+use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
+use yoro::synthesis::{Edges, SOURCE_MAP_HOLE};
+use yoro_gl::Context;
 use yoro_tests::on_every_backend;
-use yoro_tests::samples::{Multisampled, STANDARD, Samples, picture};
+use yoro_tests::samples::{GIVEN, STANDARD, Samples, example, on_opengl};
 
 const LINK: f64 = 0.5;
 const TILE: [usize; 2] = [16, 8];
@@ -556,65 +556,24 @@ pub fn forward(samples: &Samples, warp: &Warp) -> (Pixels, [f64; 2]) {
     (pixels, [offset + scale * far, offset + scale * near])
 }
 
-/// A way to hand over the same picture.
-#[derive(Clone, Copy, Debug)]
-enum Given {
-    Nearest,
-    Sample,
-    Depths,
-    Samples,
-}
-
-impl Given {
-    fn edges(self) -> Edges {
-        match self {
-            Given::Nearest => Edges::Nearest,
-            Given::Sample => Edges::Sample,
-            Given::Depths | Given::Samples => Edges::Multisample,
-        }
-    }
-}
-
-fn synthesized(gl: &Rc<Context>, samples: &Samples, given: Given, warp: &Warp) -> (Vec<u8>, Vec<u32>) {
-    let outputs = Outputs { source_map: true, ..Outputs::default() };
-    let mut pipeline = Layers::new(gl, outputs, given.edges()).unwrap();
-    let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
-    let target = RenderTarget::new(gl, warp.target_size, &formats, None).unwrap();
-    let multisampled = Multisampled::new(gl, samples).unwrap();
-    let single = Texture::new(gl, samples.size, Format::R32F, Filter::Nearest).unwrap();
-    let reversed = warp.convention == DepthConvention::Reversed;
-    let source = match given {
-        Given::Nearest | Given::Sample => {
-            let depth = match given {
-                Given::Nearest => samples.chosen_depth(|a, b| if reversed { a > b } else { a < b }),
-                _ => samples.depth[0].clone(),
-            };
-            single.upload(bytemuck::cast_slice(&depth));
-            Source::new(multisampled.resolved().raw(), single.raw())
-        }
-        Given::Depths => multisampled.source(false),
-        Given::Samples => multisampled.source(true),
-    };
-    pipeline.synthesize(source, warp, &Destination::whole(&target)).unwrap();
-    (target.read_rgba8(0, [0, 0], warp.target_size), target.read_u32(1, [0, 0], warp.target_size))
-}
-
-fn agrees(gl: &Rc<Context>, given: Given, dominant: Eye, convention: DepthConvention, guard: GuardBand) {
-    let depth = DepthRange { near: 0.3, far: 100.0, convention };
-    let frustum = Frustum::symmetric(1.2, 3.0);
-    let eyes = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
-    let warp = eyes.synthesis_views(guard).unwrap().warp;
-    let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
-    let (rgba, map) = synthesized(gl, &samples, given, &warp);
+fn agrees(
+    gl: &Rc<Context>,
+    given: (Edges, bool),
+    dominant: Eye,
+    convention: DepthConvention,
+    guard: GuardBand,
+) {
+    let (warp, samples) = example(dominant, convention, guard);
+    let (rgba, map) = on_opengl(gl, &samples, given, &warp);
     let (pixels, range) = forward(&samples, &warp);
     let one_depth = |choose: fn([f64; 4]) -> f64| {
         Image::of(pixels.reaches.size, |x, y| choose(pixels.reaches.at(x as i64, y as i64)))
     };
     let layers = match given {
-        Given::Nearest => {
+        (Edges::Nearest, _) => {
             resolved_layers(&one_depth(|r| r.into_iter().fold(f64::MIN, f64::max)), &pixels.resolved, false)
         }
-        Given::Sample => {
+        (Edges::Sample, _) => {
             // Sample 0 is the second from the left.
             let reach = match warp.target_eye {
                 Eye::Left => one_depth(|r| r[1]),
@@ -622,8 +581,7 @@ fn agrees(gl: &Rc<Context>, given: Given, dominant: Eye, convention: DepthConven
             };
             resolved_layers(&reach, &pixels.resolved, true)
         }
-        Given::Depths => multisample_layers(&pixels, false),
-        Given::Samples => multisample_layers(&pixels, true),
+        (_, colors) => multisample_layers(&pixels, colors),
     };
     let [w, h] = warp.target_size.map(|n| n as usize);
     let spans = spans(&layers, w, range);
@@ -650,7 +608,7 @@ fn agrees(gl: &Rc<Context>, given: Given, dominant: Eye, convention: DepthConven
 #[test]
 fn anti_aliased_sources_equal_the_f64_reference() {
     on_every_backend(|gl| {
-        for given in [Given::Nearest, Given::Sample, Given::Depths, Given::Samples] {
+        for given in GIVEN {
             agrees(gl, given, Eye::Right, DepthConvention::Standard, GuardBand::Pixels(21));
             agrees(gl, given, Eye::Left, DepthConvention::Reversed, GuardBand::None);
         }

@@ -3,31 +3,21 @@
 use std::io::Cursor;
 use std::path::Path;
 use std::process::Command;
-use std::rc::Rc;
 
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::synthesis::{Edges, Layers, Outputs, Source, Synthesis as _};
+use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
+use yoro::synthesis::Edges;
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{
     Frame, Gather, Host, ImageState, LayerImage, Options, SourceImages, TargetImages, VulkanError,
 };
 use yoro_context::Headless;
-use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_tests::backends;
-use yoro_tests::samples::{Multisampled, Samples, picture};
+use yoro_tests::samples::{GIVEN, Samples, example, on_opengl};
 
 use super::vulkan::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
 
 const COLOR: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
-
-/// The meaning of the edges, and true if the samples' colours are handed over.
-const GIVEN: [(Edges, bool); 4] = [
-    (Edges::Nearest, false),
-    (Edges::Sample, false),
-    (Edges::Multisample, false),
-    (Edges::Multisample, true),
-];
 
 const VERTICES: &str = "#version 450
 void main() {
@@ -229,31 +219,7 @@ unsafe fn pipeline(
     unsafe { device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None).unwrap()[0] }
 }
 
-fn on_opengl(gl: &Rc<Context>, samples: &Samples, edges: Edges, colors: bool, warp: &Warp) -> Vec<u8> {
-    let target = RenderTarget::new(gl, warp.target_size, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
-    let multisampled = Multisampled::new(gl, samples).unwrap();
-    let single = Texture::new(gl, samples.size, Format::R32F, Filter::Nearest).unwrap();
-    let source = match edges {
-        Edges::Multisample => multisampled.source(colors),
-        _ => {
-            single.upload(bytemuck::cast_slice(&one_depth(samples, edges, warp)));
-            Source::new(multisampled.resolved().raw(), single.raw())
-        }
-    };
-    let mut pipeline = Layers::new(gl, Outputs::default(), edges).unwrap();
-    pipeline.synthesize(source, warp, &Destination::whole(&target)).unwrap();
-    target.read_rgba8(0, [0, 0], warp.target_size)
-}
-
-fn one_depth(samples: &Samples, edges: Edges, warp: &Warp) -> Vec<f32> {
-    match (edges, warp.convention) {
-        (Edges::Sample, _) => samples.depth[0].clone(),
-        (_, DepthConvention::Standard) => samples.chosen_depth(|a, b| a < b),
-        (_, DepthConvention::Reversed) => samples.chosen_depth(|a, b| a > b),
-    }
-}
-
-/// Does the same as [`on_opengl`], with maps for sources and targets of the largest size.
+/// Synthesizes what is [`GIVEN`], with maps for sources and targets of the largest size.
 fn on_vulkan(
     gpu: &Gpu,
     host: &Host,
@@ -264,7 +230,7 @@ fn on_vulkan(
 ) -> Vec<u8> {
     let drawn = Drawn::new(gpu, samples, None);
     let single = gpu.image(vk::Format::R32_SFLOAT, samples.size, 1);
-    single.upload_depth(0, &one_depth(samples, edges, warp), WRITTEN);
+    single.upload_depth(0, &samples.one_depth(edges, warp.convention), WRITTEN);
     let [sample_color, sample_depth] = &drawn.multisample;
     let depth = match edges {
         Edges::Multisample => {
@@ -327,12 +293,8 @@ fn vulkan_equals_opengl_for_anti_aliased_sources() {
             for (i, given) in GIVEN.into_iter().enumerate() {
                 for dominant in Eye::BOTH {
                     let convention = [DepthConvention::Standard, DepthConvention::Reversed][i % 2];
-                    let depth = DepthRange { near: 0.3, far: 100.0, convention };
-                    let frustum = Frustum::symmetric(1.2, 3.0);
-                    let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
-                    let warp = pair.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
-                    let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
-                    let want = on_opengl(headless.gl(), &samples, given.0, given.1, &warp);
+                    let (warp, samples) = example(dominant, convention, GuardBand::Pixels(21));
+                    let (want, _) = on_opengl(headless.gl(), &samples, given, &warp);
                     // Maps that just hold the source, and larger ones.
                     for largest in [warp.source_size, warp.source_size.map(|n| n + 40)] {
                         let got = on_vulkan(gpu, &host, &samples, given, &warp, largest);
@@ -367,16 +329,12 @@ fn depth_that_a_render_pass_resolved_gives_the_same_picture() {
                 println!("LEFT OUT: {} does not resolve depth by {mode:?}", gpu.name());
                 continue;
             }
-            let depth = DepthRange { near: 0.3, far: 100.0, convention };
-            let frustum = Frustum::symmetric(1.2, 3.0);
-            let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], Eye::Right);
-            let warp = pair.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
-            let samples = picture(warp.source_size, depth, false);
+            let (warp, samples) = example(Eye::Right, convention, GuardBand::Pixels(21));
             let drawn = Drawn::new(gpu, &samples, Some(mode));
             let (_, resolved) = drawn.resolved.as_ref().unwrap();
             let resolved = resolved.layer(0, ImageState::RESOLVED_DEPTH, ImageState::SAMPLED);
             let chosen = gpu.image(vk::Format::R32_SFLOAT, samples.size, 1);
-            chosen.upload_depth(0, &one_depth(&samples, edges, &warp), WRITTEN);
+            chosen.upload_depth(0, &samples.one_depth(edges, warp.convention), WRITTEN);
             let chosen = chosen.layer(0, WRITTEN, ImageState::SAMPLED);
             let [got, want] = [resolved, chosen].map(|depth| {
                 synthesize(gpu, &gpu.host(), &samples, edges, (depth, None), &warp, warp.source_size)

@@ -3,26 +3,15 @@
 #[path = "../../../../tests/src/samples.rs"]
 mod samples;
 
-use std::rc::Rc;
-
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::synthesis::{Edges, Layers, Outputs, Source as GlSource, Synthesis as _};
+use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
+use yoro::synthesis::Edges;
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_wgpu::wgpu::{TextureAspect, TextureFormat};
 use yoro_wgpu::{Gather, Options, Source, Target, WgpuError};
 
 use super::against_opengl::{Picture, expected_depth};
 use super::harness::{Gpu, depth_of, one_layer, with_gpus};
-use samples::{Multisampled, Samples, picture};
-
-/// The meaning of the edges, and true if the samples' colours are handed over.
-const GIVEN: [(Edges, bool); 4] = [
-    (Edges::Nearest, false),
-    (Edges::Sample, false),
-    (Edges::Multisample, false),
-    (Edges::Multisample, true),
-];
+use samples::{GIVEN, Samples, example, on_opengl};
 
 /// A source, and what OpenGL makes of it: colour, and the source map.
 struct Wanted {
@@ -33,38 +22,6 @@ struct Wanted {
     source_map: Vec<u32>,
 }
 
-fn one_depth(samples: &Samples, edges: Edges, warp: &Warp) -> Vec<f32> {
-    match (edges, warp.convention) {
-        (Edges::Sample, _) => samples.depth[0].clone(),
-        (_, DepthConvention::Standard) => samples.chosen_depth(|a, b| a < b),
-        (_, DepthConvention::Reversed) => samples.chosen_depth(|a, b| a > b),
-    }
-}
-
-fn on_opengl(
-    gl: &Rc<Context>,
-    samples: &Samples,
-    (edges, colors): (Edges, bool),
-    warp: &Warp,
-) -> [Vec<u8>; 2] {
-    let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
-    let target = RenderTarget::new(gl, warp.target_size, &formats, None).unwrap();
-    let multisampled = Multisampled::new(gl, samples).unwrap();
-    let single = Texture::new(gl, samples.size, Format::R32F, Filter::Nearest).unwrap();
-    let source = match edges {
-        Edges::Multisample => multisampled.source(colors),
-        _ => {
-            single.upload(bytemuck::cast_slice(&one_depth(samples, edges, warp)));
-            GlSource::new(multisampled.resolved().raw(), single.raw())
-        }
-    };
-    let outputs = Outputs { source_map: true, ..Outputs::default() };
-    let mut pipeline = Layers::new(gl, outputs, edges).unwrap();
-    pipeline.synthesize(source, warp, &Destination::whole(&target)).unwrap();
-    let map = target.read_u32(1, [0, 0], warp.target_size);
-    [target.read_rgba8(0, [0, 0], warp.target_size), bytemuck::cast_slice(&map).to_vec()]
-}
-
 fn wanted() -> Vec<Wanted> {
     let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
     let mut all = Vec::new();
@@ -72,13 +29,8 @@ fn wanted() -> Vec<Wanted> {
         // Each pass meets both eyes and both conventions.
         let dominant = Eye::BOTH[i % 2];
         let convention = [DepthConvention::Standard, DepthConvention::Reversed][(i + i / 2) % 2];
-        let depth = DepthRange { near: 0.3, far: 100.0, convention };
-        let frustum = Frustum::symmetric(1.2, 3.0);
-        let pair = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, [150, 50], dominant);
-        let warp = pair.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
-        let samples = picture(warp.source_size, depth, warp.target_eye == Eye::Right);
-        let [rgba, map] = on_opengl(headless.gl(), &samples, given, &warp);
-        let source_map = bytemuck::cast_slice(&map).to_vec();
+        let (warp, samples) = example(dominant, convention, GuardBand::Pixels(21));
+        let (rgba, source_map) = on_opengl(headless.gl(), &samples, given, &warp);
         all.push(Wanted { given, warp, samples, rgba, source_map });
     }
     all
@@ -110,7 +62,7 @@ fn on_wgpu(gpu: &Gpu, wanted: &Wanted) -> (Vec<u8>, Vec<f32>) {
         }
         _ => {
             let single = gpu.texture(TextureFormat::R32Float, size, 1);
-            gpu.upload_depth(&single, 0, &one_depth(samples, *edges, warp));
+            gpu.upload_depth(&single, 0, &samples.one_depth(*edges, warp.convention));
             single
         }
     };
@@ -157,7 +109,7 @@ fn anti_aliased_sources_give_opengls_pictures() {
 
             // The depth is that of the source map's column, but for pixels at silhouettes. A column or a row further it
             // is not.
-            let depths = one_depth(&wanted.samples, given.0, warp);
+            let depths = wanted.samples.one_depth(given.0, warp.convention);
             let picture = Picture { warp: *warp, rgba: Vec::new(), depth: depths };
             let expected = expected_depth(&picture, &wanted.source_map);
             let shares = [0, 1, warp.target_size[0] as usize].map(|away| {
