@@ -24,6 +24,31 @@ pub const DEPTH_BITS: [u32; 2] = [16, 32];
 #[error("{0}")]
 pub struct ChoiceError(String);
 
+/// Reads and writes a type by the names of its values.
+macro_rules! names {
+    ($type:ident) => {
+        impl FromStr for $type {
+            type Err = ChoiceError;
+
+            fn from_str(text: &str) -> Result<$type, ChoiceError> {
+                find(&$type::ALL, $type::name, text).map_err(ChoiceError)
+            }
+        }
+
+        impl Serialize for $type {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(self.name())
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $type {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<$type, D::Error> {
+                String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+            }
+        }
+    };
+}
+
 /// Enumerations whose values go by names, the same on the command line, in settings, in results and on the page. The first
 /// line of documentation of each value is its help.
 macro_rules! choices {
@@ -51,25 +76,7 @@ macro_rules! choices {
 
         $( choices!(@default $type $value $($default)?); )+
 
-        impl FromStr for $type {
-            type Err = ChoiceError;
-
-            fn from_str(text: &str) -> Result<$type, ChoiceError> {
-                find(&$type::ALL, $type::name, text).map_err(ChoiceError)
-            }
-        }
-
-        impl Serialize for $type {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                serializer.serialize_str(self.name())
-            }
-        }
-
-        impl<'de> Deserialize<'de> for $type {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<$type, D::Error> {
-                String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-            }
-        }
+        names! { $type }
 
         named! {
             $type: &[$(Choice::new($name, $help)),+], |text: &str| find(&$type::ALL, $type::name, text);
@@ -245,25 +252,7 @@ impl From<Method> for MethodChoice {
     }
 }
 
-impl FromStr for MethodChoice {
-    type Err = ChoiceError;
-
-    fn from_str(text: &str) -> Result<MethodChoice, ChoiceError> {
-        find(&MethodChoice::ALL, MethodChoice::name, text).map_err(ChoiceError)
-    }
-}
-
-impl Serialize for MethodChoice {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
-}
-
-impl<'de> Deserialize<'de> for MethodChoice {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<MethodChoice, D::Error> {
-        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-    }
-}
+names! { MethodChoice }
 
 named! {
     MethodChoice: &{

@@ -6,7 +6,7 @@
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-use super::text::{LineError, Na, Reader, VERSION, fields, word};
+use super::text::{LineError, Na, Reader, VERSION, word};
 
 /// The first field of every line.
 const BEGIN: &str = "rating";
@@ -57,14 +57,7 @@ impl FromStr for Rating {
     type Err = LineError;
 
     fn from_str(text: &str) -> Result<Rating, LineError> {
-        let reader = Reader::new(text);
-        let mut begin = fields(text);
-        let version = format!("{VERSION}");
-        let is_ours = begin.next().is_some_and(|f| f.key == BEGIN)
-            && begin.next().is_some_and(|f| f.key == "v" && f.value == Some(version.as_str()));
-        if !is_ours {
-            return Err(LineError::Version);
-        }
+        let reader = Reader::of(text, BEGIN)?;
         let name = |key| reader.word(key).map(|name| name.map(str::to_owned));
         Ok(Rating {
             participant: name("participant")?,

@@ -84,6 +84,17 @@ impl<'a> Reader<'a> {
         Reader(fields(line).collect())
     }
 
+    /// Reads a line that starts with this field and the version.
+    pub fn of(line: &'a str, begin: &str) -> Result<Reader<'a>, LineError> {
+        let reader = Reader::new(line);
+        let version = VERSION.to_string();
+        let is_ours = match reader.0[..] {
+            [first, second, ..] => (first.key, second.key, second.value) == (begin, "v", Some(&version)),
+            _ => false,
+        };
+        if is_ours { Ok(reader) } else { Err(LineError::Version) }
+    }
+
     pub fn text(&self, key: &'static str) -> Result<&'a str, LineError> {
         let field = self.0.iter().find(|field| field.key == key);
         field.and_then(|field| field.value).ok_or(LineError::Missing(key))
