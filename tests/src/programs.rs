@@ -48,14 +48,6 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
 /// fill, with crossings.
 const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
 
-const STYLES: [ShadingStyle; 5] = [
-    ShadingStyle::Realistic,
-    ShadingStyle::Cartoon,
-    ShadingStyle::LowPoly,
-    ShadingStyle::Voxel,
-    ShadingStyle::Anime,
-];
-
 fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let outputs = [(false, false), (false, true), (true, false), (true, true)]
         .map(|(depth, source_map)| Outputs { depth, source_map, ..Outputs::default() });
@@ -156,7 +148,7 @@ fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Resul
 
 fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let every = variants == Variants::Every;
-    for style in STYLES {
+    for style in ShadingStyle::ALL {
         let mut scene = scene::every_material(style);
         if every {
             renderer(gl, scene.clone(), false)?;

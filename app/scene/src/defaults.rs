@@ -23,7 +23,7 @@ const ROOM: f32 = 3.0;
 const LEAST_SEEN: f32 = 0.3;
 const LEAST_FLOOR: f32 = 0.5;
 
-/// Point lights made up at most; what the renderer takes.
+/// The largest number of point lights that are made up.
 const MAX_LIGHTS: usize = 16;
 
 /// Returns viewpoints and a word on how they were found. Models larger than a few metres are walked through: where

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glam::Vec3;
 
-use super::tests::{Rig, STYLES, depths, open, picture, scene, settings, view};
+use super::tests::{Rig, depths, open, picture, scene, settings, view};
 use super::*;
 use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
@@ -88,7 +88,7 @@ fn pixel(picture: &[u8], x: u32, y: u32) -> &[u8] {
 #[test]
 fn forward_lights_as_deferred_does() {
     let head = open();
-    for style in STYLES {
+    for style in ShadingStyle::ALL {
         let deferred = RenderSettings { renderer: RendererKind::Deferred, ..with_samples(1) };
         let [expected, ours] = [deferred, with_samples(1)].map(|settings| {
             let mut rig = Rig::new(head.gl(), scene(style), &settings);
@@ -352,26 +352,6 @@ fn light_tiles_leave_no_light_out() {
     let far_off = deferred.chunks(4).zip(forward.chunks(4));
     let far_off = far_off.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 4)).count();
     assert!(far_off < deferred.len() / 4 / 100, "{far_off} pixels differ");
-}
-
-#[test]
-fn every_variant_compiles_and_draws_forward() {
-    let head = open();
-    let gl = head.gl();
-    for style in STYLES {
-        for (msaa, bloom, sun) in [(1, false, false), (4, true, true)] {
-            let mut scene = scene(style);
-            quad(&mut scene.model, 5, Vec3::new(-0.5, 0.9, -0.2), Vec3::X * 0.4, Vec3::Y * 0.8);
-            if !sun {
-                scene.sky.sun_color = Vec3::ZERO;
-            }
-            let settings = RenderSettings { bloom, ..with_samples(msaa) };
-            let mut rig = Rig::new(gl, scene, &settings);
-            let view = view(DepthConvention::Standard);
-            rig.renderer.render_all(&mut rig.targets, &rig.scene, &view).unwrap();
-            assert_eq!(gl.take_errors(), None, "{style:?}, {msaa} samples");
-        }
-    }
 }
 
 #[test]
