@@ -241,8 +241,8 @@ fn mistakes_and_conditions_are_one_sentence() {
         "{said}"
     );
     succeed(at, "device run talk --seconds 5 --replay s.toml --out once");
-    run(at, "device run talk --seconds 5 --replay s.toml --out once").refuses(&["once holds a run already"]);
     let before = fs::read(at.join("once/run.json")).unwrap();
+    run(at, "device run talk --seconds 5 --replay s.toml --out once").refuses(&["once holds a run already"]);
     assert_eq!(fs::read(at.join("once/run.json")).unwrap(), before);
 }
 
