@@ -1,4 +1,4 @@
-//! The Java classes that are asked, with no more of their methods than are called.
+//! Bindings of Java classes, limited to the methods that are called.
 
 use jni::bind_java_type;
 

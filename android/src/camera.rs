@@ -1,5 +1,5 @@
-//! The phone's camera, which looks for a viewer's QR code: libcamera2ndk and AImageReader on a thread of their own,
-//! since opening a camera takes a part of a second and reading a code a part of a frame.
+//! The phone's camera, used to find a viewer's QR code. libcamera2ndk and AImageReader run on a thread of their own,
+//! since opening a camera takes a noticeable part of a second, and reading a code a part of a frame.
 
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::ptr::{self, NonNull};
@@ -12,20 +12,20 @@ use crate::dynamic::Library;
 use crate::scan::{Luma, best_size};
 use crate::shared::{Shared, address_in_text};
 
-/// Time between two looks for a new picture.
+/// The interval at which a new picture is looked for.
 const PERIOD: Duration = Duration::from_millis(40);
-/// After this the camera is given back.
+/// The longest duration of a scan. After this the camera is closed.
 const LONGEST: Duration = Duration::from_secs(60);
-/// A camera that gives no picture for so long is lost.
+/// A camera that delivers no picture for this long counts as lost.
 const SILENT: Duration = Duration::from_secs(5);
 
 const LOST: &str = "The camera was lost, as to another application: touch the tile again.";
 const NONE: &str = "This device has no camera that yoro can use: share the address or a picture of the code.";
-/// What to do when the user does not let yoro use the camera.
+/// Shown to the user if yoro is not permitted to use the camera.
 pub const REFUSED: &str = "yoro may not use the camera: allow it in the system's settings for yoro, or share the \
     address or a picture of the code.";
 
-/// What the thread has found since it was asked last.
+/// The thread's results since they were last taken.
 #[derive(Default)]
 struct Found {
     /// See [`Luma::shown`].
@@ -33,7 +33,7 @@ struct Found {
     outcome: Option<Result<Shared, String>>,
 }
 
-/// A scan, until this is dropped, which gives the camera back.
+/// A scan in progress. Dropping it closes the camera.
 pub struct Scan {
     found: Arc<Mutex<Found>>,
     is_over: Arc<AtomicBool>,
@@ -41,7 +41,7 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Begins. `is_upside_down` is true for a screen whose rotation is that of `Surface.ROTATION_270`.
+    /// Starts a scan. `is_upside_down` is true for a screen whose rotation is `Surface.ROTATION_270`.
     pub fn begin(is_upside_down: bool) -> Scan {
         let (found, is_over) = (Arc::new(Mutex::new(Found::default())), Arc::new(AtomicBool::new(false)));
         let (to, over) = (found.clone(), is_over.clone());
@@ -55,12 +55,12 @@ impl Scan {
         Scan { found, is_over, thread }
     }
 
-    /// Returns the newest picture, if there is another one.
+    /// Returns the newest picture, if there is a new one.
     pub fn picture(&self) -> Option<Vec<u8>> {
         lock(&self.found).picture.take()
     }
 
-    /// Returns the viewer or the stream that was found, or why there will be none.
+    /// Returns the viewer or the stream that was found, or the reason why the scan has failed.
     pub fn outcome(&self) -> Option<Result<Shared, String>> {
         lock(&self.found).outcome.take()
     }
@@ -79,7 +79,7 @@ fn lock(found: &Mutex<Found>) -> MutexGuard<'_, Found> {
     found.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Scans until a code is found or nobody waits any longer.
+/// Scans until a code is found or the scan is dropped.
 fn scan(found: &Mutex<Found>, is_over: &AtomicBool, turned: bool) -> Result<Option<Shared>, String> {
     let (start, is_lost) = (Instant::now(), AtomicBool::new(false));
     let functions = Functions::load().ok_or(NONE)?;
@@ -107,7 +107,7 @@ fn scan(found: &Mutex<Found>, is_over: &AtomicBool, turned: bool) -> Result<Opti
     Ok(None)
 }
 
-/// A handle of the NDK's; never null in use.
+/// An NDK handle; never null when it is used.
 type Handle = *mut c_void;
 
 /// `ACameraIdList`.
@@ -144,34 +144,34 @@ struct SessionCallbacks {
 }
 
 unsafe extern "C" fn on_disconnected(is_lost: Handle, _device: Handle) {
-    // SAFETY: the context is the flag, which outlives the device.
+    // SAFETY: the context points to the flag, which outlives the device.
     unsafe { &*is_lost.cast::<AtomicBool>() }.store(true, Ordering::Release);
 }
 
 unsafe extern "C" fn on_error(is_lost: Handle, device: Handle, error: c_int) {
     log::info!("the camera reports error {error}");
-    // SAFETY: as for the other.
+    // SAFETY: as in `on_disconnected`.
     unsafe { on_disconnected(is_lost, device) };
 }
 
 unsafe extern "C" fn on_session(_context: Handle, _session: Handle) {}
 
-/// `ACAMERA_ERROR_*`: the camera is in use, or too many are; and the permission is missing.
+/// `ACAMERA_ERROR_*`: the camera or too many cameras are in use; the permission is missing.
 const IN_USE: [c_int; 2] = [-10010, -10011];
 const PERMISSION_DENIED: c_int = -10013;
-/// `ACAMERA_LENS_FACING`, and its value for the one at the back.
+/// `ACAMERA_LENS_FACING`, and its value for a camera at the back.
 const LENS_FACING: u32 = 0x8_0005;
 const BACK: u8 = 1;
-/// `ACAMERA_SCALER_AVAILABLE_STREAM_CONFIGURATIONS`: format, width, height, and 1 for inputs, again and again.
+/// `ACAMERA_SCALER_AVAILABLE_STREAM_CONFIGURATIONS`: a sequence of format, width, height, and 1 for inputs.
 const STREAM_CONFIGURATIONS: u32 = 0xD_000A;
 /// `AIMAGE_FORMAT_YUV_420_888`.
 const YUV: c_int = 0x23;
-/// `TEMPLATE_PREVIEW`: with the focus that cameras keep by themselves.
+/// `TEMPLATE_PREVIEW`, with continuous autofocus.
 const PREVIEW: c_int = 1;
-/// One is looked at while the next comes.
+/// Two, so that one picture can be read while the next arrives.
 const PICTURES: c_int = 2;
 
-/// Functions of libraries as the NDK declares them, found by name.
+/// Declares functions of libraries, found by name, with the types of the NDK's headers.
 macro_rules! functions {
     ($($library:literal: [$($field:ident = $name:literal: fn($($argument:ty),*) $(-> $result:ty)?),* $(,)?]);* $(;)?) => {
         /// The functions of the camera and of pictures.
@@ -180,7 +180,7 @@ macro_rules! functions {
         }
 
         impl Functions {
-            /// Finds all; none if one is missing.
+            /// Finds all functions; `None` if one is missing.
             fn load() -> Option<Functions> {
                 $(let library = Library::open($library);
                 // SAFETY: the types are those of the NDK's headers.
@@ -230,14 +230,14 @@ functions! {
     ];
 }
 
-/// Something of the NDK's that is freed when this is dropped.
+/// An NDK object that is freed when this is dropped.
 struct Owned {
     handle: NonNull<c_void>,
     free: unsafe extern "C" fn(Handle),
 }
 
 impl Owned {
-    /// Takes what a call has made. `make` gets the place for the handle, and returns the call's status.
+    /// Takes what a call creates. `make` gets the place for the handle and returns the call's status.
     fn make(
         free: unsafe extern "C" fn(Handle),
         make: impl FnOnce(*mut Handle) -> c_int,
@@ -257,7 +257,7 @@ impl Owned {
 
 impl Drop for Owned {
     fn drop(&mut self) {
-        // SAFETY: made by the function's counterpart, and freed once.
+        // SAFETY: the handle was created by the counterpart of this function, and is freed only once.
         unsafe { (self.free)(self.handle.as_ptr()) };
     }
 }
@@ -270,12 +270,12 @@ struct Device<'a> {
 
 impl Drop for Device<'_> {
     fn drop(&mut self) {
-        // SAFETY: opened, and closed once. No callback comes afterwards.
+        // SAFETY: the camera was opened, and is closed only once. No callback runs afterwards.
         unsafe { (self.functions.close)(self.handle.as_ptr()) };
     }
 }
 
-/// A camera whose pictures come. Fields are dropped from the first to the last, and each needs those behind it.
+/// A camera that delivers pictures. Fields are dropped in the order of declaration; each depends on those after it.
 struct Camera<'a> {
     _session: Owned,
     _request: Owned,
@@ -283,7 +283,7 @@ struct Camera<'a> {
     _output: Owned,
     _outputs: Owned,
     _device: Device<'a>,
-    /// The device keeps their address.
+    /// Boxed, since the device keeps the address.
     _callbacks: Box<DeviceCallbacks>,
     reader: Owned,
     _manager: Owned,
@@ -291,7 +291,7 @@ struct Camera<'a> {
 }
 
 impl<'a> Camera<'a> {
-    /// Opens the camera at the back, or else the first one.
+    /// Opens a camera at the back, or else the first one.
     fn open(f: &'a Functions, is_lost: &'a AtomicBool) -> Result<Camera<'a>, String> {
         let failed = |status: c_int| {
             log::info!("the camera answers {status}");
@@ -306,14 +306,14 @@ impl<'a> Camera<'a> {
             }
         };
         let done = |status: c_int| if status == 0 { Ok(()) } else { Err(failed(status)) };
-        // SAFETY: no arguments.
+        // SAFETY: `manager_create` has no arguments, and `to` is valid.
         let manager = Owned::make(f.manager_delete, |to| unsafe {
             *to = (f.manager_create)();
             0
         });
         let manager = manager.map_err(failed)?;
         let (id, [width, height]) = choose(f, &manager)?;
-        // SAFETY: in all of these calls, the handles are those of live objects, and results have room.
+        // SAFETY: in all of these calls the handles are those of live objects, and there is room for the results.
         unsafe {
             let reader = Owned::make(f.reader_delete, |to| (f.reader_new)(width, height, YUV, PICTURES, to))
                 .map_err(failed)?;
@@ -364,13 +364,13 @@ impl<'a> Camera<'a> {
         }
     }
 
-    /// Lets `see` have the newest picture; none if there is no other than before.
+    /// Calls `see` with the newest picture; returns `None` if there is no new one.
     fn look<T>(&self, see: impl FnOnce(Luma) -> T) -> Option<T> {
         let f = self.functions;
-        // SAFETY: the reader is live, and the image has room.
+        // SAFETY: the reader is live, and there is room for the image.
         let image = Owned::make(f.image_delete, |to| unsafe { (f.acquire)(self.reader.raw(), to) }).ok()?;
         let (mut size, mut strides, mut data, mut length) = ([0; 2], [0; 2], ptr::null_mut(), 0);
-        // SAFETY: the image is live, and results have room.
+        // SAFETY: the image is live, and there is room for the results.
         let statuses = unsafe {
             [
                 (f.get_width)(image.raw(), &raw mut size[0]),
@@ -383,26 +383,26 @@ impl<'a> Camera<'a> {
         if statuses != [0; 5] || data.is_null() {
             return None;
         }
-        // SAFETY: the plane has so many bytes, which are the image's as long as it lives.
+        // SAFETY: the plane has `length` bytes, which are valid as long as the image lives.
         let bytes = unsafe { std::slice::from_raw_parts(data, usize::try_from(length).ok()?) };
         let natural = |[a, b]: [i32; 2]| Some([usize::try_from(a).ok()?, usize::try_from(b).ok()?]);
         Some(see(Luma { bytes, size: natural(size)?, strides: natural(strides)? }))
     }
 }
 
-/// Returns the camera to open, the one at the back if there is one, and the size of its pictures.
+/// Returns the camera to open, preferably one at the back, and the size of its pictures.
 fn choose<'a>(f: &'a Functions, manager: &Owned) -> Result<(std::ffi::CString, [i32; 2]), String> {
     let mut list = ptr::null_mut();
-    // SAFETY: the manager is live, and the list has room.
+    // SAFETY: the manager is live, and there is room for the list.
     let status = unsafe { (f.get_ids)(manager.raw(), &raw mut list) };
     if status != 0 || list.is_null() {
         return Err(NONE.into());
     }
-    /// The list, until it is dropped.
+    /// The list of cameras, freed on drop.
     struct Ids<'a>(*mut IdList, &'a Functions);
     impl Drop for Ids<'_> {
         fn drop(&mut self) {
-            // SAFETY: the manager's list, freed once.
+            // SAFETY: the list was made by the manager and is freed only once.
             unsafe { (self.1.delete_ids)(self.0) };
         }
     }
@@ -411,21 +411,21 @@ fn choose<'a>(f: &'a Functions, manager: &Owned) -> Result<(std::ffi::CString, [
     let IdList { count, ids } = unsafe { &*list.0 };
     let mut found: Option<(bool, (std::ffi::CString, [i32; 2]))> = None;
     for i in 0..usize::try_from(*count).unwrap_or_default() {
-        // SAFETY: the list has so many terminated texts.
+        // SAFETY: the list has `count` null-terminated strings.
         let id = unsafe { CStr::from_ptr(*ids.add(i)) };
-        // SAFETY: the manager is live, the text ends in zero, and the handle has room.
+        // SAFETY: the manager is live, the string null-terminated, and there is room for the handle.
         let made = |to| unsafe { (f.get_characteristics)(manager.raw(), id.as_ptr(), to) };
         let Ok(characteristics) = Owned::make(f.metadata_free, made) else { continue };
         let entry = |tag| {
             let mut entry = Entry { tag: 0, kind: 0, count: 0, data: ptr::null() };
-            // SAFETY: the metadata is live, and the entry has room.
+            // SAFETY: the metadata is live, and there is room for the entry.
             let status = unsafe { (f.get_entry)(characteristics.raw(), tag, &raw mut entry) };
             Some(entry).filter(|entry| status == 0 && !entry.data.is_null() && entry.count > 0)
         };
-        // SAFETY: this tag's values are bytes, and there is one.
+        // SAFETY: the values of this tag are bytes, and there is at least one.
         let is_back = entry(LENS_FACING).is_some_and(|e| unsafe { *e.data.cast::<u8>() } == BACK);
         let Some(sizes) = entry(STREAM_CONFIGURATIONS) else { continue };
-        // SAFETY: this tag's values are numbers of 32 bits, so many of them, as long as the metadata lives.
+        // SAFETY: the values of this tag are `count` integers of 32 bits, valid as long as the metadata lives.
         let sizes = unsafe { std::slice::from_raw_parts(sizes.data.cast::<i32>(), sizes.count as usize) };
         let (sizes, _) = sizes.as_chunks::<4>();
         let outputs = sizes.iter().filter(|[format, _, _, input]| (*format, *input) == (YUV, 0));

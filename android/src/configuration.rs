@@ -1,4 +1,4 @@
-//! The settings in use, and their sources.
+//! The settings in use, and where they come from.
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -20,31 +20,31 @@ use crate::stream;
 use crate::system;
 use crate::writer::Writer;
 
-/// What the menu has changed, in the application's own folder.
+/// The file with the menu's changes, in the application's internal folder.
 const MENU_FILE_NAME: &str = "settings-user";
 
-/// Settings from outside, and the folders in which scenes and viewers are looked for.
+/// Settings from outside, and the folders that are searched for scenes and viewers.
 pub struct Configuration {
     sources: Sources,
-    /// The settings that the sources gave last.
+    /// The settings that were last resolved from the sources.
     settings: Settings,
     folders: Vec<PathBuf>,
-    /// The file of the menu's settings, and its thread once something was written.
+    /// The file of the menu's settings, and its writer once something was written.
     menu_file: Option<PathBuf>,
     writer: Option<Writer>,
-    /// True until the user was told what there is to see: nothing was ever kept.
+    /// True until the user has been shown the explanation: the menu's file does not exist yet.
     is_first_start: bool,
     /// The mistakes in the settings when they were last read.
     mistakes: Vec<String>,
     game_loop: Option<GameLoop>,
-    /// True if a scenario was asked for that there is not: the activity has nothing to do.
+    /// True if a scenario was requested that does not exist: the activity has nothing to do.
     pub is_unknown_scenario: bool,
-    /// What another application shares, as long as it is being read.
+    /// What another application has shared, while it is being read.
     reading: Option<Reading>,
 }
 
 impl Configuration {
-    /// Asks Android for all sources, and makes the folder that scenes can be pushed to.
+    /// Asks Android for all sources, and creates the folder to which scenes can be pushed.
     pub fn new(app: &AndroidApp, java: &Java) -> Configuration {
         let external = app.external_data_path();
         let folders: Vec<PathBuf> =
@@ -64,7 +64,7 @@ impl Configuration {
             let java = java.clone();
             Reading::begin(folders.first().cloned(), move || java.given())
         });
-        // Extras of a shared intent are not settings.
+        // The extras of an intent that shares something are not settings.
         let mut extras = if reading.is_some() { Vec::new() } else { java.extras() };
         let scenario = java.scenario();
         let game_loop = scenario.and_then(|scenario| GameLoop::new(scenario, extras.clone()));
@@ -78,7 +78,7 @@ impl Configuration {
         if let Some(game_loop) = &game_loop {
             extras = game_loop.settings();
         }
-        // A scenario is a measurement, of which the user of the menu knows nothing.
+        // A scenario is a measurement, which the user's menu settings must not affect.
         let folder = app.internal_data_path().filter(|_| scenario.is_none());
         let menu_file = folder.map(|folder| folder.join(MENU_FILE_NAME));
         let menu = menu_file.as_ref().and_then(|file| std::fs::read(file).ok());
@@ -111,7 +111,7 @@ impl Configuration {
         self.game_loop.is_none() && self.sources.is_by_hand()
     }
 
-    /// Shows the stream of the settings, if they name one.
+    /// Shows the stream that the settings name, if any.
     pub fn show_stream(&self, viewer: &mut Viewer) {
         let Some(address) = &self.settings.stream else { return };
         let found = stream::find(address).unwrap_or_else(|| {
@@ -123,7 +123,7 @@ impl Configuration {
         }
     }
 
-    /// Explains what is seen if a person has started the application by hand, and for the first time.
+    /// Shows the explanation if a person has started the application by hand, for the first time.
     pub fn greet(&mut self, viewer: &mut Viewer) {
         if self.is_by_hand() && std::mem::take(&mut self.is_first_start) {
             viewer.explain();
@@ -131,8 +131,8 @@ impl Configuration {
         }
     }
 
-    /// Begins as a start by hand on a phone does: shows the start screen while something shared is being read, or if no
-    /// viewer was chosen yet. Does nothing for a start by a computer.
+    /// Handles a start by hand on a phone: shows the start screen while something shared is being read, or if no viewer
+    /// was chosen yet. Does nothing for a start by a computer.
     pub fn begin(&mut self, cardboard: &mut Cardboard) {
         if !self.is_by_hand() {
             return;
@@ -147,7 +147,7 @@ impl Configuration {
         log::info!("{}", cardboard.viewer_mut().show_start_screen(&message));
     }
 
-    /// Takes what was shared once it is read.
+    /// Applies what was shared once it has been read.
     pub fn take_shared(&mut self, display: &mut Display) {
         let Some(reading) = &mut self.reading else { return };
         let Some(read) = reading.poll() else {
@@ -171,7 +171,7 @@ impl Configuration {
                 Some(viewer) => show_stream(viewer, address),
                 None => String::new(),
             },
-            // It is kept when the user leaves: a model that no memory has room for would end every start.
+            // Saved only when the user leaves: a model too large for the memory would end every later start.
             Ok(Shared::Scene(name)) => {
                 log::info!("shared: the model {name}");
                 let pairs = [("scene", name.as_str()), ("viewpoint", "0")];
@@ -192,14 +192,14 @@ impl Configuration {
         }
     }
 
-    /// Compares pictures, if a game loop is to do so.
+    /// Compares pictures, if the game loop's scenario does that.
     pub fn check_pictures(&self, gl: &Rc<Context>) {
         if self.game_loop.as_ref().is_some_and(GameLoop::checks_pictures) {
             pictures::check(gl).iter().for_each(|pictures| log::info!("{pictures}"));
         }
     }
 
-    /// Goes to the next step of a game loop, and returns its settings; none after the last, and without a game loop.
+    /// Goes to the next step of a game loop and returns its settings; `None` after the last step or without one.
     pub fn next_step(&mut self) -> Option<Settings> {
         let game_loop = self.game_loop.as_mut()?;
         if !game_loop.advance() {
@@ -209,12 +209,12 @@ impl Configuration {
         Some(self.resolve())
     }
 
-    /// Takes over the changes saved when Android put the activity away.
+    /// Restores the changes that were saved when Android stopped the activity.
     pub fn restore(&mut self, saved: &[u8]) {
         self.sources.saved = settings::restore(saved);
     }
 
-    /// Returns the user's changes since the settings were read, for Android to keep.
+    /// Returns the user's changes since the settings were resolved, for Android to save.
     pub fn save(&self, viewer: Option<&Viewer>) -> Vec<u8> {
         settings::save(&self.changes(viewer))
     }
@@ -228,8 +228,7 @@ impl Configuration {
         [method, ipd].into_iter().flatten().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
-    /// Keeps what the menu has changed for the next start; a run with a name leaves nothing behind. True if that was a
-    /// reset.
+    /// Stores the menu's changes for the next start; a named run stores nothing. Returns true if the menu was reset.
     pub fn keep(&mut self, viewer: &mut Viewer) -> bool {
         let Some(kept) = viewer.take_kept() else { return false };
         let is_reset = kept.is_empty();
@@ -241,12 +240,12 @@ impl Configuration {
         is_reset
     }
 
-    /// Keeps what the user has changed by tap and volume keys, too, for the user leaves.
+    /// Also stores what the user has changed by tap and volume keys, since the user leaves.
     pub fn leave(&mut self, viewer: Option<&Viewer>) {
         let changes = self.changes(viewer);
         self.sources.keep(changes);
         self.write_menu_file();
-        // Waits: the process may be ended at any time from now on, and the next start reads the file.
+        // Waits for the writer: the process may be killed at any time from now on, and the next start reads the file.
         self.writer = None;
     }
 
@@ -256,7 +255,7 @@ impl Configuration {
         writer.write(settings::save(&self.sources.menu));
     }
 
-    /// Returns the settings from outside; each mistake is logged once.
+    /// Resolves the settings from outside; each mistake is logged once.
     pub fn resolve(&mut self) -> Settings {
         let (settings, mistakes) = self.sources.resolve();
         mistakes.iter().filter(|m| !self.mistakes.contains(m)).for_each(|mistake| log::warn!("{mistake}"));
@@ -264,10 +263,10 @@ impl Configuration {
         settings
     }
 
-    /// Makes a viewer with the settings from outside. Mistakes in them are logged, and the defaults take their place.
+    /// Creates a viewer with the settings from outside. Mistakes in them are logged and replaced by the defaults.
     ///
     /// # Errors
-    /// The viewer cannot be made with the defaults either.
+    /// The viewer cannot be created with the defaults either.
     pub fn make_viewer<T>(
         &mut self,
         new: impl Fn(Settings, &[PathBuf]) -> Result<T, ViewerError>,
@@ -310,15 +309,15 @@ impl Configuration {
         (settings != self.settings).then_some(settings)
     }
 
-    /// True if these settings show another scene than those in use.
+    /// True if these settings name another scene than those in use.
     pub fn is_other_scene(&self, settings: &Settings) -> bool {
         (&settings.scene, settings.seed) != (&self.settings.scene, self.settings.seed)
     }
 
-    /// Gives a display other settings; if it cannot take them, those before stay.
+    /// Applies settings to a display; if it rejects them, the previous ones stay.
     pub fn apply(&mut self, settings: Settings, display: &mut Display) {
         let Some(viewer) = display.viewer() else { return };
-        // A scene or viewer that was not found at the start is not looked for again with every change.
+        // A scene or viewer that was not found at the start is not searched for again with every change.
         let mut possible = settings.clone();
         if settings.scene == self.settings.scene {
             possible.scene.clone_from(&viewer.settings().scene);
@@ -338,7 +337,7 @@ impl Configuration {
     }
 }
 
-/// Chooses a viewer by its URI, and returns the sentence for the user.
+/// Chooses a viewer by its URI, and returns a sentence for the user.
 pub fn choose_viewer(cardboard: &mut Cardboard, uri: &str) -> String {
     match cardboard.choose_viewer(uri) {
         Ok(()) => "This is your viewer now. Touch Start.".into(),
@@ -346,7 +345,7 @@ pub fn choose_viewer(cardboard: &mut Cardboard, uri: &str) -> String {
     }
 }
 
-/// Shows a stream from now on, and returns the sentence for the user.
+/// Switches to a stream, and returns a sentence for the user.
 pub fn show_stream(viewer: &mut Viewer, address: stream::Address) -> String {
     log::info!("stream: {address}");
     match viewer.show_stream(stream::follow(address)) {

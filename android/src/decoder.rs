@@ -1,4 +1,4 @@
-//! The device's H.264 decoder, by AMediaCodec with buffers in memory.
+//! The device's H.264 decoder, through AMediaCodec with buffers in memory.
 
 use std::time::Duration;
 
@@ -10,14 +10,14 @@ use ndk::media_error::MediaError;
 
 use crate::stream::Layout;
 
-/// The longest wait for a decoder that has no room for the next frame.
+/// The longest wait for a decoder to accept the next frame.
 const INPUT_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// A decoder of pictures of one size.
 pub struct Decoder {
     codec: MediaCodec,
     size: [usize; 2],
-    /// Of the pictures that come.
+    /// The layout of the decoded pictures.
     layout: Layout,
 }
 
@@ -32,7 +32,7 @@ impl Decoder {
         for (key, value) in ["width", "height"].into_iter().zip(size) {
             format.set_i32(key, value as i32);
         }
-        // No frame of them waits for another one; from Android 11 on decoders may be asked not to keep any, either.
+        // The stream has no B-frames; from Android 11 on, decoders can be asked not to delay frames either.
         format.set_i32("low-latency", 1);
         let codec =
             MediaCodec::from_decoder_type("video/avc").ok_or("this device has no decoder of H.264.")?;
@@ -41,15 +41,15 @@ impl Decoder {
         Ok(Decoder { codec, size, layout: Layout::default() })
     }
 
-    /// The size in pixels.
+    /// Returns the size in pixels.
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// Takes a frame in the format of Annex B.
+    /// Passes a frame in the format of Annex B to the decoder.
     ///
     /// # Errors
-    /// The device's reason, or that it has no room.
+    /// The device's reason, or that the decoder accepts no frame.
     pub fn decode(&self, number: u32, data: &[u8]) -> Result<(), String> {
         let DequeuedInputBufferResult::Buffer(mut buffer) =
             self.codec.dequeue_input_buffer(INPUT_TIMEOUT).map_err(failed)?
@@ -62,16 +62,16 @@ impl Decoder {
         self.codec.queue_input_buffer(buffer, 0, data.len(), u64::from(number), 0).map_err(failed)
     }
 
-    /// Copies the next picture that is decoded into three planes, and returns its number; none while there is none.
+    /// Copies the next decoded picture into three planes and returns its number; `None` if there is none yet.
     ///
     /// # Errors
-    /// The device's reason, or a format that is not known.
+    /// The device's reason, or an unknown format.
     pub fn next(&mut self, planes: &mut Vec<u8>) -> Result<Option<u32>, String> {
         loop {
             match self.codec.dequeue_output_buffer(Duration::ZERO).map_err(failed)? {
                 DequeuedOutputBufferInfoResult::TryAgainLater => return Ok(None),
                 DequeuedOutputBufferInfoResult::OutputBuffersChanged => {}
-                // Comes before the first picture.
+                // Arrives before the first picture.
                 DequeuedOutputBufferInfoResult::OutputFormatChanged => {
                     let format = self.codec.output_format();
                     log::info!("stream: decoded as {format}");

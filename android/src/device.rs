@@ -1,5 +1,5 @@
-//! Reads battery and heat once a second, on a thread of its own: some devices take milliseconds to answer, which would
-//! cost a frame.
+//! Reads battery and heat once a second. This has a thread of its own, since some devices take milliseconds to answer,
+//! which would cost a frame.
 
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,11 +18,11 @@ const PERIOD: Duration = Duration::from_secs(1);
 pub struct Report {
     /// Battery and heat.
     pub state: DeviceState,
-    /// The display's refresh rate in Hz, which Android may change at any time.
+    /// The display's refresh rate in Hz; Android may change it at any time.
     pub refresh_hz: Option<f32>,
 }
 
-/// The thread that asks, until this is dropped.
+/// The thread that reads the state, running until this is dropped.
 pub struct Device {
     report: Arc<Mutex<Report>>,
     stop: Option<Sender<()>>,
@@ -53,7 +53,7 @@ impl Device {
         Device { report, stop: Some(stop), thread }
     }
 
-    /// Returns the newest answers.
+    /// Returns the newest report.
     pub fn report(&self) -> Report {
         *self.report.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -63,7 +63,7 @@ impl Drop for Device {
     fn drop(&mut self) {
         self.stop = None;
         if let Some(thread) = self.thread.take() {
-            // It ended by a panic at worst, which is in the log.
+            // At worst the thread has panicked, which is in the log.
             let _ = thread.join();
         }
     }

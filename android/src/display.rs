@@ -1,4 +1,4 @@
-//! The display that the eyes see.
+//! The display in use.
 
 use std::path::PathBuf;
 
@@ -7,10 +7,10 @@ use yoro_protocol::Settings;
 use yoro_viewer::openxr::{Headset, XrError};
 use yoro_viewer::{Cardboard, Viewer, ViewerError};
 
-/// The display that the eyes see; it owns the application that draws there.
+/// The display in use. It owns the application that draws on it.
 #[derive(Default)]
 pub enum Display {
-    /// No display chosen yet.
+    /// No display was chosen yet.
     #[default]
     None,
     /// The phone's screen, behind lenses.
@@ -59,10 +59,10 @@ impl Display {
         matches!(self, Display::Headset(_))
     }
 
-    /// Takes over other settings.
+    /// Applies other settings.
     ///
     /// # Errors
-    /// Those of [`Cardboard::configure`]; the settings before stay.
+    /// Those of [`Cardboard::configure`]; the previous settings stay.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         match self {
             Display::None => Ok(()),
@@ -75,13 +75,13 @@ impl Display {
 /// A reason why nothing can be shown.
 #[derive(Debug, thiserror::Error)]
 pub enum DisplayError {
-    /// The window.
+    /// The window cannot be used.
     #[error(transparent)]
     Window(#[from] WindowError),
-    /// The application.
+    /// The application has failed.
     #[error(transparent)]
     Viewer(#[from] ViewerError),
-    /// The headset.
+    /// The headset has failed.
     #[error(transparent)]
     Xr(#[from] XrError),
 }

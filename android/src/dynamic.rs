@@ -1,16 +1,16 @@
-//! Functions that are found by name: those of libandroid that not every version of Android has, and whole libraries
+//! Functions that are looked up by name: those of libandroid that not every version of Android has, and whole libraries
 //! that are rarely used.
 
 use std::ffi::{CStr, c_void};
 use std::mem;
 
-/// One of Android's own libraries, which is never unloaded.
+/// One of Android's own libraries. It is never unloaded.
 pub struct Library(*mut c_void);
 
 impl Library {
-    /// Opens a library by its name; without it, it has no functions.
+    /// Opens a library by its name. If that fails, no function will be found in it.
     pub fn open(name: &CStr) -> Library {
-        // SAFETY: a name that ends in zero; Android's libraries may be loaded on any thread.
+        // SAFETY: the name is null-terminated; Android's libraries may be loaded on any thread.
         Library(unsafe { libc::dlopen(name.as_ptr(), libc::RTLD_NOW) })
     }
 
@@ -19,7 +19,7 @@ impl Library {
         Library::open(c"libandroid.so")
     }
 
-    /// Returns a function by its name; none if this Android does not have it.
+    /// Returns a function by its name; `None` if this version of Android does not have it.
     ///
     /// # Safety
     /// `F` must be a function pointer of the type that the NDK declares for the name.
@@ -28,9 +28,9 @@ impl Library {
         if self.0.is_null() {
             return None;
         }
-        // SAFETY: the handle is live and the name ends in zero.
+        // SAFETY: the handle is live and the name null-terminated.
         let address = unsafe { libc::dlsym(self.0, name.as_ptr()) };
-        // SAFETY: not null; the caller names the type that the NDK declares.
+        // SAFETY: the address is not null, and the caller guarantees the type.
         (!address.is_null()).then(|| unsafe { mem::transmute_copy::<*mut c_void, F>(&address) })
     }
 }

@@ -1,16 +1,16 @@
-//! Game loops of Firebase Test Lab: scenarios that play by themselves, write their lines to a file, and end.
-//! The scenarios' labels are in the manifest.
+//! Game loops of Firebase Test Lab: scenarios that play by themselves, write their log lines to a file, and end. The
+//! scenarios' labels are in the manifest.
 
 use yoro_protocol::Pipeline;
 
 use crate::settings::Pair;
 
-/// Seconds of a step of scenarios 1, 2 and 3. The first five of a step are its warm-up.
+/// Duration in seconds of a step of scenarios 1, 2 and 3. The first five seconds of a step are its warm-up.
 const SECONDS: [f32; 3] = [5.0, 65.0, 605.0];
-/// The extra that sets other seconds a step, for trying a scenario out.
+/// The extra that sets another duration per step, for trying out a scenario.
 const SECONDS_EXTRA: &str = "seconds";
 
-/// A scenario that is being played: settings in turn, in one session.
+/// A scenario that is being played: a sequence of settings in one session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GameLoop {
     scenario: i32,
@@ -22,7 +22,7 @@ pub struct GameLoop {
 }
 
 impl GameLoop {
-    /// Returns a scenario, with the extras of the intent that asks for it; none if there is no such scenario.
+    /// Creates a scenario, with the extras of the intent that requests it; `None` if it does not exist.
     pub fn new(scenario: i32, mut extras: Vec<Pair>) -> Option<GameLoop> {
         let default = Pipeline::default();
         let steps = match scenario {
@@ -38,7 +38,7 @@ impl GameLoop {
         Some(GameLoop { scenario, steps, seconds, step: 0, extras })
     }
 
-    /// Returns the settings of the present step. All steps are one session, whose length grows with them.
+    /// Returns the settings of the present step. All steps share one session, whose duration grows with them.
     pub fn settings(&self) -> Vec<Pair> {
         let (method, pipeline) = self.steps[self.step];
         let name = if self.scenario == 1 { pipeline.name() } else { method };
@@ -55,12 +55,12 @@ impl GameLoop {
         own.map(|(key, value)| (key.to_owned(), value)).into_iter().chain(self.extras.clone()).collect()
     }
 
-    /// True if pictures are to be compared.
+    /// True if the scenario compares pictures.
     pub fn checks_pictures(&self) -> bool {
         self.scenario == 1
     }
 
-    /// Goes to the next step; false after the last.
+    /// Goes to the next step; returns false after the last.
     pub fn advance(&mut self) -> bool {
         let has_next = self.step + 1 < self.steps.len();
         self.step += usize::from(has_next);

@@ -6,22 +6,22 @@ use yoro_viewer::Event;
 
 use crate::press::Press;
 
-/// The user's input by screen, buttons and keys.
+/// The user's input by touch screen, buttons and keys.
 #[derive(Default)]
 pub struct Input {
     touch: Press,
     trigger: Press,
-    /// Events that nobody has taken yet.
+    /// Events that have not been handled yet.
     pub events: Vec<Event>,
-    /// Where the finger was that pressed last, in pixels from the upper left corner; none if that was a key.
+    /// The position of the finger that pressed last, in pixels from the upper left corner; `None` if it was a key.
     pub touched: Option<[f32; 2]>,
     /// True if Android has events to read.
     pub is_available: bool,
 }
 
 impl Input {
-    /// Reads Android's events, if there are any, and appends their meanings. Keys that the application does not use,
-    /// such as the back key, stay Android's.
+    /// Reads Android's events, if there are any, and appends the resulting events. Keys that the application does not
+    /// use, such as the back key, are left to Android.
     pub fn collect(&mut self, app: &AndroidApp, dpi: f32) {
         if !std::mem::take(&mut self.is_available) {
             return;
@@ -40,12 +40,12 @@ impl Input {
         }) {}
     }
 
-    /// Appends a press that has become long; `now_ns` is of the clock of the events, which is the monotonic one.
+    /// Appends a press that has become long. `now_ns` is on the clock of the events, which is the monotonic one.
     pub fn hold(&mut self, now_ns: i64) {
         self.events.extend(self.touch.held(now_ns).or_else(|| self.trigger.held(now_ns)));
     }
 
-    /// Forgets presses that have begun: the window is gone.
+    /// Forgets presses in progress, since the window is gone.
     pub fn cancel(&mut self) {
         (self.touch, self.trigger) = (Press::default(), Press::default());
     }
@@ -82,7 +82,7 @@ impl Input {
             Keycode::VolumeUp if is_down => self.events.push(Event::IpdUp),
             Keycode::VolumeDown if is_down => self.events.push(Event::IpdDown),
             Keycode::VolumeUp | Keycode::VolumeDown => {}
-            // The buttons of headsets, game pads and keyboards.
+            // The buttons of headphones, game pads and keyboards.
             Keycode::Enter
             | Keycode::Space
             | Keycode::DpadCenter
@@ -93,7 +93,7 @@ impl Input {
             | Keycode::ButtonR1
             | Keycode::ButtonL2
             | Keycode::ButtonR2 => match key.action() {
-                // A key that is held repeats.
+                // Ignores repeats of a key that is held.
                 KeyAction::Down if key.repeat_count() == 0 => {
                     self.trigger.down(key.event_time(), [0.0; 2]);
                     self.touched = None;

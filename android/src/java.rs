@@ -1,4 +1,4 @@
-//! Questions that only Java answers.
+//! Queries and requests that only Java can serve.
 
 use std::ffi::c_void;
 use std::fs::File;
@@ -54,26 +54,26 @@ pub struct BatteryIntent {
 /// `Intent.FLAG_ACTIVITY_LAUNCHED_FROM_HISTORY`.
 const LAUNCHED_FROM_HISTORY: i32 = 0x0010_0000;
 const CAMERA: &str = "android.permission.CAMERA";
-/// The actions by which other applications share.
+/// The actions with which other applications share something.
 const SEND: &str = "android.intent.action.SEND";
 const VIEW: &str = "android.intent.action.VIEW";
 
-/// The display that the activity is on.
+/// Metrics of the display that the activity is on.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayMetrics {
-    /// Pixels per inch along both axes of the picture: of the display's mode.
+    /// Pixels per inch along both axes of the picture, for the display's mode.
     pub dpi: [f32; 2],
-    /// Width and height of the picture in pixels; the user may have set others than the mode's.
+    /// Width and height of the picture in pixels; the user may have chosen a resolution other than the mode's.
     pub size: [i32; 2],
-    /// Width and height of the display's mode in pixels, in the device's natural position.
+    /// Width and height of the display's mode in pixels, in the device's natural orientation.
     pub mode: [i32; 2],
-    /// Refreshes per second; 0 where the answer is implausible.
+    /// Refreshes per second; 0 if the reported value is implausible.
     pub refresh_hz: f32,
     /// `Surface.ROTATION_*`: the picture's rotation in steps of 90 degrees.
     pub rotation: i32,
 }
 
-/// The activity as Java sees it. Any thread may ask; a thread stays attached to Java until it ends.
+/// The activity as Java sees it. It can be used on any thread; a thread stays attached to Java until it ends.
 #[derive(Clone)]
 pub struct Java {
     vm: JavaVM,
@@ -83,31 +83,31 @@ pub struct Java {
 impl Java {
     /// Returns the activity of an application.
     pub fn new(app: &AndroidApp) -> Java {
-        // SAFETY: the process has one Java VM, which is there as long as the process is.
+        // SAFETY: the process has one Java VM, which exists as long as the process.
         Java { vm: unsafe { JavaVM::from_raw(app.vm_as_ptr().cast()) }, app: app.clone() }
     }
 
-    /// Asks the activity; an exception is logged, cleared and means no answer.
+    /// Queries the activity. An exception is logged and cleared, and gives `None`.
     fn ask<T>(&self, what: &str, question: impl FnOnce(&mut Env, &Activity) -> JavaResult<T>) -> Option<T> {
         self.try_ask(question).inspect_err(|error| log::debug!("{what}: {error}")).ok()
     }
 
-    /// Asks the activity; an exception is cleared and returned.
+    /// Queries the activity. An exception is cleared and returned.
     fn try_ask<T>(&self, question: impl FnOnce(&mut Env, &Activity) -> JavaResult<T>) -> JavaResult<T> {
         self.vm.attach_current_thread(|env| {
             let raw = self.app.activity_as_ptr() as jni::sys::jobject;
-            // SAFETY: a global reference that android-activity owns and keeps as long as `app` lives.
+            // SAFETY: the pointer is a global reference that android-activity owns and keeps as long as `app` lives.
             let activity = unsafe { env.as_cast_raw::<Global<Activity<'static>>>(&raw)? };
             question(env, &activity)
         })
     }
 
-    /// Returns the display's metrics; none if Java does not provide them.
+    /// Returns the display's metrics; `None` if Java does not provide them.
     pub fn display_metrics(&self) -> Option<DisplayMetrics> {
         self.ask("the display", |env, activity| {
             let display = activity.get_window_manager(env)?.get_default_display(env)?;
             let mode = display.get_mode(env)?;
-            // The metrics of the whole display; the resources' metrics leave out the parts reserved for the system.
+            // The metrics of the whole display; those of the resources exclude the parts reserved for the system.
             let metrics = Metrics::new(env)?;
             display.get_real_metrics(env, &metrics)?;
             let refresh_hz = display.get_refresh_rate(env)?;
@@ -122,8 +122,8 @@ impl Java {
         })
     }
 
-    /// True if this is a headset: there it is no use to show a window instead. Phones for Daydream have
-    /// `android.hardware.vr.headtracking`, too, but in version 0, of three degrees of freedom.
+    /// True if this is a headset, on which showing a window instead is useless. Phones for Daydream also have
+    /// `android.hardware.vr.headtracking`, but in version 0, with three degrees of freedom.
     pub fn is_headset(&self) -> bool {
         const FEATURES: [(&str, i32); 2] =
             [("android.hardware.vr.headtracking", 1), ("android.software.xr.api.openxr", 0)];
@@ -140,7 +140,7 @@ impl Java {
         answer.unwrap_or_default()
     }
 
-    /// Returns a global JNI reference to the application's context, if Java has one. It lasts as long as the process:
+    /// Returns a global JNI reference to the application's context, if Java has one. It lasts as long as the process,
     /// for libraries that keep it after the activity is gone.
     pub fn application_context(&self) -> Option<*mut c_void> {
         static CONTEXT: OnceLock<Option<Global<JObject<'static>>>> = OnceLock::new();
@@ -153,8 +153,8 @@ impl Java {
         context.as_ref().map(|context| context.as_raw().cast())
     }
 
-    /// Turns sustained performance mode on or off, where the device has it: clock rates that can be held for long
-    /// instead of high ones that cannot. True if the device has it.
+    /// Turns sustained performance mode on or off, if the device has it: clock rates that can be held for long instead
+    /// of higher ones that cannot. Returns true if the device has it.
     pub fn sustain_performance(&self, is_on: bool) -> bool {
         let is_offered = self.ask("the power manager", |env, activity| {
             let name = JString::new(env, "power")?;
@@ -196,12 +196,12 @@ impl Java {
         extras.unwrap_or_default()
     }
 
-    /// True if another application shares something by the intent that started the activity. What is shared while the
-    /// activity lives does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
+    /// True if the activity was started by an intent with which another application shares something. What is shared
+    /// while the activity runs does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
     pub fn is_given(&self) -> bool {
         let is_given = self.ask("the shared", |env, activity| {
             let intent = activity.get_intent(env)?;
-            // Begun again from the list of recent applications, the activity has the intent of its first start.
+            // An activity started again from the list of recent applications gets the intent of its first start.
             if intent.is_null() || intent.get_flags(env)? & LAUNCHED_FROM_HISTORY != 0 {
                 return Ok(false);
             }
@@ -211,14 +211,14 @@ impl Java {
         is_given.unwrap_or_default()
     }
 
-    /// Returns what another application shares, where [`Java::is_given`]. The owner of a file may take its time.
+    /// Returns what another application shares, if [`Java::is_given`]. The file's owner may take long to answer.
     pub fn given(&self) -> Given {
         let given = self.ask("the shared", |env, activity| {
             let intent = activity.get_intent(env)?;
             let action = intent.get_action(env)?.try_to_string(env)?;
             let uri = match action.as_str() {
                 SEND => {
-                    // A picture may come with words besides.
+                    // A picture may be accompanied by text.
                     let name = JString::new(env, "android.intent.extra.STREAM")?;
                     let stream = intent.get_parcelable_extra(env, &name)?;
                     if stream.is_null() {
@@ -238,7 +238,7 @@ impl Java {
             if address.starts_with("http://") || address.starts_with("https://") {
                 return Ok(Some(Given::Text(address)));
             }
-            // That may be one of yoro's own.
+            // The file may be one of yoro's own.
             if address.starts_with("file:") {
                 return Ok(Some(Given::Closed));
             }
@@ -263,8 +263,8 @@ impl Java {
         answer == Some(GRANTED)
     }
 
-    /// Asks the user whether yoro may use the camera. The answer is there when the activity is in front again; Android
-    /// gives it without a question where the user has refused twice.
+    /// Asks the user for permission to use the camera. The answer is known when the activity is in the foreground
+    /// again. If the user has refused twice, Android answers without asking.
     pub fn ask_for_camera(&self) {
         self.on_main_thread("the permission", |env, activity| {
             let names = env.new_object_type_array::<JString>(1, JString::null())?;
@@ -274,7 +274,7 @@ impl Java {
         });
     }
 
-    /// Lets the user give a text to another application. An intent takes half a megabyte at most.
+    /// Lets the user share a text with another application. An intent can hold at most half a megabyte.
     pub fn share(&self, shared: String) {
         self.on_main_thread("sharing", move |env, activity| {
             let action = JString::new(env, SEND)?;
@@ -290,7 +290,7 @@ impl Java {
         });
     }
 
-    /// Raises the screen's brightness to its highest, or gives it back to the user's setting.
+    /// Raises the screen's brightness to the maximum, or returns it to the user's setting.
     pub fn raise_brightness(&self, is_raised: bool) {
         // BRIGHTNESS_OVERRIDE_FULL and BRIGHTNESS_OVERRIDE_NONE.
         let brightness = if is_raised { 1.0 } else { -1.0 };
@@ -302,7 +302,7 @@ impl Java {
         });
     }
 
-    /// True while the device is awake; also where it does not say.
+    /// True while the device is awake, or if it does not say.
     pub fn is_awake(&self) -> bool {
         let answer = self.ask("the power manager", |env, activity| {
             let name = JString::new(env, "power")?;
@@ -312,7 +312,7 @@ impl Java {
         answer.unwrap_or(true)
     }
 
-    /// Returns the number of the game loop's scenario that the activity was started for; none for any other start.
+    /// Returns the number of the game loop's scenario for which the activity was started; `None` for any other start.
     pub fn scenario(&self) -> Option<i32> {
         let scenario = self.ask("the intent's scenario", |env, activity| {
             let intent = activity.get_intent(env)?;
@@ -326,7 +326,7 @@ impl Java {
         scenario.flatten()
     }
 
-    /// Opens the file that the intent's data names for a game loop's results; none if it names none, or Android
+    /// Opens the file for a game loop's results that the intent's data names; `None` if it names none or Android
     /// refuses.
     pub fn results(&self) -> Option<File> {
         let file = self.ask("the game loop's results", |env, activity| {
@@ -339,7 +339,7 @@ impl Java {
         file.flatten()
     }
 
-    /// Returns one of the battery's properties; none where the device does not support it, for which Android says
+    /// Returns one of the battery's properties; `None` if the device does not support it, which Android reports as
     /// `Integer.MIN_VALUE`.
     pub fn battery(&self, property: BatteryProperty) -> Option<i32> {
         let value = self.ask("the battery manager", |env, activity| {
@@ -355,7 +355,7 @@ impl Java {
         let answer = self.ask("the battery's intent", |env, activity| {
             let action = JString::new(env, "android.intent.action.BATTERY_CHANGED")?;
             let filter = IntentFilter::new(env, &action)?;
-            // Without a receiver nothing is registered: the call only returns the last broadcast.
+            // Without a receiver the call registers nothing and only returns the last broadcast.
             let intent = activity.register_receiver(env, JObject::null(), &filter)?;
             if intent.is_null() {
                 return Ok(BatteryIntent::default());
@@ -377,11 +377,11 @@ impl Java {
         answer.unwrap_or_default()
     }
 
-    /// Hides the system's bars, also after the user has swiped them in. They come back with the focus of other
-    /// windows, so call it whenever the focus is won.
+    /// Hides the system's bars, also after the user has swiped them in. They return when another window gets the focus,
+    /// so this must be called whenever the focus returns.
     pub fn hide_system_bars(&self) {
         // SYSTEM_UI_FLAG_* LAYOUT_STABLE | LAYOUT_HIDE_NAVIGATION | LAYOUT_FULLSCREEN | HIDE_NAVIGATION | FULLSCREEN |
-        // IMMERSIVE_STICKY: deprecated since API 30, and the one way that works from API 29 on.
+        // IMMERSIVE_STICKY: deprecated since API 30, but the only way that works from API 29 on.
         const FLAGS: i32 = 0x100 | 0x200 | 0x400 | 0x2 | 0x4 | 0x1000;
         self.on_main_thread("the system's bars", |env, activity| {
             activity.get_window(env)?.get_decor_view(env)?.set_system_ui_visibility(env, FLAGS)
@@ -398,12 +398,12 @@ impl Java {
         });
     }
 
-    /// Asks Android to end the activity. The events of its end follow, up to `Destroy`.
+    /// Asks Android to end the activity. The usual events follow, up to `Destroy`.
     pub fn finish(&self) {
         self.on_main_thread("the activity's end", |env, activity| activity.finish(env));
     }
 
-    /// Runs something on the activity's main thread, for views belong to the thread that made them.
+    /// Runs something on the activity's main thread, since views belong to the thread that created them.
     fn on_main_thread(
         &self,
         what: &'static str,
@@ -423,18 +423,18 @@ impl Broker for Java {
     }
 }
 
-/// Opens the file that a URI names, by the content resolver; none if there is none.
+/// Opens the file that a URI names, through the content resolver; `None` if there is none.
 fn open(env: &mut Env, activity: &Activity, uri: &Uri, mode: &str) -> JavaResult<Option<File>> {
     let mode = JString::new(env, mode)?;
     let opened = activity.get_content_resolver(env)?.open_file_descriptor(env, uri, &mode)?;
     if opened.is_null() {
         return Ok(None);
     }
-    // SAFETY: a detached descriptor belongs to the caller, and nobody else closes it.
+    // SAFETY: a detached descriptor belongs to the caller, and nothing else closes it.
     Ok(Some(unsafe { File::from_raw_fd(opened.detach_fd(env)?) }))
 }
 
-/// Returns all rows of a provider's table; none where there is no provider.
+/// Returns all rows of a provider's table; `None` if there is no provider.
 fn query(env: &mut Env, activity: &Activity, uri: &str, columns: &[&str]) -> JavaResult<Option<Rows>> {
     let resolver = activity.get_content_resolver(env)?;
     let uri = JString::new(env, uri)?;
@@ -464,7 +464,7 @@ fn read_rows(env: &mut Env, cursor: &Cursor, columns: &[&str]) -> JavaResult<Row
     while cursor.move_to_next(env)? {
         let mut row = Vec::new();
         for &index in &indices {
-            // A column that is not there has the index -1.
+            // A column that does not exist has the index -1.
             let cell = if index < 0 { JString::null() } else { cursor.get_string(env, index)? };
             row.push(if cell.is_null() { None } else { Some(cell.try_to_string(env)?) });
         }

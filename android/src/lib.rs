@@ -1,8 +1,8 @@
 //! yoro on Android: the library that `NativeActivity` loads.
 //!
-//! It takes Android's window, sensors, touch, settings and the state of battery and heat, and gives them to
-//! [`yoro_viewer`], which is the application itself. It must know neither how eyes are synthesized nor how they are
-//! measured, but for `pictures`, which compares a driver's pictures with stored ones. On other systems only the parts without Android are built, for their tests.
+//! It connects Android's window, sensors, touch input, settings and the state of battery and heat to [`yoro_viewer`],
+//! which is the application itself. It must not depend on how eyes are synthesized or measured, except for `pictures`,
+//! which compares a driver's pictures with stored ones. Other systems build only the parts without Android, for tests.
 
 #[cfg(any(target_os = "android", test))]
 mod game_loop;
@@ -58,20 +58,19 @@ mod system;
 #[cfg(target_os = "android")]
 mod thermal;
 
-/// The application's entry point; returning ends the activity. It may run more than once in one process, even while an
-/// earlier run is about to return.
+/// The application's entry point. Returning from it ends the activity. It may run more than once in one process, even
+/// while an earlier run is about to return.
 #[cfg(target_os = "android")]
 #[unsafe(no_mangle)]
 fn android_main(app: android_activity::AndroidApp) {
-    // Scripts read these lines: nothing but the message may stand after the tag. In a second run the first logger
-    // stays.
+    // Scripts read these lines, so only the message may follow the tag. In a second run the first logger stays.
     results::init_log(
         android_logger::Config::default()
             .with_max_level(log::LevelFilter::Info)
             .with_tag(yoro_protocol::telemetry::LOG_TAG)
             .format(|writer, record| write!(writer, "{}", record.args())),
     );
-    // A panic never unwinds into Android's code: the build aborts, after this.
+    // A panic never unwinds into Android's code: the build aborts after this hook.
     std::panic::set_hook(Box::new(|panic| {
         log::error!("yoro has a bug and ends: {panic}\n{}", std::backtrace::Backtrace::force_capture());
     }));

@@ -1,40 +1,39 @@
-//! The times of sensor samples and of frames on the display, in nanoseconds of the monotonic clock.
+//! Times of sensor samples and displayed frames, in nanoseconds of the monotonic clock.
 
 /// A refresh of the display, and Android's plan for a frame that begins with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refresh {
-    /// The time at which it begins.
+    /// The time at which the refresh begins.
     pub begin_ns: i64,
-    /// Android's plan; present from Android 13 on.
+    /// Android's plan, from Android 13 on.
     pub timeline: Option<Timeline>,
 }
 
-/// A frame as Android plans it.
+/// Android's plan for a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timeline {
     /// The time by which the GPU must have finished.
     pub deadline_ns: i64,
-    /// The time at which the frame is seen.
+    /// The time at which the frame is displayed.
     pub display_ns: i64,
 }
 
 impl Refresh {
-    /// Returns when a frame is seen that begins with this refresh and is ready at `ready_ns`, with `period_ns` between
-    /// refreshes.
-    /// Without a timeline it is seen at the second refresh after this one, if it is ready by the first.
+    /// Returns when a frame is displayed that begins with this refresh and is ready at `ready_ns`, with `period_ns`
+    /// between refreshes. Without a timeline, a frame that is ready by the next refresh is displayed at the second one.
     pub fn display_ns(&self, ready_ns: i64, period_ns: i64) -> i64 {
         let usual =
             Timeline { deadline_ns: self.begin_ns + period_ns, display_ns: self.begin_ns + 2 * period_ns };
         let Timeline { deadline_ns, display_ns } = self.timeline.unwrap_or(usual);
         let late = (ready_ns - deadline_ns).max(0);
-        // A late frame waits for a later refresh.
+        // A late frame is delayed by whole refreshes.
         display_ns + (late + period_ns - 1) / period_ns * period_ns
     }
 }
 
-/// Returns the time of a sensor's sample that has just come. Its own time `sample_ns` should be of CLOCK_BOOTTIME. Some
-/// drivers take CLOCK_MONOTONIC, which is behind by the time `slept_ns` that the device has slept. So the clock is the
-/// one on which the sample is younger.
+/// Converts the time of a sensor sample that has just arrived to the monotonic clock. `sample_ns` should be
+/// CLOCK_BOOTTIME, but some drivers use CLOCK_MONOTONIC, which lags behind by `slept_ns`, the time that the device has
+/// slept. The clock on which the sample's time is closer to `now_ns` is taken.
 pub fn sample_time_ns(sample_ns: i64, now_ns: i64, slept_ns: i64) -> i64 {
     let by_boottime = sample_ns - slept_ns;
     if (now_ns - by_boottime).abs() <= (now_ns - sample_ns).abs() { by_boottime } else { sample_ns }

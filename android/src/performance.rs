@@ -1,5 +1,5 @@
-//! Asks a phone for steady performance: a refresh rate that stays, clock rates that last, and hints of how long frames
-//! take. Each is asked for where Android and the device offer it.
+//! Requests steady performance from a phone: a constant refresh rate, clock rates that can be sustained, and hints
+//! about frame durations. Each is requested only if Android and the device offer it.
 
 use std::ffi::c_void;
 use std::fmt;
@@ -13,7 +13,7 @@ use crate::dynamic::Library;
 use crate::java::Java;
 use crate::system::thread_id;
 
-/// `ANATIVEWINDOW_FRAME_RATE_COMPATIBILITY_DEFAULT`: frames are made for any rate.
+/// `ANATIVEWINDOW_FRAME_RATE_COMPATIBILITY_DEFAULT`: the frames are suitable for any rate.
 const ANY_RATE: i8 = 0;
 
 type SetFrameRate = unsafe extern "C" fn(*mut ndk_sys::ANativeWindow, f32, i8) -> i32;
@@ -21,17 +21,17 @@ type SetFrameRate = unsafe extern "C" fn(*mut ndk_sys::ANativeWindow, f32, i8) -
 /// The requests made so far.
 pub struct Performance {
     android: Library,
-    /// The display's rate in Hz when it was first known: it is to stay, unless the settings want another.
+    /// The display's rate in Hz when it was first known. It is kept unless the settings name another.
     first_hz: Option<f32>,
-    /// The rate asked for with the present window, in Hz.
+    /// The rate in Hz that was requested with the present window.
     rate_hz: Option<f32>,
-    /// The request for sustained performance mode: true if on, and true if the device has the mode.
+    /// The request for sustained performance mode: whether it is on, and whether the device has the mode.
     sustained: Option<(bool, bool)>,
     hints: Option<Hints>,
 }
 
 impl Performance {
-    /// Asks for nothing yet.
+    /// Creates a value that has requested nothing yet.
     pub fn new() -> Performance {
         Performance {
             android: Library::android(),
@@ -42,13 +42,13 @@ impl Performance {
         }
     }
 
-    /// Forgets the request made with the window before.
+    /// Forgets the request that was made with the previous window.
     pub fn forget_window(&mut self) {
         self.rate_hz = None;
     }
 
-    /// Asks for the performance that the settings want, unless already asked for, and logs the outcome in one line. The
-    /// display's present rate is `refresh_hz`, 0 if unknown.
+    /// Requests the settings' performance unless that has been done already, and logs the outcome in one line.
+    /// `refresh_hz` is the display's present rate, 0 if unknown.
     pub fn ask(&mut self, settings: &Settings, window: &NativeWindow, refresh_hz: f32, java: &Java) {
         let known = Some(refresh_hz).filter(|hz| *hz > 0.0);
         self.first_hz = self.first_hz.or(known);
@@ -77,12 +77,12 @@ impl Performance {
     }
 
     fn set_frame_rate(&self, window: &NativeWindow, hz: f32) {
-        // SAFETY: the type is that of <android/native_window.h>; it is there from API 30 on.
+        // SAFETY: the type is that of <android/native_window.h>; the function exists from API 30 on.
         let Some(set) = (unsafe { self.android.function::<SetFrameRate>(c"ANativeWindow_setFrameRate") })
         else {
             return;
         };
-        // SAFETY: the window is live as long as it is borrowed.
+        // SAFETY: the borrowed window is live.
         let status = unsafe { set(window.ptr().as_ptr(), hz, ANY_RATE) };
         if status != 0 {
             log::warn!("Android does not take a refresh rate of {hz} Hz (status {status})");
@@ -99,7 +99,7 @@ impl Performance {
         }
     }
 
-    /// Notes this thread's working time on a frame.
+    /// Reports this thread's working time on a frame.
     pub fn worked(&self, time: Duration) {
         if let Some(hints) = &self.hints {
             hints.worked(time);
@@ -123,7 +123,7 @@ impl fmt::Display for Performance {
     }
 }
 
-/// `APerformanceHintManager` and `APerformanceHintSession`, which only libandroid knows.
+/// Opaque `APerformanceHintManager` and `APerformanceHintSession`.
 type Manager = c_void;
 type Session = c_void;
 type GetManager = unsafe extern "C" fn() -> *mut Manager;
@@ -131,7 +131,7 @@ type CreateSession = unsafe extern "C" fn(*mut Manager, *const i32, usize, i64) 
 type Report = unsafe extern "C" fn(*mut Session, i64) -> i32;
 type Close = unsafe extern "C" fn(*mut Session);
 
-/// Reports this thread's working time per frame and its target to the scheduler, from API 33 on
+/// Reports this thread's working time per frame, and its target, to the scheduler, from API 33 on
 /// (<https://developer.android.com/games/optimize/adpf>).
 struct Hints {
     session: NonNull<Session>,
@@ -145,10 +145,10 @@ impl Hints {
         unsafe { android.function::<GetManager>(c"APerformanceHint_getManager") }.is_some()
     }
 
-    /// Begins a session for this thread, whose frames may take `period`; none if this device takes no hints.
+    /// Starts a session for this thread, whose frames may take `period`; `None` if this device takes no hints.
     fn new(android: &Library, period: Duration) -> Option<Hints> {
         // SAFETY: the types are those of <android/performance_hint.h>; a manager that is not null lives as long as the
-        // process, and the list of threads through the call.
+        // process, and the list of threads outlives the call.
         unsafe {
             let manager: GetManager = android.function(c"APerformanceHint_getManager")?;
             let create: CreateSession = android.function(c"APerformanceHint_createSession")?;
@@ -161,14 +161,14 @@ impl Hints {
     }
 
     fn worked(&self, time: Duration) {
-        // SAFETY: the session is live. The number must be positive; that a hint was not taken changes nothing.
+        // SAFETY: the session is live. The number must be positive. A hint that is refused has no effect.
         let _ = unsafe { (self.report)(self.session.as_ptr(), time.as_nanos().max(1) as i64) };
     }
 }
 
 impl Drop for Hints {
     fn drop(&mut self) {
-        // SAFETY: made once, closed once.
+        // SAFETY: the session was created once and is closed only once.
         unsafe { (self.close)(self.session.as_ptr()) }
     }
 }

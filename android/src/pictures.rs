@@ -1,6 +1,6 @@
-//! A check of the driver: every pipeline's picture against the stored one.
+//! A check of the driver: compares every pipeline's picture with a stored one.
 //!
-//! The stored pictures are those that the tests compare with, made by Mesa's rasterizer on a desktop.
+//! The stored pictures are the golden images of the tests, rendered by Mesa's rasterizer on a desktop.
 
 use std::rc::Rc;
 
@@ -10,8 +10,8 @@ use yoro_protocol::Pipeline;
 use yoro_protocol::telemetry::Pictures;
 use yoro_render::stereo::stills;
 
-/// What each picture has to reach against the stored one, in dB. Two drivers that follow the specification differ in
-/// rounding and in the filtering of textures; a wrong eye, a wrong shift or a missing pass costs more than that.
+/// The least PSNR against the stored picture, in dB. Two drivers that follow the specification differ in rounding and
+/// texture filtering; a wrong eye, a wrong shift or a missing pass costs more than that.
 const LEAST_DB: f64 = 30.0;
 
 /// Returns a stored picture by its name.
@@ -21,7 +21,7 @@ macro_rules! stored {
     };
 }
 
-/// Renders the prototype scene by every pipeline, and compares.
+/// Renders the prototype scene with every pipeline and compares the pictures.
 pub fn check(gl: &Rc<Context>) -> Vec<Pictures> {
     Pipeline::ALL.iter().map(|&pipeline| check_pipeline(gl, pipeline)).collect()
 }
@@ -52,7 +52,7 @@ fn decode(png: &[u8]) -> RgbImage {
     image::load_from_memory(png).expect("the picture is a part of the program").into_rgb8()
 }
 
-/// Returns the PSNR over red, green and blue of a picture, RGBA with rows from the bottom; 99.99 dB at most.
+/// Returns the PSNR over red, green and blue of a picture, RGBA with rows from the bottom; at most 99.99 dB.
 fn decibels(rgba: &[u8], stored: &RgbImage) -> f64 {
     let rows = rgba.chunks_exact(4 * stored.width() as usize).rev();
     let pixels = rows.flat_map(|row| row.as_chunks::<4>().0);

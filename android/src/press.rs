@@ -2,31 +2,31 @@
 
 use yoro_viewer::Event;
 
-/// A press that lasts longer is a long one, in nanoseconds.
+/// A press that lasts longer than this is a long press, in nanoseconds.
 const LONG_NS: i64 = 600_000_000;
-/// A finger that moves further than this share of an inch drags, and means nothing here.
+/// A finger that moves further than this many inches drags, which has no meaning here.
 const SLOP_INCHES: f32 = 0.1;
 
-/// A press that has begun.
+/// A press in progress.
 #[derive(Clone, Copy, Debug)]
 struct Down {
     since_ns: i64,
     position: [f32; 2],
 }
 
-/// Recognises presses. All times are from the same clock, in nanoseconds; positions are in pixels.
+/// Recognises presses. All times are nanoseconds of one clock; positions are in pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Press {
     down: Option<Down>,
 }
 
 impl Press {
-    /// Notes that the first finger, or a button, goes down.
+    /// Records that the first finger, or a button, went down.
     pub fn down(&mut self, now_ns: i64, position: [f32; 2]) {
         self.down = Some(Down { since_ns: now_ns, position });
     }
 
-    /// Notes that it moves; a drag is no press.
+    /// Records that the finger has moved; a drag is not a press. A `dpi` of 0 or less is unknown.
     pub fn moved(&mut self, position: [f32; 2], dpi: f32) {
         let slop = SLOP_INCHES * if dpi > 0.0 { dpi } else { 400.0 };
         let is_drag =
@@ -36,13 +36,13 @@ impl Press {
         }
     }
 
-    /// Notes that the finger goes up, and returns the kind of press.
+    /// Records that the finger went up, and returns the kind of press.
     pub fn up(&mut self, now_ns: i64) -> Option<Event> {
         let down = self.down.take()?;
         Some(if now_ns - down.since_ns >= LONG_NS { Event::LongPress } else { Event::Tap })
     }
 
-    /// Forgets the press: a second finger came, or the system took the touch away.
+    /// Forgets the press, because of a second finger or because the system has taken the touch over.
     pub fn cancel(&mut self) {
         self.down = None;
     }
@@ -91,7 +91,7 @@ mod tests {
         press.down(0, [100.0, 100.0]);
         press.cancel();
         assert_eq!((press.held(900 * MS), press.up(950 * MS)), (None, None));
-        // A device that does not know its density.
+        // A device that does not report its density.
         press.down(0, [0.0, 0.0]);
         press.moved([20.0, 0.0], 0.0);
         assert_eq!(press.up(50 * MS), Some(Event::Tap));

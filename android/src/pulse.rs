@@ -1,8 +1,8 @@
-//! Samples of the motion sensors and the display's refreshes, which come at their own times.
+//! Samples of the motion sensors and the display's refreshes, which arrive independently of the main loop.
 //!
-//! Both come through a looper. The looper of `android_main` is android-activity's, which takes other sources for
-//! mistakes, and a choreographer lives as long as its thread. So one thread serves all activities of the process; it
-//! sleeps while none is in front.
+//! Both arrive through a looper. The looper of `android_main` belongs to android-activity, which treats other sources
+//! as errors, and a choreographer lives as long as its thread. So one thread serves all activities of the process; it
+//! sleeps while none is in the foreground.
 
 use std::cell::Cell;
 use std::ffi::c_void;
@@ -22,33 +22,32 @@ use crate::pace::{self, Refresh, Timeline};
 use crate::sensors::Sensors;
 use crate::system::{now_ns, slept_ns};
 
-/// The number of samples that are kept for a main loop that takes none: a tenth of a second and more. Older ones are
-/// dropped.
+/// The most samples that are kept if the main loop takes none: more than a tenth of a second. Older ones are dropped.
 const MAX_SAMPLES: usize = 256;
 
 static PULSE: OnceLock<Option<Pulse>> = OnceLock::new();
 
-/// The thread.
+/// The thread and its looper.
 pub struct Pulse {
     shared: Arc<Shared>,
     looper: ForeignLooper,
 }
 
-/// State that the thread and the main loop share.
+/// State shared by the thread and the main loop.
 #[derive(Default)]
 struct Shared {
     /// True while sensors and refreshes are wanted.
     is_on: AtomicBool,
-    /// The newest refresh that the main loop has not seen.
+    /// The newest refresh that the main loop has not taken.
     refresh: Mutex<Option<Refresh>>,
-    /// True once a refresh has come.
+    /// True once a refresh has arrived.
     has_refreshes: AtomicBool,
     samples: Mutex<Vec<(MotionSample, i64)>>,
     waker: Mutex<Option<AndroidAppWaker>>,
 }
 
 impl Pulse {
-    /// Returns the process's one, which the first call starts; none if there can be no thread.
+    /// Returns the process's pulse, which the first call starts; `None` if no thread can be started.
     pub fn get() -> Option<&'static Pulse> {
         PULSE.get_or_init(Pulse::start).as_ref()
     }
@@ -80,14 +79,14 @@ impl Pulse {
         self.looper.wake();
     }
 
-    /// Stops both, so that nothing uses the battery.
+    /// Stops sensors and refreshes, so that they do not use the battery.
     pub fn pause(&self) {
         self.shared.is_on.store(false, Ordering::Release);
         *lock(&self.shared.waker) = None;
         self.looper.wake();
     }
 
-    /// True if this device reports its refreshes.
+    /// True if this device reports refreshes.
     pub fn has_refreshes(&self) -> bool {
         self.shared.has_refreshes.load(Ordering::Acquire)
     }
@@ -97,8 +96,8 @@ impl Pulse {
         lock(&self.shared.refresh).take()
     }
 
-    /// Calls `take` with the samples since the last call, oldest first, and their times on the monotonic clock in
-    /// nanoseconds. `buffer` is memory that is used again.
+    /// Calls `take` with the samples since the last call, oldest first, and their times in nanoseconds on the monotonic
+    /// clock. `buffer` is memory for reuse.
     pub fn drain(&self, buffer: &mut Vec<(MotionSample, i64)>, mut take: impl FnMut(MotionSample, i64)) {
         buffer.clear();
         std::mem::swap(&mut *lock(&self.shared.samples), buffer);
@@ -106,7 +105,7 @@ impl Pulse {
     }
 }
 
-/// Locks; samples of a thread that has panicked are still samples.
+/// Locks a mutex; the data of a thread that has panicked are still valid.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -129,12 +128,12 @@ fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
             was_on = is_on;
             sensors = if is_on { Sensors::start(looper) } else { None };
             if is_on {
-                // It does not sleep while the activity is in front.
+                // The device does not sleep while the activity is in the foreground.
                 slept = slept_ns();
                 beat.post();
             }
         }
-        // SAFETY: the looper is this thread's; no results besides the return value are asked for.
+        // SAFETY: the looper belongs to this thread, and null pointers ask for no results besides the return value.
         let result = unsafe { ffi::ALooper_pollOnce(-1, ptr::null_mut(), ptr::null_mut(), ptr::null_mut()) };
         if result == ffi::ALOOPER_POLL_ERROR {
             log::error!("the sensors' looper has failed: the picture no longer follows the head");
@@ -154,7 +153,7 @@ fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
     }
 }
 
-/// `AChoreographerFrameCallbackData`, which only libandroid knows.
+/// Opaque `AChoreographerFrameCallbackData`.
 #[repr(C)]
 struct FrameData {
     _private: [u8; 0],
@@ -169,21 +168,21 @@ type GetTime = unsafe extern "C" fn(*const FrameData) -> i64;
 type GetIndex = unsafe extern "C" fn(*const FrameData) -> usize;
 type GetTimeOf = unsafe extern "C" fn(*const FrameData, usize) -> i64;
 
-/// The display's refreshes, for one thread.
+/// The choreographer of one thread, which reports the display's refreshes.
 struct Choreographer {
     instance: NonNull<ffi::AChoreographer>,
     post: Post,
 }
 
-/// The function with which refreshes are asked for.
+/// The function that requests a refresh.
 enum Post {
-    /// Gives only times.
+    /// Reports only times.
     Frame(PostFrameCallback),
-    /// Gives the timeline of a frame, from API 33 on.
+    /// Reports the timeline of a frame, from API 33 on.
     Vsync(Vsync),
 }
 
-/// The functions of `AChoreographer_postVsyncCallback`.
+/// The functions for `AChoreographer_postVsyncCallback`.
 struct Vsync {
     post: PostVsyncCallback,
     begin: GetTime,
@@ -195,7 +194,7 @@ struct Vsync {
 impl Choreographer {
     fn of_thread() -> Option<Choreographer> {
         let android = Library::android();
-        // SAFETY: the types are those of <android/choreographer.h>; the thread has a looper.
+        // SAFETY: the types are those of <android/choreographer.h>, and the thread has a looper.
         unsafe {
             let get: GetInstance = android.function(c"AChoreographer_getInstance")?;
             let post = match Vsync::of(&android) {
@@ -226,9 +225,9 @@ impl Vsync {
     }
 
     /// # Safety
-    /// The data are those of a callback that has not returned yet.
+    /// `data` must be that of a callback that has not returned yet.
     unsafe fn refresh(&self, data: *const FrameData) -> Refresh {
-        // SAFETY: as the caller says; the preferred timeline is one that there is.
+        // SAFETY: the caller guarantees that the data are valid, and the preferred timeline always exists.
         unsafe {
             let index = (self.preferred)(data);
             let (deadline_ns, display_ns) = ((self.deadline)(data, index), (self.display)(data, index));
@@ -237,11 +236,11 @@ impl Vsync {
     }
 }
 
-/// Asks for one refresh after the other while they are wanted.
+/// Requests one refresh after another while they are wanted.
 struct Beat<'a> {
     shared: &'a Shared,
     choreographer: Option<Choreographer>,
-    /// A pause may end before the refresh that was asked for last: a second chain must not begin.
+    /// True while a requested refresh is pending. A pause may end before it arrives, and must not start a second chain.
     is_posted: Cell<bool>,
 }
 
@@ -252,8 +251,8 @@ impl Beat<'_> {
             return;
         }
         let (instance, data) = (choreographer.instance.as_ptr(), ptr::from_ref(self).cast_mut().cast());
-        // SAFETY: this is the instance's thread. The callback runs on it too, while `run` polls and so while its
-        // `Beat` is alive.
+        // SAFETY: this is the choreographer's thread. The callback runs on the same thread, while `run` polls and so
+        // while its `Beat` is alive.
         unsafe {
             match &choreographer.post {
                 Post::Frame(post) => post(instance, on_frame, data),
@@ -277,16 +276,16 @@ impl Beat<'_> {
 }
 
 unsafe extern "C" fn on_frame(frame_time_ns: i64, data: *mut c_void) {
-    // SAFETY: the pointer that `Beat::post` gave.
+    // SAFETY: the pointer is the one that `Beat::post` passed.
     let beat = unsafe { &*data.cast::<Beat>() };
     beat.on_refresh(Refresh { begin_ns: frame_time_ns, timeline: None });
 }
 
 unsafe extern "C" fn on_vsync(frame: *const FrameData, data: *mut c_void) {
-    // SAFETY: the pointer that `Beat::post` gave.
+    // SAFETY: the pointer is the one that `Beat::post` passed.
     let beat = unsafe { &*data.cast::<Beat>() };
     if let Some(Choreographer { post: Post::Vsync(vsync), .. }) = &beat.choreographer {
-        // SAFETY: the data of this very callback.
+        // SAFETY: the data belong to this callback.
         beat.on_refresh(unsafe { vsync.refresh(frame) });
     }
 }

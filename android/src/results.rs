@@ -1,4 +1,4 @@
-//! The log, its copy in the results of a game loop, and its last lines to share: without logcat's times and tags.
+//! The log, its copy in a game loop's results, and its last lines for sharing, without logcat's times and tags.
 
 use std::collections::VecDeque;
 use std::fs::File;
@@ -13,7 +13,7 @@ static FILE: Mutex<Option<File>> = Mutex::new(None);
 
 /// The last lines of the log.
 static RECENT: Mutex<VecDeque<String>> = Mutex::new(VecDeque::new());
-/// The number of those lines, and of the characters of one. An intent holds a text twice, in two bytes a character: 240
+/// The number of those lines, and the characters of each. An intent holds a text twice, in two bytes per character: 240
 /// kB.
 const LINES: usize = 200;
 const CHARACTERS: usize = 300;
@@ -28,14 +28,14 @@ fn file() -> MutexGuard<'static, Option<File>> {
     FILE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Begins the log. In a second run of the process the first logger stays.
+/// Installs the logger. In a second run of the process the first logger stays.
 pub fn init_log(config: Config) {
     if log::set_boxed_logger(Box::new(Logger(AndroidLogger::new(config)))).is_ok() {
         log::set_max_level(LevelFilter::Info);
     }
 }
 
-/// From now on every line is written to this file, too.
+/// Starts to write every line to this file, too.
 pub fn begin(results: Option<File>) {
     *file() = results;
 }
@@ -64,7 +64,7 @@ impl Log for Logger {
         if self.0.enabled(record.metadata())
             && let Some(file) = &mut *file()
         {
-            // A line is one write. If it fails, the same line is in the device's log.
+            // A line is one write. If it fails, the same line is still in the device's log.
             _ = file.write_all(format!("{}\n", record.args()).as_bytes());
         }
     }

@@ -1,14 +1,14 @@
-//! What a camera sees, without Android: the picture to show, and the code to read in it.
+//! The processing of a camera's picture, without Android: what is shown of it, and the code in it.
 
 use yoro_lenses::{Board, read_qr_in_luma};
 
-/// A camera's picture: luma in rows from the top, which may lie further apart than their pixels.
+/// A camera's picture: luma in rows from the top, with strides.
 pub struct Luma<'a> {
-    /// From the first pixel to the last.
+    /// The bytes from the first pixel to the last.
     pub bytes: &'a [u8],
     /// Width and height in pixels.
     pub size: [usize; 2],
-    /// Bytes from a row to the next, and from a pixel to the next.
+    /// Bytes from one row to the next, and from one pixel to the next.
     pub strides: [usize; 2],
 }
 
@@ -17,19 +17,19 @@ impl Luma<'_> {
         self.bytes.get(y * self.strides[0] + x * self.strides[1]).copied().unwrap_or_default()
     }
 
-    /// Returns the text of a QR code in the picture; none without one.
+    /// Returns the text of a QR code in the picture, if there is one.
     pub fn read_qr(&self) -> Option<String> {
         let [width, height] = self.size;
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| self.pixel(x, y)));
         read_qr_in_luma(&pixels.collect::<Vec<u8>>(), width)
     }
 
-    /// Returns the picture's middle in the size of [`Board::PICTURE`], rows from the bottom. Turned by half a turn if
-    /// the phone is.
+    /// Returns the picture's centre scaled to [`Board::PICTURE`], rows from the bottom, rotated by half a turn if the
+    /// phone is.
     pub fn shown(&self, is_upside_down: bool) -> Vec<u8> {
         let [columns, rows] = Board::PICTURE.map(|n| n as usize);
         let [width, height] = self.size;
-        // As much as has the panel's proportions.
+        // The largest part with the panel's proportions.
         let [part, tall] = if width * rows > height * columns {
             [height * columns / rows, height]
         } else {
@@ -38,7 +38,7 @@ impl Luma<'_> {
         let [left, top] = [(width - part) / 2, (height - tall) / 2];
         let pixel = |i: usize| {
             let (column, row) = (i % columns, i / columns);
-            // From the bottom, so that half a turn is a mirror from left to right.
+            // Rows are from the bottom, so half a turn only mirrors left and right.
             let (x, y) = if is_upside_down { (columns - 1 - column, row) } else { (column, rows - 1 - row) };
             self.pixel(left + x * part / columns, top + y * tall / rows)
         };
@@ -46,8 +46,8 @@ impl Luma<'_> {
     }
 }
 
-/// Returns the size of pictures to ask a camera for: of those that it offers, the one with most pixels up to 1280 x
-/// 960, in which a code of a hand's width has several pixels a module, or else the smallest.
+/// Returns the picture size to request from a camera: of those that it offers, the largest of at most 1280 x 960
+/// pixels, at which a code that spans a hand's width has several pixels per module, or else the smallest.
 pub fn best_size(offered: impl Iterator<Item = [i32; 2]>) -> Option<[i32; 2]> {
     const MOST: i64 = 1280 * 960;
     let area = |[width, height]: [i32; 2]| i64::from(width) * i64::from(height);
@@ -75,7 +75,7 @@ mod tests {
         }
         let picture = Luma { bytes: &bytes, size: [side; 2], strides };
         assert_eq!(picture.read_qr().as_deref(), Some("https://a.example/cardboard"));
-        // A buffer that is shorter than it says.
+        // A buffer that is shorter than its size says.
         let cut = Luma { bytes: &bytes[..bytes.len() / 2], ..picture };
         assert_eq!(cut.read_qr(), None);
     }
@@ -83,8 +83,8 @@ mod tests {
     #[test]
     fn the_middle_is_shown_the_right_way_up() {
         let [columns, rows] = Board::PICTURE.map(|n| n as usize);
-        // Twice as wide as the panel's: the left quarter and the right one are cut off. Bright at the upper left of the
-        // middle.
+        // Twice as wide as the panel's, so the left and right quarters are cut off. The upper left of the centre is
+        // bright.
         let size = [2 * columns, rows];
         let bytes: Vec<u8> = (0..size[0] * size[1])
             .map(|i| {

@@ -1,4 +1,4 @@
-//! The phone's screen in its present state on Android.
+//! The phone's screen as Android describes it.
 
 use yoro_lenses::{Rotation, Screen};
 
@@ -9,12 +9,12 @@ pub struct ScreenState {
     metrics: Option<DisplayMetrics>,
     /// Refresh rate in Hz; 0 if unknown.
     pub refresh_hz: f32,
-    /// True if Android has changed something since.
+    /// True if Android has changed something since then.
     pub is_stale: bool,
 }
 
 impl ScreenState {
-    /// Knows nothing yet.
+    /// Creates a state in which nothing is known yet.
     pub fn new() -> ScreenState {
         ScreenState { metrics: None, refresh_hz: 0.0, is_stale: true }
     }
@@ -42,16 +42,16 @@ impl ScreenState {
     }
 }
 
-/// Returns the pixels of the picture per inch. If the user has chosen a lower resolution, Android still reports those
-/// of the display's mode, to which the picture is scaled up.
+/// Returns the picture's pixels per inch. If the user has chosen a lower resolution, Android still reports those of the
+/// display's mode, to which the picture is scaled up.
 fn dpi(metrics: &DisplayMetrics) -> [f32; 2] {
     let longest = |size: [i32; 2]| size[0].max(size[1]) as f32;
     let scale = longest(metrics.size) / longest(metrics.mode);
     if scale.is_finite() && scale > 0.0 { metrics.dpi.map(|dpi| dpi * scale) } else { metrics.dpi }
 }
 
-/// Converts `Surface.ROTATION_*`, the picture's rotation against the device's natural position, which the sensors'
-/// axes use: upright for phones, on the side for many tablets and for headsets.
+/// Converts `Surface.ROTATION_*`, the picture's rotation relative to the device's natural orientation, which the
+/// sensors' axes use: upright for phones, on the side for many tablets and for headsets.
 fn rotation(surface_rotation: i32) -> Rotation {
     match surface_rotation {
         1 => Rotation::LandscapeLeft,

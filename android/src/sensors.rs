@@ -10,14 +10,14 @@ use yoro_lenses::MotionSample;
 const ACCELEROMETER: c_int = 1;
 const GYROSCOPE: c_int = 4;
 const GYROSCOPE_UNCALIBRATED: c_int = 16;
-/// The shortest period without a permission. From Android 12 on a faster sensor without it gives no samples at all.
+/// The shortest period allowed without a permission. From Android 12 on, a faster sensor gives no samples at all.
 const SHORTEST_PERIOD_US: i32 = 5_000;
-/// An arbitrary identifier, which the looper returns when there are events.
+/// An arbitrary identifier that the looper returns for sensor events.
 const LOOPER_IDENT: c_int = 1;
-/// Events that are taken at once.
+/// Number of events that are read at once.
 const BATCH: usize = 32;
 
-/// The motion sensors, running until this is dropped. Belongs to the thread that made it.
+/// The motion sensors, running until this is dropped. It belongs to the thread that created it.
 pub struct Sensors {
     manager: NonNull<ffi::ASensorManager>,
     queue: NonNull<ffi::ASensorEventQueue>,
@@ -25,12 +25,12 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Starts the sensors that there are, for a thread with a looper, and logs which.
+    /// Starts the available sensors for a thread with a looper, and logs which they are.
     pub fn start(looper: NonNull<ffi::ALooper>) -> Option<Sensors> {
-        // SAFETY: the name is that of our own package, or of none at all, and ends in zero.
+        // SAFETY: the name is null-terminated.
         let manager =
             NonNull::new(unsafe { ffi::ASensorManager_getInstanceForPackage(c"io.github.yoro".as_ptr()) })?;
-        // SAFETY: manager and looper are live; events are announced by the looper's return value, without callback.
+        // SAFETY: manager and looper are live; events are reported by the looper's return value, without a callback.
         let queue = unsafe {
             ffi::ASensorManager_createEventQueue(
                 manager.as_ptr(),
@@ -51,7 +51,7 @@ impl Sensors {
     }
 
     fn enable(&mut self, kind: c_int) -> bool {
-        // SAFETY: the manager is live; null when there is no such sensor.
+        // SAFETY: the manager is live; null means that there is no such sensor.
         let sensor = unsafe { ffi::ASensorManager_getDefaultSensor(self.manager.as_ptr(), kind) };
         let Some(sensor) = NonNull::new(sensor.cast_mut()) else { return false };
         // SAFETY: queue and sensor are live.
@@ -59,7 +59,7 @@ impl Sensors {
             let period = ffi::ASensor_getMinDelay(sensor.as_ptr()).max(SHORTEST_PERIOD_US);
             (period, ffi::ASensorEventQueue_registerSensor(self.queue.as_ptr(), sensor.as_ptr(), period, 0))
         };
-        // SAFETY: the sensor is live; its name is a static text, or null.
+        // SAFETY: the sensor is live; its name is a static string or null.
         let name = unsafe {
             let name = ffi::ASensor_getName(sensor.as_ptr());
             if name.is_null() { "unnamed".into() } else { CStr::from_ptr(name).to_string_lossy() }
@@ -75,17 +75,17 @@ impl Sensors {
         true
     }
 
-    /// Calls `take` with the samples that have come and their times in nanoseconds.
+    /// Calls `take` with the samples that have arrived and their times in nanoseconds.
     pub fn drain(&mut self, mut take: impl FnMut(MotionSample, i64)) {
         // SAFETY: all zeros is a valid event.
         let mut events: [ffi::ASensorEvent; BATCH] = unsafe { std::mem::zeroed() };
         loop {
-            // SAFETY: the queue is live, and the buffer has the length that is passed.
+            // SAFETY: the queue is live, and the buffer has the given length.
             let count =
                 unsafe { ffi::ASensorEventQueue_getEvents(self.queue.as_ptr(), events.as_mut_ptr(), BATCH) };
             let Ok(count @ 1..) = usize::try_from(count) else { return };
             for event in events.iter().take(count) {
-                // SAFETY: every sensor's values are floats.
+                // SAFETY: the values of these sensors are floats.
                 let data = unsafe { event.__bindgen_anon_1.__bindgen_anon_1.data };
                 let vector = |at: usize| Vec3::new(data[at], data[at + 1], data[at + 2]);
                 let sample = match event.type_ {
@@ -104,7 +104,7 @@ impl Sensors {
 
 impl Drop for Sensors {
     fn drop(&mut self) {
-        // SAFETY: queue and sensors are live, and nothing uses the queue afterwards.
+        // SAFETY: the queue and the sensors are live, and the queue is not used afterwards.
         unsafe {
             for sensor in &self.running {
                 ffi::ASensorEventQueue_disableSensor(self.queue.as_ptr(), sensor.as_ptr());

@@ -1,11 +1,11 @@
-//! Settings from outside: defaults < file < those of the menu < intent extras < system properties < the user's changes
-//! from before the activity was put away.
+//! Settings from outside, from the weakest to the strongest source: defaults < file < menu < intent extras < system
+//! properties < the user's changes before Android stopped the activity.
 
 use std::path::PathBuf;
 
 use yoro_protocol::{PROPERTY_PREFIX, SETTINGS, Setting, Settings};
 
-/// The optional prefix of intent extras; the system's extras contain other dots.
+/// The optional prefix of intent extras. Extras of the system contain other dots.
 const EXTRA_PREFIX: &str = "yoro.";
 /// The settings file in the application's external folder.
 pub const FILE_NAME: &str = "yoro.toml";
@@ -13,25 +13,25 @@ pub const FILE_NAME: &str = "yoro.toml";
 /// A setting as text: key and value.
 pub type Pair = (String, String);
 
-/// The sources of settings, each stronger than the one before.
+/// The sources of settings, each overriding those before it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sources {
-    /// A TOML file, which need not exist.
+    /// The path of a TOML file, which may be missing.
     pub file: Option<PathBuf>,
-    /// What the menu has changed, also before a restart. A run that has a name (`run`, as those of `yoro device`) is
-    /// without.
+    /// The menu's changes, including those before a restart. A named run (setting `run`, as in runs of `yoro device`)
+    /// ignores them.
     pub menu: Vec<Pair>,
     /// Extras of the intent that started the activity.
     pub extras: Vec<Pair>,
     /// System properties, without their prefix.
     pub properties: Vec<Pair>,
-    /// Changes that the user had made when Android put the activity away.
+    /// Changes that the user had made when Android stopped the activity.
     pub saved: Vec<Pair>,
 }
 
 impl Sources {
-    /// Takes over the present system properties. A property that has changed since is stronger than the user's own
-    /// changes. True if any property differs.
+    /// Sets the present system properties. A property that has changed since the last call overrides the user's own
+    /// changes. Returns true if any property has changed.
     pub fn set_properties(&mut self, properties: Vec<Pair>) -> bool {
         if properties == self.properties {
             return false;
@@ -41,13 +41,13 @@ impl Sources {
         true
     }
 
-    /// True if the run has a name: it is a measurement, of which the user of the menu knows nothing.
+    /// True if the run has a name: it is a measurement, which the user's menu settings must not affect.
     pub fn is_named_run(&self) -> bool {
         let extras = self.extras.iter().filter_map(|(key, _)| extra_key(key));
         extras.chain(self.properties.iter().map(|(key, _)| key.as_str())).any(|key| key == "run")
     }
 
-    /// True if no computer has given settings: a person has started the application by hand.
+    /// True if no settings came from a computer, so a person has started the application by hand.
     pub fn is_by_hand(&self) -> bool {
         self.properties.is_empty() && !self.extras.iter().any(|(key, _)| extra_key(key).is_some())
     }
@@ -61,7 +61,7 @@ impl Sources {
         value(&self.menu, "viewer").is_some() || self.file.as_ref().is_some_and(is_in_file)
     }
 
-    /// Keeps values in place of those before.
+    /// Stores settings of the menu, replacing earlier values.
     pub fn keep(&mut self, pairs: impl IntoIterator<Item = Pair>) {
         for (key, value) in pairs {
             self.menu.retain(|(other, _)| *other != key);
@@ -69,7 +69,7 @@ impl Sources {
         }
     }
 
-    /// Returns the settings, and one sentence for each mistake; a setting with a mistake keeps its value.
+    /// Returns the settings, and one sentence for each mistake; a wrong setting keeps its value.
     pub fn resolve(&self) -> (Settings, Vec<String>) {
         let mut settings = Settings::default();
         let mut mistakes = Vec::new();
@@ -98,12 +98,12 @@ impl Sources {
     }
 }
 
-/// Returns the value of a key, the last one if there are several.
+/// Returns the value of a key; the last one if there are several.
 fn value<'a>(pairs: &'a [Pair], key: &str) -> Option<&'a str> {
     pairs.iter().rev().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
 }
 
-/// Returns the setting that an extra means; none for extras of others.
+/// Returns the setting that an extra names; `None` for extras that are not settings.
 fn extra_key(key: &str) -> Option<&str> {
     match key.strip_prefix(EXTRA_PREFIX) {
         Some(own) => Some(own),
@@ -111,8 +111,8 @@ fn extra_key(key: &str) -> Option<&str> {
     }
 }
 
-/// Returns the settings in system properties; `read` returns one by its full name. Empty means unset: a property cannot
-/// be deleted.
+/// Returns the settings in system properties; `read` returns a property by its full name. Empty means unset, since a
+/// property cannot be deleted.
 pub fn properties(read: impl Fn(&str) -> Option<String>) -> Vec<Pair> {
     let pair = |setting: &Setting| {
         let value = read(&format!("{PROPERTY_PREFIX}{}", setting.key))?;
@@ -122,12 +122,12 @@ pub fn properties(read: impl Fn(&str) -> Option<String>) -> Vec<Pair> {
     SETTINGS.iter().filter_map(pair).collect()
 }
 
-/// Encodes settings for Android to keep while the activity is away.
+/// Encodes settings for Android to keep while the activity is stopped.
 pub fn save(pairs: &[Pair]) -> Vec<u8> {
     pairs.iter().map(|(key, value)| format!("{key}={value}\n")).collect::<String>().into_bytes()
 }
 
-/// Decodes the bytes of [`save`]; keys of other versions are left out.
+/// Decodes the bytes of [`save`]. Keys that this version does not know are left out.
 pub fn restore(bytes: &[u8]) -> Vec<Pair> {
     let text = String::from_utf8_lossy(bytes);
     let pair = |line: &str| {

@@ -1,4 +1,4 @@
-//! What another application shares with yoro: a viewer's code as a text or as a picture, or a model.
+//! Reads what another application shares with yoro: a viewer's code as text or as a picture, or a model.
 
 use std::fs::File;
 use std::io::{self, Read, Seek as _, SeekFrom};
@@ -12,23 +12,23 @@ use yoro_lenses::{ViewerParams, read_qr};
 
 use crate::stream;
 
-/// The largest picture and the largest model in bytes.
+/// The largest picture and the largest model, in bytes.
 const MAX_PICTURE: u64 = 64 << 20;
 const MAX_MODEL: u64 = 1 << 30;
-/// The memory of a picture's pixels in bytes.
+/// The limit on a picture's pixels in memory, in bytes.
 const MAX_PIXELS: u64 = 192 << 20;
-/// Larger pictures are shrunk to this, in pixels: a code of a hand's width still has several pixels a module.
+/// Larger pictures are scaled down to this many pixels, which still give a code several pixels per module.
 const LONGEST: u32 = 2048;
 /// The first bytes of a GLB file.
 const GLB: &[u8] = b"glTF";
 
-/// What another application gives to the activity with the intent that starts it.
+/// What another application passes to the activity with the intent that starts it.
 pub enum Given {
-    /// A text, or an address.
+    /// A text or an address.
     Text(String),
-    /// A file, open, and its name.
+    /// An open file, and its name.
     File(File, String),
-    /// A file that its owner does not let yoro read.
+    /// A file that yoro is not permitted to read.
     Closed,
 }
 
@@ -39,21 +39,21 @@ pub enum Shared {
     Viewer(String),
     /// The address of a stream.
     Stream(stream::Address),
-    /// The file name of a model that is in the folder for scenes now.
+    /// The file name of a model, which is now in the scene folder.
     Scene(String),
 }
 
-/// A thread that reads what was shared: its owner may be slow, and a model large.
+/// A thread that reads what was shared, since its owner may be slow and a model large.
 pub struct Reading {
     outcome: Receiver<Result<Shared, String>>,
-    /// The bytes read so far; the thread gives up once nobody holds this.
+    /// The number of bytes read so far. The thread gives up once this is dropped.
     bytes: Arc<AtomicU64>,
-    /// The megabytes that the user was told last.
+    /// The number of megabytes that the user was last told.
     told: Option<u64>,
 }
 
 impl Reading {
-    /// Begins: `open` asks the owner, and a model goes into a folder.
+    /// Starts the thread. `open` asks the owner for the data; a model is copied into `folder`.
     pub fn begin(folder: Option<PathBuf>, open: impl FnOnce() -> Given + Send + 'static) -> Reading {
         let (sender, outcome) = mpsc::channel();
         let bytes = Arc::new(AtomicU64::new(0));
@@ -69,7 +69,7 @@ impl Reading {
                     Err("The shared file cannot be opened: share it from another application.".into())
                 }
             };
-            // The activity may be gone.
+            // The receiver may be gone with the activity.
             _ = sender.send(read);
         };
         if let Err(error) = thread::Builder::new().name("yoro-shared".into()).spawn(work) {
@@ -78,7 +78,7 @@ impl Reading {
         Reading { outcome, bytes, told: None }
     }
 
-    /// Returns what was shared once it was read, or why it is of no use.
+    /// Returns what was shared once it is read, or why it cannot be used.
     pub fn poll(&self) -> Option<Result<Shared, String>> {
         match self.outcome.try_recv() {
             Ok(read) => Some(read),
@@ -87,7 +87,7 @@ impl Reading {
         }
     }
 
-    /// Returns a sentence for as long as it lasts; none if it is the one before.
+    /// Returns a sentence about the progress; `None` if it has not changed.
     pub fn news(&mut self) -> Option<String> {
         let megabytes = self.bytes.load(Ordering::Relaxed) >> 20;
         if self.told.replace(megabytes) == Some(megabytes) {
@@ -100,7 +100,7 @@ impl Reading {
     }
 }
 
-/// A file whose bytes are counted while somebody waits for them.
+/// A reader whose bytes are counted while somebody waits for them.
 struct Counted<R> {
     from: R,
     bytes: Weak<AtomicU64>,
@@ -115,10 +115,10 @@ impl<R: Read> Read for Counted<R> {
     }
 }
 
-/// The longest address that a viewer's code leads to, in bytes.
+/// The longest address accepted, in bytes.
 const MAX_ADDRESS: usize = 2048;
 
-/// Finds the address of a stream, or a viewer's URI, in a text, among other words.
+/// Finds the address of a stream, or a viewer's URI, among the words of a text.
 ///
 /// # Errors
 /// A sentence with the remedy.
@@ -128,7 +128,7 @@ pub fn address_in_text(text: &str) -> Result<Shared, String> {
     }
     let is_address = |word: &&str| word.contains('.') && word.contains('/');
     let is_viewer = |word: &&str| is_address(word) && word.contains("/cardboard");
-    // Not its brackets, the end of its sentence, or what follows the parameters.
+    // Without surrounding brackets and punctuation, and without anything after the first parameter.
     let words = || {
         text.split_whitespace().map(|word| {
             let word = word.trim_matches(|c: char| "()<>[]{}\"'.,;!".contains(c));
@@ -149,7 +149,7 @@ pub fn address_in_text(text: &str) -> Result<Shared, String> {
     }
 }
 
-/// Reads a shared file: a picture of a viewer's code, or a model, which is copied into a folder by its name.
+/// Reads a shared file: a picture of a viewer's code, or a model, which is copied into a folder under its name.
 ///
 /// # Errors
 /// A sentence with the remedy.
@@ -157,7 +157,7 @@ fn read(mut file: File, name: &str, folder: &Path, bytes: &Weak<AtomicU64>) -> R
     let failed = |error: io::Error| format!("The shared file cannot be read ({error}): share it again.");
     let mut head = Vec::new();
     (&mut file).take(GLB.len() as u64).read_to_end(&mut head).map_err(failed)?;
-    // Not every provider gives a file that can be rewound.
+    // Not every provider's file can be rewound.
     let rest: Box<dyn Read> = match file.seek(SeekFrom::Start(0)) {
         Ok(_) => Box::new(file),
         Err(_) => Box::new(io::Cursor::new(head.clone()).chain(file)),
@@ -197,7 +197,7 @@ fn read(mut file: File, name: &str, folder: &Path, bytes: &Weak<AtomicU64>) -> R
     }
 }
 
-/// Removes what a process that was ended while copying has left in a folder.
+/// Removes incomplete copies left in a folder by a process that was killed.
 pub fn remove_unfinished(folder: &Path) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     for path in entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "new"))
@@ -280,7 +280,7 @@ mod tests {
         assert!(read(blank.get_ref(), "photo.png").unwrap_err().contains("No QR code"));
         assert!(read(b"", "nothing").unwrap_err().contains("no picture"));
 
-        // What was left half copied.
+        // An incomplete copy.
         std::fs::write(folder.path().join("room.new"), b"glTF").unwrap();
         remove_unfinished(folder.path());
         assert!(!folder.path().join("room.new").exists() && folder.path().join("shared").exists());

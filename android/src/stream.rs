@@ -8,30 +8,30 @@ use yoro_viewer::StreamExchange;
 
 use yoro_stream::FromClient;
 
-/// The name and value of a stream in the address that `yoro serve` prints.
+/// The part of the address printed by `yoro serve` that precedes the token.
 const MARK: &str = "#stream=";
-/// The names of the machine itself: at the other end of a cable, by `adb reverse`.
+/// Names of this machine, which lead to the other end of the cable through `adb reverse`.
 const OWN_NAMES: [&str; 2] = ["localhost", "127.0.0.1"];
 const BY_CABLE: &str = "yoro takes a stream by cable only: start yoro serve without --lan, run adb reverse tcp:8080 tcp:8080, \
     and share the address that it prints.";
 
-/// Where a stream is served, and what lets a client in.
+/// Where a stream is served, and the message that admits a client.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Address {
-    /// As the server calls itself, with the port.
+    /// The server's own name, with the port.
     host: String,
     port: u16,
     hello: FromClient,
 }
 
 impl fmt::Display for Address {
-    /// Without the token, which the log is not to have.
+    /// Writes the address without the token, which must not get into the log.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(&self.host)
     }
 }
 
-/// Finds the address of a stream among other words; none if there is none.
+/// Finds the address of a stream among the words of a text.
 ///
 /// # Errors
 /// A sentence with the remedy, for a stream that this application cannot show.
@@ -40,7 +40,7 @@ pub fn find(text: &str) -> Option<Result<Address, String>> {
     let (place, token) = word.split_once(MARK)?;
     let token = token.split('&').next()?.trim_end_matches(|c: char| !c.is_ascii_hexdigit());
     let address = || {
-        // Beyond the cable, the token and the picture would be readable for others.
+        // Without the cable, others could read the token and the picture.
         let host = place.split_once("http://").ok_or(BY_CABLE)?.1.trim_end_matches('/');
         let (name, port) = host.split_once(':').unwrap_or((host, "80"));
         let port = port.parse().ok().filter(|_| OWN_NAMES.contains(&name)).ok_or(BY_CABLE)?;
@@ -51,27 +51,27 @@ pub fn find(text: &str) -> Option<Result<Address, String>> {
     Some(address().map_err(|sentence: &str| sentence.to_owned()))
 }
 
-/// How a decoder's buffer holds a picture, in bytes and rows; zero where the decoder does not say.
+/// How a decoder's buffer stores a picture, in bytes and rows; 0 if the decoder does not say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     /// `COLOR_Format*` of MediaCodecInfo.
     pub color: i32,
-    /// From a row of luma to the next.
+    /// Bytes from one row of luma to the next.
     pub stride: usize,
-    /// From the first row of luma to that of the first colour difference.
+    /// Rows from the first row of luma to the first row of chroma.
     pub rows: usize,
 }
 
 /// `COLOR_FormatYUV420Planar`: three planes.
 const PLANAR: i32 = 19;
-/// `COLOR_FormatYUV420SemiPlanar`, and Qualcomm's: the samples of both colour differences take turns.
+/// `COLOR_FormatYUV420SemiPlanar`, and Qualcomm's: the samples of both chroma planes alternate.
 const SEMI_PLANAR: [i32; 2] = [21, 0x7fa3_0c00];
 
 impl Layout {
     /// Copies a picture of this size, both even, into three planes, one after another and tightly packed.
     ///
     /// # Errors
-    /// A sentence for a format that this application does not know, and for a buffer that is too short.
+    /// A sentence for an unknown format or a buffer that is too short.
     pub fn pack(&self, buffer: &[u8], [width, height]: [usize; 2], to: &mut Vec<u8>) -> Result<(), String> {
         let (stride, rows) = (self.stride.max(width), self.rows.max(height));
         if self.color != PLANAR && !SEMI_PLANAR.contains(&self.color) {
@@ -108,7 +108,7 @@ impl Layout {
     }
 }
 
-/// Follows a stream until nobody else holds what is returned.
+/// Follows a stream until the returned value has no other owner.
 #[cfg(target_os = "android")]
 pub fn follow(address: Address) -> Arc<StreamExchange> {
     let exchange = Arc::<StreamExchange>::default();
@@ -137,26 +137,26 @@ mod client {
     use super::Address;
     use crate::decoder::Decoder;
 
-    /// The longest wait for what comes, before other things are looked after.
+    /// The longest wait for data before other work is done.
     const TICK: Duration = Duration::from_millis(4);
-    /// The longest wait for an answer of the server.
+    /// The longest wait for the server's answer.
     const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
-    /// The wait before a lost connection is tried again.
+    /// The wait before a lost connection is retried.
     const RETRY_DELAY: Duration = Duration::from_secs(1);
-    /// The time without a drawn frame after which the connection ends, so that another client may have the stream.
+    /// If no frame is drawn for this long, the connection ends, so that another client can use the stream.
     const IDLE_TIMEOUT: Duration = Duration::from_secs(1);
-    /// The longest answer to the request for a WebSocket, in bytes.
+    /// The longest answer to the WebSocket upgrade, in bytes.
     const MAX_ANSWER_BYTES: usize = 4096;
-    /// Pictures after which a decoder that fails is worth another try.
+    /// If the decoder fails before this many pictures, the connection is not retried.
     const TRUSTED_AFTER: u32 = 30;
 
     /// Why a connection has ended.
     enum End {
-        /// Nobody looks.
+        /// No frames are being drawn.
         Unseen,
-        /// It is tried again.
+        /// The connection is to be retried.
         Again(String),
-        /// It would end in the same way again.
+        /// Retrying would end in the same way.
         ForGood(String),
     }
 
@@ -167,7 +167,7 @@ mod client {
         }
     }
 
-    /// Keeps a connection while somebody looks.
+    /// Keeps a connection while frames are drawn.
     pub fn run(address: &Address, exchange: &Arc<StreamExchange>) {
         let mut said = String::new();
         while is_wanted(exchange) {
@@ -198,7 +198,7 @@ mod client {
 
     type Socket = WebSocket<TcpStream>;
 
-    /// Says hello.
+    /// Connects and sends the hello.
     fn connect(address: &Address) -> Result<Socket, End> {
         let Address { host, port, hello } = address;
         let unanswered = |error: &dyn std::fmt::Display| {
@@ -218,7 +218,7 @@ mod client {
         Ok(socket)
     }
 
-    /// Asks a server to speak WebSocket. The key is for caches on the way, of which there are none.
+    /// Requests the upgrade to WebSocket. The key only protects against caches on the way, of which there are none.
     fn upgrade(mut tcp: &TcpStream, host: &str) -> io::Result<()> {
         let request = format!(
             "GET /stream HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n\
@@ -238,7 +238,7 @@ mod client {
         }
     }
 
-    /// Takes frames and asks for more.
+    /// Receives frames and requests more.
     fn follow(mut socket: Socket, exchange: &Arc<StreamExchange>) -> Result<(), End> {
         match FromServer::read(&socket.read()?.into_data()) {
             Some(FromServer::Welcome(home)) => exchange.welcome(home),
@@ -288,7 +288,7 @@ mod client {
     }
 
     impl Pictures {
-        /// Gives a frame to the decoder, which the first one and each of another size start.
+        /// Passes a frame to the decoder, which is started for the first frame and for each new size.
         fn decode(&mut self, number: u32, intra: bool, header: FrameHeader, data: &[u8]) -> Result<(), End> {
             let [column, rows] = header.size.map(|n| usize::from(n).next_multiple_of(2));
             let size = [header.content.parts() as usize * column, rows];
@@ -305,7 +305,7 @@ mod client {
             decoder.decode(number, data).map_err(|reason| self.failed(&reason))
         }
 
-        /// Returns the next frame that is decoded; its picture is in the planes.
+        /// Returns the next decoded frame; its picture is in `planes`.
         fn next(&mut self) -> Result<Option<(u32, FrameHeader)>, End> {
             let Some(decoder) = &mut self.decoder else { return Ok(None) };
             let decoded = decoder.next(&mut self.planes).map_err(|reason| self.failed(&reason))?;

@@ -1,4 +1,4 @@
-//! Answers of the C library.
+//! Calls of the C library.
 
 use std::ffi::CString;
 
@@ -7,22 +7,22 @@ pub fn now_ns() -> i64 {
     time_ns(libc::CLOCK_MONOTONIC)
 }
 
-/// Returns the time the device has slept since its boot, in nanoseconds. The sensors' clock is ahead of [`now_ns`] by
-/// this time.
+/// Returns the time in nanoseconds that the device has slept since its boot. The sensors' clock is ahead of [`now_ns`]
+/// by this time.
 pub fn slept_ns() -> i64 {
     time_ns(libc::CLOCK_BOOTTIME) - now_ns()
 }
 
 fn time_ns(clock: libc::clockid_t) -> i64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: these clocks exist on every Linux, and the result has a place.
+    // SAFETY: these clocks exist on every Linux, and there is room for the result.
     unsafe { libc::clock_gettime(clock, &mut time) };
     time.tv_sec * 1_000_000_000 + time.tv_nsec
 }
 
 /// Returns the kernel's number of this thread.
 pub fn thread_id() -> i32 {
-    // SAFETY: no arguments.
+    // SAFETY: `gettid` has no arguments.
     unsafe { libc::gettid() }
 }
 
@@ -30,7 +30,7 @@ pub fn thread_id() -> i32 {
 pub fn property(name: &str) -> Option<String> {
     let name = CString::new(name).ok()?;
     let mut value = [0u8; libc::PROP_VALUE_MAX as usize];
-    // SAFETY: the name ends in zero, and there is room for the longest value.
+    // SAFETY: the name is null-terminated, and there is room for the longest value.
     let length = unsafe { libc::__system_property_get(name.as_ptr(), value.as_mut_ptr().cast()) };
     let value = value.get(..usize::try_from(length).ok()?)?;
     Some(String::from_utf8_lossy(value).into_owned())

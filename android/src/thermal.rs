@@ -1,4 +1,4 @@
-//! The device's heat: the NDK's thermal service, and the skin sensor if it may be read.
+//! The device's heat: the NDK's thermal service, and the skin temperature sensor if it is readable.
 
 use std::ffi::c_int;
 use std::fs;
@@ -14,10 +14,10 @@ const HEADROOM_PERIOD: Duration = Duration::from_secs(10);
 const HEADROOM_RETRY: Duration = Duration::from_secs(2);
 /// The headroom's forecast horizon, in seconds.
 const FORECAST_SECONDS: c_int = 10;
-/// The plausible skin temperatures, in degrees Celsius. Values beyond are in another unit or from a broken sensor.
+/// The plausible skin temperatures in degrees Celsius. Values beyond are in another unit or come from a broken sensor.
 const PLAUSIBLE: std::ops::Range<f32> = -40.0..150.0;
 
-/// `AThermalManager`, which only the NDK knows.
+/// Opaque `AThermalManager`.
 #[repr(C)]
 struct Manager {
     _private: [u8; 0],
@@ -37,7 +37,7 @@ struct Service {
     headroom: Option<Headroom>,
 }
 
-/// The sources of this device's heat.
+/// The sources of the device's heat.
 pub struct Thermal {
     service: Option<Service>,
     skin: Option<PathBuf>,
@@ -75,7 +75,7 @@ impl Thermal {
         }
     }
 
-    /// Returns the temperature of the skin in degrees Celsius.
+    /// Returns the skin temperature in degrees Celsius.
     pub fn skin_celsius(&self) -> Option<f32> {
         celsius(self.skin.as_ref()?)
     }
@@ -97,12 +97,12 @@ impl Service {
 
 impl Drop for Service {
     fn drop(&mut self) {
-        // SAFETY: acquired once, released once.
+        // SAFETY: the manager was acquired once and is released only once.
         unsafe { (self.release)(self.manager.as_ptr()) }
     }
 }
 
-/// Returns the file of the skin's thermal zone, if applications may read it; most devices do not allow that.
+/// Returns the file of the skin's thermal zone, if applications may read it, which most devices do not allow.
 fn skin_sensor() -> Option<PathBuf> {
     let zones = fs::read_dir("/sys/class/thermal").ok()?.flatten().map(|entry| entry.path());
     let is_skin = |zone: &PathBuf| {
@@ -111,7 +111,7 @@ fn skin_sensor() -> Option<PathBuf> {
     zones.filter(is_skin).map(|zone| zone.join("temp")).find(|file| celsius(file).is_some())
 }
 
-/// Returns a thermal zone's degrees Celsius. Most zones report thousandths of a degree, some degrees.
+/// Returns a thermal zone's temperature in degrees Celsius. Most zones report thousandths of a degree, some degrees.
 fn celsius(file: &Path) -> Option<f32> {
     let number: f32 = fs::read_to_string(file).ok()?.trim().parse().ok()?;
     let degrees = if number.abs() >= 1000.0 { number * 1e-3 } else { number };

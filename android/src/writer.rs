@@ -1,23 +1,23 @@
-//! A small file that is written on a thread: flash memory takes its time, and a frame has none.
+//! A small file that is written on a thread of its own, since flash memory may be too slow for a frame.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 
-/// The thread, until this is dropped, which waits for what was last written.
+/// The writing thread. Dropping this waits until the last content is written.
 pub struct Writer {
     contents: Option<Sender<Vec<u8>>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Writer {
-    /// Starts the thread of a file.
+    /// Starts a thread for a file.
     pub fn new(file: PathBuf) -> Writer {
         let (contents, queue) = mpsc::channel::<Vec<u8>>();
         let work = move || {
             while let Ok(first) = queue.recv() {
-                // Only the newest counts.
+                // Only the newest content is written.
                 let content = queue.try_iter().last().unwrap_or(first);
                 if let Err(error) = write(&file, &content) {
                     let file = file.display();
@@ -33,10 +33,10 @@ impl Writer {
         Writer { contents: Some(contents), thread }
     }
 
-    /// Lets the thread replace the file's content.
+    /// Replaces the file's content, on the thread.
     pub fn write(&self, content: Vec<u8>) {
         if let Some(contents) = &self.contents {
-            // Without a thread, the log has said so.
+            // If the thread could not be started, that is in the log already.
             _ = contents.send(content);
         }
     }
@@ -51,7 +51,7 @@ impl Drop for Writer {
     }
 }
 
-/// Replaces a file at once: whoever reads it sees the content before or this one.
+/// Replaces a file atomically: readers see either the previous content or this one.
 fn write(file: &Path, content: &[u8]) -> io::Result<()> {
     let new = file.with_extension("new");
     std::fs::write(&new, content).and_then(|()| std::fs::rename(&new, file))
@@ -70,7 +70,7 @@ mod tests {
         drop(writer);
         assert_eq!(std::fs::read(&file).unwrap(), b"99");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-        // No folder: a sentence in the log, and nothing else.
+        // No such folder: a sentence in the log, and nothing else.
         let nowhere = Writer::new(folder.path().join("a/b"));
         nowhere.write(Vec::new());
     }

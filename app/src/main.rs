@@ -1,4 +1,4 @@
-//! The program `yoro`: its command line, one file per subcommand. The libraries do the work of the subcommands.
+//! The program `yoro`: its command line, with one file per subcommand. The libraries do the work.
 
 mod cli;
 

@@ -1,4 +1,4 @@
-//! Tells the linker how much stack the module needs: generators and loaders recurse.
+//! Sets the module's stack size, since generators and loaders recurse deeply.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

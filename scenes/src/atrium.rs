@@ -1,6 +1,6 @@
-//! A court with two storeys of arcades, curtains and banners; stands for Sponza.
+//! A court with two storeys of arcades, curtains and banners, in place of Sponza.
 //!
-//! The court lies along z, open to the sky; aisles with cross vaults run around it, a gallery above them.
+//! The court lies along z and is open to the sky. Aisles with cross vaults run around it, with a gallery above them.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -61,7 +61,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
     Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
-/// Down the court past the vases, through an arch beside a curtain, and along the aisle.
+/// Returns a walk down the court past the vases, through an arch beside a curtain, and along the aisle.
 fn walk() -> Vec<Viewpoint> {
     viewpoints(&[
         ([0.4, 1.66, 13.2], [-0.3, 2.8, 0.0]),
@@ -157,7 +157,7 @@ palette! {
     rope = textured(b, paint::fabric("rope", 256, s + 11, vec3(0.75, 0.6, 0.3), 16), 0.1, 0.7),
 }
 
-/// A heraldic banner: border, ornament and a lion-like star in gold.
+/// Paints a heraldic banner: border, ornament and a lion-like star in gold.
 fn banner_picture(name: &str, seed: u32, color: Vec3, gold: Vec3) -> TextureImage {
     let mut c = Canvas::new([256, 640], (color * 1.1).extend(1.0));
     let ink = gold.extend(1.0);
@@ -211,7 +211,7 @@ fn floors(b: &mut SceneBuilder, p: &Palette) {
     b.object("court floor").with_material(p.floor);
     b.rectangle(vec3(-3.6, 0.0, 14.4), Vec3::X * 7.2, Vec3::NEG_Z * 28.8);
     b.object("aisle floor").with_material(p.aisle_floor);
-    // Doors stand back from the outer walls.
+    // Doors are set back from the outer walls.
     let outer = COURT + AISLE + HALF_WALL + 0.4;
     for (min, max) in [
         (vec2(-outer.x, -outer.y), vec2(outer.x, -14.4)),
@@ -242,7 +242,7 @@ struct Side {
     name: &'static str,
 }
 
-/// One side of the court: x along the arcade, the court towards +z, the aisle towards -z.
+/// Builds one side of the court: x along the arcade, the court towards +z, the aisle towards -z.
 fn arcade(b: &mut SceneBuilder, p: &Palette, side: &Side, rng: &mut Pcg32) {
     let Side { bays, bay, name } = *side;
     let length = bay * bays as f32;
@@ -294,7 +294,7 @@ fn arcade(b: &mut SceneBuilder, p: &Palette, side: &Side, rng: &mut Pcg32) {
         b.object(&format!("{name} column {i}"));
         b.within(moved(x, 0.0, 0.0), |b| {
             if corner {
-                // The neighbouring side builds one of the two.
+                // Of the two piers at a corner, the neighbouring side builds the other.
                 if i == 0 {
                     pier(b, p, 0.44, SPRING);
                     b.within(moved(0.0, GALLERY, 0.0), |b| pier(b, p, 0.4, upper_spring));
@@ -326,7 +326,7 @@ fn arcade(b: &mut SceneBuilder, p: &Palette, side: &Side, rng: &mut Pcg32) {
     }
     b.object(&format!("{name} roof")).with_material(p.roof);
     let (low, high) = (vec3(0.0, EAVES, z + 0.5), vec3(0.0, EAVES + 1.5, -HALF_WALL - AISLE));
-    // The corners are closed by letting the slopes run into each other.
+    // The slopes run into each other to close the corners.
     let reach = AISLE + 2.0 * HALF_WALL;
     b.quad([low, low + Vec3::X * length, high + Vec3::X * (length + reach), high - Vec3::X * reach]);
     for i in 0..(length / 0.24) as usize {
@@ -345,11 +345,11 @@ fn arcade(b: &mut SceneBuilder, p: &Palette, side: &Side, rng: &mut Pcg32) {
     }
 }
 
-/// A cross vault over the rectangle (x, z), seen from below.
+/// Builds a cross vault over the rectangle (x, z), seen from below.
 fn vault(b: &mut SceneBuilder, min: Vec2, max: Vec2) {
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
     b.surface(20, 20, false, |u, v| {
-        // Denser where the vault is steep: at the walls.
+        // Denser at the walls, where the vault is steep.
         let ease = |t: f32| -(t * PI).cos();
         let local = vec2(ease(u), ease(v));
         let rise = |t: f32| (1.0 - t * t).max(0.0).sqrt();
@@ -446,7 +446,7 @@ fn pier(b: &mut SceneBuilder, p: &Palette, half: f32, height: f32) {
     }
 }
 
-/// Turned balusters between two rails, from `left` along +x.
+/// Builds turned balusters between two rails, from `left` along +x.
 fn balustrade(b: &mut SceneBuilder, p: &Palette, left: Vec3, width: f32) {
     b.with_material(p.trim);
     b.beveled_cuboid(left + vec3(0.0, 0.0, -0.12), left + vec3(width, 0.12, 0.12), 0.015);
@@ -512,7 +512,7 @@ fn outer_wall(b: &mut SceneBuilder, p: &Palette, side: &Side, i: usize, rng: &mu
         }
     } else {
         b.rectangle(vec3(x0, 0.0, z), Vec3::X * side.bay, Vec3::Y * GALLERY);
-        // A barred window high up, its sill and its lintel.
+        // A barred window high up, with sill and lintel.
         b.with_material(p.niche);
         b.rectangle(vec3(middle - 0.5, 1.9, z + 0.01), Vec3::X, Vec3::Y * 1.2);
         b.with_material(p.trim);
@@ -559,7 +559,7 @@ fn outer_wall(b: &mut SceneBuilder, p: &Palette, side: &Side, i: usize, rng: &mu
     );
 }
 
-/// Curtains in the arches and banners on the gallery.
+/// Builds the curtains in the arches and the banners on the gallery.
 fn hangings(b: &mut SceneBuilder, p: &Palette, side: &Side, i: usize, rng: &mut Pcg32) {
     let middle = (i as f32 + 0.5) * side.bay;
     let cloth = p.curtains[(i + usize::from(side.name == "west")) % 3];
@@ -633,7 +633,7 @@ fn hangings(b: &mut SceneBuilder, p: &Palette, side: &Side, i: usize, rng: &mut 
     }
 }
 
-/// A curtain that hangs from `inner` along x over `width` metres (negative: to the left) and is tied to the
+/// Builds a curtain that hangs from `inner` along x over `width` metres (negative: to the left) and is tied to the
 /// column at its outer end.
 fn tied_curtain(b: &mut SceneBuilder, p: &Palette, cloth: usize, inner: Vec3, width: f32, rng: &mut Pcg32) {
     let drop = inner.y - 0.08;
@@ -650,7 +650,7 @@ fn tied_curtain(b: &mut SceneBuilder, p: &Palette, cloth: usize, inner: Vec3, wi
         let fall = 1.0 - v;
         let spread = gather(fall);
         let x = inner.x + width * (1.0 - (1.0 - u) * spread);
-        // The free edge swings down in a bow; the folds get deeper as the cloth is gathered.
+        // The free edge hangs down in a bow; the folds deepen as the cloth is gathered.
         let lower = 0.22 * (1.0 - u) * (fall * PI).sin();
         let wave = (u * folds * TAU + phase).sin() + 0.3 * (u * folds * 1.3 * PI + phase * 2.0).sin();
         let z = wave * (0.05 + 0.05 * (1.0 - spread)) * (0.4 + 0.6 * fall);
@@ -695,7 +695,7 @@ fn urn(b: &mut SceneBuilder, p: &Palette, height: f32) {
 
 fn lantern(b: &mut SceneBuilder, p: &Palette) {
     b.with_material(p.bronze);
-    // A chain up to the vault, links turned by turns.
+    // A chain up to the vault, with alternating links.
     let top = 2.1;
     let links = 24;
     for k in 0..links {
@@ -726,7 +726,7 @@ fn lantern(b: &mut SceneBuilder, p: &Palette) {
     b.ellipsoid(vec3(0.0, -0.03, 0.0), vec3(0.05, 0.1, 0.05), 12, 16);
 }
 
-/// The corners of the aisles: their vaults and outer walls.
+/// Builds the corners of the aisles: their vaults and outer walls.
 fn corners(b: &mut SceneBuilder, p: &Palette) {
     let inner = COURT + HALF_WALL;
     let outer = COURT + HALF_WALL + AISLE;
@@ -736,7 +736,7 @@ fn corners(b: &mut SceneBuilder, p: &Palette) {
         vault(b, a.min(c), a.max(c));
         b.with_material(p.ashlar);
         let (reach, top) = (AISLE + HALF_WALL, EAVES);
-        // Each wall faces the aisle: the corner's two outer sides.
+        // The corner's two outer sides, each facing the aisle.
         let x = outer.x * sx;
         let z0 = COURT.y * sz;
         let z1 = outer.y * sz;
@@ -749,7 +749,7 @@ fn corners(b: &mut SceneBuilder, p: &Palette) {
     }
 }
 
-/// Vases, a fountain and benches in the court.
+/// Builds vases, a fountain and benches in the court.
 fn court(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight> {
     for i in 0..5 {
         for side in [-1.0, 1.0] {

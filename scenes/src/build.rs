@@ -1,10 +1,9 @@
 //! The geometry toolkit of the built-in scenes.
 //!
-//! A [`SceneBuilder`] collects triangles under a current object name, material and transform, and sorts them
-//! into one [`Part`] for each pair of object and material. Shapes are wound counter-clockwise seen from outside.
-//! Their texture coordinates run in metres and are divided by the material's tile size, so that a texture has
-//! the same texel density on everything it is put on; [`SceneBuilder::picture`] and [`SceneBuilder::card`]
-//! stretch a whole picture over a quad instead.
+//! A [`SceneBuilder`] collects triangles under a current object name, material and transform, and sorts them into one
+//! [`Part`] for each pair of object and material. Shapes are wound counter-clockwise seen from outside. Their texture
+//! coordinates are in metres and are divided by the material's tile size, so that a texture has the same texel density
+//! everywhere. [`SceneBuilder::picture`] and [`SceneBuilder::card`] instead stretch a whole picture over a quad.
 
 use std::collections::HashMap;
 use std::f32::consts::{PI, TAU};
@@ -15,7 +14,7 @@ use rand_pcg::Pcg32;
 
 use yoro_scene::{Material, Model, Part, TextureImage, Vertex, Viewpoint};
 
-/// A random number generator for one purpose: equal for equal seed and purpose, independent between purposes.
+/// Returns a random number generator that is equal for equal seed and purpose, and independent between purposes.
 pub fn random(seed: u64, purpose: &str) -> Pcg32 {
     let hash = purpose
         .bytes()
@@ -23,7 +22,7 @@ pub fn random(seed: u64, purpose: &str) -> Pcg32 {
     Pcg32::seed_from_u64(seed.rotate_left(32) ^ hash)
 }
 
-/// Uniform in `centre - spread ..= centre + spread`.
+/// Returns a uniform random number in `centre - spread ..= centre + spread`.
 pub fn around(rng: &mut impl Rng, centre: f32, spread: f32) -> f32 {
     centre + spread * (rng.random::<f32>() * 2.0 - 1.0)
 }
@@ -33,7 +32,7 @@ pub fn moved(x: f32, y: f32, z: f32) -> Affine3A {
     Affine3A::from_translation(vec3(x, y, z))
 }
 
-/// Moved to a position after a rotation about Y by `yaw` radians (counter-clockwise seen from above).
+/// Returns a rotation about Y by `yaw` radians (counter-clockwise seen from above), followed by a move to a position.
 pub fn placed(position: Vec3, yaw: f32) -> Affine3A {
     Affine3A::from_rotation_translation(Quat::from_rotation_y(yaw), position)
 }
@@ -44,18 +43,18 @@ pub type SurfacePoint = (Vec3, Vec2);
 /// The progress of building a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// Textures so far; a scene begins with them.
+    /// Number of textures so far; these come first.
     pub textures: usize,
-    /// Triangles so far.
+    /// Number of triangles so far.
     pub triangles: usize,
 }
 
-/// Triangles from one [`Progress`] to the next.
+/// Number of triangles between two reports of [`Progress`].
 pub const WATCHED_STEP: usize = 1 << 10;
 
 /// Collects the geometry of one scene.
 ///
-/// Positions given to the shapes are in metres in the frame of the current transform ([`SceneBuilder::within`]).
+/// Shapes take positions in metres in the frame of the current transform ([`SceneBuilder::within`]).
 pub struct SceneBuilder {
     vertices: Vec<Vertex>,
     materials: Vec<Material>,
@@ -90,7 +89,7 @@ impl Default for SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// An empty scene, with smooth normals and no transform.
+    /// Creates an empty scene, with smooth normals and no transform.
     pub fn new() -> SceneBuilder {
         SceneBuilder {
             vertices: Vec::new(),
@@ -114,7 +113,7 @@ impl SceneBuilder {
         }
     }
 
-    /// An empty scene; `watch` is called after each texture and after each [`WATCHED_STEP`] triangles.
+    /// Creates an empty scene. `watch` is called after each texture and after every [`WATCHED_STEP`] triangles.
     pub fn watched(watch: impl FnMut(Progress) + 'static) -> SceneBuilder {
         SceneBuilder { watch: Some(Box::new(watch)), ..SceneBuilder::new() }
     }
@@ -125,7 +124,7 @@ impl SceneBuilder {
         }
     }
 
-    /// Adds a picture; the result goes into the maps of a [`Material`].
+    /// Adds a picture and returns its index, for the maps of a [`Material`].
     pub fn texture(&mut self, image: TextureImage) -> usize {
         self.textures.push(image);
         self.progress.textures += 1;
@@ -133,19 +132,19 @@ impl SceneBuilder {
         self.textures.len() - 1
     }
 
-    /// Adds a material whose pictures cover `tile_size` metres before they repeat.
+    /// Adds a material whose pictures repeat every `tile_size` metres.
     pub fn material(&mut self, material: Material, tile_size: f32) -> usize {
         self.materials.push(material);
         self.tile_sizes.push(tile_size);
         self.materials.len() - 1
     }
 
-    /// Changes a material that was added before.
+    /// Changes a material that was added earlier.
     pub fn edit_material(&mut self, material: usize, edit: impl FnOnce(&mut Material)) {
         edit(&mut self.materials[material]);
     }
 
-    /// Draws with this material from now on.
+    /// Sets the material of what follows.
     pub fn with_material(&mut self, material: usize) -> &mut Self {
         debug_assert!(material < self.materials.len());
         self.material = material;
@@ -153,7 +152,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds to the object of this name from now on. Objects should be compact: bounds decide about culling.
+    /// Sets the object, by name, that what follows belongs to. Objects should be compact: culling uses their bounds.
     pub fn object(&mut self, name: &str) -> &mut Self {
         self.object = match self.object_ids.get(name) {
             Some(&id) => id,
@@ -173,7 +172,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Shifts the texture coordinates (in metres) of what follows, so that equal objects look different.
+    /// Shifts the texture coordinates (in metres) of what follows, so that identical objects look different.
     pub fn set_uv_offset(&mut self, metres: Vec2) -> &mut Self {
         self.uv_offset = metres;
         self
@@ -197,19 +196,19 @@ impl SceneBuilder {
             if determinant.abs() > 1e-12 { linear.inverse().transpose() } else { Mat3::IDENTITY };
     }
 
-    /// Triangles so far.
+    /// Returns the number of triangles so far.
     pub fn triangle_count(&self) -> usize {
         self.progress.triangles
     }
 
-    /// Counts triangles that a scene adds to its finished model itself.
+    /// Adds to the count the triangles that a scene adds to its finished model itself.
     pub fn count(&mut self, triangles: usize) {
         self.progress.triangles += triangles;
         self.tell();
     }
 
-    /// Returns the finished model: one part for each object and material, objects in the order they were first drawn.
-    /// The builder is empty afterwards.
+    /// Returns the finished model: one part for each object and material, objects in the order in which they were first
+    /// drawn. Leaves the builder empty.
     pub fn finish(&mut self) -> Model {
         let empty = SceneBuilder { progress: self.progress, watch: self.watch.take(), ..SceneBuilder::new() };
         let mut done = std::mem::replace(self, empty);
@@ -232,7 +231,7 @@ impl SceneBuilder {
         Model { vertices: done.vertices, indices, parts, materials: done.materials, textures: done.textures }
     }
 
-    /// Adds a vertex; `uv` is used as it is. Returns its index for [`SceneBuilder::triangle`].
+    /// Adds a vertex, with `uv` used as is. Returns its index for [`SceneBuilder::triangle`].
     pub fn vertex(&mut self, position: Vec3, normal: Vec3, uv: Vec2) -> u32 {
         let index = self.vertices.len() as u32;
         self.vertices.push(Vertex {
@@ -249,7 +248,7 @@ impl SceneBuilder {
         self.vertex(position, normal, (metres + self.uv_offset) / tile)
     }
 
-    /// Adds a triangle, counter-clockwise seen from the front.
+    /// Adds a triangle that is counter-clockwise seen from the front.
     pub fn triangle(&mut self, a: u32, b: u32, c: u32) {
         let group = match self.group {
             Some(group) => group,
@@ -279,7 +278,7 @@ impl SceneBuilder {
         self.triangle(a, c, d);
     }
 
-    /// A flat quad from its corners: lower left, lower right, upper right, upper left.
+    /// Adds a flat quad by its corners: lower left, lower right, upper right, upper left.
     pub fn quad(&mut self, corners: [Vec3; 4]) {
         let [a, b, _, d] = corners;
         let right = (b - a).normalize_or(Vec3::X);
@@ -288,24 +287,24 @@ impl SceneBuilder {
         self.quad_metres(corners, metres);
     }
 
-    /// A flat quad with its own texture coordinates in metres.
+    /// Adds a flat quad with its own texture coordinates in metres.
     pub fn quad_metres(&mut self, corners: [Vec3; 4], metres: [Vec2; 4]) {
         let normal = quad_normal(&corners);
         let ids: [u32; 4] = std::array::from_fn(|i| self.vertex_metres(corners[i], normal, metres[i]));
         self.quad_indices(ids);
     }
 
-    /// A flat rectangle spanned by `right` and `up` from its lower left corner.
+    /// Adds a flat rectangle spanned by `right` and `up` from its lower left corner.
     pub fn rectangle(&mut self, corner: Vec3, right: Vec3, up: Vec3) {
         self.quad([corner, corner + right, corner + right + up, corner + up]);
     }
 
-    /// A flat quad that shows the whole picture: lower left, lower right, upper right, upper left.
+    /// Adds a flat quad that shows the whole picture: lower left, lower right, upper right, upper left.
     pub fn picture(&mut self, corners: [Vec3; 4]) {
         self.picture_region(corners, Vec2::ZERO, Vec2::ONE);
     }
 
-    /// A flat quad that shows the part of the picture from `low` to `high` (texture coordinates).
+    /// Adds a flat quad that shows the part of the picture from `low` to `high` (texture coordinates).
     fn picture_region(&mut self, corners: [Vec3; 4], low: Vec2, high: Vec2) {
         let normal = quad_normal(&corners);
         let uvs = [low, vec2(high.x, low.y), high, vec2(low.x, high.y)];
@@ -313,8 +312,8 @@ impl SceneBuilder {
         self.quad_indices(ids);
     }
 
-    /// A picture card around `center` with half extents `right` and `up` and a normal of its own: leaves take
-    /// the normal of the crown they belong to. Meant for double-sided cut-out materials.
+    /// Adds a picture card around `center` with half extents `right` and `up` and its own normal: leaves take the
+    /// normal of the crown they belong to. Meant for double-sided cut-out materials.
     pub fn card(&mut self, center: Vec3, right: Vec3, up: Vec3, normal: Vec3) {
         let corners = [center - right - up, center + right - up, center + right + up, center - right + up];
         let uvs = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
@@ -322,18 +321,18 @@ impl SceneBuilder {
         self.quad_indices(ids);
     }
 
-    /// A box between two corners. 12 triangles.
+    /// Adds a box between two corners: 12 triangles.
     pub fn cuboid(&mut self, min: Vec3, max: Vec3) {
         self.cuboid_faces(min, max, BoxFaces::ALL);
     }
 
-    /// A box given by the centre of its base and its size.
+    /// Adds a box by the centre of its base and its size.
     pub fn cuboid_on(&mut self, base: Vec3, size: Vec3) {
         let half = vec3(size.x * 0.5, 0.0, size.z * 0.5);
         self.cuboid(base - half, base + half + Vec3::Y * size.y);
     }
 
-    /// Some faces of a box.
+    /// Adds some faces of a box.
     pub fn cuboid_faces(&mut self, min: Vec3, max: Vec3, faces: BoxFaces) {
         for face in FACES.iter().filter(|f| faces.contains(f)) {
             let corners = face.corners(min, max);
@@ -342,7 +341,7 @@ impl SceneBuilder {
         }
     }
 
-    /// A box with bevelled edges whose normals blend over the bevel. 44 triangles.
+    /// Adds a box with bevelled edges whose normals blend over the bevel: 44 triangles.
     pub fn beveled_cuboid(&mut self, min: Vec3, max: Vec3, bevel: f32) {
         let bevel = bevel.min((max - min).min_element() * 0.49);
         let mut ring: HashMap<(usize, [i8; 3]), u32> = HashMap::with_capacity(24);
@@ -366,7 +365,7 @@ impl SceneBuilder {
             let corners = face.corners(min, max);
             for side in 0..4 {
                 let (p, q) = (corners[side], corners[(side + 1) % 4]);
-                // The neighbour across this edge is the other face that both corners lie on.
+                // The neighbour across this edge is the other face that contains both corners.
                 let neighbour = FACES.iter().enumerate().position(|(g, other)| {
                     g != f && other.lies_on(p, min, max) && other.lies_on(q, min, max)
                 });
@@ -393,7 +392,7 @@ impl SceneBuilder {
                 .map(|(f, _)| ring[&(f, sign(p))])
                 .collect();
             let outward: f32 = sign(p).iter().map(|&s| f32::from(s)).product();
-            // FACES lists X, Y, Z; their normals are right-handed when the signs multiply to +1.
+            // FACES lists X, Y, Z; their normals are right-handed if the signs multiply to +1.
             if outward > 0.0 {
                 self.triangle(touching[0], touching[1], touching[2]);
             } else {
@@ -402,10 +401,10 @@ impl SceneBuilder {
         }
     }
 
-    /// A surface over a grid of `columns` x `rows` cells with normals from its shape.
+    /// Adds a surface over a grid of `columns` x `rows` cells with normals computed from its shape.
     ///
-    /// `point(u, v)` gives the surface at `u`, `v` from 0 to 1; the front is where `u` runs right and `v` up.
-    /// With `wraps` the normals are joined between `u = 0` and `u = 1`. Points of a row may coincide (poles).
+    /// `point(u, v)` gives the surface at `u`, `v` from 0 to 1; the front is where `u` runs right and `v` up. With
+    /// `wraps`, normals at `u = 0` and `u = 1` are joined. Points of a row may coincide (poles).
     pub fn surface(
         &mut self,
         columns: usize,
@@ -423,7 +422,7 @@ impl SceneBuilder {
         self.grid(columns, rows, wraps, &points);
     }
 
-    /// A surface from its points, row by row from the bottom, `(columns + 1) * (rows + 1)` of them.
+    /// Adds a surface by its `(columns + 1) * (rows + 1)` points, row by row from the bottom.
     pub fn grid(&mut self, columns: usize, rows: usize, wraps: bool, points: &[SurfacePoint]) {
         let width = columns + 1;
         debug_assert_eq!(points.len(), width * (rows + 1));
@@ -453,7 +452,7 @@ impl SceneBuilder {
         let mut normals = vec![Vec3::ZERO; points.len()];
         for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
             let [a, b, c, d] = cell(i, j);
-            // The cross product of the diagonals weighs by area and stays good where one side vanishes.
+            // The cross product of the diagonals weights by area and stays valid if one side has no length.
             let normal = (points[c].0 - points[a].0).cross(points[d].0 - points[b].0);
             for k in [a, b, c, d] {
                 normals[k] += normal;
@@ -487,7 +486,7 @@ impl SceneBuilder {
         }
     }
 
-    /// A height field over the rectangle from `min` to `max` (x and z), seen from above.
+    /// Adds a height field over the rectangle from `min` to `max` (x and z), seen from above.
     pub fn height_field(
         &mut self,
         columns: usize,
@@ -502,8 +501,8 @@ impl SceneBuilder {
         });
     }
 
-    /// A profile of (radius, height) points from the bottom up, turned about the Y axis of the current frame.
-    /// A point given twice makes a sharp edge.
+    /// Adds a profile of (radius, height) points from the bottom up, turned about the Y axis of the current frame. A
+    /// point given twice makes a sharp edge.
     pub fn lathe(&mut self, profile: &[(f32, f32)], sides: usize) {
         for run in profile.split_inclusive_at(|a, b| a == b) {
             let widest = run.iter().fold(0.0_f32, |r, p| r.max(p.0));
@@ -528,7 +527,7 @@ impl SceneBuilder {
         }
     }
 
-    /// A cylinder or, with different radii, a cone from `a` to `b`.
+    /// Adds a cylinder from `a` to `b` or, with different radii, a cone.
     pub fn cylinder(&mut self, a: Vec3, b: Vec3, radius_a: f32, radius_b: f32, sides: usize, caps: bool) {
         let length = a.distance(b);
         let rotation = Quat::from_rotation_arc(Vec3::Y, (b - a).normalize_or(Vec3::Y));
@@ -542,7 +541,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A sphere or ellipsoid.
+    /// Adds a sphere or ellipsoid.
     pub fn ellipsoid(&mut self, center: Vec3, radii: Vec3, rings: usize, sides: usize) {
         let girth = TAU * radii.x.max(radii.z);
         self.surface(sides, rings, true, |u, v| {
@@ -553,12 +552,12 @@ impl SceneBuilder {
         });
     }
 
-    /// A round tube along a polyline, open at the ends unless they are `capped`.
+    /// Adds a round tube along a polyline, open at the ends unless `capped`.
     pub fn tube(&mut self, path: &[Vec3], radius: f32, sides: usize, capped: bool) {
         self.tapered_tube(path, &|_| radius, sides, capped);
     }
 
-    /// A tube whose radius depends on how far along it is (0 to 1 by number of points).
+    /// Adds a tube whose radius depends on the position along it (0 to 1 by number of points).
     pub fn tapered_tube(&mut self, path: &[Vec3], radius: &dyn Fn(f32) -> f32, sides: usize, capped: bool) {
         if path.len() < 2 {
             return;
@@ -566,7 +565,7 @@ impl SceneBuilder {
         let last = path.len() - 1;
         let along = |i: usize| (path[i + 1] - path[i]).normalize_or(Vec3::Y);
         let radius_at = |i: usize| radius(i as f32 / last as f32);
-        // Between long pieces there is a bend with a mitre; short pieces are a curve.
+        // Between long pieces is a bend with a mitre; short pieces are a curve.
         let is_bend = |i: usize| {
             i > 0
                 && i < last
@@ -579,7 +578,7 @@ impl SceneBuilder {
                 (path[(i + 1).min(last)] - path[i.saturating_sub(1)]).normalize_or(Vec3::Y)
             }
         };
-        // Turning one normal along with the path keeps the tube from twisting.
+        // Carrying one normal along the path keeps the tube from twisting.
         let mut side = direction(0).any_orthonormal_vector();
         let mut distance = 0.0;
         let mut points = Vec::with_capacity((sides + 1) * path.len());
@@ -612,7 +611,7 @@ impl SceneBuilder {
         }
     }
 
-    /// A flat convex polygon facing `normal`, whatever the order of its corners.
+    /// Adds a flat convex polygon facing `normal`, with its corners in either order.
     pub fn fan(&mut self, corners: &[Vec3], normal: Vec3) {
         let Some(&first) = corners.first() else { return };
         let right = normal.any_orthonormal_vector();
@@ -631,15 +630,15 @@ impl SceneBuilder {
         }
     }
 
-    /// A wire that hangs between two points, `sag` metres below the straight line in the middle.
+    /// Adds a wire that hangs between two points, `sag` metres below the straight line in the middle.
     pub fn wire(&mut self, a: Vec3, b: Vec3, sag: f32, radius: f32, segments: usize) {
         let path: Vec<Vec3> =
             (0..=segments).map(|i| hanging(a, b, sag, i as f32 / segments as f32)).collect();
         self.tube(&path, radius, 5, false);
     }
 
-    /// A simple polygon (counter-clockwise in the XY plane) extruded from z = `back` to z = `front`; its sides
-    /// are flat, its back is left out unless `closed`.
+    /// Adds a simple polygon (counter-clockwise in the XY plane) extruded from z = `back` to z = `front`. Its sides are
+    /// flat; its back is left out unless `closed`.
     pub fn extrude(&mut self, outline: &[Vec2], back: f32, front: f32, closed: bool) {
         let triangles = triangulate(outline);
         for (z, normal, wanted) in [(front, Vec3::Z, true), (back, Vec3::NEG_Z, closed)] {
@@ -674,8 +673,8 @@ impl SceneBuilder {
         }
     }
 
-    /// A wall panel in the XY plane, centred on x = 0 and standing on y = 0, front at z = 0 and `depth` thick
-    /// (towards -z), with an opening that ends in a round arch.
+    /// Adds a wall panel in the XY plane, centred on x = 0 and standing on y = 0, with its front at z = 0 and `depth`
+    /// thick (towards -z). Its opening ends in a round arch.
     pub fn arched_wall(&mut self, size: Vec2, opening: ArchOpening, depth: f32, segments: usize) {
         let radius = opening.width * 0.5;
         let half = size.x * 0.5;
@@ -685,7 +684,7 @@ impl SceneBuilder {
             inner.push(vec2(radius * cos, opening.spring + radius * sin));
         }
         inner.push(vec2(-radius, 0.0));
-        // Every point of the opening is joined with the point of the panel's outline above or beside it.
+        // Every point of the opening is joined with the point above or beside it on the panel's outline.
         let outer: Vec<Vec2> = inner
             .iter()
             .map(|p| {
@@ -705,7 +704,7 @@ impl SceneBuilder {
             let back = [d.extend(-depth), c.extend(-depth), b.extend(-depth), a.extend(-depth)];
             let flip = |p: Vec2| vec2(-p.x, p.y);
             self.quad_metres(back, [flip(d), flip(c), flip(b), flip(a)]);
-            // The outline turns a corner of the panel between two points of the arch.
+            // A corner of the panel lies between two points of the arch.
             let corner = vec2(half * b.x.signum(), size.y);
             let turns = (b.x.abs() >= half - 1e-4) != (c.x.abs() >= half - 1e-4);
             if turns && b.distance(corner) > 1e-4 && c.distance(corner) > 1e-4 {
@@ -739,7 +738,7 @@ impl SceneBuilder {
         self.quad([vec3(-x, top, 0.0), vec3(x, top, 0.0), vec3(x, top, -depth), vec3(-x, top, -depth)]);
     }
 
-    /// Stairs that climb towards -z from the origin, `width` wide and centred on x = 0.
+    /// Adds stairs that climb towards -z from the origin, `width` wide and centred on x = 0.
     pub fn stairs(&mut self, width: f32, rise: f32, run: f32, steps: usize) {
         for i in 0..steps {
             let (low, high) = (rise * i as f32, rise * (i + 1) as f32);
@@ -760,8 +759,8 @@ impl SceneBuilder {
         self.rectangle(vec3(half, 0.0, far), Vec3::NEG_X * width, Vec3::Y * top);
     }
 
-    /// Cloth that hangs from the line `left` to `right` (in front of it is where left is left), falling `drop`
-    /// metres in `folds` waves of `depth` metres that grow towards the hem.
+    /// Adds cloth that hangs from the line `left` to `right`, as named from in front of it. It falls `drop` metres in
+    /// `folds` waves of `depth` metres that grow towards the hem.
     pub fn curtain(&mut self, left: Vec3, right: Vec3, drop: f32, folds: f32, depth: f32, cells: [usize; 2]) {
         let along = (right - left).normalize_or(Vec3::X);
         let out = along.cross(Vec3::Y).normalize_or(Vec3::Z);
@@ -781,7 +780,7 @@ impl SceneBuilder {
         });
     }
 
-    /// A railing along a polyline on the floor: posts, a hand rail, a lower rail and thin bars between them.
+    /// Adds a railing along a polyline on the floor: posts, a hand rail, a lower rail and thin bars between them.
     pub fn railing(&mut self, path: &[Vec3], rail: &Railing) {
         let up = Vec3::Y * rail.height;
         for pair in path.windows(2) {
@@ -801,7 +800,7 @@ impl SceneBuilder {
     }
 }
 
-/// The measures of a [`SceneBuilder::railing`], in metres.
+/// The dimensions of a [`SceneBuilder::railing`] in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Railing {
     /// Height of the hand rail.
@@ -822,16 +821,16 @@ impl Default for Railing {
     }
 }
 
-/// The opening of a [`SceneBuilder::arched_wall`], in metres.
+/// The opening of a [`SceneBuilder::arched_wall`] in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArchOpening {
-    /// Clear width; the arch is a half circle over it.
+    /// Clear width; the arch is a semicircle over it.
     pub width: f32,
     /// Height at which the arch begins.
     pub spring: f32,
 }
 
-/// A point of a hanging wire at `t` from 0 to 1, a parabola `sag` metres deep.
+/// Returns the point of a hanging wire at `t` from 0 to 1: a parabola `sag` metres deep.
 pub fn hanging(a: Vec3, b: Vec3, sag: f32, t: f32) -> Vec3 {
     a.lerp(b, t) - Vec3::Y * (sag * 4.0 * t * (1.0 - t))
 }
@@ -855,15 +854,15 @@ impl BoxFaces {
     pub const BACK: BoxFaces = BoxFaces(32);
     /// All six.
     pub const ALL: BoxFaces = BoxFaces(63);
-    /// All but the one that stands on the ground.
+    /// All but the bottom, for boxes that stand on the ground.
     pub const STANDING: BoxFaces = BoxFaces(63 - 8);
 
-    /// These faces but not the others.
+    /// Returns these faces without the others.
     pub const fn without(self, other: BoxFaces) -> BoxFaces {
         BoxFaces(self.0 & !other.0)
     }
 
-    /// These faces and the others.
+    /// Returns these faces and the others.
     pub const fn and(self, other: BoxFaces) -> BoxFaces {
         BoxFaces(self.0 | other.0)
     }
@@ -916,13 +915,13 @@ trait SplitRuns<T> {
 }
 
 impl<T> SplitRuns<T> for [T] {
-    /// Runs of at least two items, cut between neighbours for which `cut` holds.
+    /// Returns the runs of at least two items, split between neighbours for which `cut` is true.
     fn split_inclusive_at(&self, cut: impl Fn(&T, &T) -> bool) -> Vec<&[T]> {
         self.chunk_by(|a, b| !cut(a, b)).filter(|run| run.len() > 1).collect()
     }
 }
 
-/// Triangles (indices into the outline) of a simple counter-clockwise polygon, by ear clipping.
+/// Triangulates a simple counter-clockwise polygon by ear clipping. Returns indices into the outline.
 pub fn triangulate(outline: &[Vec2]) -> Vec<[usize; 3]> {
     let mut left: Vec<usize> = (0..outline.len()).collect();
     let mut triangles = Vec::with_capacity(outline.len().saturating_sub(2));
@@ -934,7 +933,7 @@ pub fn triangulate(outline: &[Vec2]) -> Vec<[usize; 3]> {
             (q - p).perp_dot(r - p) > 1e-12
                 && left.iter().all(|&k| k == a || k == b || k == c || !inside(outline[k], p, q, r))
         });
-        // Only a degenerate rest has no ear; its area is nothing.
+        // Only a degenerate rest, which has no area, has no ear.
         let Some(i) = ear else { return triangles };
         triangles.push([left[(i + n - 1) % n], left[i], left[(i + 1) % n]]);
         left.remove(i);
@@ -950,7 +949,7 @@ fn inside(p: Vec2, a: Vec2, b: Vec2, c: Vec2) -> bool {
     side(a, b) >= 0.0 && side(b, c) >= 0.0 && side(c, a) >= 0.0
 }
 
-/// A camera path from positions and targets in metres.
+/// Returns a camera path from positions and targets in metres.
 pub fn viewpoints(steps: &[([f32; 3], [f32; 3])]) -> Vec<Viewpoint> {
     let viewpoint = |&(position, target): &([f32; 3], [f32; 3])| Viewpoint {
         position: position.into(),
@@ -971,7 +970,7 @@ mod tests {
         s.finish()
     }
 
-    /// Volume by the divergence theorem: right only when closed and wound outwards.
+    /// Returns the volume by the divergence theorem, which is right only if the model is closed and wound outwards.
     fn volume(model: &Model) -> f32 {
         model
             .indices
@@ -1017,7 +1016,7 @@ mod tests {
             assert_faces_its_normals(&plain);
             assert!((volume(&plain) / expected - 1.0).abs() < 0.02, "{name}: {}", volume(&plain));
         }
-        // The panel has no underside, so its base lies on the plane that contributes nothing.
+        // The panel has no underside, but its base is in the plane that contributes nothing.
         let arch = built(|s| {
             s.arched_wall(vec2(4.0, 3.0), ArchOpening { width: 2.0, spring: 1.5 }, 0.5, 64);
         });

@@ -1,7 +1,7 @@
-//! A conference room high above a town; stands for Conference.
+//! A conference room high above a town, in place of Conference.
 //!
-//! The table lies along x in the middle, the screen hangs on the wall at -x, windows with blinds are at -z, a
-//! wall of wooden battens at +z, the door at +x.
+//! The table lies along x in the middle. The screen hangs on the wall at -x; windows with blinds are at -z, a wall of
+//! wooden battens at +z, and the door at +x.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -14,10 +14,10 @@ use super::paint::{self, Canvas};
 use super::props::{self, Tree, cup, fronds, glass, glowing, metal, palette, pictured, plain, textured};
 use yoro_scene::{Alpha, Material, PointLight, Scene, Sky, TextureImage, Viewpoint};
 
-/// Half the size of the room, and its height.
+/// Half the size of the room; its height is `CEILING`.
 const ROOM: Vec2 = vec2(5.6, 4.0);
 const CEILING: f32 = 2.95;
-/// Half the size of the table top, and its height.
+/// Half the size of the table top; its height is `TOP`.
 const TABLE: Vec2 = vec2(3.2, 0.95);
 const TOP: f32 = 0.745;
 
@@ -49,7 +49,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
     Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
-/// Along the battens behind the chairs, around the table's end below the screen, and back past the blinds.
+/// Returns a walk along the battens behind the chairs, around the table below the screen, and past the blinds.
 fn walk() -> Vec<Viewpoint> {
     viewpoints(&[
         ([4.7, 1.62, 1.5], [-1.5, 1.05, -0.6]),
@@ -179,7 +179,7 @@ palette! {
     books = pictured(b, paint::book_spines("books", [512, 128], s, 36), 0.8, 0.0),
 }
 
-/// Rolled emulsion paint: almost flat.
+/// Paints rolled emulsion paint: almost flat.
 fn emulsion(seed: u32) -> paint::Surface {
     paint::surface("wall", [256, 256], 0.0014, |uv| {
         let grain = paint::fbm(seed, glam::UVec2::splat(48), 2, uv);
@@ -188,7 +188,7 @@ fn emulsion(seed: u32) -> paint::Surface {
     })
 }
 
-/// Carpet tiles of two tones, 50 cm each, turned against each other.
+/// Paints carpet tiles of two tones, 50 cm each, turned against each other.
 fn carpet(seed: u32) -> paint::Surface {
     paint::surface("carpet", [512, 512], 0.004, |uv| {
         let cell = (uv * 4.0).floor();
@@ -284,7 +284,7 @@ fn shell(b: &mut SceneBuilder, p: &Palette) {
     b.rectangle(vec3(-x, 0.0, z), Vec3::NEG_Z * 2.0 * z, Vec3::Y * CEILING);
     b.rectangle(vec3(x, 0.0, -z), Vec3::Z * 2.0 * z, Vec3::Y * CEILING);
     b.rectangle(vec3(x, 0.0, z), Vec3::NEG_X * 2.0 * x, Vec3::Y * CEILING);
-    // The outside, so that the sun does not shine in from behind.
+    // The outside, which keeps the sun from shining in from behind.
     for (corner, right) in [
         (vec3(-x - 0.2, 0.0, -z), Vec3::Z * (2.0 * z + 0.2)),
         (vec3(x + 0.2, 0.0, z + 0.2), Vec3::NEG_Z * (2.0 * z + 0.2)),
@@ -302,7 +302,7 @@ fn shell(b: &mut SceneBuilder, p: &Palette) {
     b.beveled_cuboid(vec3(x - 0.015, 0.0, -z), vec3(x, 0.09, -0.8), 0.004);
 }
 
-/// A grid of panels with lamps, vents and sprinklers. Returns the lamps' lights.
+/// Builds a grid of panels with lamps, vents and sprinklers. Returns the lamps' lights.
 fn ceiling(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight> {
     b.object("ceiling").with_material(p.ceiling);
     b.rectangle(vec3(-ROOM.x, CEILING, -ROOM.y), Vec3::X * 2.0 * ROOM.x, Vec3::Z * 2.0 * ROOM.y);
@@ -387,7 +387,7 @@ fn ceiling(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight
     lights
 }
 
-/// Four windows with blinds, a sill and radiators below.
+/// Builds four windows with blinds, a sill and radiators below.
 fn windows(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     let z = -ROOM.y;
     let (sill, head) = (0.82, 2.72);
@@ -441,7 +441,7 @@ fn windows(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// A venetian blind between its upper left and lower right corners.
+/// Builds a venetian blind between its upper left and lower right corners.
 fn blind(b: &mut SceneBuilder, p: &Palette, number: usize, [top, low]: [Vec3; 2], rng: &mut Pcg32) {
     b.object(&format!("blind {number}"));
     let drawn = [0.55, 1.0, 0.82, 1.0][number % 4];
@@ -652,7 +652,7 @@ fn door_wall(b: &mut SceneBuilder, p: &Palette) {
     }
 }
 
-/// The outline of the table, a boat shape, counter-clockwise in x and -z.
+/// Returns the outline of the table, a boat shape, counter-clockwise in x and -z.
 fn table_outline(grow: f32) -> Vec<Vec2> {
     (0..72)
         .map(|i| {
@@ -706,7 +706,7 @@ fn chairs(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// A rounded cushion between two corners.
+/// Builds a rounded cushion between two corners.
 fn cushion(b: &mut SceneBuilder, min: Vec3, max: Vec3) {
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
     let squared = |v: f32, power: f32| v.signum() * v.abs().powf(power);
@@ -725,7 +725,7 @@ fn cushion(b: &mut SceneBuilder, min: Vec3, max: Vec3) {
     });
 }
 
-/// A swivel chair that faces +z.
+/// Builds a swivel chair that faces +z.
 fn office_chair(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     b.with_material(p.chrome);
     let spin = rng.random::<f32>() * TAU;
@@ -903,7 +903,7 @@ fn moved_to(at: Vec3) -> Affine3A {
     Affine3A::from_translation(at)
 }
 
-/// A laptop whose user sits at +z.
+/// Builds a laptop whose user sits at +z.
 fn laptop(b: &mut SceneBuilder, p: &Palette, kind: usize) {
     b.with_material(p.chrome);
     b.beveled_cuboid(vec3(-0.165, 0.003, -0.115), vec3(0.165, 0.018, 0.115), 0.004);
@@ -944,7 +944,7 @@ fn tumbler(b: &mut SceneBuilder, p: &Palette, radius: f32, height: f32) {
     b.lathe(&[(0.0, 0.006), (radius * 0.82, 0.006), (radius * 0.86, 0.012), (radius, height)], 20);
 }
 
-/// Lamps on thin cables over the table.
+/// Builds lamps on thin cables over the table.
 fn pendants(b: &mut SceneBuilder, p: &Palette) -> Vec<PointLight> {
     let mut lights = Vec::new();
     for (i, x) in [-2.1, -0.7, 0.7, 2.1].into_iter().enumerate() {
@@ -1014,7 +1014,7 @@ fn plants(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     });
 }
 
-/// The view through the windows: a balcony railing, houses, the ground far below.
+/// Builds the view through the windows: a balcony railing, houses, the ground far below.
 fn town(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     b.object("balcony").with_material(p.pot);
     b.cuboid(vec3(-ROOM.x, -0.3, -ROOM.y - 1.6), vec3(ROOM.x, -0.02, -ROOM.y - 0.3));

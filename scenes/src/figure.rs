@@ -1,7 +1,6 @@
 //! Stylised people for the built-in scenes.
 //!
-//! A figure stands in its own frame: origin on the floor, facing +Z, so that its left side is +X. Pairs are left
-//! first.
+//! A figure has its own frame: origin on the floor, facing +Z, so that its left side is +X. Pairs are left first.
 
 use std::f32::consts::{PI, TAU};
 
@@ -10,7 +9,7 @@ use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, vec2, vec3};
 use super::build::SceneBuilder;
 use super::sculpt::Clay;
 
-/// Half the width in metres of what a face picture covers; see [`head`].
+/// Half the width in metres that a face picture covers; see [`head`].
 pub const FACE_HALF: f32 = 0.15;
 
 /// The positions of a figure's joints in metres.
@@ -42,8 +41,8 @@ pub struct Joints {
     pub ankles: [Vec3; 2],
 }
 
-/// Draws clay with texture coordinates that run around the vertical axis through `axis`, `around` tiles a turn,
-/// and up, one tile every `tile` metres.
+/// Draws clay with texture coordinates that run around the vertical axis through `axis`, `around` tiles per turn, and
+/// up, one tile every `tile` metres.
 pub fn clad(s: &mut SceneBuilder, clay: &Clay, cell: f32, axis: Vec3, around: f32, tile: f32) {
     clay.mesh(s, cell, |p, _| {
         let q = p - axis;
@@ -51,13 +50,13 @@ pub fn clad(s: &mut SceneBuilder, clay: &Clay, cell: f32, axis: Vec3, around: f3
     });
 }
 
-/// The frame of a head.
+/// Returns the frame of a head.
 pub fn head_frame(joints: &Joints) -> Affine3A {
     Affine3A::from_rotation_translation(joints.head_turn, joints.head)
 }
 
-/// A head with neck, in its own frame (centre between the ears, face along +Z). The material's picture is
-/// projected along Z and covers [`FACE_HALF`] to all sides; its border must be plain skin.
+/// Builds a head with neck, in its own frame (centre between the ears, face along +Z). The material's picture is
+/// projected along Z and covers [`FACE_HALF`] on all sides; its border must be plain skin.
 pub fn head(s: &mut SceneBuilder, radii: Vec3, nose: f32, cell: f32) {
     let r = radii;
     let mut clay = Clay::new(0.035);
@@ -76,14 +75,14 @@ pub fn head(s: &mut SceneBuilder, radii: Vec3, nose: f32, cell: f32) {
     );
     let uv = |p: Vec3, _: Vec3| {
         let flat = (p.truncate() / (2.0 * FACE_HALF) + 0.5).clamp(Vec2::splat(0.02), Vec2::splat(0.98));
-        // The back of the head shows the border.
+        // The back of the head shows the picture's border.
         if p.z > -0.2 * r.z { flat } else { vec2(if p.x > 0.0 { 0.98 } else { 0.02 }, flat.y) }
     };
     clay.mesh(s, cell, uv);
     detail.mesh(s, cell * 0.6, uv);
 }
 
-/// Two ears beside a head of these radii, in its frame.
+/// Builds the two ears of a head of these radii, in its frame.
 pub fn ears(s: &mut SceneBuilder, radii: Vec3) {
     for side in [-1.0, 1.0] {
         let turn = Quat::from_rotation_y(side * 0.35);
@@ -104,9 +103,9 @@ pub fn ears(s: &mut SceneBuilder, radii: Vec3) {
 pub struct Hand {
     /// The position of the wrist.
     pub wrist: Vec3,
-    /// Along the outstretched fingers.
+    /// Direction of the outstretched fingers.
     pub along: Vec3,
-    /// Out of the palm.
+    /// Direction out of the palm.
     pub palm: Vec3,
     /// 0 for outstretched fingers, 1 for a fist.
     pub curl: f32,
@@ -116,7 +115,7 @@ pub struct Hand {
     pub scale: f32,
 }
 
-/// A hand with five fingers.
+/// Builds a hand with five fingers.
 pub fn hand(s: &mut SceneBuilder, hand: &Hand, cell: f32) {
     let d = hand.along.normalize_or(Vec3::Z);
     let n = hand.palm.reject_from_normalized(d).normalize_or(d.any_orthonormal_vector());
@@ -159,7 +158,7 @@ pub fn hand(s: &mut SceneBuilder, hand: &Hand, cell: f32) {
     clay.mesh(s, cell, |p, _| vec2(p.x, p.y));
 }
 
-/// A lock of hair from a root to a tip, bent by two handles: a tapered, slightly flattened tube.
+/// Builds a lock of hair from a root to a tip, bent by two handles: a tapered, slightly flattened tube.
 pub fn lock(s: &mut SceneBuilder, points: [Vec3; 4], radius: f32, flat: f32, cells: [usize; 2]) {
     let curve = |t: f32| {
         let [a, b, c, d] = points;
@@ -171,7 +170,7 @@ pub fn lock(s: &mut SceneBuilder, points: [Vec3; 4], radius: f32, flat: f32, cel
     s.surface(sides, segments, true, |u, v| {
         let t = v.min(0.999);
         let forward = (curve((t + 0.01).min(1.0)) - curve((t - 0.01).max(0.0))).normalize_or(Vec3::NEG_Y);
-        // Carried from row to row, so that a curl does not turn the tube inside out.
+        // Carried from row to row, so that curls do not turn the tube inside out.
         lift = lift.reject_from_normalized(forward).normalize_or(forward.any_orthonormal_vector());
         let across = forward.cross(lift);
         let r = radius * (1.0 - 0.35 * (1.0 - v).powi(3)) * (1.0 - v * v * v).max(0.0);
@@ -181,13 +180,13 @@ pub fn lock(s: &mut SceneBuilder, points: [Vec3; 4], radius: f32, flat: f32, cel
     });
 }
 
-/// A point on a head's surface: `turn` about Y from +Z towards +X, `rise` above the horizon, radians.
+/// Returns a point on a head's surface: `turn` about Y from +Z towards +X, `rise` above the horizon, in radians.
 pub fn on_head(radii: Vec3, turn: f32, rise: f32, scale: f32) -> Vec3 {
     vec3(turn.sin() * rise.cos(), rise.sin(), turn.cos() * rise.cos()) * radii * scale
         + vec3(0.0, 0.1 * radii.y, -0.06 * radii.z)
 }
 
-/// A shoe with a sole: from the heel's side of the ankle forward along `toe`, on the floor below.
+/// Builds a shoe with a sole: from the heel's side of the ankle forward along `toe`, on the floor below.
 pub fn shoe(s: &mut SceneBuilder, [upper, sole]: [usize; 2], ankle: Vec3, toe: Vec3, size: f32, cell: f32) {
     let floor = ankle.with_y(ankle.y - 0.075 * size);
     let turn = Quat::from_rotation_arc(Vec3::Z, toe.with_y(0.0).normalize_or(Vec3::Z));

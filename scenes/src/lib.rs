@@ -1,9 +1,9 @@
-//! The built-in scenes, generated from a seed: they stand for the paper's eight (section 6) in style and triangle
-//! count.
+//! The built-in scenes, generated from a seed. They replace the paper's eight scenes (section 6), with similar styles
+//! and triangle counts.
 //!
 //! [`load`] takes the name of a built-in scene or the path of a file, and returns the scene. Each built-in scene has a
-//! file; [`mod@build`], [`props`], [`sculpt`], [`figure`], [`paint`] and [`motion`] are their common tools. This crate
-//! must never know how a scene is drawn.
+//! module; [`mod@build`], [`props`], [`sculpt`], [`figure`], [`paint`] and [`motion`] are their common tools. This
+//! crate must never know how a scene is drawn.
 
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -27,32 +27,32 @@ mod street;
 mod talk;
 mod voxel;
 
-/// A scene that is generated, not loaded.
+/// A scene that is generated rather than loaded.
 #[derive(Clone, Copy, Debug)]
 pub struct Builtin {
-    /// Name on the command line.
+    /// The name on the command line.
     pub name: &'static str,
-    /// One line that says what it shows.
+    /// A one-line description.
     pub title: &'static str,
-    /// The paper's scene it stands for.
+    /// The paper's scene that it replaces.
     pub stands_for: &'static str,
-    /// The shading style that it is made for.
+    /// The shading style that the scene is made for.
     pub style: ShadingStyle,
     /// Number of triangles, in thousands, rounded; the exact number depends on the seed.
     pub kilo_triangles: u32,
-    /// Generates all of it but name and style, with an empty builder.
+    /// Generates everything except name and style, with an empty builder.
     generate: fn(seed: u64, builder: SceneBuilder) -> Scene,
 }
 
 impl Builtin {
-    /// The number of triangles to expect, for any seed.
+    /// Returns the expected range of the number of triangles, for any seed.
     pub fn triangles(&self) -> RangeInclusive<usize> {
         let stated = self.kilo_triangles as usize * 1000;
         stated * 9 / 10..=stated * 11 / 10
     }
 }
 
-/// The seed of the scenes as they are shown in documents and tests.
+/// The seed of the scenes in documents and tests.
 pub const DEFAULT_SEED: u64 = 1;
 
 /// All built-in scenes.
@@ -123,11 +123,11 @@ pub const BUILTINS: &[Builtin] = &[
     },
 ];
 
-/// No built-in scene has this name.
+/// The error for a name that no built-in scene has.
 #[derive(Debug, thiserror::Error)]
 #[error("There is no built-in scene \"{name}\"; choose one of {}.", names())]
 pub struct UnknownScene {
-    /// The name that was asked for.
+    /// The requested name.
     pub name: String,
 }
 
@@ -135,15 +135,15 @@ fn names() -> String {
     BUILTINS.iter().map(|b| b.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Generates the built-in scene of this name. Equal seeds give equal scenes.
+/// Generates the built-in scene with this name. Equal seeds give equal scenes.
 ///
 /// # Errors
-/// [`UnknownScene`], which lists the names there are.
+/// [`UnknownScene`], which lists the available names.
 pub fn build(name: &str, seed: u64) -> Result<Scene, UnknownScene> {
     build_with(name, seed, SceneBuilder::new())
 }
 
-/// Generates a scene as [`fn@build`] does, and calls `watch` with its progress.
+/// Like [`fn@build`], but calls `watch` with the progress.
 ///
 /// # Errors
 /// As [`fn@build`].
@@ -166,15 +166,15 @@ fn build_with(name: &str, seed: u64, builder: SceneBuilder) -> Result<Scene, Unk
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The name is neither a built-in scene's nor a file's.
+    /// The name is neither that of a built-in scene nor that of a file.
     #[error("{0} Or give an OBJ, glTF or GLB file.")]
     Unknown(#[from] UnknownScene),
-    /// The file cannot be taken.
+    /// The file cannot be loaded.
     #[error(transparent)]
     File(#[from] SceneError),
 }
 
-/// A built-in scene by name, or a file; in the given style, or in its own.
+/// Loads a built-in scene by name, or a file, in the given style or its own.
 ///
 /// # Errors
 /// [`LoadError`].
@@ -190,7 +190,7 @@ pub fn load(name: &str, seed: u64, style: Option<ShadingStyle>) -> Result<Scene,
     Ok(scene)
 }
 
-/// Refuses the first name that is neither a built-in scene nor a file, before minutes of work end at it.
+/// Checks that every name is a built-in scene's or a file's, before minutes of work fail because of it.
 ///
 /// # Errors
 /// As [`load`].
@@ -361,7 +361,7 @@ mod tests {
         });
     }
 
-    /// Distance in metres from a point to the nearest surface, if that is nearer than half a metre.
+    /// Returns the distance in metres from a point to the nearest surface, or infinity if none is within half a metre.
     fn nearest(model: &Model, point: Vec3) -> f32 {
         triangles(model)
             .map(|t| t.map(|v| v.position))
@@ -379,7 +379,7 @@ mod tests {
                 return;
             }
             let start = scene.at(0.0);
-            // To the bit, so that the picture is that of the still scene.
+            // Bit by bit, so that the picture is the same as that of the still scene.
             assert!(start.model == scene.model && start.lights == scene.lights, "{name}");
             assert!(
                 motion.meshes.iter().all(|mesh| !mesh.vertices.is_empty()),
@@ -429,7 +429,7 @@ mod tests {
         assert!(BUILTINS.iter().all(|b| message.contains(b.name)), "{message}");
     }
 
-    /// Closest point on a triangle by clamping to its face, edges and corners.
+    /// Returns the distance to the closest point on a triangle, clamped to its face, edges and corners.
     fn distance_to_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
         let normal = (b - a).cross(c - a);
         let over = |q: Vec3, r: Vec3| normal.cross(r - q).dot(p - q) >= 0.0;

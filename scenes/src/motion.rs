@@ -1,4 +1,4 @@
-//! The motion of built-in scenes: nodes that turn about joints and come back, and the objects that they carry.
+//! The motion of built-in scenes: nodes that turn or shift and come back, and the objects that they carry.
 
 use std::collections::HashMap;
 
@@ -7,17 +7,17 @@ use glam::{Affine3A, Quat, Vec3};
 use yoro_scene::motion::{Carrier, Influence, MovingLight, MovingMesh, Node, Track};
 use yoro_scene::{Model, Motion, PointLight, Vertex};
 
-/// Keys of a loop.
+/// Keys per loop.
 const KEYS: u32 = 24;
 
-/// The share of a vertex that follows the second of two nodes; positions in metres, in the scene.
+/// Returns the share of a vertex that follows the second of two nodes, from its position in metres in the scene.
 type Share = Box<dyn Fn(Vec3) -> f32>;
 
-/// Collects what moves in one scene. All of it stands at time 0 where the model has it.
+/// Collects what moves in one scene. At time 0 everything is where the model has it.
 #[derive(Default)]
 pub struct Movers {
     motion: Motion,
-    /// By the objects' names.
+    /// What carries objects, by the objects' names.
     carried: HashMap<String, Carried>,
 }
 
@@ -27,8 +27,8 @@ enum Carried {
 }
 
 impl Movers {
-    /// Adds a node that turns about a joint, in `parent` or in the world. `turn` takes the time as a share of the loop;
-    /// it is the identity at 0 and 1.
+    /// Adds a node that turns about a joint, in `parent` or in the world. `turn` takes the time as a share of the loop,
+    /// and must be the identity at 0 and 1.
     pub fn turn(
         &mut self,
         parent: Option<usize>,
@@ -44,19 +44,19 @@ impl Movers {
             ..Node::default()
         });
         let about = self.motion.nodes.len() - 1;
-        // What it carries is where it was, unless the joint turns.
+        // What the node carries stays in place unless the joint turns.
         let fixed = Affine3A::from_translation(-joint);
         self.motion.nodes.push(Node { parent: Some(about), fixed, ..Node::default() });
         about + 1
     }
 
-    /// Adds a node that stands still.
+    /// Adds a node that does not move.
     pub fn still(&mut self) -> usize {
         self.motion.nodes.push(Node::default());
         self.motion.nodes.len() - 1
     }
 
-    /// Adds a node that is moved by metres. `path` takes the time as a share of the loop; it is zero at 0 and 1.
+    /// Adds a node that is translated: `path` maps the share of the loop to metres, with zero at 0 and 1.
     pub fn shift(&mut self, seconds: f32, path: impl Fn(f32) -> Vec3) -> usize {
         let moves = self.track(seconds, |t| path(t).to_array());
         self.motion.nodes.push(Node { moves: Some(moves), ..Node::default() });
@@ -69,7 +69,7 @@ impl Movers {
             self.motion.loops.push(seconds);
             self.motion.loops.len() - 1
         });
-        // Comes back to the bit.
+        // The loop ends exactly where it starts, to the bit.
         let share = |key: u32| (key % KEYS) as f32 / KEYS as f32;
         Track {
             clock,
@@ -79,14 +79,14 @@ impl Movers {
         }
     }
 
-    /// Lets a node carry objects of the scene by their names.
+    /// Lets a node carry the objects with these names.
     pub fn carry(&mut self, node: usize, objects: &[&str]) {
         for name in objects {
             self.carried.insert((*name).into(), Carried::By(node));
         }
     }
 
-    /// Lets an object bend between two nodes: `share` says how much of each vertex follows the second.
+    /// Lets an object bend between two nodes. `share` returns how much a vertex follows the second node.
     pub fn bend(&mut self, nodes: [usize; 2], object: &str, share: impl Fn(Vec3) -> f32 + 'static) {
         self.carried.insert(object.into(), Carried::Between(nodes, Box::new(share)));
     }
@@ -96,14 +96,14 @@ impl Movers {
         self.motion.lights.push(MovingLight { light, node, position: lights[light].position });
     }
 
-    /// Returns the motion, for a finished model whose vertices it sorts: first those that stand still.
+    /// Returns the motion, and sorts the vertices of the finished model: those that do not move come first.
     pub fn finish(mut self, model: &mut Model) -> Motion {
         let names: Vec<String> = {
             let mut names: Vec<_> = self.carried.keys().cloned().collect();
             names.sort();
             names
         };
-        // 0 for vertices that stand still, else one more than the object's index.
+        // 0 for vertices that do not move, otherwise one more than the object's index.
         let mut owners = vec![0; model.vertices.len()];
         for part in &model.parts {
             let Ok(at) = names.binary_search(&part.name) else { continue };

@@ -1,8 +1,8 @@
-//! Procedural pictures for the built-in scenes: tileable surfaces with normal maps, facades, leaves, voxel
-//! blocks, signs, screens and faces. Everything follows from its arguments, seeds included.
+//! Procedural pictures for the built-in scenes: tileable surfaces with normal maps, facades, leaves, voxel blocks,
+//! signs, screens and faces. Everything is determined by the arguments, seeds included.
 //!
-//! Colours are display-referred (sRGB), 0 to 1. Texture coordinates run from (0, 0) at the lower left corner
-//! to (1, 1); every surface repeats without a seam.
+//! Colours are display-referred (sRGB), 0 to 1. Texture coordinates run from (0, 0) at the lower left corner to (1, 1).
+//! Every surface repeats without a seam.
 
 use glam::{UVec2, Vec2, Vec3, Vec4, vec2, vec3};
 use rayon::prelude::*;
@@ -29,32 +29,32 @@ pub struct Facade {
     pub normal: TextureImage,
 }
 
-// Numbers from nothing but their arguments.
+// Pseudo-random numbers, determined by the arguments alone.
 
-/// A well mixed hash (the output permutation of PCG on a linear congruential step).
+/// Returns a well mixed hash (the output permutation of PCG on a linear congruential step).
 pub fn hash(x: u32) -> u32 {
     let state = x.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
     (word >> 22) ^ word
 }
 
-/// Hash of a cell of a grid.
+/// Returns the hash of a grid cell.
 pub fn hash_cell(seed: u32, x: u32, y: u32) -> u32 {
     hash(x.wrapping_add(hash(y.wrapping_add(hash(seed)))))
 }
 
-/// A hash as a number from 0 up to 1.
+/// Converts a hash to a number from 0 up to, but not including, 1.
 pub fn unit(hash: u32) -> f32 {
     (hash >> 8) as f32 / 16_777_216.0
 }
 
-/// 0 below `a`, 1 above `b`, smooth between.
+/// Returns 0 below `a`, 1 above `b`, and smooth values between.
 pub fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
     let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Value noise, 0 to 1, that repeats over the unit square with `cells` cells along each axis.
+/// Returns value noise, 0 to 1, that repeats over the unit square with `cells` cells along each axis.
 pub fn value_noise(seed: u32, cells: UVec2, uv: Vec2) -> f32 {
     let p = (uv - uv.floor()) * cells.as_vec2();
     let cell = p.floor().as_uvec2().min(cells - 1);
@@ -68,7 +68,7 @@ pub fn value_noise(seed: u32, cells: UVec2, uv: Vec2) -> f32 {
     lower + (upper - lower) * f.y
 }
 
-/// Sum of `octaves` octaves of [`value_noise`], each with half the amplitude; about 0 to 1, mean 0.5.
+/// Returns the sum of `octaves` octaves of [`value_noise`], each with half the amplitude; about 0 to 1, mean 0.5.
 pub fn fbm(seed: u32, cells: UVec2, octaves: u32, uv: Vec2) -> f32 {
     let mut sum = 0.0;
     let mut amplitude = 0.5;
@@ -79,7 +79,7 @@ pub fn fbm(seed: u32, cells: UVec2, octaves: u32, uv: Vec2) -> f32 {
     sum / (1.0 - 0.5f32.powi(octaves as i32))
 }
 
-/// The cells around scattered points.
+/// A sample of Worley noise: the cells around scattered points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worley {
     /// Distance to the nearest point, in cells.
@@ -90,7 +90,7 @@ pub struct Worley {
     pub id: u32,
 }
 
-/// Worley noise that repeats over the unit square, one point in each of `cells` cells; `jitter` 0 is a grid.
+/// Returns Worley noise that repeats over the unit square, one point per cell. A `jitter` of 0 gives a grid.
 pub fn worley(seed: u32, cells: UVec2, jitter: f32, uv: Vec2) -> Worley {
     let p = (uv - uv.floor()) * cells.as_vec2();
     let cell = p.floor().as_ivec2();
@@ -113,19 +113,19 @@ pub fn worley(seed: u32, cells: UVec2, jitter: f32, uv: Vec2) -> Worley {
     found
 }
 
-// From functions to pictures.
+// Pictures made from functions.
 
 fn to_bytes(color: Vec4) -> [u8; 4] {
     (color.clamp(Vec4::ZERO, Vec4::ONE) * 255.0 + 0.5).as_u8vec4().into()
 }
 
-/// Texture coordinates of the centre of the pixel with this index, row 0 at the top.
+/// Returns the texture coordinates of the centre of the pixel with this index, row 0 at the top.
 fn pixel_uv(size: [u32; 2], index: usize) -> Vec2 {
     let [x, y] = [index as u32 % size[0], index as u32 / size[0]];
     vec2((x as f32 + 0.5) / size[0] as f32, 1.0 - (y as f32 + 0.5) / size[1] as f32)
 }
 
-/// A picture from a function of the texture coordinates to colour and alpha.
+/// Makes a picture from a function of the texture coordinates that returns colour and alpha.
 pub fn picture(name: &str, size: [u32; 2], color: impl Fn(Vec2) -> Vec4 + Sync) -> TextureImage {
     let mut rgba = vec![0; (size[0] * size[1] * 4) as usize];
     rgba.par_chunks_exact_mut(4).with_min_len(1024).enumerate().for_each(|(i, pixel)| {
@@ -134,8 +134,8 @@ pub fn picture(name: &str, size: [u32; 2], color: impl Fn(Vec2) -> Vec4 + Sync) 
     TextureImage { name: name.into(), size, rgba, srgb: true, nearest: false }
 }
 
-/// A tangent-space normal map (OpenGL convention, linear) from heights, row 0 at the top, that repeat.
-/// `relief` is the height of the value 1 in widths of the picture.
+/// Makes a tangent-space normal map (OpenGL convention, linear) from repeating heights, row 0 at the top. `relief` is
+/// the height of the value 1 in picture widths.
 pub fn normal_map(name: &str, size: [u32; 2], relief: f32, heights: &[f32]) -> TextureImage {
     let [width, height] = size.map(|n| n as usize);
     let mut rgba = vec![0; width * height * 4];
@@ -155,7 +155,7 @@ pub fn normal_map(name: &str, size: [u32; 2], relief: f32, heights: &[f32]) -> T
     TextureImage { name: name.into(), size, rgba, srgb: false, nearest: false }
 }
 
-/// A surface from a function of the texture coordinates to colour and height; see [`normal_map`] for `relief`.
+/// Makes a surface from a function of the texture coordinates to colour and height; for `relief` see [`normal_map`].
 pub fn surface(
     name: &str,
     size: [u32; 2],
@@ -178,7 +178,7 @@ pub fn surface(
     }
 }
 
-/// Returns the brick of a running bond that a point lies in, and the place in it.
+/// The brick of a running bond that contains a point, and the point's place in it.
 struct Brick {
     /// Hash of the brick.
     id: u32,
@@ -206,7 +206,7 @@ fn shade(color: Vec3, amount: f32) -> Vec3 {
     color * (1.0 + amount)
 }
 
-/// A brick wall in running bond; `columns` by `rows` bricks (`rows` even).
+/// Paints a brick wall in running bond, with `columns` by `rows` bricks (`rows` even).
 pub fn bricks(
     name: &str,
     size: u32,
@@ -227,7 +227,7 @@ pub fn bricks(
     })
 }
 
-/// Large hewn blocks; `columns` by `rows` (`rows` even).
+/// Paints large hewn blocks, `columns` by `rows` (`rows` even).
 pub fn stone_blocks(name: &str, size: u32, seed: u32, color: Vec3, [columns, rows]: [u32; 2]) -> Surface {
     surface(name, [size; 2], 0.12 / rows as f32, |uv| {
         let grain = fbm(seed, UVec2::splat(8), 6, uv);
@@ -239,7 +239,7 @@ pub fn stone_blocks(name: &str, size: u32, seed: u32, color: Vec3, [columns, row
     })
 }
 
-/// Rough plaster with faint stains.
+/// Paints rough plaster with faint stains.
 pub fn plaster(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     surface(name, [size; 2], 0.004, |uv| {
         let stain = fbm(seed, UVec2::splat(3), 5, uv);
@@ -248,7 +248,7 @@ pub fn plaster(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     })
 }
 
-/// Poured concrete: stains, pores, four formwork panels with tie holes.
+/// Paints poured concrete: stains, pores, four formwork panels with tie holes.
 pub fn concrete(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     surface(name, [size; 2], 0.012, |uv| {
         let stain = fbm(seed, UVec2::splat(4), 6, uv);
@@ -267,13 +267,13 @@ pub fn concrete(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     })
 }
 
-/// `count` wooden boards that run along u, with butt joints.
+/// Paints `count` wooden boards that run along u, with butt joints.
 pub fn planks(name: &str, size: u32, seed: u32, color: Vec3, count: u32) -> Surface {
     surface(name, [size; 2], 0.06 / count as f32, |uv| {
         let row = (uv.y * count as f32).floor().min(count as f32 - 1.0) as u32;
         let id = hash_cell(seed, row, 3);
         let x = (uv.x + unit(id)).fract();
-        // Each board has its own stretch of grain.
+        // Each board has its own section of the grain.
         let along = vec2(x, (uv.y + unit(hash(id))).fract());
         let wave = fbm(seed, UVec2::new(3, 4 * count), 3, along);
         let fibre = fbm(seed + 5, UVec2::new(8, 32 * count), 3, along);
@@ -286,7 +286,7 @@ pub fn planks(name: &str, size: u32, seed: u32, color: Vec3, count: u32) -> Surf
     })
 }
 
-/// Square tiles of two colours in a checkerboard, `count` a side (even), with joints.
+/// Paints square tiles of two colours in a checkerboard, `count` per side (even), with joints.
 pub fn tiles(name: &str, size: u32, seed: u32, colors: [Vec3; 2], count: u32) -> Surface {
     surface(name, [size; 2], 0.03 / count as f32, |uv| {
         let p = uv * count as f32;
@@ -302,7 +302,7 @@ pub fn tiles(name: &str, size: u32, seed: u32, colors: [Vec3; 2], count: u32) ->
     })
 }
 
-/// Polished marble with veins; no joints.
+/// Paints polished marble with veins, without joints.
 pub fn marble(name: &str, size: u32, seed: u32, color: Vec3, vein: Vec3) -> Surface {
     surface(name, [size; 2], 0.002, |uv| {
         let warp = vec2(fbm(seed, UVec2::splat(3), 4, uv), fbm(seed + 11, UVec2::splat(3), 4, uv)) - 0.5;
@@ -314,7 +314,7 @@ pub fn marble(name: &str, size: u32, seed: u32, color: Vec3, vein: Vec3) -> Surf
     })
 }
 
-/// Plain weave with `threads` threads a side (even).
+/// Paints plain weave with `threads` threads per side (even).
 pub fn fabric(name: &str, size: u32, seed: u32, color: Vec3, threads: u32) -> Surface {
     surface(name, [size; 2], 0.25 / threads as f32, |uv| {
         let p = uv * threads as f32;
@@ -329,7 +329,7 @@ pub fn fabric(name: &str, size: u32, seed: u32, color: Vec3, threads: u32) -> Su
     })
 }
 
-/// Damask: a two-tone ornament on a fine weave, for curtains, carpets and upholstery; `count` motifs a side.
+/// Paints damask, a two-tone ornament on a fine weave, for curtains, carpets and upholstery; `count` motifs per side.
 pub fn damask(name: &str, size: u32, seed: u32, color: Vec3, ornament: Vec3, count: u32) -> Surface {
     surface(name, [size; 2], 0.02 / count as f32, |uv| {
         let motif = |offset: f32| {
@@ -345,7 +345,7 @@ pub fn damask(name: &str, size: u32, seed: u32, color: Vec3, ornament: Vec3, cou
     })
 }
 
-/// Riveted metal panels, `columns` by `rows`, scratched and worn at the edges.
+/// Paints riveted metal panels, `columns` by `rows`, scratched and worn at the edges.
 pub fn metal_panels(name: &str, size: u32, seed: u32, color: Vec3, [columns, rows]: [u32; 2]) -> Surface {
     surface(name, [size; 2], 0.03 / rows.max(columns) as f32, |uv| {
         let p = uv * vec2(columns as f32, rows as f32);
@@ -365,7 +365,7 @@ pub fn metal_panels(name: &str, size: u32, seed: u32, color: Vec3, [columns, row
     })
 }
 
-/// Grass seen from above.
+/// Paints grass seen from above.
 pub fn grass(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     surface(name, [size; 2], 0.02, |uv| {
         let patch = fbm(seed, UVec2::splat(4), 4, uv);
@@ -376,7 +376,7 @@ pub fn grass(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     })
 }
 
-/// Soil with pebbles.
+/// Paints soil with pebbles.
 pub fn soil(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     surface(name, [size; 2], 0.03, |uv| {
         let clod = fbm(seed, UVec2::splat(8), 6, uv);
@@ -387,7 +387,7 @@ pub fn soil(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     })
 }
 
-/// Bark that runs along v.
+/// Paints bark that runs along v.
 pub fn bark(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     surface(name, [size; 2], 0.05, |uv| {
         let warp = (fbm(seed, UVec2::new(6, 3), 4, uv) - 0.5) * 0.2;
@@ -397,7 +397,7 @@ pub fn bark(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     })
 }
 
-/// Asphalt: dark grit with worn patches.
+/// Paints asphalt: dark grit with worn patches.
 pub fn asphalt(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     surface(name, [size; 2], 0.008, |uv| {
         let worn = fbm(seed, UVec2::splat(4), 4, uv);
@@ -407,7 +407,7 @@ pub fn asphalt(name: &str, size: u32, seed: u32, color: Vec3) -> Surface {
     })
 }
 
-/// Overlapping rounded roof tiles, `columns` by `rows` (`rows` even); down is -v.
+/// Paints overlapping rounded roof tiles, `columns` by `rows` (`rows` even); down is -v.
 pub fn roof_tiles(name: &str, size: u32, seed: u32, color: Vec3, [columns, rows]: [u32; 2]) -> Surface {
     surface(name, [size; 2], 0.25 / rows as f32, |uv| {
         let tile = brick(seed, columns, rows, 0.5, uv);
@@ -421,7 +421,7 @@ pub fn roof_tiles(name: &str, size: u32, seed: u32, color: Vec3, [columns, rows]
     })
 }
 
-/// The grid of a prototype level: one metre to the picture, a strong line around it, fine lines every
+/// Paints the grid of a prototype level: one metre per picture, a strong line around it, fine lines every
 /// `1 / divisions`, a cross in the middle and a small label; unfiltered colours, two tones.
 pub fn prototype_grid(
     name: &str,
@@ -465,7 +465,7 @@ pub fn prototype_grid(
     canvas.into_texture(name)
 }
 
-/// A wall with `columns` by `floors` windows; a share of them is lit (0 to 1). The picture repeats.
+/// Paints a wall with `columns` by `floors` windows, of which a share (0 to 1) is lit. The picture repeats.
 pub fn facade(
     name: &str,
     size: u32,
@@ -486,7 +486,7 @@ pub fn facade(
     let lit = |id: u32| unit(hash(id ^ 0x5bd1)) < lit_share;
     let lamp =
         |id: u32| vec3(1.0, 0.82, 0.52).lerp(vec3(0.75, 0.88, 1.0), smoothstep(0.6, 0.9, unit(hash(id + 1))));
-    // Blinds, furniture against the light: enough that lit rooms differ.
+    // Blinds, and furniture against the light: enough to make lit rooms differ.
     let room = |id: u32, local: Vec2| {
         let blind = local.y > 0.85 - 0.6 * unit(hash(id + 2)) * (unit(hash(id + 3)) > 0.5) as u32 as f32;
         let shelf = local.y < 0.3 + 0.15 * unit(hash_cell(id, (local.x * 9.0) as u32, 1));
@@ -532,10 +532,10 @@ pub fn facade(
     Facade { color: painted.color, emissive, normal: painted.normal }
 }
 
-/// A twig with leaves on a transparent ground, stem at the bottom centre; for alpha-tested foliage cards.
+/// Paints a twig with leaves on a transparent ground, stem at the bottom centre, for alpha-tested foliage cards.
 pub fn leaf_card(name: &str, size: u32, seed: u32, color: Vec3) -> TextureImage {
     let s = size as f32;
-    // The ground has the leaf's colour, so filtered edges do not darken.
+    // The ground has the leaf's colour, so that filtered edges do not darken.
     let mut canvas = Canvas::new([size; 2], (color * 0.8).extend(0.0));
     let twig = vec3(0.33, 0.25, 0.16).extend(1.0);
     canvas.line(vec2(0.5, 1.0) * s, vec2(0.5, 0.12) * s, s * 0.018, twig);
@@ -565,7 +565,7 @@ pub enum Block {
     GrassSide,
     /// Earth.
     Dirt,
-    /// Grown rock.
+    /// Natural rock.
     Stone,
     /// Rock of another layer.
     DarkStone,
@@ -603,7 +603,7 @@ pub enum Block {
     Lantern,
 }
 
-/// A voxel's face, 16 by 16 texels, unfiltered. One picture a block, so that mip levels do not bleed.
+/// Paints a voxel's face, 16 by 16 texels, unfiltered. Each block has its own picture, so that mip levels do not bleed.
 pub fn voxel(name: &str, seed: u32, block: Block) -> TextureImage {
     const N: u32 = 16;
     let noise = |x: u32, y: u32| unit(hash_cell(seed, x, y)) - 0.5;
@@ -685,7 +685,7 @@ pub fn voxel(name: &str, seed: u32, block: Block) -> TextureImage {
     image
 }
 
-/// Plants that stand on voxels as crossed cards.
+/// Plants on voxels, made of crossed cards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Plant {
     /// Blades of grass.
@@ -696,11 +696,11 @@ pub enum Plant {
     Buttercup,
     /// Fern.
     Fern,
-    /// Leaves that hang down a wall; repeats upwards.
+    /// Leaves that hang down a wall; the picture repeats upwards.
     Vine,
 }
 
-/// A voxel plant, 16 by 16 texels, unfiltered, alpha 0 or 1.
+/// Paints a voxel plant, 16 by 16 texels, unfiltered, alpha 0 or 1.
 pub fn voxel_plant(name: &str, seed: u32, plant: Plant) -> TextureImage {
     const N: u32 = 16;
     let green = match plant {
@@ -747,7 +747,7 @@ pub fn voxel_plant(name: &str, seed: u32, plant: Plant) -> TextureImage {
     image
 }
 
-/// Text in the middle of a board with a frame.
+/// Paints text in the middle of a board with a frame.
 pub fn sign(name: &str, size: [u32; 2], text: &str, ink: Vec3, ground: Vec3) -> TextureImage {
     let extent = vec2(size[0] as f32, size[1] as f32);
     let mut canvas = Canvas::new(size, ground.extend(1.0));
@@ -760,7 +760,7 @@ pub fn sign(name: &str, size: [u32; 2], text: &str, ink: Vec3, ground: Vec3) -> 
     canvas.into_texture(name)
 }
 
-/// A computer's or stage screen: a title bar, a chart, lines of text, bars; glows when used as emissive map.
+/// Paints the screen of a computer or stage: a title bar, a chart, lines of text, bars. Meant as an emissive map too.
 pub fn screen(name: &str, size: [u32; 2], seed: u32, accent: Vec3, title: &str) -> TextureImage {
     let e = vec2(size[0] as f32, size[1] as f32);
     let mut canvas = Canvas::new(size, (accent * 0.06 + vec3(0.02, 0.03, 0.05)).extend(1.0));
@@ -791,7 +791,7 @@ pub fn screen(name: &str, size: [u32; 2], seed: u32, accent: Vec3, title: &str) 
     canvas.into_texture(name)
 }
 
-/// The looks of a painted face.
+/// The features of a painted face.
 #[derive(Clone, Copy, Debug)]
 pub struct Face {
     /// Skin.
@@ -802,7 +802,7 @@ pub struct Face {
     pub brow: Vec3,
     /// Lips.
     pub lips: Vec3,
-    /// Centre of the right eye in the picture's left half, 0 to 1 from the lower left; the other one mirrors it.
+    /// Centre of the right eye, in the picture's left half, 0 to 1 from the lower left; the other eye mirrors it.
     pub eye: Vec2,
     /// Half extents of an eye in widths of the picture.
     pub eye_radii: Vec2,
@@ -816,7 +816,7 @@ pub struct Face {
     pub blush: f32,
 }
 
-/// A face from the front, for a head mapped by projection along its axis; skin reaches the borders.
+/// Paints a face from the front, for a head mapped by projection along its axis. Skin reaches the borders.
 pub fn face(name: &str, size: u32, face: &Face) -> TextureImage {
     let s = size as f32;
     let mut canvas = Canvas::new([size; 2], face.skin.extend(1.0));
@@ -861,7 +861,7 @@ pub fn face(name: &str, size: u32, face: &Face) -> TextureImage {
         canvas.ellipse(eye, iris * 0.42, vec3(0.04, 0.03, 0.06).extend(1.0));
         canvas.ellipse(eye + vec2(-0.35 * iris.x, -0.42 * iris.y), iris * 0.28, Vec4::ONE);
         canvas.ellipse(eye + vec2(0.36 * iris.x, 0.42 * iris.y), iris * 0.14, Vec4::ONE);
-        // The upper lid: a thick arc that ends in a lash; the lower one is thin.
+        // The upper lid is a thick arc that ends in a lash; the lower one is thin.
         let steps = 20;
         for i in 0..steps {
             let [a, b] = [i, i + 1].map(|i| {
@@ -926,7 +926,7 @@ pub fn face(name: &str, size: u32, face: &Face) -> TextureImage {
     canvas.into_texture(name)
 }
 
-/// The spines of books side by side on one board, all around the unit square in u; no gap, titles as bars.
+/// Paints the spines of books on one board, without gaps, all around the unit square in u. Titles are bars.
 pub fn book_spines(name: &str, size: [u32; 2], seed: u32, count: u32) -> TextureImage {
     let palette = [
         vec3(0.55, 0.16, 0.14),
@@ -954,22 +954,22 @@ pub fn book_spines(name: &str, size: [u32; 2], seed: u32, count: u32) -> Texture
     })
 }
 
-// A canvas for what is drawn rather than grown.
+// A canvas for pictures that are drawn shape by shape.
 
-/// A picture that is drawn shape by shape. Positions are pixels from the upper left corner, y down;
-/// colours carry their opacity in w.
+/// A picture that is drawn shape by shape. Positions are in pixels from the upper left corner, y down; colours have
+/// their opacity in w.
 pub struct Canvas {
     size: [u32; 2],
     pixels: Vec<Vec4>,
 }
 
 impl Canvas {
-    /// A canvas of one colour.
+    /// Creates a canvas of one colour.
     pub fn new(size: [u32; 2], color: Vec4) -> Canvas {
         Canvas { size, pixels: vec![color; (size[0] * size[1]) as usize] }
     }
 
-    /// Paints where the signed distance (pixels) is negative, with an anti-aliased edge, inside a box.
+    /// Paints where the signed distance in pixels is negative, with an anti-aliased edge, within a box.
     fn fill(&mut self, min: Vec2, max: Vec2, color: Vec4, distance: impl Fn(Vec2) -> f32) {
         let limit = vec2(self.size[0] as f32, self.size[1] as f32);
         let [min, max] = [(min - 1.0).clamp(Vec2::ZERO, limit), (max + 1.0).clamp(Vec2::ZERO, limit)];
@@ -985,12 +985,12 @@ impl Canvas {
         }
     }
 
-    /// A rectangle.
+    /// Draws a rectangle.
     pub fn rect(&mut self, min: Vec2, max: Vec2, color: Vec4) {
         self.rounded(min, max, 0.0, color);
     }
 
-    /// A rectangle with rounded corners.
+    /// Draws a rectangle with rounded corners.
     pub fn rounded(&mut self, min: Vec2, max: Vec2, radius: f32, color: Vec4) {
         let center = (min + max) * 0.5;
         let half = (max - min) * 0.5 - radius;
@@ -1000,19 +1000,19 @@ impl Canvas {
         });
     }
 
-    /// An axis-aligned ellipse.
+    /// Draws an axis-aligned ellipse.
     pub fn ellipse(&mut self, center: Vec2, radii: Vec2, color: Vec4) {
         self.fill(center - radii, center + radii, color, |p| ellipse_distance(p - center, radii));
     }
 
-    /// The part of an ellipse inside another one, given as centre and radii.
+    /// Draws the part of an ellipse inside another one, given by centre and radii.
     fn ellipse_within(&mut self, center: Vec2, radii: Vec2, color: Vec4, clip: (Vec2, Vec2)) {
         self.fill(center - radii, center + radii, color, |p| {
             ellipse_distance(p - center, radii).max(ellipse_distance(p - clip.0, clip.1))
         });
     }
 
-    /// A straight line with round ends.
+    /// Draws a straight line with round ends.
     pub fn line(&mut self, a: Vec2, b: Vec2, width: f32, color: Vec4) {
         let r = Vec2::splat(width * 0.5);
         self.fill(a.min(b) - r, a.max(b) + r, color, |p| {
@@ -1021,7 +1021,7 @@ impl Canvas {
         });
     }
 
-    /// A pointed leaf from root to tip with half its width.
+    /// Draws a pointed leaf from root to tip.
     pub fn leaf(&mut self, root: Vec2, tip: Vec2, half_width: f32, color: Vec4) {
         let length = root.distance(tip);
         let axis = (tip - root) / length.max(1e-3);
@@ -1035,8 +1035,8 @@ impl Canvas {
         });
     }
 
-    /// One line of text, `height` pixels tall, with its upper left corner at `corner`. Letters without a
-    /// glyph are left blank; lower case is drawn as upper case.
+    /// Draws one line of text, `height` pixels tall, with its upper left corner at `corner`. Letters without a glyph
+    /// are left blank; lower case is drawn as upper case.
     pub fn text(&mut self, corner: Vec2, height: f32, text: &str, color: Vec4) {
         let unit = height / 7.0;
         for (i, letter) in text.chars().enumerate() {
@@ -1053,27 +1053,27 @@ impl Canvas {
         }
     }
 
-    /// The finished picture, sRGB.
+    /// Returns the finished picture, sRGB.
     pub fn into_texture(self, name: &str) -> TextureImage {
         let rgba = self.pixels.into_iter().flat_map(to_bytes).collect();
         TextureImage { name: name.into(), size: self.size, rgba, srgb: true, nearest: false }
     }
 }
 
-/// Signed distance to an ellipse about the origin; exact only on the outline, where it matters.
+/// Returns the signed distance to an ellipse about the origin. It is exact only on the outline, where it matters.
 fn ellipse_distance(p: Vec2, radii: Vec2) -> f32 {
     let scaled = (p / radii).length();
     let gradient = (p / (radii * radii)).length() / scaled.max(1e-4);
     (scaled - 1.0) / gradient.max(1e-4)
 }
 
-/// Width in pixels of a line of text `height` pixels tall.
+/// Returns the width in pixels of a line of text `height` pixels tall.
 pub fn text_width(height: f32, text: &str) -> f32 {
     (text.chars().count() as f32 * 6.0 - 1.0).max(0.0) * height / 7.0
 }
 
-/// The strokes of a letter: pairs of digits are points on a grid 4 wide and 6 high from its lower left
-/// corner, a blank lifts the pen.
+/// Returns the strokes of a letter: pairs of digits are points on a grid 4 wide and 6 high from its lower left corner,
+/// and a blank lifts the pen.
 pub fn glyph(letter: char) -> &'static str {
     match letter {
         'A' => "0004264440 0242",
@@ -1181,7 +1181,7 @@ mod tests {
         }
     }
 
-    /// The step across the border is no larger than the largest step inside.
+    /// The step across the border must be no larger than the largest step inside.
     #[test]
     fn surfaces_have_no_seam() {
         for surface in surfaces() {
@@ -1208,7 +1208,7 @@ mod tests {
 
     #[test]
     fn normals_are_unit_vectors_that_lean_away_from_a_ridge() {
-        // A ridge along u: v rises up to the middle, then falls.
+        // A ridge along u: the height rises with v up to the middle, then falls.
         let size = [32, 32];
         let heights: Vec<f32> =
             (0..32 * 32).map(|i| (pixel_uv(size, i).y * std::f32::consts::PI).sin()).collect();
@@ -1221,7 +1221,7 @@ mod tests {
         for y in 0..32 {
             assert!((at(3, y).length() - 1.0).abs() < 0.02);
         }
-        // Row 0 is the top: there the ridge falls with growing v, so the normal leans up.
+        // Row 0 is the top, where the ridge falls with increasing v, so the normal leans up.
         assert!(at(3, 4).y > 0.1, "{}", at(3, 4));
         assert!(at(3, 27).y < -0.1, "{}", at(3, 27));
         assert!(at(3, 16).x.abs() < 0.01);

@@ -1,4 +1,4 @@
-//! Things in more than one built-in scene: materials, plants, lettering, strings of bulbs, crockery.
+//! Objects used by several built-in scenes: materials, plants, lettering, strings of bulbs, crockery.
 
 use std::f32::consts::{PI, TAU};
 
@@ -9,9 +9,9 @@ use super::build::{SceneBuilder, around, hanging};
 use super::paint;
 use yoro_scene::{Alpha, Material, TextureImage};
 
-/// Declares the materials of a scene, and the function that makes them: a struct with a field for each material. The
-/// statements in the function's body come first, then the fields in their order. A field is a `usize`, the number of a
-/// material in the [`SceneBuilder`], unless it states another type.
+/// Declares the materials of a scene, as a struct with a field for each, and the function that makes them. The function
+/// runs the statements in its body first, then makes the fields in order. A field is a `usize`, the index of a material
+/// in the [`SceneBuilder`], unless it has another type.
 macro_rules! palette {
     (
         fn $make:ident($($argument:ident: $argument_type:ty),*) -> $palette:ident { $($before:tt)* }
@@ -31,7 +31,7 @@ macro_rules! palette {
 }
 pub(crate) use palette;
 
-/// A painted surface as a material; `tile_size` is the edge in metres of what the picture shows.
+/// Adds a material with a painted surface. `tile_size` is the edge length in metres that the picture covers.
 pub fn textured(b: &mut SceneBuilder, surface: paint::Surface, tile_size: f32, roughness: f32) -> usize {
     let name = surface.color.name.clone();
     let diffuse_map = Some(b.texture(surface.color));
@@ -43,24 +43,24 @@ pub fn textured(b: &mut SceneBuilder, surface: paint::Surface, tile_size: f32, r
     )
 }
 
-/// A material of one colour.
+/// Adds a material of one colour.
 pub fn plain(b: &mut SceneBuilder, name: &str, diffuse: Vec3, roughness: f32) -> usize {
     b.material(Material { name: name.into(), diffuse, roughness, ..Material::default() }, 1.0)
 }
 
-/// A bare metal of one colour.
+/// Adds a bare metal of one colour.
 pub fn metal(b: &mut SceneBuilder, name: &str, color: Vec3, roughness: f32) -> usize {
     let (diffuse, specular) = (color * 0.5, color);
     b.material(Material { name: name.into(), diffuse, specular, roughness, ..Material::default() }, 1.0)
 }
 
-/// A material that shines by itself.
+/// Adds a material that emits light.
 pub fn glowing(b: &mut SceneBuilder, name: &str, color: Vec3, strength: f32) -> usize {
     let (diffuse, emissive) = (color * 0.5, color * strength);
     b.material(Material { name: name.into(), diffuse, emissive, ..Material::default() }, 1.0)
 }
 
-/// Clear glass for the forward pass.
+/// Adds clear, blended glass.
 pub fn glass(b: &mut SceneBuilder, name: &str, tint: Vec3, opacity: f32) -> usize {
     let alpha = Alpha::Blend(opacity);
     let material = Material {
@@ -75,7 +75,7 @@ pub fn glass(b: &mut SceneBuilder, name: &str, tint: Vec3, opacity: f32) -> usiz
     b.material(material, 1.0)
 }
 
-/// A picture as a material; with a `glow` above 0 it is its own lamp.
+/// Adds a material with a picture, which emits light if `glow` is above 0.
 pub fn pictured(b: &mut SceneBuilder, image: TextureImage, roughness: f32, glow: f32) -> usize {
     let name = image.name.clone();
     let map = b.texture(image);
@@ -91,7 +91,7 @@ pub fn pictured(b: &mut SceneBuilder, image: TextureImage, roughness: f32, glow:
     b.material(material, 1.0)
 }
 
-/// Leaf cards cut out of a painted twig.
+/// Adds a material of leaf cards, cut out of a painted twig.
 pub fn foliage(b: &mut SceneBuilder, name: &str, seed: u64, color: Vec3) -> usize {
     let map = b.texture(paint::leaf_card(name, 256, seed as u32, color));
     let material = Material {
@@ -107,26 +107,26 @@ pub fn foliage(b: &mut SceneBuilder, name: &str, seed: u64, color: Vec3) -> usiz
     b.material(material, 1.0)
 }
 
-/// The measures of a [`tree`].
+/// The dimensions and materials of a [`tree`].
 #[derive(Clone, Copy, Debug)]
 pub struct Tree {
-    /// Height in metres of the top of the crown.
+    /// Height of the top of the crown in metres.
     pub height: f32,
     /// Height in metres at which the trunk divides.
     pub trunk: f32,
-    /// Radius in metres of the crown.
+    /// Radius of the crown in metres.
     pub spread: f32,
     /// Number of leaf cards.
     pub cards: usize,
-    /// Half the edge of a leaf card in metres.
+    /// Half the edge length of a leaf card in metres.
     pub card_size: f32,
-    /// Material of trunk and branches.
+    /// Material of the trunk and branches.
     pub bark: usize,
     /// Cut-out material of the leaves.
     pub leaves: usize,
 }
 
-/// A broad-leaved tree that stands on the origin: three orders of branches, leaf cards around the twigs.
+/// Builds a broad-leaved tree on the origin: three orders of branches, with leaf cards around the twigs.
 pub fn tree(b: &mut SceneBuilder, tree: &Tree, rng: &mut impl Rng) {
     b.with_material(tree.bark);
     let base_radius = tree.height * 0.022;
@@ -184,7 +184,7 @@ fn inside_crown(p: Vec3, center: Vec3, radii: Vec3) -> Vec3 {
     center + relative * radii / relative.length().max(1.0)
 }
 
-/// A unit vector, uniform over the sphere.
+/// Returns a random unit vector, uniform over the sphere.
 pub fn random_direction(rng: &mut impl Rng) -> Vec3 {
     let y = around(rng, 0.0, 1.0);
     let (sin, cos) = (rng.random::<f32>() * TAU).sin_cos();
@@ -192,7 +192,7 @@ pub fn random_direction(rng: &mut impl Rng) -> Vec3 {
     vec3(ring * cos, y, ring * sin)
 }
 
-/// One leaf card that hangs in any direction and is lit as if it faced `outward`.
+/// Builds one leaf card in a random direction that is lit as if it faced `outward`.
 pub fn leaf_card(b: &mut SceneBuilder, center: Vec3, outward: Vec3, size: f32, rng: &mut impl Rng) {
     let facing = (outward + random_direction(rng) * 0.9).normalize_or(Vec3::Y);
     let right = facing.any_orthonormal_vector();
@@ -202,7 +202,7 @@ pub fn leaf_card(b: &mut SceneBuilder, center: Vec3, outward: Vec3, size: f32, r
     b.card(center, right * size, up * size, normal);
 }
 
-/// A clipped hedge: leaf cards over the box between two corners, dense enough to hide the inside.
+/// Builds a clipped hedge: leaf cards over the box between two corners, dense enough to hide the inside.
 pub fn hedge(b: &mut SceneBuilder, min: Vec3, max: Vec3, leaves: usize, cards: usize, rng: &mut impl Rng) {
     b.with_material(leaves);
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
@@ -220,8 +220,8 @@ pub fn hedge(b: &mut SceneBuilder, min: Vec3, max: Vec3, leaves: usize, cards: u
     }
 }
 
-/// Long bent leaves that grow from the origin: palms, grasses, lilies. Solid strips, so `leaf` should be
-/// double-sided.
+/// Builds long bent leaves that grow from the origin: palms, grasses, lilies. They are solid strips, so `leaf` should
+/// be double-sided.
 pub fn fronds(b: &mut SceneBuilder, leaf: usize, count: usize, length: f32, width: f32, rng: &mut impl Rng) {
     b.with_material(leaf);
     for i in 0..count {
@@ -242,7 +242,7 @@ pub fn fronds(b: &mut SceneBuilder, leaf: usize, count: usize, length: f32, widt
     }
 }
 
-/// A plant with broad leaves on stems, around the origin: leaf cards in whorls.
+/// Builds a plant with broad leaves on stems around the origin: leaf cards in whorls.
 pub fn bush(
     b: &mut SceneBuilder,
     [stem, leaves]: [usize; 2],
@@ -270,7 +270,7 @@ pub fn bush(
     }
 }
 
-/// A wire from `a` to `b` with a lamp bulb every `spacing` metres. Returns where the bulbs are.
+/// Builds a wire from `a` to `b` with a lamp bulb every `spacing` metres. Returns the positions of the bulbs.
 pub fn bulb_string(
     b: &mut SceneBuilder,
     [wire, socket, bulb]: [usize; 3],
@@ -291,7 +291,7 @@ pub fn bulb_string(
     bulbs
 }
 
-/// A cup on a saucer, standing on the origin.
+/// Builds a cup on a saucer, on the origin.
 pub fn cup(b: &mut SceneBuilder, china: usize, coffee: usize) {
     b.with_material(china);
     let saucer = [
@@ -327,8 +327,8 @@ pub fn cup(b: &mut SceneBuilder, china: usize, coffee: usize) {
     b.with_material(coffee).lathe(&[(0.038, 0.06), (0.0, 0.06)], 28);
 }
 
-/// Letters drawn as round tubes in the XY plane, from the origin to the right, `height` metres tall.
-/// Letters without a glyph in [`paint::glyph`] are left blank.
+/// Draws letters as round tubes in the XY plane, from the origin to the right, `height` metres tall. Letters without a
+/// glyph in [`paint::glyph`] are left blank.
 pub fn tube_text(b: &mut SceneBuilder, text: &str, height: f32, radius: f32) {
     let unit = height / 6.0;
     let mut x = 0.0;
@@ -351,12 +351,12 @@ fn letter_width(letter: char) -> f32 {
     if letter == ' ' { 3.0 } else { 5.6 }
 }
 
-/// The width in metres of [`tube_text`].
+/// Returns the width of [`tube_text`] in metres.
 pub fn tube_text_width(text: &str, height: f32) -> f32 {
     (text.chars().map(letter_width).sum::<f32>() - 1.6) * height / 6.0
 }
 
-/// The pieces of a polyline between acute corners: a tube cannot be bent so far.
+/// Splits a polyline at acute corners, where a tube cannot bend far enough.
 fn split_at_points(corners: &[Vec3]) -> Vec<&[Vec3]> {
     let mut pieces = Vec::new();
     let mut start = 0;
@@ -370,7 +370,7 @@ fn split_at_points(corners: &[Vec3]) -> Vec<&[Vec3]> {
     pieces
 }
 
-/// A polyline with its corners cut into arcs, as glass tubes are bent.
+/// Returns a polyline with its corners rounded to arcs, as glass tubes are bent.
 fn rounded(corners: &[Vec3], radius: f32) -> Vec<Vec3> {
     let mut path = vec![corners[0]];
     for k in 1..corners.len() - 1 {

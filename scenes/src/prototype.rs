@@ -1,5 +1,5 @@
-//! A game level in its prototype stage: grid textures, ramps, stairs, platforms, dummies. Stands for the
-//! paper's Prototype.
+//! A game level at the prototype stage: grid textures, ramps, stairs, platforms, dummies. In place of the paper's
+//! Prototype.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -176,7 +176,7 @@ fn barrel(s: &mut SceneBuilder, material: usize) {
     s.with_material(material).lathe(&profile, 10);
 }
 
-/// A capsule with a nose, as tall as a person.
+/// Builds a capsule with a nose, as tall as a person.
 fn dummy(s: &mut SceneBuilder, p: &Palette, band: usize) {
     let r = 0.3;
     let dome = |i: i32, top: bool| {
@@ -192,7 +192,7 @@ fn dummy(s: &mut SceneBuilder, p: &Palette, band: usize) {
     s.with_material(p.dark).beveled_cuboid(vec3(-0.16, 1.5, 0.18), vec3(0.16, 1.62, 0.36), 0.03);
 }
 
-/// A panel of wire mesh on posts along +x.
+/// Builds a panel of wire mesh on posts along +x.
 fn wire_fence(s: &mut SceneBuilder, p: &Palette, length: f32, height: f32) {
     s.with_material(p.dark);
     let posts = (length / 2.0).round().max(1.0) as usize;
@@ -492,7 +492,7 @@ fn furniture(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
         let color = [p.red, p.yellow, p.green, p.orange][i];
         s.with_material(color);
         for side in [1.0, -1.0] {
-            // A flag has two faces, so that it needs no material of its own.
+            // A flag has two faces, so it needs no double-sided material.
             s.surface(6, 2, false, |u, v| {
                 let u = if side > 0.0 { u } else { 1.0 - u };
                 let z = -21.0 + 0.12 * (u * 6.0).sin() * u + 0.004 * side;
@@ -548,7 +548,7 @@ fn furniture(s: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// The scene; see [`super::BUILTINS`].
+/// Generates the scene; see [`super::BUILTINS`].
 pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "prototype");
     s.set_smooth(false);

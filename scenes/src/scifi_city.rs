@@ -1,7 +1,7 @@
-//! A street between towers at night, all neon; stands for SciFiCity.
+//! A street between towers at night, all neon, in place of SciFiCity.
 //!
-//! The street runs along -z with its middle at x = 0; facades stand at x = -9 and x = 9. A monorail hangs over
-//! the street, bridges cross it, vehicles fly above.
+//! The street runs along -z with its middle at x = 0; facades are at x = -9 and x = 9. A monorail hangs over the
+//! street, bridges cross it, and vehicles fly above.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -52,7 +52,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
     Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
-/// From the middle of the street to the pavement, past the noodle bar and along the railing.
+/// Returns a walk from the middle of the street to the pavement, past the noodle bar and along the railing.
 fn walk() -> Vec<Viewpoint> {
     viewpoints(&[
         ([-0.6, 1.65, 9.0], [1.5, 3.8, -12.0]),
@@ -99,7 +99,7 @@ palette! {
             });
             id
         });
-        // Rain stands in the hollows of the asphalt: smooth and dark there, grainy between.
+        // Rain fills the hollows of the asphalt, which are smooth and dark; between them it is grainy.
         let wet = paint::surface("wet-asphalt", [1024, 1024], 0.0012, |uv| {
             let grain = paint::fbm(s + 3, glam::UVec2::splat(128), 2, uv);
             let hollow = paint::fbm(s + 13, glam::UVec2::splat(4), 4, uv);
@@ -260,7 +260,7 @@ fn towers(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
             };
             b.within(frame, |b| tower(b, p, number, [width, height], z, rng));
             number += 1;
-            // Now and then a lane between two towers.
+            // Sometimes there is a lane between two towers.
             z -= width + if rng.random_bool(0.35) { 2.4 } else { 0.0 };
         }
     }
@@ -276,7 +276,7 @@ fn towers(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// A far tower: stacked boxes with lit windows, edges of light, an aerial.
+/// Builds a distant tower: stacked boxes with lit windows, edges of light, an aerial.
 fn skyline_tower(b: &mut SceneBuilder, p: &Palette, at: Vec3, size: Vec3, rng: &mut Pcg32) {
     let mut y = 0.0;
     let mut half = vec2(size.x, size.z) * 0.5;
@@ -310,7 +310,7 @@ fn skyline_tower(b: &mut SceneBuilder, p: &Palette, at: Vec3, size: Vec3, rng: &
     b.with_material(p.red_light).ellipsoid(mast + Vec3::Y * 13.1, Vec3::splat(0.35), 6, 10);
 }
 
-/// A tower at the street, seen from it: x to the right, y up, facade at z = 0.
+/// Builds a tower at the street, in a frame seen from it: x to the right, y up, facade at z = 0.
 fn tower(
     b: &mut SceneBuilder,
     p: &Palette,
@@ -327,7 +327,7 @@ fn tower(
         vec3(width, DETAILED, -0.25),
         BoxFaces::LEFT.and(BoxFaces::RIGHT).and(BoxFaces::FRONT).and(BoxFaces::BACK),
     );
-    // Far from the walk, panels may be larger.
+    // Panels may be larger far from the walk.
     let coarse = !(-48.0..=16.0).contains(&near);
     let mut y = base;
     let mut floor = 0;
@@ -520,7 +520,7 @@ fn air_conditioner(b: &mut SceneBuilder, p: &Palette, sides: usize) {
     );
 }
 
-/// A pipe up a wall that bends into it, with flanges and brackets.
+/// Builds a pipe up a wall that bends into it, with flanges and brackets.
 fn pipe(b: &mut SceneBuilder, p: &Palette, foot: Vec3, height: f32, rng: &mut Pcg32) {
     let radius = [0.05, 0.08, 0.12][rng.random_range(0..3)];
     let jog = around(rng, 0.7, 0.25) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
@@ -554,7 +554,7 @@ fn pipe(b: &mut SceneBuilder, p: &Palette, foot: Vec3, height: f32, rng: &mut Pc
     }
 }
 
-/// Ground floor: doors, roller shutters, lit windows and machines.
+/// Builds the ground floor: doors, roller shutters, lit windows and machines.
 fn shops(b: &mut SceneBuilder, p: &Palette, number: usize, width: f32, base: f32, rng: &mut Pcg32) {
     let bays = (width / 3.6) as usize;
     let step = width / bays as f32;
@@ -642,7 +642,7 @@ fn shops(b: &mut SceneBuilder, p: &Palette, number: usize, width: f32, base: f32
     }
 }
 
-/// An open kitchen on the right pavement with stools, bowls and lanterns.
+/// Builds an open kitchen on the right pavement with stools, bowls and lanterns.
 fn noodle_bar(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight> {
     let mut lights = Vec::new();
     let (near, far) = (-4.0, -10.5);
@@ -785,7 +785,7 @@ fn paper_lantern(b: &mut SceneBuilder, p: &Palette) {
     b.lathe(&profile, 20);
 }
 
-/// Letters of glass tube on a dark board with a frame, in the XY plane from the origin.
+/// Builds letters of glass tube on a dark board with a frame, in the XY plane from the origin.
 fn neon_sign(b: &mut SceneBuilder, p: &Palette, neon: Neon, text: &str, height: f32) {
     let width = tube_text_width(text, height);
     b.with_material(p.dark);
@@ -801,7 +801,7 @@ fn neon_sign(b: &mut SceneBuilder, p: &Palette, neon: Neon, text: &str, height: 
     }
 }
 
-/// Boards, neon letters and tall signs that stick out into the street.
+/// Builds boards, neon letters and tall signs that stick out into the street.
 fn signs(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight> {
     let mut lights = Vec::new();
     let words = ["HOTEL", "BAR", "TECH", "SUSHI", "CLUB", "LOAN", "CYBER", "GAMES", "24H", "PARTS"];
@@ -814,7 +814,7 @@ fn signs(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight> 
         let tall = word.len() as f32 * letter * 1.3 + 0.3;
         let y = around(rng, 5.4, 0.9);
         b.object(&format!("tall sign {i}"));
-        // The board is seen along the street, from both ends of it.
+        // The board can be read from both ends of the street.
         for (facing, turn) in [(1.0, 0.0), (-1.0, PI)] {
             let x = side * (FACADES - 1.25);
             b.within(placed(vec3(x, y, z + 0.09 * facing), turn), |b| {
@@ -1075,7 +1075,7 @@ fn hover_bike(b: &mut SceneBuilder, p: &Palette) {
     b.with_material(p.steel).tube(&[vec3(0.18, 0.55, -0.1), vec3(0.3, 0.02, -0.15)], 0.014, 8, true);
 }
 
-/// Cables across the street and along the facades, with bundles and boxes.
+/// Builds cables across the street and along the facades, with bundles and boxes.
 fn cables(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     for i in 0..64 {
         let z = 9.0 - 1.0 * i as f32 + around(rng, 0.0, 0.8);
@@ -1107,7 +1107,7 @@ fn cables(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// Footbridges between the towers: trusses with lit cabins.
+/// Builds footbridges between the towers: trusses with lit cabins.
 fn bridges(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     for (i, (y, z)) in
         [(9.5, -20.0), (17.0, -33.0), (13.0, -52.0), (26.0, -44.0), (22.0, -12.0), (34.0, -70.0)]
@@ -1217,7 +1217,7 @@ fn monorail(b: &mut SceneBuilder, p: &Palette) {
     }
 }
 
-/// Vehicles in the air and one at the curb.
+/// Builds the vehicles in the air and one at the curb.
 fn traffic(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     b.object("parked vehicle");
     b.within(placed(vec3(-3.6, 0.35, -8.5), 0.06), |b| vehicle(b, p, 0));
@@ -1231,7 +1231,7 @@ fn traffic(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// A flying vehicle, its nose towards +z.
+/// Builds a flying vehicle with its nose towards +z.
 fn vehicle(b: &mut SceneBuilder, p: &Palette, kind: usize) {
     b.with_material(p.hulls[kind]);
     let section = |z: f32| {

@@ -1,4 +1,4 @@
-//! Smooth figures from blended shapes: a distance field, meshed by naive surface nets.
+//! Smooth figures of blended shapes: a distance field, meshed by naive surface nets.
 
 use glam::{IVec3, Mat3, Quat, Vec2, Vec3, Vec3Swizzles as _, ivec3, vec3};
 use rayon::prelude::*;
@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::build::SceneBuilder;
 use yoro_scene::Bounds;
 
-/// A shape by its signed distance in metres, negative inside.
+/// A shape, given by its signed distance in metres, negative inside.
 #[derive(Clone, Copy, Debug)]
 enum Shape {
     Ellipsoid { center: Vec3, inverse: Mat3, radii: Vec3 },
@@ -49,14 +49,14 @@ enum Use {
     Carve,
 }
 
-/// Shapes that melt into each other where they come within `blend` metres.
+/// Shapes that blend into each other where they are within `blend` metres.
 pub struct Clay {
     shapes: Vec<(Use, Shape)>,
     blend: f32,
 }
 
 impl Clay {
-    /// No shapes yet.
+    /// Creates it without shapes.
     pub fn new(blend: f32) -> Clay {
         Clay { shapes: Vec::new(), blend }
     }
@@ -79,13 +79,13 @@ impl Clay {
         self
     }
 
-    /// Takes an ellipsoid away from what was added before it.
+    /// Removes an ellipsoid from the shapes added so far.
     pub fn carve(&mut self, center: Vec3, radii: Vec3) -> &mut Clay {
         self.shapes.push((Use::Carve, Shape::Ellipsoid { center, inverse: Mat3::IDENTITY, radii }));
         self
     }
 
-    /// Signed distance in metres, negative inside; exact only near the surface.
+    /// Returns the signed distance in metres, negative inside. It is exact only near the surface.
     pub fn distance(&self, p: Vec3) -> f32 {
         self.shapes.iter().fold(f32::MAX, |d, (kind, shape)| match kind {
             Use::Add => smooth_min(d, shape.distance(p), self.blend),
@@ -142,7 +142,7 @@ impl Clay {
                 }
             }
             let mut p = at(c) + sum / count * cell;
-            // One step onto the surface takes away the steps that averaging leaves.
+            // One step towards the surface removes the staircase that averaging leaves.
             let normal = self.normal(p);
             p -= normal * self.distance(p).clamp(-0.5 * cell, 0.5 * cell);
             let normal = self.normal(p);
@@ -185,7 +185,7 @@ impl Clay {
     }
 }
 
-/// Polynomial smooth minimum: `a.min(b)`, rounded over a width of `k`.
+/// Returns the polynomial smooth minimum: `a.min(b)`, rounded over a width of `k`.
 fn smooth_min(a: f32, b: f32, k: f32) -> f32 {
     let h = (k - (a - b).abs()).max(0.0);
     a.min(b) - h * h / (4.0 * k.max(1e-6))

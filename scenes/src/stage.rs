@@ -1,4 +1,4 @@
-//! An anime-style singer on a concert stage at nightfall. Stands for the paper's UnityChan.
+//! An anime-style singer on a concert stage at nightfall. In place of the paper's UnityChan.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -94,7 +94,7 @@ palette! {
 palette! {
     fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
         let skin = vec3(0.98, 0.84, 0.76);
-        // A little light of its own keeps the drawn face readable on its shadow side.
+        // A little emission keeps the drawn face readable on its shadow side.
         let fair = |s: &mut SceneBuilder, name: &str, image: Option<yoro_scene::TextureImage>| {
             let map = image.map(|image| s.texture(image));
             let tone = if map.is_some() { Vec3::ONE } else { skin };
@@ -174,7 +174,7 @@ palette! {
     gold = props::metal(s, "buckle", vec3(0.9, 0.72, 0.3), 0.3),
 }
 
-/// A bow in the XY plane: two loops, a knot, two tails.
+/// Builds a bow in the XY plane: two loops, a knot, two tails.
 fn bow(s: &mut SceneBuilder, material: usize, size: f32) {
     s.with_material(material);
     for side in [-1.0, 1.0] {
@@ -257,7 +257,7 @@ fn singer_hair(s: &mut SceneBuilder, o: &Outfit, r: Vec3, rng: &mut Pcg32) {
     );
 }
 
-/// Cloth around the waist with pleats, from `top` (radii, height) to `hem`.
+/// Builds pleated cloth around the waist, from `top` (radii, height) to `hem`.
 fn skirt(s: &mut SceneBuilder, [top, hem]: [Vec3; 2], pleats: f32, depth: f32, lean: Vec3) {
     s.surface(120, 10, true, |u, v| {
         let angle = if u == 1.0 { 0.0 } else { u * TAU };
@@ -426,7 +426,7 @@ fn singer(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
     s.within(figure::head_frame(&j), |s| singer_hair(s, &o, r, rng));
 }
 
-/// A square truss: four chords with thin diagonals on all sides.
+/// Builds a square truss: four chords with thin diagonals on all sides.
 fn truss(s: &mut SceneBuilder, a: Vec3, b: Vec3, size: f32) {
     let forward = (b - a).normalize_or(Vec3::X);
     let side = forward.any_orthonormal_vector();
@@ -450,7 +450,7 @@ fn truss(s: &mut SceneBuilder, a: Vec3, b: Vec3, size: f32) {
     }
 }
 
-/// A spotlight that hangs at the origin and shines along -Z of its own frame.
+/// Builds a spotlight that hangs at `at` and shines towards `target`.
 fn spotlight(s: &mut SceneBuilder, p: &Palette, lens: usize, at: Vec3, target: Vec3) {
     s.with_material(p.black);
     s.cylinder(at + Vec3::Y * 0.28, at + Vec3::Y * 0.1, 0.012, 0.012, 6, false);
@@ -560,7 +560,7 @@ fn stage(s: &mut SceneBuilder, p: &Palette, seed: u32) -> Vec<PointLight> {
         let up = Vec3::Y * (STAGE - 0.02);
         s.with_material(p.strip[i % 2]).cylinder(a + up, b + up, 0.03, 0.03, 6, false);
     }
-    // A riser with the drums, steps beside it.
+    // A riser for the drums, with steps beside it.
     s.object("riser").with_material(skirting).cuboid(vec3(-2.4, STAGE, -5.6), vec3(2.4, STAGE + 0.6, -3.4));
     s.with_material(p.strip[0]).cuboid(vec3(-2.4, STAGE + 0.5, -3.4), vec3(2.4, STAGE + 0.54, -3.37));
     s.with_material(p.dark);
@@ -947,7 +947,7 @@ fn town(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
     });
 }
 
-/// Paper in the air, away from the walk.
+/// Builds paper in the air, away from the walk.
 fn confetti(s: &mut SceneBuilder, walk: &[Vec3], rng: &mut Pcg32) {
     let colors = [PINK, TEAL, vec3(0.98, 0.85, 0.35), vec3(0.92, 0.92, 0.97)];
     let materials: Vec<usize> =
@@ -966,7 +966,7 @@ fn confetti(s: &mut SceneBuilder, walk: &[Vec3], rng: &mut Pcg32) {
     }
 }
 
-/// The singer dances, the crowd hops, the spotlights sweep.
+/// Makes the singer dance, the crowd hop and the spotlights sweep.
 fn dance(first_spot: usize, lights: &[PointLight]) -> Movers {
     let mut movers = Movers::default();
     let feet = vec3(0.03, STAGE, -0.02);
@@ -992,7 +992,7 @@ fn dance(first_spot: usize, lights: &[PointLight]) -> Movers {
     movers
 }
 
-/// The scene; see [`super::BUILTINS`].
+/// Generates the scene; see [`super::BUILTINS`].
 pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "stage");
     let noise = rng.random::<u32>() >> 8;

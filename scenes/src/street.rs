@@ -1,7 +1,7 @@
-//! A street with a café in the late afternoon; stands for Bistro.
+//! A street with a café in the late afternoon, in place of Bistro.
 //!
-//! The street runs along -z with its middle at x = 0. Houses stand at x = -7 and x = 9; the café's terrace is
-//! on the wide pavement on the right.
+//! The street runs along -z with its middle at x = 0. Houses are at x = -7 and x = 9; the café's terrace is on the wide
+//! pavement on the right.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -22,7 +22,7 @@ const ROAD: f32 = 3.2;
 const PAVEMENT: f32 = 0.12;
 const GROUND_FLOOR: f32 = 3.8;
 const STOREY: f32 = 3.1;
-/// The terrace along z; the café stands behind it.
+/// The terrace's range along z; the café is behind it.
 const TERRACE: [f32; 2] = [-16.0, -2.0];
 
 /// Generates the scene.
@@ -43,7 +43,7 @@ pub fn build(seed: u64, mut b: SceneBuilder) -> Scene {
     Scene { model: b.finish(), sky, lights, viewpoints: walk(), ..Scene::default() }
 }
 
-/// Up the street, between the tables of the terrace, and on along its railing.
+/// Returns a walk up the street, between the tables of the terrace, and on along its railing.
 fn walk() -> Vec<Viewpoint> {
     viewpoints(&[
         ([-1.2, 1.62, 6.5], [1.8, 1.9, -10.0]),
@@ -140,7 +140,7 @@ palette! {
     books = pictured(b, paint::book_spines("books", [512, 128], s, 40), 0.8, 0.0),
 }
 
-/// Cloth with a stripe of colour on white; one stripe of each to the picture.
+/// Paints white cloth with coloured stripes; one stripe of each per picture.
 fn striped(name: &str, seed: u32, color: Vec3) -> paint::Surface {
     paint::surface(name, [256, 256], 0.004, |uv| {
         let edge = 0.02;
@@ -151,7 +151,7 @@ fn striped(name: &str, seed: u32, color: Vec3) -> paint::Surface {
     })
 }
 
-/// The view through a window pane: curtains, and a dim or a lit room.
+/// Paints the view through a window pane: curtains, and a dim or a lit room.
 fn window_picture(name: &str, lit: bool) -> yoro_scene::TextureImage {
     let mut c =
         Canvas::new([256, 512], if lit { vec4(0.85, 0.62, 0.33, 1.0) } else { vec4(0.1, 0.12, 0.14, 1.0) });
@@ -176,7 +176,7 @@ fn window_picture(name: &str, lit: bool) -> yoro_scene::TextureImage {
 
 fn ground(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     let crown = |x: f32| 0.04 * (1.0 - (x / ROAD).powi(2));
-    // Stones one by one where the walk passes.
+    // Single stones where the walk passes.
     let (near, far) = (10.0, -30.0);
     let mut z = near;
     let mut row = 0;
@@ -228,7 +228,7 @@ fn ground(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     });
 }
 
-/// One paving stone: a domed top with rounded sides.
+/// Builds one paving stone: a domed top with rounded sides.
 fn cobble(b: &mut SceneBuilder, p: &Palette, [min, max]: [Vec2; 2], height: f32, rng: &mut Pcg32) {
     b.with_material(p.cobble).set_uv_offset(vec2(rng.random::<f32>() * 2.0, rng.random::<f32>() * 2.0));
     let tilt = vec2(around(rng, 0.0, 0.004), around(rng, 0.0, 0.004));
@@ -286,7 +286,7 @@ fn houses(b: &mut SceneBuilder, p: &Palette, seed: u64) {
     let mut number = 0;
     let mut shops = 0;
     for (side, start) in [(1.0_f32, -2.0_f32), (-1.0, -1.0)] {
-        // Towards the camera's back first, then up the street.
+        // Behind the camera first, then up the street.
         let mut spans = Vec::new();
         let mut z = start;
         while z < 30.0 {
@@ -345,7 +345,7 @@ fn houses(b: &mut SceneBuilder, p: &Palette, seed: u64) {
             b.within(frame, |b| house_front(b, &house, rng));
         }
     }
-    // Behind the walk and at the end of the side streets.
+    // Houses behind the walk and at the end of the side streets.
     for (frame, width) in [
         (placed(vec3(10.0, 0.0, 30.0), PI), 20.0),
         (placed(vec3(-24.0, 0.0, -14.0), FRAC_PI_2), 18.0),
@@ -367,13 +367,13 @@ fn houses(b: &mut SceneBuilder, p: &Palette, seed: u64) {
     }
 }
 
-/// A wall from (x, y) to (x, y) at z = 0 whose picture lines up with its neighbours'.
+/// Builds a wall from `min` to `max` (x, y) at z = 0. Its picture lines up with that of neighbouring walls.
 fn wall(b: &mut SceneBuilder, min: Vec2, max: Vec2) {
     let corners = [min, vec2(max.x, min.y), max, vec2(min.x, max.y)];
     b.quad_metres(corners.map(|c| c.extend(0.0)), corners);
 }
 
-/// A wall panel with a hole and the sides of the hole, `depth` deep.
+/// Builds a wall panel with a hole, and the sides of the hole, `depth` deep.
 fn wall_with_hole(b: &mut SceneBuilder, [min, max]: [Vec2; 2], [low, high]: [Vec2; 2], depth: f32) {
     wall(b, min, vec2(low.x, max.y));
     wall(b, vec2(high.x, min.y), max);
@@ -386,7 +386,7 @@ fn wall_with_hole(b: &mut SceneBuilder, [min, max]: [Vec2; 2], [low, high]: [Vec
     b.rectangle(vec3(low.x, high.y, -depth), Vec3::X * across, -back);
 }
 
-/// A house seen from the street: x to the right, y up, facade at z = 0, depth towards -z.
+/// Builds the front of a house as seen from the street: x to the right, y up, facade at z = 0, depth towards -z.
 fn house_front(b: &mut SceneBuilder, house: &House, rng: &mut Pcg32) {
     let p = house.palette;
     let w = house.width;
@@ -490,7 +490,7 @@ fn window(b: &mut SceneBuilder, house: &House, [low, high]: [Vec2; 2], rng: &mut
         for (hinge, direction) in [(low.x - 0.01, -1.0), (high.x + 0.01, 1.0)] {
             let yaw = if open { around(rng, 0.08, 0.06) } else { around(rng, 0.9, 0.3) };
             let angle = if direction < 0.0 { PI - yaw } else { yaw };
-            // In the shutter's own frame x runs from the hinge outwards.
+            // In the shutter's own frame, x runs from the hinge outwards.
             let frame = placed(vec3(hinge, low.y, 0.06), -angle.rem_euclid(TAU));
             let outward =
                 if direction < 0.0 { Affine3A::from_scale(vec3(1.0, 1.0, -1.0)) } else { Affine3A::IDENTITY };
@@ -499,7 +499,7 @@ fn window(b: &mut SceneBuilder, house: &House, [low, high]: [Vec2; 2], rng: &mut
     }
 }
 
-/// A louvred shutter in the XY plane.
+/// Builds a louvred shutter in the XY plane.
 fn shutter_leaf(b: &mut SceneBuilder, width: f32, height: f32) {
     for (x0, x1, y0, y1) in [
         (0.0, 0.06, 0.0, height),
@@ -543,7 +543,7 @@ fn balcony_along(b: &mut SceneBuilder, p: &Palette, w: f32, y: f32) {
     let (l, r, z) = (0.32, w - 0.32, 0.68);
     let y = y + 0.02;
     b.railing(&[vec3(l, y, 0.02), vec3(l, y, z), vec3(r, y, z), vec3(r, y, 0.02)], &rail);
-    // Rings between the bars, as cast-iron balconies have.
+    // Rings between the bars, as on cast-iron balconies.
     let count = ((r - l) / 0.24) as usize;
     for i in 0..count {
         let center = vec3(l + (i as f32 + 0.5) * (r - l) / count as f32, y + 0.86, z);
@@ -694,7 +694,7 @@ fn home_front(b: &mut SceneBuilder, house: &House, columns: usize, bay: f32, rng
     b.beveled_cuboid(vec3(0.0, 0.0, -0.02), vec3(house.width, 0.55, 0.06), 0.02);
 }
 
-/// A wooden shop front with an awning; behind its panes there is a room.
+/// Builds a wooden shop front with an awning, and a room behind its panes.
 fn shop_front(b: &mut SceneBuilder, house: &House, rng: &mut Pcg32) {
     let p = house.palette;
     let w = house.width;
@@ -756,7 +756,7 @@ fn shop_room(b: &mut SceneBuilder, house: &House, rng: &mut Pcg32) {
     b.with_material(p.plasters[0]);
     b.rectangle(vec3(0.0, top, back), Vec3::X * w, Vec3::NEG_Z * back);
     b.rectangle(vec3(0.0, 0.0, back), Vec3::X * w, Vec3::Y * top);
-    // In front of the party walls, which would flicker through otherwise.
+    // In front of the party walls, which would otherwise flicker through.
     let inset = 0.08;
     b.rectangle(vec3(inset, 0.0, 0.0), Vec3::Z * back, Vec3::Y * top);
     b.rectangle(vec3(w - inset, 0.0, back), Vec3::NEG_Z * back, Vec3::Y * top);
@@ -836,7 +836,7 @@ fn terrace(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight
             for seat in 0..seats {
                 let turn = first + seat as f32 * TAU / seats as f32 + around(rng, 0.0, 0.2);
                 let chair_at = at + vec3(turn.sin(), 0.0, turn.cos()) * around(rng, 0.62, 0.06);
-                // The gangway stays free.
+                // Keep the aisle free.
                 if (chair_at.x - 6.1).abs() < 0.75 {
                     continue;
                 }
@@ -846,7 +846,7 @@ fn terrace(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight
             number += 1;
         }
     }
-    // Planters and a low railing keep the terrace from the road.
+    // Planters and a low railing separate the terrace from the road.
     let edge = ROAD + 0.42;
     let mut z = TERRACE[1] - 0.3;
     let mut planter = 0;
@@ -877,7 +877,7 @@ fn terrace(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) -> Vec<PointLight
 
     menu_board(b, p, vec3(4.55, PAVEMENT, TERRACE[1] + 0.6));
     let mut lights = Vec::new();
-    // Posts at the curb carry strings of bulbs to the facade, back and forth.
+    // Posts at the curb carry strings of bulbs to the facade and back.
     let posts: Vec<Vec3> =
         (0..5).map(|i| vec3(edge + 0.15, PAVEMENT, TERRACE[1] - 0.1 - 3.45 * i as f32)).collect();
     for (i, post) in posts.iter().enumerate() {
@@ -960,7 +960,7 @@ fn table(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// A cane chair that faces +z.
+/// Builds a cane chair that faces +z.
 fn chair(b: &mut SceneBuilder, p: &Palette) {
     b.with_material(p.wicker);
     b.lathe(&[(0.0, 0.435), (0.19, 0.435), (0.205, 0.45), (0.195, 0.462), (0.195, 0.462), (0.0, 0.466)], 28);
@@ -1209,7 +1209,7 @@ fn bunting(b: &mut SceneBuilder, p: &Palette, rng: &mut Pcg32) {
     }
 }
 
-/// A bicycle along x, handlebar towards +x.
+/// Builds a bicycle along x, with the handlebar towards +x.
 fn bicycle(b: &mut SceneBuilder, p: &Palette, paint: usize) {
     let (rear, front) = (vec3(-0.52, 0.34, 0.0), vec3(0.53, 0.34, 0.0));
     for hub in [rear, front] {
@@ -1289,7 +1289,7 @@ fn bicycle(b: &mut SceneBuilder, p: &Palette, paint: usize) {
     }
 }
 
-/// A small old saloon along z, bonnet towards +z, wheels on y = 0.
+/// Builds a small old saloon car along z, with the bonnet towards +z and the wheels on y = 0.
 fn car(b: &mut SceneBuilder, p: &Palette, paint: usize) {
     // Stations along the car: z, half width, floor, waist.
     let hull = [
@@ -1443,7 +1443,7 @@ fn bench(b: &mut SceneBuilder, p: &Palette) {
     }
 }
 
-/// The church at the end of the street, its tower and the fountain before it.
+/// Builds the church at the end of the street, with its tower and the fountain in front of it.
 fn church(b: &mut SceneBuilder, p: &Palette) {
     b.object("church").with_material(p.ashlar);
     let z = -92.0;

@@ -1,4 +1,4 @@
-//! Two stylised figures that talk across a small table in a room with a view. Stands for the paper's Chat.
+//! Two stylised figures that talk across a small table in a room with a view. In place of the paper's Chat.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -14,7 +14,7 @@ use super::props::{self, palette};
 use super::sculpt::Clay;
 use yoro_scene::{Material, PointLight, Scene, Sky, Viewpoint};
 
-/// One figure's materials and ways.
+/// One figure's materials and the shape of its head.
 struct Look {
     face: usize,
     skin: usize,
@@ -255,7 +255,7 @@ fn long_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
             [8, 8],
         );
     }
-    // Fringe swept to one side, locks beside the face and down the neck.
+    // A fringe swept to one side, with locks beside the face and down the neck.
     for i in 0..13 {
         let t = i as f32 / 12.0;
         let turn = -1.15 + 2.3 * t;
@@ -311,7 +311,7 @@ fn short_hair(s: &mut SceneBuilder, r: Vec3, rng: &mut Pcg32) {
     }
 }
 
-/// A head that looks about and nods, once in a loop. `frame` is where the figure sits.
+/// Makes a head look about and nod, once per loop. `frame` is the figure's frame in the scene.
 fn look_about(movers: &mut Movers, frame: Affine3A, j: &Joints, seconds: f32, yaw: f32) -> usize {
     let side = frame.transform_vector3(Vec3::X);
     movers.turn(None, frame.transform_point3(j.neck), seconds, move |t| {
@@ -320,7 +320,7 @@ fn look_about(movers: &mut Movers, frame: Affine3A, j: &Joints, seconds: f32, ya
     })
 }
 
-/// A forearm that speaks: it bends at the elbow, and the hand at the wrist.
+/// Makes a forearm gesture: it bends at the elbow, and the hand at the wrist.
 fn gesture(movers: &mut Movers, frame: Affine3A, j: &Joints, side: usize, name: &str) {
     let [shoulder, elbow, wrist] =
         [j.shoulders[side], j.elbows[side], j.wrists[side]].map(|p| frame.transform_point3(p));
@@ -658,7 +658,7 @@ fn room(s: &mut SceneBuilder, p: &Palette, seed: u32) {
     s.rectangle(vec3(-x, 0.0, near), Vec3::NEG_Z * (near - far), Vec3::Y * top);
     s.rectangle(vec3(x, 0.0, far), Vec3::Z * (near - far), Vec3::Y * top);
     s.rectangle(vec3(x, 0.0, near), Vec3::NEG_X * 2.0 * x, Vec3::Y * top);
-    // The outside of the window wall, so that the sun does not shine through it.
+    // The outside of the window wall, which keeps the sun from shining through it.
     s.with_material(p.white);
     for (a, b, low, high) in [
         (-x, hole[0], 0.0, top),
@@ -732,7 +732,7 @@ fn room(s: &mut SceneBuilder, p: &Palette, seed: u32) {
     s.cuboid_faces(vec3(-1.7, 0.0, -1.2), vec3(1.7, 0.012, 1.2), BoxFaces::STANDING);
 }
 
-/// Shelves of boards with books, from the floor up, against the plane z = 0, 1.6 m wide.
+/// Builds shelves with books, from the floor up, against the plane z = 0, 1.6 m wide.
 fn bookcase(s: &mut SceneBuilder, p: &Palette, covers: &[usize], rng: &mut Pcg32) {
     let (width, height, depth) = (1.6, 2.2, 0.3);
     s.with_material(p.dark_wood);
@@ -922,7 +922,7 @@ fn furniture(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
     }
 }
 
-/// A tree that is only seen from afar: a trunk, a few boughs, leaf cards in clumps.
+/// Builds a tree to be seen from afar: a trunk, a few boughs, leaf cards in clumps.
 fn tree(s: &mut SceneBuilder, bark: usize, leaves: usize, height: f32, rng: &mut Pcg32) {
     let fork = vec3(0.0, height * 0.34, 0.0);
     s.with_material(bark).cylinder(Vec3::ZERO, fork, height * 0.03, height * 0.02, 9, false);
@@ -978,7 +978,7 @@ fn garden(s: &mut SceneBuilder, p: &Palette, seed: u32, rng: &mut Pcg32) {
     }
 }
 
-/// The scene; see [`super::BUILTINS`].
+/// Generates the scene; see [`super::BUILTINS`].
 pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     let mut rng = random(seed, "talk");
     let noise = rng.random::<u32>() >> 8;

@@ -1,7 +1,7 @@
-//! A voxel landscape with a ruined temple, a river with a bridge, a castle, woods and mountains. Stands for the
+//! A voxel landscape with a ruined temple, a river with a bridge, a castle, woods and mountains. In place of the
 //! paper's largest scene.
 //!
-//! Lengths are in voxels unless they say metres; the voxel (0, 0, 0) starts at the origin, at sea level.
+//! Lengths are in voxels unless stated in metres. The voxel (0, 0, 0) starts at the origin, at sea level.
 
 use std::f32::consts::TAU;
 
@@ -14,15 +14,15 @@ use super::build::{SceneBuilder, moved, random};
 use super::paint::{self, Block, Plant, hash_cell, smoothstep, unit};
 use yoro_scene::{Alpha, Material, Model, Part, PointLight, Scene, Sky, Vertex, Viewpoint};
 
-/// Edge of a voxel in metres.
+/// Edge length of a voxel in metres.
 const EDGE: f32 = 0.5;
-/// Voxels along x and z.
+/// Number of voxels along x and along z.
 const SPAN: i32 = 640;
-/// Voxels along y.
+/// Number of voxels along y.
 const HEIGHT: i32 = 128;
-/// Voxels below sea level.
+/// Number of voxels below sea level.
 const DEPTH: i32 = 32;
-/// Voxels along the side of a chunk, which is one object.
+/// Number of voxels along the side of a chunk, which is one object.
 const CHUNK: i32 = 64;
 const HALF: i32 = SPAN / 2;
 
@@ -48,7 +48,7 @@ const BLOCKS: [Block; 20] = [
     Block::Gold,
     Block::Lantern,
 ];
-/// The code of water; all other codes are 1 + an index into [`BLOCKS`].
+/// The code of water; every other block's code is 1 + its index in [`BLOCKS`].
 const WATER: u8 = BLOCKS.len() as u8 + 1;
 const AIR: u8 = 0;
 
@@ -56,7 +56,7 @@ fn code(block: Block) -> u8 {
     BLOCKS.iter().position(|&b| b == block).map_or(WATER, |i| i as u8 + 1)
 }
 
-/// The block shown on the top (+1), a side (0) or the bottom (-1) of a voxel.
+/// Returns the block shown on the top (+1), a side (0) or the bottom (-1) of a voxel.
 fn face_of(voxel: u8, up: i32) -> u8 {
     match (BLOCKS[voxel as usize - 1], up) {
         (Block::GrassTop, 0) => code(Block::GrassSide),
@@ -93,7 +93,7 @@ impl World {
         self.put(p, code(block));
     }
 
-    /// Fills a box, both corners included, where the closure names a block.
+    /// Fills a box, both corners included, with the blocks that the closure returns; `None` leaves a voxel as it is.
     fn fill_with(&mut self, min: IVec3, max: IVec3, mut block: impl FnMut(IVec3) -> Option<Block>) {
         for x in min.x..=max.x {
             for z in min.z..=max.z {
@@ -120,7 +120,7 @@ impl World {
         }
     }
 
-    /// The highest solid voxel of a column.
+    /// Returns the highest solid voxel of a column.
     fn top(&self, x: i32, z: i32) -> i32 {
         (-DEPTH..HEIGHT - DEPTH)
             .rev()
@@ -128,7 +128,7 @@ impl World {
             .unwrap_or(-DEPTH)
     }
 
-    /// The highest voxel of a column that one can stand on: not of a tree.
+    /// Returns the highest voxel of a column to stand on, ignoring trees.
     fn footing(&self, x: i32, z: i32) -> i32 {
         let tree = [Block::Leaves, Block::Blossom, Block::LogSide].map(code);
         (-DEPTH..self.top(x, z) + 1)
@@ -144,7 +144,7 @@ impl World {
         unit(hash_cell(hash_cell(self.seed, purpose, p.y as u32), p.x as u32, p.z as u32))
     }
 
-    /// Smooth noise in space, 0 to 1, with features of `scale` voxels.
+    /// Returns smooth noise in space, 0 to 1, with features of `scale` voxels.
     fn noise(&self, p: IVec3, scale: f32, purpose: u32) -> f32 {
         let q = p.as_vec3() / scale;
         let cell = q.floor();
@@ -159,7 +159,7 @@ impl World {
         mix(plane(0.0), plane(1.0), f.z)
     }
 
-    /// Hewn stone that has seen centuries.
+    /// Returns hewn stone, weathered by centuries.
     fn old_brick(&self, p: IVec3) -> Block {
         let n = self.noise(p, 5.0, 3) + 0.25 * (self.chance(p, 4) - 0.5);
         if n > 0.62 {
@@ -172,12 +172,12 @@ impl World {
     }
 }
 
-/// Middle of the river at this x.
+/// Returns the middle of the river at this x.
 fn river_z(x: f32) -> f32 {
     28.0 + 12.0 * (x * 0.02).sin() + 5.0 * (x * 0.051).sin()
 }
 
-/// Distance to a rectangle, 0 inside.
+/// Returns the distance to a rectangle, 0 inside.
 fn outside(p: Vec2, min: Vec2, max: Vec2) -> f32 {
     (min - p).max(p - max).max(Vec2::ZERO).length()
 }
@@ -186,7 +186,7 @@ const CASTLE: IVec2 = ivec2(-118, -128);
 const CASTLE_GROUND: i32 = 30;
 const TERRACE: i32 = 8;
 
-/// Height of the ground: the first voxel of air above it.
+/// Returns the height of the ground: the first voxel of air above it.
 fn ground(seed: u32, x: i32, z: i32) -> f32 {
     let p = vec2(x as f32, z as f32);
     let uv = p / SPAN as f32 + 0.5;
@@ -264,7 +264,7 @@ fn column(w: &mut World, base: IVec3, height: i32, whole: bool) {
 }
 
 fn temple(w: &mut World, rng: &mut Pcg32) {
-    // The platform rises in four steps.
+    // The platform has four steps.
     for step in 0..4 {
         let grow = 4 - step;
         let y = TERRACE + step;
@@ -298,7 +298,7 @@ fn temple(w: &mut World, rng: &mut Pcg32) {
         column(w, ivec3(x, floor, -20), height, true);
         standing.push(ivec2(x, -20));
     }
-    // The entablature lies only where columns still carry it.
+    // The entablature is left only where columns still carry it.
     let top = floor + height + 2;
     for &p in &standing {
         for (step, reach) in [(ivec2(0, -8), 8), (ivec2(8, 0), 8)] {
@@ -319,7 +319,7 @@ fn temple(w: &mut World, rng: &mut Pcg32) {
             }
         }
     }
-    // The sanctum, half its roof fallen in.
+    // The sanctum, with half of its roof fallen in.
     let (min, max) = (ivec3(-12, floor, -86), ivec3(12, floor + 20, -42));
     let w_read = World { voxels: Vec::new(), seed: w.seed };
     w.fill_with(min, max, |p| {
@@ -364,7 +364,7 @@ fn rubble(w: &mut World, rng: &mut Pcg32, center: IVec3, spread: i32) {
     }
 }
 
-/// The deck of the bridge: the first voxel of air above it.
+/// Returns the height of the bridge's deck: the first voxel of air above it.
 fn deck(z: i32) -> i32 {
     let t = (z - 28) as f32 / 20.0;
     TERRACE + (3.2 * (1.0 - t * t)).max(0.0).round() as i32
@@ -490,7 +490,7 @@ fn pyramid(w: &mut World) {
             |p| {
                 let edge = half - (p.x - center.x).abs().max((p.z - center.y).abs());
                 let stairs = (p.x - center.x).abs() < 5;
-                // Each tier is only a shell: nobody sees what is inside.
+                // Each tier is only a shell, since its inside cannot be seen.
                 let bitten = edge < 3 && seed.noise(p, 8.0, 19) > 0.75 && !stairs;
                 (edge < 8 && !bitten).then(|| if p.y == y + 4 { Block::Sandstone } else { seed.old_brick(p) })
             },
@@ -541,7 +541,7 @@ fn house(w: &mut World, corner: IVec2, size: IVec2, door_west: bool) {
             }
         }
     }
-    // A gable roof whose ridge runs along z, with eaves.
+    // A gable roof with eaves, whose ridge runs along z.
     for i in -1..=size.x / 2 {
         for z in -1..=size.y + 1 {
             for x in [i, size.x - i] {
@@ -566,7 +566,7 @@ fn house(w: &mut World, corner: IVec2, size: IVec2, door_west: bool) {
     w.set(at(size.x / 2, 9, size.y / 2), Block::Lantern);
 }
 
-/// A winding tunnel into the rock, lit by lamps.
+/// Digs a winding tunnel into the rock, lit by lamps.
 fn cave(w: &mut World, rng: &mut Pcg32, mouth: Vec3, mut heading: f32, length: usize) {
     let mut p = mouth;
     for step in 0..length {
@@ -642,7 +642,7 @@ fn tree(w: &mut World, rng: &mut Pcg32, root: IVec3, kind: Tree) {
     }
 }
 
-/// True if plants leave this place free.
+/// True if plants must leave this place free.
 fn is_kept_free(x: i32, z: i32, margin: i32) -> bool {
     let p = vec2(x as f32, z as f32);
     let m = margin as f32;
@@ -660,7 +660,7 @@ fn woods(w: &mut World, rng: &mut Pcg32) {
         if placed == TREES {
             break;
         }
-        // Every other tree stands where the walk can see it.
+        // Every other tree is where the walk can see it.
         let reach = if placed % 2 == 0 { 130 } else { HALF - 10 };
         let (x, z) = (rng.random_range(-reach..reach), rng.random_range(-reach..reach));
         let density = w.noise(ivec3(x, 0, z), 34.0, 31);
@@ -681,12 +681,12 @@ fn woods(w: &mut World, rng: &mut Pcg32) {
     }
 }
 
-/// Number of trees; chosen for the number of triangles.
+/// Number of trees, chosen to reach the scene's number of triangles.
 const TREES: usize = 380;
 
 struct Mesh {
     vertices: Vec<Vertex>,
-    /// One list for every block, water last.
+    /// One list for each block, water last.
     indices: Vec<Vec<u32>>,
 }
 
@@ -701,7 +701,7 @@ struct Direction {
 fn directions() -> [Direction; 6] {
     let face = |step: IVec3, right: IVec3, up: IVec3| {
         let origin = (step + IVec3::ONE) / 2 + (-right.min(IVec3::ZERO)) + (-up.min(IVec3::ZERO));
-        // The origin counts the face's own axis once; clamp keeps it in the unit cube.
+        // Sets the face's own axis to 0 or 1, and keeps the others within the unit cube.
         let origin = origin.min(IVec3::ONE) * (IVec3::ONE - step.abs()) + step.max(IVec3::ZERO);
         Direction {
             step,
@@ -720,7 +720,7 @@ fn directions() -> [Direction; 6] {
     ]
 }
 
-/// The exposed faces of one chunk. Neighbouring faces in one plane with one block share their vertices.
+/// Returns the exposed faces of one chunk. Neighbouring faces in one plane and of one block share their vertices.
 fn mesh_chunk(w: &World, chunk: IVec2, directions: &[Direction; 6]) -> Mesh {
     let low = ivec3(chunk.x * CHUNK - HALF, -DEPTH, chunk.y * CHUNK - HALF);
     let mut mesh = Mesh { vertices: Vec::new(), indices: vec![Vec::new(); BLOCKS.len() + 1] };
@@ -739,7 +739,7 @@ fn mesh_chunk(w: &World, chunk: IVec2, directions: &[Direction; 6]) -> Mesh {
                 continue;
             }
             for (d, direction) in directions.iter().enumerate() {
-                // The world's own outside is never seen, except from above.
+                // The outside of the world is visible only from above.
                 let beyond = if inside[d] && (0..HEIGHT).contains(&(y + direction.step.y)) {
                     w.voxels[(base as isize + y as isize + strides[d]) as usize]
                 } else {
@@ -760,7 +760,7 @@ fn mesh_chunk(w: &World, chunk: IVec2, directions: &[Direction; 6]) -> Mesh {
                         *slot = mesh.vertices.len() as u32;
                         owner.push(face);
                         let at = (low + c).as_vec3();
-                        // A water surface lies a little below the edge of its voxel.
+                        // A water surface is a little below the edge of its voxel.
                         let sunk = if voxel == WATER { 0.12 } else { 0.0 };
                         mesh.vertices.push(Vertex {
                             position: at * EDGE - Vec3::Y * sunk,
@@ -778,7 +778,7 @@ fn mesh_chunk(w: &World, chunk: IVec2, directions: &[Direction; 6]) -> Mesh {
     mesh
 }
 
-/// Adds the chunks that lie in a row.
+/// Adds a row of chunks.
 fn add_chunks(model: &mut Model, world: &World, materials: &[usize], row: i32) {
     let directions = directions();
     let meshes: Vec<(IVec2, Mesh)> = (0..SPAN / CHUNK)
@@ -800,7 +800,7 @@ fn add_chunks(model: &mut Model, world: &World, materials: &[usize], row: i32) {
     }
 }
 
-/// Crossed cards on the grass near the path and vines on the ruins.
+/// Builds crossed cards on the grass near the path, and vines on the ruins.
 fn plants(s: &mut SceneBuilder, w: &World, rng: &mut Pcg32, seed: u32) {
     let kinds = [Plant::Grass, Plant::Poppy, Plant::Buttercup, Plant::Fern, Plant::Vine];
     let materials = kinds.map(|plant| {
@@ -870,7 +870,7 @@ fn plants(s: &mut SceneBuilder, w: &World, rng: &mut Pcg32, seed: u32) {
     }
 }
 
-/// A lamp post with an arm; returns where its light is, in metres.
+/// Builds a lamp post with an arm. Returns the position of its light in metres.
 fn lamp_post(s: &mut SceneBuilder, wood: usize, iron: usize, glow: usize, foot: Vec3, arm: Vec3) -> Vec3 {
     s.within(moved(foot.x, foot.y, foot.z), |s| {
         s.with_material(wood);
@@ -1045,7 +1045,7 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     }
 }
 
-/// From the village over the bridge and up to the sanctum.
+/// Returns a walk from the village over the bridge and up to the sanctum.
 fn walk(w: &World) -> Vec<Viewpoint> {
     let steps = [
         (9.0, 84.0),
@@ -1076,7 +1076,7 @@ fn walk(w: &World) -> Vec<Viewpoint> {
         (0.2, -28.5),
     ];
     let height = |x: f32, z: f32| {
-        // The mean over a stride: heads do not jump a voxel at a time.
+        // The mean over a stride, so that the head does not jump by a voxel.
         let around: f32 =
             (-4..=4).map(|d| (w.footing(x.floor() as i32, z.floor() as i32 + d) + 1) as f32).sum();
         around / 9.0 * EDGE + 1.65

@@ -1,21 +1,21 @@
-//! The GLSL files of yoro, and the assembly of a file and its includes into the text that a driver compiles.
+//! yoro's GLSL files, and the assembly of a file and its includes into the text that a driver compiles.
 //!
-//! It takes a file's path in this package, such as `synthesis/gather/march.frag`, a GLSL version and defines, and gives
-//! the text. This crate must never know OpenGL or any other interface to a GPU: it handles text.
+//! [`assemble`] takes a file's path in this package, such as `synthesis/gather/march.frag`, a GLSL version and defines,
+//! and returns the text. This crate handles text only: it knows neither OpenGL nor any other graphics interface.
 //!
-//! Folders are named after the modules that use them. [`assemble`] resolves each `#include "PATH"` once, and adds
-//! `#line`, so that a driver's messages lead back to file and line ([`Assembled::name_files`]). With the feature
-//! `hot-reload` the environment variable `YORO_SHADERS` may name a folder from which shaders are read instead: a change
-//! takes effect at the next start, without compiling.
+//! Folders are named after the modules that use them. Each `#include "PATH"` is resolved once, and `#line` is added, so
+//! that a driver's messages can be traced to file and line ([`Assembled::name_files`]). With the feature `hot-reload`,
+//! the environment variable `YORO_SHADERS` may name a folder from which shaders are read instead, so that changes take
+//! effect at the next start, without compiling.
 
 use std::fmt::Write as _;
 
-/// Path and content of every file given.
+/// Embeds the content of the given files, with their paths.
 macro_rules! embed {
     ($($path:literal,)*) => { &[$(($path, include_str!(concat!("../", $path)))),*] };
 }
 
-/// Sorted by path.
+/// Path and content of each file, sorted by path.
 static FILES: &[(&str, &str)] = embed![
     "include/any_view.glsl",
     "include/color.glsl",
@@ -107,7 +107,7 @@ static FILES: &[(&str, &str)] = embed![
 /// The `#extension` directives, which GLSL requires before every declaration.
 const EXTENSIONS: &str = "include/extensions.glsl";
 
-/// The path of a file that is not part of this package, given or included.
+/// The path of a file, requested or included, that is not part of this package.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingFile(pub String);
 
@@ -121,18 +121,18 @@ pub fn files() -> impl Iterator<Item = &'static str> {
 pub struct Assembled {
     /// The text that the driver compiles.
     pub text: String,
-    /// Files by source string number; number 0 is the text before all files.
+    /// The files by source string number; number 0 is the text before all files.
     files: Vec<String>,
 }
 
 impl Assembled {
-    /// Returns the files that the text consists of, includes among them.
+    /// Returns the files that the text consists of, including included ones.
     pub fn files(&self) -> &[String] {
         &self.files[1..]
     }
 
     /// Replaces the source string number at the start of each of a driver's messages, `NUMBER:LINE`, by the file's
-    /// name. Mesa and most mobile drivers write messages so.
+    /// name. Mesa and most mobile drivers use this format.
     pub fn name_files(&self, log: &str) -> String {
         let mut named = String::new();
         for line in log.trim_end_matches(['\0', '\n']).lines() {

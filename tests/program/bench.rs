@@ -16,7 +16,7 @@ fn of_kind<'a>(records: &'a [Value], kind: &str) -> Vec<&'a Value> {
     records.iter().filter(|r| r["record"] == kind).collect()
 }
 
-/// The values of a metric of a contender in its first round.
+/// Returns the values of a contender's metric in the first round.
 fn values(records: &[Value], contender: &str, metric: &str) -> Vec<f64> {
     let measurements = of_kind(records, "measurement");
     let found = measurements.iter().find(|m| m["contender"] == contender && m["round"] == 0);
@@ -45,7 +45,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
         "yoro-gather",
         "yoro-paper",
     ] {
-        // Each contender is measured, or left out with a reason.
+        // Each contender is either measured or skipped with a reason.
         let rows = whole.iter().filter(|r| r["contender"] == contender);
         let (measured, left_out): (Vec<&Value>, Vec<&Value>) =
             rows.partition(|r| r["record"] == "measurement");
@@ -70,7 +70,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
     assert_eq!(values(&whole, "mono", "hole_share"), values(&whole, "yoro-paper", "hole_share"));
     assert!((0.0..0.3).contains(&mean("mono", "hole_share")));
 
-    // Power fails in the middle of the second round.
+    // As if the power failed in the middle of the second round.
     let text = fs::read_to_string(&file).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     let first_round = 1 + lines.iter().position(|l| l.contains(r#""record":"round""#)).unwrap();
@@ -80,7 +80,7 @@ fn every_method_has_its_row_and_a_cut_run_goes_on() {
     let again = fs::read_to_string(&file).unwrap();
     assert!(again.starts_with(&kept), "the finished round was touched");
     assert_eq!(records(&file).len(), whole.len());
-    // A repeated run has nothing left to do.
+    // A repeated run has nothing left to measure.
     assert!(succeed(at, line).stderr.contains("1 of 1 settings are measured already"));
     assert_eq!(fs::read_to_string(&file).unwrap(), again);
 
@@ -99,7 +99,7 @@ fn the_files_of_all_shards_are_one_run() {
     succeed(at, &format!("{line} --out whole.jsonl"));
     let parts = ["out/bench-ipd-quick-1of2.jsonl", "out/bench-ipd-quick-2of2.jsonl"];
     let records_of = |name: &str| -> Vec<Value> { records(&at.join(name)).split_off(1) };
-    // Quality alone is measured here, so that all records are equal.
+    // Only quality is measured here, so all records are equal.
     assert_eq!(parts.map(records_of).concat(), records_of("whole.jsonl"));
     succeed(at, &format!("report {} {} --out parts", parts[0], parts[1]));
     succeed(at, "report whole.jsonl --out whole");
@@ -130,7 +130,7 @@ fn sweeps_have_their_points_and_baselines() {
     assert_eq!(points("styles", "label"), ["realistic", "cartoon", "low-poly", "voxel", "anime"]);
     assert_eq!(points("imbuffer", "point"), ["10", "20", "40", "80", "160"]);
 
-    // Wider eyes are harder for the same image, and nothing is timed where quality alone is asked for.
+    // A larger distance between the eyes makes the same image worse. Nothing is timed if only quality is requested.
     let ipd = of_suite("ipd");
     let mono: Vec<f64> = of_kind(&ipd, "measurement")
         .iter()
@@ -152,12 +152,12 @@ fn sweeps_have_their_points_and_baselines() {
         assert!(values(&patchers, patcher, "patch_ms")[0] > 0.0);
         assert!(values(&patchers, patcher, "psnr")[0] > values(&patchers, "mono", "psnr")[0]);
     }
-    // All patchers get the same image: they differ in holes alone.
+    // All patchers get the same image, so they differ only in holes.
     let [a, b] = ["patcher-gather", "patcher-median"].map(|p| values(&patchers, p, "visible_psnr"));
     assert_eq!(a, b);
 }
 
-/// The devices of the estimate keep their own sizes: they take most of the test's seconds.
+/// The devices in the estimate keep their own sizes, which takes most of the test's time.
 #[test]
 fn guard_bands_and_estimates_are_measured_and_reported() {
     let dir = tempfile::tempdir().unwrap();
@@ -192,7 +192,7 @@ fn guard_bands_and_estimates_are_measured_and_reported() {
     }
     let at_border = bands.map(|band| mean(band, "border_psnr"));
     assert!(at_border[1..].iter().all(|band| *band > at_border[0] + 0.5), "{at_border:?}");
-    // Only one of them chooses.
+    // Only one of the contenders chooses its guard band.
     for metric in ["guard_columns", "undrawn"] {
         let told = |m: &&&Value| !m["values"][metric].is_null();
         let tell: Vec<&str> =
@@ -201,7 +201,7 @@ fn guard_bands_and_estimates_are_measured_and_reported() {
     }
     let [columns, undrawn] = ["guard_columns", "undrawn"].map(|metric| of("yoro-guard-auto", metric));
     assert!(columns.len() <= frames && columns.len() > 1, "{columns:?}");
-    // All 21 at first, then as many as are seen.
+    // All 21 columns at first, then as many as are visible.
     assert!(columns.iter().all(|n| *n >= 10.0 && *n <= 21.0 && n.fract() == 0.0), "{columns:?}");
     assert!(columns.contains(&21.0) && columns.iter().any(|n| *n < 21.0), "{columns:?}");
     assert!(undrawn.iter().all(|n| *n >= 0.0 && *n < 384.0 * 384.0 / 100.0), "{undrawn:?}");
@@ -217,14 +217,14 @@ fn guard_bands_and_estimates_are_measured_and_reported() {
         assert!(slots.iter().all(|n| *n > 1.0) && slots[2] > slots[0] + slots[1], "{device}: {slots:?}");
         let sum = slots.iter().sum::<f64>();
         assert!((sum - one("slots")).abs() < 1e-6 * sum && sum < 1000.0, "{device}: {slots:?}");
-        // The march reads at least what its tile has, and colour, of each pixel.
+        // For each pixel, the march reads at least its tile's span and the colour.
         assert!(one("fetches") > 2.0 && one("fetches") < one("slots"), "{device}");
-        // A wave takes as long as the slowest of its pixels, and has a law if all of them have.
+        // A wave takes as long as the slowest of its pixels. It uses the law only if all of its pixels do.
         for [pixel, wave] in
             [["trips_pixel", "trips_wave"], ["goes_on_pixel", "goes_on_wave"], ["law_wave", "law_pixel"]]
         {
             let [pixel, wave] = [one(pixel), one(wave)];
-            // Means of different numbers of values are rounded differently.
+            // The two means are over different numbers of values, so they are rounded differently.
             assert!(pixel > 0.0 && pixel <= wave * (1.0 + 1e-12), "{device}: {pixel} and {wave}");
         }
         assert!(one("goes_on_wave") < 1.0, "{device}");
@@ -286,12 +286,12 @@ fn whole_frames_are_counted_for_every_method_and_gpu() {
             let slots = |contender: &str| sum(contender, &format!("slots/{gpu}/"));
             let two = slots("conventional");
             let [mono, both] = ["mono", "multiview"].map(|contender| slots(contender) / two);
-            // Without vertices, of which so small pictures have many for a pixel: one view for both eyes is half, and
-            // both at once shade the same.
+            // Without vertices, of which such small pictures have many per pixel, one view for both eyes costs half,
+            // and drawing both at once costs the same.
             assert!((0.4..0.6).contains(&mono) && (0.9..1.1).contains(&both), "{gpu}: {mono} {both}");
             assert!(slots(synthesis) > mono * two, "{gpu}");
         }
-        // Each pixel of both eyes shows a surface or the sky.
+        // Each pixel of both eyes shows either a surface or the sky.
         let surfaces = if renderer == "deferred" { "fragments/lighting" } else { "fragments/forward" };
         assert!(sum("conventional", surfaces) >= 2.0, "{renderer}");
         assert!(sum(synthesis, "bytes/") > 8.0, "{renderer}");

@@ -1,4 +1,4 @@
-//! A real browser under remote control: Chromium's DevTools protocol over a pipe.
+//! A real browser, controlled by Chromium's DevTools protocol over a pipe.
 
 use std::env;
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -9,10 +9,10 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-/// Names under which distributions install it.
+/// Names under which distributions install the browser.
 const PROGRAMS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// The longest wait for an answer.
+/// Timeout of an answer.
 const TIMEOUT: Duration = Duration::from_secs(120);
 
 /// A browser with one page.
@@ -20,27 +20,27 @@ pub struct Browser {
     child: Child,
     commands: ChildStdin,
     messages: Receiver<Value>,
-    /// The page, once there is one.
+    /// The session of the page, once it is open.
     session: Option<String>,
     last_id: u64,
     loads: usize,
-    /// The addresses, beside files, from which pages may load.
+    /// The addresses from which pages may load, in addition to files.
     servers: Vec<String>,
-    /// The warnings, and everything that scripts wrote to the console.
+    /// Warnings, and everything that scripts have written to the console.
     console: Vec<String>,
-    /// The exceptions of scripts, and the files that the page could not load.
+    /// Exceptions of scripts, and files that the page could not load.
     errors: Vec<String>,
     _profile: tempfile::TempDir,
 }
 
 impl Browser {
-    /// Starts the browser of `YORO_TEST_CHROMIUM`, or one found in PATH. Without any it says so and returns nothing:
-    /// the test is then to end.
+    /// Starts the browser in `YORO_TEST_CHROMIUM`, or one in PATH. If there is none, prints a message and returns
+    /// `None`; the test should then end.
     pub fn start() -> Option<Browser> {
         Browser::start_with(&["--disable-gpu"])
     }
 
-    /// Starts like [`Browser::start`], with these options instead of those for pages without graphics.
+    /// Starts the browser as [`Browser::start`] does, with these options instead of those for pages without graphics.
     pub fn start_with(options: &[&str]) -> Option<Browser> {
         let Some(program) = find() else {
             eprintln!(
@@ -49,7 +49,7 @@ impl Browser {
             return None;
         };
         let profile = tempfile::tempdir().unwrap();
-        // Chromium reads commands from descriptor 3 and writes to 4.
+        // Chromium reads commands from descriptor 3 and writes answers to 4.
         let mut child = Command::new("sh")
             .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 1>&2"])
             .arg(program)
@@ -97,7 +97,7 @@ impl Browser {
         Some(browser)
     }
 
-    /// Calls a method of the protocol and returns its result.
+    /// Calls a method of the protocol, and returns its result.
     #[track_caller]
     fn call(&mut self, method: &str, parameters: Value) -> Value {
         self.last_id += 1;
@@ -117,7 +117,7 @@ impl Browser {
         }
     }
 
-    /// Returns the next message; keeps events about errors and loading.
+    /// Returns the next message. Records events about errors and loading.
     fn receive(&mut self) -> Value {
         let message = self.messages.recv_timeout(TIMEOUT).expect("the browser answers");
         let parameters = &message["params"];
@@ -142,22 +142,22 @@ impl Browser {
         message
     }
 
-    /// Opens a file and waits until everything on it is loaded.
+    /// Opens a file, and waits until everything on the page is loaded.
     pub fn open(&mut self, page: &Path) {
         self.go(&format!("file://{}", page.canonicalize().unwrap().display()));
     }
 
-    /// Lets pages load from an address, too.
+    /// Allows pages to load from an address.
     pub fn allow(&mut self, server: &str) {
         self.servers.push(server.to_owned());
     }
 
-    /// Runs a script in each page before its own.
+    /// Runs a script in each page before the page's own scripts.
     pub fn run_before_pages(&mut self, script: &str) {
         self.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": script }));
     }
 
-    /// Opens an address and waits until everything on it is loaded.
+    /// Opens an address, and waits until everything on the page is loaded.
     pub fn go(&mut self, url: &str) {
         let loads = self.loads;
         self.call("Page.navigate", json!({ "url": url }));
@@ -166,14 +166,14 @@ impl Browser {
         }
     }
 
-    /// The value of a JavaScript expression.
+    /// Returns the value of a JavaScript expression.
     #[track_caller]
     pub fn evaluate(&mut self, expression: &str) -> Value {
         let parameters = json!({
             "expression": expression,
             "returnByValue": true,
             "awaitPromise": true,
-            // Counts as a click, as browsers allow some calls only then.
+            // Counts as a click, without which browsers refuse some calls.
             "userGesture": true,
         });
         let result = self.call("Runtime.evaluate", parameters);
@@ -181,7 +181,7 @@ impl Browser {
         result["result"]["value"].clone()
     }
 
-    /// Clicks with the mouse into the middle of the element that an expression gives.
+    /// Clicks on the centre of the element that an expression returns.
     #[track_caller]
     pub fn click(&mut self, element: &str) {
         let place = self.evaluate(&format!(
@@ -195,48 +195,48 @@ impl Browser {
         }
     }
 
-    /// Presses a key that types a character.
+    /// Presses and releases a key that types a character.
     pub fn press(&mut self, key: &str) {
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyDown", "key": key, "text": key }));
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key }));
     }
 
-    /// Holds a key down that has a place on the keyboard, such as `KeyW`.
+    /// Holds down a key for some time. The key is given by its place on the keyboard, such as `KeyW`.
     pub fn hold(&mut self, code: &str, time: Duration) {
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyDown", "code": code }));
         std::thread::sleep(time);
         self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "code": code }));
     }
 
-    /// Gives the window another size in pixels.
+    /// Changes the window's size in pixels.
     pub fn resize(&mut self, width: u32, height: u32) {
         let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
-    /// Gives the page a width in pixels and a colour scheme, `light` or `dark`.
+    /// Sets the page's width in pixels, and its colour scheme to `light` or `dark`.
     pub fn show(&mut self, width: u32, scheme: &str) {
         self.resize(width, 900);
         let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
         self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
     }
 
-    /// Forgets what a test has made fail on purpose.
+    /// Discards the messages and errors that a test has caused on purpose.
     pub fn forget(&mut self) {
         self.evaluate("0");
         self.console.clear();
         self.errors.clear();
     }
 
-    /// Fails if a script threw or something could not be loaded.
+    /// Fails if a script threw an exception or something could not be loaded.
     #[track_caller]
     pub fn expect_no_error(&mut self) {
-        // Events that are on their way come before the answer.
+        // Pending events arrive before this answer.
         self.evaluate("0");
         assert!(self.errors.is_empty(), "{:#?}", self.errors);
     }
 
-    /// Fails if a script threw, something could not be loaded, or anything is in the console.
+    /// Fails if a script threw an exception, something could not be loaded, or there is anything in the console.
     #[track_caller]
     pub fn expect_silence(&mut self) {
         self.expect_no_error();
@@ -261,8 +261,8 @@ fn find() -> Option<PathBuf> {
         .find_map(|name| folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file()))
 }
 
-/// Checks what every page of ours must do in a browser: no script error, nothing from elsewhere, all figures there,
-/// other colours in the dark, and no part wider than a narrow window.
+/// Checks what every page must do in a browser: no script errors, nothing loaded from elsewhere, all figures present,
+/// other colours in dark mode, and no part wider than a narrow window.
 pub fn check_figures(browser: &mut Browser, page: &Path) {
     browser.show(1400, "light");
     browser.open(page);
@@ -283,7 +283,7 @@ pub fn check_figures(browser: &mut Browser, page: &Path) {
     browser.expect_no_error();
 }
 
-/// Checks as [`check_figures`] does, and that all pictures load and the switch between them works by mouse and key.
+/// Checks the same as [`check_figures`], and that all pictures load and can be switched by mouse and keyboard.
 pub fn check_page(browser: &mut Browser, page: &Path) {
     check_figures(browser, page);
     browser.show(1400, "light");

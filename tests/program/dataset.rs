@@ -35,7 +35,7 @@ fn only_what_is_missing_is_made() {
 
     let pixels = fs::read(scene.join("patched/000001.png")).unwrap();
     let json = fs::read(scene.join("group/000001.json")).unwrap();
-    // The state after an interruption: some pictures, no JSON.
+    // As after an interruption: some pictures, but no JSON.
     fs::remove_file(scene.join("patched/000001.png")).unwrap();
     fs::remove_file(scene.join("group/000001.json")).unwrap();
     assert_eq!(succeed(dir.path(), line).stdout, "3 groups in data (1 new)\n");
@@ -62,7 +62,7 @@ fn only_what_is_missing_is_made() {
     assert_eq!(times(&scene), second, "a mistake changes nothing");
 }
 
-/// Array jobs may write into one folder or into several that are copied together.
+/// Array jobs may write into one folder, or into several that are later merged.
 #[test]
 fn the_parts_of_all_shards_are_one_run() {
     let dir = tempfile::tempdir().unwrap();
@@ -85,7 +85,7 @@ fn the_parts_of_all_shards_are_one_run() {
     run(dir.path(), &format!("{line} --shard 0/3")).refuses(&["--shard", "1/8 up to 8/8"]);
 }
 
-/// Settings are compared with those in a file: each number must come back as it was written.
+/// Settings are compared with those in a file, so each number must be read as it was written.
 #[test]
 fn a_folder_is_continued_whatever_its_numbers() {
     let dir = tempfile::tempdir().unwrap();
@@ -97,7 +97,7 @@ fn a_folder_is_continued_whatever_its_numbers() {
     assert!(succeed(dir.path(), line).stdout.contains("(0 new)"));
 }
 
-/// A patcher on image files has the same result as on a group in memory.
+/// A patcher gives the same result for image files as for a group in memory.
 #[test]
 fn synthesize_with_a_patcher() {
     let dir = tempfile::tempdir().unwrap();
@@ -112,7 +112,7 @@ fn synthesize_with_a_patcher() {
     assert!(again > 45.0, "{again:.2} dB");
 }
 
-/// The command that a group's JSON states makes the other eye again, for either eye and either depth convention.
+/// The command in a group's JSON reproduces the other eye, for either eye and either depth convention.
 #[test]
 fn groups_go_into_synthesize() {
     for options in [
@@ -131,7 +131,7 @@ fn groups_go_into_synthesize() {
             let Psnr(db) = psnr(&load(a), &load(b), Channels::Rgb).unwrap();
             db
         };
-        // 16 bits of depth are a little coarser than the depth buffer.
+        // 16-bit depth is slightly coarser than the depth buffer.
         let again = likeness("synthesized/000001.png", "patched/000001.png");
         assert!(again > 45.0, "{options}: {again:.2} dB");
         let (real, same) = (

@@ -1,4 +1,4 @@
-//! `yoro device`, on devices that do not exist.
+//! `yoro device` on simulated devices.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,14 +9,14 @@ use yoro_devices::capture::{self, Capture, FaultKind, Outcome, Sample};
 
 use crate::program::{finish, interrupt, run, succeed, yoro};
 
-/// The files that the repository has for this.
+/// The experiments in the repository.
 const EXPERIMENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../experiments");
 
 fn write(folder: &Path, name: &str, text: &str) {
     fs::write(folder.join(name), text).unwrap();
 }
 
-/// The run in a folder, and its seconds by the application's clock.
+/// Reads the run in a folder.
 fn read(folder: &Path) -> Capture {
     capture::read(folder).unwrap()
 }
@@ -26,7 +26,7 @@ fn kinds(capture: &Capture) -> Vec<FaultKind> {
     kinds.into_iter().collect()
 }
 
-/// Returns the capture of a run of one minute on a device with this script.
+/// Captures a run of one minute on a device with this script.
 fn minute(script: &str) -> Capture {
     let dir = tempfile::tempdir().unwrap();
     write(dir.path(), "s.toml", &format!("[[device]]\nserial = \"SIM1\"\n{script}"));
@@ -44,14 +44,14 @@ fn minute(script: &str) -> Capture {
     for fault in &info.faults {
         assert!(run.stdout.contains(&fault.detail), "{} is not in {}", fault.detail, run.stdout);
     }
-    // The samples are those of the log beside them.
+    // The samples match the log beside them.
     let log = fs::read_to_string(dir.path().join("run/log.txt")).unwrap();
     let lines = log.lines().filter(|line| line.contains(": v=1,t=")).count();
     assert!(lines >= capture.samples.len(), "{lines}");
     capture
 }
 
-/// Returns the number of seconds from 1 to 61 that the capture lacks.
+/// Returns how many of the seconds 1 to 61 the capture lacks.
 fn missing(capture: &Capture) -> usize {
     61 - capture.samples.iter().filter(|sample| (0.5..61.5).contains(&sample.time_s)).count()
 }
@@ -72,7 +72,7 @@ fn no_sample_is_lost_and_each_fault_is_named() {
         "{sample:?}"
     );
 
-    // The charge that is gone is the current's.
+    // The charge that was used matches the current.
     let charge = |i: usize| clean.samples[i].charge_uah.unwrap() / 1e3;
     let integral: f64 = clean.samples[1..].iter().map(|sample| -sample.current_ma.unwrap() / 3600.0).sum();
     assert!(((charge(0) - charge(61)) / integral - 1.0).abs() < 0.03, "{integral}");
@@ -91,7 +91,7 @@ fn no_sample_is_lost_and_each_fault_is_named() {
         ("positive = true\n".into(), vec![CurrentSign], 0),
         (jump.clone(), vec![ClockJump], 0),
         (fault("clock-jump", "at = 30.0\nby = 7200.0"), vec![ClockJump], 0),
-        // The clock jumps while the device is away: neither direction loses or doubles a line.
+        // The clock jumps while the device is lost. In neither direction are lines lost or duplicated.
         (format!("{away}{jump}"), vec![Disconnected, ClockJump], 0),
         (fault("truncate", "at = 30.5"), vec![DamagedLines], 1),
         (fault("silence", "at = 30.5\nseconds = 5.0"), vec![MissingLines], 5),
@@ -121,7 +121,7 @@ fn the_figures_of_odd_devices_are_corrected() {
     let [normal, odd] = ["", "current = \"milliamperes\"\npositive = true\n"].map(minute);
     assert!((current(&normal) - current(&odd)).abs() < 2.0, "{} {}", current(&normal), current(&odd));
     assert_eq!(odd.samples[40].current_raw, Some(-current(&odd) as i64));
-    // Voltage in whole volts: the exact value comes from the kernel, or power is left out.
+    // With the voltage in whole volts, either the kernel gives the exact value, or power is left out.
     let exact = minute("voltage = \"volts\"\nkernel-battery = true\n");
     let volts = |capture: &Capture| capture.samples[40].voltage_mv;
     assert!((volts(&exact).unwrap() - volts(&normal).unwrap()).abs() < 20.0, "{:?}", volts(&exact));
@@ -261,14 +261,14 @@ fn devices_are_listed_and_installed_on() {
         "{list}"
     );
     write(at, "a.apk", "");
-    // The only one that is ready is meant.
+    // The only device that is ready is chosen.
     let said = succeed(at, "device install --apk a.apk --replay s.toml").stdout;
     assert!(said.contains("SIM1: installed a.apk"), "{said}");
 }
 
 const SMALL: &str = "name = \"small\"\nseconds = 20\nwarm-up-seconds = 5\nrepetitions = 2\nscenes = [\"talk\", \"stage\"]\nbrightness = 100\nrefresh-hz = 60\n[cool-down]\ncelsius = 30\n[[method]]\nname = \"conventional\"\n[[method]]\nname = \"paper\"\nsettings = { method = \"yoro\", pipeline = \"paper\" }\n";
 
-/// The state that a device keeps: settings, properties, files.
+/// Reads the state that a device keeps between replays: settings, properties and files.
 fn kept(folder: &Path, serial: &str) -> serde_json::Value {
     serde_json::from_slice(&fs::read(folder.join(format!("state/{serial}.json"))).unwrap()).unwrap()
 }
@@ -348,7 +348,7 @@ fn from_an_experiment_to_its_report() {
     let at = dir.path();
     write(at, "e.toml", &SMALL.replace("seconds = 20", "seconds = 40"));
     let load = "[device.load]\nconventional = { frame-ms = 20.0, milliwatts = 4000.0 }\nyoro = { frame-ms = 10.0, milliwatts = 3000.0 }\n";
-    // One fault for each run. A fault that restarts the application advances the count of its starts.
+    // One fault per run. A fault that restarts the application also increments the number of its start.
     let faults = [
         fault("disconnect", "start = 1\nat = 20.5\nseconds = 10.0"),
         fault("plug", "start = 2\nat = 20.5\nseconds = 5.0"),
@@ -392,7 +392,7 @@ fn from_an_experiment_to_its_report() {
         assert!(named("faults").contains(name), "{name}: {:?}", named("faults"));
     }
     assert!(named("left_out").contains("plugged in") && named("left_out").contains("rebooted"));
-    // Systematic errors of a device's values are corrected.
+    // Systematic errors in a device's values are corrected.
     let power = report["differences"].as_array().unwrap().iter().find(|entry| {
         entry["quantity"] == "power"
             && entry["scene"].is_null()
@@ -426,7 +426,7 @@ fn an_experiment_goes_on_where_it_was_interrupted_or_killed() {
         runs.iter().filter(|run| serde_json::to_value(&run.info.outcome).unwrap()["state"] == state).count()
     };
     assert_eq!((outcomes("complete"), outcomes("interrupted")), (1, 1));
-    // Killed, it can give nothing back; the next start does.
+    // A killed program cannot restore the settings. The next one does.
     let mut child =
         yoro(line.split(' ')).current_dir(at).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     while !begun(4) {
@@ -482,7 +482,7 @@ fn refused_settings_and_refresh_rates_are_reported() {
         assert!(said.stderr.contains(words) && said.stdout.contains(words), "{words}: {}", said.stderr);
     }
     assert_eq!(kinds(&read(&at.join("run"))), [FaultKind::NotPinned]);
-    // A device may accept a setting without effect.
+    // A device may accept a setting that has no effect.
     write(at, "s.toml", "[[device]]\nserial = \"SIM1\"\nrefresh-hz = 60\n");
     let said = succeed(at, "device run talk --seconds 5 --refresh-hz 90 --replay s.toml --out other");
     assert!(said.stdout.contains("the display runs at 60 Hz, 90 Hz were asked for"), "{}", said.stdout);
@@ -533,7 +533,7 @@ fn other_applications_are_measured_and_compared() {
     assert_eq!((info.method.as_str(), info.scene.as_str(), info.repetition), ("one-view", "room", 2));
     assert_eq!(info.application.as_deref(), Some("7.1"));
     assert_eq!((kinds(&capture), info.outcome.clone()), (vec![], Outcome::Complete));
-    // The other process has 1 FPS.
+    // The other process has 1 FPS, which is ignored.
     assert!(capture.samples.len() > 30 && capture.samples.iter().all(|sample| sample.fps > Some(60.0)));
     let power = |sample: &Sample| -sample.current_ma.unwrap() * sample.voltage_mv.unwrap() / 1e3;
     assert!(capture.samples[10..].iter().all(|sample| (power(sample) / 4000.0 - 1.0).abs() < 0.2));
@@ -545,7 +545,7 @@ fn other_applications_are_measured_and_compared() {
     assert_eq!((power["pairs"].as_u64(), &power["method"]), (Some(2), &"one-view".into()));
     assert!((power["change"].as_f64().unwrap() + 20.0).abs() < 4.0, "{power}");
 
-    // The same, already running, and with names for the report.
+    // The same for an application that is already running, with names for the report.
     write(at, "s.toml", &format!("{device}foreground = \"com.example.game\"\n"));
     let names = "--package com.example.game --method one-view --scene room --repetition 3";
     succeed(at, &format!("device logcat {names} --seconds 20 --out log --replay s.toml"));
@@ -556,9 +556,9 @@ fn other_applications_are_measured_and_compared() {
     );
     assert!(log.samples.len() > 15 && log.samples.iter().all(|sample| sample.fps > Some(60.0)));
     assert!(log.samples.iter().all(|sample| sample.level_percent.is_some()));
-    // Without a current, as this headset gives none to the shell.
+    // No current, since this headset does not give it to the shell.
     assert_eq!(kinds(&log), [FaultKind::NoCurrent]);
-    // The application says nothing itself.
+    // The application logs nothing itself.
     let line = "device run room --package com.example.game --activity .Main --method x --log-process com.example.none --replay s.toml --out none";
     run(at, line).refuses(&["com.example.none has logged no frame rate", "4002", "2072"]);
 }
@@ -570,7 +570,7 @@ fn a_dry_run_is_a_plan() {
         let line = format!("device experiment {EXPERIMENTS}/{name}.toml --dry-run");
         let said = succeed(dir.path(), &line).stdout;
         assert!(said.contains(&format!("{runs} runs on a device: {length}")), "{said}");
-        // Seven hours are more than one charge.
+        // Seven hours take more than one battery charge.
         assert_eq!(said.contains("waits for somebody who charges it"), name == "paper", "{said}");
         assert_eq!(
             said.lines().filter(|line| line.trim_start().starts_with(|c: char| c.is_ascii_digit())).count(),
@@ -591,7 +591,7 @@ fn logs_recorded_from_the_application_play_again() {
     assert_eq!(first.samples[3].current_raw, Some(-512_000));
     let stderr = run(at, &line.replace("prototype", "talk").replace("--out", "--out talk")).stderr;
     assert!(stderr.contains("no recorded log of yoro in talk"), "{stderr}");
-    // Captures are recordings, too.
+    // Captures can be replayed.
     succeed(at, "device run prototype --seconds 10 --replay run --out again");
     let again = read(&at.join("again"));
     assert_eq!(again.samples[5].cpu_percent, first.samples[5].cpu_percent);
@@ -612,7 +612,7 @@ fn a_saved_log_is_a_table_and_a_capture() {
     let kept = read(&at.join("kept"));
     assert!(kept.info.device.simulated && kept.info.method == "yoro" && kept.samples.len() == 12);
     assert_eq!(fs::read(at.join("kept/log.txt")).unwrap(), fs::read(&log).unwrap());
-    // Cut, with an unknown key, and something that is no text; by standard input.
+    // Via standard input: a log with a line that is cut off, an unknown key, and bytes that are not text.
     let mut bytes = fs::read(&log).unwrap();
     let text = String::from_utf8(bytes.clone()).unwrap();
     let seventh = text.find("v=1,t=7.0s").unwrap();
@@ -647,7 +647,7 @@ fn a_log_is_followed() {
     assert!(said.contains("0 samples, 0 damaged lines") && said.contains("capture: log"), "{said}");
     let capture = read(&at.join("log"));
     assert!(capture.info.device.simulated && capture.info.method == "unknown", "{:?}", capture.info);
-    // Over everything that can happen to a log.
+    // With everything that can happen to a log.
     let faults = [
         fault("disconnect", "at = 10.5\nseconds = 10.0"),
         fault("log-ends", "at = 30.5"),
@@ -676,7 +676,7 @@ fn a_log_is_followed() {
     assert_eq!(kinds(&live), [Disconnected, ClockJump, DamagedLines, Rebooted]);
 }
 
-/// A shell script that answers like the program adb, which is not here.
+/// A shell script that answers like the program adb.
 #[cfg(unix)]
 const FAKE_ADB: &str = r#"#!/bin/sh
 # A fake adb: one device, on which everything works.
@@ -738,7 +738,7 @@ fn adb_is_called_with_the_right_arguments() {
     run(at, "device run --adb adb --serial FAKE2").refuses(&["FAKE2 does not trust"]);
     write(at, "a.apk", "");
     succeed(at, "device install --adb adb --apk a.apk");
-    // Output of adb for other applications: sndcpy issue 64, HyperSploit 54, InstallWithOptions 22, APK-Installer 25.
+    // Output of adb from issues of other projects: sndcpy 64, HyperSploit 54, InstallWithOptions 22, APK-Installer 25.
     for (said, words) in [
         ("Failure [INSTALL_FAILED_USER_RESTRICTED: Install canceled by user]", "Install via USB"),
         ("Failure [INSTALL_FAILED_VERSION_DOWNGRADE: Downgrade detected]", "a newer yoro is on FAKE1"),
@@ -781,7 +781,7 @@ fn adb_is_called_with_the_right_arguments() {
     assert_eq!(capture.samples.len(), 4);
 }
 
-/// A fake adb whose devices are a list.
+/// Writes a fake adb that runs this script for every command except `start-server`.
 #[cfg(unix)]
 fn fake_adb(at: &Path, script: &str) {
     use std::os::unix::fs::PermissionsExt;
@@ -794,7 +794,7 @@ fn fake_adb(at: &Path, script: &str) {
 fn a_missing_adb_server_is_not_reported_as_a_missing_device() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    // The text that flutter issue 125971 quotes.
+    // The message as quoted in flutter issue 125971.
     fake_adb(
         at,
         "echo 'List of devices attached'; echo '* daemon still not running' >&2; echo 'error: cannot connect to daemon at tcp:5037: Connection refused' >&2; exit 1\n",
@@ -831,9 +831,9 @@ fn a_phone_by_cable_and_by_wifi_is_one_phone() {
     let said = succeed(at, "device install --apk a.apk --all --adb adb");
     assert_eq!(installed(), 1, "{}", said.stdout);
     assert!(said.stderr.contains("are the same device: 5C061JEA327610 is used"), "{}", said.stderr);
-    // The command needs no choice among them.
+    // Since they are one device, nothing has to be chosen.
     succeed(at, "device install --apk a.apk --adb adb");
-    // marathon issue 223: all emulators of an image have one serial number.
+    // All emulators of an image have the same serial number (marathon issue 223).
     fake(&["emulator-5554", "emulator-5556"], "EMULATOR28X0X23X0");
     succeed(at, "device install --apk a.apk --all --adb adb");
     assert_eq!(installed(), 2);

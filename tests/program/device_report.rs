@@ -1,4 +1,4 @@
-//! `yoro device report`: captures in, a page and tables out. The captures are made up here.
+//! `yoro device report`: captures in, a page and tables out. The captures are made up by this test.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::program::{run, succeed};
 
 const SECONDS: u32 = 60;
 
-/// A run with constant power and frame rate.
+/// Writes a run with constant power and frame rate.
 fn write(
     folder: &Path,
     method: &str,
@@ -82,7 +82,7 @@ fn known_differences_come_out_and_faults_are_named() {
         [&[], &[FaultKind::Disconnected, FaultKind::CurrentSign], &[FaultKind::PluggedIn]];
     for (i, scene) in ["street", "atrium"].into_iter().enumerate() {
         for repetition in 1..=3u32 {
-            // The battery's own drift meets both methods.
+            // The battery drifts, which affects both methods.
             let drift = 1.0 + 0.01 * f64::from(repetition);
             let folder = |method: &str| at.join(format!("captures/{scene}/{method}-{repetition}"));
             write(&folder("conventional"), "conventional", scene, repetition, 500.0 * drift, 30.0, &[]);
@@ -103,7 +103,7 @@ fn known_differences_come_out_and_faults_are_named() {
         assert!((value - expected).abs() < 1e-3, "{value} is not {expected}");
     };
     let street = find(&report, "differences", &[("scene", "street"), ("quantity", "power")]);
-    // One of three pairs was plugged in.
+    // A charger was plugged in during one of the three pairs.
     assert_eq!(street["pairs"], 2);
     near(&street["change"], -20.0);
     let all = report["differences"].as_array().unwrap().iter();
@@ -160,7 +160,7 @@ fn folders_without_captures_are_refused() {
         run(at, line).refuses(naming);
     }
     assert_eq!(fs::read(at.join("out/report.html")).unwrap(), b"made earlier");
-    // Without the baseline the report has the means, and names the missing part.
+    // Without the baseline, the report has the means and says what is missing.
     let run = succeed(at, "device report good --out out");
     assert!(run.stdout.contains("no run of conventional"), "{}", run.stdout);
     let again = succeed(at, "device report good --baseline yoro --out out");

@@ -1,4 +1,4 @@
-//! What the program does to files: no output replaces an input, and one process at a time appends to a file.
+//! How the program treats files: outputs never replace inputs, and only one process at a time appends to a file.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::program::{run, succeed};
 const RATINGS: &str =
     "participant,method,scene,question,rating\nP1,yoro,street,q,3\nP1,conventional,street,q,3\n";
 
-/// All files below a folder with their content.
+/// Returns all files below a folder with their contents.
 fn contents(at: &Path) -> Vec<(String, Vec<u8>)> {
     let names = yoro_files::find(at, &["png", "log", "csv", "jsonl", "txt", "json", "exr", "md"]).unwrap();
     names.into_iter().map(|name| (name.display().to_string(), fs::read(at.join(name)).unwrap())).collect()
@@ -44,7 +44,7 @@ fn no_output_replaces_an_input() {
         ("compare a.png b.png --map ./b.png", "b.png is read"),
         ("compare a.png b.png --mask b.png --map b.png", "b.png is read"),
         ("compare left right --map right", "one.png is read"),
-        // The map of the first pair is a picture of the second.
+        // The map of the first pair would replace a picture of the second pair.
         ("compare left right --map left/sub", "left/sub/one.png is read"),
         ("study collect log.txt --out log.txt", "log.txt is read, so the table of ratings"),
         ("study collect log.txt --plan p.csv --out p.csv", "p.csv is read"),

@@ -1,4 +1,4 @@
-//! `yoro layer`: the OpenXR API layer put where loaders look, and taken away again.
+//! `yoro layer`, which installs and removes the OpenXR API layer where loaders look for it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,12 +14,12 @@ fn layer(folder: &Path, arguments: &[&str]) -> Run {
     finish(&mut command)
 }
 
-/// Returns a library of this build: that of the layer, or of the simulated runtime.
+/// Returns the path of a library of this build: the layer or the simulated runtime.
 fn library(name: &str) -> PathBuf {
     Path::new(env!("CARGO_BIN_EXE_yoro")).with_file_name("deps").join(name)
 }
 
-/// Returns the layer's library as an argument.
+/// Returns the path of the layer's library as an argument.
 fn own_library() -> String {
     library("libyoro_layer.so").into_os_string().into_string().unwrap()
 }
@@ -51,7 +51,7 @@ fn the_layer_is_installed_listed_and_removed() {
     assert_eq!(layer(folder, &["remove"]).code, Some(0));
 }
 
-/// With a library that is no layer, every program that looks for the layer would fail to start.
+/// If the library is not a layer, every program that uses the layer fails to start.
 #[test]
 fn a_library_that_is_not_the_layer_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -74,7 +74,7 @@ fn a_library_that_is_not_the_layer_is_refused() {
     }
     assert!(!folder.join("data").exists());
 
-    // Also later, when something else lies in its place.
+    // The same if the library is replaced later.
     assert_eq!(layer(folder, &["install", "--library", &own_library()]).code, Some(0));
     let installed = folder.join("data/yoro/libyoro_layer.so");
     fs::copy(folder.join("runtime.so"), &installed).unwrap();
@@ -95,7 +95,7 @@ fn a_link_in_place_of_the_library_is_replaced() {
     assert!(!installed.is_symlink() && installed.is_file());
 }
 
-/// Loaders take XDG_DATA_HOME relative to each program's folder, and split it at colons.
+/// Loaders interpret XDG_DATA_HOME relative to each program's current folder, and split it at colons.
 #[test]
 fn folders_where_no_loader_looks_are_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -9,7 +9,7 @@ use crate::program::yoro;
 
 const LIMIT_MIB: u64 = 1500;
 
-/// The most memory that a running process has held so far, in MiB.
+/// Returns the peak memory of a running process so far, in MiB.
 fn peak(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -22,7 +22,7 @@ fn the_largest_scene_stays_below_the_limit() {
     let arguments = ["render", "voxel", "--size", "512x512"];
     let mut child = yoro(arguments).current_dir(dir.path()).stdout(Stdio::null()).spawn().unwrap();
     let mut highest = 0;
-    // A peak only grows, so that no more than the last few milliseconds are missed.
+    // The peak only grows, so at most the last few milliseconds are missed.
     let status = loop {
         highest = highest.max(peak(child.id()).unwrap_or(0));
         if let Some(status) = child.try_wait().unwrap() {

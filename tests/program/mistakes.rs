@@ -1,4 +1,4 @@
-//! A newcomer's mistakes: each is answered with one sentence, and spoils no file.
+//! Mistakes of new users: each is answered with one sentence, and damages no file.
 
 use std::fs;
 use std::path::Path;
@@ -44,8 +44,8 @@ fn files_that_are_no_pictures_are_refused() {
     }
     assert_eq!(fs::read(at.join("out.png")).unwrap(), b"made earlier");
     assert!(!at.join("new").exists(), "a folder for nothing");
-    // A palette of four bytes, on which the decoder panics (png 0.18.1), and a header after which nothing comes, of
-    // which the decoder writes two lines.
+    // A palette of four bytes, on which the decoder panics (png 0.18.1), and a JPEG with nothing but a header, for
+    // which the decoder prints two lines.
     fs::write(at.join("palette.png"), PALETTE_OF_FOUR_BYTES).unwrap();
     fs::write(at.join("header.jpg"), b"\xff\xd8\xff\xe0\0\x10JFIF\0").unwrap();
     for name in ["palette.png", "header.jpg"] {

@@ -14,24 +14,24 @@ pub struct Run {
 }
 
 impl Run {
-    /// Reads the output of a finished process.
+    /// Makes a run from the output of a finished process.
     pub fn new(output: Output) -> Run {
         let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
         Run { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
     }
 
-    /// Standard output as JSON.
+    /// Parses standard output as JSON.
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e}: {}", self.stdout))
     }
 
-    /// Fails unless the run failed as a user's mistake should: exit code 2, one sentence on stderr that contains
-    /// all of `naming`, nothing of Rust's own.
+    /// Fails unless the run failed as it should after a user's mistake: with exit code 2 and one sentence on stderr
+    /// that contains all of `naming`, without any message of Rust itself.
     #[track_caller]
     pub fn refuses(&self, naming: &[&str]) {
         let text = &self.stderr;
         assert_eq!(self.code, Some(2), "{text}");
-        // The parser of the command line adds the possible values and a hint for help, in lines of their own.
+        // The parser of the command line adds lines with the possible values and a hint to the help.
         let hints = ["Usage:", "For more information", "  "];
         let hint = |line: &&str| hints.iter().any(|hint| line.starts_with(hint));
         let mut lines = text.lines().filter(|line| !line.is_empty() && !hint(line));
@@ -48,19 +48,19 @@ impl Run {
     }
 }
 
-/// The program with arguments, without the tester's settings.
+/// Returns the command that runs the program with these arguments and without the tester's environment settings.
 pub fn yoro<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_yoro"));
     command.args(arguments).stdin(Stdio::null()).env_remove("RUST_LOG").env_remove("RUST_BACKTRACE");
     command
 }
 
-/// Runs the program with a line of arguments, split at spaces, in a folder.
+/// Runs the program in a folder with a line of arguments, which is split at spaces.
 pub fn run(folder: &Path, line: &str) -> Run {
     finish(yoro(line.split_whitespace()).current_dir(folder))
 }
 
-/// Runs as [`run`] does; the exit code must be 0.
+/// Runs the program like [`run`]. Fails unless the exit code is 0.
 #[track_caller]
 pub fn succeed(folder: &Path, line: &str) -> Run {
     let run = run(folder, line);
@@ -68,13 +68,13 @@ pub fn succeed(folder: &Path, line: &str) -> Run {
     run
 }
 
-/// Runs a command to its end.
+/// Runs a command, and waits for its end.
 pub fn finish(command: &mut Command) -> Run {
     Run::new(command.output().expect("the program starts"))
 }
 
-/// Runs the program with a line of arguments in a folder until `begun`, then presses Ctrl-C: it must not have ended by
-/// itself, and must end soon, with the exit code 130. What it writes to standard output is lost.
+/// Runs the program in a folder with a line of arguments until `begun` returns true, then sends Ctrl-C. Fails if the
+/// program has ended before, or does not end soon afterwards with exit code 130. Its standard output is lost.
 #[track_caller]
 pub fn interrupt(folder: &Path, line: &str, begun: impl Fn() -> bool) -> Run {
     let mut command = yoro(line.split_whitespace());
@@ -100,7 +100,7 @@ pub fn interrupt(folder: &Path, line: &str, begun: impl Fn() -> bool) -> Run {
     run
 }
 
-/// Sends a running program what Ctrl-C sends.
+/// Sends a running program the signal of Ctrl-C.
 pub fn press_ctrl_c(child: &Child) {
     let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
     assert!(killed.success());

@@ -8,7 +8,7 @@ use yoro_lab::picture;
 
 use crate::program::{run, succeed};
 
-/// A textured wall in front of a red one; `mtllib` and the texture are written by those who want them.
+/// A textured wall in front of a red one. Tests write the `mtllib` and the texture if they need them.
 const OBJ: &str = "mtllib room.mtl
 v -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2
 v -9 -9 -6\nv 9 -9 -6\nv 9 9 -6\nv -9 9 -6
@@ -19,7 +19,7 @@ usemtl red\nf 5/1 6/2 7/3 8/4
 const MTL: &str = "newmtl picture\nKd 1 1 1\nmap_Kd picture.png\nnewmtl red\nKd 0.8 0.1 0.1\n";
 const LOOK: &str = "--position 0,0,0 --target 0,0,-1 --size 96x64";
 
-/// A triangle that goes from left to right in a second.
+/// A triangle that moves from left to right within a second.
 const MOVING: &str = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
   "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}],
@@ -44,7 +44,7 @@ fn hue(image: &RgbImage, x: u32, y: u32) -> usize {
     (0..3).max_by_key(|&c| pixel[c]).unwrap()
 }
 
-/// Rounding to f32 displaces eyes far from the origin; the library takes it for what it is.
+/// Far from the origin, the positions of the eyes are rounded to f32. The library accepts this.
 #[test]
 fn scenes_far_from_the_origin_are_rendered() {
     let dir = tempfile::tempdir().unwrap();
@@ -54,7 +54,7 @@ fn scenes_far_from_the_origin_are_rendered() {
         let place = format!("--position {x},1.6,{z} --target {},1.2,{}", x + 4.0, z + 3.0);
         succeed(dir.path(), &format!("render prototype --size 64x64 --outputs left {place}"));
     }
-    // The steps between are as far.
+    // Positions at this distance are rounded to equally large steps.
     fs::write(dir.path().join("m.obj"), "v 1500 0 0\nv 1510 0 0\nv 1500 5 1\nf 1 2 3\n").unwrap();
     let camera = |x: f32| {
         format!(
@@ -79,7 +79,7 @@ fn materials_and_textures_of_an_obj_file() {
     assert_eq!(run.stdout, "out/room.left.png\nout/room.right.png\nout/room.side-by-side.png\n");
     let image = right_eye(dir.path());
     assert_eq!(image.dimensions(), (96, 64));
-    // The right eye is 31.5 mm to the right: the middle of the near wall is a little left of the middle.
+    // The right eye is 31.5 mm to the right, so the near wall's centre is slightly to the left of the image's centre.
     assert_eq!([hue(&image, 40, 32), hue(&image, 56, 32), hue(&image, 5, 32)], [1, 2, 0]);
     let both = picture::load_color(&dir.path().join("out/room.side-by-side.png")).unwrap();
     assert_eq!(both.dimensions(), (192, 64));
@@ -118,7 +118,7 @@ fn every_output_and_measure() {
     assert_eq!(ssim(&json[0]["quality"]), 1.0, "{json:#}");
 }
 
-/// Features of a glTF file that the renderer does not draw are reported once for each material.
+/// Features of a glTF file that the renderer does not support are reported once per material.
 #[test]
 fn features_left_out_of_a_gltf_file_are_reported() {
     let dir = tempfile::tempdir().unwrap();
@@ -159,11 +159,11 @@ fn what_moves_is_rendered_at_a_time() {
     };
     let [start, half] = ["", "--time 0.5"].map(|options| render(options, "m"));
     assert!(start != half);
-    // Over and over, and before the start.
+    // The animation repeats, also before its start.
     for (options, expected) in [("--time 0", &start), ("--time 3", &start), ("--time -1.5", &half)] {
         assert!(render(options, "m") == *expected, "{options}");
     }
-    // The fourth frame comes a tenth of a second after the first.
+    // The fourth frame is a tenth of a second after the first.
     let last = render("--frames 4 --time 0.4", "m-0003");
     assert!(last == render("--pose 1 --time 0.5", "m") && last != render("--pose 1 --time 0.4", "m"));
     run(dir.path(), "render m.gltf --time soon").refuses(&["--time", "seconds"]);

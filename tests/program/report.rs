@@ -53,7 +53,7 @@ fn measurements_of_bench_are_reported() {
     for needed in ["rgb-depth-packed", "mono-rgb", "*-38.7 %*", "BD-rate"] {
         assert!(results.contains(needed), "{needed}: {results}");
     }
-    // Four quantizers: each is finer and costs more than the next.
+    // Four quantizers, from fine to coarse: each costs more than the next one.
     let rates: Vec<f64> = results
         .lines()
         .filter_map(|line| line.strip_prefix("| prototype | "))
@@ -89,12 +89,12 @@ fn files_without_results_are_refused() {
         ("report", &["<FILE.jsonl>"]),
     ] {
         let mut run = run(at, line);
-        // The parts left out of a half-written file are reported on a line of their own.
+        // A separate line reports what was left out of an incomplete file.
         run.stderr = run.stderr.lines().filter(|l| !l.contains("WARN")).collect::<Vec<_>>().join("\n");
         run.refuses(naming);
     }
     assert_eq!(fs::read(at.join("out/report.html")).unwrap(), b"made earlier");
-    // Cut off in its second round, a file reports its first.
+    // If a file is cut off in its second round, the first round is reported.
     write(at, "cut.jsonl", &format!("{HEADER}\n{ROUND}\n{}", &ROUND[..300]));
     let run = succeed(at, "report cut.jsonl");
     assert!(run.stderr.contains("cut.jsonl"), "{}", run.stderr);

@@ -43,7 +43,7 @@ fn scenes_of_one_name_are_refused() {
     assert!(!dir.path().join("out").exists());
 }
 
-/// Every method is perfect on an empty view.
+/// On an empty view every method would be perfect.
 #[test]
 fn a_view_of_nothing_is_not_measured() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `yoro study`: from a plan over a log to a verdict. The ratings are made up here.
+//! `yoro study`: from a plan to a log to a verdict. The ratings are made up by this test.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::browser::{Browser, check_figures};
 use crate::program::{run, succeed};
 
-/// The answer of a participant who likes both methods about the same.
+/// Returns the answer of a participant who likes both methods about equally.
 fn rating(participant: usize, method: &str, scene: usize) -> f64 {
     let taste = 3.0 + 0.1 * (participant % 5) as f64;
     let whim = if method == "yoro" { 0.1 * ((participant * 7 + scene * 3) % 5) as f64 - 0.2 } else { 0.0 };
@@ -28,7 +28,7 @@ fn from_a_plan_to_a_verdict() {
     let trials = plan["trials"].as_array().unwrap();
     assert_eq!((trials.len(), csv.lines().count()), (36, 37));
 
-    // The log that a viewer would write, with other lines that logs contain.
+    // The log that a viewer would write, among other lines of a log.
     let mut log =
         String::from("--------- beginning of main\n11-21 10:00:00.000  1  1 I YORO    : v=1,t=1.0s\n");
     let scenes: BTreeMap<&str, usize> = [("street", 0), ("atrium", 1), ("talk", 2)].into();
@@ -50,7 +50,7 @@ fn from_a_plan_to_a_verdict() {
             cells[1]
         );
     }
-    // One answer is cut off, and its participant therefore incomplete.
+    // One answer is cut off, so its participant is incomplete.
     log.truncate(log.trim_end().len() - 1);
     fs::write(at.join("log.txt"), &log).unwrap();
     let collected = succeed(at, "study collect log.txt --plan plan.csv --out ratings.csv");
@@ -80,7 +80,7 @@ fn from_a_plan_to_a_verdict() {
     if let Some(mut browser) = Browser::start() {
         check_figures(&mut browser, &at.join("out/study.html"));
     }
-    // A scale from the command line limits the ratings.
+    // The scale on the command line limits the ratings.
     run(at, "study analyse ratings.csv --scale 1..3 --out out")
         .refuses(&["ratings.csv, line 2", "from 1 to 3"]);
 }

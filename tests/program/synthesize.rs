@@ -1,4 +1,4 @@
-//! `yoro synthesize` on pictures whose other eye is known.
+//! `yoro synthesize` on pictures whose other eye is known exactly.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ fn eyes() -> String {
     format!("--fov-y-degrees {FOV_Y_DEGREES} --ipd {IPD}")
 }
 
-/// Returns the PSNR in dB against an eye's true image. Disocclusions, a few percent here, are guessed by nature.
+/// Returns the PSNR in dB against an eye's true image. Disocclusions, a few percent here, can only be guessed.
 fn quality(image: &RgbImage, eye: f32) -> f64 {
     let Psnr(db) = psnr(image, &pair::color(eye), Channels::Rgb).unwrap();
     db
@@ -25,7 +25,7 @@ fn load(path: &Path) -> RgbImage {
     picture::load_color(path).unwrap()
 }
 
-/// The right eye's colour, and its depth in each encoding with the options that decode it.
+/// Writes the right eye's colour, and its depth in each encoding. Returns the options that decode each.
 fn write_encodings(dir: &Path) -> Vec<(&'static str, String)> {
     picture::save_color(&dir.join("color.png"), &pair::color(0.5)).unwrap();
     let save = |name: &str, image| picture::save_depth(&dir.join(name), &image).unwrap();
@@ -69,7 +69,7 @@ fn every_depth_encoding_gives_the_same_eye() {
             "{depth}: {db:.2} dB is hardly better than no shift"
         );
         let first = first.get_or_insert_with(|| image.clone());
-        // 16 bits are a little coarser than float; that moves an edge by less than 1/50 of a pixel.
+        // 16 bits are slightly coarser than float, which moves edges by less than 1/50 of a pixel.
         let Psnr(likeness) = psnr(&image, first, Channels::Rgb).unwrap();
         assert!(likeness > 45.0, "{depth} differs: {likeness:.2} dB");
     }
@@ -97,7 +97,7 @@ fn every_pipeline_and_either_eye() {
     }
 }
 
-/// Pictures made smaller are anti-aliased. If the options say so, the other eye is closer to its true image.
+/// Downscaled pictures are anti-aliased. If the options say so, the other eye is closer to its true image.
 #[test]
 fn anti_aliased_pictures_by_what_their_depth_is() {
     const N: u32 = 4;
@@ -186,7 +186,7 @@ fn folders() {
     run(dir.path(), &line).refuses(&["c.png has no depth image of that name in depth"]);
 }
 
-/// An output that would silently replace something is refused before anything is written.
+/// An output that would silently replace a file is refused before anything is written.
 #[test]
 fn every_output_has_its_place() {
     let dir = tempfile::tempdir().unwrap();

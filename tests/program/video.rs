@@ -41,8 +41,8 @@ fn both_eyes_come_out_of_an_rgbd_video() {
     }
 }
 
-/// A file as the iPhone application Record3D writes it: depth as hue on the left, the camera in the metadata. It is
-/// made of this program's own, whose eye is not widened; no phone has recorded one for this test.
+/// A file in the format of the iPhone application Record3D: depth as hue on the left, the camera in the metadata. It is
+/// made from a video of this program whose eye is not widened, since no recording of a phone was available.
 #[test]
 fn a_video_of_record3d_becomes_stereo() {
     let dir = tempfile::tempdir().unwrap();
@@ -52,7 +52,7 @@ fn a_video_of_record3d_becomes_stereo() {
     let mut reader = Reader::open(&at.join("rgbd.mp4")).unwrap();
     let rgbd = reader.rgbd().unwrap();
     assert_eq!(rgbd.guard_columns, 0);
-    // What is farther is told as farthest.
+    // Anything farther is stored as the farthest distance.
     const RANGE: f32 = 6.0;
     let hue = |depth: u8| {
         let share = f32::from(depth) / 255.0;

@@ -17,7 +17,7 @@ fn view(folder: &Path, line: &str) -> RgbImage {
     picture::load_color(&folder.join("view.png")).unwrap()
 }
 
-/// Mean difference of two pictures in a square around the left lens's centre, in grey levels.
+/// Returns the mean difference of two pictures in a square around the left lens's centre, in grey levels.
 fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
     let (x, y) = ((0.025 / 0.110 * 384.0) as u32, 216 - (0.032 / 0.062 * 216.0) as u32);
     let mut sum = 0;
@@ -45,11 +45,11 @@ fn both_eyes_behind_their_lenses() {
     let real = view(dir.path(), "prototype --no-hud --method conventional");
     let mono = view(dir.path(), "prototype --no-hud --method mono");
     let (synthesized, same) = (difference(&image, &real), difference(&mono, &real));
-    // About 5.5 and 9.0 grey levels: most of the view is far away.
+    // About 5.5 and 9.0 grey levels, since most of the view is far away.
     assert!(synthesized < 0.7 * same, "{synthesized} synthesized, {same} without stereo");
 }
 
-/// The program once ended in a segmentation fault after the picture: objects were deleted after their context.
+/// Regression test: the program ended with a segmentation fault, because objects were deleted after their context.
 #[test]
 fn objects_keep_their_context() {
     if std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some() {
@@ -73,7 +73,7 @@ fn timewarp_makes_up_for_a_late_turn() {
     assert_eq!([late("true"), late("false")], [rotation, never], "the names of earlier versions");
 }
 
-/// `yoro view` on a driver that offers nothing newer than this.
+/// Runs `yoro view` on a driver that supports no newer version of OpenGL ES than this.
 fn on_es(version: &str, folder: &Path, line: &str) -> Run {
     finish(
         yoro(format!("view --gl egl --png es.png {SMALL} --no-hud {line}").split_whitespace())

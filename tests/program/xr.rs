@@ -1,4 +1,4 @@
-//! `yoro xr`, on the simulated runtime of ../openxr-stub and on Monado.
+//! `yoro xr` on the simulated runtime of ../openxr-stub and on Monado.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -26,9 +26,9 @@ use yoro_render::{GpuScene, RenderSettings, Renderer};
 
 use crate::program::{Run, finish, yoro};
 
-/// Settings for cheap rendering.
+/// Settings that make rendering cheap.
 const CHEAP: [&str; 4] = ["shadow-map=0", "ssao=off", "bloom=false", "hud=false"];
-/// The time limit of a run; those with large pictures of large scenes have the second one.
+/// Time limits of a run: the usual one, and that of large pictures of large scenes.
 const LIMIT: Duration = Duration::from_secs(60);
 const LARGE_LIMIT: Duration = Duration::from_secs(600);
 
@@ -36,7 +36,7 @@ fn cheap() -> impl Iterator<Item = &'static str> {
     CHEAP.iter().flat_map(|setting| ["--set", *setting])
 }
 
-/// Runs to the end, which must come in time.
+/// Runs a command, which must end in time.
 #[track_caller]
 fn in_time(command: &mut Command, limit: Duration) -> Run {
     let mut child =
@@ -53,7 +53,7 @@ fn in_time(command: &mut Command, limit: Duration) -> Run {
     Run::new(child.wait_with_output().unwrap())
 }
 
-/// The simulated runtime with a script, and its log.
+/// The simulated runtime with a script and its log.
 struct Simulated {
     folder: TempDir,
 }
@@ -68,7 +68,7 @@ impl Simulated {
             pictures.folder = folder.path().into();
         }
         fs::write(at("script.json"), serde_json::to_string(&script).unwrap()).unwrap();
-        // Cargo builds it for these tests, beside them.
+        // Cargo builds it for these tests, into the same folder.
         let library = std::env::current_exe().unwrap().with_file_name("libyoro_openxr_stub.so");
         let manifest = json!({
             "file_format_version": "1.0.0",
@@ -78,7 +78,7 @@ impl Simulated {
         Simulated { folder }
     }
 
-    /// Runs `yoro xr` with a line of arguments and cheap rendering.
+    /// Runs `yoro xr` with a line of arguments and cheap settings.
     #[track_caller]
     fn run(&self, line: &str) -> Run {
         self.run_as(line, cheap(), LIMIT)
@@ -93,7 +93,7 @@ impl Simulated {
         in_time(&mut command, limit)
     }
 
-    /// Runs as [`Simulated::run`] does. It must succeed, without anything that the specification forbids.
+    /// Runs the program like [`Simulated::run`]. Fails if it fails or violates the specification.
     #[track_caller]
     fn succeed(&self, line: &str) -> Run {
         let run = self.run(line);
@@ -106,7 +106,7 @@ impl Simulated {
         log::read(&self.path("log.jsonl"))
     }
 
-    /// Checks that there was no violation of the specification.
+    /// Fails if the specification was violated.
     #[track_caller]
     fn check(&self) {
         let violations: Vec<Entry> =
@@ -122,7 +122,7 @@ impl Simulated {
         picture::load_color(&self.path(name)).unwrap()
     }
 
-    /// The views of each frame that has any, with the frame's number.
+    /// Returns the number and the views of each frame that has views.
     fn views(&self) -> Vec<(u32, Vec<View>)> {
         let views = |entry| match entry {
             Entry::Frame { frame, layers, .. } => layers.into_iter().find_map(|layer| match layer {
@@ -143,7 +143,7 @@ fn event(at: At, what: What) -> Event {
     Event { at, what }
 }
 
-/// Lines of the log that tell of a failure.
+/// Returns the lines of the log that report a failure.
 fn failures(run: &Run) -> Vec<&str> {
     run.stderr.lines().filter(|line| line.contains("OpenXR runtime")).collect()
 }
@@ -156,7 +156,7 @@ fn assert_no_crash(run: &Run) {
     }
 }
 
-/// Columns and rows at the edges, and everything between, hold no pixel that was never drawn.
+/// Fails if a pixel was never drawn, in the columns and rows at the edges or anywhere between.
 #[track_caller]
 fn assert_drawn(image: &RgbImage) {
     let poison = Rgb([POISON[0], POISON[1], POISON[2]]);
@@ -240,7 +240,7 @@ fn any_call_may_fail_once() {
     let Some(Entry::Calls { counts }) = clean.log().pop() else { panic!("the log ends with the calls") };
     assert!(counts.len() > 40, "{counts:?}");
     for call in counts.keys() {
-        // Only the calls of xrGetInstanceProcAddr before the instance matter.
+        // Only the calls of xrGetInstanceProcAddr before the instance is created matter.
         let fault = Fault { call: call.clone(), nth: 1, and_later: false, result: -2 };
         let simulated = Simulated::new(&Script { faults: vec![fault], ..Script::default() });
         let run = simulated.run("--frames 2");
@@ -279,7 +279,7 @@ fn a_session_is_lost_in_every_state() {
             simulated.check();
             assert_eq!(simulated.count(|e| matches!(e, Entry::Scripted { .. })), 1, "{case}");
             if state == State::Stopping {
-                // All frames were there: nothing needs to be begun again.
+                // All frames were shown, so nothing has to be started again.
                 continue;
             }
             assert_eq!(run.code, Some(0), "{case}: {}", run.stderr);
@@ -365,12 +365,12 @@ fn controllers_switch_methods() {
     assert_eq!(methods, ["auto", "yoro", "auto"]);
 }
 
-/// The menu's panel as a layer of its own, a tile chosen by a controller's ray, and another one by the left hand's.
+/// The menu's panel is a separate layer. A tile is selected by a controller's ray, another one by the left hand's.
 #[test]
 fn a_ray_chooses_from_the_menu() {
     let input =
         |frame, path: &str, value| Input { frame, path: format!("/user/hand/{path}"), value: [value, 0.0] };
-    // From a hand at the right hip to the tile for the viewpoint, and from the left one to the tile for the figures.
+    // From the right hip to the tile of the viewpoint, and from the left hip to the tile of the figures.
     let aim = |frame, is_left, yaw_degrees, pitch_degrees| Aim { frame, is_left, yaw_degrees, pitch_degrees };
     let script = Script {
         inputs: vec![
@@ -396,7 +396,7 @@ fn a_ray_chooses_from_the_menu() {
     let said: Vec<&str> =
         run.stderr.lines().filter_map(|line| line.split_once("menu: ")).map(|(_, said)| said).collect();
     assert_eq!(said, ["open", "viewpoint=1", "hud=true"], "{}", run.stderr);
-    // White letters on tiles of 45 and 15 of 255.
+    // White letters on tiles with the values 45 and 15 of 255.
     let panel = simulated.picture("quad-0.png");
     let share = |is: fn(u8) -> bool| {
         panel.pixels().filter(|pixel| is(pixel.0[0])).count() as f32 / (panel.width() * panel.height()) as f32
@@ -462,7 +462,7 @@ fn missing_extensions_are_worked_around() {
     let log = simulated.log();
     assert!(!log.iter().any(|e| matches!(e, Entry::Request { what, .. } if what == "refresh-rate")));
 
-    // No sRGB, no depth; no controllers; no stereo.
+    // Without sRGB and depth, without controllers, without stereo.
     let simulated = Simulated::new(&Script { formats: vec![0x8058], profile: None, ..Script::default() });
     simulated.succeed("--frames 1");
     let simulated = Simulated::new(&Script { stereo: false, ..Script::default() });
@@ -556,7 +556,7 @@ fn canted_and_unequal_eyes_are_drawn_completely() {
     }
 }
 
-/// The desktop's own renderer with the same eyes and settings.
+/// Renders the same eyes with the same settings on the desktop.
 fn desktop(scene: &str, method: Method, pair: &EyePair, settings: &Settings) -> [RgbImage; 2] {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
@@ -603,7 +603,7 @@ fn the_headset_shows_what_the_desktop_renders() {
     }
 }
 
-/// The synthesized eye against the really rendered one: quality, and that of the outer tenth of the image.
+/// Compares the synthesized eye with a real render. Returns the quality of the whole image, and of its outer tenth.
 fn synthesized(scene: &str, eyes: [ScriptEye; 2]) -> (Quality, Quality) {
     let simulated = Simulated::new(&Script { poison: true, eyes, ..Script::default() });
     let line = format!("{scene} --method conventional,yoro --frames 1 --capture captured --json --no-hud");
@@ -622,7 +622,7 @@ fn synthesized(scene: &str, eyes: [ScriptEye; 2]) -> (Quality, Quality) {
     (rgb(made, real), rgb(&outer(made), &outer(real)))
 }
 
-/// Frusta of a headset, 52 degrees outwards and 42 inwards.
+/// Frusta of a headset: 52 degrees outwards, 42 degrees inwards.
 fn asymmetric(size: [u32; 2]) -> [ScriptEye; 2] {
     Script::default().asymmetric().eyes.map(|eye| ScriptEye { size, ..eye })
 }
@@ -635,7 +635,7 @@ fn asymmetric_eyes_are_synthesized_well() {
 }
 
 /// `cargo test -p yoro --test program -- --ignored asymmetric --nocapture`. Symmetric eyes of the same width show which
-/// differences in quality are not due to the frusta.
+/// differences in quality do not come from the frusta.
 #[test]
 #[ignore = "takes minutes"]
 fn asymmetric_eyes_in_every_scene() {
@@ -659,7 +659,7 @@ fn asymmetric_eyes_in_every_scene() {
     }
 }
 
-/// Monado's service in a folder of its own, until it is dropped.
+/// Monado's service with its own folder. It is ended when this is dropped.
 struct Monado {
     programs: PathBuf,
     folder: TempDir,
@@ -667,7 +667,7 @@ struct Monado {
 }
 
 impl Monado {
-    /// Starts the service; none if the tests are set to do without it.
+    /// Starts the service. Returns `None` if the tests have to run without it.
     fn start() -> Option<Monado> {
         let Some(programs) = std::env::var_os("YORO_TEST_MONADO").map(PathBuf::from) else {
             let without = std::env::var_os("YORO_TEST_WITHOUT_MONADO").is_some();
@@ -708,8 +708,8 @@ impl Drop for Monado {
     }
 }
 
-/// Runs the program as an application of one view, in an array of two. The layer's result equals the program's own
-/// synthesis, for whole images and for a part of larger ones.
+/// Runs the program as an application that renders one view, into an array of two. The layer's result must equal the
+/// program's own synthesis, both for whole images and for parts of larger ones.
 #[test]
 fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
     let Some(programs) = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from) else {
@@ -726,14 +726,14 @@ fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
 }
 
 fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
-    // The program smooths edges after its synthesis, and before the layer's.
+    // The program smooths edges after its synthesis, which is before the layer's.
     const UNSMOOTHED: &str = "anti-aliasing=off";
     let pictures = Some(Pictures { folder: "in the run's own".into(), from: 0 });
     let simulated = Simulated::new(&Script { pictures, ..Script::default() }.asymmetric());
     let folder = simulated.folder.path();
     let mut command = yoro(["layer", "run", "--library"]);
     command
-        // Cargo builds it for these tests, beside them.
+        // Cargo builds it for these tests, into the same folder.
         .arg(std::env::current_exe().unwrap().with_file_name("libyoro_layer.so"))
         .arg("--")
         .arg(programs.join("run"))
@@ -754,18 +754,18 @@ fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
     let end = run.stderr.lines().find(|line| line.contains("session ended after")).unwrap();
     assert!(end.ends_with(" synthesized, 0 not"), "{}", run.stderr);
 
-    // The same is in its log.
+    // The layer's log says the same.
     let log = fs::read_to_string(folder.join("yoro/layer.log")).unwrap();
     assert!(log.contains(end), "{log}");
 
-    // A layer may ask for functions of extensions that are not enabled, as it has no other way to find out.
+    // A layer may look up functions of extensions that are not enabled, since it cannot know which are.
     let violations = simulated
         .count(|entry| matches!(entry, Entry::Violation { call, .. } if call != "xrGetInstanceProcAddr"));
     assert_eq!(violations, 0, "{:#?}", simulated.log());
     let views = simulated.views();
     let (_, views) = views.last().unwrap();
     assert!(views.iter().all(|view| view.depth.is_some()), "{views:?}");
-    // The pose of the program's one view in the scene. The other eye is as far from it there as in the room.
+    // The pose of the program's only view in the scene. The distance to the other eye is the same there as in the room.
     let (_, own, _) = captured(folder, &run.json()).remove(0);
     let at = |view: &View| Vec3::from(view.position);
     let apart = Quat::from_array(views[1].orientation).inverse() * (at(&views[0]) - at(&views[1]));
@@ -820,7 +820,7 @@ fn monado_shows_what_the_desktop_renders() {
     assert!(frames.iter().all(|(_, frames)| *frames >= 100), "{frames:?}");
     let settings = Settings::resolve(None, CHEAP.map(str::to_owned)).unwrap();
     for (method, pair, eyes) in captured(monado.folder.path(), &summary) {
-        // This machine's Mesa may lack features of Monado's.
+        // This machine's Mesa may lack features that Monado's has.
         let reference = if method == Method::Multiview { Method::Conventional } else { method };
         let expected = desktop("prototype", reference, &pair, &settings);
         for (eye, mut expected) in eyes.iter().zip(expected) {

@@ -1,4 +1,4 @@
-//! Golden images: PNGs in `tests/golden` that renders are compared with.
+//! Golden images: PNGs in `tests/golden` that rendered images are compared with.
 
 use std::path::{Path, PathBuf};
 
@@ -7,20 +7,20 @@ use image::RgbImage;
 use yoro_lab::metrics::{Channels, SsimWindow, ssim};
 use yoro_lab::picture;
 
-/// Set to renew the golden images instead of comparing with them.
+/// The variable that renews the golden images instead of comparing with them.
 pub const BLESS: &str = "YORO_BLESS";
 
-/// Samples may differ by this much, which leaves room for another compiler's rounding.
+/// Maximum difference of samples that may result from another compiler's rounding.
 const TOLERANCE: u8 = 2;
-/// Share of the pixels that must be within the tolerance.
+/// Minimum fraction of pixels within this tolerance.
 const SHARE: f64 = 0.995;
-/// Gaussian SSIM, mean of red, green and blue.
+/// Minimum Gaussian SSIM, as the mean of red, green and blue.
 const SSIM: f64 = 0.995;
 
-/// Fails unless the images are equal up to the tolerances.
+/// Compares two images with these tolerances.
 ///
 /// # Errors
-/// The figures that are too low.
+/// Fails with the figures that are too low.
 pub fn compare(image: &RgbImage, reference: &RgbImage) -> anyhow::Result<()> {
     let (size, wanted) = (image.dimensions(), reference.dimensions());
     ensure!(size == wanted, "{size:?} pixels instead of {wanted:?}");
@@ -40,8 +40,7 @@ pub fn compare(image: &RgbImage, reference: &RgbImage) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Compares an image with the golden one of this name; with [`BLESS`] in the environment it becomes the golden
-/// one.
+/// Compares an image with the golden image of this name, or replaces the golden image if [`BLESS`] is set.
 ///
 /// # Errors
 /// Those of [`compare`], with the path of the difference image.

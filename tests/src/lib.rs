@@ -1,5 +1,5 @@
-//! Code that the tests in `tests/tests` share: contexts, a small scene, golden images, all shader programs, multisample
-//! textures. It takes a context and gives pictures and programs; no crate of the product may depend on it.
+//! Code shared by the tests in `tests/tests`: contexts, a small scene, golden images, all shader programs, multisample
+//! textures. It takes a context and returns pictures and programs. No crate of the product may depend on it.
 
 pub mod golden;
 pub mod programs;
@@ -14,10 +14,10 @@ use yoro_gl::Context;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::Method;
 
-/// The variable that `cargo xtask test` sets on systems without OSMesa (Mesa 25.1 dropped it).
+/// The variable that `cargo xtask test` sets on systems without OSMesa, which Mesa 25.1 removed.
 const WITHOUT_OSMESA: &str = "YORO_TEST_WITHOUT_OSMESA";
 
-/// The backends that are tested here.
+/// Returns the backends to test.
 pub fn backends() -> Vec<Backend> {
     if std::env::var_os(WITHOUT_OSMESA).is_some() {
         return vec![Backend::Egl];
@@ -25,10 +25,10 @@ pub fn backends() -> Vec<Backend> {
     vec![Backend::Egl, Backend::Osmesa]
 }
 
-/// Runs a test body on every backend; afterwards there is no GL error and no GL object left.
+/// Runs a test body on every backend. Afterwards there must be no GL error, and no GL object left.
 ///
 /// # Errors
-/// The body's, with the backend's name; when there is no context.
+/// Fails with the body's error and the backend's name, or if there is no context.
 pub fn on_every_backend(body: impl Fn(&Rc<Context>) -> anyhow::Result<()>) -> anyhow::Result<()> {
     for backend in backends() {
         let headless = Headless::open(backend)?;
@@ -40,14 +40,14 @@ pub fn on_every_backend(body: impl Fn(&Rc<Context>) -> anyhow::Result<()>) -> an
     Ok(())
 }
 
-/// The variable that is set where the driver was chosen for its multiview.
+/// The variable that is set if the driver was chosen because it supports multiview.
 pub const MULTIVIEW_EXPECTED: &str = "YORO_TEST_MULTIVIEW_EXPECTED";
 
-/// True if a method is tested with these settings on this driver. Says what the driver lacks, but for multiview, which
-/// the tests in `tests/gl/multiview.rs` bring; what a renderer has on no driver is not worth a word.
+/// True if a method can be tested with these settings on this driver. Otherwise prints what the driver lacks. Says
+/// nothing about multiview, which is tested by `tests/gl/multiview.rs`, or about what a renderer supports on no driver.
 ///
 /// # Panics
-/// If the driver lacks what it was chosen for.
+/// Panics if the driver lacks what it was chosen for.
 pub fn is_tested(method: Method, settings: &RenderSettings, gl: &Context) -> bool {
     let Err(reason) = settings.supports(method, gl.capabilities()) else { return true };
     if settings.is_forward() && matches!(method, Method::Multiview | Method::ShadingReprojection) {
@@ -60,7 +60,7 @@ pub fn is_tested(method: Method, settings: &RenderSettings, gl: &Context) -> boo
     false
 }
 
-/// The code of the project's README is compiled with the tests of the documentation.
+/// Compiles the code of the project's README together with the doc tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;

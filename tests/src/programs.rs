@@ -1,4 +1,4 @@
-//! Every shader program in every variant, made by the library as the application makes them.
+//! Every variant of every shader program, built by the library in the same way as for the application.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -19,21 +19,21 @@ use yoro_shaders::{Assembled, MissingFile};
 
 use crate::{is_tested, scene};
 
-/// The variants of the renderer's programs to make. Other programs are always made in every variant, but for those of
-/// synthesis from parts and layers of textures.
+/// The variants of the renderer's programs to build. Other programs are always built in every variant, except synthesis
+/// from parts and from layers of textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variants {
-    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and layers.
+    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and from layers.
     Every,
-    /// Under default settings, materials without maps and with all maps: the cost of the others lies between these. By
-    /// every method in the realistic style only.
+    /// With default settings, materials without maps and with all maps: the cost of other materials lies between these.
+    /// All methods in the realistic style only.
     Extreme,
 }
 
-/// Makes all programs in a context, which keeps their recipes ([`Context::program_recipes`]).
+/// Builds all programs in a context, which keeps their recipes ([`Context::program_recipes`]).
 ///
 /// # Errors
-/// The driver refuses a program.
+/// Fails if the driver rejects a program.
 pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     synthesis(gl, variants)?;
     rendering(gl, variants)?;
@@ -44,8 +44,8 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     viewer(gl)
 }
 
-/// Values of `PARTS` in `include/segments.glsl`: the law; the short way; the long way to its end; with events, with the
-/// fill, with crossings.
+/// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the short way; the long way to
+/// its end; events; the fill; crossings.
 const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
 
 fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
@@ -79,7 +79,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
             }
         }
     }
-    // This driver would take one of them.
+    // The library would only use one of these variants on this driver.
     for variant in GatherVariant::ALL {
         for depth in [false, true] {
             Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
@@ -100,7 +100,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
             synthesis::create(gl, &SynthesisOptions { edges, ..options }, Outputs::default())?;
         }
     }
-    // The march by its parts, for the executed cost.
+    // The march split into parts, to determine the cost of each.
     let march =
         ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
     for parts in MARCH_PARTS {
@@ -110,7 +110,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Compiles the programs for a scene by every method that the driver supports.
+/// Builds the programs of a scene with every method that the driver supports.
 fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> anyhow::Result<()> {
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
@@ -122,12 +122,12 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> any
     Ok(())
 }
 
-/// Small shadow maps; their size is in no shader.
+/// Returns settings with small shadow maps, whose size no shader depends on.
 fn settings() -> RenderSettings {
     RenderSettings { shadow_map_size: 64, ..RenderSettings::default() }
 }
 
-/// Compiles the programs for a scene under all settings that change a shader.
+/// Builds the programs of a scene with all settings that affect a shader.
 fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Result<()> {
     let scene = GpuScene::upload(gl, scene)?;
     let settings = settings();
@@ -153,7 +153,7 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         if every {
             renderer(gl, scene.clone(), false)?;
         }
-        // No map and all maps, in every kind of opacity, stand for the combinations under other settings.
+        // Materials without and with all maps, in every kind of opacity, represent all others under other settings.
         scene::keep_plain_and_full(&mut scene);
         if !every && style != ShadingStyle::Realistic {
             let scene = GpuScene::upload(gl, scene)?;
@@ -209,45 +209,45 @@ fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
 }
 
 fn patchers(gl: &Rc<Context>) -> anyhow::Result<()> {
-    // The others have no shaders.
+    // The other patchers have no shaders.
     for kind in [PatcherKind::Paper, PatcherKind::Gather, PatcherKind::Median, PatcherKind::Xiao] {
         inpaint::create(gl, kind, &PatcherOptions::default())?;
     }
     Ok(())
 }
 
-/// A program as a driver gets it.
+/// A program in the form that a driver gets.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ProgramText {
-    /// The last stage's file, then the macros: `synthesis/gather/march.frag WRITE_DEPTH`.
+    /// The file of the last stage and the macros, such as `synthesis/gather/march.frag WRITE_DEPTH`.
     pub name: String,
-    /// Vertex and fragment shader, or a compute shader.
+    /// A vertex and a fragment shader, or a compute shader.
     pub stages: Vec<StageText>,
 }
 
-/// One stage of it.
+/// A stage of a program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct StageText {
-    /// Its name in [`yoro_shaders::files`].
+    /// The name of the stage's file in [`yoro_shaders::files`].
     pub file: String,
-    /// GLSL ES 3.10 with includes and macros.
+    /// GLSL ES 3.10 with includes and macros resolved.
     pub text: String,
 }
 
-/// The macros that drivers with other extensions get instead: views in layers of an array where these have multiview,
-/// `discard` where they have no clip distances.
+/// The macros for drivers with other extensions: multiview instead of views in layers of an array, and `discard`
+/// instead of clip distances.
 const COUNTERPARTS: [(&str, &str); 3] =
     [("CLIP_DISTANCE", "MULTIVIEW"), ("CLIP_DISTANCE", "SEAM_DISCARD"), ("HALF", "LAYER")];
 
-/// The programs that are made in `gl`, and their counterparts for other drivers; sorted by name.
+/// Returns the texts of the programs built in `gl` and of their counterparts for other drivers, sorted by name.
 ///
 /// # Errors
-/// A program has a file that does not exist.
+/// Fails if a program refers to a file that does not exist.
 pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
     let mut recipes: BTreeSet<ProgramRecipe> = BTreeSet::new();
     for recipe in gl.program_recipes() {
         for (from, to) in COUNTERPARTS {
-            // The forward renderer has no layers.
+            // The forward renderer does not render into layers.
             if to == "MULTIVIEW" && recipe.defines.iter().any(|(name, _)| name == "FORWARD") {
                 continue;
             }
@@ -267,10 +267,10 @@ pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
     Ok(texts.into_values().collect())
 }
 
-/// The files of all programs that are made in `gl`, the includes among them.
+/// Returns the files of all programs built in `gl`, including the included ones.
 ///
 /// # Errors
-/// A file does not exist.
+/// Fails if a file does not exist.
 pub fn files(gl: &Context) -> anyhow::Result<BTreeSet<String>> {
     let mut files = BTreeSet::new();
     for recipe in gl.program_recipes() {
@@ -286,7 +286,7 @@ fn assemble(file: &str, defines: &[(&str, String)]) -> anyhow::Result<Assembled>
     yoro_shaders::assemble(file, "310 es", defines).map_err(missing)
 }
 
-/// Macros that none of the files mentions are left out: they make no other program.
+/// Returns the text of a program. Omits macros that none of its files mentions, since they do not make another program.
 fn text(recipe: ProgramRecipe) -> anyhow::Result<ProgramText> {
     let bare = recipe.files.iter().map(|file| assemble(file, &[])).collect::<anyhow::Result<Vec<_>>>()?;
     let mut defines = recipe.defines;

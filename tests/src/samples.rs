@@ -1,4 +1,4 @@
-//! Multisample textures with known samples, as a renderer with MSAA would have left them.
+//! Multisample textures with known samples, like those of a renderer with MSAA.
 
 use std::rc::Rc;
 
@@ -7,10 +7,10 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro::synthesis::{Edges, Layers, Outputs, Source, Synthesis as _};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 
-/// The standard pattern of four samples: places in the pixel, in pixels from its upper left corner.
+/// The standard pattern of four samples: positions in pixels from the pixel's upper left corner.
 pub const STANDARD: [[f64; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
 
-/// The ways to hand over the same picture: the meaning of its edges, and true if the samples' colours come with it.
+/// The ways to pass the same picture: the meaning of its edges, and whether the colours of the samples are included.
 pub const GIVEN: [(Edges, bool); 4] = [
     (Edges::Nearest, false),
     (Edges::Sample, false),
@@ -18,7 +18,7 @@ pub const GIVEN: [(Edges, bool); 4] = [
     (Edges::Multisample, true),
 ];
 
-/// Colour and depth of four samples of each pixel. Rows run from the bottom, as in GL.
+/// Colour and depth of four samples per pixel. Rows run from bottom to top, as in GL.
 #[derive(Clone, Debug)]
 pub struct Samples {
     /// Width and height in pixels.
@@ -30,13 +30,13 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// The means of the samples' display values.
+    /// Returns the mean display values of each pixel's samples.
     pub fn resolved(&self) -> Vec<u8> {
         let sum = |i: usize| self.rgba.iter().map(|rgba| u32::from(rgba[i])).sum::<u32>();
         (0..self.rgba[0].len()).map(|i| ((sum(i) + 2) / 4) as u8).collect()
     }
 
-    /// The depth of each pixel that `better` prefers to all others.
+    /// Returns for each pixel the depth that `better` prefers to all others.
     pub fn chosen_depth(&self, better: impl Fn(f32, f32) -> bool) -> Vec<f32> {
         let choose = |a: f32, b: f32| if better(b, a) { b } else { a };
         (0..self.depth[0].len())
@@ -44,7 +44,7 @@ impl Samples {
             .collect()
     }
 
-    /// The depth of each pixel that a source without multisampled depth has, for these edges.
+    /// Returns for each pixel the depth that a source without multisampled depth has with these edges.
     pub fn one_depth(&self, edges: Edges, convention: DepthConvention) -> Vec<f32> {
         match (edges, convention) {
             (Edges::Sample, _) => self.depth[0].clone(),
@@ -54,7 +54,7 @@ impl Samples {
     }
 }
 
-/// A warp between eyes of 150x50 pixels, and a picture for its source.
+/// Returns a warp between eyes of 150x50 pixels, and a picture for its source.
 pub fn example(dominant: Eye, convention: DepthConvention, guard: GuardBand) -> (Warp, Samples) {
     let depth = DepthRange { near: 0.3, far: 100.0, convention };
     let frustum = Frustum::symmetric(1.2, 3.0);
@@ -63,7 +63,7 @@ pub fn example(dominant: Eye, convention: DepthConvention, guard: GuardBand) -> 
     (warp, picture(warp.source_size, depth, warp.target_eye == Eye::Right))
 }
 
-/// Synthesizes on OpenGL what is [`GIVEN`]. Returns RGBA and the source map.
+/// Synthesizes one of the cases [`GIVEN`] with OpenGL. Returns RGBA and the source map.
 pub fn on_opengl(
     gl: &Rc<Context>,
     samples: &Samples,
@@ -87,7 +87,7 @@ pub fn on_opengl(
     (target.read_rgba8(0, [0, 0], warp.target_size), target.read_u32(1, [0, 0], warp.target_size))
 }
 
-/// Slanted rectangles before a slanted background, seen by four samples of each pixel.
+/// Makes a picture of slanted rectangles in front of a slanted background, with four samples per pixel.
 pub fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
     // Left, right, bottom, top in fractions of the picture, distance in metres, colour.
     const SHAPES: [([f64; 4], f64, [u8; 3]); 5] = [
@@ -100,10 +100,10 @@ pub fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
     let [w, h] = size.map(f64::from);
     let seen = |x: f64, y: f64| {
         let (u, v) = (x / w, y / h);
-        // Silhouettes that cross the rows at a slant.
+        // The silhouettes are slanted against the rows.
         let u = u + 0.06 * (v - 0.5);
         let wave = 20.0 * (9.0 * u).sin() * (5.0 * v).cos();
-        // Detail of a few columns, beside all shapes.
+        // Detail with a width of a few columns, outside of all shapes.
         let detail = if (0.09..0.91).contains(&u) { 0.0 } else { 60.0 * (1.7 * x).sin() };
         let hit = SHAPES.iter().filter(|([l, r, b, t], ..)| (*l..*r).contains(&u) && (*b..*t).contains(&v));
         let nearest = hit.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -113,7 +113,7 @@ pub fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
     };
     let place = |i: usize, k: usize| {
         let (column, row) = ((i % size[0] as usize) as f64, (i / size[0] as usize) as f64);
-        // The pattern is counted from the upper left corner, rows from the bottom.
+        // The pattern is relative to the upper left corner, but rows run from bottom to top.
         let x = column + STANDARD[k][0];
         (if mirrored { w - x } else { x }, row + 1.0 - STANDARD[k][1])
     };
@@ -132,7 +132,7 @@ pub fn picture(size: [u32; 2], range: DepthRange, mirrored: bool) -> Samples {
     }
 }
 
-/// [`Samples`] in multisample textures, with the resolved colour beside them.
+/// [`Samples`] in multisample textures, and the resolved colour.
 pub struct Multisampled {
     gl: Rc<Context>,
     color: glow::Texture,
@@ -141,13 +141,13 @@ pub struct Multisampled {
 }
 
 impl Multisampled {
-    /// Draws the samples: a fragment for each.
+    /// Draws the samples, with one fragment each.
     ///
     /// # Errors
-    /// The driver has no shading by sample (OpenGL ES 3.2).
+    /// Fails if the driver lacks per-sample shading (OpenGL ES 3.2).
     pub fn new(gl: &Rc<Context>, samples: &Samples) -> anyhow::Result<Multisampled> {
         let [w, h] = samples.size;
-        // The four images above each other.
+        // The four images are stacked vertically.
         let stacked = [w, 4 * h];
         let upload = |format, bytes: Vec<u8>| -> anyhow::Result<Texture> {
             let texture = Texture::new(gl, stacked, format, Filter::Nearest)?;
@@ -159,7 +159,7 @@ impl Multisampled {
         let resolved = Texture::new(gl, samples.size, Format::Rgba8, Filter::Linear)?;
         resolved.upload(&samples.resolved());
         let raw = gl.raw();
-        // SAFETY: names are created here, and those that are not handed over deleted.
+        // SAFETY: names are created here, and deleted unless they are returned.
         unsafe {
             let texture = |format: Format| -> anyhow::Result<glow::Texture> {
                 let texture = raw.create_texture().map_err(anyhow::Error::msg)?;
@@ -199,13 +199,13 @@ impl Multisampled {
         }
     }
 
-    /// The source for [`yoro::synthesis::Edges::Multisample`].
+    /// Returns the source for [`yoro::synthesis::Edges::Multisample`].
     pub fn source(&self, with_colors: bool) -> Source {
         let samples = with_colors.then_some(self.color);
         Source { samples, ..Source::new(self.resolved.raw(), self.depth) }
     }
 
-    /// The resolved colour.
+    /// Returns the resolved colour.
     pub fn resolved(&self) -> &Texture {
         &self.resolved
     }

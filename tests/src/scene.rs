@@ -1,15 +1,15 @@
-//! A scene that is small to render and uses everything that a material can have.
+//! A scene that is cheap to render and uses every feature of materials.
 
 use glam::{Vec2, Vec3};
 use yoro_scene::Viewpoint;
 use yoro_scene::{Alpha, Material, Model, Part, PointLight, Scene, ShadingStyle, Sky, TextureImage, Vertex};
 
-/// Two by two texels.
+/// Makes a texture of 2x2 texels.
 fn texture(name: &str, srgb: bool, rgba: [[u8; 4]; 4]) -> TextureImage {
     TextureImage { name: name.into(), size: [2, 2], rgba: rgba.concat(), srgb, nearest: false }
 }
 
-/// Every combination of maps with every kind of opacity.
+/// Returns every combination of maps with every kind of opacity.
 fn materials() -> Vec<Material> {
     let mut materials = Vec::new();
     for alpha in [Alpha::Opaque, Alpha::Cutout(0.5), Alpha::Blend(0.5)] {
@@ -29,7 +29,7 @@ fn materials() -> Vec<Material> {
     materials
 }
 
-/// One small square per combination of material features, in a grid three metres away, on a floor.
+/// Makes a scene with a floor and a small square for each combination of material features, three metres away.
 pub fn every_material(style: ShadingStyle) -> Scene {
     let mut model = Model {
         textures: vec![
@@ -61,14 +61,14 @@ pub fn every_material(style: ShadingStyle) -> Scene {
     }
 }
 
-/// Leaves of [`every_material`] those without maps and those with all maps, and the floor: six programs instead
-/// of 48.
+/// Removes all squares of [`every_material`] except those without maps and those with all maps. The floor stays. This
+/// leaves six programs instead of 48.
 pub fn keep_plain_and_full(scene: &mut Scene) {
     let mut index = 0..;
     scene.model.parts.retain(|_| index.next().is_some_and(|i: usize| i.is_multiple_of(16) || i % 16 == 15));
 }
 
-/// Appends a square by its centre and two half-axes.
+/// Appends a square, given by its centre and two half-axes.
 fn square(model: &mut Model, material: usize, center: Vec3, [across, up]: [Vec3; 2]) {
     let (first, start) = (model.vertices.len() as u32, model.indices.len());
     for uv in [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y] {

@@ -1,16 +1,16 @@
-//! Documents name files that exist.
+//! Checks that files named in documents exist.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Endings by which a word in backticks is taken for a file of this repository.
+/// Extensions that make a word in backticks a file of this repository.
 const ENDINGS: [&str; 9] = [".rs", ".toml", ".md", ".frag", ".vert", ".comp", ".glsl", ".py", ".json"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
 }
 
-/// All Markdown files but those of builds.
+/// Finds all Markdown files except build results.
 fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -25,13 +25,13 @@ fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the targets of links, `](target)`, without anchors and without other sites.
+/// Returns the targets of links, `](target)`, without anchors. Omits links to other sites.
 fn links(text: &str) -> impl Iterator<Item = &str> {
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target);
     targets.filter(|target| !target.contains("://")).filter_map(|target| target.split('#').next())
 }
 
-/// Words in backticks that are paths from the root: they begin with one of its folders and end as a file does.
+/// Returns the words in backticks that are paths from the root: they begin with one of its folders and end like a file.
 fn paths(text: &str) -> impl Iterator<Item = &str> {
     let folders = [
         "app/",
@@ -62,7 +62,7 @@ fn every_link_and_path_leads_somewhere() {
     for file in &files {
         let text = fs::read_to_string(file).unwrap();
         let folder = file.parent().unwrap();
-        // The change log also names paths that no longer exist.
+        // The changelog also names paths that no longer exist.
         let history = file.ends_with("CHANGELOG.md");
         let linked = links(&text).filter(|link| !link.is_empty() && !folder.join(link).exists());
         let named = paths(&text).filter(|path| !history && !root().join(path).exists());
@@ -72,8 +72,7 @@ fn every_link_and_path_leads_somewhere() {
     assert!(lost.is_empty(), "these do not exist:\n{}", lost.join("\n"));
 }
 
-/// docs/performance.md opens with the tables of the measured page that say when synthesis pays. With YORO_BLESS in the
-/// environment they are copied anew.
+/// docs/performance.md begins with tables of the measured page on when synthesis pays. YORO_BLESS copies them again.
 #[test]
 fn when_it_pays_is_what_was_measured() {
     const BEGIN: &str = "<!-- when it pays: begin -->\n";

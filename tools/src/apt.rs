@@ -1,4 +1,4 @@
-//! Needs of the system, and apt, which installs them.
+//! System requirements, and apt, which installs them.
 
 use std::env;
 use std::ffi::OsStr;
@@ -9,8 +9,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::{Context as _, bail};
 
-/// Held while apt updates lists or installs. Debian's container images run a hook after every update, even that of
-/// a private state, which removes all packages that wait for installation.
+/// Held while apt updates lists or installs packages. In Debian's container images, a hook after every update, even
+/// that of a private state, removes the downloaded packages that have not been installed yet.
 static TURN: Mutex<()> = Mutex::new(());
 
 /// Waits until no other thread updates lists or installs.
@@ -18,21 +18,21 @@ pub fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// One thing that is needed, and where it is or how to get it.
+/// Something that is needed, and where it is or how to get it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Need {
-    /// Its name, for people.
+    /// The name, for people.
     pub what: &'static str,
-    /// Its place, or the problem.
+    /// The path, or the problem.
     pub found: Result<String, String>,
-    /// The remedy when it is missing.
+    /// What to do if it is missing.
     pub remedy: String,
-    /// Debian's packages that bring it.
+    /// The Debian packages that contain it.
     pub packages: &'static [&'static str],
 }
 
 impl Need {
-    /// A program in PATH.
+    /// Looks for a program in PATH.
     pub fn program(name: &'static str, packages: &'static [&'static str]) -> Self {
         let found = find_program(name).map(|path| path.display().to_string());
         Self {
@@ -43,7 +43,7 @@ impl Need {
         }
     }
 
-    /// A file or folder.
+    /// Looks for a file or folder.
     pub fn file(what: &'static str, path: &Path, remedy: &str, packages: &'static [&'static str]) -> Self {
         let shown = path.display();
         Self {
@@ -55,12 +55,12 @@ impl Need {
     }
 }
 
-/// Installs what is missing, after asking unless `yes`.
+/// Installs what is missing. Asks first unless `yes`.
 ///
 /// # Errors
-/// When something is still missing: what, and the remedy.
+/// Fails if something is still missing; the error names it and the remedy.
 pub fn provide(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
-    /// Lock: packages that one thread installs are not missing for the next.
+    /// Locked so that a second thread does not miss packages that the first one is installing.
     static PROVIDING: Mutex<()> = Mutex::new(());
     let _providing = PROVIDING.lock().unwrap_or_else(PoisonError::into_inner);
     let missing = || needs().into_iter().filter(|need| need.found.is_err()).collect::<Vec<_>>();
@@ -82,13 +82,13 @@ pub fn provide(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
     bail!("{}", sentences.join(", "))
 }
 
-/// The file that a command's name stands for.
+/// Returns the path of a program in PATH.
 pub fn find_program(name: impl AsRef<OsStr>) -> Option<PathBuf> {
     let path = env::var_os("PATH")?;
     env::split_paths(&path).map(|folder| folder.join(name.as_ref())).find(|program| program.is_file())
 }
 
-/// True if [`install`] can do its work without asking anybody for anything.
+/// True if [`install`] needs no password and no confirmation.
 pub fn installs_by_itself() -> bool {
     is_root() && find_program("apt-get").is_some()
 }
@@ -96,7 +96,7 @@ pub fn installs_by_itself() -> bool {
 /// Asks whether to install packages, unless `yes`.
 ///
 /// # Errors
-/// When nobody is there to be asked, or the answer is no; the remedy is in it.
+/// Fails if nobody can be asked, or the answer is no. The error names the remedy.
 fn consent(packages: &[&str], yes: bool) -> anyhow::Result<()> {
     let list = packages.join(" ");
     if yes {
@@ -115,11 +115,11 @@ fn consent(packages: &[&str], yes: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// `apt-get update`, then an installation for each group by itself, so that what is there is installed even
-/// when a package does not exist in this distribution. Nothing that is installed is ever removed for it.
+/// Runs `apt-get update`, then installs each group separately, so that a package that this distribution does not have
+/// only affects its own group. Never removes installed packages.
 ///
 /// # Errors
-/// Without root's rights, or when apt-get fails with one of the groups.
+/// Fails without root's rights, or if apt-get fails with one of the groups.
 pub fn install(groups: &[&[&str]]) -> anyhow::Result<()> {
     let by_hand = format!("apt-get install {}", groups.concat().join(" "));
     let sudo = match (is_root(), find_program("sudo")) {
@@ -129,7 +129,7 @@ pub fn install(groups: &[&[&str]]) -> anyhow::Result<()> {
     };
     let _turn = turn();
     if let Err(error) = apt_get(sudo, &["update"]) {
-        // Old lists are often good enough, and a third party's broken source is no reason to stop.
+        // The old lists often suffice, and a broken third-party source should not stop the installation.
         eprintln!("warning: {error:#}");
     }
     let mut failures = Vec::new();
@@ -150,7 +150,7 @@ fn is_root() -> bool {
 }
 
 fn apt_get(sudo: bool, arguments: &[&str]) -> anyhow::Result<()> {
-    // sudo drops the environment; `env` sets it on the other side.
+    // sudo drops the environment, so `env` sets it after sudo.
     let words: &[&str] = if sudo { &["sudo", "env"] } else { &["env"] };
     let mut command = Command::new(words[0]);
     command.args(&words[1..]).args(["DEBIAN_FRONTEND=noninteractive", "apt-get", "--quiet"]).args(arguments);

@@ -1,8 +1,8 @@
-//! The simulated Android host as a program for arm64: qemu's user mode runs it on an x86_64 machine, so that the tests
+//! The simulated Android host as a program for arm64. qemu's user mode runs it on x86_64 machines, so that the tests
 //! execute the library that phones execute.
 //!
-//! qemu and the libraries that the host needs come from Debian's packages, which are only unpacked, in a folder of
-//! their own: apt gets its own state for that, and nothing is installed.
+//! qemu and the host's libraries come from Debian packages, which are only unpacked into a folder. apt gets a private
+//! state for this, and nothing is installed.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,16 +14,17 @@ use crate::folders::{make_once, target_folder};
 use crate::packages::{self, PrivateApt, quoted, write_launcher};
 use crate::rust::{Panic, Rust, build_std, source};
 
-/// Rust's name of the target.
+/// Rust's name for the target.
 pub const TRIPLE: &str = "aarch64-unknown-linux-gnu";
-/// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs; libgcc's package has a number in its name.
+/// Mesa's EGL and OpenGL ES with its rasterizer, and what a linker needs. The package of libgcc is missing here, since
+/// its name contains a number.
 const PACKAGES: [&str; 5] = ["libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri", "libc6-dev"];
 const QEMU: [&str; 2] = ["usr/bin/qemu-aarch64-static", "usr/bin/qemu-aarch64"];
 
-/// Installs, without asking, what compiling for arm64 needs, and fetches what its programs run in. Returns the folder.
+/// Installs what compiling for arm64 needs, without asking, and fetches what its programs need. Returns the folder.
 ///
 /// # Errors
-/// When something cannot be had on this machine.
+/// Fails if something cannot be obtained on this machine.
 pub fn fetch() -> anyhow::Result<PathBuf> {
     let needs = || {
         let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
@@ -35,16 +36,16 @@ pub fn fetch() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Compiles the simulated Android host. Returns its launcher: `launcher APK SCRIPT ...`.
+/// Compiles the simulated Android host, and returns its launcher: `launcher APK SCRIPT ...`.
 ///
 /// # Errors
-/// When it does not compile although everything is there.
+/// Fails if the host does not compile.
 pub fn build_host() -> anyhow::Result<PathBuf> {
     let folder = folder()?;
     let system = System::make(&folder)?;
     let program = build(&system, &folder.join("build"))?;
     let launcher = folder.join("yoro-android-host");
-    // This machine's libraries are of no use there, nor is its GPU: qemu does not know the calls of graphics drivers.
+    // This machine's libraries cannot be used, nor its GPU: qemu does not support the system calls of graphics drivers.
     let text = format!(
         "# The simulated Android host for arm64, in qemu's user mode.\n\
          exec {} -U LD_LIBRARY_PATH -E LIBGL_ALWAYS_SOFTWARE=1 -L {} {} \"$@\"\n",
@@ -60,26 +61,26 @@ fn folder() -> anyhow::Result<PathBuf> {
     Ok(target_folder()?.join("android/arm64"))
 }
 
-/// A small Debian for arm64 in a folder, and qemu.
+/// A small Debian for arm64 in a folder, with qemu.
 struct System {
     root: PathBuf,
     qemu: PathBuf,
 }
 
 impl System {
-    /// Fetches and unpacks it, unless what is there is complete.
+    /// Fetches and unpacks the system unless the folder is complete.
     fn make(folder: &Path) -> anyhow::Result<Self> {
         let root = folder.join("root");
         make_once(folder, &format!("{} {}\n", PACKAGES.join(" "), QEMU.join(" ")), || {
             let apt = PrivateApt::new(folder.join("apt"), &["amd64", "arm64"], None)?;
             for package in download(&apt)? {
-                // qemu's packages have a program of several megabytes for every processor that there is.
+                // qemu's packages contain a program of several megabytes for each kind of processor.
                 let is_qemu =
                     package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user"));
                 let only: &[&str] = if is_qemu { &["./usr/bin/qemu-aarch64*"] } else { &[] };
                 packages::unpack(&package, &root, only, &[])?;
             }
-            // The packages are unpacked; without them half of the space is enough.
+            // Remove the downloads, which take half of the space.
             apt.remove();
             Ok(())
         })?;
@@ -88,7 +89,7 @@ impl System {
     }
 }
 
-/// Downloads the packages and all that they need, and returns their files.
+/// Downloads the packages and their dependencies, and returns the files.
 fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
     apt.update()?;
     let libgcc = newest_libgcc(&apt.names("libgcc-")?)
@@ -98,18 +99,18 @@ fn download(apt: &PrivateApt) -> anyhow::Result<Vec<PathBuf>> {
     apt.download(&packages)
 }
 
-/// Returns the `libgcc-N-dev` of the largest number among package names, one per line.
+/// Returns the `libgcc-N-dev` with the largest number among package names, one per line.
 fn newest_libgcc(names: &str) -> Option<String> {
     let number = |name: &str| name.strip_prefix("libgcc-")?.strip_suffix("-dev")?.parse::<u32>().ok();
     let newest = names.lines().filter_map(number).max()?;
     Some(format!("libgcc-{newest}-dev"))
 }
 
-/// A cargo that compiles and links for arm64 with `--target` [`TRIPLE`], for which it fetches and installs what is
-/// missing. Panics in its programs unwind.
+/// Returns a cargo that compiles and links for arm64 with `--target` [`TRIPLE`]. Fetches and installs what it needs.
+/// Panics in its programs unwind.
 ///
 /// # Errors
-/// When something cannot be had on this machine.
+/// Fails if something cannot be obtained on this machine.
 pub fn cargo() -> anyhow::Result<Command> {
     command(&System::make(&fetch()?)?, Panic::Unwind)
 }

@@ -1,4 +1,4 @@
-//! Running cargo.
+//! Runs cargo.
 
 use std::env;
 use std::process::{Command, Stdio};
@@ -7,14 +7,14 @@ use anyhow::{Context as _, bail};
 
 use crate::folders::{root, target_folder};
 
-/// The cargo that runs this program, in the workspace's root.
+/// Returns the cargo that runs this program, in the workspace's root.
 pub fn cargo() -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root());
     command
 }
 
-/// Cargo's arguments that choose these packages, or without any the whole workspace.
+/// Returns cargo's arguments that select these packages, or the whole workspace if there are none.
 pub fn choice(packages: &[String]) -> Vec<&str> {
     if packages.is_empty() {
         return vec!["--workspace"];
@@ -22,17 +22,17 @@ pub fn choice(packages: &[String]) -> Vec<&str> {
     packages.iter().flat_map(|package| ["--package", package.as_str()]).collect()
 }
 
-/// Prints the command that follows.
+/// Prints the cargo command that is about to run.
 pub fn announce(arguments: &[&str]) {
     eprintln!("$ cargo {}", arguments.join(" "));
 }
 
-/// Runs cargo; the exit code of a program that it ran is passed on.
+/// Runs cargo in the user's folder. If it fails, this process exits with the same code.
 ///
 /// # Errors
-/// When cargo itself cannot be started.
+/// Fails if cargo cannot be started.
 pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
-    // The user's paths are relative to where the user is.
+    // The user's paths are relative to the user's current folder.
     let here = env::current_dir().context("the current folder is gone: change to another")?;
     let status = cargo()
         .current_dir(here)
@@ -52,9 +52,9 @@ pub fn run(arguments: &[&str], more: &[String]) -> anyhow::Result<()> {
 /// Builds a program of the workspace, and returns the command that runs it in the workspace's root.
 ///
 /// # Errors
-/// When it does not compile.
+/// Fails if it does not compile.
 pub fn program(name: &str) -> anyhow::Result<Command> {
-    // Uses the dependencies' features of the whole workspace: those that the tests need are not compiled twice.
+    // The features of the whole workspace, so that dependencies shared with the tests are not compiled twice.
     if !succeeds(&["build", "--quiet", "--workspace", "--bin", name], &[]) {
         bail!("{name} does not compile: see above");
     }
@@ -69,10 +69,10 @@ pub fn succeeds(arguments: &[&str], environment: &[(&str, &str)]) -> bool {
     cargo().args(arguments).envs(environment.iter().copied()).status().is_ok_and(|status| status.success())
 }
 
-/// Runs cargo, and returns its standard output. What it prints for people goes on to standard error.
+/// Runs cargo, and returns its standard output. Its messages go to standard error.
 ///
 /// # Errors
-/// When it fails.
+/// Fails if cargo fails.
 pub fn output(arguments: &[&str]) -> anyhow::Result<String> {
     let output = cargo().args(arguments).stdin(Stdio::null()).stderr(Stdio::inherit()).output();
     let output = output.context("cargo cannot be started")?;

@@ -1,5 +1,5 @@
-//! Files that are compiled from the shaders and kept in the repository, so that nobody who builds a library needs a
-//! compiler. Beside them lies the file `SOURCES`: the compiler, and the hash of the text of each.
+//! Files that are compiled from the shaders and committed, so that building a library requires no compiler. The file
+//! `SOURCES` beside them lists the compiler and the hash of each shader's text.
 
 use std::env;
 use std::fs;
@@ -14,7 +14,7 @@ const GLSLANG: &str = "glslangValidator";
 
 /// A shader to compile.
 pub struct Source {
-    /// The name of the file that it becomes, without its ending.
+    /// The name of the compiled file, without its extension.
     pub name: &'static str,
     /// True for a vertex shader, false for a fragment shader.
     pub vertex: bool,
@@ -26,9 +26,9 @@ pub struct Source {
 pub struct Compiled<F> {
     /// The folder.
     pub folder: PathBuf,
-    /// The ending of the files' names.
+    /// The extension of the files.
     pub ending: &'static str,
-    /// The compiler and its version, in one line; None if it is not installed.
+    /// The compiler and its version in one line, or `None` if it is not installed.
     pub compiler: Option<String>,
     /// The command that renews the files.
     pub command: &'static str,
@@ -40,7 +40,7 @@ impl<F: Fn(&Source) -> anyhow::Result<Vec<u8>>> Compiled<F> {
     /// Compiles all shaders, and writes the folder.
     ///
     /// # Errors
-    /// Without a compiler, when a shader does not compile, and when a file cannot be written.
+    /// Fails without a compiler, if a shader does not compile, or if a file cannot be written.
     pub fn renew(&self, sources: &[Source]) -> anyhow::Result<()> {
         let compiler = self.compiler.as_ref().context("glslangValidator is needed: `cargo xtask setup`")?;
         for source in sources {
@@ -49,11 +49,11 @@ impl<F: Fn(&Source) -> anyhow::Result<Vec<u8>>> Compiled<F> {
         folders::write(&self.folder.join("SOURCES"), listed(compiler, sources))
     }
 
-    /// Checks that the folder is made of these shaders. With the compiler that made it they are compiled again; with
-    /// another one, or without, a line on the standard output says that this was left out.
+    /// Checks that the folder was made from these shaders. Compiles them again if the compiler is the one that made the
+    /// folder. Otherwise prints a line saying that this was skipped.
     ///
     /// # Errors
-    /// When a file is not what these shaders become.
+    /// Fails if a file was not made from these shaders.
     pub fn check(&self, sources: &[Source]) -> anyhow::Result<()> {
         let command = self.command;
         let committed = fs::read_to_string(self.folder.join("SOURCES"))
@@ -93,13 +93,13 @@ fn listed(compiler: &str, sources: &[Source]) -> String {
     format!("{compiler}\n{}", sources.iter().map(line).collect::<String>())
 }
 
-/// FNV-1a, which never changes with a version of Rust.
+/// FNV-1a, which does not depend on the version of Rust.
 fn hash(text: &str) -> u64 {
     text.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Returns glslang's version and arguments in one line; None if it is not installed.
+/// Returns glslang's version and arguments in one line, or `None` if it is not installed.
 pub fn glslang(arguments: &[&str]) -> Option<String> {
     let output = Command::new(GLSLANG).arg("--version").output().ok()?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -107,10 +107,10 @@ pub fn glslang(arguments: &[&str]) -> Option<String> {
     Some(format!("{GLSLANG} {version} {}", arguments.join(" ")))
 }
 
-/// Returns the SPIR-V that glslang makes of a shader.
+/// Compiles a shader to SPIR-V with glslang.
 ///
 /// # Errors
-/// When glslang cannot be run or does not compile it.
+/// Fails if glslang cannot be run, or does not compile the shader.
 pub fn spirv(source: &Source, arguments: &[&str]) -> anyhow::Result<Vec<u8>> {
     let work = env::temp_dir().join(format!("yoro-glslang-{}-{}", process::id(), source.name));
     fs::create_dir_all(&work).with_context(|| format!("{} cannot be made", work.display()))?;
@@ -153,7 +153,7 @@ mod tests {
         fs::write(folder.path().join("a.txt"), "other").unwrap();
         let error = compiled("1").check(&sources("one")).unwrap_err().to_string();
         assert_eq!(error, "a is not what 1 makes: run `cargo tools x`");
-        // Only the compiler that made a file can tell.
+        // Only the compiler that made a file can detect the difference.
         compiled("2").check(&sources("one")).unwrap();
     }
 }

@@ -1,4 +1,4 @@
-//! The folders of the workspace and of its target, and files in them.
+//! The folders of the workspace and of its target, and helpers for files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,26 +6,26 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::Context as _;
 
-/// The workspace's folder.
+/// Returns the workspace's folder.
 pub fn root() -> PathBuf {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.parent().unwrap_or(package).to_owned()
 }
 
-/// Cargo's target folder, which this program lies in: `target/debug/xtask`.
+/// Returns cargo's target folder, found from this program's own path, `target/debug/xtask`.
 ///
 /// # Errors
-/// When this program lies elsewhere.
+/// Fails if this program is not in a target folder.
 pub fn target_folder() -> anyhow::Result<PathBuf> {
     let program = std::env::current_exe().context("this program does not know where it lies")?;
     let folder = program.ancestors().nth(2).context("this program lies in no target folder")?;
     Ok(folder.to_owned())
 }
 
-/// Makes a folder by a recipe, unless it is there and was made by the same one. What was there is removed first.
+/// Makes a folder with `make`, unless it exists and was made by the same `recipe`. Removes an outdated one first.
 ///
 /// # Errors
-/// Those of `make`; when the folder cannot be removed.
+/// Fails if `make` fails or the folder cannot be removed.
 pub fn make_once(
     folder: &Path,
     recipe: &str,
@@ -40,10 +40,10 @@ pub fn make_once(
     write(&stamp, recipe)
 }
 
-/// Removes a folder, if it is there.
+/// Removes a folder if it exists.
 ///
 /// # Errors
-/// When it cannot be removed.
+/// Fails if the folder cannot be removed.
 pub fn remove(folder: &Path) -> anyhow::Result<()> {
     if folder.exists() {
         fs::remove_dir_all(folder)
@@ -52,11 +52,11 @@ pub fn remove(folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes a file, and the folders that it lies in. Nobody ever sees half of it, whatever other processes and threads
-/// write at the same time.
+/// Writes a file, and makes its parent folders. The file is always complete, even if several processes and threads
+/// write it at the same time.
 ///
 /// # Errors
-/// When it cannot be written.
+/// Fails if the file cannot be written.
 pub fn write(file: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
     static WRITTEN: AtomicUsize = AtomicUsize::new(0);
     let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
@@ -67,20 +67,20 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
         .with_context(|| format!("{} cannot be written", file.display()))
 }
 
-/// Copies a file, and makes the folders that the copy lies in.
+/// Copies a file, and makes the parent folders of the copy.
 ///
 /// # Errors
-/// When it cannot be copied.
+/// Fails if the file cannot be copied.
 pub fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     make_parent(to)?;
     fs::copy(from, to).with_context(|| format!("{} cannot be copied to {}", from.display(), to.display()))?;
     Ok(())
 }
 
-/// Makes the folders that a file lies in.
+/// Makes the parent folders of a file.
 ///
 /// # Errors
-/// When they cannot be made.
+/// Fails if they cannot be made.
 pub fn make_parent(file: &Path) -> anyhow::Result<()> {
     let Some(parent) = file.parent() else { return Ok(()) };
     fs::create_dir_all(parent).with_context(|| format!("{} cannot be made", parent.display()))

@@ -1,9 +1,9 @@
 //! Godot, a game engine, with the runtime and the Vulkan driver that its tests need.
 //!
-//! Debian's release that [Monado](crate::monado) comes from has an older Godot, so this one is that of Debian's
-//! development, whatever its version is, with all that it needs: the C library, Monado and Mesa of the same day. The
-//! packages are only unpacked. Two programs are left: `godot`, and `monado-service`, which is its OpenXR runtime. Both
-//! meet in XDG_RUNTIME_DIR.
+//! The Debian release that [Monado](crate::monado) comes from has an older Godot. This one comes from Debian's
+//! development release, in whatever version it has, with all of its dependencies: the C library, Monado and Mesa of the
+//! same day. The packages are only unpacked. There are two programs: `godot`, and `monado-service`, its OpenXR runtime.
+//! They find each other through XDG_RUNTIME_DIR.
 
 use std::path::{Path, PathBuf};
 
@@ -14,13 +14,13 @@ use crate::monado;
 use crate::packages::{quoted, write_launcher};
 
 const RELEASE: &str = "sid";
-/// A runtime and an application of different versions do not talk to each other.
+/// The runtime and the application must have the same version.
 const PACKAGES: [&str; 4] = ["godot", "monado-service", "libopenxr1-monado", "mesa-vulkan-drivers"];
 
-/// Sets it up, and returns how to use it.
+/// Sets up Godot, and returns how to use it.
 ///
 /// # Errors
-/// When it cannot be had on this machine.
+/// Fails if it cannot be obtained on this machine.
 pub fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
@@ -31,10 +31,10 @@ pub fn usage() -> anyhow::Result<String> {
     ))
 }
 
-/// The folder with the programs `godot` and `monado-service`: fetches and unpacks what is missing.
+/// Returns the folder with the programs `godot` and `monado-service`. Fetches and unpacks what is missing.
 ///
 /// # Errors
-/// When it cannot be had on this machine.
+/// Fails if they cannot be obtained on this machine.
 pub fn make() -> anyhow::Result<PathBuf> {
     if !cfg!(target_arch = "x86_64") {
         bail!("it is fetched for x86_64 only");

@@ -1,9 +1,9 @@
-//! hello_xr, Khronos's example of an OpenXR application, the loader that it comes with, and Khronos's layer that
-//! validates what is called, for the tests of the API layer.
+//! For the tests of the API layer: hello_xr, Khronos's example of an OpenXR application, its loader, and Khronos's
+//! layer that validates calls.
 //!
-//! It comes from Debian's packages, unpacked beside [Monado](crate::monado), and runs with Monado's libraries. Debian's
-//! release that has Monado has an older hello_xr, which knows neither one view nor depth, so this one is that of
-//! Debian's development.
+//! They come from Debian packages, which are unpacked beside [Monado](crate::monado), and use Monado's libraries. The
+//! Debian release with Monado has an older hello_xr that supports neither a single view nor depth, so this one comes
+//! from Debian's development release.
 
 use std::path::{Path, PathBuf};
 
@@ -15,17 +15,17 @@ use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher
 
 const RELEASE: &str = "sid";
 const PACKAGE: &str = "libopenxr-utils";
-/// Tests do without it where it cannot be had.
+/// Tests run without it if it cannot be obtained.
 const VALIDATION: &str = "openxr-layer-corevalidation";
-/// Those of their dependencies that Monado's folder does not have.
+/// The dependencies that Monado's folder does not have.
 const UNPACKED: [&str; 4] = ["libopenxr-utils_", "libopenxr-loader1_", "libjsoncpp", VALIDATION];
 const WITHOUT: [&str; 1] = ["./usr/share/*"];
 const LOADER: &str = "libopenxr_loader.so.1";
 
-/// Sets it up, and returns how to use it.
+/// Sets up hello_xr, and returns how to use it.
 ///
 /// # Errors
-/// When it cannot be had on this machine.
+/// Fails if it cannot be obtained on this machine.
 pub fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
@@ -35,12 +35,12 @@ pub fn usage() -> anyhow::Result<String> {
     ))
 }
 
-/// The folder with the programs `hello_xr` and `monado-service`, with `run PROGRAM ...`, which is
-/// [Monado's](crate::monado) with the loader's libraries, and the loader itself, `libopenxr_loader.so.1`: fetches and
-/// unpacks what is missing.
+/// Returns the folder with the programs `hello_xr` and `monado-service`, the launcher `run PROGRAM ...`, which is
+/// [Monado's](crate::monado) with the loader's libraries, and the loader `libopenxr_loader.so.1`. Fetches what is
+/// missing.
 ///
 /// # Errors
-/// When it cannot be had on this machine.
+/// Fails if they cannot be obtained on this machine.
 pub fn make() -> anyhow::Result<PathBuf> {
     let monado = monado::make()?;
     let folder = target_folder()?.join("hello-xr");
@@ -94,7 +94,7 @@ fn write_programs(folder: &Path, root: &Path, monado: &Path) -> anyhow::Result<(
         &monado::run(&monado.join("root"), std::slice::from_ref(&libraries)),
     )?;
     copy(&libraries.join(LOADER), &folder.join(LOADER))?;
-    // Some programs written in Rust look for it without the version.
+    // Some Rust programs look for the file name without the version.
     copy(&libraries.join(LOADER), &libraries.join("libopenxr_loader.so"))?;
     let service = format!("exec {} \"$@\"\n", quoted(&monado.join("monado-service")));
     write_launcher(&folder.join("monado-service"), &service)

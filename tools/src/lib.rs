@@ -1,8 +1,8 @@
-//! Tools of maintainers, and the code that they share with `cargo xtask`: shader compilers for mobile GPUs, a stand-in
-//! for the Android NDK, and programs for tests that come from Debian's packages.
+//! Maintainers' tools, and code shared with `cargo xtask`: shader compilers for mobile GPUs, a stand-in for the Android
+//! NDK, and test programs from Debian packages.
 //!
-//! The inputs are the workspace's sources and Debian's packages, the outputs are folders below `target`. It runs cargo
-//! and other programs, and must not depend on the project's other crates.
+//! The inputs are the workspace's sources and Debian packages, the outputs are folders below `target`. This crate runs
+//! cargo and other programs, and must not depend on the project's other crates.
 
 pub mod apt;
 pub mod arm64;

@@ -45,7 +45,7 @@ fn main() -> ExitCode {
     console::exit_code(perform(Arguments::parse().task))
 }
 
-/// Returns false if a shader has a fault.
+/// Runs a task. Returns false if a shader has a fault.
 fn perform(task: Task) -> anyhow::Result<bool> {
     let (text, passed) = match task {
         Task::ShaderCost { filter, gpus, bless } => {

@@ -1,9 +1,9 @@
-//! Monado, an OpenXR runtime with a simulated headset, for the tests of sessions.
+//! Monado, an OpenXR runtime with a simulated headset, for tests of sessions.
 //!
-//! It comes from Debian's packages, which are only unpacked, with all that they need down to the C library: so it is
-//! the same Monado, and the same Mesa below it, on every machine. Two programs are left: `monado-service` is the
-//! runtime's own one, and `run PROGRAM ...` runs a program of this machine with those libraries and that runtime. Both
-//! meet in XDG_RUNTIME_DIR.
+//! It comes from Debian packages, which are only unpacked, with all dependencies down to the C library. Every machine
+//! therefore runs the same Monado and the same Mesa. There are two programs: `monado-service` is the runtime's service,
+//! and `run PROGRAM ...` runs one of this machine's programs with these libraries and this runtime. They find each
+//! other through XDG_RUNTIME_DIR.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -13,13 +13,13 @@ use anyhow::bail;
 use crate::folders::{make_once, target_folder};
 use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
 
-/// Debian's release that has them.
+/// The Debian release with these packages.
 const RELEASE: &str = "trixie";
-/// Monado; the version is fixed, so that every machine tests with the same one.
+/// Monado in a fixed version, so that tests use the same one everywhere.
 const MONADO: [&str; 2] = ["monado-service=25.0.0+dfsg-2", "libopenxr1-monado=25.0.0+dfsg-2"];
-/// Its drivers: lavapipe, and EGL for the application.
+/// Monado's drivers: lavapipe, and EGL for the application.
 const MESA: [&str; 5] = ["mesa-vulkan-drivers", "libegl1", "libegl-mesa0", "libgles2", "libgl1-mesa-dri"];
-/// Needed by nothing here, and large.
+/// Files that are large and not needed.
 const WITHOUT: [&str; 12] = [
     "./usr/share/doc/*",
     "./usr/share/man/*",
@@ -34,13 +34,13 @@ const WITHOUT: [&str; 12] = [
     "./var/*",
     "./etc/*",
 ];
-/// The runtime's manifest in the root.
+/// The runtime's manifest, relative to the root.
 pub const MANIFEST: &str = "usr/share/openxr/1/openxr_monado.json";
 
-/// Sets it up, and returns how to use it.
+/// Sets up Monado, and returns how to use it.
 ///
 /// # Errors
-/// When it cannot be had on this machine.
+/// Fails if it cannot be obtained on this machine.
 pub fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
@@ -50,12 +50,12 @@ pub fn usage() -> anyhow::Result<String> {
     ))
 }
 
-/// Fetches and unpacks both programs, unless what is there is complete. Returns their folder.
+/// Returns the folder of both programs. Fetches and unpacks them unless the folder is complete.
 ///
 /// # Errors
-/// When it cannot be had on this machine.
+/// Fails if they cannot be obtained on this machine.
 pub fn make() -> anyhow::Result<PathBuf> {
-    /// hello_xr begins with Monado, too.
+    /// Locked, since [`hello_xr`](crate::hello_xr) sets up Monado as well.
     static TURN: Mutex<()> = Mutex::new(());
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     if !cfg!(target_arch = "x86_64") {
@@ -72,11 +72,10 @@ pub fn make() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Unpacks packages of one of Debian's releases, with all that they need, into `root`. `folder` holds what is
-/// downloaded meanwhile.
+/// Unpacks packages of a Debian release, with all dependencies, into `root`. Downloads go to `folder` meanwhile.
 ///
 /// # Errors
-/// When they cannot be had.
+/// Fails if they cannot be obtained.
 pub fn unpack_with_needs(
     folder: &Path,
     root: &Path,
@@ -92,7 +91,7 @@ pub fn unpack_with_needs(
     Ok(())
 }
 
-/// The beginning of a command line that gives a program the libraries of this root, after those in the folders `first`.
+/// Returns the beginning of a command line that runs a program with the libraries in `first`, then those of this root.
 pub fn linker(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");
@@ -111,8 +110,8 @@ pub fn linker(root: &Path, first: &[PathBuf]) -> String {
     )
 }
 
-/// The text of a launcher for programs of this machine, with the libraries of this root after those in the folders
-/// `first`. The runtime is Monado, or what XR_RUNTIME_JSON names.
+/// Returns the text of a launcher that runs this machine's programs with the libraries in `first`, then those of this
+/// root. The runtime is Monado unless XR_RUNTIME_JSON names another one.
 pub fn run(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");
@@ -138,10 +137,10 @@ fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
     write_launcher(&folder.join("run"), &run(root, &[]))
 }
 
-/// Writes the launcher `monado-service` of the runtime in this root.
+/// Writes the launcher `monado-service` for the runtime in this root.
 ///
 /// # Errors
-/// When the runtime is not there, or the launcher cannot be written.
+/// Fails if the runtime is missing, or the launcher cannot be written.
 pub fn write_service(folder: &Path, root: &Path) -> anyhow::Result<()> {
     let usr = root.join("usr");
     let service = format!(

@@ -1,4 +1,4 @@
-//! Debian's packages, unpacked in a folder of their own: apt gets its own state for that, and nothing is installed.
+//! Debian packages, unpacked into a folder. apt gets a private state for this, and nothing is installed.
 
 use std::fs;
 use std::io::Write as _;
@@ -10,21 +10,20 @@ use anyhow::{Context as _, bail};
 
 use crate::apt;
 
-/// apt with this machine's sources, or another distribution's, but with a state of its own: for it nothing is
-/// installed.
+/// apt with a private state in which nothing is installed, and with this machine's or another distribution's sources.
 pub struct PrivateApt {
     folder: PathBuf,
-    /// The first is the usual one.
+    /// The native architecture comes first.
     architectures: Vec<String>,
     sources: Option<PathBuf>,
 }
 
 impl PrivateApt {
-    /// Keeps everything in `folder`, which [`PrivateApt::remove`] removes. `sources` are lines of a sources.list, in
-    /// place of this machine's.
+    /// Keeps all files in `folder`, which [`PrivateApt::remove`] removes. `sources` are lines of a sources.list that
+    /// replace this machine's.
     ///
     /// # Errors
-    /// Without Debian's tools, or when the folder cannot be written.
+    /// Fails if Debian's tools are missing, or the folder cannot be written.
     pub fn new(folder: PathBuf, architectures: &[&str], sources: Option<&str>) -> anyhow::Result<Self> {
         for tool in ["apt-get", "dpkg-deb", "tar"] {
             apt::find_program(tool)
@@ -51,7 +50,7 @@ impl PrivateApt {
         let mut options = vec![
             format!("APT::Architecture={}", self.architectures[0]),
             format!("APT::Architectures={}", self.architectures.join(",")),
-            // The user that root's apt downloads as may not see this folder.
+            // The user that apt switches to for downloads may have no access to this folder.
             "APT::Sandbox::User=root".to_owned(),
             "Acquire::Languages=none".to_owned(),
             "Acquire::Retries=3".to_owned(),
@@ -87,26 +86,26 @@ impl PrivateApt {
     /// Fetches the lists of packages.
     ///
     /// # Errors
-    /// When apt-get fails.
+    /// Fails if apt-get fails.
     pub fn update(&self) -> anyhow::Result<()> {
         let _turn = apt::turn();
         self.get(&["update"])
     }
 
-    /// The names of the packages that begin so, one per line.
+    /// Returns the names of the packages that begin with `beginning`, one per line.
     ///
     /// # Errors
-    /// When apt-cache cannot be started.
+    /// Fails if apt-cache cannot be started.
     pub fn names(&self, beginning: &str) -> anyhow::Result<String> {
         let names = self.command("apt-cache", &["pkgnames", beginning]).output();
         let names = names.context("apt-cache cannot be started")?.stdout;
         Ok(String::from_utf8_lossy(&names).into_owned())
     }
 
-    /// Downloads packages and all that they need, and returns their files. A package may be followed by `=VERSION`.
+    /// Downloads packages and their dependencies, and returns the files. A package may be followed by `=VERSION`.
     ///
     /// # Errors
-    /// When apt-get fails.
+    /// Fails if apt-get fails.
     pub fn download(&self, packages: &[String]) -> anyhow::Result<Vec<PathBuf>> {
         let mut arguments = vec!["install", "--yes", "--download-only", "--no-install-recommends"];
         arguments.extend(packages.iter().map(String::as_str));
@@ -118,19 +117,19 @@ impl PrivateApt {
         Ok(files.filter(|path| path.extension().is_some_and(|extension| extension == "deb")).collect())
     }
 
-    /// Removes what was downloaded: unpacked packages are not needed twice.
+    /// Removes the downloads, which are not needed after unpacking.
     pub fn remove(self) {
         fs::remove_dir_all(&self.folder).ok();
     }
 }
 
-/// Puts a package's files into `root`, without running anything of it: those that fit one of the patterns `only`, if
-/// there are any, and none of the patterns `without`.
+/// Unpacks a package's files into `root` without running any of its scripts: those that match one of the patterns
+/// `only`, if there are any, and none of the patterns `without`.
 ///
 /// # Errors
-/// When the package is damaged, or there is no room.
+/// Fails if the package is damaged, or there is no space.
 pub fn unpack(package: &Path, root: &Path, only: &[&str], without: &[&str]) -> anyhow::Result<()> {
-    // Newer distributions have all libraries below usr and expect links beside it.
+    // Newer distributions have all libraries below usr, and expect links to them in the root.
     if !root.exists() {
         fs::create_dir_all(root.join("usr/lib"))
             .and_then(|()| fs::create_dir_all(root.join("usr/lib64")))
@@ -156,10 +155,10 @@ pub fn unpack(package: &Path, root: &Path, only: &[&str], without: &[&str]) -> a
     Ok(())
 }
 
-/// Releases of Debian at the place that this machine has its own Debian from, as lines of a sources.list.
+/// Returns lines of a sources.list for these Debian releases, from this machine's own mirror.
 ///
 /// # Errors
-/// When this machine knows no such place.
+/// Fails if this machine has no Debian source.
 pub fn debian_sources(releases: &[&str]) -> anyhow::Result<String> {
     let targets = Command::new("apt-get")
         .args(["indextargets", "--format", "$(REPO_URI) $(COMPONENT)", "Created-By: Packages"])
@@ -174,23 +173,22 @@ pub fn debian_sources(releases: &[&str]) -> anyhow::Result<String> {
     Ok(releases.iter().map(line).collect())
 }
 
-/// Returns the place of Debian itself among `place component` lines: not that of its security updates, nor somebody
-/// else's.
+/// Returns the URI of Debian itself among `URI component` lines, not that of its security updates or of a third party.
 fn debian(targets: &str) -> Option<&str> {
     let mut places = targets.lines().filter_map(|line| line.split_once(' '));
     let is_debian = |place: &str| place.trim_end_matches('/').ends_with("/debian");
     places.find(|(place, component)| *component == "main" && is_debian(place)).map(|(place, _)| place)
 }
 
-/// A path as a word of the shell.
+/// Quotes a path for the shell.
 pub fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
 }
 
-/// Writes a program for the shell.
+/// Writes an executable shell script.
 ///
 /// # Errors
-/// When the file cannot be written.
+/// Fails if the file cannot be written.
 pub fn write_launcher(launcher: &Path, text: &str) -> anyhow::Result<()> {
     fs::File::create(launcher)
         .and_then(|mut file| {

@@ -1,4 +1,4 @@
-//! Rust for other machines than this one: with rustup's std for them, or with std compiled from its source.
+//! Rust for other targets than this machine, with rustup's std for them or with std compiled from source.
 
 use std::env;
 use std::ffi::OsString;
@@ -14,26 +14,26 @@ use crate::folders::root;
 /// A cargo and its rustc.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rust {
-    /// The folder of the programs.
+    /// The folder of both programs.
     programs: PathBuf,
     sysroot: PathBuf,
-    /// Major and minor.
+    /// Major and minor version.
     version: (u32, u32),
 }
 
-/// The behaviour of a panic.
+/// What a panic does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panic {
-    /// It ends the process.
+    /// Ends the process.
     Abort,
-    /// It can be caught.
+    /// Unwinds, so that it can be caught.
     Unwind,
 }
 
 impl Rust {
-    /// The user's own.
+    /// Returns the user's own Rust.
     pub fn own() -> Option<Self> {
-        // Cargo names itself to what it runs; behind rustup's proxy that is the real one.
+        // Cargo sets this variable for the programs that it runs; behind rustup's proxy, it names the real cargo.
         let cargo = env::var_os("CARGO").map(PathBuf::from).or_else(|| find_program("cargo"))?;
         Self::at(cargo.parent()?.to_owned())
     }
@@ -51,13 +51,13 @@ impl Rust {
         Some(Self { programs, sysroot, version })
     }
 
-    /// A Rust that can compile std: the user's own, where it has std's source, or Debian's.
+    /// Returns a Rust that can compile std: the user's own if it has std's source, or else Debian's.
     pub fn with_source() -> Option<Self> {
         let fits = |rust: &Self| rust.is_new_enough() && rust.has_source();
         Self::own().filter(fits).or_else(|| Self::at("/usr/bin".into()).filter(fits))
     }
 
-    /// A Rust that can compile for `triple`, and whether it has to compile std, too.
+    /// Returns a Rust that can compile for `triple`, and whether it has to compile std as well.
     pub fn for_target(triple: &str) -> Option<(Self, bool)> {
         let prebuilt = Self::own().filter(|rust| rust.has_target(triple)).map(|rust| (rust, false));
         prebuilt.or_else(|| Some((Self::with_source()?, true)))
@@ -76,8 +76,7 @@ impl Rust {
         version(env!("CARGO_PKG_RUST_VERSION")).is_some_and(|minimum| self.version >= minimum)
     }
 
-    /// LLVM's linker for WebAssembly: the one that comes with this Rust or with the user's, else the system's. Debian's
-    /// Rust has none of its own.
+    /// Returns LLVM's linker for WebAssembly: of this Rust or the user's, or else the system's. Debian's Rust has none.
     pub fn wasm_linker(&self) -> Option<PathBuf> {
         let own = self.rust_lld().or_else(|| Self::own()?.rust_lld());
         own.or_else(|| find_program("wasm-ld"))
@@ -88,10 +87,10 @@ impl Rust {
         hosts.flatten().map(|host| host.path().join("bin/rust-lld")).find(|file| file.is_file())
     }
 
-    /// Its cargo, in the workspace's root. Flags for this machine's processor are left out.
+    /// Returns its cargo, in the workspace's root and without RUSTFLAGS, which are for this machine's processor.
     ///
     /// # Errors
-    /// When PATH cannot be extended.
+    /// Fails if PATH cannot be extended.
     pub fn cargo(&self) -> anyhow::Result<Command> {
         let mut command = Command::new(self.programs.join("cargo"));
         command.current_dir(root()).env_remove("RUSTFLAGS");
@@ -99,11 +98,11 @@ impl Rust {
         Ok(command)
     }
 
-    /// Makes a command use this Rust: cargo's subcommands take the first cargo in PATH. Variables that the cargo of
-    /// this program has set must not reach it.
+    /// Makes a command use this Rust, by PATH: cargo's subcommands run the first cargo there. Removes the variables
+    /// that the cargo of this program has set.
     ///
     /// # Errors
-    /// When PATH cannot be extended.
+    /// Fails if PATH cannot be extended.
     pub fn use_in(&self, command: &mut Command) -> anyhow::Result<()> {
         let mut path = OsString::from(&self.programs);
         if let Some(rest) = env::var_os("PATH") {
@@ -118,7 +117,7 @@ impl Rust {
     }
 }
 
-/// Makes cargo compile std from its source, without backtraces: there are no symbols to show.
+/// Makes cargo compile std from its source, without backtraces, which would have no symbols to show.
 pub fn build_std(command: &mut Command, panic: Panic) {
     let (crates, features) = match panic {
         Panic::Abort => ("std,panic_abort", ""),
@@ -130,7 +129,7 @@ pub fn build_std(command: &mut Command, panic: Panic) {
         .env("CARGO_UNSTABLE_BUILD_STD_FEATURES", features);
 }
 
-/// The rustc flag by which panics name source files without the builder's folders, which are nobody's concern.
+/// Returns the rustc flag that removes the builder's private folders from the source file names in panic messages.
 pub fn anonymous_paths() -> Option<String> {
     let cargo_home = env::var_os("CARGO_HOME")
         .map(PathBuf::from)
@@ -138,7 +137,7 @@ pub fn anonymous_paths() -> Option<String> {
     cargo_home.map(|home| format!("--remap-path-prefix={}=cargo", home.display()))
 }
 
-/// The need for std's source, which `rust` has.
+/// Returns the requirement of std's source, which `rust` must have.
 pub fn source(rust: Option<&Rust>) -> Need {
     let minimum = env!("CARGO_PKG_RUST_VERSION");
     let found = rust.map(|rust| {
@@ -155,7 +154,7 @@ pub fn source(rust: Option<&Rust>) -> Need {
     }
 }
 
-/// Reads `1.96` of `rustc 1.96.0 (ac68faa20 2026-05-25)`.
+/// Parses the version `1.96` in `rustc 1.96.0 (ac68faa20 2026-05-25)`.
 fn version(text: &str) -> Option<(u32, u32)> {
     let number = text.split_whitespace().find(|word| word.starts_with(|c: char| c.is_ascii_digit()))?;
     let mut parts = number.split('.');

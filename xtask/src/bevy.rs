@@ -1,4 +1,4 @@
-//! The plugin for Bevy: its example and its tests. They are packages apart, with a target folder of their own.
+//! The plugin for Bevy: its example and its tests. They are a workspace of their own with its own target folder.
 
 use std::time::Instant;
 
@@ -20,17 +20,17 @@ pub enum Task {
 /// Runs the example without a window.
 ///
 /// # Errors
-/// When it fails.
+/// Fails if the example fails.
 pub fn run() -> anyhow::Result<()> {
     setup::vulkan();
     let folder = root().join("out/bevy").display().to_string();
     perform("run", &["--example", "headless", "--", &folder], &[])
 }
 
-/// Runs all tests.
+/// Runs all tests. Without Monado, its tests are skipped with a message.
 ///
 /// # Errors
-/// When one fails. Where there is no Monado, its tests are skipped with a message.
+/// Fails if a test fails.
 pub fn test() -> anyhow::Result<()> {
     let start = Instant::now();
     setup::vulkan();
@@ -61,7 +61,7 @@ pub fn test() -> anyhow::Result<()> {
 fn perform(command: &str, more: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<()> {
     let manifest = root().join("integrations/bevy/Cargo.toml").display().to_string();
     let target = target_folder()?.join("bevy").display().to_string();
-    // The same features for all: nothing is compiled twice.
+    // All commands select the same features, so that nothing is compiled twice.
     let mut arguments = vec![
         command,
         "--locked",

@@ -1,4 +1,4 @@
-//! The shader kit: synthesis as shaders, their uniforms' layout and a header that fills them.
+//! The shader kit: the synthesis shaders, the layout of their uniforms, and a header that fills them.
 
 use std::path::PathBuf;
 
@@ -6,10 +6,10 @@ use anyhow::bail;
 use yoro_tools::cargo;
 use yoro_tools::folders::target_folder;
 
-/// Writes it to `target/kit`, and returns the folder.
+/// Writes the kit to `target/kit`, and returns the folder.
 ///
 /// # Errors
-/// When the program that writes it does not compile, or the folder cannot be written.
+/// Fails if the program that writes it does not compile, or the folder cannot be written.
 pub fn kit() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("kit");
     let path = folder.display().to_string();

@@ -1,4 +1,4 @@
-//! Checks of the source that do not run it.
+//! Static checks of the source.
 
 use anyhow::{Context as _, bail};
 use serde_json::Value;
@@ -6,13 +6,13 @@ use yoro_tools::cargo;
 
 use crate::web;
 
-/// The packages that others could take from a registry: the library's core and what it stands on.
+/// The packages that could be published to a registry: the library's core and its dependencies.
 const PUBLISHED: [&str; 4] = ["yoro-shaders", "yoro-gl", "yoro", "yoro-wgpu"];
 
-/// Runs every check, even after one has found something.
+/// Runs all checks, even after one has failed.
 ///
 /// # Errors
-/// When something was found.
+/// Fails if a check has found something.
 pub fn lint() -> anyhow::Result<()> {
     let mut checks: Vec<Vec<&str>> = vec![
         vec!["fmt", "--all", "--check"],
@@ -24,7 +24,7 @@ pub fn lint() -> anyhow::Result<()> {
     for library in &libraries {
         checks.push(vec!["check", "--quiet", "--package", library, "--lib", "--no-default-features"]);
     }
-    // Without the lock file no registry is asked for packages that it does not have.
+    // Without the lock file, cargo does not ask the registry for packages that are not published.
     let mut package = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
     package.extend(PUBLISHED.iter().flat_map(|name| ["--package", name]));
     checks.push(package);
@@ -49,7 +49,7 @@ pub fn lint() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The packages that are libraries for others written in Rust.
+/// Returns the packages that are libraries for other Rust projects.
 fn libraries(metadata: &str) -> Option<Vec<String>> {
     let metadata: Value = serde_json::from_str(metadata).ok()?;
     let is_library = |package: &&Value| {

@@ -1,5 +1,5 @@
-//! Everything a person or CI types: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`,
-//! `package`, `kit`, `bevy`, `godot`, `web`. What maintainers run is in tools/.
+//! The commands that users and CI run: `cargo xtask setup`, `run`, `test`, `lint`, `apk`, `doctor`, `check-apk`,
+//! `package`, `kit`, `bevy`, `godot`, `web`. Maintainers' commands are in tools/.
 
 mod android;
 mod bevy;
@@ -119,7 +119,7 @@ fn main() -> ExitCode {
     console::exit_code(perform(Arguments::parse().task))
 }
 
-/// Returns false if what was checked is not as it should be.
+/// Runs a task. Returns false if a check has failed.
 fn perform(task: Task) -> anyhow::Result<bool> {
     match task {
         Task::Setup => {

@@ -1,4 +1,4 @@
-//! Monado, running beside a test.
+//! Runs Monado beside a test.
 
 use std::fs::File;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
 
-/// A program that ends with this.
+/// A process that is killed when this is dropped.
 pub struct Running(pub Child);
 
 impl Drop for Running {
@@ -18,10 +18,10 @@ impl Drop for Running {
     }
 }
 
-/// Starts the runtime. Programs with this folder as XDG_RUNTIME_DIR find it; its log lies there, too.
+/// Starts the runtime. Programs with `folder` as XDG_RUNTIME_DIR find it. Its log is written there, too.
 ///
 /// # Errors
-/// When it does not start.
+/// Fails if the runtime does not start.
 pub fn start(service: &Path, folder: &Path) -> anyhow::Result<Running> {
     let log = File::create(folder.join("runtime.log"))?;
     let child = Command::new(service)

@@ -1,5 +1,5 @@
-//! The system libraries that the program needs: EGL, OpenGL ES, a driver, OSMesa; and those for the tests of Vulkan: a
-//! driver without a GPU, Khronos's validation layer, glslang.
+//! The required system libraries. The program needs EGL, OpenGL ES, a driver and OSMesa. Tests of Vulkan need a driver
+//! without a GPU, Khronos's validation layer and glslang.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -10,13 +10,13 @@ use std::process::{Command, Stdio};
 use anyhow::{anyhow, bail};
 use yoro_tools::apt;
 
-/// Something that the system must have, and the packages that bring it.
+/// A system requirement, and the packages that contain it.
 struct Need {
-    /// Name in messages.
+    /// The name in messages.
     what: &'static str,
-    /// Any of these files is enough; a trailing `*` stands for any ending.
+    /// File names, any of which is sufficient. A trailing `*` matches any ending.
     any_of: &'static [&'static str],
-    /// Debian and Ubuntu.
+    /// The packages of Debian and Ubuntu.
     apt: &'static [&'static str],
 }
 
@@ -28,13 +28,13 @@ impl Need {
 
 const EGL: Need = Need { what: "libEGL", any_of: &["libEGL.so.1"], apt: &["libegl1"] };
 const GLES: Need = Need { what: "OpenGL ES", any_of: &["libGLESv2.so.2"], apt: &["libgles2"] };
-/// libEGL is a dispatcher that needs one of these, or Mesa's own, which is always numbered 1.0.0.
+/// libEGL is a dispatcher, which needs one of the first two, or it is Mesa's own, which always has the number 1.0.0.
 const VENDOR: Need = Need {
     what: "an EGL vendor library",
     any_of: &["libEGL_mesa.so.0", "libEGL_nvidia.so.0", "libEGL.so.1.0.0"],
     apt: &["libegl-mesa0"],
 };
-/// Mesa has its rasterizer in a DRI module or, since 24.2, in libgallium.
+/// Mesa's rasterizer is in a DRI module or, since 24.2, in libgallium.
 const DRIVER: Need = Need {
     what: "a GL driver",
     any_of: &["libgallium-*", "dri/swrast_dri.so", "libEGL_nvidia.so.0"],
@@ -55,33 +55,32 @@ const VALIDATION: Need = Need {
     apt: &["vulkan-validationlayers"],
 };
 const VULKAN_NEEDS: [&Need; 3] = [&VULKAN, &VULKAN_DRIVER, &VALIDATION];
-/// Headers for the samples in C, without which their tests are skipped.
+/// Headers for the samples in C. Their tests are skipped if these are missing.
 const HEADERS: [Need; 2] = [
     Need { what: "Vulkan's headers", any_of: &["libvulkan.so"], apt: &["libvulkan-dev"] },
     Need { what: "headers of OpenGL ES", any_of: &["libGLESv2.so"], apt: &["libgles-dev", "libegl-dev"] },
 ];
-/// Debian's package of glslangValidator.
+/// The Debian package of glslangValidator.
 const GLSLANG: &[&str] = &["glslang-tools"];
 
-/// The optional libraries: true for those that are here after set-up.
+/// The optional libraries, true if available after the set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Libraries {
-    /// Mesa dropped it in version 25.1, so that new distributions do not have it. Only `--gl osmesa` and its
-    /// tests need it.
+    /// OSMesa, which Mesa 25.1 removed, so new distributions lack it. Only `--gl osmesa` and its tests need it.
     pub osmesa: bool,
 }
 
 impl Libraries {
-    /// True if nothing is missing, not even what is optional.
+    /// True if no library is missing, including the optional ones.
     pub fn complete(self) -> bool {
         self.osmesa
     }
 }
 
-/// Installs what is missing, and says nothing when nothing is.
+/// Installs what is missing. Prints nothing if nothing is missing.
 ///
 /// # Errors
-/// One sentence that says what to install when this program cannot.
+/// Fails if this program cannot install it. The error says what to install.
 pub fn ensure() -> anyhow::Result<Libraries> {
     if !cfg!(target_os = "linux") {
         bail!(
@@ -111,7 +110,7 @@ pub fn ensure() -> anyhow::Result<Libraries> {
     }
 }
 
-/// Returns the browser that the tests of pages use, after installing it where apt has one.
+/// Returns the browser for tests of pages. Installs one if necessary and apt has one.
 pub fn browser() -> Option<PathBuf> {
     let find = || ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(apt::find_program);
     find().or_else(|| {
@@ -123,8 +122,8 @@ pub fn browser() -> Option<PathBuf> {
     })
 }
 
-/// Installs what tests and shaders of Vulkan need, and tests in C, which no program of the project does; whether the
-/// tests of Vulkan can be run.
+/// Installs what tests and shaders of Vulkan and tests in C need, none of which the project's programs need. Returns
+/// true if the tests of Vulkan can run.
 pub fn vulkan() -> bool {
     let missing = |needs: &mut dyn Iterator<Item = &'static Need>| -> Vec<&Need> {
         let folders = library_folders();
@@ -151,12 +150,12 @@ pub fn vulkan() -> bool {
     missing(&mut VULKAN_NEEDS.into_iter()).is_empty()
 }
 
-/// The compiler of Vulkan's shaders.
+/// Returns the path of the compiler for Vulkan shaders.
 pub fn glslang() -> Option<PathBuf> {
     apt::find_program("glslangValidator")
 }
 
-/// Fails if something that is not optional is still missing.
+/// Fails if something is still missing that is not optional.
 fn conclude(missing: &[&Need], remedy: &str) -> anyhow::Result<Libraries> {
     let required: Vec<&str> =
         missing.iter().filter(|need| need.what != OSMESA.what).map(|need| need.what).collect();
@@ -175,7 +174,7 @@ fn missing(folders: &[PathBuf]) -> Vec<&'static Need> {
     NEEDS.iter().filter(|need| !need.is_in(folders)).collect()
 }
 
-/// The folders that the dynamic linker searches, as far as they are known from outside.
+/// Returns the folders that the dynamic linker searches, as far as they can be determined.
 fn library_folders() -> Vec<PathBuf> {
     let mut folders: BTreeSet<PathBuf> = BTreeSet::new();
     if let Some(path) = env::var_os("LD_LIBRARY_PATH") {
@@ -206,7 +205,7 @@ fn exists(folders: &[PathBuf], name: &str) -> bool {
     })
 }
 
-/// The command that installs everything on a distribution without apt, by its os-release file.
+/// Returns the command that installs everything on a distribution without apt, identified by its os-release file.
 fn advice(release: &str) -> &'static str {
     let value = |key: &str| {
         let line = release.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));

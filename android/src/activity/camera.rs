@@ -1,4 +1,4 @@
-//! The camera's part of the activity: it looks for a viewer's code while the start screen is shown.
+//! The activity's camera: it looks for a viewer's code while the start screen is shown.
 
 use yoro_lenses::Rotation;
 
@@ -9,7 +9,7 @@ use crate::display::Display;
 use crate::shared::Shared;
 
 impl Activity {
-    /// Begins a scan, or asks for the permission first.
+    /// Starts a scan, or first asks for the permission.
     pub(super) fn ask_for_scan(&mut self) {
         if self.java.may_use_camera() {
             self.begin_scan();
@@ -19,7 +19,7 @@ impl Activity {
         }
     }
 
-    /// Lets the camera look for a viewer's code, if it may.
+    /// Starts to look for a viewer's code with the camera, if that is permitted.
     pub(super) fn begin_scan(&mut self) {
         if self.java.may_use_camera() {
             log::info!("the camera looks for a viewer's code");
@@ -30,7 +30,7 @@ impl Activity {
         }
     }
 
-    /// Shows what the camera sees, and takes the viewer that it finds.
+    /// Shows the camera's picture and applies the code that it finds.
     pub(super) fn follow_scan(&mut self) {
         let (Some(scan), Display::Cardboard(cardboard)) = (&self.scan, &mut self.display) else { return };
         let sentence = match scan.outcome() {
@@ -39,7 +39,7 @@ impl Activity {
                 configuration::choose_viewer(cardboard, &uri)
             }
             Some(Ok(Shared::Stream(address))) => configuration::show_stream(cardboard.viewer_mut(), address),
-            // A code is no file.
+            // A code cannot be a file.
             Some(Ok(Shared::Scene(_))) => String::new(),
             Some(Err(sentence)) => sentence,
             None => {

@@ -1,4 +1,4 @@
-//! A headset: whether it is the display, and its steps.
+//! The activity's headset: whether it is the display, and its steps.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
 use super::{Activity, context};
 use crate::display::{Display, DisplayError};
 
-/// The OpenXR runtime. Its library stays in the process and is initialised once, however many activities come and go.
+/// The OpenXR runtime. Its library stays in the process and is initialised only once for all activities.
 static RUNTIME: OnceLock<runtime::Runtime> = OnceLock::new();
 
 impl Activity {
@@ -38,22 +38,22 @@ impl Activity {
         }
     }
 
-    /// Finds the runtime of this device; it is looked for once in the process.
+    /// Finds the runtime of this device, once per process.
     fn find_runtime(&self) -> Result<runtime::Runtime, runtime::NotFound> {
         if let Some(found) = RUNTIME.get() {
             return Ok(found.clone());
         }
         let java = self.java.application_context().map(|context| {
-            // SAFETY: the process's VM, and a global reference that is never given back.
+            // SAFETY: the pointers are the process's VM, and a global reference that is never deleted.
             unsafe { runtime::JavaContext::new(self.app.vm_as_ptr(), context) }
         });
         let found = runtime::find(&runtime::android_places(), &self.java, java.as_ref())?;
         Ok(RUNTIME.get_or_init(|| found).clone())
     }
 
-    /// Shows everything on the device's own screen, as there is no headset, or no longer. On a headset the application
-    /// ends instead: its wearer does not see that screen, but an endless sign of loading. `is_usual` is true if nothing
-    /// is wrong: most phones are no headsets.
+    /// Uses the device's own screen, because there is no headset or no headset any more. On a headset the application
+    /// ends instead, since its wearer would not see that screen but an endless loading sign. `is_usual` is true if
+    /// nothing is wrong: most phones are not headsets.
     fn do_without_headset(&mut self, reason: &str, is_usual: bool) {
         if self.java.is_headset() {
             log::error!("display: none, since {reason}; this is a headset, so the application ends");
@@ -66,7 +66,7 @@ impl Activity {
     }
 
     fn open_headset(&mut self, found: runtime::Runtime) -> Result<(), DisplayError> {
-        // SAFETY: the process's VM, and a global reference that lives as long as `self.app`.
+        // SAFETY: the pointers are the process's VM, and a global reference that lives as long as `self.app`.
         let android = unsafe { Android::new(self.app.vm_as_ptr(), self.app.activity_as_ptr()) };
         let window = match self.window.take() {
             Some(window) => window,
@@ -85,7 +85,7 @@ impl Activity {
         Ok(())
     }
 
-    /// One step of the headset: a frame, unless the runtime wants none.
+    /// Makes a frame, unless the runtime wants none.
     pub(super) fn step_headset(&mut self) {
         let (Display::Headset(headset), Some(window)) = (&mut self.display, &self.window) else { return };
         self.input.events.drain(..).for_each(|event| headset.event(event));
@@ -97,8 +97,8 @@ impl Activity {
                 }
             }
             Ok(Step::Ended) => self.finish(),
-            // The headset is lost for this activity, for instance with its session. It has used neither the window nor
-            // the refreshes and sensors, so both are begun here as if the activity had come to the front just now.
+            // This activity has lost the headset, for instance with its session. The headset used neither the window
+            // nor the refreshes and sensors, so both are started here as if the activity had just come to the front.
             Err(error) => {
                 self.summarize();
                 self.is_summarized = false;

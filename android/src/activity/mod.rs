@@ -1,8 +1,8 @@
 //! The activity's life cycle and its main loop.
 //!
-//! On a headset with an OpenXR runtime the application is immersive: the runtime says when to draw, and where the eyes
-//! are. Everywhere else it is a Cardboard-compatible viewer on Android's window. Which one is decided once, when the
-//! activity comes to the front for the first time.
+//! On a headset with an OpenXR runtime the application is immersive: the runtime decides when to draw and where the
+//! eyes are. On every other device it is a Cardboard-compatible viewer in Android's window. The choice is made once,
+//! when the activity first comes to the front.
 
 mod camera;
 mod headset;
@@ -31,16 +31,16 @@ use crate::results;
 use crate::screen::ScreenState;
 use crate::system::now_ns;
 
-/// The longest wait for a refresh; after it a frame is drawn without one.
+/// The longest wait for a refresh. After this, a frame is drawn without one.
 const REFRESH_TIMEOUT: Duration = Duration::from_millis(100);
-/// Time between attempts to get a lost context or a refused window again.
+/// Time between attempts to recreate a lost context or a refused window.
 const RETRY: Duration = Duration::from_millis(250);
-/// The rate that is assumed of a display that does not report one, in Hz.
+/// The refresh rate in Hz assumed for a display that does not report one.
 const USUAL_HZ: f32 = 60.0;
-/// Time between polls of a headset's runtime for events while it wants no frames: in front, and in the background.
+/// Time between polls of a headset's runtime for events while it wants no frames, in front and in the background.
 const HEADSET_POLL: Duration = Duration::from_millis(10);
 const HEADSET_BACKGROUND_POLL: Duration = Duration::from_millis(100);
-/// The screen of a device that cannot show anything else, display-referred.
+/// The colour of the screen on a device that cannot show anything else, display-referred.
 const FAILURE_COLOR: [f32; 3] = [0.45, 0.05, 0.05];
 
 /// Runs the application until Android destroys the activity or the session is over.
@@ -62,7 +62,7 @@ pub fn run(app: &AndroidApp) {
 
 /// The state of one run of `android_main`.
 struct Activity {
-    // Objects in the GL context are dropped before the context.
+    // Declared first, since objects in the GL context must be dropped before the context.
     display: Display,
     gl: Option<Rc<Context>>,
     window: Option<Window>,
@@ -77,24 +77,24 @@ struct Activity {
     performance: Performance,
     /// The camera while it looks for a viewer's code.
     scan: Option<Scan>,
-    /// True from asking for the camera to the answer.
+    /// True while the user is being asked for permission to use the camera.
     is_asking: bool,
-    /// GPU time of a frame some frames ago, if measured.
+    /// GPU time of a frame a few frames ago, if it is measured.
     gpu_time: Duration,
     /// A buffer for the samples of a frame.
     samples: Vec<(MotionSample, i64)>,
 
-    /// True once it is decided which display the eyes see.
+    /// True once the display has been chosen.
     is_display_chosen: bool,
     is_resumed: bool,
     /// True while the screen's brightness is raised.
     is_bright: bool,
     is_finishing: bool,
     is_over: bool,
-    /// The scene in view, and true if the summary of its session is in the log.
+    /// The name of the scene that is shown, and whether the summary of its session has been logged.
     scene: String,
     is_summarized: bool,
-    /// The reason why this device can show nothing.
+    /// The reason why this device cannot show anything.
     failure: Option<String>,
     retry: Option<Instant>,
     last_frame: Instant,
@@ -143,7 +143,7 @@ impl Activity {
         self.is_resumed && has_window && self.is_ready() && self.failure.is_none()
     }
 
-    /// Sleeps until there is something to do, and lets Android's events in.
+    /// Sleeps until there is something to do, and handles Android's events.
     fn wait(&mut self) {
         let mut timeout = if let Display::Headset(headset) = &self.display {
             Some(match (headset.is_running(), self.is_resumed) {
@@ -237,7 +237,7 @@ impl Activity {
     fn pause(&mut self) {
         self.is_resumed = false;
         self.device = None;
-        // Android takes the camera from applications that are not in front.
+        // Android takes the camera from applications that are not in the foreground.
         if self.scan.take().is_some() {
             self.say("The camera was given back: touch the tile again.");
         }
@@ -250,8 +250,8 @@ impl Activity {
         }
     }
 
-    /// Ends an activity that was started by hand when the user leaves it: only a new one sees what other applications
-    /// share. A device that goes to sleep is not left.
+    /// Ends an activity that was started by hand when the user leaves it, since only a new activity receives what other
+    /// applications share. A device that goes to sleep does not count as left.
     fn leave(&mut self) {
         let is_left = !self.is_asking && self.java.is_awake();
         if self.configuration.is_by_hand() && !self.display.is_headset() && is_left {
@@ -260,7 +260,7 @@ impl Activity {
         }
     }
 
-    /// Says a sentence on the start screen.
+    /// Shows a sentence on the start screen.
     fn say(&mut self, sentence: &str) {
         log::info!("{sentence}");
         if let Some(cardboard) = self.display.cardboard_mut() {
@@ -268,7 +268,7 @@ impl Activity {
         }
     }
 
-    /// Drops everything on the GPU while the activity is in the background; it is made again with the next window.
+    /// Drops everything on the GPU while the activity is in the background. It is created again with the next window.
     fn free_memory(&mut self) {
         if self.display.is_headset() || self.window.as_ref().is_some_and(Window::is_attached) {
             log::warn!("Android is short of memory: a smaller render-scale or scene needs less");
@@ -306,7 +306,7 @@ impl Activity {
         }
     }
 
-    /// Begins another session, whose summary is still to come, if the scene is another one.
+    /// Starts a new session, whose summary is not logged yet, if the scene has changed.
     fn note_scene(&mut self) {
         if let Some(viewer) = self.display.viewer()
             && viewer.scene_name() != self.scene
@@ -318,14 +318,14 @@ impl Activity {
 
     /// Asks Android to end the activity.
     fn finish(&mut self) {
-        // Does not return from the loop: only a running loop gives window and input queue back.
+        // This does not leave the loop: only a running loop returns the window and the input queue to Android.
         if !std::mem::replace(&mut self.is_finishing, true) {
             self.java.finish();
         }
     }
 
-    /// Attaches to Android's window and makes the objects for drawing on it, if there is a window and no headset needs
-    /// the context.
+    /// Attaches to Android's window and creates the objects for drawing on it, if there is a window and the context is
+    /// not in use by a headset.
     fn open_window(&mut self) {
         self.retry = None;
         if self.display.is_headset() || self.is_finishing {
@@ -376,7 +376,7 @@ impl Activity {
         self.ask_performance();
     }
 
-    /// Asks for the refresh rate and the performance of the settings. A headset asks its runtime instead.
+    /// Requests the settings' refresh rate and performance. On a headset this is up to its runtime instead.
     fn ask_performance(&mut self) {
         if let Display::Cardboard(cardboard) = &self.display
             && let Some(window) = self.app.native_window()
@@ -386,7 +386,7 @@ impl Activity {
         }
     }
 
-    /// Says once, in the log and on the screen, why nothing can be shown.
+    /// Reports once, in the log and on the screen, why nothing can be shown.
     fn fail(&mut self, sentence: String) {
         if self.failure.as_ref() != Some(&sentence) {
             log::error!("{sentence}");
@@ -394,7 +394,7 @@ impl Activity {
         }
         self.failure = Some(sentence);
         if let Some(window) = &self.window {
-            // The sentence is in the log and in the toast: a colour that cannot be shown adds nothing.
+            // An error is ignored: the sentence is in the log and in the toast.
             let _ = window.show_color(FAILURE_COLOR);
         }
     }
@@ -418,7 +418,7 @@ impl Activity {
         self.retry = Some(Instant::now() + RETRY);
     }
 
-    /// Logs an error that may come with every frame once.
+    /// Logs an error only once if it repeats in every frame.
     fn log_error(&mut self, sentence: String) {
         if sentence != self.last_error {
             log::error!("{sentence}");
@@ -426,7 +426,7 @@ impl Activity {
         }
     }
 
-    /// Returns the present screen; none without a window.
+    /// Returns the present screen; `None` without a window.
     fn screen(&mut self) -> Option<Screen> {
         let size = self.window.as_ref()?.size()?;
         Some(self.screen.of_window(size, &self.java))
@@ -440,7 +440,7 @@ impl Activity {
         if self.display.is_headset() {
             return self.step_headset();
         }
-        // A window may have had no size when it came.
+        // The window may have had no size when it was created.
         if self.window.as_ref().is_some_and(Window::is_attached) && !self.is_ready() && self.failure.is_none()
         {
             self.attach_viewer();
@@ -463,7 +463,7 @@ impl Activity {
         }
     }
 
-    /// Does what the user wants.
+    /// Performs the user's actions.
     fn take_events(&mut self, screen: Screen) -> Result<(), ViewerError> {
         let Display::Cardboard(cardboard) = &mut self.display else { return Ok(()) };
         cardboard.resize(screen)?;
@@ -479,7 +479,7 @@ impl Activity {
                 _ => cardboard.event(event),
             };
             if was_start_screen {
-                // Whatever is touched, the camera is no longer wanted, or wanted anew.
+                // After any touch the camera is no longer wanted, or it is started again.
                 self.scan = None;
             }
             match done {
@@ -505,7 +505,7 @@ impl Activity {
         Ok(())
     }
 
-    /// Draws one frame, for the refresh that has just begun.
+    /// Draws a frame for the refresh that has just begun.
     fn frame(&mut self, refresh: Option<Refresh>) -> Result<(), DisplayError> {
         let Some(screen) = self.screen() else { return Ok(()) };
         self.take_events(screen)?;
@@ -533,7 +533,7 @@ impl Activity {
         let rendered = now_ns();
         cardboard.wait();
         let waited = now_ns();
-        // The newest samples: timewarp uses them.
+        // Adds the newest samples, for timewarp.
         feed(cardboard);
         let destination = Destination { framebuffer: None, origin: [0, 0], size: screen.size };
         let report = cardboard.present(&destination, &timing(waited))?;
@@ -560,7 +560,7 @@ impl Activity {
         if self.configuration.is_other_scene(&settings) {
             self.summarize();
         }
-        // Other settings may reopen the session.
+        // The new settings may start the session again.
         self.is_summarized = false;
         self.configuration.apply(settings, &mut self.display);
         self.ask_performance();
@@ -582,7 +582,7 @@ impl Activity {
     }
 }
 
-/// Returns the context of a window, which the first call makes.
+/// Returns a window's context, which is created by the first call.
 fn context<'a>(gl: &'a mut Option<Rc<Context>>, window: &Window) -> Result<&'a Rc<Context>, ViewerError> {
     match gl {
         Some(gl) => Ok(gl),

@@ -1,4 +1,4 @@
-//! The files of the shader kit: the gather pipeline and any view for engines that bring their own passes.
+//! The files of the shader kit: the gather pipeline and any view, for engines that bring their own passes.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 
 use yoro::synthesis::{PoseUniforms, Uniforms};
 
-/// File of the kit, and file of `yoro-shaders` that it is made of.
+/// Each file of the kit, and the file of `yoro-shaders` that it is made from.
 const SHADERS: [(&str, &str); 8] = [
     ("screen.vert", "screen.vert"),
     ("march.vert", "synthesis/march.vert"),
@@ -18,16 +18,16 @@ const SHADERS: [(&str, &str); 8] = [
     ("any_view_spans.frag", "synthesis/any_view/spans.frag"),
     ("any_view_march.frag", "synthesis/any_view/march.frag"),
 ];
-/// Names and values.
+/// Names and values of macros.
 type Macros = &'static [(&'static str, &'static str)];
 
-/// Folder, version and macros: the uniforms' block, and what every driver of the API can.
+/// Folder, GLSL version and macros of each API: the uniform block, and what every driver of the API supports.
 const APIS: [(&str, &str, Macros); 2] = [
     ("gles", "300 es", &[("UNIFORM_BLOCK", "layout(std140)")]),
     ("vulkan", "310 es", &[("UNIFORM_BLOCK", "layout(push_constant, std140)"), ("TEXTURE_GATHER", "")]),
 ];
 
-/// Vertex and fragment shader of each file for Godot, which has both in one, and its versions by name and macros.
+/// Each file for Godot, which has both stages in one, with its two shaders, and its versions by name and macros.
 const GODOT: [(&str, &str, &str, Versions); 7] = [
     (
         "tiles.glsl",
@@ -64,10 +64,10 @@ const GODOT: [(&str, &str, &str, Versions); 7] = [
 ];
 type Versions = &'static [(&'static str, &'static [&'static str])];
 
-/// Writes all of them into a folder.
+/// Writes all files into a folder.
 ///
 /// # Errors
-/// When a file cannot be written.
+/// Fails if a file cannot be written.
 pub fn write(folder: &Path) -> io::Result<()> {
     for (api, version, macros) in APIS {
         fs::create_dir_all(folder.join(api))?;
@@ -91,14 +91,14 @@ pub fn write(folder: &Path) -> io::Result<()> {
     put(&folder.join("README.md"), &text.replace("UNIFORMS\n", &table(Uniforms::LAYOUT)))
 }
 
-/// A reader never sees half of a file.
+/// Writes a file so that a reader never sees half of it.
 fn put(path: &Path, text: &str) -> io::Result<()> {
     let unfinished = path.with_added_extension("tmp");
     fs::write(&unfinished, text)?;
     fs::rename(unfinished, path)
 }
 
-/// One file without includes.
+/// Returns the text of one file, with its includes resolved.
 fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
     let macros: Vec<_> = macros.iter().map(|&(name, value)| (name, value.to_owned())).collect();
     let assembled = yoro_shaders::assemble(source, version, &macros)
@@ -129,7 +129,7 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
             };
         }
     }
-    // Before the precision statements there are extensions, too, of which synthesis needs none.
+    // The lines before the precision statements also contain extensions, which synthesis does not need.
     let begins = |line: &&str| line.starts_with("precision ");
     let macros = rest.lines().take_while(|line| !begins(line)).filter(|line| line.starts_with("#define "));
     let body = rest.lines().skip_while(|line| !begins(line));
@@ -140,7 +140,7 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
     Ok(own)
 }
 
-/// A file that Godot imports as RDShaderFile: the shaders for Vulkan between marks.
+/// Returns a file that Godot imports as RDShaderFile: the shaders for Vulkan between markers.
 fn godot(vertex: &str, fragment: &str, versions: Versions) -> io::Result<String> {
     let [_, (_, version, macros)] = APIS;
     let mut text = String::from("#[versions]\n");
@@ -158,12 +158,12 @@ fn godot(vertex: &str, fragment: &str, versions: Versions) -> io::Result<String>
     Ok(text)
 }
 
-/// True for the lines by which a shader tells its settings, which are versions in Godot.
+/// True for the comment lines in which a shader lists its settings, which are versions in Godot.
 fn is_setting(line: &str) -> bool {
     line == "//" || line == "// Settings:" || line.starts_with("// #define ")
 }
 
-/// A block's members.
+/// Returns a table of a block's members.
 fn table(layout: &[(&str, &str, usize)]) -> String {
     let mut table = String::from("| byte | member | type |\n|---:|---|---|\n");
     for (name, glsl, offset) in layout.iter().filter(|(name, ..)| *name != "padding") {

@@ -7,39 +7,39 @@ use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, Way};
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
 use crate::versioned::{self, versioned};
 
-/// A way to make both eyes of a frame, which is also its index in arrays of two.
+/// A way to produce both eyes of a frame. The value is also its index in arrays of two.
 pub type YoroWay = u32;
 /// Both eyes are rendered.
 pub const YORO_WAY_TWO_VIEWS: YoroWay = 0;
 /// One eye is rendered, the other synthesized.
 pub const YORO_WAY_SYNTHESIS: YoroWay = 1;
-/// Something else, such as both eyes rendered because synthesis was not possible: the frame counts for no way.
+/// Another way, such as both eyes rendered because synthesis was not possible. The frame counts for neither way.
 pub const YORO_WAY_OTHER: YoroWay = 2;
 
 /// The reason for a choice.
 pub type YoroReason = u32;
-/// Nothing is measured yet in this scene: it is the way to begin with, or the one before.
+/// Nothing has been measured in this scene yet. The initial way, or the one chosen before, is kept.
 pub const YORO_REASON_UNMEASURED: YoroReason = 0;
-/// It costs less.
+/// The chosen way costs less.
 pub const YORO_REASON_CHEAPER: YoroReason = 1;
-/// It costs more, but too little for a change: it is the way before.
+/// The chosen way costs more, but too little more to justify a change. It is kept.
 pub const YORO_REASON_SIMILAR: YoroReason = 2;
-/// It holds the display's rate, and the other way does not.
+/// The chosen way reaches the display's refresh rate, and the other does not.
 pub const YORO_REASON_HOLDS_RATE: YoroReason = 3;
-/// Both ways hold the display's rate, which hides their costs, and nothing more is known: it is the way before.
+/// Both ways reach the display's refresh rate, which hides their costs, and nothing else is known. The way is kept.
 pub const YORO_REASON_BOTH_HOLD_RATE: YoroReason = 4;
-/// One of the ways could not be measured: it is the way before.
+/// One of the ways could not be measured. The way is kept.
 pub const YORO_REASON_INCOMPARABLE: YoroReason = 5;
 
-/// Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about
-/// a second, chooses, and measures again when that may have changed.
+/// Finds out whether two renders or one render with synthesis is cheaper on this device. It alternates between them for
+/// about a second, chooses, and measures again when the result may have changed.
 ///
 /// Use it from one thread at a time. It needs no YoroContext.
 pub struct YoroChooser {
     chooser: Chooser,
 }
 
-/// A frame that was handed to the display.
+/// A frame that was submitted to the display.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroFrameEnd {
@@ -47,29 +47,29 @@ pub struct YoroFrameEnd {
     pub struct_size: u32,
     /// The way in which the frame was rendered.
     pub rendered: YoroWay,
-    /// The time now, in nanoseconds of a monotonic clock.
+    /// The current time of a monotonic clock, in nanoseconds.
     pub now_ns: i64,
-    /// Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when
-    /// you waited for the GPU to measure it.
+    /// Refreshes of the display per second. 0 if unknown, or if the display did not set the pace of this frame, for
+    /// example because you waited for the GPU in order to measure it.
     pub refresh_hz: f32,
-    /// Milliseconds that a frame has taken; 0 if none are known by now. The GPU's time, if there is a timer; else the
-    /// time from the beginning of the frame's work to the end of the GPU's, if you wait for that.
+    /// Milliseconds that a frame took; 0 if none are known yet. This is the GPU time if there is a timer. Otherwise, if
+    /// you wait for the GPU, it is the time from the beginning of the frame's work until the GPU has finished it.
     pub cost_ms: f32,
-    /// The frame that took cost_ms, as the number of frames ended since: 0 for this one. 63 at most.
+    /// The frame that took cost_ms, as the number of frames that ended after it: 0 for this one, at most 63.
     pub cost_frames_ago: u32,
-    /// 1 if heat is known.
+    /// 1 if `heat` is known.
     pub has_heat: u32,
     /// The device's heat on a scale on which 0.1 matters, such as Android's thermal headroom.
     pub heat: f32,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
-    /// Where the sentences of errors go.
+    /// Receives error messages.
     pub messages: YoroMessages,
 }
 
 versioned!(YoroFrameEnd);
 
-/// The way to render, and why.
+/// The way to render the next frame, and the reason.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroChoice {
@@ -77,13 +77,13 @@ pub struct YoroChoice {
     pub struct_size: u32,
     /// The way to render the next frame.
     pub next: YoroWay,
-    /// 1 while both ways are being measured. Keep resolution and quality meanwhile.
+    /// 1 while both ways are being measured. Do not change resolution or quality during this time.
     pub is_measuring: u32,
     /// The way that was chosen last.
     pub chosen: YoroWay,
-    /// Why.
+    /// The reason for that choice.
     pub reason: YoroReason,
-    /// The compared times in milliseconds, by way; 0 if there was nothing to compare.
+    /// The compared times in milliseconds, indexed by way; 0 if there was nothing to compare.
     pub cost_ms: [f32; 2],
 }
 
@@ -96,7 +96,7 @@ fn null(what: &str) -> Failure {
     )
 }
 
-/// Returns the way of a constant; `None` for another one.
+/// Returns the way for a constant, or `None` for YORO_WAY_OTHER.
 fn way(value: YoroWay) -> Result<Option<Way>, Failure> {
     match value {
         YORO_WAY_TWO_VIEWS => Ok(Some(Way::TwoViews)),
@@ -110,16 +110,17 @@ fn way(value: YoroWay) -> Result<Option<Way>, Failure> {
 ///
 /// Call it from any thread.
 ///
-/// @param first   The way to begin with, which stays if nothing can be measured: YORO_WAY_TWO_VIEWS or
-/// YORO_WAY_SYNTHESIS. @param chooser Receives the chooser; NULL after an error. @pre chooser can be written. @return
-/// YORO_ERROR_VALUE, YORO_ERROR_NULL.
+/// @param first   The initial way, which is kept if nothing can be measured: YORO_WAY_TWO_VIEWS or YORO_WAY_SYNTHESIS.
+/// @param chooser Receives the chooser, or NULL after an error. Destroy it with yoro_chooser_destroy.
+/// @pre chooser can be written to.
+/// @return YORO_ERROR_VALUE, YORO_ERROR_NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_chooser_create(first: YoroWay, chooser: *mut *mut YoroChooser) -> YoroResult {
     catch_errors(|_| {
         if chooser.is_null() {
             return Err(null("chooser"));
         }
-        // SAFETY: the header asks for a pointer that can be written.
+        // SAFETY: the header requires a writable pointer.
         unsafe { chooser.write(ptr::null_mut()) };
         let first = way(first)?.ok_or_else(|| {
             Failure::value("first is no way to begin with: give YORO_WAY_TWO_VIEWS or YORO_WAY_SYNTHESIS")
@@ -131,13 +132,16 @@ pub unsafe extern "C" fn yoro_chooser_create(first: YoroWay, chooser: *mut *mut 
     })
 }
 
-/// Takes a frame that was handed to the display, and says how to render the next one. It allocates nothing. The first
-/// frame is rendered in the way that yoro_chooser_create was given.
+/// Takes a frame that was submitted to the display, and returns how to render the next one. It allocates nothing.
+/// Render the first frame in the way that yoro_chooser_create was given.
 ///
-/// @param chooser The chooser. @param frame   The frame. @param choice  Filled in; the caller sets struct_size. @pre
-/// chooser is alive, and no other thread uses it. The others lead to structures of the size that they state. @return
-/// YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers that are
-/// not finite: such a frame is not counted.
+/// @param chooser The chooser.
+/// @param frame   The frame.
+/// @param choice  Receives the choice. The caller sets struct_size.
+/// @pre chooser is alive, and no other thread uses it. The other pointers point to structures of the sizes that they
+///      state.
+/// @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers
+///         that are not finite: such a frame is not counted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_chooser_end_frame(
     chooser: *mut YoroChooser,
@@ -145,12 +149,12 @@ pub unsafe extern "C" fn yoro_chooser_end_frame(
     choice: *mut YoroChoice,
 ) -> YoroResult {
     catch_errors(|messages| {
-        // SAFETY: the header asks for pointers to structures of the size that they state.
+        // SAFETY: the header requires pointers to structures of the sizes that they state.
         let frame = unsafe { versioned::read(frame, "frame") }?;
         *messages = frame.messages;
         // SAFETY: as above.
         unsafe { versioned::check_output(choice, "choice") }?;
-        // SAFETY: the header asks for a chooser that is alive and used by no other thread.
+        // SAFETY: the header requires a live chooser that no other thread uses.
         let Some(YoroChooser { chooser }) = (unsafe { chooser.as_mut() }) else {
             return Err(null("chooser"));
         };
@@ -160,7 +164,7 @@ pub unsafe extern "C" fn yoro_chooser_end_frame(
     })
 }
 
-/// Has both ways measured again: there is another scene, another place in it, or another resolution.
+/// Requests a new measurement of both ways, after a change of the scene, the place in it, or the resolution.
 ///
 /// @param chooser The chooser.
 /// @pre chooser is alive, and no other thread uses it.
@@ -168,7 +172,7 @@ pub unsafe extern "C" fn yoro_chooser_end_frame(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_chooser_scene_changed(chooser: *mut YoroChooser) -> YoroResult {
     catch_errors(|_| {
-        // SAFETY: the header asks for a chooser that is alive and used by no other thread.
+        // SAFETY: the header requires a live chooser that no other thread uses.
         let Some(YoroChooser { chooser }) = (unsafe { chooser.as_mut() }) else {
             return Err(null("chooser"));
         };
@@ -177,14 +181,14 @@ pub unsafe extern "C" fn yoro_chooser_scene_changed(chooser: *mut YoroChooser) -
     })
 }
 
-/// Destroys a chooser. NULL is allowed, and does nothing.
+/// Destroys a chooser. Does nothing if it is NULL.
 ///
 /// @param chooser The chooser, or NULL.
 /// @pre chooser is alive, and no other thread uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_chooser_destroy(chooser: *mut YoroChooser) {
     if !chooser.is_null() {
-        // SAFETY: `yoro_chooser_create` has made it, and the header asks that it is alive.
+        // SAFETY: `yoro_chooser_create` made it, and the header requires that it is alive.
         drop(unsafe { Box::from_raw(chooser) });
     }
 }

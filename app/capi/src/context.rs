@@ -1,4 +1,4 @@
-//! The handle: the synthesis in one GL context or on one Vulkan device, guarded against use by two threads.
+//! The context: the synthesis in one GL context or on one Vulkan device, guarded against use by two threads at once.
 
 use std::any::Any;
 use std::cell::UnsafeCell;
@@ -13,8 +13,8 @@ use crate::versioned::{self, Versioned, versioned};
 
 /// The synthesis in one GL context or on one Vulkan device: compiled shaders and small buffers.
 ///
-/// Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which
-/// the GL context is current; for Vulkan it can be any thread.
+/// Use it from one thread at a time. A second thread receives YORO_ERROR_BUSY. For OpenGL that must be the thread on
+/// which the GL context is current; for Vulkan it can be any thread.
 pub struct YoroContext {
     state: AtomicU8,
     messages: YoroMessages,
@@ -23,17 +23,17 @@ pub struct YoroContext {
 
 const READY: u8 = 0;
 const BUSY: u8 = 1;
-/// A panic came out of it, so its contents may be inconsistent.
+/// A call has panicked, so the contents may be inconsistent.
 const BROKEN: u8 = 2;
 
-/// The part of a context that is made for one API.
+/// The part of a context that is specific to one API.
 pub(crate) trait Backend: Any {
-    /// Name of the API, for sentences.
+    /// Returns the name of the API, for error messages.
     fn api(&self) -> &'static str;
 
     fn capabilities(&self) -> YoroCapabilities;
 
-    /// The times of a frame; None before there are any.
+    /// Returns the times of a frame, or `None` if there are none yet.
     fn times(&mut self) -> Result<Option<YoroTimes>, Failure>;
 }
 
@@ -60,15 +60,15 @@ pub struct YoroCapabilities {
     pub api_minor: u32,
     /// Zero.
     pub reserved: u32,
-    /// 1 if there are compute shaders; yoro does not need them.
+    /// 1 if the API has compute shaders, which yoro does not need.
     pub compute: u32,
-    /// 1 if the CPU draws (llvmpipe, SwiftShader).
+    /// 1 if the CPU renders (llvmpipe, SwiftShader).
     pub software: u32,
     /// Largest width and height of an image in pixels.
     pub max_image_size: u32,
     /// Bytes of the buffers that the context has allocated on the GPU.
     pub buffer_bytes: u64,
-    /// Name of the GPU or its driver in UTF-8, cut off if it is too long, and ended by 0.
+    /// Name of the GPU or its driver in UTF-8, terminated by 0, and truncated if it is too long.
     pub device: [u8; 128],
 }
 
@@ -86,7 +86,7 @@ impl YoroCapabilities {
 /// Call it on the thread that may use the context; for OpenGL with the GL context current. It changes no GL state.
 ///
 /// @param context      The context.
-/// @param capabilities Filled in; the caller sets struct_size.
+/// @param capabilities Receives the limits. The caller sets struct_size.
 /// @pre context is alive.
 /// @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
 #[unsafe(no_mangle)]
@@ -94,27 +94,27 @@ pub unsafe extern "C" fn yoro_capabilities(
     context: *mut YoroContext,
     capabilities: *mut YoroCapabilities,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter(context, |backend| versioned::write(capabilities, "capabilities", &backend.capabilities()))
     }
 }
 
-/// The GPU's times of one frame, in nanoseconds. All are 0 as long as none is known.
+/// The GPU times of one frame, in nanoseconds. All are 0 until the first are known.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroTimes {
     /// sizeof(YoroTimes), set by the caller.
     pub struct_size: u32,
-    /// 1 if the times are those of a frame.
+    /// 1 if the times are known.
     pub is_known: u32,
-    /// The split of the source into surfaces; 0 with YORO_EDGES_HARD.
+    /// Time to split the source into surfaces; 0 with YORO_EDGES_HARD.
     pub split_ns: u64,
-    /// The bounds of the displacements, or depths, in each tile.
+    /// Time to find the bounds of the displacements, or of the depths, in each tile.
     pub tiles_ns: u64,
-    /// The part of the source to search for each tile of the target.
+    /// Time to find the part of the source to search for each tile of the target.
     pub spans_ns: u64,
-    /// The search, which writes the target.
+    /// Time of the search, which writes the target.
     pub march_ns: u64,
 }
 
@@ -131,21 +131,22 @@ impl YoroTimes {
     };
 }
 
-/// Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait.
+/// Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait
+/// for the GPU.
 ///
-/// OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be
-/// trusted; those of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls
-/// of yoro_vk_record ago, on queue families with timestamps.
+/// OpenGL: the times are those of a frame a few frames ago, if `timed` of YoroGlInfo is 1 and the driver has reliable
+/// timer queries. Those of CPU rasterizers are not. Vulkan: the times are those of the frame recorded `timed_frames`
+/// (of YoroVkInfo) calls of yoro_vk_record ago, on queue families with timestamps.
 ///
-/// Thread and preconditions are those of yoro_capabilities.
+/// Thread and preconditions are as for yoro_capabilities.
 ///
 /// @param context The context.
-/// @param times   Filled in; the caller sets struct_size.
+/// @param times   Receives the times. The caller sets struct_size.
 /// @pre For Vulkan the commands of that frame have been executed.
 /// @return YORO_ERROR_DEVICE_LOST, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_times(context: *mut YoroContext, times: *mut YoroTimes) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter(context, |backend| {
             versioned::check_output(times, "times")?;
@@ -155,11 +156,11 @@ pub unsafe extern "C" fn yoro_times(context: *mut YoroContext, times: *mut YoroT
     }
 }
 
-/// Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
+/// Destroys a context and its objects on the GPU. Does nothing if the context is NULL.
 ///
 /// Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device
 /// must have executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL
-/// objects that were bound are not bound any more; other GL state stays.
+/// objects are unbound; other GL state is unchanged.
 ///
 /// @param context The context, or NULL.
 /// @pre context is alive and no other thread uses it.
@@ -167,13 +168,13 @@ pub unsafe extern "C" fn yoro_times(context: *mut YoroContext, times: *mut YoroT
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_destroy(context: *mut YoroContext) -> YoroResult {
     catch_errors(|messages| {
-        // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+        // SAFETY: the header requires pointers that are null or point to live objects of their types.
         let Some(alive) = (unsafe { context.as_ref() }) else { return Ok(()) };
         *messages = alive.messages;
-        // Busy for good: of two threads that come at once only one gets on.
+        // The context stays busy for good: of two threads that arrive at once only one continues.
         let take = |state| (state != BUSY).then_some(BUSY);
         alive.state.fetch_update(Ordering::Acquire, Ordering::Acquire, take).map_err(|_| busy())?;
-        // SAFETY: `create` has made it, and the exchange let nobody else in.
+        // SAFETY: `create` made it, and the exchange let nobody else in.
         drop(unsafe { Box::from_raw(context) });
         Ok(())
     })
@@ -186,11 +187,11 @@ fn busy() -> Failure {
     )
 }
 
-/// Runs the body of a function that creates a context. `messages` is the callback in `info`, and `make` makes the part
-/// of the context that is of one API.
+/// Runs the body of a function that creates a context. `messages` returns the callback in `info`, and `make` makes the
+/// part of the context that is specific to one API.
 ///
 /// # Safety
-/// `info` is null or leads to as many bytes as it states; `context` is null or can be written.
+/// `info` is null or points to as many bytes as it states; `context` is null or writable.
 pub(crate) unsafe fn create<I: Versioned, B: Backend>(
     info: *const I,
     context: *mut *mut YoroContext,
@@ -199,10 +200,10 @@ pub(crate) unsafe fn create<I: Versioned, B: Backend>(
 ) -> YoroResult {
     catch_errors(|told| {
         if !context.is_null() {
-            // SAFETY: the caller gives a pointer that can be written.
+            // SAFETY: the caller passes a writable pointer.
             unsafe { context.write(ptr::null_mut()) };
         }
-        // SAFETY: the caller gives a pointer to as many bytes as they state.
+        // SAFETY: the caller passes a pointer to as many bytes as the structure states.
         let info = unsafe { versioned::read(info, "info") }?;
         *told = messages(&info);
         if context.is_null() {
@@ -219,10 +220,10 @@ pub(crate) unsafe fn create<I: Versioned, B: Backend>(
     })
 }
 
-/// Runs the body of a function that works out how much memory the buffers of a context will have.
+/// Runs the body of a function that computes how much memory the buffers of a context will take.
 ///
 /// # Safety
-/// `info` is null or leads to as many bytes as it states; `bytes` is null or can be written.
+/// `info` is null or points to as many bytes as it states; `bytes` is null or writable.
 pub(crate) unsafe fn write_bytes<I: Versioned>(
     info: *const I,
     bytes: *mut u64,
@@ -230,7 +231,7 @@ pub(crate) unsafe fn write_bytes<I: Versioned>(
     work_out: impl FnOnce(&I) -> Result<u64, Failure>,
 ) -> YoroResult {
     catch_errors(|told| {
-        // SAFETY: the caller gives a pointer to as many bytes as they state.
+        // SAFETY: the caller passes a pointer to as many bytes as the structure states.
         let info = unsafe { versioned::read(info, "info") }?;
         *told = messages(&info);
         if bytes.is_null() {
@@ -240,7 +241,7 @@ pub(crate) unsafe fn write_bytes<I: Versioned>(
             ));
         }
         let number = work_out(&info)?;
-        // SAFETY: the caller gives a pointer that can be written.
+        // SAFETY: the caller passes a writable pointer.
         unsafe { bytes.write(number) };
         Ok(())
     })
@@ -249,12 +250,12 @@ pub(crate) unsafe fn write_bytes<I: Versioned>(
 /// Runs the body of a function that takes a context.
 ///
 /// # Safety
-/// `context` is null or alive.
+/// `context` is null or points to a live context.
 pub(crate) unsafe fn enter(
     context: *mut YoroContext,
     body: impl FnOnce(&mut dyn Backend) -> Result<(), Failure>,
 ) -> YoroResult {
-    /// Leaves the context broken when a panic passes.
+    /// Marks the context as broken if the body panics.
     struct Leave<'a>(&'a AtomicU8);
 
     impl Drop for Leave<'_> {
@@ -265,7 +266,7 @@ pub(crate) unsafe fn enter(
     }
 
     catch_errors(|messages| {
-        // SAFETY: the caller gives a context that is alive, or null.
+        // SAFETY: the caller passes a live context or null.
         let Some(context) = (unsafe { context.as_ref() }) else {
             return Err(Failure::new(YORO_ERROR_NULL, "context is NULL: create it first"));
         };
@@ -290,7 +291,7 @@ pub(crate) unsafe fn enter(
 /// contexts.
 ///
 /// # Safety
-/// `context` is null or alive.
+/// `context` is null or points to a live context.
 pub(crate) unsafe fn enter_as<B: Backend>(
     context: *mut YoroContext,
     create: &str,
@@ -304,7 +305,7 @@ pub(crate) unsafe fn enter_as<B: Backend>(
         };
         body(backend)
     };
-    // SAFETY: the caller gives a context that is alive, or null.
+    // SAFETY: the caller passes a live context or null.
     unsafe { enter(context, downcast) }
 }
 
@@ -319,7 +320,7 @@ mod tests {
 
     unsafe extern "C" fn load(name: *const c_char) -> crate::gl::YoroGlProc {
         type GetProcAddress = unsafe extern "C" fn(*const c_char) -> crate::gl::YoroGlProc;
-        // SAFETY: libEGL is there, since a context of it is current, and is never unloaded.
+        // SAFETY: libEGL is loaded, since one of its contexts is current, and it is never unloaded.
         unsafe {
             let library = std::mem::ManuallyDrop::new(libloading::Library::new("libEGL.so.1").unwrap());
             library.get::<GetProcAddress>(b"eglGetProcAddress\0").unwrap()(name)
@@ -327,7 +328,7 @@ mod tests {
     }
 
     unsafe extern "C" fn count(user: *mut c_void, _: YoroResult, _: *const c_char) {
-        // SAFETY: the counter below.
+        // SAFETY: `user` is the counter below.
         unsafe { *user.cast::<u32>() += 1 };
     }
 
@@ -350,7 +351,7 @@ mod tests {
             warp_kind: 0,
         };
         let mut context = null_mut();
-        // SAFETY: a context that is alive until the last line.
+        // SAFETY: the context lives until the last line.
         unsafe {
             assert_eq!(crate::gl::yoro_gl_create(&info, &mut context), YORO_OK);
             let mut inside = [YORO_OK; 2];

@@ -1,4 +1,4 @@
-//! Eyes given by poses and angles, as OpenXR locates them.
+//! Eyes given as poses and angles, as OpenXR locates them.
 
 use yoro::eyes::{DepthRange, EyePair};
 
@@ -7,18 +7,18 @@ use crate::types::{YoroClip, YoroDepth, YoroEye, YoroFov, YoroPose, YoroRows, cl
 use crate::versioned::{check_reserved, versioned};
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
-/// Bits for changes to eyes that cannot be synthesized as they are.
+/// Bits that change eyes which cannot be synthesized as they are.
 pub type YoroEyesFlags = u32;
-/// Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the
-/// images with the resulting angles.
+/// Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Display
+/// the images with the resulting angles.
 pub const YORO_EYES_EVEN: YoroEyesFlags = 1;
-/// Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives
-/// them even frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such
-/// as those of a calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns
-/// images back that are submitted with these.
+/// Turns both eyes, without moving them, to one direction at right angles to the line between them, and gives them
+/// frusta of the same size that contain their own. For canted eyes, and for eyes that do not lie on one horizontal
+/// line, such as those of a calibrated headset. Display the images with the resulting poses and angles: an OpenXR
+/// runtime that receives these with the images rotates them back.
 pub const YORO_EYES_PARALLEL: YoroEyesFlags = 2;
 
-/// Returns the eyes with the changes that the flags ask for.
+/// Returns the eyes with the changes that the flags request.
 pub(crate) fn with_flags(mut pair: EyePair, flags: YoroEyesFlags) -> Result<EyePair, Failure> {
     if flags & !(YORO_EYES_EVEN | YORO_EYES_PARALLEL) != 0 {
         return Err(Failure::value(format!("{flags} has bits that are no YORO_EYES_ flags")));
@@ -34,12 +34,12 @@ pub(crate) fn with_flags(mut pair: EyePair, flags: YoroEyesFlags) -> Result<EyeP
     Ok(if flags & YORO_EYES_EVEN != 0 { pair.row_aligned() } else { pair })
 }
 
-/// The two eyes of a frame, given by poses and angles.
+/// The two eyes of a frame, given as poses and angles.
 ///
-/// Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance
-/// apart, so that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a
-/// thousandth of the eyes' distance. In larger worlds give poses relative to the head, and move the resulting view
-/// matrices by the head's place.
+/// Any unit of length may be used instead of metres, as long as it is the same for all lengths. The eyes may be any
+/// distance apart, so a wearer can be a giant or a mouse. Positions are rounded to 32 bits: at 1 km from the origin to
+/// 0.06 mm, a thousandth of the distance between the eyes. In larger worlds give poses relative to the head, and
+/// translate the resulting view matrices by the head's position.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroEyes {
@@ -57,22 +57,22 @@ pub struct YoroEyes {
     pub fovs: [YoroFov; 2],
     /// Distance of the near plane in metres, more than 0.
     pub near_z: f32,
-    /// Distance of the far plane in metres, more than near_z, also for reversed depth; may be INFINITY.
+    /// Distance of the far plane in metres, more than near_z even for reversed depth; may be INFINITY.
     pub far_z: f32,
     /// The meaning of the depth buffer's values.
     pub depth: YoroDepth,
-    /// Order of rows in the images.
+    /// The order of rows in the images.
     pub rows: YoroRows,
     /// The clip volume of the resulting matrices.
     pub clip: YoroClip,
-    /// Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other
-    /// eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
+    /// Guard band: the distance in metres beyond which the rendered image contains the whole outer border of the other
+    /// eye. Smaller values cost more pixels. 0: no guard band, and the border is filled in.
     pub guard_band: f32,
     /// YORO_EYES_ bits.
     pub flags: YoroEyesFlags,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
-    /// Where the sentences of errors go.
+    /// Receives error messages.
     pub messages: YoroMessages,
 }
 
@@ -83,13 +83,13 @@ versioned!(YoroEyes);
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
 /// @param eyes  The eyes.
-/// @param views Filled in; the caller sets struct_size.
-/// @pre Both pointers lead to structures of the size that they state.
+/// @param views Receives the views. The caller sets struct_size.
+/// @pre Both pointers point to structures of the sizes that they state.
 /// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that are impossible or cannot be
 ///         synthesized; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_views_from_eyes(eyes: *const YoroEyes, views: *mut YoroViews) -> YoroResult {
-    // SAFETY: the header asks for pointers to structures of the size that they state.
+    // SAFETY: the header requires pointers to structures of the sizes that they state.
     unsafe { fill_views(eyes, "eyes", views, |eyes| eyes.messages, YoroEyes::views) }
 }
 
@@ -98,7 +98,7 @@ impl YoroEyes {
         check_reserved("eyes", &[self.reserved])?;
         let right_angle = std::f32::consts::FRAC_PI_2;
         let angles = self.fovs.iter().flat_map(|f| [f.angle_left, f.angle_right, f.angle_up, f.angle_down]);
-        // In this form NaN fails, too.
+        // Written so that NaN fails too.
         if !angles.into_iter().all(|angle| angle.abs() < right_angle) {
             return Err(Failure::value(
                 "an angle is not a number or not below a right angle: give signed angles from the axis in radians, as XrFovf",

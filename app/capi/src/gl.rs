@@ -1,4 +1,4 @@
-//! OpenGL and OpenGL ES.
+//! The functions for OpenGL and OpenGL ES.
 
 mod check;
 mod entry_points;
@@ -34,26 +34,26 @@ pub use entry_points::needed_functions;
 
 /// An entry point of any type.
 pub type YoroGlProc = Option<unsafe extern "C" fn()>;
-/// Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and
-/// others. Cast those of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
+/// Returns an entry point by its name, or NULL if it does not exist: eglGetProcAddress, glfwGetProcAddress and others.
+/// Cast loaders of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
 pub type YoroGlLoader = Option<unsafe extern "C" fn(name: *const c_char) -> YoroGlProc>;
 
-/// The treatment of GL state that a call changes.
+/// What happens to GL state that a call changes.
 pub type YoroGlState = u32;
-/// Some of it stays changed: for engines that set all state that they draw with. library.md lists each state.
+/// Some of it stays changed. For engines that set all the state they draw with. library.md lists each state.
 pub const YORO_GL_STATE_LEAVE: YoroGlState = 0;
-/// All of it is restored. A program that was deleted while it was current goes at the first call, as GL says; none is
-/// current then.
+/// All of it is restored, except that a program that was deleted while it was current goes at the first call, as GL
+/// requires. None is current then.
 pub const YORO_GL_STATE_PRESERVE: YoroGlState = 1;
 
-/// Bits for the way in which sources lie in their textures.
+/// Bits that describe where sources lie in their textures.
 pub type YoroGlSourceFlags = u32;
-/// The rendered image is a part of larger textures, of any size up to theirs in each frame: dynamic resolution, or both
-/// eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
+/// The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution, or
+/// both eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
 /// sizes.
 pub const YORO_GL_SOURCE_PARTS: YoroGlSourceFlags = 1;
-/// The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview,
-/// and of OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
+/// The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, in colour and in depth: for the textures of GL_OVR_multiview
+/// and the OpenXR swapchains used with it. Cannot be combined with YORO_EDGES_MULTISAMPLE.
 pub const YORO_GL_SOURCE_LAYERS: YoroGlSourceFlags = 2;
 
 /// The options of a context for OpenGL.
@@ -62,42 +62,42 @@ pub const YORO_GL_SOURCE_LAYERS: YoroGlSourceFlags = 2;
 pub struct YoroGlInfo {
     /// sizeof(YoroGlInfo).
     pub struct_size: u32,
-    /// Zero. Earlier versions chose a pipeline here; other numbers are refused.
+    /// Must be 0. Earlier versions chose a pipeline here.
     pub reserved: u32,
     /// YORO_OUTPUT_ bits.
     pub outputs: YoroOutputFlags,
-    /// The treatment of GL state.
+    /// What happens to GL state.
     pub state: YoroGlState,
-    /// 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use
-    /// it in development. 0: mistakes are undefined behaviour, as in GL.
+    /// 1: each call checks the textures, the framebuffer and GL's error flag, which it clears. This waits for the
+    /// driver, so use it in development only. 0: mistakes are undefined behaviour, as in GL.
     pub check: u32,
-    /// The kind of source images; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
+    /// The kind of source images. 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
     pub edges: YoroEdges,
     /// The loader of entry points.
     pub loader: YoroGlLoader,
-    /// The receiver of the sentences of errors, also in later calls.
+    /// Receives error messages, including those of later calls.
     pub messages: YoroMessages,
     /// YORO_GL_SOURCE_ bits.
     pub sources: YoroGlSourceFlags,
-    /// 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then.
-    /// 0: no times.
+    /// 1: measures the passes for yoro_times with GL_TIME_ELAPSED queries. The engine must have no such query active
+    /// during a call. 0: measures nothing.
     pub timed: u32,
-    /// 1: sources may have a history (YoroGlImages). 0: none has.
+    /// 1: sources may have a history (see YoroGlImages). 0: none has.
     pub history: u32,
-    /// The kind of warp; 0 is YORO_WARP_KIND_EYES.
+    /// The kind of warp. 0 is YORO_WARP_KIND_EYES.
     pub warp_kind: YoroWarpKind,
 }
 
 versioned!(YoroGlInfo since sources);
 
 /// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at
-/// start, not in a frame.
+/// startup, not in a frame.
 ///
-/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag
-/// stays.
+/// Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated; the error flag is
+/// left as it is.
 ///
 /// @param info    The options.
-/// @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+/// @param context Receives the new context, or NULL after an error. Destroy it with yoro_destroy.
 /// @pre The GL context is current, and lives as long as the YoroContext.
 /// @return YORO_ERROR_NO_CONTEXT, YORO_ERROR_UNSUPPORTED, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
 ///         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
@@ -106,19 +106,19 @@ pub unsafe extern "C" fn yoro_gl_create(
     info: *const YoroGlInfo,
     context: *mut *mut YoroContext,
 ) -> YoroResult {
-    // SAFETY: the header asks for valid pointers, a current GL context, and its loader.
+    // SAFETY: the header requires valid pointers, a current GL context, and its loader.
     unsafe { create(info, context, |info| info.messages, |info| Gl::new(info)) }
 }
 
-/// Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone;
-/// drivers add padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are
-/// 16 bytes for each 16 x 8 pixels of the source, and of the target.
+/// Returns how many bytes of GPU memory the buffers of a context will take, computed from its edges and the sizes of a
+/// frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
+/// buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
 ///
-/// Call it from any thread. Neither loader nor GL context is needed.
+/// Call it from any thread. It needs neither a loader nor a GL context.
 ///
 /// @param info  The options.
-/// @param warp  The warp of a frame of the largest sizes.
-/// @param bytes Receives the number.
+/// @param warp  The warp of a frame of the largest size.
+/// @param bytes Receives the number of bytes.
 /// @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_buffer_bytes(
@@ -126,7 +126,7 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
     warp: *const YoroWarp,
     bytes: *mut u64,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         write_bytes(
             info,
@@ -142,31 +142,32 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
     }
 }
 
-/// Textures and framebuffer of one synthesis.
+/// The textures and the framebuffer of one synthesis.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroGlImages {
     /// sizeof(YoroGlImages).
     pub struct_size: u32,
     /// Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another
-    /// target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Filters and
-    /// sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
+    /// target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Texture filters
+    /// and samplers have no effect. With edges other than YORO_EDGES_HARD it is the resolved image, with values between
+    /// 0 and 1.
     pub color_texture: u32,
     /// Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as
-    /// depth) or red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+    /// depth) or red float format. With YORO_EDGES_MULTISAMPLE, a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
     pub depth_texture: u32,
-    /// The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with
+    /// The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
     /// YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
     pub framebuffer: u32,
     /// First column of the synthesized image in the framebuffer.
     pub x: u32,
     /// First row of the synthesized image in the framebuffer, counted from the bottom.
     pub y: u32,
-    /// For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if
-    /// it does not exist any more. Otherwise 0.
+    /// With YORO_EDGES_MULTISAMPLE, the name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or
+    /// 0 if it no longer exists. Otherwise 0.
     pub sample_color_texture: u32,
-    /// First column of the rendered part in its textures. This and the next three are for YORO_GL_SOURCE_PARTS,
-    /// otherwise 0.
+    /// First column of the rendered part in its textures. This field and the next three are for YORO_GL_SOURCE_PARTS,
+    /// and otherwise 0.
     pub source_x: u32,
     /// First row of the rendered part, counted from the bottom.
     pub source_y: u32,
@@ -174,32 +175,32 @@ pub struct YoroGlImages {
     pub image_width: u32,
     /// Height of the textures in pixels.
     pub image_height: u32,
-    /// The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the
-    /// framebuffer, by glFramebufferTextureLayer.
+    /// The layer of both textures for YORO_GL_SOURCE_LAYERS, otherwise 0. To draw into a layer, attach it to the
+    /// framebuffer with glFramebufferTextureLayer.
     pub layer: u32,
-    /// What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with
-    /// the colour of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions
-    /// show what is there. It holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
+    /// The history, for contexts with `history`; otherwise 0. The name of a GL_TEXTURE_2D of any size with the colour
+    /// of a rendered image of the synthesized eye, from this frame or earlier ones. Disocclusions are filled from it.
+    /// It must show only what the source shows, and nothing that is drawn over both eyes after synthesis.
     pub history_color_texture: u32,
-    /// The depth of that image, of its size, one value a pixel, with the planes and encoding of the source's.
+    /// The depth of that image, of the same size, with one value per pixel and the planes and encoding of the source.
     pub history_depth_texture: u32,
-    /// The views of its strips; NULL: nothing is looked up.
+    /// The views of the history's strips. NULL: the history is not used.
     pub strips: *const YoroStrips,
 }
 
 versioned!(YoroGlImages since source_x);
 
-/// Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the
-/// sizes are as before.
+/// Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize need not. Does nothing if the
+/// sizes have not changed.
 ///
-/// Thread, GL state and results are those of yoro_gl_synthesize.
+/// Thread, GL state and results are as for yoro_gl_synthesize.
 ///
 /// @param context The context.
 /// @param warp    The warp of a frame of these sizes.
 /// @pre The GL context is current.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const YoroWarp) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
             let warp = gl.fitting(|| read_warp(warp))?;
@@ -208,7 +209,7 @@ pub unsafe extern "C" fn yoro_gl_prepare(context: *mut YoroContext, warp: *const
     }
 }
 
-/// Does what yoro_gl_prepare does in a context of YORO_WARP_KIND_POSE.
+/// Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_POSE.
 ///
 /// @param context The context.
 /// @param warp    The warp of a frame of these sizes.
@@ -218,7 +219,7 @@ pub unsafe extern "C" fn yoro_gl_prepare_pose(
     context: *mut YoroContext,
     warp: *const YoroPoseWarp,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
             let warp = gl.fitting(|| read_pose_warp(warp))?;
@@ -227,24 +228,27 @@ pub unsafe extern "C" fn yoro_gl_prepare_pose(
     }
 }
 
-/// Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
-/// objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
+/// Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the
+/// rendered eye's opaque objects, and before transparent objects and effects that are drawn for each eye.
 ///
-/// Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay
+/// Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated. While sizes stay
 /// the same it allocates and compiles nothing, and does not wait for the GPU.
 ///
-/// @param context The context. @param warp    The warp of YoroViews. @param images  The images to read and the place to
-/// draw. @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says.
-/// Transform feedback and conditional rendering are not active. @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE,
-/// YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT; YORO_ERROR_API,
-/// YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+/// @param context The context.
+/// @param warp    The warp of YoroViews.
+/// @param images  The images to read and where to draw.
+/// @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says.
+///      Transform feedback and conditional rendering are not active.
+/// @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also
+///         YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT; YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL,
+///         YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_synthesize(
     context: *mut YoroContext,
     warp: *const YoroWarp,
     images: *const YoroGlImages,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
             gl.passes.eyes()?;
@@ -258,21 +262,21 @@ pub unsafe extern "C" fn yoro_gl_synthesize(
     }
 }
 
-/// Synthesizes a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE. All else is as in
+/// Synthesizes a view in any pose near the rendered one, in a context of YORO_WARP_KIND_POSE. Otherwise it is like
 /// yoro_gl_synthesize.
 ///
 /// @param context The context.
 /// @param warp    The warp of yoro_pose_warp.
-/// @param images  The images to read and the place to draw.
-/// @pre Those of yoro_gl_synthesize.
-/// @return Those of yoro_gl_synthesize.
+/// @param images  The images to read and where to draw.
+/// @pre As for yoro_gl_synthesize.
+/// @return As for yoro_gl_synthesize.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_gl_synthesize_pose(
     context: *mut YoroContext,
     warp: *const YoroPoseWarp,
     images: *const YoroGlImages,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_gl(context, |gl| {
             gl.passes.pose()?;
@@ -287,12 +291,12 @@ pub unsafe extern "C" fn yoro_gl_synthesize_pose(
 }
 
 /// # Safety
-/// `context` is null or alive.
+/// `context` is null or points to a live context.
 unsafe fn enter_gl(
     context: *mut YoroContext,
     body: impl FnOnce(&mut Gl) -> Result<(), Failure>,
 ) -> YoroResult {
-    // SAFETY: the contract is the same.
+    // SAFETY: same contract.
     unsafe { enter_as(context, "yoro_gl_create", body) }
 }
 
@@ -304,13 +308,13 @@ pub(crate) struct Gl {
     outputs: Outputs,
     check: bool,
     timed: bool,
-    /// The passes of the newest frame whose times are known.
+    /// The pass times of the newest frame whose times are known.
     times: Vec<PassTime>,
-    /// The entry point of this name.
+    /// The entry point of glGetString.
     get_string: *const c_void,
 }
 
-/// The passes of a kind of warp.
+/// The passes for one kind of warp.
 enum Passes {
     Eyes(Box<dyn Synthesis>),
     Pose(Box<AnyView>),
@@ -334,7 +338,7 @@ impl Passes {
 
 impl Gl {
     /// # Safety
-    /// A GL context is current, and the loader gives its entry points.
+    /// A GL context is current, and the loader returns its entry points.
     unsafe fn new(info: &YoroGlInfo) -> Result<Gl, Failure> {
         if info.reserved != 0 {
             return Err(Failure::value(format!(
@@ -371,10 +375,10 @@ impl Gl {
         let Some(loader) = info.loader else {
             return Err(Failure::new(YORO_ERROR_NULL, "loader is NULL: give eglGetProcAddress or its like"));
         };
-        // SAFETY: the loader takes a name; a function and a nullable pointer are of one size.
+        // SAFETY: the loader takes a name; a nullable function pointer and a data pointer have the same size.
         let load =
             |name: &CStr| unsafe { std::mem::transmute::<YoroGlProc, *const c_void>(loader(name.as_ptr())) };
-        // SAFETY: the caller says that a context is current and that the loader gives its entry points.
+        // SAFETY: the caller guarantees that a context is current and that the loader returns its entry points.
         let context = unsafe { Context::with_loader(entry_points::wrap(load)?, load)? };
         let has = |bit| info.sources & bit != 0;
         let (parts, layers) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
@@ -393,9 +397,9 @@ impl Gl {
         Ok(Gl { context, passes, options, outputs, check: info.check == 1, timed, times, get_string })
     }
 
-    /// Reads a warp by `read`, and checks that the driver can render its sizes.
+    /// Reads a warp with `read`, and checks that the driver can render its sizes.
     fn fitting<W: WarpKind>(&self, read: impl FnOnce() -> Result<W, Failure>) -> Result<W, Failure> {
-        // SAFETY: the context was made with this entry point.
+        // SAFETY: the context was created with this entry point.
         if self.check && !unsafe { entry_points::is_current(self.get_string) } {
             return Err(Failure::new(
                 YORO_ERROR_NO_CONTEXT,
@@ -416,7 +420,7 @@ impl Gl {
         Ok(warp)
     }
 
-    /// Checks the images of a call, and draws by `draw`.
+    /// Checks the images of a call, and draws with `draw`.
     fn synthesize(
         &mut self,
         [source_size, target_size]: [[u32; 2]; 2],
@@ -486,7 +490,7 @@ impl Gl {
 }
 
 impl Gl {
-    /// Returns the part of the textures that was rendered, None for all of them.
+    /// Returns the part of the textures that was rendered, or `None` for all of them.
     fn part(&self, size: [u32; 2], images: &YoroGlImages) -> Result<Option<Part>, Failure> {
         let (origin, image_size) =
             ([images.source_x, images.source_y], [images.image_width, images.image_height]);
@@ -512,7 +516,7 @@ impl Gl {
         Ok(Some(Part { origin, image_size }))
     }
 
-    /// Ends a frame of the timer, and keeps the times of an earlier one.
+    /// Ends a frame of the timer, and keeps the times of an earlier one if they have become known.
     fn end_timed_frame(&mut self) {
         let known = self.times.len();
         if self.context.end_timed_frame(&mut self.times).is_some() {

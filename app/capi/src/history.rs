@@ -1,4 +1,4 @@
-//! What the other eye has seen: the views of a history's strips, and their relation to the synthesized image.
+//! Histories: the views of their strips, and the relation of these to the synthesized image.
 
 use yoro::synthesis::Strips;
 
@@ -10,8 +10,9 @@ use crate::views::{YoroView, depth_range};
 /// The largest number of strips in a history.
 pub const YORO_MOST_STRIPS: usize = 8;
 
-/// A history: an image of the synthesized eye that was really rendered, in strips of equally many rows, each in a frame
-/// of its own. All but the last have as many rows: the image's divided by the number of strips, rounded up.
+/// A history: a rendered image of the synthesized eye, divided into strips of rows, each rendered in a frame of its
+/// own. All strips but the last have the same number of rows: the rows of the image divided by the number of strips,
+/// rounded up.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroHistory {
@@ -19,10 +20,11 @@ pub struct YoroHistory {
     pub struct_size: u32,
     /// Number of strips, 1 to YORO_MOST_STRIPS.
     pub count: u32,
-    /// From row 0 of the image on, the view of the whole image from which each was rendered: YoroViews' synthesized of
-    /// that frame, in the size of the history, all of one size. NULL for a strip with nothing in it.
+    /// For each strip, beginning with the one at row 0, the view of the whole image that it was rendered from:
+    /// YoroViews' `synthesized` of that frame, with the size of the history. All views have the same size. NULL for an
+    /// empty strip.
     pub strips: [*const YoroView; YORO_MOST_STRIPS],
-    /// Distance of the near plane, as of the eyes: in metres, more than 0.
+    /// Distance of the near plane in metres, as for the eyes; more than 0.
     pub near_z: f32,
     /// Distance of the far plane in metres; may be INFINITY.
     pub far_z: f32,
@@ -30,24 +32,23 @@ pub struct YoroHistory {
     pub depth: YoroDepth,
     /// Order of rows in the images.
     pub rows: YoroRows,
-    /// Where the sentences of errors go.
+    /// Receives error messages.
     pub messages: YoroMessages,
 }
 
 versioned!(YoroHistory);
 
 /// The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record.
-/// yoro_strips fills it. It can be copied and kept. It has the layout of the block `History` of the shader kit, in
-/// std140.
+/// yoro_strips fills it. It can be copied and kept. It has the std140 layout of the shader kit's block `History`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YoroStrips {
-    /// From a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth,
-    /// column-major. Zeros for strips with nothing in them.
+    /// Matrices that map a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth,
+    /// column-major. Zeros for empty strips.
     pub to_history: [[f32; 16]; YORO_MOST_STRIPS],
     /// Number of strips.
     pub count: u32,
-    /// Zero.
+    /// Must be 0.
     pub reserved: [u32; 3],
 }
 
@@ -56,9 +57,9 @@ pub struct YoroStrips {
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
 /// @param history     The strips.
-/// @param synthesized The image to synthesize: YoroViews' synthesized of this frame.
-/// @param strips      Filled in.
-/// @pre The pointers lead to structures, and `history` to one of the size that it states.
+/// @param synthesized The image to synthesize: YoroViews' `synthesized` of this frame.
+/// @param strips      Receives the relation.
+/// @pre The pointers point to structures, `history` to one of the size that it states.
 /// @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_strips(
@@ -67,17 +68,17 @@ pub unsafe extern "C" fn yoro_strips(
     strips: *mut YoroStrips,
 ) -> YoroResult {
     catch_errors(|told| {
-        // SAFETY: the header asks for a structure of the size that it states.
+        // SAFETY: the header requires a pointer to a structure of the size that it states.
         let history = unsafe { versioned::read(history, "history") }?;
         *told = history.messages;
         if synthesized.is_null() || strips.is_null() {
             return Err(Failure::new(YORO_ERROR_NULL, "synthesized or strips is NULL: give both"));
         }
-        // SAFETY: the header asks for pointers that lead to views; alignment is not needed.
+        // SAFETY: the header requires pointers to views; the reads need no alignment.
         let read = |view: *const YoroView| unsafe { view.read_unaligned() };
         let former = history.strips.map(|view| (!view.is_null()).then(|| read(view)));
         let result = history.relation(&read(synthesized), &former)?;
-        // SAFETY: the header asks for a pointer to a structure.
+        // SAFETY: the header requires a pointer to a structure.
         unsafe { strips.write_unaligned(result) };
         Ok(())
     })
@@ -113,8 +114,8 @@ impl YoroHistory {
 }
 
 impl YoroStrips {
-    /// Returns the core's relation, with rows as they lie in the images. Checks the number, since programs may have
-    /// made it up.
+    /// Returns the core's relation, with rows ordered as in the images. Checks the count, since programs may have made
+    /// it up.
     pub(crate) fn checked(&self) -> Result<Strips, Failure> {
         if !(1..=YORO_MOST_STRIPS).contains(&(self.count as usize)) || self.reserved != [0; 3] {
             return Err(Failure::value("strips are not those of yoro_strips: fill them in with that"));
@@ -126,14 +127,14 @@ impl YoroStrips {
     }
 }
 
-/// Reads strips; `None` for NULL.
+/// Reads strips. Returns `None` for NULL.
 ///
 /// # Safety
-/// `strips` is null or leads to them.
+/// `strips` is null or points to strips.
 pub(crate) unsafe fn read_strips(strips: *const YoroStrips) -> Result<Option<Strips>, Failure> {
     if strips.is_null() {
         return Ok(None);
     }
-    // SAFETY: the pointer is not null; alignment is not needed.
+    // SAFETY: the pointer is not null; the read needs no alignment.
     unsafe { strips.read_unaligned() }.checked().map(Some)
 }

@@ -1,13 +1,14 @@
 //! The C interface of yoro: the functions and types of `include/yoro.h`, and nothing else.
 //!
-//! Takes pointers and handles of a program in C, checks them, and calls the core; returns a [`YoroResult`]. No panic
-//! and no abort leaves this library, and it has no global state. It must never know what the core must not, nor
+//! Takes pointers and handles from a C program, checks them, calls the core and returns a [`YoroResult`]. No panic and
+//! no abort leaves this library, and it has no global state. It must not know anything that the core must not know, nor
 //! anything that the header does not say.
 //!
-//! Structures begin with their size, so that programs and libraries of different versions agree (`versioned.rs`). The
-//! documentation of the items becomes the header, so it speaks C. The header has them in the order of these modules.
+//! Structures begin with their size, so that programs and libraries of different versions are compatible
+//! (`versioned.rs`). The doc comments of the items become the header, so they are written for C programmers. The header
+//! lists the items in the order of these modules.
 
-// The header states the caller's duties at @pre.
+// The header states the caller's duties with @pre.
 #![allow(clippy::missing_safety_doc)]
 
 mod result;

@@ -1,4 +1,4 @@
-//! Eyes given by view and projection matrices, from which pose, frustum and depth range are computed and checked.
+//! Eyes given as view and projection matrices, from which poses, frusta and the depth range are computed and checked.
 
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose};
@@ -9,9 +9,9 @@ use crate::types::{Clip, YoroClip, YoroEye, YoroRows, clip, eye, rows_down};
 use crate::versioned::{check_reserved, versioned};
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
-/// The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for
-/// column vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11
-/// of a projection is -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
+/// The two eyes of a frame, given as matrices. They may be any distance apart. All matrices are column-major, for
+/// column vectors, as in GL and Vulkan. The translation of a view matrix is in elements 12 to 14. Element 11 of a
+/// projection is -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroMatrices {
@@ -25,57 +25,57 @@ pub struct YoroMatrices {
     pub height: u32,
     /// World to eye, left eye first: rotation and translation only. The world may be right- or left-handed.
     pub view: [[f32; 16]; 2],
-    /// Eye to clip space, left eye first: perspective. Reversed and infinite depth are recognized.
+    /// Eye to clip space, left eye first: perspective projections. Reversed and infinite depth are recognized.
     pub projection: [[f32; 16]; 2],
     /// The clip volume of the projections.
     pub clip: YoroClip,
-    /// Order of rows in the images.
+    /// The order of rows in the images.
     pub rows: YoroRows,
-    /// As in YoroEyes, in metres.
+    /// Guard band in metres, as in YoroEyes.
     pub guard_band: f32,
-    /// Units of the world in a metre: 100 for centimetres. 0 means 1.
+    /// Number of world units in a metre: 100 for centimetres. 0 means 1.
     pub units_per_metre: f32,
-    /// Where the sentences of errors go.
+    /// Receives error messages.
     pub messages: YoroMessages,
-    /// YORO_EYES_ bits. The resulting view matrices are turned as the eyes are.
+    /// YORO_EYES_ bits. The resulting view matrices are rotated with the eyes.
     pub flags: YoroEyesFlags,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
 }
 
 versioned!(YoroMatrices since flags);
 
-/// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world,
-/// clip volume and units of the given ones. Poses are in metres.
+/// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices use the same
+/// world, clip volume and units as the given ones. Poses are in metres.
 ///
-/// The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes'
-/// distance. Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds
-/// give matrices relative to the head: subtract its place from both eyes' places, in 64 bits, before making the
-/// matrices.
+/// The translation of a view matrix is rounded to 32 bits: at 1 km from the origin to 0.06 mm, a thousandth of the
+/// distance between the eyes. Displacements caused by this rounding are removed, but the distance between the eyes
+/// keeps its error. In larger worlds give matrices relative to the head: subtract its position from both eyes'
+/// positions, in 64 bits, before computing the matrices.
 ///
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
 /// @param matrices The eyes.
-/// @param views    Filled in; the caller sets struct_size.
-/// @pre Both pointers lead to structures of the size that they state.
-/// @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as
+/// @param views    Receives the views. The caller sets struct_size.
+/// @pre Both pointers point to structures of the sizes that they state.
+/// @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as for
 ///         yoro_views_from_eyes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_views_from_matrices(
     matrices: *const YoroMatrices,
     views: *mut YoroViews,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers to structures of the size that they state.
+    // SAFETY: the header requires pointers to structures of the sizes that they state.
     unsafe { fill_views(matrices, "matrices", views, |matrices| matrices.messages, YoroMatrices::views) }
 }
 
-/// The contents of a projection matrix, for an eye that looks along -Z.
+/// The contents of a projection matrix, as for an eye that looks along -Z.
 #[derive(Clone, Copy, Debug)]
 struct Projection {
     /// +1 for an eye that looks along -Z, -1 along +Z.
     sense: f64,
     frustum: Frustum,
-    /// Stored depth is `law[0] + law[1] / distance`.
+    /// The depth buffer holds `law[0] + law[1] / distance`.
     law: [f64; 2],
 }
 
@@ -91,7 +91,7 @@ impl Projection {
         let zeros = [matrix.x_axis.y, matrix.x_axis.z, matrix.y_axis.x, matrix.y_axis.z];
         let offsets = [matrix.w_axis.x, matrix.w_axis.y, w.x, w.y, w.w, w.z.abs() - 1.0];
         let is_zero = |n: &f64| n.abs() <= 1e-5;
-        // In this form NaN fails, too.
+        // Written so that NaN fails too.
         if !(matrix.is_finite() && zeros.iter().chain(&offsets).all(is_zero)) {
             return Err(wrong(format!(
                 "the {name} eye's projection is not a perspective one: give a column-major matrix with -1 or 1 in element \
@@ -121,10 +121,10 @@ impl Projection {
         Ok(Projection { sense, frustum, law })
     }
 
-    /// Returns the planes, in the world's units, and their encoding.
+    /// Returns the depth planes, in world units, and their encoding.
     fn range(&self, eye: Eye) -> Result<DepthRange, Failure> {
         let [a, b] = self.law;
-        // Depth 0 and 1 at these distances; a difference of one or two roundings stands for an infinite one.
+        // The distances at which depth is 0 and 1. A difference of one or two roundings stands for infinity.
         let at = |difference: f64| if difference.abs() < 2.5e-7 { f64::INFINITY } else { b / difference };
         let (zero, one) = (at(-a), at(1.0 - a));
         let convention = if b < 0.0 { DepthConvention::Standard } else { DepthConvention::Reversed };
@@ -140,7 +140,7 @@ impl Projection {
     }
 }
 
-/// The contents of a view matrix, for an eye that looks along -Z and, in a left-handed world, with the world's Z axis
+/// The contents of a view matrix, as for an eye that looks along -Z. In a left-handed world, the world's Z axis is
 /// negated.
 #[derive(Clone, Copy, Debug)]
 struct EyeView {
@@ -156,7 +156,7 @@ fn eye_view(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<EyeView, Failu
     let mut translation = matrix.w_axis.truncate();
     let gram = rotation * rotation.transpose() - DMat3::IDENTITY;
     let last = matrix.row(3) - DVec4::W;
-    // In this form NaN fails, too.
+    // Written so that NaN fails too.
     let small = |n: f64| n.abs() < 1e-3;
     if !(matrix.is_finite()
         && gram.to_cols_array().into_iter().all(small)
@@ -169,7 +169,7 @@ fn eye_view(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<EyeView, Failu
         )));
     }
     if sense < 0.0 {
-        // Of an eye that looks along +Z the one that looks along -Z.
+        // Converts an eye that looks along +Z to one that looks along -Z.
         let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
         rotation = mirror * rotation;
         translation = mirror * translation;
@@ -182,28 +182,28 @@ fn eye_view(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<EyeView, Failu
     Ok(EyeView { orientation, translation, left_handed })
 }
 
-/// The places of both eyes.
+/// The positions of both eyes.
 struct Places {
     /// The point between the eyes, in the world's units.
     head: DVec3,
-    /// From there to each eye.
+    /// The offset of each eye from that point.
     eyes: [DVec3; 2],
 }
 
 impl Places {
-    /// Takes out displacements off the rendered eye's X axis that are no larger than the rounding of the matrices.
+    /// Removes displacements off the rendered eye's X axis that are no larger than the rounding of the matrices.
     fn new(views: &mut [EyeView; 2], rendered: Eye) -> Places {
         const ROUNDING: f64 = f32::EPSILON as f64;
-        // One rotation in another rounding would turn the way to a distant origin.
+        // A rotation that is rounded differently would turn the vector to a distant origin.
         if views[0].orientation.angle_between(views[1].orientation) < 4.0 * ROUNDING {
             views[1].orientation = views[0].orientation;
         }
         let [left, right] = views.map(|view| -(view.orientation * view.translation));
         let mut between = right - left;
         let off_axis = between.reject_from_normalized(views[rendered.index()].orientation * DVec3::X);
-        // Each coordinate of a translation is a sum of three products, rounded three times; those of two eyes are off
-        // by six halves of a unit in the last place, in each of two directions off the axis. As much again is for
-        // rotations.
+        // Each coordinate of a translation is a sum of three products, rounded three times. For two eyes this is up to
+        // six halves of a unit in the last place, in each of two directions off the axis. The same amount again allows
+        // for the rotations.
         if off_axis.length() < 8.0 * ROUNDING * left.length().max(right.length()) {
             between -= off_axis;
         }
@@ -211,7 +211,7 @@ impl Places {
     }
 }
 
-/// Returns a view matrix with its eye turned from one orientation to another.
+/// Returns a view matrix whose eye is rotated from one orientation to another.
 fn turned(view: &[f32; 16], from: DQuat, to: DQuat, sense: f64) -> [f32; 16] {
     let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, sense));
     let turn = mirror * DMat3::from_quat(to.inverse() * from) * mirror;
@@ -234,7 +234,7 @@ impl YoroMatrices {
         if a.sense != b.sense || eyes[0].left_handed != eyes[1].left_handed {
             return Err(wrong("one eye's matrices are left-handed and the other's right-handed".into()));
         }
-        // The law moves a pixel by the distance that its depth stands for: a thousandth of that does not show.
+        // The law moves a pixel by an amount that depends on its depth. A thousandth of that is not visible.
         if (a.law[0] - b.law[0]).abs() > 1e-6 || (a.law[1] / b.law[1] - 1.0).abs() > 1e-3 {
             return Err(wrong(
                 "the eyes' projections have different depth planes: give both the same".into(),
@@ -269,7 +269,7 @@ impl YoroMatrices {
                 image.view = turned(&image.view, eyes[index].orientation, to, sense);
             }
             image.projection = self.projection[index];
-            // Depth stays as it is; edges are the image's.
+            // The depth rows stay as they are. The edges are those of the image.
             for (row, values) in image.projection_xy(&clip).into_iter().enumerate() {
                 image.projection[row] = values.x as f32;
                 image.projection[4 + row] = values.y as f32;

@@ -1,4 +1,4 @@
-//! A view in any pose near the rendered one: how its pixels are found, and how much more to render for it.
+//! Views in any pose near the rendered one: the mapping of pixels to them, and the larger view to render for them.
 
 use glam::{DMat3, DVec3};
 use yoro::eyes::{HeadMotion, PoseWarp, View};
@@ -16,20 +16,20 @@ pub struct YoroPoses {
     pub struct_size: u32,
     /// The meaning of the depth buffers' values.
     pub depth: YoroDepth,
-    /// Distance of the near plane of both, in metres, more than 0.
+    /// Distance of the near plane of both views in metres, more than 0.
     pub near_z: f32,
-    /// Distance of the far plane of both, in metres; may be INFINITY.
+    /// Distance of the far plane of both views in metres; may be INFINITY.
     pub far_z: f32,
     /// Order of rows in the images.
     pub rows: YoroRows,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
-    /// The rendered view. Of this and the next one size, pose and angles are read, which may differ; the matrices are
-    /// not.
+    /// The rendered view. Of this view and the target, the size, pose and angles are read, which may differ. The
+    /// matrices are ignored.
     pub source: *const YoroView,
     /// The view to synthesize.
     pub target: *const YoroView,
-    /// Where the sentences of errors go.
+    /// Receives error messages.
     pub messages: YoroMessages,
 }
 
@@ -38,7 +38,7 @@ versioned!(YoroPoses);
 /// The mapping of pixels from a rendered view to one in any pose near it, for yoro_gl_synthesize_pose and
 /// yoro_vk_record_pose. yoro_pose_warp fills it. It can be copied and kept.
 ///
-/// A surface that the target shows at the pixel (x, y), at the distance 1 / k along the axis of its eye, lies in the
+/// A surface that the target shows at the pixel (x, y), at the distance 1 / k along its viewing axis, lies in the
 /// source at the homogeneous pixel homography * (x, y, 1) + k * epipole.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,15 +53,15 @@ pub struct YoroPoseWarp {
     pub target_height: u32,
     /// The homography of the rotation, column-major.
     pub homography: [f64; 9],
-    /// Place of the target's eye in the source image. Zeros in its place leave rotation alone, without depth.
+    /// Position of the target's eye in the source image. Set it to zeros to apply the rotation only, without depth.
     pub epipole: [f64; 3],
-    /// The source's 1 / distance is `source_law[0] + source_law[1] * depth`.
+    /// The source's depth buffer holds values for which 1 / distance is `source_law[0] + source_law[1] * depth`.
     pub source_law: [f64; 2],
-    /// The same of the target.
+    /// The same for the target.
     pub target_law: [f64; 2],
-    /// Stored depth, in the source, of the nearest surface that the target may show.
+    /// Depth value, in the source, of the nearest surface that the target may show.
     pub nearest: f64,
-    /// Stored depth of the source's far plane.
+    /// Depth value of the source's far plane.
     pub far_depth: f64,
 }
 
@@ -69,13 +69,15 @@ pub struct YoroPoseWarp {
 ///
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
-/// @param poses The views. @param warp  Filled in. @pre The pointers lead to structures, and `poses` to one of the size
-/// that it states. @return YORO_ERROR_VALUE for views that are impossible, or of which the target sees further than 80
-/// degrees from the source's axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+/// @param poses The views.
+/// @param warp  Receives the mapping.
+/// @pre The pointers point to structures, `poses` to one of the size that it states.
+/// @return YORO_ERROR_VALUE for impossible views, and if the target sees more than 80 degrees away from the source's
+///         axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_pose_warp(poses: *const YoroPoses, warp: *mut YoroPoseWarp) -> YoroResult {
     catch_errors(|told| {
-        // SAFETY: the header asks for a structure of the size that it states.
+        // SAFETY: the header requires a pointer to a structure of the size that it states.
         let poses = unsafe { versioned::read(poses, "poses") }?;
         *told = poses.messages;
         check_reserved("poses", &[poses.reserved])?;
@@ -83,28 +85,28 @@ pub unsafe extern "C" fn yoro_pose_warp(poses: *const YoroPoses, warp: *mut Yoro
             return Err(Failure::new(YORO_ERROR_NULL, "source, target or warp is NULL: give all"));
         }
         let range = depth_range(poses.near_z, poses.far_z, poses.depth)?;
-        // SAFETY: the header asks for pointers that lead to views; alignment is not needed.
+        // SAFETY: the header requires pointers to views; the read needs no alignment.
         let read = |view: *const YoroView| unsafe { view.read_unaligned() }.core(range);
         let result = PoseWarp::new(&read(poses.source)?, &read(poses.target)?)?;
         // The core counts rows from the bottom.
         let result = if rows_down(poses.rows)? { result.rows_from_top() } else { result };
-        // SAFETY: the header asks for a pointer to a structure.
+        // SAFETY: the header requires a pointer to a structure.
         unsafe { warp.write_unaligned(YoroPoseWarp::new(&result)) };
         Ok(())
     })
 }
 
-/// The bounds of a head's motion from the pose of a render to that of its display, and a view to render for it.
+/// The limits of a head's motion between the render and its display, and the view that is rendered.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroHeadMotion {
     /// sizeof(YoroHeadMotion).
     pub struct_size: u32,
-    /// Largest angle of rotation, about any axis, in radians.
+    /// Largest angle of rotation about any axis, in radians.
     pub rotation: f32,
     /// Largest distance that an eye moves, in metres.
     pub translation: f32,
-    /// Distance in metres from the eye from which on surfaces are to stay in the image.
+    /// Distance from the eye, in metres, beyond which surfaces must stay in the image.
     pub nearest: f32,
     /// Distance of the near plane in metres, more than 0.
     pub near_z: f32,
@@ -116,11 +118,11 @@ pub struct YoroHeadMotion {
     pub rows: YoroRows,
     /// The clip volume of the resulting matrices.
     pub clip: YoroClip,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
-    /// The view to widen: its size, pose and angles are read.
+    /// The view to widen. Its size, pose and angles are read.
     pub view: *const YoroView,
-    /// Where the sentences of errors go.
+    /// Receives error messages.
     pub messages: YoroMessages,
 }
 
@@ -134,11 +136,11 @@ pub struct YoroGuardedView {
     pub struct_size: u32,
     /// First column of the original view's image in the wider one.
     pub crop_x: u32,
-    /// First row of it, counted as YoroRows says.
+    /// First row of the original view's image in the wider one, counted as YoroRows says.
     pub crop_y: u32,
     /// Zero.
     pub reserved: u32,
-    /// The wider view: what to render.
+    /// The wider view, which is the one to render.
     pub view: YoroView,
 }
 
@@ -148,16 +150,18 @@ versioned!(YoroGuardedView);
 ///
 /// Call it from any thread, without a context. It allocates and keeps nothing.
 ///
-/// @param motion  The bounds and the view. @param guarded Filled in; the caller sets struct_size. @pre The pointers
-/// lead to structures of the sizes that they state. @return YORO_ERROR_VALUE for a view that is impossible or would
-/// have to see further than 80 degrees to a side; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+/// @param motion  The limits and the view.
+/// @param guarded Receives the wider view. The caller sets struct_size.
+/// @pre The pointers point to structures of the sizes that they state.
+/// @return YORO_ERROR_VALUE for an impossible view, or one that would have to see more than 80 degrees to a side;
+///         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_guarded_view(
     motion: *const YoroHeadMotion,
     guarded: *mut YoroGuardedView,
 ) -> YoroResult {
     catch_errors(|told| {
-        // SAFETY: the header asks for a structure of the size that it states.
+        // SAFETY: the header requires a pointer to a structure of the size that it states.
         let motion = unsafe { versioned::read(motion, "motion") }?;
         *told = motion.messages;
         // SAFETY: as above.
@@ -166,7 +170,7 @@ pub unsafe extern "C" fn yoro_guarded_view(
         if motion.view.is_null() {
             return Err(Failure::new(YORO_ERROR_NULL, "view is NULL: give the view to widen"));
         }
-        // SAFETY: the header asks for a pointer that leads to a view; alignment is not needed.
+        // SAFETY: the header requires a pointer to a view; the read needs no alignment.
         let result = motion.guarded(&unsafe { motion.view.read_unaligned() })?;
         // SAFETY: as above.
         unsafe { versioned::write(guarded, "guarded", &result) }
@@ -203,12 +207,12 @@ impl YoroPoseWarp {
         }
     }
 
-    /// Returns the core's warp, with rows as they lie in the images. Checks the numbers, since programs may have made
+    /// Returns the core's warp, with rows ordered as in the images. Checks the numbers, since programs may have made
     /// them up.
     fn checked(&self) -> Result<PoseWarp, Failure> {
         let sizes = [[self.source_width, self.source_height], [self.target_width, self.target_height]];
         let numbers = [&self.homography[..], &self.epipole, &self.source_law, &self.target_law];
-        // In this form NaN fails, too.
+        // Written so that NaN fails too.
         let bounded = |number: &f64| number.abs() < 1e9;
         let [width, height] = sizes[1].map(f64::from);
         let before_the_eye =
@@ -239,12 +243,12 @@ impl YoroPoseWarp {
 /// Reads a warp.
 ///
 /// # Safety
-/// `warp` is null or leads to one.
+/// `warp` is null or points to a warp.
 pub(crate) unsafe fn read_pose_warp(warp: *const YoroPoseWarp) -> Result<PoseWarp, Failure> {
     if warp.is_null() {
         return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of yoro_pose_warp"));
     }
-    // SAFETY: the pointer is not null, so it leads to a warp; alignment is not needed.
+    // SAFETY: the pointer is not null, so it points to a warp; the read needs no alignment.
     unsafe { warp.read_unaligned() }.checked()
 }
 
@@ -253,7 +257,7 @@ mod tests {
     use super::*;
     use crate::types::{YORO_DEPTH_STANDARD, YORO_ROWS_DOWN, YoroFov, YoroPose};
 
-    /// What yoro_vk_record_pose makes of the warp of images whose row 0 is at the top.
+    /// Checks what yoro_vk_record_pose does to the warp of images whose row 0 is at the top.
     #[test]
     fn turned_rows_are_turned_back_for_the_core() {
         let view = |y, orientation: glam::Quat, [width, height]: [u32; 2]| YoroView {
@@ -280,7 +284,7 @@ mod tests {
             messages: YoroMessages::NONE,
         };
         let mut warp = YoroPoseWarp::default();
-        // SAFETY: whole structures.
+        // SAFETY: complete structures.
         assert_eq!(unsafe { yoro_pose_warp(&poses, &mut warp) }, crate::result::YORO_OK);
         assert_eq!(warp, turned);
         let back = warp.checked().unwrap().rows_from_top();

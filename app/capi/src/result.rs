@@ -1,4 +1,4 @@
-//! Numeric results, their texts, and the sentences of errors.
+//! Result codes, their texts, and error messages.
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -20,14 +20,14 @@ pub const YORO_ERROR_NULL: YoroResult = -1;
 pub const YORO_ERROR_STRUCT_SIZE: YoroResult = -2;
 /// A value is out of its range: not finite, a size of zero, an unknown constant, or planes out of order.
 pub const YORO_ERROR_VALUE: YoroResult = -3;
-/// A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not fit each other.
+/// A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match.
 pub const YORO_ERROR_MATRIX: YoroResult = -4;
 /// The eyes look in different directions. Use YORO_EYES_PARALLEL, or render both eyes.
 pub const YORO_ERROR_EYES_CANTED: YoroResult = -5;
 /// The eyes do not lie on one horizontal line. Use YORO_EYES_PARALLEL.
 pub const YORO_ERROR_EYES_OFF_AXIS: YoroResult = -6;
 /// The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be
-/// synthesized: 4095 in images that are wider than that.
+/// synthesized (4095, in images that are wider).
 pub const YORO_ERROR_EYES_IPD: YoroResult = -7;
 /// The eyes' images have different tangents per pixel. Use YORO_EYES_EVEN.
 pub const YORO_ERROR_EYES_DENSITY: YoroResult = -8;
@@ -43,26 +43,26 @@ pub const YORO_ERROR_UNSUPPORTED: YoroResult = -12;
 pub const YORO_ERROR_FORMAT: YoroResult = -13;
 /// The driver refused a shader, an object or a command.
 pub const YORO_ERROR_DRIVER: YoroResult = -14;
-/// The YoroContext was created for another API than the function belongs to.
+/// The YoroContext was created for a different API than the function's.
 pub const YORO_ERROR_API: YoroResult = -15;
 /// Another thread is inside a function with this YoroContext.
 pub const YORO_ERROR_BUSY: YoroResult = -16;
-/// No memory is left, on the host or on the device.
+/// No memory is left on the host or on the device.
 pub const YORO_ERROR_MEMORY: YoroResult = -17;
-/// The Vulkan device is lost: create it and the YoroContext again.
+/// The Vulkan device is lost: create both it and the YoroContext again.
 pub const YORO_ERROR_DEVICE_LOST: YoroResult = -18;
 /// The id is not registered with this YoroContext, or was released.
 pub const YORO_ERROR_NOT_REGISTERED: YoroResult = -19;
-/// An error of the library itself. Afterwards the YoroContext returns only this, and can only be destroyed.
+/// An internal error of the library. Afterwards the YoroContext returns only this error, and can only be destroyed.
 pub const YORO_ERROR_INTERNAL: YoroResult = -20;
 
-/// Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on
-/// the thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same
-/// context.
+/// Receives an error message: one sentence that names the fault and the remedy, in UTF-8, valid during the call only.
+/// It is called on the thread of the failing function, before that returns. It must not throw, and must not call yoro
+/// with the same context.
 pub type YoroMessageCallback =
     Option<unsafe extern "C" fn(user: *mut c_void, result: YoroResult, sentence: *const c_char)>;
 
-/// The receiver of the sentences of errors.
+/// The receiver of error messages.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroMessages {
@@ -108,7 +108,7 @@ fn text(result: YoroResult) -> &'static CStr {
     }
 }
 
-/// An error on its way to the caller.
+/// An error that will be returned to the caller.
 #[derive(Debug)]
 pub(crate) struct Failure {
     pub(crate) code: YoroResult,
@@ -130,7 +130,7 @@ impl Failure {
             (None, Some(text)) => (*text).to_owned(),
             _ => String::new(),
         };
-        // Dropping what was thrown could throw again.
+        // Dropping the panic's payload could panic again.
         std::mem::forget(payload);
         Failure::new(YORO_ERROR_INTERNAL, format!("an error of yoro itself, please report it: {sentence}"))
     }
@@ -181,13 +181,13 @@ impl YoroMessages {
         let Some(callback) = self.callback else { return };
         let bytes: Vec<u8> = failure.sentence.bytes().filter(|&byte| byte != 0).collect();
         if let Ok(sentence) = CString::new(bytes) {
-            // SAFETY: the caller gave a function of this type with its argument.
+            // SAFETY: the caller passed a function of this type together with its argument.
             unsafe { callback(self.user, failure.code, sentence.as_ptr()) };
         }
     }
 }
 
-/// Runs the body of a function of the interface. Errors and panics become codes, and their sentences go to the callback
+/// Runs the body of a function of the interface. Errors and panics become codes, and their messages go to the callback
 /// that the body puts into `messages`.
 pub(crate) fn catch_errors(body: impl FnOnce(&mut YoroMessages) -> Result<(), Failure>) -> YoroResult {
     let mut messages = YoroMessages::NONE;
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn a_panic_becomes_a_code_and_a_sentence() {
         unsafe extern "C" fn note(user: *mut c_void, result: YoroResult, sentence: *const c_char) {
-            // SAFETY: the test's own string, and a string as promised.
+            // SAFETY: the test's own string, and a C string as the callback requires.
             unsafe {
                 *user.cast::<String>() = format!("{result} {}", CStr::from_ptr(sentence).to_str().unwrap())
             };

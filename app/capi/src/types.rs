@@ -1,15 +1,15 @@
-//! Versions, and the small types that the structures are made of.
+//! Versions, and the small types that the structures consist of.
 
 use yoro::eyes::{DepthConvention, Eye};
 use yoro::synthesis::Edges;
 
 use crate::result::Failure;
 
-/// Version of this header.
+/// Major version of this header.
 pub const YORO_VERSION_MAJOR: u32 = 0;
-/// Second part of the version.
+/// Minor version of this header.
 pub const YORO_VERSION_MINOR: u32 = 1;
-/// Third part of the version.
+/// Patch version of this header.
 pub const YORO_VERSION_PATCH: u32 = 0;
 /// The version as one number that grows: major * 1000000 + minor * 1000 + patch.
 pub const YORO_VERSION: u32 = YORO_VERSION_MAJOR * 1000000 + YORO_VERSION_MINOR * 1000 + YORO_VERSION_PATCH;
@@ -22,17 +22,17 @@ pub extern "C" fn yoro_version() -> u32 {
     YORO_VERSION
 }
 
-/// A guard band that is complete for everything farther away than an arm's length, in metres.
+/// A guard band, in metres, that is complete for everything farther away than an arm's length.
 pub const YORO_GUARD_BAND: f32 = 1.0;
 
-/// One of the two eyes, which is also its index in arrays of two.
+/// One of the two eyes. The value is also its index in arrays of two.
 pub type YoroEye = u32;
 /// The left eye.
 pub const YORO_EYE_LEFT: YoroEye = 0;
 /// The right eye.
 pub const YORO_EYE_RIGHT: YoroEye = 1;
 
-/// The meaning of the values 0 to 1 in a depth buffer. It does not depend on the API's clip volume.
+/// The meaning of the values 0 to 1 in a depth buffer. It is independent of the API's clip volume.
 pub type YoroDepth = u32;
 /// 0 at the near plane, 1 at the far plane: tested with LESS, cleared to 1.
 pub const YORO_DEPTH_STANDARD: YoroDepth = 0;
@@ -55,17 +55,17 @@ pub const YORO_ROWS_UP: YoroRows = 0;
 /// Row 0 is at the top: Vulkan, Direct3D, image files.
 pub const YORO_ROWS_DOWN: YoroRows = 1;
 
-/// The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was
-/// averaged over samples: it belongs to no surface, and gives halos.
+/// The kind of source images, by how they represent edges: the pixels that show more than one surface. Never pass depth
+/// that was averaged over samples. It belongs to no surface, and causes halos.
 pub type YoroEdges = u32;
 /// One sample per pixel, of colour and depth.
 pub const YORO_EDGES_HARD: YoroEdges = 0;
-/// Colour resolved from several samples, depth of the nearest of them.
+/// Colour resolved from several samples, and depth of the nearest of them.
 pub const YORO_EDGES_NEAREST: YoroEdges = 1;
-/// Colour resolved from several samples, depth of the first of them. Drivers that resolve depth themselves leave this.
+/// Colour resolved from several samples, depth of the first of them: the result of drivers that resolve depth.
 pub const YORO_EDGES_SAMPLE: YoroEdges = 2;
-/// Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the
-/// colour of all of them. This gives the best picture.
+/// Colour resolved from 2 or 4 samples in the standard positions, depth of all samples and, if it still exists, colour
+/// of all samples. This gives the best image.
 pub const YORO_EDGES_MULTISAMPLE: YoroEdges = 3;
 
 pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
@@ -78,15 +78,15 @@ pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
     }
 }
 
-/// The kind of warp that a context is made for.
+/// The kind of warp that a context is created for.
 pub type YoroWarpKind = u32;
-/// Between two parallel eyes: YoroWarp.
+/// Between two parallel eyes, with a YoroWarp.
 pub const YORO_WARP_KIND_EYES: YoroWarpKind = 0;
-/// To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where
-/// both views are parallel eyes the other kind gives the same picture, and is faster.
+/// To a view in any pose near the rendered one, with a YoroPoseWarp. Only with YORO_EDGES_HARD and without a history.
+/// If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
 pub const YORO_WARP_KIND_POSE: YoroWarpKind = 1;
 
-/// True for any pose.
+/// True for YORO_WARP_KIND_POSE.
 pub(crate) fn is_pose(kind: YoroWarpKind) -> Result<bool, Failure> {
     match kind {
         YORO_WARP_KIND_EYES => Ok(false),
@@ -95,7 +95,7 @@ pub(crate) fn is_pose(kind: YoroWarpKind) -> Result<bool, Failure> {
     }
 }
 
-/// The error of a warp that a context is not made for.
+/// Returns the error for a warp of a kind that the context was not created for.
 pub(crate) fn other_kind(made_for_pose: bool) -> Failure {
     Failure::value(match made_for_pose {
         true => "the context was made for YORO_WARP_KIND_POSE: call the function that ends in _pose",
@@ -105,35 +105,35 @@ pub(crate) fn other_kind(made_for_pose: bool) -> Failure {
 
 /// Bits for outputs besides colour, and for their encoding.
 pub type YoroOutputFlags = u32;
-/// Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent
-/// objects.
+/// Writes the depth of the synthesized eye to the target's depth attachment, in the source's encoding, so that
+/// transparent objects can be drawn afterwards.
 pub const YORO_OUTPUT_DEPTH: YoroOutputFlags = 1;
-/// Source and target are both sRGB images: sampling decodes them, and writing encodes.
+/// Source and target are both sRGB images: sampling decodes them, and writing encodes them.
 pub const YORO_OUTPUT_SRGB: YoroOutputFlags = 2;
 
-/// Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out
-/// as XrPosef.
+/// The pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. The
+/// layout is that of XrPosef.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroPose {
-    /// Rotation from the eye's axes to the world's: the quaternion x, y, z, w, of length 1.
+    /// Rotation from the eye's axes to the world's, as the quaternion x, y, z, w, of length 1.
     pub orientation: [f32; 4],
     /// Position in metres.
     pub position: [f32; 3],
 }
 
-/// Angles in radians from the eye's axis to the edges of its image, each smaller than a right angle. Left and down are
-/// negative if the image contains the axis. Laid out as XrFovf.
+/// Angles in radians from the eye's axis to the edges of its image, each smaller than a right angle. The left and lower
+/// angles are negative if the image contains the axis. The layout is that of XrFovf.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct YoroFov {
-    /// Left edge.
+    /// Angle to the left edge.
     pub angle_left: f32,
-    /// Right edge.
+    /// Angle to the right edge.
     pub angle_right: f32,
-    /// Upper edge.
+    /// Angle to the upper edge.
     pub angle_up: f32,
-    /// Lower edge.
+    /// Angle to the lower edge.
     pub angle_down: f32,
 }
 
@@ -161,7 +161,7 @@ pub(crate) fn depth(value: YoroDepth) -> Result<DepthConvention, Failure> {
 pub(crate) struct Clip {
     /// +1 when y points up, -1 when it points down.
     pub(crate) up: f64,
-    /// z of the clip volume is `scale * depth + offset`, depth from 0 to 1.
+    /// The z of the clip volume is `scale * depth + offset`, for depth from 0 to 1.
     pub(crate) scale: f64,
     pub(crate) offset: f64,
 }
@@ -175,7 +175,7 @@ pub(crate) fn clip(value: YoroClip) -> Result<Clip, Failure> {
     }
 }
 
-/// True if rows run from the top.
+/// True if row 0 is at the top.
 pub(crate) fn rows_down(value: YoroRows) -> Result<bool, Failure> {
     match value {
         YORO_ROWS_UP => Ok(false),

@@ -1,27 +1,27 @@
-//! Structures that grow with versions: each begins with its size, as the program knows it.
+//! Structures that grow from version to version. Each begins with its size, as the calling program knows it.
 
 use std::mem::MaybeUninit;
 use std::ptr;
 
 use crate::result::{Failure, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE};
 
-/// Larger than any structure of any version: such a size was never set.
+/// Larger than any structure of any version. A larger struct_size was never initialized.
 const LARGEST: usize = 1 << 16;
 
 /// A structure of the interface that begins with `struct_size`.
 ///
 /// # Safety
-/// `repr(C)`, its first field is the `u32` `struct_size`, and it is made of numbers and nullable pointers: all bits
-/// zero are a value.
+/// The type is `repr(C)`, its first field is `struct_size: u32`, and it consists of numbers and nullable pointers, so
+/// that all bits zero are a valid value.
 pub(crate) unsafe trait Versioned: Copy {
-    /// Its name, for sentences.
+    /// The name of the structure, for error messages.
     const NAME: &'static str;
-    /// Its size in the first version that has it.
+    /// The size in the first version that has the structure.
     const FIRST_SIZE: usize;
 }
 
-/// Implements [`Versioned`] for a structure. `since` is the first field that its first version did not have; without it
-/// the structure has not grown yet.
+/// Implements [`Versioned`] for a structure. `since` is the first field that was added after the structure's first
+/// version. Without it the structure has not grown yet.
 macro_rules! versioned {
     ($name:ident) => {
         versioned!($name, size_of::<$name>());
@@ -30,7 +30,7 @@ macro_rules! versioned {
         versioned!($name, std::mem::offset_of!($name, $field));
     };
     ($name:ident, $first_size:expr) => {
-        // SAFETY: numbers and nullable pointers behind a u32.
+        // SAFETY: a u32, followed by numbers and nullable pointers.
         unsafe impl crate::versioned::Versioned for $name {
             const NAME: &'static str = stringify!($name);
             const FIRST_SIZE: usize = $first_size;
@@ -39,7 +39,7 @@ macro_rules! versioned {
 }
 pub(crate) use versioned;
 
-/// Checks fields that are zero until a later version gives them a meaning.
+/// Checks fields that must be zero until a later version gives them a meaning.
 pub(crate) fn check_reserved(what: &str, fields: &[u32]) -> Result<(), Failure> {
     match fields.iter().find(|field| **field != 0) {
         None => Ok(()),
@@ -47,15 +47,15 @@ pub(crate) fn check_reserved(what: &str, fields: &[u32]) -> Result<(), Failure> 
     }
 }
 
-/// Returns the size that the caller states, checked.
+/// Checks and returns the size that the caller states.
 ///
 /// # Safety
-/// `pointer` is null or leads to a structure, or to fewer bytes than that but at least four.
+/// `pointer` is null, or at least four bytes can be read from it.
 unsafe fn stated_size<T: Versioned>(pointer: *const T, what: &'static str) -> Result<usize, Failure> {
     if pointer.is_null() {
         return Err(Failure::new(YORO_ERROR_NULL, format!("{what} is NULL: give a {}", T::NAME)));
     }
-    // SAFETY: the pointer leads to at least four bytes; alignment is not needed.
+    // SAFETY: at least four bytes are readable; the read needs no alignment.
     let size = unsafe { pointer.cast::<u32>().read_unaligned() } as usize;
     if !(T::FIRST_SIZE..=LARGEST).contains(&size) {
         return Err(Failure::new(
@@ -66,17 +66,17 @@ unsafe fn stated_size<T: Versioned>(pointer: *const T, what: &'static str) -> Re
     Ok(size)
 }
 
-/// Copies a structure that the caller filled. Fields that an older program does not know are zero. Refuses fields that
-/// a newer program sets and this library does not know.
+/// Copies a structure that the caller filled in. Fields that an older program does not know are zero. Fails if a newer
+/// program sets fields that this library does not know.
 ///
 /// # Safety
-/// As [`stated_size`], and as many bytes as the structure states can be read.
+/// As for [`stated_size`], and as many bytes as the structure states are readable.
 pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, what: &'static str) -> Result<T, Failure> {
     // SAFETY: the contract includes that of `stated_size`.
     let size = unsafe { stated_size(pointer, what) }?;
     let known = size_of::<T>();
     let bytes = pointer.cast::<u8>();
-    // SAFETY: the bytes of the structure, as many as it states.
+    // SAFETY: the structure has as many bytes as it states.
     if (known..size).any(|i| unsafe { bytes.add(i).read() } != 0) {
         return Err(Failure::new(
             YORO_ERROR_STRUCT_SIZE,
@@ -84,30 +84,30 @@ pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, what: &'static str) -
         ));
     }
     let mut value = MaybeUninit::<T>::zeroed();
-    // SAFETY: at most the size of both; all zeros and what the caller sets are values of the structure.
+    // SAFETY: copies at most the size of both; all zeros and the caller's bytes are values of the structure.
     unsafe {
         ptr::copy_nonoverlapping(bytes, value.as_mut_ptr().cast(), size.min(known));
         Ok(value.assume_init())
     }
 }
 
-/// Checks that [`write`] will be able to write here.
+/// Checks that [`write`] can write here.
 ///
 /// # Safety
-/// As [`stated_size`].
+/// As for [`stated_size`].
 pub(crate) unsafe fn check_output<T: Versioned>(
     pointer: *const T,
     what: &'static str,
 ) -> Result<(), Failure> {
-    // SAFETY: the contract is that of `stated_size`.
+    // SAFETY: same contract as `stated_size`.
     unsafe { stated_size(pointer, what) }?;
     Ok(())
 }
 
-/// Fills a structure of the caller up to the size that the caller knows; `struct_size` stays.
+/// Fills in a structure of the caller, up to the size that the caller knows. Leaves `struct_size` unchanged.
 ///
 /// # Safety
-/// As [`read`], and the bytes can be written.
+/// As for [`read`], and the bytes are writable.
 pub(crate) unsafe fn write<T: Versioned>(
     pointer: *mut T,
     what: &'static str,
@@ -116,7 +116,7 @@ pub(crate) unsafe fn write<T: Versioned>(
     // SAFETY: the contract includes that of `stated_size`.
     let size = unsafe { stated_size(pointer, what) }?;
     let first = size_of::<u32>();
-    // SAFETY: behind struct_size, at most the size of both; zeros beyond what this library knows.
+    // SAFETY: writes after struct_size, at most the size of both structures, and zeros beyond what this library knows.
     unsafe {
         let (from, to) = (ptr::from_ref(value).cast::<u8>(), pointer.cast::<u8>());
         ptr::copy_nonoverlapping(from.add(first), to.add(first), size.min(size_of::<T>()) - first);
@@ -137,14 +137,14 @@ mod tests {
         new: u32,
     }
 
-    // SAFETY: numbers behind a u32.
+    // SAFETY: a u32, followed by numbers.
     unsafe impl Versioned for Grown {
         const NAME: &'static str = "Grown";
         const FIRST_SIZE: usize = 8;
     }
 
     fn read_words(words: &[u32]) -> Result<Grown, i32> {
-        // SAFETY: the words hold what they state, or state what is refused.
+        // SAFETY: the words are as many as they state, or state a size that is refused.
         unsafe { read::<Grown>(words.as_ptr().cast(), "it") }.map_err(|failure| failure.code)
     }
 
@@ -172,7 +172,7 @@ mod tests {
         let value = Grown { struct_size: 0, old: 1, new: 2 };
         for (stated, expected) in [(8, [8, 1, 7, 7]), (12, [12, 1, 2, 7]), (16, [16, 1, 2, 0])] {
             let mut words = [stated, 7, 7, 7];
-            // SAFETY: the words hold what they state.
+            // SAFETY: the words are as many as they state.
             unsafe { write::<Grown>(words.as_mut_ptr().cast(), "it", &value) }.unwrap();
             assert_eq!(words, expected);
         }

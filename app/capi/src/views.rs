@@ -1,4 +1,4 @@
-//! The view to render for two eyes, and the way its pixels move to the other eye.
+//! The view to render for two eyes, and the mapping of its pixels to the other eye.
 
 use glam::{DMat4, DVec4};
 use yoro::eyes::{DepthRange, DisparityLaw, EyePair, Frustum, GuardBand, Pose, View, Warp};
@@ -17,9 +17,9 @@ pub struct YoroView {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Pose of the eye. For matrices of a left-handed world it is in the world with the Z axis negated.
+    /// Pose of the eye. For matrices of a left-handed world, the Z axis of the world is negated.
     pub pose: YoroPose,
-    /// Angles of the image's outer edges.
+    /// Angles to the outer edges of the image.
     pub fov: YoroFov,
     /// World to eye, column-major, for column vectors: the translation is in elements 12 to 14.
     pub view: [f32; 16],
@@ -47,13 +47,13 @@ pub struct YoroWarp {
     pub offset: f64,
     /// Displacement in columns per unit of depth.
     pub scale: f64,
-    /// Target row minus source row.
+    /// Displacement in rows: target row minus source row.
     pub row_offset: i32,
     /// The eye that is synthesized.
     pub target_eye: YoroEye,
-    /// The meaning of depth values.
+    /// The meaning of the depth buffer's values.
     pub depth: YoroDepth,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
 }
 
@@ -69,13 +69,13 @@ pub struct YoroViews {
     pub crop_y: u32,
     /// Zero.
     pub reserved: u32,
-    /// The view to render: the rendered eye's, widened by the guard band. Render colour and depth of this size.
+    /// The view to render: the rendered eye's view, widened by the guard band. Render colour and depth of this size.
     pub source: YoroView,
-    /// The rendered eye's own image: the part of the source of this size that begins at crop_x, crop_y.
+    /// The rendered eye's own image: the part of the source, of this size, that begins at crop_x and crop_y.
     pub rendered: YoroView,
     /// The synthesized image.
     pub synthesized: YoroView,
-    /// The mapping of pixels, for synthesis.
+    /// The mapping of pixels, which synthesis takes.
     pub warp: YoroWarp,
 }
 
@@ -102,7 +102,7 @@ impl YoroWarp {
 
     /// Returns the core's warp. Checks the numbers, since programs may have made them up.
     fn checked(&self) -> Result<Warp, Failure> {
-        /// The largest size: no driver renders larger images.
+        /// The largest width and height. No driver renders larger images.
         const MAX_SIDE: u32 = 1 << 16;
         let sides = [self.source_width, self.source_height, self.target_width, self.target_height];
         if !sides.iter().all(|side| (1..=MAX_SIDE).contains(side)) {
@@ -120,7 +120,7 @@ impl YoroWarp {
             target_eye: eye(self.target_eye)?,
             convention: depth(self.depth)?,
         };
-        // In this form NaN fails, too.
+        // Written so that NaN fails too.
         let in_reach = self.row_offset.unsigned_abs() <= MAX_SIDE && warp.check().is_ok();
         in_reach.then_some(warp).ok_or_else(|| {
             Failure::value("the warp has a displacement beyond all images: take it from yoro_views_from_eyes")
@@ -131,20 +131,20 @@ impl YoroWarp {
 /// Reads a warp.
 ///
 /// # Safety
-/// `warp` is null or leads to one.
+/// `warp` is null or points to a warp.
 pub(crate) unsafe fn read_warp(warp: *const YoroWarp) -> Result<Warp, Failure> {
     if warp.is_null() {
         return Err(Failure::new(YORO_ERROR_NULL, "warp is NULL: give the one of YoroViews"));
     }
-    // SAFETY: the pointer is not null, so it leads to a warp; alignment is not needed.
+    // SAFETY: the pointer is not null, so it points to a warp; the read needs no alignment.
     unsafe { warp.read_unaligned() }.checked()
 }
 
-/// Runs the body of a function that fills [`YoroViews`]. `messages` is the callback in `eyes`, and `work_out` does the
-/// work.
+/// Runs the body of a function that fills in [`YoroViews`]. `messages` returns the callback in `eyes`, and `work_out`
+/// computes the views.
 ///
 /// # Safety
-/// Both pointers are null or lead to as many bytes as they state.
+/// Both pointers are null or point to as many bytes as they state.
 pub(crate) unsafe fn fill_views<T: Versioned>(
     eyes: *const T,
     what: &'static str,
@@ -153,7 +153,7 @@ pub(crate) unsafe fn fill_views<T: Versioned>(
     work_out: impl FnOnce(&T) -> Result<YoroViews, Failure>,
 ) -> YoroResult {
     catch_errors(|told| {
-        // SAFETY: the caller gives a pointer to as many bytes as they state.
+        // SAFETY: the caller passes a pointer to as many bytes as the structure states.
         let eyes = unsafe { versioned::read(eyes, what) }?;
         *told = messages(&eyes);
         // SAFETY: as above.
@@ -164,17 +164,17 @@ pub(crate) unsafe fn fill_views<T: Versioned>(
     })
 }
 
-/// Returns the guard band that is complete from this distance in metres on; none for 0.
+/// Returns the guard band that is complete beyond this distance in metres, or none for 0.
 pub(crate) fn guard_band(metres: f32) -> GuardBand {
     if metres == 0.0 { GuardBand::None } else { GuardBand::Distance(metres) }
 }
 
-/// Mirrors a frustum vertically. The core counts rows from the bottom: rows from the top are rows of mirrored eyes.
+/// Mirrors a frustum vertically. The core counts rows from the bottom: rows from the top are those of mirrored eyes.
 fn mirrored(frustum: Frustum) -> Frustum {
     Frustum { bottom: -frustum.top, top: -frustum.bottom, ..frustum }
 }
 
-/// Returns the views of a pair, without matrices. `down` is true if rows run from the top.
+/// Returns the views of a pair, without matrices. `down` is true if row 0 is at the top.
 pub(crate) fn views(mut pair: EyePair, guard: GuardBand, down: bool) -> Result<YoroViews, Failure> {
     if down {
         pair.frusta = pair.frusta.map(mirrored);
@@ -220,7 +220,7 @@ impl YoroFov {
 /// Returns the depth planes of views that are given one by one.
 pub(crate) fn depth_range(near: f32, far: f32, convention: YoroDepth) -> Result<DepthRange, Failure> {
     let range = DepthRange { near, far, convention: depth(convention)? };
-    // In this form NaN fails, too.
+    // Written so that NaN fails too.
     if near > 0.0 && near < far && near.is_finite() {
         Ok(range)
     } else {
@@ -228,7 +228,7 @@ pub(crate) fn depth_range(near: f32, far: f32, convention: YoroDepth) -> Result<
     }
 }
 
-/// Returns an image without matrices. `turned` is true if the view is that of rows from the top.
+/// Returns an image without matrices. `turned` is true if the view belongs to an image with row 0 at the top.
 pub(crate) fn image(view: &View, turned: bool) -> YoroView {
     let frustum = if turned { mirrored(view.frustum) } else { view.frustum };
     YoroView {
@@ -241,7 +241,7 @@ pub(crate) fn image(view: &View, turned: bool) -> YoroView {
 }
 
 impl YoroView {
-    /// Returns the core's view: size, pose and angles, with depth planes.
+    /// Returns the core's view, with size, pose and angles of this view, and these depth planes.
     pub(crate) fn core(&self, depth: DepthRange) -> Result<View, Failure> {
         let (pose, frustum) = (self.pose.pose(), self.fov.frustum());
         let view = View { pose, frustum, depth, size: [self.width, self.height] };
@@ -257,7 +257,7 @@ impl YoroView {
         })
     }
 
-    /// Returns the rows x and y of the projection of an eye that looks along -Z.
+    /// Returns the x and y rows of the projection for an eye that looks along -Z.
     pub(crate) fn projection_xy(&self, clip: &Clip) -> [DVec4; 2] {
         let [left, right, top, bottom] =
             [self.fov.angle_left, self.fov.angle_right, self.fov.angle_up, self.fov.angle_down]
@@ -269,10 +269,10 @@ impl YoroView {
         ]
     }
 
-    /// Sets the matrices of an eye that looks along -Z.
+    /// Sets the matrices for an eye that looks along -Z.
     pub(crate) fn set_matrices(&mut self, range: &DepthRange, clip: &Clip) {
         let (c, m) = range.inverse_distance_law();
-        // depth = (1 / z - c) / m, z the distance; the clip volume's z = scale * depth + offset, times z.
+        // depth = (1 / z - c) / m, where z is the distance; the clip volume's z = scale * depth + offset, times z.
         let along = DVec4::new(0.0, 0.0, clip.scale * c / m - clip.offset, clip.scale / m);
         let [x, y] = self.projection_xy(clip);
         let projection = DMat4::from_cols(x, y, along, DVec4::new(0.0, 0.0, -1.0, 0.0)).transpose();

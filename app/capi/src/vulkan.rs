@@ -1,4 +1,4 @@
-//! Vulkan.
+//! The functions for Vulkan.
 
 mod device;
 mod types;
@@ -18,12 +18,12 @@ use device::{Passes, Vulkan, of_passes};
 
 pub use types::*;
 
-/// Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at start, not in a frame.
+/// Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at startup, not in a frame.
 ///
 /// Call it from any thread.
 ///
 /// @param info    The options.
-/// @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+/// @param context Receives the new context, or NULL after an error. Destroy it with yoro_destroy.
 /// @pre The handles are valid, belong together, and live until the YoroContext is destroyed.
 /// @return YORO_ERROR_NO_CONTEXT for a loader without Vulkan's commands, YORO_ERROR_UNSUPPORTED, YORO_ERROR_FORMAT,
 ///         YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
@@ -33,25 +33,25 @@ pub unsafe extern "C" fn yoro_vk_create(
     info: *const YoroVkInfo,
     context: *mut *mut YoroContext,
 ) -> YoroResult {
-    // SAFETY: the header asks for valid pointers, and for handles that belong together.
+    // SAFETY: the header requires valid pointers, and handles that belong together.
     unsafe { create(info, context, |info| info.messages, |info| Vulkan::new(info)) }
 }
 
-/// Returns how many bytes the buffers of a context will have on the GPU, of the sizes, formats and edges of its options
-/// alone; drivers add padding. yoro_capabilities says it of a context that exists.
+/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes, formats and edges
+/// of its options. Drivers add padding. For an existing context, call yoro_capabilities.
 ///
-/// Call it from any thread. No handle of the options is needed.
+/// Call it from any thread. It needs none of the handles in the options.
 ///
 /// @param info  The options.
-/// @param bytes Receives the number.
+/// @param bytes Receives the number of bytes.
 /// @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_buffer_bytes(info: *const YoroVkInfo, bytes: *mut u64) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe { write_bytes(info, bytes, |info| info.messages, |info| info.buffer_bytes()) }
 }
 
-/// Creates views and descriptors of images to read. Call it once for each set of images that you render to.
+/// Creates views and descriptors for images to read. Call it once for each set of images that you render to.
 ///
 /// Call it on the thread that may use the context.
 ///
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn yoro_vk_register_source(
     source: *const YoroVkSource,
     id: *mut YoroVkSourceId,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         register_images(context, source, "source", id, |vulkan, source| {
             check_reserved("source", &[source.reserved])?;
@@ -100,9 +100,9 @@ pub unsafe extern "C" fn yoro_vk_register_source(
     }
 }
 
-/// Creates views of images to write. Call it once for each image of a swapchain.
+/// Creates views for images to write. Call it once for each image of a swapchain.
 ///
-/// Thread, preconditions and results are those of yoro_vk_register_source.
+/// Thread, preconditions and results are as for yoro_vk_register_source.
 ///
 /// @param context The context.
 /// @param target  The images.
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn yoro_vk_register_target(
     target: *const YoroVkTarget,
     id: *mut YoroVkTargetId,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         register_images(context, target, "target", id, |vulkan, target| {
             check_reserved("target", &[target.reserved])?;
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn yoro_vk_register_target(
     }
 }
 
-/// Releases the views and descriptors of images to read. Ignores an id that is not registered.
+/// Releases the views and descriptors of images to read. Does nothing if the id is not registered.
 ///
 /// Call it on the thread that may use the context.
 ///
@@ -137,7 +137,7 @@ pub unsafe extern "C" fn yoro_vk_register_target(
 /// @return YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: YoroVkSourceId) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
             of_passes!(&mut vulkan.passes, release_source(SourceId::from_raw(id)));
@@ -148,14 +148,14 @@ pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: Y
     }
 }
 
-/// Releases the views of images to write. Thread and results are those of yoro_vk_release_source.
+/// Releases the views of images to write. Thread and results are as for yoro_vk_release_source.
 ///
 /// @param context The context.
 /// @param id      The id from yoro_vk_register_target.
 /// @pre No command that was recorded with the id is pending.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: YoroVkTargetId) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
             of_passes!(&mut vulkan.passes, release_target(TargetId::from_raw(id)));
@@ -164,23 +164,26 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
     }
 }
 
-/// Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten:
-/// barriers, and three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the
-/// rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
+/// Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it. Records
+/// barriers and three draws with YORO_EDGES_HARD, four with other edges. Call it after recording the opaque objects of
+/// the rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
 /// submits nothing, and does not wait.
 ///
-/// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings
-/// images from their state `before` to their state `after`.
+/// Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Transitions
+/// the images from their state `before` to their state `after`.
 ///
 /// Call it on the thread that may use the context and that records the command buffer.
 ///
-/// @param context  The context. @param commands A command buffer of the device. @param warp     The warp of YoroViews,
-/// with rows as they lie in the images. @param frame    The images to read and the place to draw. @pre The command
-/// buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to the queue
-/// family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is not active.
+/// @param context  The context.
+/// @param commands A command buffer of the device.
+/// @param warp     The warp of YoroViews, with rows ordered as in the images.
+/// @param frame    The images to read and where to draw.
+/// @pre The command buffer is in the recording state, outside render passes and dynamic rendering, and is submitted to
+///      the queue family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering
+///      is not active.
 /// @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond
-/// their images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
-/// error nothing was recorded.
+///         their images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+///         After an error nothing has been recorded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_record(
     context: *mut YoroContext,
@@ -188,11 +191,11 @@ pub unsafe extern "C" fn yoro_vk_record(
     warp: *const YoroWarp,
     frame: *const YoroVkFrame,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
             check_commands(commands)?;
-            // The core counts a warp's rows from the bottom, and takes row 0 of Vulkan's images as the top.
+            // The core counts a warp's rows from the bottom, while row 0 of Vulkan's images is at the top.
             let warp = read_warp(warp)?.rows_from_top();
             let (frame, uses) = vulkan.frame(frame, warp.target_size)?;
             match &mut vulkan.passes {
@@ -203,15 +206,15 @@ pub unsafe extern "C" fn yoro_vk_record(
     }
 }
 
-/// Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE:
-/// barriers and three draws. All else is as in yoro_vk_record.
+/// Records the synthesis of a view in any pose near the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
+/// three draws. Otherwise it is like yoro_vk_record.
 ///
 /// @param context  The context.
 /// @param commands A command buffer of the device.
-/// @param warp     The warp of yoro_pose_warp, with rows as they lie in the images.
-/// @param frame    The images to read and the place to draw.
-/// @pre Those of yoro_vk_record.
-/// @return Those of yoro_vk_record.
+/// @param warp     The warp of yoro_pose_warp, with rows ordered as in the images.
+/// @param frame    The images to read and where to draw.
+/// @pre As for yoro_vk_record.
+/// @return As for yoro_vk_record.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_vk_record_pose(
     context: *mut YoroContext,
@@ -219,7 +222,7 @@ pub unsafe extern "C" fn yoro_vk_record_pose(
     warp: *const YoroPoseWarp,
     frame: *const YoroVkFrame,
 ) -> YoroResult {
-    // SAFETY: the header asks for pointers that are NULL or lead to live objects of their types.
+    // SAFETY: the header requires pointers that are null or point to live objects of their types.
     unsafe {
         enter_vulkan(context, |vulkan| {
             check_commands(commands)?;
@@ -242,7 +245,7 @@ fn check_commands(commands: vk::CommandBuffer) -> Result<(), Failure> {
 }
 
 /// # Safety
-/// As `Pipeline::record`.
+/// As for `Pipeline::record`.
 unsafe fn record<W: WarpKind>(
     passes: &mut Pipeline<W>,
     commands: vk::CommandBuffer,
@@ -250,7 +253,7 @@ unsafe fn record<W: WarpKind>(
     warp: &W,
     uses: Option<&Uses>,
 ) -> Result<(), Failure> {
-    // SAFETY: the contract is the same.
+    // SAFETY: same contract.
     unsafe {
         match uses {
             Some(uses) => passes.record_with_uses(commands, frame, warp, uses)?,
@@ -261,22 +264,22 @@ unsafe fn record<W: WarpKind>(
 }
 
 impl Vulkan {
-    /// Reads a frame for a target of this size, and its images' uses if they are those of the call.
+    /// Reads a frame for a target of this size. Returns the uses of its images only if the frame has them.
     ///
     /// # Safety
-    /// `frame` is null or leads to as many bytes as it states, and so do the pointers in it.
+    /// `frame` is null or points to as many bytes as it states, and so do the pointers in it.
     unsafe fn frame(
         &self,
         frame: *const YoroVkFrame,
         target_size: [u32; 2],
     ) -> Result<(Frame, Option<Uses>), Failure> {
-        // SAFETY: the contract is the same.
+        // SAFETY: same contract.
         unsafe {
             let frame = versioned::read(frame, "frame")?;
             check_reserved("frame", &[frame.reserved])?;
             let former = self.with_history.iter().find(|(with, _)| *with == frame.source);
             let former = former.map(|(_, height)| *height);
-            // As the warp's.
+            // Turned like the warp.
             let turned = |strips: Strips| strips.rows_turned(target_size[1], former.unwrap_or_default());
             let history = read_strips(frame.strips)?.map(turned);
             let uses = if frame.uses.is_null() {
@@ -298,20 +301,20 @@ impl Vulkan {
 }
 
 /// # Safety
-/// `context` is null or alive.
+/// `context` is null or points to a live context.
 unsafe fn enter_vulkan(
     context: *mut YoroContext,
     body: impl FnOnce(&mut Vulkan) -> Result<(), Failure>,
 ) -> YoroResult {
-    // SAFETY: the contract is the same.
+    // SAFETY: same contract.
     unsafe { enter_as(context, "yoro_vk_create", body) }
 }
 
-/// Runs the body of a function that registers images; `register` returns their id.
+/// Runs the body of a function that registers images. `register` returns their id.
 ///
 /// # Safety
-/// `context` is null or alive, `images` is null or leads to as many bytes as it states, and `id` is null or can be
-/// written.
+/// `context` is null or points to a live context, `images` is null or points to as many bytes as it states, and `id` is
+/// null or writable.
 unsafe fn register_images<T: Versioned>(
     context: *mut YoroContext,
     images: *const T,
@@ -320,16 +323,16 @@ unsafe fn register_images<T: Versioned>(
     register: impl FnOnce(&mut Vulkan, &T) -> Result<u32, Failure>,
 ) -> YoroResult {
     let body = |vulkan: &mut Vulkan| {
-        // SAFETY: the caller gives a pointer to as many bytes as they state.
+        // SAFETY: the caller passes a pointer to as many bytes as the structure states.
         let images = unsafe { versioned::read(images, what) }?;
         if id.is_null() {
             return Err(Failure::new(YORO_ERROR_NULL, "id is NULL: give a pointer that receives the id"));
         }
         let registered = register(vulkan, &images)?;
-        // SAFETY: the caller gives a pointer that can be written.
+        // SAFETY: the caller passes a writable pointer.
         unsafe { id.write(registered) };
         Ok(())
     };
-    // SAFETY: the caller gives a context that is alive, or null.
+    // SAFETY: the caller passes a live context or null.
     unsafe { enter_vulkan(context, body) }
 }

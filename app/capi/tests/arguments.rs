@@ -1,4 +1,4 @@
-//! Wrong arguments of every kind return the code that the header promises.
+//! Every kind of wrong argument returns the code that the header promises.
 
 mod common;
 
@@ -14,7 +14,7 @@ use proptest::test_runner::{Config, TestRunner};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
-/// A change that makes an argument wrong, and the code that it then returns.
+/// A change that makes an argument wrong, and the code that the function then returns.
 type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
 
 #[test]
@@ -124,13 +124,13 @@ fn impossible_matrices_return_their_codes() {
         (&|m| m.view[0].iter_mut().take(12).for_each(|n| *n *= 2.0), YORO_ERROR_MATRIX),
         (&|m| m.view = m.view.map(transposed), YORO_ERROR_MATRIX),
         (&|m| m.projection = m.projection.map(transposed), YORO_ERROR_MATRIX),
-        // Orthographic.
+        // An orthographic projection.
         (&|m| (m.projection[0][11], m.projection[0][15]) = (0.0, 1.0), YORO_ERROR_MATRIX),
-        // Made for Vulkan: y points down.
+        // A projection for Vulkan, where y points down.
         (&|m| m.clip = YORO_CLIP_VULKAN, YORO_ERROR_MATRIX),
-        // The planes of one eye differ.
+        // Different planes for one eye.
         (&|m| m.projection[0][14] *= 1.5, YORO_ERROR_MATRIX),
-        // Left-handed in one eye only.
+        // One eye left-handed.
         (&|m| m.view[0][..3].iter_mut().for_each(|n| *n = -*n), YORO_ERROR_MATRIX),
         (&|m| (m.view[0][12], m.guard_band) = (1e7, 0.0), YORO_ERROR_EYES_IPD),
         (&|m| m.view[0][13] += 0.01, YORO_ERROR_EYES_OFF_AXIS),
@@ -141,7 +141,7 @@ fn impossible_matrices_return_their_codes() {
     }
 }
 
-/// Eyes that can be synthesized, in all conventions.
+/// Generates eyes that can be synthesized, in all conventions.
 fn any_eyes() -> impl Strategy<Value = YoroEyes> {
     let places = (-9f32..9.0, -9f32..9.0, -3f32..3.0, -1.4f32..1.4, 0.03f32..0.075);
     let angles = (0.3f32..1.0, 0.3f32..1.0, 0.3f32..1.0, 0.3f32..1.0);
@@ -165,7 +165,7 @@ fn any_eyes() -> impl Strategy<Value = YoroEyes> {
     })
 }
 
-/// Returns the column and row in pixels, counted as `rows` says, and the stored depth of a point in the world.
+/// Returns the column and row in pixels, counted as `rows` says, and the depth value of a point in the world.
 fn project(view: &YoroView, clip: YoroClip, rows: YoroRows, point: glam::DVec3) -> [f64; 3] {
     let matrix = |m: &[f32; 16]| glam::DMat4::from_cols_array(&m.map(f64::from));
     let projected = matrix(&view.projection) * matrix(&view.view) * point.extend(1.0);
@@ -210,12 +210,12 @@ fn poses_and_matrices_give_the_same_views() {
         let mut matrices = matrices_of(&views, &eyes);
         let of_matrices = views_of_matrices(&matrices).unwrap();
         check_law(&of_matrices, eyes.clip, eyes.rows, &points(&eyes));
-        // Rounding may decide on a pixel more of guard band.
+        // Rounding may add a pixel of guard band.
         assert!(views.source.width.abs_diff(of_matrices.source.width) <= 1);
         assert_eq!(views.warp.target_eye, of_matrices.warp.target_eye);
         assert_eq!(views.warp.depth, of_matrices.warp.depth);
 
-        // The same in a left-handed world, in centimetres, with eyes that look along +Z.
+        // The same eyes in a left-handed world, in centimetres, looking along +Z.
         for eye in 0..2 {
             for column in 0..4 {
                 matrices.view[eye][4 * column + 2] *= -1.0;
@@ -249,8 +249,8 @@ fn damaged<T: Copy>(value: &T, damage: &[(usize, u32)], from: usize) -> T {
     let mut copy = *value;
     for &(place, word) in damage {
         let words = (size_of::<T>() - from) / 4;
-        // SAFETY: within the structure, whose fields may be any bits but for pointers, which are before `from` or
-        // behind.
+        // SAFETY: the write stays within the structure. Numbers may have any bits, and the callers replace the
+        // pointers.
         unsafe {
             (&raw mut copy).cast::<u8>().add(from + place % words * 4).cast::<u32>().write_unaligned(word)
         };
@@ -258,7 +258,7 @@ fn damaged<T: Copy>(value: &T, damage: &[(usize, u32)], from: usize) -> T {
     copy
 }
 
-/// Numbers that often reveal mistakes.
+/// Generates numbers that often reveal mistakes.
 fn any_word() -> impl Strategy<Value = u32> {
     prop_oneof![
         Just(0),
@@ -314,7 +314,7 @@ fn impossible_contexts_return_their_codes() {
     let info = gl_info(&mut noted);
     let create = |info: &YoroGlInfo| {
         let mut context = std::ptr::dangling_mut();
-        // SAFETY: a whole structure; nothing is current, or a context of the loader's.
+        // SAFETY: a complete structure; nothing is current, or a context of the loader's.
         let code = unsafe { yoro_gl_create(info, &mut context) };
         assert_eq!(context.is_null(), code != YORO_OK);
         // SAFETY: null or just made.
@@ -349,7 +349,7 @@ fn wrong_images_return_their_codes() {
     let mut noted = Vec::new();
     let info = YoroGlInfo { outputs: YORO_OUTPUT_DEPTH, ..gl_info(&mut noted) };
     let mut context = null_mut();
-    // SAFETY: a whole structure, and the context is current.
+    // SAFETY: a complete structure, and the context is current.
     assert_eq!(unsafe { yoro_gl_create(&info, &mut context) }, YORO_OK);
     let views = views_of(&good_eyes()).unwrap();
     let (size, target_size) = ([views.source.width, views.source.height], [160, 120]);
@@ -374,7 +374,7 @@ fn wrong_images_return_their_codes() {
     let mut good: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
     (good.color_texture, good.depth_texture, good.framebuffer) = (color, depth, whole);
     let call = |warp: &YoroWarp, images: &YoroGlImages| {
-        // SAFETY: a context that is alive, whole structures, and checks are on.
+        // SAFETY: a live context, complete structures, and checks are on.
         unsafe { yoro_gl_synthesize(context, warp, images) }
     };
     let with = |change: &dyn Fn(&mut YoroGlImages)| {
@@ -410,7 +410,7 @@ fn wrong_images_return_their_codes() {
         assert_eq!(headless.gl().take_errors(), None, "row {i}");
     }
     let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
-    // SAFETY: a context that is alive, and null or a whole structure.
+    // SAFETY: a live context, and null or a complete structure.
     unsafe {
         assert_eq!(yoro_gl_synthesize(context, null(), &good), YORO_ERROR_NULL);
         assert_eq!(yoro_gl_synthesize(context, &views.warp, null()), YORO_ERROR_NULL);
@@ -474,7 +474,7 @@ fn wrong_anti_aliased_images_return_their_codes() {
         let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
         (images.color_texture, images.depth_texture, images.framebuffer) = (color, depth_texture, target);
         images.sample_color_texture = sample_color_texture;
-        // SAFETY: whole structures, a context that is alive and current, and checks are on.
+        // SAFETY: complete structures, a live, current context, and checks are on.
         unsafe {
             assert_eq!(yoro_gl_create(&info, &mut context), YORO_OK);
             let code = yoro_gl_synthesize(context, &views.warp, &images);

@@ -1,4 +1,4 @@
-//! The choice between two renders and one with synthesis, as a program in C makes it.
+//! The choice between two renders and one with synthesis, as a C program makes it.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::ptr;
 use common::{messages, zeroed};
 use yoro_c::*;
 
-/// Runs frames of 90 Hz with these GPU times, which come three frames late; returns the last choice.
+/// Runs frames at 90 Hz with these GPU times, which become known three frames later. Returns the last choice.
 fn run(chooser: *mut YoroChooser, cost_ms: [f32; 2], first: YoroWay, frames: u32) -> YoroChoice {
     let mut choice: YoroChoice = zeroed(|choice: &mut YoroChoice| &mut choice.struct_size);
     (choice.next, choice.is_measuring) = (first, 1);
@@ -20,7 +20,7 @@ fn run(chooser: *mut YoroChooser, cost_ms: [f32; 2], first: YoroWay, frames: u32
             end.cost_frames_ago = 3;
             end.cost_ms = cost_ms[rendered[number as usize - 3] as usize];
         }
-        // SAFETY: a chooser that is alive, and structures of the size that they state.
+        // SAFETY: a chooser that is alive, and structures of the sizes that they state.
         assert_eq!(unsafe { yoro_chooser_end_frame(chooser, &end, &mut choice) }, YORO_OK);
     }
     choice
@@ -30,7 +30,7 @@ fn run(chooser: *mut YoroChooser, cost_ms: [f32; 2], first: YoroWay, frames: u32
 fn a_program_in_c_learns_which_way_is_cheaper() {
     for (cost_ms, cheaper) in [([8.9, 6.1], YORO_WAY_SYNTHESIS), ([6.1, 8.9], YORO_WAY_TWO_VIEWS)] {
         let mut chooser = ptr::null_mut();
-        // SAFETY: the pointer can be written.
+        // SAFETY: the pointer is writable.
         assert_eq!(unsafe { yoro_chooser_create(YORO_WAY_SYNTHESIS, &mut chooser) }, YORO_OK);
         let early = run(chooser, cost_ms, YORO_WAY_SYNTHESIS, 60);
         assert_eq!((early.is_measuring, early.reason, early.cost_ms), (1, YORO_REASON_UNMEASURED, [0.0; 2]));
@@ -51,7 +51,7 @@ fn wrong_arguments_are_sentences() {
     // SAFETY: NULL is allowed.
     unsafe { yoro_chooser_destroy(ptr::null_mut()) };
     let mut chooser = ptr::dangling_mut();
-    // SAFETY: the pointer can be written, or is NULL.
+    // SAFETY: the pointer is writable, or is NULL.
     unsafe {
         assert_eq!(yoro_chooser_create(YORO_WAY_OTHER, &mut chooser), YORO_ERROR_VALUE);
         assert!(chooser.is_null());
@@ -65,7 +65,7 @@ fn wrong_arguments_are_sentences() {
         end.messages = messages(&mut noted);
         change(&mut end);
         let mut choice: YoroChoice = zeroed(|choice: &mut YoroChoice| &mut choice.struct_size);
-        // SAFETY: a chooser that is alive or NULL, and structures of the size that they state.
+        // SAFETY: a chooser that is alive or NULL, and structures of the sizes that they state.
         let code = unsafe { yoro_chooser_end_frame(chooser, &end, &mut choice) };
         (code, noted.pop().map(|(_, sentence)| sentence).unwrap_or_default())
     };

@@ -1,4 +1,4 @@
-//! Eyes in large worlds, and eyes that flags make usable.
+//! Eyes in large worlds, and eyes that need the flags.
 
 mod common;
 
@@ -7,7 +7,7 @@ use glam::{DMat4, DQuat, DVec3, EulerRot};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
-/// View matrices as engines compute them, in f32, of eyes around a head that is so many metres from the origin.
+/// Returns view matrices in f32, as engines compute them, for a head at this distance in metres from the origin.
 fn far_matrices(distance: f64, turn: f64, ipd: f64) -> YoroMatrices {
     let eyes = good_eyes();
     let mut matrices = matrices_of(&views_of(&eyes).unwrap(), &eyes);
@@ -28,12 +28,12 @@ fn matrices_far_from_the_origin_are_not_refused() {
         for turn in 0..500 {
             let got = scale(&far_matrices(distance, f64::from(turn), 0.064));
             let got = got.unwrap_or_else(|code| panic!("{distance} m, {turn}: {code}"));
-            // Four roundings of the eyes' distance.
+            // Four roundings, relative to the distance between the eyes.
             let rounding = 4.0 * distance * f64::from(f32::EPSILON) / 0.064;
             assert!((got / expected - 1.0).abs() < rounding, "{distance} m: {got} {expected}");
         }
     }
-    // What is more than rounding is refused, at any distance.
+    // An error larger than rounding is refused at any distance.
     for distance in [0.0, 1500.0] {
         let mut matrices = far_matrices(distance, 3.0, 0.064);
         matrices.view[0][13] += 0.004;
@@ -48,8 +48,8 @@ fn project(view: &[f32; 16], projection: &[f32; 16], point: DVec3) -> DVec3 {
     clip.truncate() / clip.w
 }
 
-/// Eyes of a calibrated headset: canted, and one of them a third of a millimetre higher. In a right-handed world, and
-/// in a left-handed one in centimetres with eyes that look along +Z.
+/// The eyes of a calibrated headset: canted, and one of them a third of a millimetre higher. In a right-handed world,
+/// and in a left-handed one in centimetres with eyes that look along +Z.
 #[test]
 fn flags_turn_the_matrices_of_canted_and_displaced_eyes() {
     let mut eyes = good_eyes();
@@ -83,7 +83,7 @@ fn flags_turn_the_matrices_of_canted_and_displaced_eyes() {
         let views = views_of_matrices(&YoroMatrices { flags: YORO_EYES_PARALLEL, ..given }).unwrap();
         let expected = views_of(&YoroEyes { flags: YORO_EYES_PARALLEL, ..eyes }).unwrap();
         assert!((views.warp.scale - expected.warp.scale).abs() < 0.01 && views.crop_x == expected.crop_x);
-        // A point of the world is where poses and angles have it, and moves as the warp says.
+        // A point of the world appears where poses and angles put it, and moves as the warp says.
         for point in [DVec3::new(0.1, 1.5, -1.2), DVec3::new(-0.6, 2.0, -4.0)] {
             let in_world = point * unit * DVec3::new(1.0, 1.0, mirror);
             for (own, other) in
@@ -96,7 +96,7 @@ fn flags_turn_the_matrices_of_canted_and_displaced_eyes() {
         }
     }
     assert_eq!(views_of_matrices(&YoroMatrices { flags: 8, ..matrices }).map(drop), Err(YORO_ERROR_VALUE));
-    // A third of a millimetre alone has the same remedy.
+    // A third of a millimetre without canting has the same remedy.
     let mut displaced = good_eyes();
     displaced.poses[1].position[1] += 0.0003;
     assert_eq!(views_of(&displaced).map(drop), Err(YORO_ERROR_EYES_OFF_AXIS));
@@ -104,13 +104,13 @@ fn flags_turn_the_matrices_of_canted_and_displaced_eyes() {
     views_of(&displaced).unwrap();
 }
 
-/// Whatever near plane is accepted, its warp is.
+/// For every near plane that is accepted, the warp is accepted too.
 #[test]
 fn the_warp_of_accepted_eyes_is_accepted() {
     let _headless = Headless::open(Backend::Egl).unwrap();
     let (mut noted, mut context) = (Vec::new(), std::ptr::null_mut());
     let info = gl_info(&mut noted);
-    // SAFETY: a whole structure, and the context is current.
+    // SAFETY: a complete structure, and the context is current.
     assert_eq!(unsafe { yoro_gl_create(&info, &mut context) }, YORO_OK);
     let mut eyes = good_eyes();
     (eyes.width, eyes.height) = (2064, 8);
@@ -119,7 +119,7 @@ fn the_warp_of_accepted_eyes_is_accepted() {
         eyes.near_z = 10f32.powf(-0.1 * exponent as f32);
         let Ok(views) = views_of(&eyes) else { continue };
         accepted += 1;
-        // SAFETY: a context that is alive.
+        // SAFETY: a live context.
         let code = unsafe { yoro_gl_prepare(context, &views.warp) };
         assert_eq!(code, YORO_OK, "near plane at {} m: {noted:?}", eyes.near_z);
     }
@@ -128,7 +128,7 @@ fn the_warp_of_accepted_eyes_is_accepted() {
     assert_eq!(unsafe { yoro_destroy(context) }, YORO_OK);
 }
 
-/// A program of the first version knows no flags.
+/// A program built against the first version has no flags.
 #[test]
 fn matrices_without_flags_keep_their_size() {
     let eyes = good_eyes();

@@ -1,14 +1,14 @@
-//! The committed header is the one that cbindgen makes of the source.
+//! The committed header is the one that cbindgen generates from the source.
 
 use std::path::Path;
 
-/// Returns cbindgen's text with each constant behind its type, instead of before all functions.
+/// Returns cbindgen's text with each constant after its type, instead of before all functions.
 fn arranged(made: &str) -> String {
     let mut blocks: Vec<String> = Vec::new();
     let mut constants = Vec::new();
     for block in made.split("\n\n") {
         match block.lines().find_map(|line| line.strip_prefix("#define YORO_")) {
-            // A #define of more than one word needs parentheses.
+            // A #define of more than one token needs parentheses.
             Some(_) if block.starts_with("/**") => constants.push(negative_in_parentheses(block)),
             _ => blocks.push(block.to_owned()),
         }
@@ -29,8 +29,8 @@ fn arranged(made: &str) -> String {
     blocks.join("\n\n")
 }
 
-/// Moves what is for Vulkan behind the include guard, with one of its own: so the header can be included again behind
-/// vulkan.h. C89 has no other comments than these.
+/// Moves everything for Vulkan behind the include guard, with a guard of its own, so that the header can be included
+/// again after vulkan.h. Replaces `//` comments, which C89 does not have.
 fn vulkan_last(header: &str) -> String {
     const CONDITION: &str = "#if defined(VK_VERSION_1_1)\n";
     let mut rest = header.replace("// __cplusplus", "/* __cplusplus */");
@@ -61,7 +61,7 @@ fn negative_in_parentheses(block: &str) -> String {
     }
 }
 
-/// Returns the beginnings of a type's constants: `#define YORO_EYES_` for YoroEyesFlags.
+/// Returns the prefixes of a type's constants, such as `#define YORO_EYES_` for YoroEyesFlags.
 fn prefixes(name: &str) -> Vec<String> {
     if name == "YoroResult" {
         return ["OK ", "ERROR_"].map(|constant| format!("#define YORO_{constant}")).into();

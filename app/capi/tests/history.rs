@@ -1,4 +1,4 @@
-//! What the other eye has seen, on OpenGL: a wall behind a box, in a colour that only the history has.
+//! Histories on OpenGL: the wall behind a box has a colour that only the history has.
 
 mod common;
 
@@ -11,11 +11,11 @@ use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
 const SIZE: [u32; 2] = [160, 120];
-/// Stored depths of the wall and of the box before it.
+/// Depth values of the wall and of the box in front of it.
 const WALL: f32 = 0.98;
 const BOX: f32 = 0.9;
 
-/// Fills a rectangle of colour and depth, [x, y, width, height].
+/// Fills the rectangle [x, y, width, height] with colour and depth.
 unsafe fn fill(gl: &glow::Context, target: u32, [x, y, w, h]: [i32; 4], [r, g, b]: [f32; 3], depth: f32) {
     // SAFETY: the context is current, and the framebuffer is its own.
     unsafe {
@@ -29,7 +29,7 @@ unsafe fn fill(gl: &glow::Context, target: u32, [x, y, w, h]: [i32; 4], [r, g, b
     }
 }
 
-/// Names of colour, depth, and a framebuffer of both.
+/// Returns the names of a colour texture, a depth texture, and a framebuffer of both.
 unsafe fn image(gl: &glow::Context, size: [u32; 2]) -> [u32; 3] {
     // SAFETY: the context is current.
     unsafe {
@@ -55,7 +55,7 @@ fn history(
 
 fn strips_of(history: &YoroHistory, synthesized: &YoroView) -> Result<YoroStrips, YoroResult> {
     let mut strips = YoroStrips { to_history: [[0.0; 16]; YORO_MOST_STRIPS], count: 0, reserved: [0; 3] };
-    // SAFETY: whole structures.
+    // SAFETY: complete structures.
     match unsafe { yoro_strips(history, synthesized, &mut strips) } {
         YORO_OK => Ok(strips),
         code => Err(code),
@@ -72,7 +72,7 @@ fn what_is_uncovered_shows_the_history() {
     let mut info = gl_info(&mut noted);
     info.history = 1;
     let mut context = null_mut();
-    // SAFETY: whole structures, a context that is alive and current, and checks are on.
+    // SAFETY: complete structures, a live, current context, and checks are on.
     unsafe {
         assert_eq!(yoro_gl_create(&info, &mut context), YORO_OK, "{noted:?}");
         let [w, h] = [views.source.width, views.source.height].map(|n| n as i32);
@@ -86,7 +86,7 @@ fn what_is_uncovered_shows_the_history() {
         [images.color_texture, images.depth_texture, _] = source;
         images.framebuffer = target[2];
         [images.history_color_texture, images.history_depth_texture, _] = former;
-        // Blue pixels in the lower and in the upper half.
+        // Counts the blue pixels in the lower and in the upper half.
         let blue = |strips: *const YoroStrips| {
             let images = YoroGlImages { strips, ..images };
             assert_eq!(yoro_gl_synthesize(context, &views.warp, &images), YORO_OK);
@@ -122,7 +122,7 @@ fn what_is_uncovered_shows_the_history() {
         let made_up = YoroStrips { count: 9, ..whole };
         assert_eq!(with(&|i| i.strips = &made_up), YORO_ERROR_VALUE);
         assert_eq!(yoro_destroy(context), YORO_OK);
-        // A context without.
+        // A context without a history.
         let mut noted = Vec::new();
         assert_eq!(
             yoro_gl_create(&YoroGlInfo { history: 2, ..gl_info(&mut noted) }, &mut context),

@@ -1,4 +1,4 @@
-//! Loaders that lack functions, drivers without memory, and threads without a context.
+//! Loaders without some functions, drivers without memory, and threads without a context.
 
 mod common;
 
@@ -21,9 +21,9 @@ thread_local! {
 }
 
 unsafe extern "C" fn load_some(name: *const c_char) -> YoroGlProc {
-    // SAFETY: a name, as the caller promises.
+    // SAFETY: a C string, as the caller promises.
     let name = unsafe { CStr::from_ptr(name) };
-    // Some functions have a second name.
+    // Some functions also have a name that ends in KHR.
     let is =
         |hidden: &CStr| name.to_bytes().strip_suffix(b"KHR").unwrap_or(name.to_bytes()) == hidden.to_bytes();
     if !IS_LOADED.get()(name) || HIDDEN.get().is_some_and(is) {
@@ -36,7 +36,7 @@ unsafe extern "C" fn load_some(name: *const c_char) -> YoroGlProc {
     })
 }
 
-/// Runs `body` with a context that is current.
+/// Runs `body` with a current context.
 fn with_context(backend: Backend, body: impl FnOnce(&glow::Context, bool)) {
     CONTEXT.set(Some(Headless::open(backend).unwrap()));
     let gl = CONTEXT.with_borrow(|context| context.as_ref().unwrap().gl().clone());
@@ -46,7 +46,7 @@ fn with_context(backend: Backend, body: impl FnOnce(&glow::Context, bool)) {
 }
 
 fn backends() -> &'static [Backend] {
-    // `cargo xtask test` says so on systems that have no OSMesa any more.
+    // `cargo xtask test` prints this on systems without OSMesa.
     if std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some() {
         &[Backend::Egl]
     } else {
@@ -54,17 +54,17 @@ fn backends() -> &'static [Backend] {
     }
 }
 
-/// Creates a context, or returns the code and the sentence of the failure.
+/// Creates a context, or returns the code and the message of the failure.
 fn create(info: &YoroGlInfo, noted: &mut Noted) -> Result<*mut YoroContext, (YoroResult, String)> {
     let mut context = null_mut();
-    // SAFETY: a whole structure, and a context is current.
+    // SAFETY: a complete structure, and a context is current.
     match unsafe { yoro_gl_create(info, &mut context) } {
         YORO_OK => Ok(context),
         _ => Err(noted.pop().unwrap()),
     }
 }
 
-/// Textures of the views' size, and a framebuffer of the eyes'.
+/// Creates textures of the size of the views, and a framebuffer of the size of the eyes.
 fn images(gl: &glow::Context, edges: YoroEdges) -> (YoroViews, YoroGlImages) {
     let views = views_of(&good_eyes()).unwrap();
     let (size, target_size) = ([views.source.width, views.source.height], [160, 120]);
@@ -84,7 +84,7 @@ fn images(gl: &glow::Context, edges: YoroEdges) -> (YoroViews, YoroGlImages) {
     (views, images)
 }
 
-/// Nothing is called that is not asked for at first: glow would panic.
+/// Only functions that are checked for at first are called. glow would panic otherwise.
 #[test]
 fn the_needed_functions_are_enough() {
     fn is_needed<const DESKTOP: bool>(name: &CStr) -> bool {
@@ -101,7 +101,7 @@ fn the_needed_functions_are_enough() {
                     let info =
                         YoroGlInfo { edges, state, outputs, loader: Some(load_some), ..gl_info(&mut noted) };
                     let context = create(&info, &mut noted).unwrap();
-                    // SAFETY: alive until the last line, whole structures, a current context.
+                    // SAFETY: alive until the last line, complete structures, a current context.
                     unsafe {
                         assert_eq!(yoro_gl_prepare(context, &views.warp), YORO_OK, "{noted:?}");
                         assert_eq!(yoro_gl_synthesize(context, &views.warp, &images), YORO_OK, "{noted:?}");
@@ -139,7 +139,7 @@ fn a_driver_without_memory_has_its_own_code() {
     unsafe extern "system" fn no_storage(target: u32, levels: i32, format: u32, w: i32, h: i32) {
         let name = if IS_FULL.get() { c"glEnable" } else { c"glTexStorage2D" };
         let function = CONTEXT.with_borrow(|context| context.as_ref().unwrap().entry_point(name));
-        // SAFETY: the entry point of this name. Without storage, an error as a driver leaves it.
+        // SAFETY: the entry point of this name. The call without storage raises an error as a driver would.
         unsafe {
             if IS_FULL.get() {
                 transmute::<*const c_void, unsafe extern "system" fn(u32)>(function)(0x1234);
@@ -159,7 +159,7 @@ fn a_driver_without_memory_has_its_own_code() {
         }
     }
     unsafe extern "C" fn load_full(name: *const c_char) -> YoroGlProc {
-        // SAFETY: a name; functions of the signatures that GL gives them.
+        // SAFETY: a C string; functions of the signatures that GL gives them.
         unsafe {
             match CStr::from_ptr(name).to_str().unwrap() {
                 "glTexStorage2D" => transmute::<*const (), YoroGlProc>(no_storage as *const ()),
@@ -173,7 +173,7 @@ fn a_driver_without_memory_has_its_own_code() {
         let info = YoroGlInfo { loader: Some(load_full), check: 0, ..gl_info(&mut noted) };
         let context = create(&info, &mut noted).unwrap();
         let (views, images) = images(gl, YORO_EDGES_HARD);
-        // SAFETY: alive until the last line, whole structures, a current context.
+        // SAFETY: alive until the last line, complete structures, a current context.
         unsafe {
             IS_FULL.set(true);
             assert_eq!(yoro_gl_synthesize(context, &views.warp, &images), YORO_ERROR_MEMORY, "{noted:?}");
@@ -184,11 +184,11 @@ fn a_driver_without_memory_has_its_own_code() {
     });
 }
 
-/// With `check`, in place of a sentence about a texture that is right.
+/// With `check`, the error is about the thread, not about a texture that is right.
 #[test]
 fn a_thread_without_a_context_is_told() {
     struct Shared(*mut YoroContext, YoroViews, YoroGlImages);
-    // SAFETY: a context may be called from any thread, by one at a time; it is then refused.
+    // SAFETY: a context may be called from any thread, one at a time. The call is refused.
     unsafe impl Send for Shared {}
     with_context(Backend::Egl, |gl, _| {
         let mut noted = Vec::new();
@@ -198,7 +198,7 @@ fn a_thread_without_a_context_is_told() {
         let shared = Shared(context, views, images);
         let codes = std::thread::spawn(move || {
             let Shared(context, views, images) = { shared };
-            // SAFETY: alive, and whole structures.
+            // SAFETY: alive, and complete structures.
             unsafe {
                 [yoro_gl_prepare(context, &views.warp), yoro_gl_synthesize(context, &views.warp, &images)]
             }

@@ -1,5 +1,5 @@
-//! A view in any pose near the rendered one: the warp and the guard band are the core's, and so is the picture on
-//! OpenGL.
+//! A view in any pose near the rendered one: the warp, the guard band and, on OpenGL, the picture equal those of the
+//! core.
 
 mod common;
 
@@ -20,7 +20,7 @@ use yoro_context::{Backend, Headless};
 const SIZE: [u32; 2] = [120, 90];
 const RANGE: DepthRange = DepthRange { near: 0.1, far: 50.0, convention: DepthConvention::Reversed };
 
-/// A view as C has it, without matrices.
+/// Returns a view as C programs have it, without matrices.
 fn view(position: [f32; 3], turn: [f32; 3], [width, height]: [u32; 2]) -> YoroView {
     let [yaw, pitch, roll] = turn;
     let orientation = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll).to_array();
@@ -33,7 +33,7 @@ fn view(position: [f32; 3], turn: [f32; 3], [width, height]: [u32; 2]) -> YoroVi
     }
 }
 
-/// The core's view.
+/// Returns the same view for the core.
 fn core(view: &YoroView) -> View {
     let (pose, fov) = (view.pose, view.fov);
     View {
@@ -53,7 +53,7 @@ fn poses(source: &YoroView, target: &YoroView, rows: YoroRows) -> YoroPoses {
 
 fn warp_of(poses: &YoroPoses) -> Result<YoroPoseWarp, YoroResult> {
     let mut warp = YoroPoseWarp::default();
-    // SAFETY: whole structures, and what is refused.
+    // SAFETY: complete structures, and what is refused.
     match unsafe { yoro_pose_warp(poses, &mut warp) } {
         YORO_OK => Ok(warp),
         code => Err(code),
@@ -121,7 +121,7 @@ fn the_guarded_view_is_the_cores() {
     (motion.clip, motion.view) = (YORO_CLIP_VULKAN, &own);
     let of = |motion: &YoroHeadMotion| {
         let mut guarded: YoroGuardedView = zeroed(|g: &mut YoroGuardedView| &mut g.struct_size);
-        // SAFETY: whole structures, and what is refused.
+        // SAFETY: complete structures, and what is refused.
         match unsafe { yoro_guarded_view(motion, &mut guarded) } {
             YORO_OK => Ok(guarded),
             code => Err(code),
@@ -143,7 +143,7 @@ fn the_guarded_view_is_the_cores() {
     assert_eq!(of(&YoroHeadMotion { view: null(), ..motion }), Err(YORO_ERROR_NULL));
 }
 
-/// Textures of a source with a box before a wall, and a framebuffer of colour and depth to draw into.
+/// Creates textures of a source with a box in front of a wall, and a framebuffer of colour and depth to draw into.
 unsafe fn images(gl: &glow::Context, [w, h]: [u32; 2]) -> YoroGlImages {
     let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
     // SAFETY: the context is current; textures and framebuffers are its own.
@@ -194,7 +194,7 @@ fn the_picture_on_opengl_is_the_cores() {
         YoroGlInfo { outputs: YORO_OUTPUT_DEPTH, warp_kind: YORO_WARP_KIND_POSE, ..gl_info(&mut noted) };
     let create = |info: &YoroGlInfo| {
         let mut context = null_mut();
-        // SAFETY: a whole structure, and a current context.
+        // SAFETY: a complete structure, and the context is current.
         match unsafe { yoro_gl_create(info, &mut context) } {
             YORO_OK => Ok(context),
             code => Err(code),
@@ -207,7 +207,7 @@ fn the_picture_on_opengl_is_the_cores() {
     assert_eq!(create(&YoroGlInfo { edges: YORO_EDGES_NEAREST, ..info }), Err(YORO_ERROR_VALUE));
     assert_eq!(create(&YoroGlInfo { history: 1, ..info }), Err(YORO_ERROR_VALUE));
     let context = create(&info).unwrap();
-    // SAFETY: whole structures, a context that is alive and current, and checks are on.
+    // SAFETY: complete structures, a live, current context, and checks are on.
     unsafe {
         let given = images(gl, [140, 100]);
         assert_eq!(yoro_gl_prepare_pose(context, &warp), YORO_OK);
@@ -245,14 +245,14 @@ fn the_picture_on_opengl_is_the_cores() {
         assert_eq!(yoro_gl_prepare_pose(eyes, &warp), YORO_ERROR_VALUE);
         assert_eq!(yoro_destroy(eyes), YORO_OK);
 
-        // Numbers that a program has made up.
+        // Random numbers instead of those of the warp.
         let damage = (0..26usize, prop_oneof![any::<f64>(), Just(f64::NAN), Just(1e30), Just(0.0)]);
         let config = Config { cases: 400, failure_persistence: None, ..Config::default() };
         let words = size_of::<YoroPoseWarp>() / 8;
         TestRunner::new(config)
             .run(&damage, |(word, number)| {
                 let mut damaged = warp;
-                // The sizes stay: textures of others are refused as such.
+                // The sizes stay: for other sizes the textures would be refused.
                 (&raw mut damaged).cast::<f64>().add(2 + word % (words - 2)).write(number);
                 let code = yoro_gl_synthesize_pose(context, &damaged, &given);
                 assert!([YORO_OK, YORO_ERROR_VALUE].contains(&code), "{word}, {number}: {code}");

@@ -1,5 +1,5 @@
-//! The samples, compiled as users compile them: by C and C++ compilers against the header and the built library. Python
-//! stands for all other languages.
+//! The samples, compiled as users compile them: with C and C++ compilers, against the header and the built library.
+//! Python stands for all other languages.
 
 #[path = "../kit/files.rs"]
 mod kit;
@@ -11,7 +11,7 @@ use std::process::Command;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, PoseWarp, View};
 use yoro::synthesis::{Places, PoseUniforms, Strips};
 
-/// Compilers with their language and its standard.
+/// Compilers, with their language and its standard.
 const COMPILERS: [[&str; 3]; 4] =
     [["gcc", "c", "c11"], ["clang", "c", "c11"], ["g++", "c++", "c++17"], ["clang++", "c++", "c++17"]];
 const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-pedantic", "-Werror"];
@@ -20,7 +20,7 @@ fn package() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Returns the folder of the library that cargo has built beside this test.
+/// Returns the folder of the library that cargo built next to this test.
 fn library() -> PathBuf {
     let folder = env::current_exe().unwrap().parent().unwrap().to_owned();
     assert!(folder.join("libyoro_c.so").is_file(), "{} has no libyoro_c.so", folder.display());
@@ -40,7 +40,7 @@ fn run(command: &mut Command) -> String {
     text
 }
 
-/// Compiles a sample by every installed compiler, runs the first result, checks its figures and picture, and returns
+/// Compiles a sample with every installed compiler, runs the first result, checks its figures and picture, and returns
 /// the picture.
 fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> Option<image::RgbImage> {
     if !Path::new("/usr/include").join(header).is_file() {
@@ -86,7 +86,7 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
     assert_eq!(image.dimensions(), (1024, 512));
     let (bright, dark) = image.pixels().fold((0, 255), |(high, low), p| (p[1].max(high), p[1].min(low)));
     assert!(bright > 150 && dark < 80, "{bright} {dark}");
-    // Up is up: the ceiling is darker than the floor, on which the sun shines.
+    // The picture is the right way up: the ceiling is darker than the floor, which the sun lights.
     let mean = |rows: std::ops::Range<u32>| {
         let count = rows.len() as f64 * 1024.0;
         rows.flat_map(|y| (0..1024).map(move |x| (x, y)))
@@ -98,7 +98,7 @@ fn sample(source: &str, header: &str, includes: &[&str], libraries: &[&str]) -> 
     Some(image)
 }
 
-/// Compiles a program beside the kit's files, by gcc with these options, and returns what it prints. None without gcc.
+/// Compiles a program against the kit's files with gcc and these options. Returns its output, or `None` without gcc.
 fn of_kit(text: &str, options: &[&str]) -> Option<String> {
     if !is_here("gcc") {
         println!("SKIPPED: no gcc here");
@@ -114,7 +114,7 @@ fn of_kit(text: &str, options: &[&str]) -> Option<String> {
     Some(run(&mut Command::new(&program)))
 }
 
-/// With and without Vulkan, which may come later, in C from C89 on and in C++.
+/// The header compiles with and without Vulkan, which may be included later, in C from C89 on and in C++.
 #[test]
 fn the_header_stands_alone() {
     const ALONE: &str = "#include <yoro.h>
@@ -142,7 +142,7 @@ fn the_header_stands_alone() {
             std::fs::write(&file, text).unwrap();
             let mut command = Command::new(compiler);
             command.args(["-x", language, &format!("-std={standard}"), "-fsyntax-only"]).args(WARNINGS);
-            // vulkan.h has numbers of 64 bits.
+            // vulkan.h has 64-bit integers.
             command.args(["-Wno-long-long", "-I"]).arg(package().join("include"));
             run(command.arg(&file));
         }
@@ -158,7 +158,7 @@ fn the_opengl_es_sample_draws_two_eyes() {
     gles();
 }
 
-/// The figure asked for tells a wrong warp: by rotation alone, without depth, the picture has 22 dB, without the
+/// The expected figure reveals a wrong warp: with rotation alone, without depth, the picture has 22 dB, and without the
 /// rotation 15 dB.
 #[test]
 fn the_sample_of_any_view_draws_what_the_new_pose_sees() {
@@ -174,7 +174,7 @@ fn the_vulkan_sample_draws_two_eyes() {
     }
 }
 
-/// The Vulkan sample's shaders as a header for C, compared with a new compilation by the same compiler.
+/// Compares the Vulkan sample's shaders, which are in a C header, with a new compilation by the same compiler.
 #[test]
 fn the_samples_modules_are_compiled_from_its_present_shaders() {
     const COMPILER: &str = "glslangValidator";
@@ -228,7 +228,7 @@ fn the_kit_draws_the_librarys_picture() {
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
     let folder = kit.path().to_str().unwrap();
-    // With the kit's own files alone.
+    // Uses only the kit's own files.
     let example = kit.path().join("example.c");
     let example = example.to_str().unwrap();
     let Some(drawn) = sample(example, "GLES3/gl31.h", &[folder], &["-lEGL", "-lGLESv2"]) else { return };
@@ -291,7 +291,7 @@ fn the_kits_shaders_for_vulkan_compile() {
     for shader in ["any_view_tiles.frag", "any_view_spans.frag", "any_view_march.frag"] {
         run(Command::new(COMPILER).arg(kit.path().join("gles").join(shader)));
     }
-    // Those of OpenGL ES are compiled where they are drawn with, but for these.
+    // The shaders for OpenGL ES are compiled where they are used, except for these.
     let text = std::fs::read_to_string(kit.path().join("gles/march.frag")).unwrap();
     let with_history = kit.path().join("history.frag");
     std::fs::write(&with_history, text.replacen('\n', "\n#define HISTORY\n", 1)).unwrap();
@@ -397,7 +397,7 @@ fn the_kit_and_the_core_find_the_same_place_of_any_view() {
                     assert_eq!(got, want, "{name}");
                 } else {
                     let [got, want] = [got, want].map(f32::from_bits);
-                    // The orientations are those of seven digits.
+                    // The orientations are given with seven digits.
                     let off = (got - want).abs();
                     assert!(off <= 1e-5 * want.abs().max(1.0) + 1e-7, "{name}: {got}, {want}");
                 }
@@ -406,7 +406,7 @@ fn the_kit_and_the_core_find_the_same_place_of_any_view() {
     }
 }
 
-/// Both stages of Godot's files, in every version, as Godot takes them apart.
+/// Compiles both stages of Godot's files, in every version, split as Godot splits them.
 #[test]
 fn the_kits_shaders_for_godot_compile() {
     const COMPILER: &str = "glslangValidator";

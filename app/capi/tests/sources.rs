@@ -1,4 +1,4 @@
-//! Sources on OpenGL that are parts or layers of their textures, memory, and times.
+//! Sources on OpenGL that are parts or layers of their textures, memory use, and times.
 
 mod common;
 
@@ -10,11 +10,11 @@ use glow::HasContext;
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
-/// Textures larger than the source, in two layers.
+/// Size of the textures, which are larger than the source and have two layers.
 const IMAGE: [u32; 2] = [300, 200];
 const ORIGIN: [u32; 2] = [40, 30];
 
-/// Returns names of a colour texture, which is one colour within the source and another one around it, and of a depth
+/// Returns the names of a colour texture, which has one colour inside the source and another around it, and of a depth
 /// texture.
 unsafe fn textures(gl: &glow::Context, views: &YoroViews, target: u32) -> (u32, u32) {
     let [w, h] = [views.source.width, views.source.height].map(|n| n as i32);
@@ -63,11 +63,11 @@ fn parts_and_layers_are_read_and_a_layer_is_drawn() {
         (images.source_x, images.source_y) = (ORIGIN[0], ORIGIN[1]);
         (images.image_width, images.image_height) = (IMAGE[0], IMAGE[1]);
         images.layer = layers.into();
-        // SAFETY: whole structures, a context that is alive and current, and checks are on.
+        // SAFETY: complete structures, a live, current context, and checks are on.
         unsafe {
             assert_eq!(yoro_gl_create(&info, &mut context), YORO_OK, "{noted:?}");
             (images.color_texture, images.depth_texture) = textures(gl, &views, source);
-            // Multiview's other eye is a layer, too.
+            // With multiview, the other eye is a layer too.
             let target = texture(gl, glow::TEXTURE_2D_ARRAY, glow::RGBA8, [160, 120]);
             let drawn = gl.create_framebuffer().unwrap();
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(drawn));
@@ -112,14 +112,14 @@ fn what_was_not_chosen_is_refused() {
     let info = gl_info(&mut noted);
     let create = |info: &YoroGlInfo| {
         let mut context = null_mut();
-        // SAFETY: a whole structure, and the context is current.
+        // SAFETY: a complete structure, and the context is current.
         (unsafe { yoro_gl_create(info, &mut context) }, context)
     };
     assert_eq!(create(&YoroGlInfo { sources: 4, ..info }).0, YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { timed: 2, ..info }).0, YORO_ERROR_VALUE);
     let (edges, sources) = (YORO_EDGES_MULTISAMPLE, YORO_GL_SOURCE_LAYERS);
     assert_eq!(create(&YoroGlInfo { edges, sources, ..info }).0, YORO_ERROR_UNSUPPORTED);
-    // A program of the first version knows no sources.
+    // A program built against the first version does not know `sources`.
     let first = offset_of!(YoroGlInfo, sources) as u32;
     let (code, context) = create(&YoroGlInfo { struct_size: first, sources: 9, timed: 9, ..info });
     assert_eq!((first, code), (48, YORO_OK));
@@ -128,7 +128,7 @@ fn what_was_not_chosen_is_refused() {
     let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
     let mut times: YoroTimes = zeroed(|t: &mut YoroTimes| &mut t.struct_size);
     let mut bytes = 0;
-    // SAFETY: whole structures, a context that is alive and current, and checks are on.
+    // SAFETY: complete structures, a live, current context, and checks are on.
     unsafe {
         images.color_texture = texture(gl, glow::TEXTURE_2D, glow::RGBA8, size);
         images.depth_texture = texture(gl, glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, size);
@@ -141,7 +141,7 @@ fn what_was_not_chosen_is_refused() {
         let first = offset_of!(YoroGlImages, source_x) as u32;
         assert_eq!(first, 28);
         assert_eq!(synthesize(&YoroGlImages { struct_size: first, source_x: 9, ..images }), YORO_OK);
-        // The memory is what was planned; nothing was timed.
+        // The memory use is as predicted, and no times are known.
         let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
         assert_eq!(yoro_capabilities(context, &mut capabilities), YORO_OK);
         assert_eq!(yoro_gl_buffer_bytes(&info, &views.warp, &mut bytes), YORO_OK);

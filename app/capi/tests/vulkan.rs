@@ -1,4 +1,4 @@
-//! Wrong arguments on Vulkan return the code that the header promises.
+//! Wrong arguments on Vulkan return the codes that the header promises.
 
 #![cfg(feature = "vulkan")]
 
@@ -11,10 +11,10 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use yoro_c::*;
 
-/// A change that makes an argument wrong, and the code that it then returns.
+/// A change that makes an argument wrong, and the code that the function then returns.
 type Mistakes<'a, T> = [(&'a dyn Fn(&mut T), YoroResult)];
 
-/// A structure of zeros, which are valid for all structures of the interface.
+/// Returns a structure of zeros, which are valid for all structures of the interface, with its size set.
 fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
     // SAFETY: the structures have only numbers, handles and nullable pointers, for which zeros are valid.
     let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
@@ -22,7 +22,7 @@ fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
     value
 }
 
-/// A device with a colour image, a depth image, and a recording command buffer. It lives as long as the process.
+/// A device with a command buffer that is being recorded. It lives as long as the process.
 struct Gpu {
     entry: ash::Entry,
     instance: ash::Instance,
@@ -37,7 +37,7 @@ impl Gpu {
             println!("LEFT OUT: Vulkan");
             return None;
         }
-        // SAFETY: all handles are made here, of valid descriptions, and used while they live.
+        // SAFETY: all handles are made here, from valid descriptions, and used while they live.
         unsafe {
             let entry = ash::Entry::load().expect("no Vulkan here: set YORO_TEST_WITHOUT_VULKAN=1");
             let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_1);
@@ -64,7 +64,7 @@ impl Gpu {
             .array_layers(1)
             .samples(vk::SampleCountFlags::TYPE_1)
             .usage(usage | vk::ImageUsageFlags::SAMPLED);
-        // SAFETY: a valid description; memory of the size and of a type that the image takes.
+        // SAFETY: a valid description; memory of the size and of a type that the image accepts.
         unsafe {
             let image = self.device.create_image(&info, None).unwrap();
             let needs = self.device.get_image_memory_requirements(image);
@@ -80,7 +80,7 @@ impl Gpu {
     /// Ends the command buffer, executes it and waits.
     ///
     /// # Safety
-    /// It records, and what it uses lives.
+    /// The command buffer is being recorded, and everything that it uses is alive.
     unsafe fn execute(&self) {
         // SAFETY: the caller's commands.
         unsafe {
@@ -95,7 +95,7 @@ impl Gpu {
 
     fn info(&self) -> YoroVkInfo {
         let mut info: YoroVkInfo = zeroed(|i: &mut YoroVkInfo| &mut i.struct_size);
-        // SAFETY: of one signature but for the name of the calling convention, which is C's.
+        // SAFETY: the signatures differ only in the name of the calling convention, which is C's.
         info.loader = unsafe {
             std::mem::transmute::<vk::PFN_vkGetInstanceProcAddr, YoroVkLoader>(
                 self.entry.static_fn().get_instance_proc_addr,
@@ -114,7 +114,7 @@ unsafe extern "C" fn load_nothing(_: vk::Instance, _: *const c_char) -> Option<u
     None
 }
 
-/// Validation layers return the commands of an extension from a device's table without the extension.
+/// Validation layers return the commands of an extension from a device's table even if the extension is not enabled.
 mod labels {
     use super::*;
     use std::ffi::{CStr, c_void};
@@ -211,11 +211,11 @@ fn images(gpu: &Gpu) -> (YoroVkSource, YoroVkTarget) {
     (source, target)
 }
 
-/// Registers [`images`], and returns a frame of them.
+/// Registers [`images`], and returns a frame with them.
 fn registered(gpu: &Gpu, context: *mut YoroContext) -> YoroVkFrame {
     let (source, target) = images(gpu);
     let mut frame: YoroVkFrame = zeroed(|f: &mut YoroVkFrame| &mut f.struct_size);
-    // SAFETY: live images and whole structures.
+    // SAFETY: live images and complete structures.
     unsafe {
         assert_eq!(yoro_vk_register_source(context, &source, &mut frame.source), YORO_OK);
         assert_eq!(yoro_vk_register_target(context, &target, &mut frame.target), YORO_OK);
@@ -230,7 +230,7 @@ fn uses_memory_and_times_are_those_of_the_core() {
     let mut bytes = 0;
     // Neither handles nor a loader are needed.
     let plan = YoroVkInfo { loader: None, device: vk::Device::null(), edges: YORO_EDGES_NEAREST, ..info };
-    // SAFETY: whole structures, and null pointers, which are refused.
+    // SAFETY: complete structures, and null pointers, which are refused.
     unsafe {
         assert_eq!(yoro_vk_buffer_bytes(&plan, &mut bytes), YORO_OK);
         assert_eq!(bytes, 4 * (16 + 10) * 16 + 8 * 256 * 128);
@@ -244,7 +244,7 @@ fn uses_memory_and_times_are_those_of_the_core() {
     (uses.source_color, uses.source_depth) = (general, general);
     (uses.target_color, uses.target_depth) = (general, general);
     let record = |uses: &YoroVkUses| {
-        // SAFETY: live handles and whole structures.
+        // SAFETY: live handles and complete structures.
         unsafe { yoro_vk_record(context, gpu.commands, &WARP, &YoroVkFrame { uses, ..frame }) }
     };
     let discarded = YoroVkState { layout: vk::ImageLayout::UNDEFINED, ..ATTACHMENT };
@@ -289,7 +289,7 @@ fn a_history_needs_a_context_and_a_source_with_one() {
     for history in [0, 1] {
         let context = create(&YoroVkInfo { history, ..gpu.info() }).unwrap();
         let with = if history == 1 { YORO_OK } else { YORO_ERROR_VALUE };
-        // SAFETY: live handles and whole structures.
+        // SAFETY: live handles and complete structures.
         unsafe {
             let frame = registered(&gpu, context);
             let mut id = 0;
@@ -318,7 +318,7 @@ fn a_context_of_any_pose_records_pose_warps() {
     assert_eq!(create(&YoroVkInfo { reserved_too: 1, ..info }), Err(YORO_ERROR_VALUE));
     assert_eq!(create(&YoroVkInfo { history: 1, ..info }), Err(YORO_ERROR_VALUE));
     assert_eq!(create(&YoroVkInfo { edges: YORO_EDGES_SAMPLE, ..info }), Err(YORO_ERROR_VALUE));
-    // Views turned alike, the target a little to the right.
+    // Both views have the same orientation; the target is a little to the right.
     let warp = YoroPoseWarp {
         source_width: 200,
         source_height: 120,
@@ -332,7 +332,7 @@ fn a_context_of_any_pose_records_pose_warps() {
         far_depth: 0.0,
     };
     let mut bytes = 0;
-    // SAFETY: live handles and whole structures, and null pointers, which are refused.
+    // SAFETY: live handles and complete structures, and null pointers, which are refused.
     unsafe {
         assert_eq!(yoro_vk_buffer_bytes(&info, &mut bytes), YORO_OK);
         assert_eq!(bytes, 16 * (16 * 16 + 10 * 15));
@@ -356,11 +356,11 @@ fn a_context_of_any_pose_records_pose_warps() {
     }
 }
 
-/// A program of the first version knows neither uses nor times.
+/// A program built against the first version knows neither uses nor times.
 #[test]
 fn the_first_version_of_structures_is_taken() {
     use std::mem::offset_of;
-    // What `sizeof` was then.
+    // The values of `sizeof` in that version.
     assert_eq!((offset_of!(YoroVkFrame, reserved), offset_of!(YoroVkInfo, timed_frames)), (28, 104));
     let Some(gpu) = Gpu::open() else { return };
     let info = YoroVkInfo { struct_size: 104, timed_frames: 9, history: 9, ..gpu.info() };
@@ -377,7 +377,7 @@ fn the_first_version_of_structures_is_taken() {
 
 fn create(info: &YoroVkInfo) -> Result<*mut YoroContext, YoroResult> {
     let mut context = null_mut();
-    // SAFETY: a whole structure with live handles, or with what is refused.
+    // SAFETY: a complete structure with live handles, or with what is refused.
     match unsafe { yoro_vk_create(info, &mut context) } {
         YORO_OK => Ok(context),
         code => {
@@ -436,13 +436,13 @@ fn wrong_vulkan_arguments_return_their_codes() {
 
     let context = create(&info).unwrap();
     let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
-    // SAFETY: alive, and a whole structure.
+    // SAFETY: alive, and a complete structure.
     assert_eq!(unsafe { yoro_capabilities(context, &mut capabilities) }, YORO_OK);
     assert_eq!((capabilities.api, capabilities.buffer_bytes), (YORO_API_VULKAN, 16 * (16 + 10) * 16));
     assert!(capabilities.device[0] != 0);
     for (edges, samples) in [(YORO_EDGES_NEAREST, 0), (YORO_EDGES_SAMPLE, 9), (YORO_EDGES_MULTISAMPLE, 4)] {
         let anti_aliased = create(&YoroVkInfo { edges, samples, ..info }).unwrap();
-        // SAFETY: alive until the last line, and a whole structure.
+        // SAFETY: alive until the last line, and a complete structure.
         unsafe {
             assert_eq!(yoro_capabilities(anti_aliased, &mut capabilities), YORO_OK);
             assert_eq!(capabilities.buffer_bytes, 4 * (16 + 10) * 16 + 8 * 256 * 128);
@@ -466,9 +466,9 @@ fn wrong_vulkan_arguments_return_their_codes() {
         (&|s| s.depth.format = vk::Format::R8G8B8A8_UNORM, YORO_ERROR_FORMAT),
         (&|s| s.depth.before = discarded, YORO_ERROR_VALUE),
         (&|s| s.color.after = discarded, YORO_ERROR_VALUE),
-        // Access by no stage.
+        // Access without stages.
         (&|s| s.color.before.stages = vk::PipelineStageFlags::empty(), YORO_ERROR_VALUE),
-        // Colour of samples, for hard edges.
+        // Multisampled colour with hard edges.
         (&|s| s.sample_color = color, YORO_ERROR_VALUE),
     ];
     for (i, (change, expected)) in sources.iter().enumerate() {
@@ -512,7 +512,7 @@ fn wrong_vulkan_arguments_return_their_codes() {
         assert_eq!(yoro_vk_record(null_mut(), gpu.commands, &warp, &frame), YORO_ERROR_NULL);
     }
 
-    // Random sizes, displacements and places.
+    // Random sizes, displacements and positions.
     let numbers = prop::collection::vec(prop_oneof![0u32..300, any::<u32>(), Just(f32::NAN.to_bits())], 18);
     let config = Config { cases: 300, failure_persistence: None, ..Config::default() };
     TestRunner::new(config)

@@ -12,7 +12,7 @@ use yoro_gl::{Context, GlError};
 
 use crate::{Binding, Graphics};
 
-// khronos-egl names no library when it does not ask pkg-config.
+// khronos-egl does not link the library unless it uses pkg-config.
 #[link(name = "EGL")]
 unsafe extern "C" {}
 
@@ -20,28 +20,28 @@ type Egl = egl::Instance<egl::Static>;
 
 const OPENGL_ES3_BIT: egl::Int = 0x40;
 const CONTEXT_MINOR_VERSION: egl::Int = 0x30FB;
-/// The most configurations that are searched for one of exactly 8 bits.
+/// The largest number of configurations to search for one of exactly 8 bits.
 const MAX_CONFIGS: usize = 64;
 
 /// Errors of contexts and windows.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WindowError {
-    /// EGL gives no context.
+    /// EGL provides no context.
     #[error("no OpenGL ES on this device: {0}; yoro needs OpenGL ES 3.0, 3.1 for all of its methods")]
     Unavailable(String),
-    /// The window cannot be drawn on; Android may give another one.
+    /// The window cannot be drawn on; Android may provide another one.
     #[error("the window cannot be drawn on ({0}); the next one will be tried")]
     Surface(String),
-    /// The driver has lost the context and its objects: open another one.
+    /// The driver has lost the context and its objects: open a new context.
     #[error("the driver has lost the OpenGL ES context: everything in it is made again")]
     ContextLost,
 }
 
-/// A display with a current context and, from time to time, a window.
+/// A display with a current context and, at times, a window.
 ///
-/// The context is current on the thread that opened it until this is dropped, on a surface of one pixel while there
-/// is no window: what lives in the context can be dropped at any time. All of it must be dropped before.
+/// The context stays current on the thread that opened it until this value is dropped. Without a window, its surface is
+/// a single pixel, so that objects in the context can be dropped at any time. Drop all of them before this value.
 pub struct Window {
     egl: Egl,
     display: egl::Display,
@@ -51,15 +51,15 @@ pub struct Window {
     shown: Option<Shown>,
 }
 
-/// The surface goes before the window that it draws on.
+/// A window and its surface, which must be destroyed first.
 struct Shown {
     surface: egl::Surface,
     window: NativeWindow,
 }
 
 impl Window {
-    /// Opens a context of the newest OpenGL ES that there is, even one that is too old for [`Window::gl`], and makes
-    /// it current on this thread.
+    /// Opens a context of the newest available OpenGL ES, even if that is too old for [`Window::gl`], and makes it
+    /// current on this thread.
     ///
     /// # Errors
     /// [`WindowError::Unavailable`].
@@ -75,7 +75,7 @@ impl Window {
         let config = choose(&egl, display, OPENGL_ES3_BIT)
             .or_else(|| choose(&egl, display, egl::OPENGL_ES2_BIT))
             .ok_or_else(|| unavailable("EGL has no configuration of 8 bits per channel for windows"))?;
-        // EGL 1.4 knows no minor versions.
+        // EGL 1.4 does not have minor versions.
         let versions: [&[egl::Int]; 3] = [
             &[egl::CONTEXT_CLIENT_VERSION, 3, CONTEXT_MINOR_VERSION, 1, egl::NONE],
             &[egl::CONTEXT_CLIENT_VERSION, 3, egl::NONE],
@@ -98,10 +98,10 @@ impl Window {
         Ok(window)
     }
 
-    /// The GL context. Call it once; drop everything that holds it before this.
+    /// Returns the GL context. Call it once, and drop everything that holds the context before this value.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] when it is older than OpenGL ES 3.0.
+    /// [`GlError::Unsupported`] if it is older than OpenGL ES 3.0.
     pub fn gl(&self) -> Result<Rc<Context>, GlError> {
         let load = |name: &CStr| name.to_str().map_or(ptr::null(), |name| self.entry_point(name));
         // SAFETY: the entry points are those of the context, which is current.
@@ -117,7 +117,7 @@ impl Window {
         self.egl.get_proc_address(name).map_or(ptr::null(), |p| p as *const c_void)
     }
 
-    /// Draws on a window from now on. Colours are stored without conversion: they are display-referred sRGB already.
+    /// Draws on this window from now on. Colours are stored without conversion: they are already display-referred sRGB.
     ///
     /// # Errors
     /// [`WindowError::Surface`] and [`WindowError::ContextLost`].
@@ -133,7 +133,7 @@ impl Window {
             self.detach();
             return Err(self.error("eglMakeCurrent", e));
         }
-        // Frames wait for the display, even where another interval is the driver's default.
+        // Frames wait for the display, even if the driver's default is another interval.
         let _ = self.egl.swap_interval(self.display, 1);
         Ok(())
     }
@@ -155,7 +155,7 @@ impl Window {
         self.shown.is_some()
     }
 
-    /// Returns the window's size in pixels in the present frame.
+    /// Returns the window's current size in pixels, or `None` without a window.
     pub fn size(&self) -> Option<[u32; 2]> {
         let shown = self.shown.as_ref()?;
         let side = |attribute| {
@@ -165,7 +165,7 @@ impl Window {
         Some([side(egl::WIDTH)?, side(egl::HEIGHT)?])
     }
 
-    /// Shows what was drawn. May wait until the display has room for another frame.
+    /// Shows what was drawn. May wait until the display can take another frame.
     ///
     /// # Errors
     /// [`WindowError::Surface`] and [`WindowError::ContextLost`].
@@ -174,10 +174,10 @@ impl Window {
         self.egl.swap_buffers(self.display, shown.surface).map_err(|e| self.error("eglSwapBuffers", e))
     }
 
-    /// Shows one colour (RGB, display-referred), with whatever OpenGL ES there is.
+    /// Shows one colour (RGB, display-referred), with any version of OpenGL ES.
     ///
     /// # Errors
-    /// See [`Window::present`].
+    /// Those of [`Window::present`].
     pub fn show_color(&self, [r, g, b]: [f32; 3]) -> Result<(), WindowError> {
         let gl = self.functions();
         // SAFETY: the context is current; these calls exist in every version.
@@ -223,8 +223,8 @@ unsafe impl Graphics for Window {
 impl Drop for Window {
     fn drop(&mut self) {
         self.detach();
-        // Nothing can be done about an error here. The display stays initialised: it is the process's, and another
-        // activity may have opened it already.
+        // Errors are ignored here, since nothing can be done about them. The display stays initialised: it belongs to
+        // the process, and another activity may have opened it already.
         let _ = self.egl.make_current(self.display, None, None, None);
         let _ = self.egl.destroy_surface(self.display, self.placeholder);
         let _ = self.egl.destroy_context(self.display, self.context);
@@ -233,7 +233,8 @@ impl Drop for Window {
 }
 
 /// Returns a configuration of exactly 8 bits per channel: EGL lists those with more bits first, which cost more
-/// bandwidth and show no more of an 8-bit picture. Without alpha, if there is one: nothing shines through the window.
+/// bandwidth and look the same for an 8-bit picture. Prefers one without alpha, since nothing shines through the
+/// window.
 fn choose(egl: &Egl, display: egl::Display, renderable: egl::Int) -> Option<egl::Config> {
     let attributes = [
         egl::SURFACE_TYPE,

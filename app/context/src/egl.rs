@@ -1,4 +1,4 @@
-//! OpenGL ES without a window: EGL on the surfaceless platform, on a device, or with a pbuffer.
+//! OpenGL ES without a window: EGL on a device, on the surfaceless platform, or on the default display.
 
 use std::ffi::{CStr, c_int, c_uint, c_void};
 
@@ -24,9 +24,9 @@ pub(super) struct EglContext {
 
 impl EglContext {
     /// Tries each device (GPUs come before a CPU rasterizer), then Mesa's surfaceless platform, then the default
-    /// display; the error lists what each of them said.
+    /// display. The error lists the reason of each.
     pub(super) fn open() -> Result<(EglContext, glow::Context), String> {
-        // SAFETY: loads the system's libEGL, whose initialisers are trusted as the driver's are.
+        // SAFETY: loads the system's libEGL, whose initialisers are trusted like the driver's.
         let load = || unsafe { Egl::load_required() };
         load().map_err(|e| format!("libEGL.so.1 could not be loaded ({e})"))?;
         let mut failures = Vec::new();
@@ -112,7 +112,7 @@ impl EglContext {
             .map_err(|e| format!("eglMakeCurrent failed ({e})"))
     }
 
-    /// EGLDisplay, EGLConfig and EGLContext.
+    /// Returns EGLDisplay, EGLConfig and EGLContext.
     pub(super) fn handles(&self) -> [*mut c_void; 3] {
         [self.display.as_ptr(), self.config.as_ptr(), self.context.as_ptr()]
     }

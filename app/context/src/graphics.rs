@@ -1,8 +1,8 @@
-//! A context that somebody else, such as an OpenXR runtime, is to use.
+//! A context that is lent to somebody else, such as an OpenXR runtime.
 
 use std::ffi::c_void;
 
-/// A GL context as EGL knows it.
+/// The EGL handles of a GL context.
 #[derive(Clone, Copy, Debug)]
 pub struct Binding {
     /// EGLDisplay.
@@ -15,15 +15,15 @@ pub struct Binding {
     pub get_proc_address: *const c_void,
 }
 
-/// Who owns the GL context.
+/// An owner of a GL context.
 ///
 /// # Safety
-/// The binding is valid, and its context current on the calling thread, for as long as the value is borrowed.
+/// The binding is valid, and its context is current on the calling thread, for as long as the value is borrowed.
 pub unsafe trait Graphics {
-    /// The context.
+    /// Returns the context's EGL handles.
     fn binding(&self) -> Binding;
 
-    /// Makes the context current again, in case the runtime has changed that.
+    /// Makes the context current again, in case the runtime has changed it.
     ///
     /// # Errors
     /// EGL's reason.

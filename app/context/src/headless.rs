@@ -10,20 +10,20 @@ use crate::{Binding, Graphics, egl, osmesa};
 /// The source of the GL context.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// EGL, then OSMesa.
+    /// EGL, or OSMesa if EGL fails.
     #[default]
     Auto,
-    /// OpenGL ES by EGL, without a window.
+    /// OpenGL ES without a window, by EGL.
     Egl,
-    /// Mesa's off-screen library, desktop GL on the CPU.
+    /// Desktop GL on the CPU, by Mesa's off-screen library.
     Osmesa,
 }
 
 impl Backend {
-    /// All of them.
+    /// All backends.
     pub const ALL: [Backend; 3] = [Backend::Auto, Backend::Egl, Backend::Osmesa];
 
-    /// Returns its name in settings.
+    /// Returns the backend's name in settings.
     pub fn name(self) -> &'static str {
         match self {
             Backend::Auto => "auto",
@@ -37,7 +37,7 @@ impl Backend {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ContextError {
-    /// libEGL is missing or none of its platforms gives a context.
+    /// libEGL is missing, or none of its platforms provides a context.
     #[error(
         "no OpenGL ES context by EGL: {0}; install libEGL and a driver (Debian: apt install libegl1 libgl1-mesa-dri), or take one by OSMesa"
     )]
@@ -57,7 +57,7 @@ pub enum ContextError {
         /// OSMesa's reason.
         osmesa: String,
     },
-    /// The context is OSMesa's, but EGL's is needed.
+    /// The context is from OSMesa, but one from EGL is needed.
     #[error("the GL context comes from OSMesa, but must come from EGL here: choose EGL")]
     NotEgl,
     /// The context cannot run the shaders.
@@ -71,11 +71,10 @@ enum Holder {
     Osmesa(osmesa::OsmesaContext),
 }
 
-/// A GL context without a window, current on the calling thread. It lives as long as this value or any object in it:
-/// both own it.
+/// A GL context without a window, current on the calling thread. It lives as long as this value or any object in it.
 ///
-/// Several may exist on one thread. With Mesa's llvmpipe (seen with 22.3) contexts of two threads must not draw at the
-/// same time: a defect of the driver, which crashes now and then.
+/// Several contexts may exist on one thread. With Mesa's llvmpipe (seen with 22.3), contexts of two threads must not
+/// draw at the same time: a driver bug then crashes the process now and then.
 pub struct Headless {
     context: Rc<Context>,
     backend: Backend,
@@ -83,10 +82,10 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Opens a context by the given backend.
+    /// Opens a context with the given backend.
     ///
     /// # Errors
-    /// [`ContextError`]: one sentence with the missing library and the remedy.
+    /// [`ContextError`], as one sentence that names the missing library and the remedy.
     pub fn open(backend: Backend) -> Result<Headless, ContextError> {
         match backend {
             Backend::Egl => {
@@ -109,7 +108,7 @@ impl Headless {
         }
     }
 
-    /// Opens a context of the compatibility profile by OSMesa, as GLFW and SDL do by default: for tests.
+    /// Opens a context of OSMesa's compatibility profile, which is the default of GLFW and SDL; for tests.
     ///
     /// # Errors
     /// Those of [`Headless::open`].
@@ -125,17 +124,17 @@ impl Headless {
             Holder::Egl(egl) => egl.entry_point(name),
             Holder::Osmesa(osmesa) => osmesa.entry_point(name),
         };
-        // SAFETY: both loaders give the entry points of the context that they have made current.
+        // SAFETY: both loaders return the entry points of the context that they have made current.
         let context = unsafe { Context::owned(raw, load, holder.clone()) }?;
         Ok(Headless { context, backend, holder })
     }
 
-    /// The GL context.
+    /// Returns the GL context.
     pub fn gl(&self) -> &Rc<Context> {
         &self.context
     }
 
-    /// The EGL context, if it is one.
+    /// Returns the EGL context, if the backend is EGL.
     fn egl(&self) -> Option<&egl::EglContext> {
         match &*self.holder {
             Holder::Egl(context) => Some(context),
@@ -143,7 +142,7 @@ impl Headless {
         }
     }
 
-    /// Returns a GL function by its name, or null: for tests of functions that glow does not wrap.
+    /// Returns a GL function by its name, or null; for tests of functions that glow does not wrap.
     #[doc(hidden)]
     pub fn entry_point(&self, name: &CStr) -> *const c_void {
         match &*self.holder {
@@ -152,28 +151,28 @@ impl Headless {
         }
     }
 
-    /// The backend that was opened, never [`Backend::Auto`].
+    /// Returns the backend that was opened, never [`Backend::Auto`].
     pub fn backend(&self) -> Backend {
         self.backend
     }
 }
 
-/// A context without a window, for runtimes with XR_MNDX_egl_enable.
+/// A context without a window, for OpenXR runtimes with XR_MNDX_egl_enable.
 pub struct HeadlessGraphics<'a> {
     headless: &'a Headless,
     binding: Binding,
-    /// The library that has eglGetProcAddress.
+    /// The library that contains eglGetProcAddress.
     _library: libloading::Library,
 }
 
 impl<'a> HeadlessGraphics<'a> {
-    /// Needs a context by EGL, of OpenGL ES.
+    /// Borrows a context, which must come from EGL.
     ///
     /// # Errors
-    /// [`ContextError::NotEgl`], and [`ContextError::Egl`] when the library gives no entry points.
+    /// [`ContextError::NotEgl`], or [`ContextError::Egl`] if the library has no eglGetProcAddress.
     pub fn new(headless: &'a Headless) -> Result<HeadlessGraphics<'a>, ContextError> {
         let egl = headless.egl().ok_or(ContextError::NotEgl)?;
-        // SAFETY: the library that the context comes from, and that is loaded already.
+        // SAFETY: the context comes from this library, which is loaded already.
         let library = unsafe { libloading::Library::new("libEGL.so.1") }
             .map_err(|e| ContextError::Egl(e.to_string()))?;
         // SAFETY: the type is that of EGL's header.

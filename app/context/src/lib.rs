@@ -1,7 +1,7 @@
-//! GL contexts: of EGL without a window, of OSMesa, or on the window of an Android activity.
+//! GL contexts: without a window by EGL or OSMesa, or on the window of an Android activity.
 //!
-//! Opens a context, which is current on the opening thread until it and all objects in it are dropped. Platform
-//! differences end here. This crate must never know what is drawn.
+//! A context is current on the thread that opened it until it and all objects in it are dropped. Platform differences
+//! end here. This crate does not know what is drawn.
 
 #[cfg(target_os = "android")]
 pub mod android;

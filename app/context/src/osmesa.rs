@@ -23,7 +23,7 @@ pub(super) struct OsmesaContext {
     context: *mut c_void,
     destroy: DestroyContext,
     get_proc_address: GetProcAddress,
-    /// OSMesa's window; everything is rendered into framebuffers of our own.
+    /// OSMesa's own buffer, which is not drawn to: everything is rendered into framebuffers.
     _pixels: Box<[u8]>,
     _library: libloading::Library,
 }

@@ -1,7 +1,7 @@
-//! yoro in another engine: the engine draws one eye with its own code into its own textures, and yoro writes
-//! the other eye into the engine's framebuffer. It uses no scene, renderer or render target of yoro's.
+//! Uses yoro in another engine: the engine draws one eye with its own code into its own textures, and yoro writes the
+//! other eye into the engine's framebuffer. It uses no scene, renderer or render target of yoro's.
 //!
-//! `cargo run -p yoro --example engine` writes `out/engine.png`, left and right eye side by side.
+//! `cargo run -p yoro --example engine` writes `out/engine.png`, with the left and right eye side by side.
 
 use std::error::Error;
 use std::path::Path;
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
     let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
 
-    // Returns an error, one sentence, for eyes that are not parallel, for instance.
+    // For example, eyes that are not parallel give an error, as one sentence.
     let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
 
     // The view to render is wider than the eye, by the guard band: size and frustum come from `views.source`.

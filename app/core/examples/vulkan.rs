@@ -1,8 +1,8 @@
-//! yoro in an engine on Vulkan: the engine has one eye in its own images, and yoro records the passes that write the
-//! other one into the engine's command buffer.
+//! Uses yoro in an engine on Vulkan: the engine has one eye in its own images, and yoro records the passes that write
+//! the other eye into the engine's command buffer.
 //!
-//! `cargo run -p yoro --features vulkan --example vulkan` writes `out/vulkan.png`, left and right eye side by side, the
-//! left one synthesized, and prints how near it is to the left eye as it really is.
+//! `cargo run -p yoro --features vulkan --example vulkan` writes `out/vulkan.png`, with the synthesized left eye and
+//! the right eye side by side, and prints how similar the left one is to a real render of it.
 
 use std::path::Path;
 
@@ -18,11 +18,11 @@ const COLOR: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 fn main() -> Result<()> {
-    // SAFETY: the loader does nothing when it is loaded.
+    // SAFETY: loading the library has no side effects.
     let entry = unsafe { ash::Entry::load() }.context("no Vulkan loader is here: install libvulkan1")?;
     let engine = Engine::new(&entry)?;
 
-    // Where the eyes are, and what the depth buffer means. With OpenXR, poses and frusta are those of the two views.
+    // The eyes' poses, and the meaning of the depth buffer. With OpenXR, poses and frusta are those of the two views.
     let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
     let head = Pose { position: Vec3::new(0.0, 1.6, 2.0), ..Pose::IDENTITY };
     let pair =
@@ -38,8 +38,8 @@ fn main() -> Result<()> {
     let depth = engine.image(DEPTH, source_size, sampled)?;
     let target = engine.image(COLOR, target_size, drawn)?;
 
-    // Once: pipelines and buffers, then views and descriptors of the images. An engine that renders the source says
-    // `ImageState::COLOR_ATTACHMENT` and `DEPTH_ATTACHMENT`; this one uploads it.
+    // Once: pipelines and buffers, then views and descriptors of the images. An engine that renders the source would
+    // use `ImageState::COLOR_ATTACHMENT` and `DEPTH_ATTACHMENT`; this one uploads it.
     let uploaded = ImageState {
         layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL,
         stages: vk::PipelineStageFlags::TRANSFER,
@@ -63,7 +63,7 @@ fn main() -> Result<()> {
         before,
         after,
     };
-    // SAFETY: handles of one device, and images that live until everything is executed.
+    // SAFETY: handles of one device, and images that live until all commands have been executed.
     let (mut gather, frame) = unsafe {
         let mut gather = Gather::new(&engine.host(), &options)?;
         let color = layer(&color, COLOR, uploaded, ImageState::SAMPLED);
@@ -84,7 +84,7 @@ fn main() -> Result<()> {
     engine.submit(|commands| {
         engine.upload(commands, &colors, &color, vk::ImageAspectFlags::COLOR);
         engine.upload(commands, &depths, &depth, vk::ImageAspectFlags::DEPTH);
-        // SAFETY: it records, outside of render passes, and the images are in the states that were told.
+        // SAFETY: the buffer is recording, outside of render passes, and the images are in the registered states.
         unsafe { gather.record(commands, &frame, &views.warp) }?;
         engine.download(commands, &target, &result);
         Ok(())
@@ -104,7 +104,7 @@ fn main() -> Result<()> {
     std::fs::rename(unfinished, path)?;
     println!("{}: left eye synthesized on {}, right eye rendered", path.display(), engine.name);
 
-    // Worth doing once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
+    // Do this once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
     let truth = picture(&Picture::new(&views.target).rgba, target_size, [0, 0]);
     println!(
         "against the left eye rendered: {:.2} dB; the right eye in its place: {:.2} dB",
@@ -114,13 +114,13 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Peak signal to noise ratio over red, green and blue in decibels.
+/// Returns the peak signal-to-noise ratio over red, green and blue, in decibels.
 fn psnr(image: &RgbImage, truth: &RgbImage) -> f64 {
     let squares = image.iter().zip(truth.iter()).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
     10.0 * (255f64.powi(2) * truth.len() as f64 / squares.sum::<f64>()).log10()
 }
 
-/// The part of RGBA pixels, row 0 at the top, that starts at a corner.
+/// Returns the part of an RGBA image, with row 0 at the top, that starts at a corner.
 fn picture(rgba: &[u8], size: [u32; 2], [left, top]: [u32; 2]) -> RgbImage {
     RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
         let i = ((y + top) * size[0] + x + left) as usize * 4;
@@ -128,7 +128,7 @@ fn picture(rgba: &[u8], size: [u32; 2], [left, top]: [u32; 2]) -> RgbImage {
     })
 }
 
-/// Stands for an engine's picture: rays into a tiled room with balls. Row 0 is at the top, as in Vulkan.
+/// A substitute for an engine's picture: rays cast into a tiled room with balls. Row 0 is at the top, as in Vulkan.
 struct Picture {
     rgba: Vec<u8>,
     depth: Vec<f32>,
@@ -149,14 +149,14 @@ impl Picture {
             let (color, distance) = trace(view.pose.position, view.pose.orientation * ray);
             rgba.extend(color.to_array().map(|value| (value.clamp(0.0, 1.0) * 255.0) as u8));
             rgba.push(255);
-            // The ray's length along the axis is 1.
+            // The ray's length along the viewing axis is 1.
             depth.push(view.depth.depth(distance));
         }
         Picture { rgba, depth }
     }
 }
 
-/// Colour, and distance in lengths of the ray.
+/// Returns the colour that a ray hits, and its distance in lengths of the ray.
 fn trace(eye: Vec3, ray: Vec3) -> (Vec3, f32) {
     let walls = (ray.signum() * Vec3::new(3.0, 3.0, 5.0) - eye) / ray;
     let mut nearest = walls.min_element();
@@ -181,8 +181,8 @@ fn trace(eye: Vec3, ray: Vec3) -> (Vec3, f32) {
     (color, nearest)
 }
 
-/// An engine as small as can be. Everything is executed when [`Engine::submit`] returns, so that nothing is in use when
-/// it is destroyed.
+/// A minimal engine. [`Engine::submit`] returns when everything has been executed, so that no object is in use when it
+/// is destroyed.
 struct Engine {
     name: String,
     instance: ash::Instance,
@@ -201,7 +201,7 @@ struct Image<'a> {
     size: [u32; 2],
 }
 
-/// Memory that both sides see.
+/// Memory that both the CPU and the GPU access.
 struct Buffer<'a> {
     engine: &'a Engine,
     raw: vk::Buffer,
@@ -214,7 +214,7 @@ impl Engine {
     fn new(entry: &ash::Entry) -> Result<Engine> {
         let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_1);
         let info = vk::InstanceCreateInfo::default().application_info(&application);
-        // SAFETY: valid descriptions; handles are used while they live.
+        // SAFETY: the descriptions are valid, and handles are used only while they live.
         unsafe {
             let instance = entry.create_instance(&info, None).context("no Vulkan instance")?;
             let devices = instance.enumerate_physical_devices()?;
@@ -277,7 +277,7 @@ impl Engine {
             .array_layers(1)
             .samples(vk::SampleCountFlags::TYPE_1)
             .usage(usage);
-        // SAFETY: a valid description, and memory of its own.
+        // SAFETY: a valid description, and newly allocated memory.
         unsafe {
             let raw = self.device.create_image(&info, None)?;
             let needed = self.device.get_image_memory_requirements(raw);
@@ -291,7 +291,7 @@ impl Engine {
         let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
         let info = vk::BufferCreateInfo::default().size(size as u64).usage(usage);
         let visible = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
-        // SAFETY: a valid description, and memory of its own.
+        // SAFETY: a valid description, and newly allocated memory.
         unsafe {
             let raw = self.device.create_buffer(&info, None)?;
             let memory = self.allocate(self.device.get_buffer_memory_requirements(raw), visible)?;
@@ -301,7 +301,7 @@ impl Engine {
         }
     }
 
-    /// Records, submits and waits.
+    /// Records and submits commands, and waits for them.
     fn submit(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<()> {
         let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
@@ -343,7 +343,7 @@ impl Engine {
         }
     }
 
-    /// Reads an image in TRANSFER_SRC_OPTIMAL.
+    /// Reads an image that is in TRANSFER_SRC_OPTIMAL.
     fn download(&self, commands: vk::CommandBuffer, image: &Image, buffer: &Buffer) {
         let (layout, copy) =
             (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, [image.copy(vk::ImageAspectFlags::COLOR)]);
@@ -372,19 +372,19 @@ impl Image<'_> {
 impl Buffer<'_> {
     fn write(&mut self, bytes: &[u8]) {
         assert_eq!(bytes.len(), self.size);
-        // SAFETY: mapped memory of this length, which nothing that is executed uses.
+        // SAFETY: mapped memory of this length, which no pending command uses.
         unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), self.mapped, self.size) }
     }
 
     fn read(&self) -> Vec<u8> {
-        // SAFETY: mapped memory of this length, which nothing that is executed writes.
+        // SAFETY: mapped memory of this length, which no pending command writes.
         unsafe { std::slice::from_raw_parts(self.mapped, self.size).to_vec() }
     }
 }
 
 impl Drop for Image<'_> {
     fn drop(&mut self) {
-        // SAFETY: made once, and not in use.
+        // SAFETY: created once, and not in use.
         unsafe {
             self.engine.device.destroy_image(self.raw, None);
             self.engine.device.free_memory(self.memory, None);
@@ -394,7 +394,7 @@ impl Drop for Image<'_> {
 
 impl Drop for Buffer<'_> {
     fn drop(&mut self) {
-        // SAFETY: made once, and not in use.
+        // SAFETY: created once, and not in use.
         unsafe {
             self.engine.device.destroy_buffer(self.raw, None);
             self.engine.device.free_memory(self.memory, None);
@@ -404,7 +404,7 @@ impl Drop for Buffer<'_> {
 
 impl Drop for Engine {
     fn drop(&mut self) {
-        // SAFETY: images, buffers and pipelines are gone by now.
+        // SAFETY: images, buffers and pipelines have been destroyed before.
         unsafe {
             self.device.destroy_command_pool(self.pool, None);
             self.device.destroy_device(None);

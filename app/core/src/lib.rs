@@ -1,13 +1,13 @@
 //! Render one eye, synthesize the other: stereo from the colour and depth of a single view.
 //!
-//! [`eyes`] takes poses and fields of view, and gives the view to render and how its pixels move to the other eye.
+//! [`eyes`] takes poses and fields of view, and returns the view to render and how its pixels move to the other eye.
 //! [`synthesis`] takes the colour and depth of that view and draws the other eye: on OpenGL (feature `gl`, on by
 //! default) in a context that the caller lends, on Vulkan (feature `vulkan`) into the caller's command buffer.
-//! [`choice`] finds out whether that pays on this device, or two renders are cheaper. This crate must never know a
-//! scene, a renderer, a window, a file or a command line: an engine brings its own.
+//! [`choice`] measures whether synthesis or two renders are cheaper on this device. This crate knows no scene,
+//! renderer, window, file or command line: an engine brings its own.
 //!
-//! An engine renders [`eyes::SynthesisViews::source`] with its own code, gives colour and depth to
-//! [`synthesis::Synthesis::synthesize`], and has the other eye in its own framebuffer:
+//! An engine renders [`eyes::SynthesisViews::source`] with its own code, passes colour and depth to
+//! [`synthesis::Synthesis::synthesize`], and gets the other eye in its own framebuffer:
 //!
 //! ```no_run
 //! use yoro::eyes::{DepthRange, EyeOptions, GuardBand, Pose, View};
@@ -31,8 +31,8 @@
 //! # }
 //! ```
 //!
-//! With poses and fields of view from OpenXR, [`eyes::Frustum::from_fov`] and [`eyes::EyePair`] take the place of
-//! [`eyes::EyeOptions`]. What a call does to the context's state is in the table of [`synthesis::Synthesis`].
+//! With poses and fields of view from OpenXR, use [`eyes::Frustum::from_fov`] and [`eyes::EyePair`] instead of
+//! [`eyes::EyeOptions`]. The table of [`synthesis::Synthesis`] lists what a call does to the context's state.
 //! `examples/engine.rs` is a complete host.
 
 pub mod choice;
@@ -47,7 +47,7 @@ pub mod synthesis;
 #[cfg(feature = "vulkan")]
 pub mod vulkan;
 
-/// The code of the README is compiled with the tests of the documentation.
+/// Compiles the README's code with the documentation tests.
 #[cfg(all(doctest, feature = "gl"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

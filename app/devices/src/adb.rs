@@ -1,4 +1,5 @@
-//! The interface to devices, which the program adb or a replay answers.
+//! The interface to devices. [`AdbProgram`](super::adb_program::AdbProgram) implements it with the program adb,
+//! [`Replay`](super::replay::Replay) with simulated devices.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,14 +16,14 @@ pub enum State {
     Unauthorized,
     /// Connected, but it does not answer.
     Offline,
-    /// The operating system does not let adb open the device.
+    /// The operating system does not allow adb to open the device.
     NoPermission,
-    /// Anything else, in adb's words: a boot loader, a recovery.
+    /// Any other state, in adb's words, such as `bootloader` or `recovery`.
     Other(String),
 }
 
 impl State {
-    /// Reads the second word of a line of `adb devices`.
+    /// Parses the second word of a line of `adb devices`.
     pub fn from_adb(word: &str) -> State {
         match word {
             "device" => State::Ready,
@@ -33,7 +34,7 @@ impl State {
         }
     }
 
-    /// Returns its name in tables.
+    /// Returns the state's name in tables.
     pub fn name(&self) -> &str {
         match self {
             State::Ready => "ready",
@@ -54,17 +55,18 @@ pub struct Listed {
     pub state: State,
 }
 
-/// The reason why a device cannot be measured on, as one sentence with the remedy.
-/// The only text of a variant is the device's serial number.
+/// The reason why no measurement can be made on a device: one sentence that names the remedy.
+///
+/// A variant with a single text holds the device's serial number.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeviceError {
-    /// The server of adb, which every command goes through, does not answer.
+    /// The adb server, which runs every command, does not answer.
     #[error(
         "adb's server does not answer ({reason}): restart it by adb kill-server and adb start-server, and use one version of adb only"
     )]
     Server {
-        /// adb's words.
+        /// The reason in adb's words.
         reason: String,
     },
     /// The program adb was not found.
@@ -72,7 +74,7 @@ pub enum DeviceError {
         "adb was not found in {looked}: install Android's platform tools (Debian and Ubuntu: apt install adb), or name its file"
     )]
     NoAdb {
-        /// The places where it was looked for.
+        /// The places that were searched.
         looked: String,
     },
     /// The program adb exists, but does not start.
@@ -83,7 +85,7 @@ pub enum DeviceError {
         /// The system's reason.
         reason: String,
     },
-    /// No device at all.
+    /// No device is connected.
     #[error(
         "no device is connected: turn on USB debugging in its developer options, use a data cable, and look with yoro device list"
     )]
@@ -119,7 +121,7 @@ pub enum DeviceError {
         /// adb's words.
         state: String,
     },
-    /// The device was connected and is gone.
+    /// The device was connected, but no longer is.
     #[error("{0} was lost: connect it again and give the same command")]
     Lost(String),
     /// The application is not installed.
@@ -133,7 +135,7 @@ pub enum DeviceError {
     NoPackage {
         /// The device's serial number, as adb lists it.
         serial: String,
-        /// Its name.
+        /// The application's package.
         package: String,
     },
     /// Installing failed for lack of storage.
@@ -145,7 +147,7 @@ pub enum DeviceError {
         .0, quoted(.0)
     )]
     OtherKey(String),
-    /// The device, or its user, does not let a computer install anything.
+    /// The device, or its user, does not allow a computer to install applications.
     #[error(
         "{0} does not let this computer install anything: confirm the installation on its screen; on phones by Xiaomi turn on \"Install via USB\" in the developer options first"
     )]
@@ -156,7 +158,7 @@ pub enum DeviceError {
         .0, quoted(.0)
     )]
     Downgrade(String),
-    /// The APK has no code for the device's processor.
+    /// The APK contains no code for the device's processor.
     #[error(
         "{} has no code for the processor of {serial}: make it for all processors by cargo xtask apk --release",
         apk.display()
@@ -164,17 +166,17 @@ pub enum DeviceError {
     NoAbi {
         /// The device's serial number, as adb lists it.
         serial: String,
-        /// The file.
+        /// The APK file.
         apk: PathBuf,
     },
-    /// Installing failed otherwise.
+    /// The installation failed for another reason.
     #[error("{} cannot be installed on {serial} ({reason}): make it anew by cargo xtask apk --release", apk.display())]
     Install {
         /// The device's serial number, as adb lists it.
         serial: String,
-        /// The file.
+        /// The APK file.
         apk: PathBuf,
-        /// Android's word for it.
+        /// Android's name for the reason.
         reason: String,
     },
     /// Power cannot be measured because the device is plugged in.
@@ -185,7 +187,7 @@ pub enum DeviceError {
     PluggedIn {
         /// The device's serial number, as adb lists it.
         serial: String,
-        /// Its address in the wireless network, if it has one.
+        /// The device's address in the wireless network, if it has one.
         address: Option<String>,
     },
     /// The battery's values were set by hand.
@@ -200,12 +202,12 @@ pub enum DeviceError {
         .0, quoted(.0)
     )]
     BatterySaver(String),
-    /// The screen is locked by a PIN, a pattern or a password, which an unattended run cannot open.
+    /// The screen is locked by a PIN, a pattern or a password, which an unattended run cannot enter.
     #[error(
         "{0} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its screen lock to none or swipe for the time of the measurement"
     )]
     Locked(String),
-    /// A replay waits for somebody who is not in its script.
+    /// A replay waits for somebody to plug in or unplug a charger, but its script says that nobody does.
     #[error(
         "{serial} has {level:.0} %, and nobody in the script of this simulated device plugs a charger in or takes it off: give it charged-below, or the experiment power = false"
     )]
@@ -222,9 +224,9 @@ pub enum DeviceError {
     TooWarm {
         /// The device's serial number, as adb lists it.
         serial: String,
-        /// Its temperature.
+        /// The device's temperature in degrees Celsius.
         celsius: f64,
-        /// The temperature wanted.
+        /// The temperature that it should cool down to, in degrees Celsius.
         wanted: f64,
     },
     /// A command on the device failed.
@@ -234,7 +236,7 @@ pub enum DeviceError {
         serial: String,
         /// The command.
         command: String,
-        /// Its answer.
+        /// The device's answer.
         reason: String,
     },
     /// A command on the device did not end in time.
@@ -244,13 +246,13 @@ pub enum DeviceError {
         serial: String,
         /// The command.
         command: String,
-        /// Seconds waited.
+        /// The time waited, in seconds.
         seconds: u64,
     },
-    /// The replay has nothing to play.
+    /// The script or folder of a replay cannot be used.
     #[error("{}: {reason}", path.display())]
     Replay {
-        /// Script or folder.
+        /// The script or folder.
         path: PathBuf,
         /// The mistake and the remedy.
         reason: String,
@@ -267,7 +269,7 @@ pub enum DeviceError {
 }
 
 impl DeviceError {
-    /// True if the device may come back by itself.
+    /// True if the device may come back without help.
     pub fn is_lost(&self) -> bool {
         use DeviceError::{Lost, Offline, Server, Silent, Unauthorized, Unknown};
         matches!(
@@ -294,21 +296,21 @@ fn wifi(serial: &str, address: &Option<String>) -> String {
     )
 }
 
-/// Returns the serial number, the same for every connection of a device. All emulators of one image have the same
-/// (`EMULATOR34X1X19X0`); what adb calls them tells them apart.
+/// Returns the device's serial number, which does not depend on how it is connected. Emulators of one image all have
+/// the same number (`EMULATOR34X1X19X0`), so for them this is the name in adb's list.
 pub fn serial_number(device: &dyn Device) -> Result<String, DeviceError> {
     let own = device.shell(&["getprop", "ro.serialno"])?.trim().to_owned();
     let is_shared = own.is_empty() || own.starts_with("EMULATOR") || device.serial().starts_with("emulator-");
     Ok(if is_shared { device.serial().to_owned() } else { own })
 }
 
-/// True if adb reaches the device over the network: by address and port, or by a name found in it (mDNS), such as
+/// True if adb reaches the device over the network: by address and port, or by a name found with mDNS, such as
 /// `adb-SERIAL-x7Fw2a._adb-tls-connect._tcp`.
 pub fn is_wireless(serial: &str) -> bool {
     serial.contains(':') || serial.contains("._adb")
 }
 
-/// Returns a word quoted for a shell, this computer's or the device's.
+/// Quotes a word for the shell of this computer or of the device.
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-._/:=,%+@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -328,12 +330,12 @@ fn after_refusal(serial: &str, reason: &str) -> String {
     format!("try it by adb -s {} shell", quoted(serial))
 }
 
-/// An event of a log that is followed.
+/// An event while a log is followed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LogEvent {
-    /// A line with its end, as it came: messages of drivers need not be valid text.
+    /// A line as it came, with its line end. Messages of drivers need not be valid UTF-8.
     Line(Vec<u8>),
-    /// No line came within the wait.
+    /// No line came in the time given.
     Quiet,
     /// The log has ended: the device is gone, or its log service was restarted.
     Ended,
@@ -350,51 +352,51 @@ pub trait Device: Send {
     /// The device's serial number, as adb lists it.
     fn serial(&self) -> &str;
 
-    /// True for a replay; every result of it must be marked as simulated.
+    /// True for a replay, whose results must all be marked as simulated.
     fn is_simulated(&self) -> bool;
 
-    /// False if nobody will charge the device or take its charger off, however long one waits.
+    /// False if nobody will ever plug in or unplug a charger.
     fn is_attended(&self) -> bool {
         true
     }
 
-    /// Runs a command on the device, given as words, and returns what it prints.
+    /// Runs a command on the device, given as words, and returns its output.
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError>;
 
     /// Writes a small file on the device.
     fn put(&self, path: &str, text: &str) -> Result<(), DeviceError>;
 
-    /// Installs an APK over the one that may be there.
+    /// Installs an APK, replacing an installed version.
     fn install(&self, apk: &Path) -> Result<(), DeviceError>;
 
-    /// Follows the log of the tags that [`super::log`] reads, with times in seconds since 1970; from the first line of
-    /// that time on, or all that the device still has.
+    /// Follows the device's log for the tags of [`super::log`], with times in seconds since 1970. Starts at the first
+    /// line at or after `since`, or at the oldest line that the device still has.
     fn logcat(&self, since: Option<&str>) -> Result<Box<dyn LogStream>, DeviceError>;
 
-    /// Tries to reconnect a lost device. The next command shows if that has worked.
+    /// Tries to reconnect a lost device. The next command shows whether this worked.
     fn reconnect(&self);
 
-    /// Returns the seconds since 1970 by this computer's clock, without jumps.
+    /// Returns the seconds since 1970 by this computer's clock. It never jumps.
     fn now(&self) -> f64;
 
-    /// Waits, or less if the user asks to stop.
+    /// Sleeps for `time`, or until the user interrupts the program.
     fn sleep(&self, time: Duration);
 }
 
-/// All devices.
+/// The source of devices.
 pub trait Adb {
-    /// Returns the devices that are connected, in adb's order.
+    /// Returns the connected devices in adb's order.
     fn devices(&self) -> Result<Vec<Listed>, DeviceError>;
 
-    /// Returns the device of this name in adb's list. The device may be missing; then its commands fail.
+    /// Returns the device with this name in adb's list. If it is not connected, its commands fail.
     fn open(&self, serial: &str) -> Box<dyn Device>;
 }
 
-/// Returns the chosen devices: those of the serials, or all, or the only one. A device that is connected twice, by
-/// cable and by Wi-Fi, is one device: the connection that adb lists first is used.
+/// Returns the chosen devices: those with the given serial numbers, all of them, or the only one. If a device is
+/// connected both by cable and by Wi-Fi, the connection that adb lists first is used.
 ///
-/// # Errors
-/// [`DeviceError`]: none, several, unknown, or one that is not ready.
+/// # Errors [`DeviceError`] if there is no device, several without a choice, an unknown serial number, or one that is
+/// not ready.
 pub fn choose(adb: &dyn Adb, serials: &[String], all: bool) -> Result<Vec<Box<dyn Device>>, DeviceError> {
     let listed = adb.devices()?;
     let find = |serial: &String| {
@@ -424,7 +426,7 @@ pub fn choose(adb: &dyn Adb, serials: &[String], all: bool) -> Result<Vec<Box<dy
     }
 }
 
-/// Returns each device once, whatever number of connections it has.
+/// Removes further connections of the same device.
 fn once_each(devices: Vec<Box<dyn Device>>) -> Result<Vec<Box<dyn Device>>, DeviceError> {
     if devices.len() < 2 {
         return Ok(devices);

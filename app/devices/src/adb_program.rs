@@ -1,4 +1,4 @@
-//! The program adb.
+//! Devices reached through the program adb.
 
 use std::env;
 use std::ffi::OsStr;
@@ -14,19 +14,19 @@ use super::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream, State, i
 use super::log;
 use yoro_files::interrupt;
 
-/// Timeout of a command.
+/// Timeout of a command on the device.
 const COMMAND_TIMEOUT: Duration = Duration::from_secs(60);
 /// Timeout of an installation.
 const INSTALL_TIMEOUT: Duration = Duration::from_secs(600);
-/// Interval at which a wait checks for an interrupt by the user.
+/// Interval at which a wait checks whether the user has interrupted the program.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// Length of the queue of log lines; adb waits while it is full.
+/// Capacity of the queue of log lines. While it is full, adb waits.
 const QUEUE: usize = 4096;
 
-/// Timeout of adb's server, which does not wait for a device.
+/// Timeout of commands to the adb server, which wait for no device.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(20);
 
-/// Devices through the program adb.
+/// Devices that are reached through the program adb.
 #[derive(Clone, Debug)]
 pub struct AdbProgram {
     program: PathBuf,
@@ -34,8 +34,8 @@ pub struct AdbProgram {
 }
 
 impl AdbProgram {
-    /// Finds adb (the file given, in `PATH`, or in `platform-tools` of `ANDROID_HOME` or `ANDROID_SDK_ROOT`) and starts its
-    /// server.
+    /// Finds adb and starts its server. Uses the given file, or else looks in `PATH` and in `platform-tools` of
+    /// `ANDROID_HOME` and `ANDROID_SDK_ROOT`.
     pub fn find(given: Option<&Path>) -> Result<AdbProgram, DeviceError> {
         let name = format!("adb{}", env::consts::EXE_SUFFIX);
         let program = match given {
@@ -48,7 +48,7 @@ impl AdbProgram {
                 folders.find_map(|folder| Some(folder.join(&name)).filter(|path| path.is_file()))
             }
         };
-        // Without its folder, a program is looked for in PATH.
+        // A program that is given without a folder would be looked for in PATH.
         let program = program.map(|path| std::path::absolute(&path).unwrap_or(path));
         let looked =
             given.map_or("PATH, ANDROID_HOME and ANDROID_SDK_ROOT".into(), |path| path.display().to_string());
@@ -58,14 +58,14 @@ impl AdbProgram {
         Ok(adb)
     }
 
-    /// Starts the server where there is none. One that a later command starts would keep that command's pipes open.
+    /// Starts adb's server if necessary. One started by a later command would keep that command's pipes open.
     fn start_server(&self) -> Result<(), DeviceError> {
         let mut start = Command::new(&self.program);
         start.arg("start-server").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         self.run(start, None, self.server_timeout)?.map(drop).ok_or_else(|| self.silent("start-server"))
     }
 
-    /// Runs adb to its end; `None` if it does not end in time. Its output comes through its pipes.
+    /// Runs adb and waits for it to end. Returns `None` if it does not end in time.
     fn run(
         &self,
         mut command: Command,
@@ -74,7 +74,7 @@ impl AdbProgram {
     ) -> Result<Option<AdbOutput>, DeviceError> {
         let mut child = command.spawn().map_err(|error| self.does_not_start(&error))?;
         if let (Some(input), Some(mut stdin)) = (input, child.stdin.take()) {
-            // A command that does not take it says why by itself.
+            // A command that does not read its input reports the reason itself.
             let _ = stdin.write_all(input.as_bytes());
         }
         let stdout = read_all(child.stdout.take());
@@ -99,8 +99,8 @@ impl AdbProgram {
         DeviceError::Server { reason: format!("adb {command} has not ended for {seconds} s") }
     }
 
-    /// Returns adb's own words in a line, without the names that it puts before them (`adb: `, `adb.exe: `, `error: `);
-    /// none where the words are those of a command on the device.
+    /// Returns the text of a line that adb itself wrote, without the prefixes `adb: `, `adb.exe: ` and `error: `.
+    /// Returns `None` if the line comes from a command on the device.
     fn own_words<'a>(&self, line: &'a str) -> Option<&'a str> {
         let name = self.program.file_name().unwrap_or_default().to_string_lossy();
         let is_name = |word: &str| [&*name, "adb", "adb.exe", "error"].contains(&word);
@@ -114,8 +114,8 @@ impl AdbProgram {
         is_own.then_some(words)
     }
 
-    /// Returns the error if adb reports that it does not reach a device. Its messages are nested
-    /// (`failed to get feature set: device offline`); file names in them mean nothing.
+    /// Returns an error if adb reports that it cannot reach the device. adb nests causes in its messages, such as
+    /// `failed to get feature set: device offline`. File names in them are not taken for causes.
     fn unreached(&self, stderr: &str, serial: &str) -> Option<DeviceError> {
         stderr.lines().filter_map(|line| self.own_words(line)).find_map(|words| {
             let cause = words.split(": ").map(str::trim).find_map(unreached_by)?;
@@ -148,7 +148,7 @@ impl Adb for AdbProgram {
     }
 }
 
-/// Returns the devices in the output of `adb devices`.
+/// Parses the output of `adb devices`.
 fn listed(text: &str) -> Vec<Listed> {
     let device = |line: &str| {
         let (serial, state) = line.split_once('\t')?;
@@ -158,10 +158,10 @@ fn listed(text: &str) -> Vec<Listed> {
     text.lines().filter_map(device).collect()
 }
 
-/// The error of a device's serial number; `None` where adb's server is at fault.
+/// Makes an error from a device's serial number. `None` if adb's server is the cause.
 type Cause = Option<fn(String) -> DeviceError>;
 
-/// The beginnings of adb's sentences about devices that it does not reach.
+/// How adb's messages about unreachable devices begin.
 const UNREACHED: [(&str, Cause); 18] = [
     ("device unauthorized", Some(DeviceError::Unauthorized)),
     ("device still authorizing", Some(DeviceError::Unauthorized)),
@@ -183,7 +183,7 @@ const UNREACHED: [(&str, Cause); 18] = [
     ("adb server ", None),
 ];
 
-/// Returns why adb does not reach a device, by one of its sentences.
+/// Returns why adb cannot reach a device, from one part of its message.
 fn unreached_by(sentence: &str) -> Option<Cause> {
     let lower = sentence.trim_start_matches("* ").to_lowercase();
     if lower.starts_with("device '") && lower.trim_end_matches('.').ends_with("' not found") {
@@ -205,7 +205,8 @@ struct AdbOutput {
 }
 
 impl AdbOutput {
-    /// The exception that Java threw, without the calls that led there; or the last words, those of the error first.
+    /// Returns the reason of a failure: the first line of a Java exception, without its stack trace; otherwise the last
+    /// line of stderr, or of stdout if stderr is empty.
     fn reason(&self) -> String {
         let exception = |text: &str| {
             let thrown = |line: &&str| {
@@ -227,13 +228,13 @@ impl ProgramDevice {
         let mut command = Command::new(&self.adb.program);
         command.arg("-s").arg(&self.serial).args(arguments);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // Ctrl-C in the terminal is for this program, which ends adb when it has cleaned up.
+        // Ctrl-C in the terminal must reach this program only: it cleans up before it ends adb.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         command
     }
 
-    /// Runs adb to its end; `what` is for the error.
+    /// Runs adb and waits for it to end. `what` names the command in errors.
     fn finish(
         &self,
         mut command: Command,
@@ -318,7 +319,7 @@ impl Device for ProgramDevice {
                 let mut reader = BufReader::new(stdout);
                 let mut line = Vec::new();
                 while reader.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
-                    // A connection may end within a line; the next line begins a row of its own.
+                    // A lost connection may cut a line. End it, so that the next line does not continue it.
                     if !line.ends_with(b"\n") {
                         line.push(b'\n');
                     }
@@ -332,7 +333,7 @@ impl Device for ProgramDevice {
     }
 
     fn reconnect(&self) {
-        // The next command reports an error of the server.
+        // If this fails, the next command reports an error of the server.
         let _ = self.adb.start_server();
         let mut command = if is_wireless(&self.serial) {
             let mut command = Command::new(&self.adb.program);
@@ -363,7 +364,7 @@ impl Device for ProgramDevice {
     }
 }
 
-/// `adb logcat`, ended with this.
+/// A running `adb logcat`, which is killed when this is dropped.
 struct ProgramLog {
     child: Child,
     lines: Receiver<Vec<u8>>,
@@ -391,14 +392,14 @@ impl Drop for ProgramLog {
     }
 }
 
-/// Ends a process that need not have ended.
+/// Kills a process and waits for it.
 fn end(child: &mut Child) {
-    // It may have ended by itself meanwhile, which is as good.
+    // An error means that it has ended already.
     let _ = child.kill();
     let _ = child.wait();
 }
 
-/// Reads a pipe to its end, beside everything else: a full one would stop the command.
+/// Reads a pipe to its end on a thread, since a full pipe would stop the command.
 fn read_all(pipe: Option<impl Read + Send + 'static>) -> Receiver<String> {
     let (sender, text) = mpsc::channel();
     if let Some(mut pipe) = pipe {
@@ -423,8 +424,8 @@ mod tests {
         adb().unreached(stderr, "X")
     }
 
-    /// Texts of adb on Linux and Windows, as issues of scrcpy (1714, 3042), flutter (27456, 125971) and APK-Installer
-    /// (25) quote them.
+    /// adb's messages on Linux and Windows, from issues of scrcpy (1714, 3042), flutter (27456, 125971) and
+    /// APK-Installer (25).
     #[test]
     fn adbs_words_about_lost_devices_are_recognised() {
         for said in [
@@ -488,7 +489,7 @@ mod tests {
         assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
     }
 
-    /// The list of states as adb prints them (dadb issue 55, flutter 27456, android-udev-rules 308).
+    /// The states as adb prints them (dadb issue 55, flutter 27456, android-udev-rules 308).
     #[test]
     fn states_in_adbs_list_are_parsed() {
         let text = "* daemon started successfully\nList of devices attached\nRF8M33XXXXX\tdevice\n3949\tauthorizing\n1WMH\tno permissions; see [http://developer.android.com/tools/device.html]\nadb-13e75597-Upleco (2)._adb-tls-connect._tcp\tdevice\n192.168.1.7:5555\tconnecting\nUYT5\trecovery\n\n";
@@ -498,7 +499,7 @@ mod tests {
         assert_eq!(found[3].serial, "adb-13e75597-Upleco (2)._adb-tls-connect._tcp");
     }
 
-    /// A phone by Xiaomi on `settings put` (auto_set_proxy issue 1, shortened).
+    /// The output of `settings put` on a phone by Xiaomi (auto_set_proxy issue 1, shortened).
     #[test]
     fn the_exception_line_is_the_reason_of_a_refusal() {
         let stderr = "\nException occurred while executing 'put':\njava.lang.SecurityException: Permission denial: writing to settings requires:android.permission.WRITE_SECURE_SETTINGS\n\tat com.android.providers.settings.SettingsProvider.call(SettingsProvider.java:398)\n\tat android.os.Binder.execTransact(Binder.java:1129)\n";

@@ -1,9 +1,9 @@
-//! Device farms: the command that starts the application's game loops on many devices, and captures of what comes back.
+//! Device farms: the command that starts the application's game loops on many devices, and captures of the results.
 //!
-//! Firebase Test Lab keeps a folder for each device, `MODEL-VERSION-LOCALE-ORIENTATION`, with the device's log as
-//! `logcat` and the results of scenario N as `game_loop_results/results_scenario_N.json`: the log's lines without
-//! times, whatever that name says. AWS Device Farm has artefacts that are downloaded for each device, with other names.
-//! So a line is known by itself, and names of files only say which files are read.
+//! Firebase Test Lab has a folder `MODEL-VERSION-LOCALE-ORIENTATION` for each device. In it, `logcat` is the device's
+//! log, and `game_loop_results/results_scenario_N.json` are the results of scenario N: lines of the log without times,
+//! despite the extension. AWS Device Farm offers artefacts with other names for download, one set per device. Lines are
+//! therefore recognised by their content; the names of files only decide which files are read.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -16,14 +16,14 @@ use crate::capture::{CaptureError, DeviceInfo, Fault, FaultKind, Outcome, RunInf
 use crate::log::{self, Kind, SIMULATED_MARK};
 use crate::reading::{LineContent, Reading};
 
-/// The beginning of the names that game loops give their runs: `loop-SCENARIO-STEP`.
+/// How the run names of game loops begin: `loop-SCENARIO-STEP`.
 const RUN: &str = "loop-";
-/// Seconds at the beginning of a step that count for nothing.
+/// Seconds at the beginning of a step that are discarded as warm-up.
 const WARM_UP_S: f64 = 5.0;
-/// Names of logs and results: all of it, or the extension.
+/// Full names or extensions of the files that are read.
 const LOGS: [&str; 4] = ["logcat", "log", "txt", "json"];
 
-/// The error when a farm's results cannot be read.
+/// The error of reading a farm's results.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FarmError {
@@ -33,7 +33,7 @@ pub enum FarmError {
     /// A capture cannot be written.
     #[error(transparent)]
     Capture(#[from] CaptureError),
-    /// There are no lines of a game loop.
+    /// No file has lines of a game loop.
     #[error(
         "no file below {} has a line of a game loop (run={RUN}...): name the folder with a folder for each device, with archives unpacked",
         folder.display()
@@ -44,8 +44,8 @@ pub enum FarmError {
     },
 }
 
-/// Returns the command that plays scenarios on devices of Firebase Test Lab. Each device is a model of `gcloud firebase
-/// test android models list`, with a version after `=` if it matters.
+/// Returns the command that plays scenarios on devices of Firebase Test Lab. A device is a model of `gcloud firebase
+/// test android models list`, optionally with `=` and a version.
 pub fn command(apk: &str, scenarios: &[u32], devices: &[String]) -> String {
     let scenarios: Vec<String> = scenarios.iter().map(u32::to_string).collect();
     let mut command = format!(
@@ -60,9 +60,10 @@ pub fn command(apk: &str, scenarios: &[u32], devices: &[String]) -> String {
     command
 }
 
-/// Writes a capture for each step of each device in a farm's results: `OUT/DEVICE/RUN`. Returns their descriptions.
+/// Writes a capture for each step on each device to `OUT/DEVICE/RUN`, and returns their descriptions.
 ///
-/// A step that is in several files, as in the log and in the results, is taken from the one that has most of it.
+/// If several files have lines of the same step, such as the log and the results, a file with the whole step is
+/// preferred, then the one with the most samples.
 ///
 /// # Errors
 /// [`FarmError`].
@@ -109,7 +110,7 @@ fn logs(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(found)
 }
 
-/// Returns the name of the device's folder: the first below `folder`, or `folder` itself.
+/// Returns the name of the device's folder: the first part of `path`, or the name of `folder` itself.
 fn device_name(folder: &Path, path: &Path) -> String {
     let first = path.parent().and_then(|parent| parent.iter().next());
     let first = first.filter(|name| *name != "game_loop_results");
@@ -122,20 +123,20 @@ fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     bytes.split_inclusive(|byte| *byte == b'\n')
 }
 
-/// Returns the names of the game loops' steps in a log.
+/// Returns the run names of the game loop steps in a log.
 fn runs(bytes: &[u8]) -> BTreeSet<String> {
     let run = |line: &[u8]| match log::parse(&log::text(line)) {
         Kind::Entry(entry) if entry.tag == LOG_TAG => entry.message.parse::<Line>().ok()?.run,
         _ => None,
     };
-    // The name becomes that of a folder.
+    // The name becomes a folder's name.
     let is_name = |run: &String| {
         run.starts_with(RUN) && run.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-')
     };
     lines(bytes).filter_map(run).filter(is_name).collect()
 }
 
-/// Returns the pictures of the pipeline that a step is about.
+/// Parses the result of the picture check in a line, if it belongs to this step's pipeline.
 fn pictures(text: &str, run: &str) -> Option<Pictures> {
     let Kind::Entry(entry) = log::parse(text) else { return None };
     let read: Pictures = (entry.tag == LOG_TAG).then_some(entry.message)?.parse().ok()?;
@@ -173,7 +174,7 @@ impl Step {
             }
             step.log.extend_from_slice(line);
         }
-        // All steps of a scenario are one session.
+        // The steps of a scenario share one session, so move each step's times to its own start.
         let begin = step.samples.first().map_or(0.0, |first| first.time_s - 1.0);
         step.samples.iter_mut().for_each(|sample| sample.time_s -= begin);
         step
@@ -199,7 +200,7 @@ impl Step {
             version: VERSION,
             device: device_info(device, self.simulated),
             experiment: None,
-            // The methods of scenario 2 are compared; a step of another scenario is no repetition of them.
+            // The methods of scenario 2 are compared. Steps of other scenarios are not repetitions of them.
             method: run.strip_prefix("loop-2-").unwrap_or(run).into(),
             scene: scene.into(),
             repetition: 1,
@@ -226,7 +227,7 @@ impl Step {
     }
 }
 
-/// Returns what a device's folder says: `MODEL-VERSION-LOCALE-ORIENTATION`, or only a name.
+/// Returns what the name of a device's folder tells: `MODEL-VERSION-LOCALE-ORIENTATION`, or just a name.
 fn device_info(folder: &str, simulated: bool) -> DeviceInfo {
     let parts: Vec<&str> = folder.rsplitn(4, '-').collect();
     let (model, android) = match parts[..] {
@@ -248,7 +249,7 @@ mod tests {
         )
     }
 
-    /// The folders and names that Flutter's own tests read from Test Lab's bucket, with a log and results.
+    /// Folders and files as Flutter's own tests read them from Test Lab's bucket, with a log and results.
     #[test]
     fn the_results_of_two_farms_become_captures() {
         let folder = tempfile::tempdir().unwrap();
@@ -307,7 +308,7 @@ mod tests {
         );
         assert_eq!((whole.info.warm_up_s, whole.info.duration_s), (5.0, 60.0));
 
-        // One report of both devices has the frame rates, and no power.
+        // A report of both devices has frame rates, but no power.
         let set: Vec<_> = capture::find(std::slice::from_ref(&out)).unwrap().into_iter().collect();
         let set: Vec<_> = set.into_iter().map(|run| (run.clone(), capture::read(&run).unwrap())).collect();
         let report = DeviceReport::new(&[set], "conventional", &BTreeMap::new(), String::new());

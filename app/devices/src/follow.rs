@@ -1,4 +1,4 @@
-//! A device's log, followed over lost connections: each line once, none left out that the device still has.
+//! Follows a device's log across lost connections. Each line that the device still has is returned exactly once.
 
 use std::collections::VecDeque;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -8,28 +8,27 @@ use super::adb::{Device, DeviceError, LogEvent, LogStream};
 use super::capture::{Fault, FaultKind};
 use super::{log, phone};
 
-/// Seconds before its last line from which the log is read again after a lost connection: simultaneous lines need not
-/// come in order.
+/// A log is read again from this many seconds before its last line, since simultaneous lines need not be in order.
 const OVERLAP_S: f64 = 5.0;
-/// Lines remembered to be told from new ones in the overlap.
+/// Number of lines that are remembered to recognise repeated ones.
 const REMEMBERED: usize = 4096;
-/// Time between attempts to get a device back.
+/// Interval at which reconnecting to a lost device is tried.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// An event while a log is followed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// A new line with its end, as it came.
+    /// A new line as it came, with its line end.
     Line(Vec<u8>),
-    /// No line came within the wait.
+    /// No line came in the time given.
     Quiet,
-    /// The device is gone.
+    /// The device was lost.
     Lost,
     /// The device is back.
     Back {
-        /// Time in seconds for which it was gone.
+        /// The time for which it was gone, in seconds.
         seconds: f64,
-        /// True if it was restarted.
+        /// True if it was restarted meanwhile.
         rebooted: bool,
     },
 }
@@ -44,12 +43,12 @@ pub fn faults_of_loss(at_s: f64, seconds: f64, rebooted: bool) -> Vec<Fault> {
     faults
 }
 
-/// Follows a log.
+/// A log that is followed across lost connections.
 pub struct Follower<'a> {
     device: &'a dyn Device,
     stream: Option<Box<dyn LogStream>>,
     seen: VecDeque<u64>,
-    /// True if lines may repeat, since the connection was lost before.
+    /// True after a lost connection, when lines may repeat.
     overlaps: bool,
     clock_s: Option<f64>,
     boot: String,
@@ -57,7 +56,7 @@ pub struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// Follows from now on, or from the oldest line that the device has.
+    /// Starts to follow the log from now on, or from the oldest line that the device still has.
     pub fn new(device: &'a dyn Device, from_oldest: bool) -> Result<Follower<'a>, DeviceError> {
         let boot = phone::boot_id(device)?;
         let since = if from_oldest { None } else { Some(phone::clock(device)?) };
@@ -66,15 +65,15 @@ impl<'a> Follower<'a> {
         Ok(Follower { device, stream, seen, overlaps: false, clock_s: None, boot, lost_at: None })
     }
 
-    /// Returns the seconds since the device was lost; `None` while it is there.
+    /// Returns the seconds since the device was lost, or `None` if it is connected.
     pub fn lost_for(&self) -> Option<f64> {
         self.lost_at.map(|then| self.device.now() - then)
     }
 
-    /// Returns the next event. Waits for `wait`, or somewhat longer while a device does not answer.
+    /// Returns the next event. Waits for `wait`, or somewhat longer if a device does not answer.
     ///
     /// # Errors
-    /// [`DeviceError`] if the cause is not a lost connection.
+    /// [`DeviceError`] for anything but a lost connection.
     pub fn next(&mut self, wait: Duration) -> Result<Event, DeviceError> {
         loop {
             let Some(stream) = &mut self.stream else { return self.come_back() };
@@ -98,7 +97,7 @@ impl<'a> Follower<'a> {
         let text = log::text(line);
         let entry = match log::parse(&text) {
             log::Kind::Entry(entry) => Some(entry),
-            // Logcat's marks come with each connection.
+            // Each connection has marks of its own, so repeated ones are dropped.
             log::Kind::Mark => return !self.overlaps,
             log::Kind::Damaged => None,
         };

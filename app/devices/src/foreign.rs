@@ -1,5 +1,5 @@
-//! Measurement of other applications than this project's on Meta headsets: the runtime logs their frame rates; this
-//! computer reads the battery, since nothing on the device logs it.
+//! Measures other applications on Meta headsets. The runtime logs their frame rates; this computer reads the battery,
+//! which nothing on the device logs.
 
 use std::collections::BTreeSet;
 
@@ -10,28 +10,28 @@ use super::phone::{self, Battery};
 use super::reading::Reading;
 use yoro_protocol::telemetry::{CurrentNormalizer, Line};
 
-/// Interval in seconds at which the battery is asked: each question costs the device something, too.
+/// Interval in seconds at which the battery is read. Each query costs the device some power.
 const BATTERY_PERIOD_S: f64 = 2.0;
-/// Interval in seconds at which the application's processes are looked up while others log.
+/// Interval in seconds at which the application's processes are looked up while other processes write to the log.
 const PROCESSES_PERIOD_S: f64 = 2.0;
 
-/// The application whose log lines are read.
+/// The application that is measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// The application's package.
     pub package: String,
-    /// The process that logs for it, usually of the same name.
+    /// The process that logs for the application, usually named like the package.
     pub process: String,
 }
 
-/// Finds the lines about another application, and adds the battery's values to them.
+/// Finds the log lines of another application, and adds the battery's values.
 pub struct Foreign<'a> {
     device: &'a dyn Device,
     subject: Subject,
     processes: Vec<u32>,
     /// Time of the last look-up.
     processes_s: f64,
-    /// Processes whose lines were left out.
+    /// Processes whose lines were ignored.
     strangers: BTreeSet<u32>,
     battery: Battery,
     battery_s: f64,
@@ -40,7 +40,7 @@ pub struct Foreign<'a> {
 }
 
 impl<'a> Foreign<'a> {
-    /// Begins to follow an application.
+    /// Starts to follow an application.
     pub fn new(device: &'a dyn Device, subject: Subject) -> Result<Foreign<'a>, DeviceError> {
         let mut kernel_is_open = None;
         Ok(Foreign {
@@ -56,7 +56,7 @@ impl<'a> Foreign<'a> {
         })
     }
 
-    /// True if a line is for [`Reading`]: a runtime line about this application, or a damaged one.
+    /// True if a line is for [`Reading`]: a line of the runtime about this application, or a damaged line.
     pub fn is_its(&mut self, line: &str) -> Result<bool, DeviceError> {
         let entry = match log::parse(line) {
             Kind::Entry(entry) => entry,
@@ -66,7 +66,7 @@ impl<'a> Foreign<'a> {
         let now = self.device.now();
         if !self.processes.contains(&pid) && now - self.processes_s >= PROCESSES_PERIOD_S {
             self.processes_s = now;
-            // Lines may still come from a device that is gone.
+            // Lines of a device that is already gone may still arrive.
             self.processes = unless_lost(phone::processes(self.device, &self.subject.process))?
                 .unwrap_or(std::mem::take(&mut self.processes));
         }
@@ -77,7 +77,7 @@ impl<'a> Foreign<'a> {
         Ok(is_its)
     }
 
-    /// Adds the battery's values to a sample, and their faults to the reading.
+    /// Adds the battery's values to a sample, and records their faults in `reading`.
     pub fn complete(&mut self, sample: &mut Sample, reading: &mut Reading) -> Result<(), DeviceError> {
         let battery = self.battery;
         let plugged = if battery.plugged() { battery.sources.max(1) } else { 0 };
@@ -108,7 +108,7 @@ impl<'a> Foreign<'a> {
         Ok(())
     }
 
-    /// Returns a sentence about why nothing may have been read.
+    /// Returns a sentence on why no lines may have been found.
     pub fn silence(&self) -> String {
         let Subject { package, process } = &self.subject;
         if self.strangers.is_empty() {
@@ -129,7 +129,7 @@ impl<'a> Foreign<'a> {
     }
 }
 
-/// Returns `None` if the device is gone; its log reports that, too.
+/// Returns `None` if the device is gone, which its log reports as well.
 fn unless_lost<T>(said: Result<T, DeviceError>) -> Result<Option<T>, DeviceError> {
     match said {
         Ok(value) => Ok(Some(value)),

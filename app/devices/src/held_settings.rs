@@ -1,29 +1,29 @@
-//! Settings of a device that are held fixed while it is measured, and restored afterwards.
+//! Device settings that are held fixed during a measurement and restored afterwards.
 //!
-//! The earlier values are written into a file on the device first: after a crash, or when the cable was pulled, the
-//! next measurement on the device restores them.
+//! The earlier values are first written to a file on the device. After a crash or a lost connection, the next
+//! measurement on the device restores them.
 
 use super::adb::{Device, DeviceError};
 use super::capture::DeviceInfo;
 use super::phone::{self, set_property};
 
-/// The file on the device with the values to be restored.
+/// The file on the device with the values to restore.
 const FILE: &str = "/data/local/tmp/yoro-restore.txt";
 /// Android's answer for a setting without a value.
 const UNSET: &str = "null";
-/// Refresh rate of Meta's headsets.
+/// Property with the refresh rate of Meta's headsets.
 const QUEST_RATE: &str = "debug.oculus.refreshRate";
-/// Property that lets applications on Meta's headsets continue outside of the boundary.
+/// Property that lets applications on Meta's headsets continue outside the boundary.
 const QUEST_BOUNDARY: &str = "debug.oculus.guardian_pause";
-/// Time without a touch until the screen goes off, in milliseconds: a day. While a phone cools, no application holds
-/// the screen on, and with the screen some phones switch adb over Wi-Fi off.
+/// Time without a touch until the screen turns off, in milliseconds: one day. While a phone cools down, no application
+/// keeps the screen on, and some phones turn off adb over Wi-Fi together with the screen.
 const SCREEN_TIMEOUT_MS: &str = "86400000";
-/// Do not disturb, except for alarms (`Global.ZEN_MODE_ALARMS`).
+/// Do not disturb except for alarms (`Global.ZEN_MODE_ALARMS`).
 const ALARMS_ONLY: &str = "3";
-/// Displays above this many Hz have a mode of their own on phones by Samsung.
+/// Above this many Hz, phones by Samsung need their high refresh rate mode.
 const SAMSUNG_STANDARD_HZ: f64 = 60.0;
 
-/// The values that are to be held fixed.
+/// The values to hold fixed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// Brightness of the screen, 0 to 255.
@@ -52,18 +52,18 @@ impl Table {
     }
 }
 
-/// The place of a value.
+/// Where a value is stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Place {
     /// `settings get TABLE KEY`.
     Setting(Table, String),
     /// `getprop KEY`.
     Property(String),
-    /// The wear sensor of a headset by Meta, which can be set but not read.
+    /// The proximity sensor of a Meta headset, which can be overridden but not read.
     Worn,
 }
 
-/// A value at its place; `None` if there was none.
+/// A stored value, or `None` if it is not set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct HeldSetting {
     place: Place,
@@ -79,7 +79,7 @@ impl HeldSetting {
         }
     }
 
-    /// Returns the present value at the place.
+    /// Reads the current value.
     fn now(device: &dyn Device, place: &Place) -> Result<HeldSetting, DeviceError> {
         let value = match place {
             Place::Setting(table, key) => device.shell(&["settings", "get", table.name(), key])?,
@@ -127,7 +127,7 @@ impl HeldSetting {
     }
 }
 
-/// Holds values fixed. [`HeldSettings::restore`] must be called; otherwise the next [`HeldSettings::new`] restores
+/// Values that are held fixed until [`HeldSettings::restore`]. Without it, the next [`HeldSettings::new`] restores
 /// them.
 #[must_use]
 #[derive(Debug)]
@@ -135,17 +135,17 @@ pub struct HeldSettings {
     wanted: Vec<HeldSetting>,
     before: Vec<HeldSetting>,
     refused: Vec<String>,
-    /// The start of the device that they were set in.
+    /// The boot id of the device when they were set.
     boot: String,
 }
 
 impl HeldSettings {
-    /// Restores the values that an earlier run has left, then sets the wanted ones, keeps the screen on, silences
-    /// notifications, and clears the application's own properties, which would override the settings of a run. A
-    /// headset by Meta is told that it is worn. Values that the device refuses to change are reported and kept.
+    /// Restores values that an earlier run has left behind, then sets the wanted ones, keeps the screen on, silences
+    /// notifications, and clears the application's own properties, which would override a run's settings. Tells a Meta
+    /// headset that it is worn. Values that the device refuses to change are listed in [`HeldSettings::refused`].
     ///
     /// # Errors
-    /// [`DeviceError`]; the next call restores all that was changed.
+    /// [`DeviceError`]. The next call restores everything that was changed.
     pub fn new(device: &dyn Device, info: &DeviceInfo, wanted: &Wanted) -> Result<HeldSettings, DeviceError> {
         restore_leftovers(device)?;
         let mut settings = settings_to_hold(info, wanted);
@@ -170,8 +170,7 @@ impl HeldSettings {
         Ok(held)
     }
 
-    /// Sets all values again if the device was restarted: neither system properties nor the wear state of a headset
-    /// outlast that.
+    /// Sets all values again if the device was restarted, which resets system properties and the wear state.
     pub fn renew(&mut self, device: &dyn Device) -> Result<(), DeviceError> {
         let boot = phone::boot_id(device)?;
         if boot == self.boot {
@@ -198,7 +197,7 @@ impl HeldSettings {
         Ok(())
     }
 
-    /// Restores all values. On a device that is gone, the next measurement does it.
+    /// Restores all values. If the device is gone, the next measurement on it does so.
     pub fn restore(self, device: &dyn Device) -> Result<(), DeviceError> {
         restore(device, &self.before)
     }
@@ -219,13 +218,13 @@ fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
     }
     if let Some(hz) = wanted.refresh_hz {
         if is_by("samsung") {
-            // Peak and least rate alone do nothing there: 0 is the standard rate, 2 the high one.
+            // Peak and minimum rate have no effect there without the mode: 0 is the standard rate, 2 the high one.
             let mode = if hz > SAMSUNG_STANDARD_HZ { "2" } else { "0" };
             settings.push(setting(Table::Secure, "refresh_rate_mode", mode));
         }
         settings.push(setting(Table::System, "peak_refresh_rate", &hz.to_string()));
         settings.push(setting(Table::System, "min_refresh_rate", &hz.to_string()));
-        // A phone need not know the property of headsets, but takes any.
+        // This property is for headsets, but phones accept any property.
         settings.push(property(QUEST_RATE, &hz.to_string()));
     }
     if is_by("oculus") || is_by("meta") {
@@ -235,7 +234,7 @@ fn settings_to_hold(info: &DeviceInfo, wanted: &Wanted) -> Vec<HeldSetting> {
     settings
 }
 
-/// Sets a value and checks that it has stayed.
+/// Sets a value and checks that the device has kept it.
 fn hold(device: &dyn Device, held: &HeldSetting) -> Result<(), DeviceError> {
     held.set(device)?;
     if held.place == Place::Worn {
@@ -300,7 +299,7 @@ mod tests {
         let info = phone::info(device).unwrap();
         let mut settings = HeldSettings::new(device, &info, &Wanted::default()).unwrap();
         assert_eq!((told(), settings.refused()), (["yes\n".into(), "1\n".into()], &[][..]));
-        // Neither outlasts a restart of the headset.
+        // Both are lost when the headset restarts.
         phone::start(device, &Default::default()).unwrap();
         device.sleep(Duration::from_secs(30));
         assert_eq!(told(), ["\n", "\n"]);

@@ -1,10 +1,10 @@
-//! Balanced Latin squares (Williams 1949): orders in which no place and no predecessor is favoured.
+//! Balanced Latin squares (Williams 1949): orders that favour no place and no predecessor.
 
-/// Returns the rows of a balanced Latin square of the numbers below `n`: over all rows each number comes equally often
-/// in each place, and equally often right after each other one. There are `n` rows, or twice as many if `n` is odd
-/// (except for 1).
+/// Returns the rows of a balanced Latin square of the numbers below `n`: over all rows, each number comes equally often
+/// in each place, and equally often right after each other number. There are `n` rows, or `2 * n` if `n` is odd (except
+/// 1).
 pub fn balanced_square(n: usize) -> Vec<Vec<usize>> {
-    // 0, 1, n - 1, 2, n - 2, ...: the differences of neighbours are all different.
+    // 0, 1, n - 1, 2, n - 2, ...: all differences of neighbours are distinct.
     let first: Vec<usize> =
         (0..n).map(|i| if i % 2 == 1 { i.div_ceil(2) } else { (n - i / 2) % n }).collect();
     let mut rows: Vec<Vec<usize>> =

@@ -6,8 +6,8 @@ use yoro_protocol::telemetry::{LOG_TAG, Pictures, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";
-/// Returns the arguments that say which tags logcat gives: telemetry, Meta's runtime with its clock levels, and the
-/// last words of an application that crashes.
+/// Returns the arguments that select logcat's tags: telemetry, Meta's runtime with its clock levels, and the messages
+/// of an application that crashes.
 pub fn filter() -> [String; 6] {
     let all = |tag: &str| format!("{tag}:V");
     [
@@ -20,16 +20,15 @@ pub fn filter() -> [String; 6] {
     ]
 }
 
-/// First words of a simulated log.
+/// The first words of a simulated log.
 pub const SIMULATED_MARK: &str = "--------- simulated";
 
 /// One line of logcat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry<'a> {
-    /// Time in seconds: since 1970 if the log has it so, otherwise good for differences only. `None` if the log has no
-    /// times.
+    /// Time in seconds since 1970 if the log has it so, otherwise only meaningful as differences. `None` without times.
     pub time_s: Option<f64>,
-    /// The process.
+    /// The process's number.
     pub pid: Option<u32>,
     /// The tag.
     pub tag: &'a str,
@@ -48,14 +47,14 @@ pub enum Kind<'a> {
     Damaged,
 }
 
-/// Returns a line that may have bytes of no text, without its end.
+/// Returns a line as text, without its line end. Replaces bytes that are not valid UTF-8.
 pub fn text(line: &[u8]) -> Cow<'_, str> {
     let end = line.iter().rposition(|byte| !matches!(byte, b'\r' | b'\n')).map_or(0, |last| last + 1);
     String::from_utf8_lossy(&line[..end])
 }
 
-/// Reads a line in logcat's formats `threadtime` (with the time as seconds since 1970, as a date, or as a date with its
-/// year), `time`, `brief` and `raw`.
+/// Parses a line in logcat's formats `threadtime` (with the time as seconds since 1970, or as a date with or without
+/// the year), `time`, `brief` and `raw`.
 pub fn parse(line: &str) -> Kind<'_> {
     let line = line.trim_end();
     if line.is_empty() || line.starts_with("--------- ") {
@@ -71,7 +70,7 @@ pub fn parse(line: &str) -> Kind<'_> {
     brief(rest, time_s).or_else(|| thread_time(rest, time_s)).map_or(Kind::Damaged, Kind::Entry)
 }
 
-/// Returns the tag of a line that is only a message.
+/// Returns the tag of a line that is a bare message.
 fn raw_tag(line: &str) -> Option<&'static str> {
     if line.starts_with("v=") || Rating::is_line(line) || Pictures::is_line(line) {
         Some(LOG_TAG)
@@ -82,7 +81,7 @@ fn raw_tag(line: &str) -> Option<&'static str> {
     }
 }
 
-/// Reads `I/YORO    ( 1234): ...`.
+/// Parses `I/YORO    ( 1234): ...`.
 fn brief(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
     let (priority, rest) = text.split_once('/')?;
     let (head, message) = rest.split_once("): ").or_else(|| Some((rest.strip_suffix("):")?, "")))?;
@@ -90,7 +89,7 @@ fn brief(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
     is_priority(priority).then(|| Entry { time_s, pid: pid.trim().parse().ok(), tag: tag.trim(), message })
 }
 
-/// Reads ` 1234  1250 I YORO    : ...`, after the time.
+/// Parses ` 1234  1250 I YORO    : ...`, the part after the time.
 fn thread_time(text: &str, time_s: Option<f64>) -> Option<Entry<'_>> {
     time_s?;
     let (pid, rest) = word(text)?;
@@ -111,7 +110,7 @@ fn word(text: &str) -> Option<(&str, &str)> {
     text.trim_start().split_once(' ').filter(|(word, _)| !word.is_empty())
 }
 
-/// Returns the time at the beginning of a line in seconds, and the rest.
+/// Parses the time at the beginning of a line. Returns seconds and the rest of the line.
 fn time(line: &str) -> Option<(f64, &str)> {
     let (first, rest) = word(line)?;
     if let Ok(seconds) = first.parse::<f64>() {
@@ -122,7 +121,7 @@ fn time(line: &str) -> Option<(f64, &str)> {
     let date = (date.next()?.ok()?, date.next()?.ok()?, date.next());
     let (year, month, day) = match date {
         (year, month, Some(day)) => (year, month, day.ok()?),
-        // Any leap year will do where only differences count.
+        // Any leap year works, since only differences matter.
         (month, day, None) => (2000, month, day),
     };
     // Older versions print a colon after the time in the format `time`.
@@ -132,7 +131,7 @@ fn time(line: &str) -> Option<(f64, &str)> {
     }
     let text = format!("{year:04}-{month:02}-{day:02}T{clock}.{}Z", &fraction[..fraction.len().min(9)]);
     let seconds = humantime::parse_rfc3339(&text).ok()?;
-    // The zone of `-v zone` says nothing about differences.
+    // The time zone of `-v zone` does not affect differences.
     if let Some((zone, after)) = word(rest)
         && zone.starts_with(['+', '-'])
     {

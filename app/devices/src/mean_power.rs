@@ -1,13 +1,14 @@
-//! Plausibility of a measured power.
+//! Checks whether a measured power is plausible.
 
 use std::ops::RangeInclusive;
 
 use super::capture::{Fault, FaultKind, Sample};
 
-/// Plausible power of a phone or headset that renders, in milliwatts. Outside of it a factor is wrong, mostly a unit.
+/// Plausible power of a phone or headset while rendering, in milliwatts. Outside this range current or voltage are
+/// wrong, usually by their unit.
 const PLAUSIBLE_MILLIWATTS: RangeInclusive<f64> = 100.0..=30_000.0;
 
-/// Returns a sentence if a mean power in milliwatts is implausible; `None` while charging.
+/// Returns a sentence if a mean power in milliwatts is implausible, but `None` while charging (up to 0).
 pub fn implausible(milliwatts: f64) -> Option<String> {
     let is_wrong = milliwatts > 0.0 && !PLAUSIBLE_MILLIWATTS.contains(&milliwatts);
     let (least, most) = (PLAUSIBLE_MILLIWATTS.start(), PLAUSIBLE_MILLIWATTS.end() / 1e3);
@@ -19,7 +20,7 @@ pub fn implausible(milliwatts: f64) -> Option<String> {
     })
 }
 
-/// The mean power of a run while it lasts.
+/// The mean power of a run so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeanPower {
     sum_milliwatts: f64,
@@ -27,7 +28,7 @@ pub struct MeanPower {
 }
 
 impl MeanPower {
-    /// Adds a second; one without current or voltage, or with a charger, is ignored.
+    /// Adds one second. Ignores it if current or voltage are missing or a charger is plugged in.
     pub fn add(&mut self, sample: &Sample) {
         if let (Some(current), Some(voltage), None | Some(0)) =
             (sample.current_ma, sample.voltage_mv, sample.plugged)
@@ -37,7 +38,7 @@ impl MeanPower {
         }
     }
 
-    /// Returns the fault if the mean is implausible.
+    /// Returns a fault if the mean power is implausible.
     pub fn fault(&self) -> Option<Fault> {
         let detail = implausible(self.sum_milliwatts / self.seconds.max(1) as f64)?;
         Some(Fault { kind: FaultKind::ImplausiblePower, at_s: None, detail })

@@ -1,30 +1,30 @@
-//! Commands to Android on a device, and its answers.
+//! Commands to Android on a device, and parsers of their output.
 
 use super::adb::{Device, DeviceError, serial_number};
 use super::capture::DeviceInfo;
 use yoro_protocol::telemetry::BatteryStatus;
 use yoro_protocol::{PROPERTY_PREFIX, Settings};
 
-/// The application.
+/// The application's package.
 pub const PACKAGE: &str = "io.github.yoro";
-/// Its activity.
+/// The application's activity.
 const ACTIVITY: &str = "io.github.yoro/android.app.NativeActivity";
-/// Size that the log's buffer is set to, so that it outlasts a lost connection. Android takes it back when it restarts.
+/// Size of the log buffer, which must hold the lines of a lost connection. Android resets it on a restart.
 const LOG_BUFFER: &str = "8M";
 
-/// The kernel's file about the battery, which not every shell may read.
+/// The kernel's file about the battery. Not every shell may read it.
 pub(super) const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
-/// Least voltage that counts as millivolts. Some phones give whole volts, which are too coarse for power.
+/// Minimum voltage that is taken for millivolts. Some phones give whole volts, which are too coarse for power.
 pub const LEAST_MILLIVOLTS: f64 = 100.0;
 
-/// The battery as Android sees it (`dumpsys battery`).
+/// The battery's state as Android reports it (`dumpsys battery`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Battery {
     /// Level in percent.
     pub level_percent: Option<f64>,
     /// Temperature in degrees Celsius.
     pub celsius: Option<f64>,
-    /// Sources of power, as Android's `EXTRA_PLUGGED`: 1 for AC, 2 for USB, 4 for wireless, 8 for a dock, added up.
+    /// Sum of the power sources as in Android's `EXTRA_PLUGGED`: 1 for AC, 2 for USB, 4 for wireless, 8 for a dock.
     pub sources: i32,
     /// Charging status.
     pub status: Option<BatteryStatus>,
@@ -32,36 +32,36 @@ pub struct Battery {
     pub held: bool,
     /// Voltage in millivolts.
     pub voltage_mv: Option<f64>,
-    /// Current as the device gives it; few print it here.
+    /// Current as the device reports it. Few devices print it here.
     pub current_raw: Option<i64>,
     /// Remaining charge in microampere-hours.
     pub charge_uah: Option<f64>,
 }
 
 impl Battery {
-    /// True if the current is not the device's alone: there is a charger, or the battery charges or does not discharge.
-    /// Phones that have switched charging off name no source, but are "not charging".
+    /// True if the battery's current is not the device's: a charger is connected, or the battery charges or does not
+    /// discharge. Phones whose charging is switched off report no source, but the status "not charging".
     pub fn plugged(&self) -> bool {
         self.sources != 0 || matches!(self.status, Some(BatteryStatus::Charging | BatteryStatus::NotCharging))
     }
 }
 
-/// Returns what the device is: maker, model, version, battery capacity.
+/// Returns the device's manufacturer, model, Android version and battery capacity.
 pub fn info(device: &dyn Device) -> Result<DeviceInfo, DeviceError> {
     let property = |name| Ok::<_, DeviceError>(device.shell(&["getprop", name])?.trim().to_owned());
     Ok(DeviceInfo {
-        // The same device has another address with each wireless network.
+        // The name in adb's list is not stable: a device has another address in each wireless network.
         serial: serial_number(device)?,
         manufacturer: property("ro.product.manufacturer")?,
         model: property("ro.product.model")?,
         android: property("ro.build.version.release")?,
-        // Some devices refuse: the capacity is only needed for an additional figure.
+        // Some devices refuse this. The capacity is only needed for an additional figure.
         capacity_mah: device.shell(&["dumpsys", "batterystats"]).ok().and_then(|text| capacity(&text)),
         simulated: device.is_simulated(),
     })
 }
 
-/// Returns the capacity in mAh from the output of `dumpsys batterystats`.
+/// Parses the capacity in mAh in the output of `dumpsys batterystats`.
 fn capacity(text: &str) -> Option<f64> {
     let of = |line: &str| {
         let line = line.trim();
@@ -105,7 +105,7 @@ fn read_battery(text: &str) -> Battery {
     battery
 }
 
-/// Returns the battery, with the kernel's more exact current and voltage. `is_open` remembers if they may be read.
+/// Returns the battery's state with the kernel's more exact values. `is_open` remembers whether they may be read.
 pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Battery, DeviceError> {
     let mut battery = battery(device)?;
     if *is_open != Some(false) {
@@ -115,14 +115,14 @@ pub fn battery_now(device: &dyn Device, is_open: &mut Option<bool>) -> Result<Ba
         battery.current_raw = kernel.current_raw.or(battery.current_raw);
     }
     if battery.current_raw.is_none() {
-        // Android 15 and later.
+        // This command exists since Android 15.
         let said = unless_refused(device.shell(&["cmd", "battery", "get", "-f", "current_now"]))?;
         battery.current_raw = said.trim().parse().ok();
     }
     Ok(battery)
 }
 
-/// Returns current and voltage as the kernel has them; nothing where the shell may not read it.
+/// Returns current and voltage from the kernel, or empty values if the shell may not read them.
 pub fn kernel_battery(device: &dyn Device) -> Result<Battery, DeviceError> {
     Ok(read_kernel_battery(&unless_refused(device.shell(&["cat", KERNEL_BATTERY]))?))
 }
@@ -144,7 +144,7 @@ fn read_kernel_battery(text: &str) -> Battery {
     }
 }
 
-/// Returns an empty answer in place of a refusal.
+/// Returns an empty output if the device refused the command.
 fn unless_refused(said: Result<String, DeviceError>) -> Result<String, DeviceError> {
     match said {
         Err(DeviceError::Refused { .. }) => Ok(String::new()),
@@ -166,19 +166,19 @@ pub struct Keyguard {
     pub showing: bool,
 }
 
-/// Returns the screen lock; none if Android does not report one.
+/// Returns the state of the screen lock. Both values are false if Android does not report it.
 pub fn keyguard(device: &dyn Device) -> Result<Keyguard, DeviceError> {
     Ok(read_keyguard(&unless_refused(device.shell(&["dumpsys", "window", "policy"]))?))
 }
 
 fn read_keyguard(text: &str) -> Keyguard {
-    // Other parts of what is printed have keys of the same names.
+    // Other parts of the output have keys with the same names.
     let own = text.split_once("KeyguardServiceDelegate").map_or("", |(_, own)| own);
     let value = |key: &str| own.split_whitespace().find_map(|word| word.strip_prefix(key)) == Some("true");
     Keyguard { secure: value("secure="), showing: value("showing=") }
 }
 
-/// Returns the boot id, which changes with each start of the device.
+/// Returns the boot id, which changes whenever the device restarts.
 pub fn boot_id(device: &dyn Device) -> Result<String, DeviceError> {
     Ok(device.shell(&["cat", "/proc/sys/kernel/random/boot_id"])?.trim().to_owned())
 }
@@ -195,7 +195,7 @@ pub fn clock(device: &dyn Device) -> Result<String, DeviceError> {
     seconds.map(|seconds| format!("{seconds:.6}")).ok_or_else(refused)
 }
 
-/// Returns the version of an application on the device; none if it is not there.
+/// Returns the version of an application, or `None` if it is not installed.
 pub fn version(device: &dyn Device, package: &str) -> Result<Option<String>, DeviceError> {
     let text = device.shell(&["dumpsys", "package", package])?;
     let version = text.lines().find_map(|line| line.trim().strip_prefix("versionName="));
@@ -211,7 +211,7 @@ pub fn wifi_address(device: &dyn Device) -> Option<String> {
     })
 }
 
-/// Returns the settings in the application's system properties. They override those that it is started with.
+/// Returns the settings in the application's system properties, which override those given at its start.
 pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceError> {
     let property = |line: &str| {
         let (name, value) = line.trim().strip_prefix('[')?.strip_suffix(']')?.split_once("]: [")?;
@@ -220,12 +220,12 @@ pub fn properties(device: &dyn Device) -> Result<Vec<(String, String)>, DeviceEr
     Ok(device.shell(&["getprop"])?.lines().filter_map(property).collect())
 }
 
-/// Sets a system property; an empty one counts as none.
+/// Sets a system property. Setting it to an empty text removes it.
 pub fn set_property(device: &dyn Device, name: &str, value: &str) -> Result<(), DeviceError> {
     device.shell(&["setprop", name, value]).map(drop)
 }
 
-/// Wakes the device up, dismisses the screen lock and enlarges the log buffer. Failures are ignored.
+/// Wakes the device up, dismisses the screen lock and enlarges the log buffer. Ignores failures.
 pub fn wake(device: &dyn Device) {
     let commands: [&[&str]; 3] = [
         &["input", "keyevent", "KEYCODE_WAKEUP"],
@@ -239,7 +239,7 @@ pub fn wake(device: &dyn Device) {
     }
 }
 
-/// Restarts the application with exactly these settings; a settings file on the device is ignored.
+/// Restarts the application with exactly these settings. It ignores a settings file on the device.
 pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError> {
     let pairs = settings.pairs();
     let mut words = vec!["am", "start", "-S", "-W", "-n", ACTIVITY];
@@ -249,7 +249,7 @@ pub fn start(device: &dyn Device, settings: &Settings) -> Result<(), DeviceError
     start_by(device, &words, ACTIVITY)
 }
 
-/// Restarts another application; `activity` with or without its package.
+/// Restarts another application. `activity` may include the package.
 pub fn start_other(device: &dyn Device, package: &str, activity: &str) -> Result<(), DeviceError> {
     let component = if activity.contains('/') { activity.into() } else { format!("{package}/{activity}") };
     start_by(device, &["am", "start", "-S", "-W", "-n", &component], &component)
@@ -275,9 +275,9 @@ pub fn stop(device: &dyn Device, package: &str) -> Result<(), DeviceError> {
     device.shell(&["am", "force-stop", package]).map(drop)
 }
 
-/// Returns the processes of an application; none while it does not run.
+/// Returns the process numbers of an application, empty if it does not run.
 pub fn processes(device: &dyn Device, package: &str) -> Result<Vec<u32>, DeviceError> {
-    // `pidof` exits with 1 if there is no process.
+    // `pidof` exits with 1 if it finds no process.
     let pids = unless_refused(device.shell(&["pidof", package]))?;
     Ok(pids.split_whitespace().filter_map(|pid| pid.parse().ok()).collect())
 }
@@ -302,14 +302,14 @@ mod tests {
         assert_eq!(capacity("  Capacity: unknown\n"), None);
     }
 
-    /// Output of a phone with a charger whose charging is switched off (VR-25/acc issue 112), and after
+    /// The output of a phone with a charger whose charging is switched off (VR-25/acc issue 112), and the same after
     /// `dumpsys battery unplug`.
     #[test]
     fn a_battery_that_does_not_discharge_counts_as_plugged_in() {
         let text = "Current Battery Service state:\n  AC powered: false\n  USB powered: false\n  Wireless powered: false\n  Charge counter: 3124799\n  status: 4\n  level: 89\n  voltage: 4218\n  temperature: 324\n";
         assert!(read_battery(text).plugged() && !read_battery(text).held);
         assert!(!read_battery(&text.replace("status: 4", "status: 3")).plugged());
-        // Full, and just taken off.
+        // The battery is full, and the charger was just unplugged.
         assert!(!read_battery(&text.replace("status: 4", "status: 5")).plugged());
         let held = text.replace("state:\n", "state:\n  (UPDATES STOPPED -- use 'reset' to restart)\n");
         assert!(read_battery(&held).held);

@@ -1,6 +1,6 @@
-//! Tables and settings as files: CSV and TOML, and what is wrong with them in a sentence.
+//! CSV and TOML, and descriptions of mistakes in such files.
 
-/// Returns rows of cells as CSV.
+/// Formats rows of cells as CSV.
 pub fn csv_text<Row>(rows: impl IntoIterator<Item = Row>) -> String
 where
     Row: IntoIterator,
@@ -11,7 +11,7 @@ where
     String::from_utf8(table.into_inner().expect("memory takes it")).expect("all cells are text")
 }
 
-/// Returns the line, from 1, and what is wrong there.
+/// Returns the line number, from 1, and what is wrong there.
 pub fn csv_mistake(error: &csv::Error) -> (u64, String) {
     let line = error.position().map_or(1, csv::Position::line);
     let what = match error.kind() {
@@ -23,7 +23,7 @@ pub fn csv_mistake(error: &csv::Error) -> (u64, String) {
     (line, what)
 }
 
-/// Returns the line, from 1, and what is wrong there.
+/// Returns a sentence with the line number, from 1, and what is wrong there.
 pub fn toml_mistake(text: &str, error: &toml::de::Error) -> String {
     let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].matches('\n').count() + 1);
     format!("line {line}: {}", error.message().trim().replace('\n', " "))

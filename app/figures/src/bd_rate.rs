@@ -1,23 +1,23 @@
 //! Bjøntegaard's measures of the distance between two rate-distortion curves.
 //!
-//! Source: G. Bjøntegaard, "Calculation of average PSNR differences between RD-curves", VCEG-M33, 2001. A cubic
-//! through the points (least squares for more than four) of the logarithm of the rate over the quality is
-//! integrated over the qualities that both curves reach.
+//! Source: G. Bjøntegaard, "Calculation of average PSNR differences between RD-curves", VCEG-M33, 2001. The logarithm
+//! of the rate is fitted by a cubic in the quality (by least squares where there are more than four points), and the
+//! cubics are integrated over the range of qualities that both curves reach.
 
 /// The mean difference of rates at equal quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BdRate {
-    /// Rate of the tested curve less that of the anchor, as a share of the anchor's: -0.2 is 20 % less.
+    /// The rate of the tested curve minus that of the anchor, as a share of the anchor's: -0.2 means 20 % less.
     pub share: f64,
-    /// The qualities over which it is the mean.
+    /// The range of qualities over which the mean is taken.
     pub quality: [f64; 2],
-    /// The share of the anchor's range of qualities that both reach, 0 to 1.
+    /// The share of the anchor's range of qualities that both curves reach, 0 to 1.
     pub overlap: f64,
 }
 
-/// Returns the mean difference of the rate of `test` against `anchor`. Points are (rate, quality), rate above 0, in any
-/// order. `None` with fewer than four points, or when the curves have no quality in common: then there is no rate at
-/// which they would be equal.
+/// Returns the mean difference between the rates of `test` and `anchor`. Points are (rate, quality) in any order, with
+/// rates above 0. `None` if there are fewer than four points, or if the curves have no quality in common, so that their
+/// rates cannot be compared at equal quality.
 pub fn bd_rate(anchor: &[(f64, f64)], test: &[(f64, f64)]) -> Option<BdRate> {
     let (a, b) = (Curve::fit(anchor)?, Curve::fit(test)?);
     let (low, high) = (a.low.max(b.low), a.high.min(b.high));
@@ -32,7 +32,7 @@ pub fn bd_rate(anchor: &[(f64, f64)], test: &[(f64, f64)]) -> Option<BdRate> {
     })
 }
 
-/// Logarithm of the rate as a cubic of the quality.
+/// The logarithm of the rate as a cubic in the quality.
 struct Curve {
     /// Coefficients of 1, t, t², t³ with t = quality - low.
     coefficients: [f64; 4],
@@ -49,7 +49,7 @@ impl Curve {
         if points.len() < 4 || high <= low {
             return None;
         }
-        // Normal equations; counted from the lowest quality and in its range they are well conditioned.
+        // The normal equations, well conditioned since qualities are counted from the lowest in units of their range.
         let range = high - low;
         let mut system = [[0.0; 5]; 4];
         for (quality, rate) in points {
@@ -79,7 +79,7 @@ impl Curve {
     }
 }
 
-/// Solves by Gaussian elimination with partial pivoting; the last column is the right-hand side. `None` when singular.
+/// Solves by Gaussian elimination with partial pivoting; the last column is the right-hand side. `None` if singular.
 fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     for column in 0..4 {
         let pivot = (column..4).max_by(|a, b| m[*a][column].abs().total_cmp(&m[*b][column].abs()))?;
@@ -100,7 +100,7 @@ fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     Some(std::array::from_fn(|i| m[i][4] / m[i][i]))
 }
 
-/// Returns offset and slope of the straight line of least squares; `None` with fewer than two different x.
+/// Returns the offset and slope of the least-squares line; `None` if there are fewer than two different x.
 pub fn line_through(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
@@ -114,8 +114,7 @@ pub fn line_through(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// The points by which implementations of the measure are commonly checked, and NumPy's polyfit and polyint on
-    /// them.
+    /// The points commonly used to check implementations of the measure, with results from NumPy's polyfit and polyint.
     #[test]
     fn agrees_with_known_values() {
         let anchor = [(686.76, 40.28), (309.58, 37.18), (157.11, 34.24), (85.95, 31.42)];

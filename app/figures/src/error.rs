@@ -10,7 +10,7 @@ pub enum ReportError {
     /// A file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The template and the data do not fit.
+    /// The template and the data do not match.
     #[error("cannot fill in the report's template: {0}")]
     Template(#[from] minijinja::Error),
     /// A figure could not be drawn.

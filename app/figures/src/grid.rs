@@ -4,49 +4,49 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-/// The kind of a cell, which decides its look on the page.
+/// The kind of a cell, which decides how it looks on the page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// A name or a fact.
     #[default]
     Plain,
-    /// A figure of ours.
+    /// One of our figures.
     Ours,
-    /// A baseline that ours is compared with.
+    /// A baseline that our figures are compared with.
     Base,
-    /// A figure of the paper's.
+    /// One of the paper's figures.
     Paper,
 }
 
 /// A cell.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Cell {
-    /// Empty where there is nothing to say.
+    /// The text; empty if there is nothing to show.
     pub text: String,
-    /// Its kind.
+    /// The kind.
     pub kind: Kind,
-    /// Columns that it takes.
+    /// The number of columns that the cell spans.
     pub span: usize,
 }
 
 impl Cell {
-    /// Returns a name or a fact.
+    /// Returns a cell with a name or a fact.
     pub fn plain(text: impl Into<String>) -> Cell {
         Cell { text: text.into(), kind: Kind::Plain, span: 1 }
     }
 
-    /// Returns a figure of ours; a dash without one.
+    /// Returns a cell with one of our figures, or a dash if it is `None`.
     pub fn ours(value: Option<impl Into<String>>) -> Cell {
         Cell { text: or_dash(value), kind: Kind::Ours, span: 1 }
     }
 
-    /// Returns a baseline; a dash without one.
+    /// Returns a cell with a baseline, or a dash if it is `None`.
     pub fn base(value: Option<impl Into<String>>) -> Cell {
         Cell { text: or_dash(value), kind: Kind::Base, span: 1 }
     }
 
-    /// The paper's; a dash where it says nothing.
+    /// Returns a cell with one of the paper's figures, or a dash if it is `None`.
     pub fn paper(value: Option<impl Into<String>>) -> Cell {
         Cell { text: or_dash(value), kind: Kind::Paper, span: 1 }
     }
@@ -56,39 +56,39 @@ fn or_dash(value: Option<impl Into<String>>) -> String {
     value.map_or_else(|| "–".to_owned(), Into::into)
 }
 
-/// A column's head.
+/// The head of a column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Column {
-    /// Quantity and unit.
+    /// The quantity and its unit.
     pub name: String,
-    /// Text, not numbers.
+    /// True if the column holds text, which is aligned to the left, rather than numbers.
     pub left: bool,
 }
 
 /// A row.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Line {
-    /// The cells, as many as columns, counting spans.
+    /// The cells. Their spans add up to the number of columns.
     pub cells: Vec<Cell>,
-    /// A line above separates it from other things.
+    /// True if a rule above the row separates it from the rows before.
     pub first: bool,
 }
 
 /// A table.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Table {
-    /// Its heading.
+    /// The heading.
     pub title: String,
-    /// Heads.
+    /// The heads of the columns.
     pub columns: Vec<Column>,
-    /// Rows, from top to bottom.
+    /// The rows, from top to bottom.
     pub lines: Vec<Line>,
     /// A note for the reader.
     pub note: String,
 }
 
 impl Table {
-    /// Returns a table without rows. Names of columns that start with `<` are those of text.
+    /// Returns a table without rows. A column name that starts with `<` marks a column of text.
     pub fn new(title: impl Into<String>, columns: &[impl AsRef<str>]) -> Table {
         let column = |name: &str| match name.strip_prefix('<') {
             Some(name) => Column { name: name.into(), left: true },
@@ -103,12 +103,12 @@ impl Table {
         self.push_grouped(cells, false);
     }
 
-    /// Appends a row with a line above.
+    /// Appends a row with a rule above it.
     pub fn push_first(&mut self, cells: Vec<Cell>) {
         self.push_grouped(cells, true);
     }
 
-    /// Appends a row; the first one of a group has a line above.
+    /// Appends a row, with a rule above it if it is the first of a group.
     pub fn push_grouped(&mut self, cells: Vec<Cell>, first: bool) {
         self.lines.push(Line { cells, first });
     }
@@ -126,7 +126,7 @@ impl Table {
         }
     }
 
-    /// Appends a row that says why it has no figures, after its first cells.
+    /// Appends a row whose figures are replaced by the reason for their absence.
     pub fn push_reason(&mut self, mut cells: Vec<Cell>, reason: &str) {
         let span = self.columns.len().saturating_sub(cells.len()).max(1);
         cells.push(Cell { text: format!("not measured: {reason}"), kind: Kind::Base, span });

@@ -1,6 +1,6 @@
-//! Inference from samples: intervals, paired tests, effect size, power, equivalence.
+//! Statistical inference: intervals, paired tests, effect size, power, equivalence.
 //!
-//! Values agree with SciPy, statsmodels and mpmath to 1e-6 (`vectors/inference.json`).
+//! The values agree with SciPy, statsmodels and mpmath to 1e-6 (`vectors/inference.json`).
 
 use crate::stats::Summary;
 use crate::student::{bisect, noncentral_t_cdf, t_cdf, t_quantile};
@@ -16,18 +16,18 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the interval with both ends mapped by a growing function.
+    /// Returns the interval with both ends mapped by an increasing function.
     pub fn map(self, f: impl Fn(f64) -> f64) -> Interval {
         Interval { low: f(self.low), high: f(self.high) }
     }
 
-    /// True if all of it lies strictly inside `other`.
+    /// True if the whole interval lies strictly inside `other`.
     pub fn inside(self, other: Interval) -> bool {
         other.low < self.low && self.high < other.high
     }
 }
 
-/// The mean of a sample, and how sure it is: of plain samples, or of the differences of a paired comparison.
+/// The mean and scatter of a sample: of plain values, or of the differences of a paired comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Number of values, at least one.
@@ -39,13 +39,13 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Returns the sample of these values; `None` without values, or if one is not finite.
+    /// Returns the sample of these values; `None` if there are none, or if one is not finite.
     pub fn of(values: &[f64]) -> Option<Sample> {
         Summary::of(values).map(|summary| Sample { n: summary.count, mean: summary.mean, std: summary.std })
     }
 
-    /// Returns the sample of the differences a - b, pair by pair; `None` without pairs, or if a value is not finite.
-    /// Differences that are equal but for the rounding of a and b, such as 4.1 - 3.1 and 3.2 - 2.2, have no scatter.
+    /// Returns the sample of the differences a - b of the pairs; `None` if there are none, or if a value is not finite.
+    /// Differences that are equal up to the rounding of a and b, such as 4.1 - 3.1 and 3.2 - 2.2, count as equal.
     pub fn of_differences(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<Sample> {
         let mut largest = 0.0f64;
         let differences = pairs.into_iter().map(|(a, b)| {
@@ -53,7 +53,7 @@ impl Sample {
             a - b
         });
         let sample = Sample::of(&differences.collect::<Vec<_>>())?;
-        // A value may be a mean itself, with the rounding of a sum of dozens.
+        // A value may itself be a mean, with the rounding error of a sum of dozens of values.
         let rounding = 64.0 * f64::EPSILON * largest;
         Some(if sample.std > rounding { sample } else { Sample { std: 0.0, ..sample } })
     }
@@ -62,36 +62,36 @@ impl Sample {
         (self.n > 1).then(|| (self.n - 1) as f64)
     }
 
-    /// Returns the standard deviation of the mean; `None` of a single value.
+    /// Returns the standard deviation of the mean; `None` for a single value.
     pub fn standard_error(&self) -> Option<f64> {
         self.df().map(|_| self.std / (self.n as f64).sqrt())
     }
 
-    /// Returns the interval of the mean by Student's t at a confidence between 0 and 1; `None` of a single value.
+    /// Returns the interval of the mean by Student's t at a confidence between 0 and 1; `None` for a single value.
     pub fn interval(&self, confidence: f64) -> Option<Interval> {
         let reach = t_quantile(0.5 + confidence / 2.0, self.df()?) * self.standard_error()?;
         Some(Interval { low: self.mean - reach, high: self.mean + reach })
     }
 
-    /// Returns Student's t of the mean against a value. `None` of a single value, or of values that are all equal.
+    /// Returns Student's t of the mean against a value. `None` for a single value, or if all values are equal.
     pub fn t(&self, against: f64) -> Option<f64> {
         let error = self.standard_error()?;
         (error > 0.0).then(|| (self.mean - against) / error)
     }
 
-    /// Returns the two-sided p of the t-test against 0: of differences, the paired t-test.
+    /// Returns the two-sided p of the t-test against 0, which for differences is the paired t-test.
     pub fn p(&self) -> Option<f64> {
         Some(2.0 * t_cdf(-self.t(0.0)?.abs(), self.df()?))
     }
 
-    /// Returns Cohen's d_z: the mean in standard deviations.
+    /// Returns Cohen's d_z: the mean divided by the standard deviation.
     pub fn d_z(&self) -> Option<f64> {
         (self.n > 1 && self.std > 0.0).then(|| self.mean / self.std)
     }
 
-    /// The interval of d_z at a confidence between 0 and 1: of the noncentral t distributions, those under which the t
-    /// found is not too far out (Steiger and Fouladi 1997). `None` as of [`Sample::t`], and of a confidence so near to
-    /// 1 that f64 does not tell it from 1.
+    /// Returns the confidence interval of d_z for a confidence between 0 and 1: the noncentral t distributions under
+    /// which the observed t is not too extreme (Steiger and Fouladi 1997). `None` in the cases of [`Sample::t`], and
+    /// for a confidence so close to 1 that f64 cannot tell them apart.
     pub fn d_z_interval(&self, confidence: f64) -> Option<Interval> {
         let (t, df) = (self.t(0.0)?, self.df()?);
         let tail = (1.0 - confidence) / 2.0;
@@ -108,14 +108,14 @@ impl Sample {
         Some(interval.map(|delta| delta / root))
     }
 
-    /// The power that the paired t-test had if the true effect were the one found ("post hoc"). It says nothing that p
-    /// does not: a power planned before, [`pairs_for_power`], does.
+    /// Returns the power of the paired t-test if the true effect were the observed one ("post hoc"). It says nothing
+    /// beyond p; to plan a study, use [`pairs_for_power`].
     pub fn power(&self, alpha: f64) -> Option<f64> {
         Some(power_of_t_test(self.d_z()?, self.n, alpha))
     }
 
-    /// Tests whether the mean lies inside `bounds` by two one-sided t-tests (Schuirmann 1987, Lakens 2017). `None` as
-    /// of [`Sample::t`].
+    /// Tests whether the mean lies inside `bounds` by two one-sided t-tests (Schuirmann 1987, Lakens 2017). `None` in
+    /// the cases of [`Sample::t`].
     pub fn equivalence(&self, bounds: Interval, alpha: f64) -> Option<Equivalence> {
         let df = self.df()?;
         let (t_lower, t_upper) = (self.t(bounds.low)?, self.t(bounds.high)?);
@@ -134,74 +134,74 @@ impl Sample {
     }
 }
 
-/// The result of two one-sided tests.
+/// The result of two one-sided tests for equivalence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Equivalence {
-    /// Differences within these do not matter.
+    /// The bounds within which differences do not matter.
     pub bounds: Interval,
-    /// Against the lower bound.
+    /// Student's t against the lower bound.
     pub t_lower: f64,
-    /// One-sided p of the mean being above the lower bound.
+    /// One-sided p for the mean being above the lower bound.
     pub p_lower: f64,
-    /// Against the upper bound.
+    /// Student's t against the upper bound.
     pub t_upper: f64,
-    /// One-sided p of the mean being below the upper bound.
+    /// One-sided p for the mean being below the upper bound.
     pub p_upper: f64,
-    /// The larger of both: the test's p.
+    /// The p of the whole test: the larger of the two.
     pub p: f64,
-    /// The interval at confidence 1 - 2 alpha: inside the bounds just when `equivalent`.
+    /// The interval at confidence 1 - 2 alpha. It lies inside the bounds exactly if `equivalent` is true.
     pub interval: Interval,
-    /// `p` is below alpha.
+    /// True if `p` is below alpha.
     pub equivalent: bool,
 }
 
-/// The scatter that an interval of the mean of several blocks rests on.
+/// The scatter on which the interval of a mean over several blocks is based.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Basis {
-    /// The scatter of repetitions around the mean of their block: what comes out when these blocks are measured again.
+    /// The scatter of repetitions around the mean of their block: what to expect when these blocks are measured again.
     Repetitions,
-    /// The scatter of the blocks, each measured once: what comes out with other blocks of this kind.
+    /// The scatter of the blocks, each measured once: what to expect from other blocks of this kind.
     Blocks,
 }
 
-/// An interval and on what it rests.
+/// An interval, and the scatter that it is based on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BlockInterval {
     /// The interval.
     #[serde(flatten)]
     pub interval: Interval,
-    /// The scatter that it rests on.
+    /// The scatter that it is based on.
     pub basis: Basis,
 }
 
 impl BlockInterval {
-    /// Returns the interval with both ends mapped by a growing function.
+    /// Returns the interval with both ends mapped by an increasing function.
     pub fn map(self, f: impl Fn(f64) -> f64) -> BlockInterval {
         BlockInterval { interval: self.interval.map(f), ..self }
     }
 }
 
-/// The mean of the means of blocks, each block weighing the same.
+/// The mean of the block means, all blocks weighing the same.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Blocks {
     /// Number of blocks.
     pub blocks: usize,
-    /// Number of values in all of them.
+    /// Number of values in all blocks together.
     pub n: usize,
-    /// The mean.
+    /// The mean of the block means.
     pub mean: f64,
-    /// Its interval; none of a single value.
+    /// The interval of the mean; `None` for a single value.
     pub interval: Option<BlockInterval>,
 }
 
 impl Blocks {
-    /// Returns the mean of blocks and its interval at a confidence between 0 and 1; empty blocks do not count. `None`
-    /// without any value, or if one is not finite.
+    /// Returns the mean of the blocks and its interval at a confidence between 0 and 1; empty blocks do not count.
+    /// `None` if there are no values, or if one is not finite.
     ///
-    /// As soon as one block has two values, the interval rests on repetitions: blocks are fixed, the scatter around
-    /// their means is pooled (as in the analysis of variance with a fixed effect for each block). With one value each,
-    /// it rests on the blocks.
+    /// If any block has two or more values, the interval is based on repetitions: the blocks are fixed, and the scatter
+    /// around their means is pooled (as in an analysis of variance with a fixed effect for each block). If every block
+    /// has a single value, it is based on the blocks.
     pub fn of(blocks: &[Vec<f64>], confidence: f64) -> Option<Blocks> {
         let filled = blocks.iter().filter(|block| !block.is_empty());
         let samples: Vec<Sample> = filled.map(|block| Sample::of(block)).collect::<Option<_>>()?;
@@ -225,8 +225,8 @@ impl Blocks {
     }
 }
 
-/// Returns the power of the two-sided paired t-test at level `alpha` with `n` pairs, if the true effect is `d_z`;
-/// `alpha` of fewer than two pairs.
+/// Returns the power of the two-sided paired t-test at level `alpha` with `n` pairs if the true effect is `d_z`; with
+/// fewer than two pairs it is `alpha`.
 fn power_of_t_test(d_z: f64, n: usize, alpha: f64) -> f64 {
     if n < 2 {
         return alpha;
@@ -237,8 +237,8 @@ fn power_of_t_test(d_z: f64, n: usize, alpha: f64) -> f64 {
     1.0 - noncentral_t_cdf(critical, df, delta) + noncentral_t_cdf(-critical, df, delta)
 }
 
-/// The smallest number of pairs that gives the two-sided paired t-test at level `alpha` a power, if the true effect is
-/// `d_z`. `None` if a million are not enough.
+/// Returns the smallest number of pairs that gives the two-sided paired t-test at level `alpha` this power if the true
+/// effect is `d_z`; `None` if a million are not enough.
 pub fn pairs_for_power(d_z: f64, power: f64, alpha: f64) -> Option<usize> {
     const MOST: usize = 1_000_000;
     let enough = |n: usize| power_of_t_test(d_z, n, alpha) >= power;
@@ -396,7 +396,7 @@ mod tests {
         }
     }
 
-    /// Values from R's manual for its data set `sleep`, and from G*Power's manual for its first example.
+    /// The values of R's manual for its data set `sleep`, and of G*Power's manual for its first example.
     #[test]
     fn published_examples() {
         let sleep = &vectors().paired[0];
@@ -409,8 +409,8 @@ mod tests {
         assert_eq!(pairs_for_power(0.5, 0.8, 0.05), Some(34));
     }
 
-    /// "You Only Render Once", section "User Study": everything printed follows from n, t and the interval, if that
-    /// is read as one of 95 %; an interval of 90 %, which goes with two one-sided tests, would give another t.
+    /// "You Only Render Once", section "User Study": everything printed follows from n, t and the interval, if that is
+    /// read as a 95 % interval. A 90 % interval, which belongs to two one-sided tests, would give another t.
     #[test]
     fn the_papers_user_study_agrees_with_itself() {
         for printed in paper::STUDY {
@@ -427,7 +427,7 @@ mod tests {
                 "an interval of 90 % would be narrower"
             );
             let tost = sample.equivalence(Interval { low: -0.5, high: 0.5 }, 0.05).unwrap();
-            // The figures have four digits: t near 14 is uncertain by some hundredths.
+            // The figures have four digits, so that a t near 14 is uncertain by a few hundredths.
             assert!((tost.p_lower / printed.p_lower).ln().abs() < 0.1, "{}", tost.p_lower);
             assert!((tost.p_upper / printed.p_upper).ln().abs() < 0.1, "{}", tost.p_upper);
         }
@@ -459,7 +459,7 @@ mod tests {
         assert!(sample.std > 0.0);
     }
 
-    /// The work was once proportional to |t|, and without an end at a confidence that is 1 in f64.
+    /// The work used to grow in proportion to |t|, and never ended for a confidence that is 1 in f64.
     #[test]
     fn extreme_samples_and_levels_end() {
         let sample = Sample { n: 3, mean: 1.0, std: 1e-12 };

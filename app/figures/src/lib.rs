@@ -1,8 +1,8 @@
 //! Statistics, plots, tables and self-contained pages for measurements.
 //!
-//! It takes numbers, titles and captions, and gives SVG, HTML and Markdown. [`inference`] has intervals and tests,
+//! The crate turns numbers, titles and captions into SVG, HTML and Markdown. [`inference`] has intervals and tests,
 //! [`bd_rate`] compares rate-distortion curves, [`plot`] draws, [`grid`] holds tables, [`page`] fills in templates, and
-//! [`paper`] has the figures of the paper that stand beside ours.
+//! [`paper`] has the paper's figures, which are printed beside ours.
 //!
 //! This crate must never know how anything is rendered or measured.
 

@@ -1,4 +1,4 @@
-//! Pages: templates filled in, with figures drawn into them. Nothing on them is loaded from elsewhere.
+//! Self-contained pages: filled-in templates with embedded figures. A page loads nothing from elsewhere.
 
 use minijinja::{Environment, UndefinedBehavior, Value, context};
 
@@ -9,16 +9,16 @@ use crate::plot::Figure;
 /// A page's own template, which extends `base.html.j2` and may import from `parts.html.j2`.
 #[derive(Clone, Copy, Debug)]
 pub struct Template {
-    /// Its file's name; the ending `.html.j2` turns on HTML escaping.
+    /// The name of its file; the extension `.html.j2` turns on HTML escaping.
     pub name: &'static str,
     /// Its text.
     pub text: &'static str,
 }
 
-/// Returns the page made of a template and of what it needs. The title and the plots' colours come with it.
+/// Fills in a template and returns the page. The title and the plots' colours are added to `page`, the template's data.
 ///
 /// # Errors
-/// [`ReportError::Template`] when template and data do not fit.
+/// [`ReportError::Template`] if template and data do not match.
 pub fn fill(template: Template, title: &str, page: Value) -> Result<String, ReportError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
@@ -34,10 +34,10 @@ pub fn fill(template: Template, title: &str, page: Value) -> Result<String, Repo
     Ok(environment.get_template(template.name)?.render(context! { ..page, ..common })?)
 }
 
-/// Returns the figures as the macro `plots` of `parts.html.j2` takes them.
+/// Returns the figures in the form that the macro `plots` of `parts.html.j2` expects.
 ///
 /// # Errors
-/// [`ReportError::Plot`] when one cannot be drawn.
+/// [`ReportError::Plot`] if one cannot be drawn.
 pub fn figures(figures: &[Figure]) -> Result<Vec<Value>, ReportError> {
     let figure = |figure: &Figure| {
         Ok(context! {
@@ -50,7 +50,7 @@ pub fn figures(figures: &[Figure]) -> Result<Vec<Value>, ReportError> {
     figures.iter().map(figure).collect()
 }
 
-/// Returns an SVG document as a part of a page: without a size of its own and without the namespace.
+/// Returns an SVG document in a form that can be embedded in a page: without a size and without the namespace.
 fn inline(svg: &str) -> String {
     let start = svg.find("viewBox").unwrap_or(0);
     format!("<svg {}", svg[start..].replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1))

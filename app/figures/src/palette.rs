@@ -1,7 +1,7 @@
-//! One colour and one mark for each method, the same on all plots of all pages.
+//! One colour and one mark for each method, the same in all plots of all pages.
 //!
-//! Colours follow Okabe and Ito's palette for all kinds of colour vision, darkened or lightened for contrast with
-//! the page; marks tell apart what colours do not.
+//! The colours follow Okabe and Ito's palette, which suits all kinds of colour vision, darkened or lightened for
+//! contrast with the page. Marks distinguish what colours do not.
 
 /// The outline of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,16 +20,16 @@ pub enum Shape {
     Cross,
 }
 
-/// Colour and mark of a method.
+/// The colour and mark of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// Colour on a light page and in files.
+    /// The colour on a light page and in files.
     pub light: u32,
-    /// Colour on a dark page.
+    /// The colour on a dark page.
     pub dark: u32,
-    /// Its mark.
+    /// The shape of the mark.
     pub shape: Shape,
-    /// Only the outline of the mark is drawn.
+    /// True if only the outline of the mark is drawn.
     pub hollow: bool,
 }
 
@@ -37,17 +37,17 @@ const fn look(light: u32, dark: u32, shape: Shape) -> Look {
     Look { light, dark, shape, hollow: false }
 }
 
-/// Colours of a figure that belong to no method: on a light page and on a dark one.
+/// The background of figures. Here and below: the colour on a light page, then on a dark one.
 pub const BACKGROUND: (u32, u32) = (0xFFFFFF, 0x1F2124);
-/// Axes and their text.
+/// The colour of axes and their text.
 pub const TEXT: (u32, u32) = (0x1D1E20, 0xE6E6E3);
-/// Grid lines.
+/// The colour of grid lines.
 pub const GRID: (u32, u32) = (0xDCDCD8, 0x383B40);
 
 /// The colour of lines that belong to no method.
 pub const NEUTRAL: (u32, u32) = (0x777A80, 0x9DA1A8);
 
-/// Looks of methods and patchers by name. Two that do the same thing in different suites look the same.
+/// The looks of methods and patchers by name. Names that stand for the same thing in different suites share a look.
 const LOOKS: [(&[&str], Look); 16] = [
     (&["conventional", "stereo-rgb"], look(0x3D3F44, 0xD2D2CE, Shape::Square)),
     (&["mono", "same image", "mono-rgb"], Look { hollow: true, ..look(NEUTRAL.0, NEUTRAL.1, Shape::Circle) }),
@@ -74,7 +74,7 @@ const OTHERS: [Look; 4] = [
     look(0x8B008C, 0xD98BD9, Shape::Cross),
 ];
 
-/// Returns the look of the method or patcher of this name. Unknown names share a few looks.
+/// Returns the look of the method or patcher with this name. Unknown names share a few looks.
 pub fn of(name: &str) -> Look {
     let name = name.strip_prefix("patcher-").unwrap_or(name);
     let known = LOOKS.iter().find(|(names, _)| names.contains(&name)).map(|(_, look)| *look);
@@ -84,7 +84,7 @@ pub fn of(name: &str) -> Look {
     })
 }
 
-/// Returns every colour that a figure can have, on a light page and on a dark one.
+/// Returns every colour that a figure can have: on a light page and on a dark one.
 pub fn colors() -> Vec<(u32, u32)> {
     let looks = LOOKS.iter().map(|(_, look)| look).chain(&OTHERS).map(|look| (look.light, look.dark));
     let mut all: Vec<(u32, u32)> = [BACKGROUND, TEXT, GRID].into_iter().chain(looks).collect();
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(of("something new").shape, Shape::Cross);
     }
 
-    /// Contrast ratio of WCAG 2 against the background: 3 is its minimum for graphics.
+    /// The contrast ratio of WCAG 2 against the background, whose minimum for graphics is 3.
     #[test]
     fn marks_stand_out_from_the_page() {
         let luminance = |rgb: u32| {

@@ -1,30 +1,30 @@
-//! The paper's own figures, to be printed beside ours and marked as the paper's.
+//! The paper's own figures, which are printed beside ours and marked as the paper's.
 //!
-//! Source: "You Only Render Once", MobiSys '25: image quality per scene over 29,128 image groups, and mean frame
-//! rates over six phones and a Quest 2. Their scenes, cameras and machines are not ours: the figures say what to
-//! expect, not what to reproduce.
+//! Source: "You Only Render Once", MobiSys '25: image quality per scene over 29,128 image groups, and mean frame rates
+//! over six phones and a Quest 2. The scenes, cameras and machines are not ours: the figures say what to expect, not
+//! what to reproduce.
 
 use serde::Serialize;
 
 /// The paper's figures for one of its scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PaperScene {
-    /// Its name in the paper.
+    /// The scene's name in the paper.
     pub name: &'static str,
     /// PSNR of the synthesized eye in dB.
     pub psnr: f64,
     /// SSIM of the synthesized eye; the paper does not name the window.
     pub ssim: f64,
-    /// Frames a second, YORO.
+    /// Frames per second of YORO.
     pub fps_yoro: f64,
-    /// Frames a second, conventional: two full passes.
+    /// Frames per second of conventional rendering: two full passes.
     pub fps_conventional: f64,
-    /// Frames a second, the hybrid rendering of Fink et al.
+    /// Frames per second of the hybrid rendering of Fink et al.
     pub fps_fink: f64,
 }
 
 impl PaperScene {
-    /// Returns the frame time of YORO over frame time of conventional rendering.
+    /// Returns the frame time of YORO divided by that of conventional rendering.
     pub fn frame_time_ratio(&self) -> f64 {
         self.fps_conventional / self.fps_yoro
     }
@@ -49,15 +49,15 @@ const fn scene(name: &'static str, psnr: f64, ssim: f64, fps: [f64; 3]) -> Paper
     PaperScene { name, psnr, ssim, fps_yoro: fps[0], fps_conventional: fps[1], fps_fink: fps[2] }
 }
 
-/// Mean frame time over its devices in ms against millions of triangles ("Computational Complexity").
+/// Mean frame times over the paper's devices by number of triangles ("Computational Complexity").
 pub struct Complexity {
-    /// Triangles in millions.
+    /// Millions of triangles.
     pub triangles: [f64; 9],
-    /// Systems: the method here that stands for each, and times in ms.
+    /// The systems: the method here that corresponds to each, and its times in ms.
     pub systems: [(&'static str, [f64; 9]); 4],
 }
 
-/// Its four systems. "51.40 %" in the text leaves out the smallest scene.
+/// The paper's four systems. The text's "51.40 %" leaves out the smallest scene.
 pub const COMPLEXITY: Complexity = Complexity {
     triangles: [1.584, 3.024, 4.464, 5.904, 7.344, 8.784, 10.224, 11.664, 13.104],
     systems: [
@@ -68,7 +68,7 @@ pub const COMPLEXITY: Complexity = Complexity {
     ],
 };
 
-/// The paper's name of a system, by the method here that stands for it.
+/// Returns the paper's name for the system that a method here corresponds to.
 pub fn system(method: &str) -> &'static str {
     match method {
         "yoro-paper" => "YORO",
@@ -79,7 +79,7 @@ pub fn system(method: &str) -> &'static str {
     }
 }
 
-/// CPU load in percent and memory in MB per scene, in the order of [`SCENES`]: YORO, conventional, Fink et al.
+/// CPU load and memory in one scene. Each array has YORO, conventional rendering and Fink et al.
 pub struct Overhead {
     /// CPU load in percent.
     pub cpu: [f64; 3],
@@ -87,7 +87,7 @@ pub struct Overhead {
     pub memory: [f64; 3],
 }
 
-/// "System Overhead" and Table "image quality".
+/// The overhead in each of [`SCENES`]: "System Overhead" and Table "image quality".
 pub const OVERHEAD: [Overhead; 8] = [
     overhead([42.4, 55.4, 44.8], [52.2, 56.9, 55.8]),
     overhead([33.2, 52.0, 48.6], [70.2, 72.5, 72.1]),
@@ -99,15 +99,15 @@ pub const OVERHEAD: [Overhead; 8] = [
     overhead([28.2, 54.9, 48.9], [61.8, 63.5, 62.4]),
 ];
 
-/// The methods here that stand for the columns of [`Overhead`].
+/// The methods here that correspond to the columns of [`Overhead`].
 pub const OVERHEAD_METHODS: [&str; 3] = ["yoro-paper", "conventional", "hybrid"];
 
 const fn overhead(cpu: [f64; 3], memory: [f64; 3]) -> Overhead {
     Overhead { cpu, memory }
 }
 
-/// Power in mW per scene, in the order of [`SCENES`]: YORO, conventional, Fink et al. From battery percent, capacity
-/// and 3.7 V; means over the devices.
+/// Power in mW in each of [`SCENES`]: YORO, conventional rendering, Fink et al. Computed from battery percentage,
+/// capacity and 3.7 V; means over the devices.
 pub const POWER: [[f64; 3]; 8] = [
     [367.0, 501.0, 441.0],
     [292.0, 391.0, 430.0],
@@ -119,20 +119,20 @@ pub const POWER: [[f64; 3]; 8] = [
     [387.0, 569.0, 556.0],
 ];
 
-/// A device of Table "Performance on different mobile devices": YORO against conventional, in percent.
+/// A device of Table "Performance on different mobile devices": YORO's change over conventional in percent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PaperDevice {
-    /// Its name in the paper.
+    /// The device's name in the paper.
     pub name: &'static str,
     /// Battery capacity in milliampere-hours.
     pub capacity_mah: f64,
-    /// Power.
+    /// Change of power.
     pub power: f64,
-    /// Frames a second.
+    /// Change of the frame rate.
     pub fps: f64,
-    /// "Execution time": of all but the Quest 3 the inverse of the frame rate.
+    /// Change of the "execution time", which is the inverse of the frame rate for all devices but the Quest 3.
     pub time: f64,
-    /// Memory.
+    /// Change of memory.
     pub memory: f64,
 }
 
@@ -154,32 +154,32 @@ const fn device(name: &'static str, capacity_mah: f64, percent: [f64; 4]) -> Pap
 }
 
 /// A question of "User Study on Immersive Experience": YORO against conventional rendering, 14 participants, eight
-/// scenes, a slider from 1 to 5.
+/// scenes, ratings on a slider from 1 to 5.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PaperQuestion {
     /// The question's name.
     pub name: &'static str,
     /// The statistic t of the paired t-test.
     pub t: f64,
-    /// Two-sided.
+    /// Its two-sided p.
     pub p: f64,
     /// Cohen's d_z.
     pub d_z: f64,
-    /// Post hoc.
+    /// The power, computed post hoc.
     pub power: f64,
-    /// Interval of the difference. Its confidence is 95 %: no other one agrees with that t and n, though two one-sided
-    /// tests at 5 % go with 90 %.
+    /// The interval of the difference. It is a 95 % interval: no other confidence agrees with that t and n, although
+    /// two one-sided tests at 5 % call for 90 %.
     pub interval: [f64; 2],
-    /// Lower p of the two one-sided tests, bounds -0.5 and 0.5.
+    /// The lower p of the two one-sided tests, with bounds -0.5 and 0.5.
     pub p_lower: f64,
-    /// Likewise.
+    /// The upper p of the same tests.
     pub p_upper: f64,
 }
 
-/// Participants of the paper's study.
+/// The number of participants of the paper's study.
 pub const STUDY_PARTICIPANTS: usize = 14;
 
-/// Its two questions.
+/// The two questions of the study.
 pub const STUDY: [PaperQuestion; 2] = [
     PaperQuestion {
         name: "image quality",
@@ -203,8 +203,8 @@ pub const STUDY: [PaperQuestion; 2] = [
     },
 ];
 
-/// "Comparison with Single Pass Instancing", fewer than five lights: method here, frames a second, CPU load in
-/// percent; means over scenes and devices.
+/// "Comparison with Single Pass Instancing" with fewer than five lights: the method here, frames per second, and CPU
+/// load in percent; means over scenes and devices.
 pub const FEW_LIGHTS: [(&str, f64, f64); 4] = [
     ("yoro-paper", 68.2, 28.3),
     ("conventional", 58.2, 39.4),
@@ -212,7 +212,7 @@ pub const FEW_LIGHTS: [(&str, f64, f64); 4] = [
     ("instanced", 57.8, 46.2),
 ];
 
-/// "Adaptive Shading Style": style by our name, SSIM, PSNR in dB.
+/// "Adaptive Shading Style": our name of the style, SSIM, PSNR in dB.
 pub const STYLES: [(&str, f64, f64); 5] = [
     ("voxel", 0.964, 36.1),
     ("cartoon", 0.979, 34.0),
@@ -221,7 +221,7 @@ pub const STYLES: [(&str, f64, f64); 5] = [
     ("anime", 0.964, 28.7),
 ];
 
-/// "Adjustable Interpupillary Distance": mm, SSIM, PSNR in dB. The text's mean PSNR, 31.31, is not theirs.
+/// "Adjustable Interpupillary Distance": mm, SSIM, PSNR in dB. The text's mean PSNR, 31.31, is not their mean.
 pub const IPD: [(f64, f64, f64); 6] = [
     (50.0, 0.9668, 34.43),
     (55.0, 0.9656, 34.16),
@@ -231,17 +231,17 @@ pub const IPD: [(f64, f64, f64); 6] = [
     (75.0, 0.9601, 33.19),
 ];
 
-/// "Impact of Object Distance": SSIM and PSNR in dB, all that the text says of 0.5 to 3 m.
+/// "Impact of Object Distance": SSIM, and PSNR in dB. The text gives nothing else for 0.5 to 3 m.
 pub const DISTANCE: (f64, f64) = (0.95, 38.73);
 
 /// A patcher in the paper's comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperPatcher {
-    /// Its name here.
+    /// The patcher's name here.
     pub name: &'static str,
     /// PSNR in dB.
     pub psnr: f64,
-    /// The paper does not name the window.
+    /// SSIM; the paper does not name the window.
     pub ssim: f64,
     /// Patching time in ms on mobile devices.
     pub ms: f64,
@@ -261,8 +261,8 @@ const fn patcher(name: &'static str, psnr: f64, ssim: f64, ms: f64) -> PaperPatc
     PaperPatcher { name, psnr, ssim, ms }
 }
 
-/// "Immersive Content Streaming", H.264: the scene, kbit/s of RGB + depth and of stereo RGB. Quality, resolution
-/// and frame rate are not given.
+/// "Immersive Content Streaming" with H.264: the scene, and the kbit/s of RGB + depth and of stereo RGB. The paper does
+/// not give quality, resolution or frame rate.
 pub const BANDWIDTH: [(&str, f64, f64); 8] = [
     ("Bistro", 2676.0, 4627.0),
     ("SciFiCity", 4086.0, 7318.0),
@@ -274,7 +274,7 @@ pub const BANDWIDTH: [(&str, f64, f64); 8] = [
     ("UnityChan", 1827.0, 2975.0),
 ];
 
-/// The paper's scene called `name`; case, spaces and punctuation do not count.
+/// Returns the paper's scene with this name, ignoring case, spaces and punctuation.
 pub fn find(name: &str) -> Option<&'static PaperScene> {
     let plain = |name: &str| -> String {
         name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
@@ -295,12 +295,12 @@ mod tests {
 
     #[test]
     fn the_averages_belong_to_the_rows() {
-        // Typing errors show here: the frame rates' mean over the scenes is the paper's mean.
+        // Catches typing errors: the mean frame rate over the scenes is the paper's mean.
         let mean = |value: fn(&PaperScene) -> f64| SCENES.iter().map(value).sum::<f64>() / 8.0;
         assert!((mean(|s| s.fps_yoro) - AVERAGE.fps_yoro).abs() < 0.1);
         assert!((mean(|s| s.fps_conventional) - AVERAGE.fps_conventional).abs() < 0.1);
         assert!((mean(|s| s.fps_fink) - AVERAGE.fps_fink).abs() < 0.1);
-        // The quality averages weigh each image group, so they only have to lie near the scenes' mean.
+        // The averages of quality weigh each image group equally, so they are only near the scenes' mean.
         assert!((mean(|s| s.psnr) - AVERAGE.psnr).abs() < 1.0);
         assert!((mean(|s| s.ssim) - AVERAGE.ssim).abs() < 0.005);
     }
@@ -315,7 +315,7 @@ mod tests {
             near(mean(OVERHEAD.iter().map(|o| o.cpu[column]).collect()), cpu, 0.1);
             near(mean(OVERHEAD.iter().map(|o| o.memory[column]).collect()), memory, 0.1);
         }
-        // The share of conventional rendering, without the smallest scene.
+        // The share of conventional rendering's time, without the smallest scene.
         let conventional = &COMPLEXITY.systems[1].1;
         for (method, share) in [("yoro-paper", 51.40), ("hybrid", 81.97), ("instanced", 75.96)] {
             let system = &COMPLEXITY.systems.iter().find(|s| s.0 == method).unwrap().1;

@@ -10,7 +10,7 @@ pub fn t_cdf(t: f64, df: f64) -> f64 {
     StudentsT::new(0.0, 1.0, df).map_or(f64::NAN, |student| student.cdf(t))
 }
 
-/// The t below which Student's t with `df` degrees of freedom (above 0) lies with probability `p`, inside 0 and 1.
+/// Returns the t below which Student's t with `df` degrees of freedom (above 0) lies with probability `p`, 0 < p < 1.
 pub fn t_quantile(p: f64, df: f64) -> f64 {
     if p < 0.5 {
         return -t_quantile(1.0 - p, df);
@@ -24,17 +24,17 @@ pub fn t_quantile(p: f64, df: f64) -> f64 {
 
 /// Returns P(T <= t) of the noncentral t with `df` degrees of freedom (at least 1) and noncentrality `delta`.
 ///
-/// T is (Z + delta) / S with S the root of a chi-square over its degrees of freedom: the probability that
-/// Z <= t s - delta, averaged over the density of S.
+/// T is (Z + delta) / S, where S is the root of a chi-square divided by its degrees of freedom. The result is the
+/// probability that Z <= t s - delta, averaged over the density of S.
 pub fn noncentral_t_cdf(t: f64, df: f64, delta: f64) -> f64 {
     let half = df / 2.0;
     let constant = LN_2 + half * half.ln() - ln_gamma(half);
     let density = |s: f64| (constant + (df - 1.0) * s.ln() - half * s * s).exp();
     let below = |s: f64| 0.5 * erfc((delta - t * s) * FRAC_1_SQRT_2);
-    // S has about this standard deviation around 1.
+    // The standard deviation of S around 1, approximately.
     let spread = 1.0 / (2.0 * df).sqrt();
     let (from, to) = ((1.0 - 12.0 * spread).max(0.0), 1.0 + 12.0 * spread);
-    // `below` is 0 or 1 but for a step of this half-width; the larger |t| is, the narrower.
+    // `below` is 0 or 1 except within a step of this half-width, which narrows as |t| grows.
     let step = |side: f64| if t == 0.0 { 1.0 + side } else { ((delta + 9.0 * side) / t).clamp(from, to) };
     let (begin, end) = (step(-1.0).min(step(1.0)), step(-1.0).max(step(1.0)));
     let integral = |from: f64, to: f64, width: f64| {
@@ -57,7 +57,7 @@ pub fn bisect(mut low: f64, mut high: f64, below: impl Fn(f64) -> bool) -> f64 {
     low + (high - low) / 2.0
 }
 
-/// Integrates over panels of equal width, with eight points each.
+/// Integrates over panels of equal width by Gauss-Legendre quadrature with eight points each.
 fn gauss_legendre(from: f64, to: f64, panels: usize, f: impl Fn(f64) -> f64) -> f64 {
     const POINTS: [(f64, f64); 4] = [
         (0.183_434_642_495_649_8, 0.362_683_783_378_362),

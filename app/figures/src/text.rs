@@ -1,6 +1,6 @@
 //! Names and numbers as text.
 
-/// Returns the text in lower case, with dashes for what is neither letter nor digit: for anchors and file names.
+/// Returns the text in lower case, with dashes for everything but letters and digits: for anchors and file names.
 pub fn slug(text: &str) -> String {
     let plain = text.chars().map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
     plain.collect::<String>().split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
@@ -16,7 +16,7 @@ pub fn short_count(count: u64) -> String {
     }
 }
 
-/// Returns a number with so many decimals.
+/// Formats a number with this many decimals.
 pub fn fixed(value: Option<f64>, decimals: usize) -> Option<String> {
     value.map(|value| format!("{value:.decimals$}"))
 }

@@ -1,4 +1,4 @@
-//! Decoders of other crates, some of which panic on damaged files.
+//! Runs decoders of other crates, some of which panic on damaged files.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -7,20 +7,20 @@ thread_local! {
     static RUNS: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs the decoder of another crate; a panic of it becomes the error that `failed` makes of the reason. Programs that
-/// abort on a panic still do.
+/// Runs a decoder of another crate. If it panics, `failed` makes the error from a reason. Programs that abort on panics
+/// still abort.
 ///
 /// # Errors
-/// Those of `decode`, and that of `failed`.
+/// Those of `decode`, and the one of `failed`.
 pub fn run<T, E>(decode: impl FnOnce() -> Result<T, E>, failed: impl FnOnce(String) -> E) -> Result<T, E> {
     let outer = RUNS.replace(true);
-    // What the decoder has changed before it panicked is dropped with it.
+    // Whatever the decoder changed before it panicked is dropped with it.
     let decoded = catch_unwind(AssertUnwindSafe(decode));
     RUNS.set(outer);
     decoded.unwrap_or_else(|_| Err(failed("its decoder fails on it".into())))
 }
 
-/// True while this thread runs a decoder: its panics are errors of the file, which a panic hook need not tell.
+/// True while this thread runs a decoder. A panic is then an error of the file, which a panic hook need not report.
 pub fn runs() -> bool {
     RUNS.get()
 }

@@ -1,15 +1,15 @@
-//! A folder's files over HTTP, for browsers on this machine or in its network.
+//! Serves a folder's files over HTTP, for browsers on this machine or in its network.
 
 use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, Read, Write};
 use std::path::{Component, Path, PathBuf};
 
-/// The content policy of what is served. A page gets streams from other servers, too.
+/// The content security policy of all responses. It lets a page connect to streams of other servers, too.
 pub const POLICY: &str = "default-src 'self'; connect-src 'self' https:; script-src 'self' 'wasm-unsafe-eval'; object-src 'none'; base-uri 'none'; form-action 'none'";
 
-/// The longest line of a request that is read, in bytes.
+/// The largest length of a request's line, in bytes.
 const MAX_LINE: u64 = 8 << 10;
-/// The most lines of a request that are read.
+/// The largest number of lines in a request.
 const MAX_LINES: usize = 100;
 
 /// A request without its body.
@@ -19,7 +19,7 @@ impl Request {
     /// Reads a request.
     ///
     /// # Errors
-    /// When the connection fails, and for a request that is too long.
+    /// Fails if the connection fails, or if the request is too long.
     pub fn read(connection: impl Read) -> io::Result<Request> {
         let mut reader = BufReader::new(connection);
         let mut lines = Vec::new();
@@ -34,7 +34,7 @@ impl Request {
         Err(io::ErrorKind::InvalidData.into())
     }
 
-    /// Returns what is asked for, with its query.
+    /// Returns the requested target, with its query.
     pub fn target(&self) -> Option<&str> {
         self.0.first()?.split(' ').nth(1)
     }
@@ -50,10 +50,10 @@ impl Request {
     }
 }
 
-/// Answers a request for a file of a folder.
+/// Answers a request for a file in a folder.
 ///
 /// # Errors
-/// When the connection fails.
+/// Fails if the connection fails.
 pub fn answer(connection: &mut impl Write, request: &Request, folder: &Path) -> io::Result<()> {
     let found = match (request.method(), request.target()) {
         (Some("GET" | "HEAD"), Some(target)) => file(folder, target),
@@ -70,7 +70,7 @@ pub fn answer(connection: &mut impl Write, request: &Request, folder: &Path) -> 
             ("404 Not Found", ("text/plain", missing.len() as u64, Box::new(&missing[..]) as Box<dyn Read>))
         }
     };
-    // In one piece, and so in one packet.
+    // Sent in one piece, and so in one packet.
     let head = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nCache-Control: no-cache\r\n\
          Content-Security-Policy: {POLICY}\r\nConnection: close\r\n\r\n"
@@ -82,7 +82,7 @@ pub fn answer(connection: &mut impl Write, request: &Request, folder: &Path) -> 
     connection.flush()
 }
 
-/// Returns the file that a request's target names; none outside of the folder.
+/// Returns the file that a request's target names; `None` if it is outside of the folder.
 fn file(folder: &Path, target: &str) -> Option<PathBuf> {
     let path = Path::new(target.split(['?', '#']).next()?.trim_start_matches('/'));
     let inside = path.components().all(|component| matches!(component, Component::Normal(_)));
@@ -90,7 +90,7 @@ fn file(folder: &Path, target: &str) -> Option<PathBuf> {
     inside.then(|| if path.is_dir() { path.join("index.html") } else { path })
 }
 
-/// The content type of a file: browsers run nothing without one.
+/// Returns the content type of a file. Browsers do not run scripts without one.
 fn kind(path: &Path) -> &'static str {
     match path.extension().and_then(|extension| extension.to_str()) {
         Some("html") => "text/html; charset=utf-8",

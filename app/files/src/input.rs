@@ -1,5 +1,4 @@
-//! The files that are read: those of the file system, or in a browser, which has none, those that were
-//! [provided](provide).
+//! Files to read: those of the file system or, in a browser, those that were [provided](provide).
 
 #[cfg(not(target_arch = "wasm32"))]
 mod source {
@@ -14,24 +13,24 @@ mod source {
     /// Opens a file.
     ///
     /// # Errors
-    /// The operating system's.
+    /// The operating system's errors.
     pub fn open(path: &Path) -> io::Result<Input> {
         fs::File::open(path)
     }
 
-    /// The size of a file in bytes; none for what is there and no file.
+    /// Returns the size of a file in bytes; `None` if the path exists but is not a file.
     ///
     /// # Errors
-    /// The operating system's.
+    /// The operating system's errors.
     pub fn size(path: &Path) -> io::Result<Option<u64>> {
         let meta = fs::metadata(path)?;
         Ok(meta.is_file().then_some(meta.len()))
     }
 
-    /// The names in a folder, in no order; `.` for an empty path.
+    /// Returns the names in a folder, in no particular order. An empty path means `.`.
     ///
     /// # Errors
-    /// The operating system's.
+    /// The operating system's errors.
     pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect()
@@ -95,7 +94,7 @@ mod memory {
         }
     }
 
-    /// Without `.` and `..`.
+    /// Resolves `.` and `..`.
     fn plain(path: &Path) -> PathBuf {
         use std::path::Component;
         let mut out = PathBuf::new();
@@ -124,7 +123,7 @@ mod source {
 
     static FILES: RwLock<Files> = RwLock::new(Files::new());
 
-    /// Says which files there are, instead of those that there were.
+    /// Replaces the files that can be read.
     pub fn provide(files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) {
         FILES.write().unwrap_or_else(PoisonError::into_inner).set(files);
     }
@@ -136,23 +135,23 @@ mod source {
     /// Opens a file.
     ///
     /// # Errors
-    /// `NotFound` for one that was not provided.
+    /// `NotFound` for a file that was not provided.
     pub fn open(path: &Path) -> io::Result<Input> {
         files().open(path)
     }
 
-    /// The size of a file in bytes; none for what is there and no file.
+    /// Returns the size of a file in bytes; `None` if the path is a folder.
     ///
     /// # Errors
-    /// See [`open`].
+    /// Those of [`open`].
     pub fn size(path: &Path) -> io::Result<Option<u64>> {
         files().size(path)
     }
 
-    /// The names in a folder.
+    /// Returns the names in a folder.
     ///
     /// # Errors
-    /// None.
+    /// None: the names of an unknown folder are empty.
     pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
         files().names(folder)
     }

@@ -1,9 +1,8 @@
-//! Files in and out: an output is complete or absent, and an error names the file and the remedy.
+//! Reading and writing files: an output is complete or absent, and an error names the file and the remedy.
 //!
-//! [`read`] and [`write()`] take whole files, [`write_with`] lets the caller fill a file that appears only when it is
-//! complete, [`append`] opens one that grows, and [`find`] lists the files below a folder. Loaders that read piece by
-//! piece [`open`] their files: in a browser those are files in memory. This crate must never know the contents of the
-//! files.
+//! [`read`] and [`write()`] process whole files, [`write_with`] lets the caller fill a file that appears only when it
+//! is complete, [`append`] opens a file that grows, and [`find`] lists the files below a folder. Loaders that read in
+//! pieces use [`open`], which in a browser opens files in memory. This crate does not know what is in the files.
 
 pub mod decoder;
 pub mod http;
@@ -24,19 +23,19 @@ pub use input::*;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// Nothing is there.
+    /// The file or folder does not exist.
     #[error("{} does not exist: check the path", path.display())]
     Missing {
         /// The file or folder asked for.
         path: PathBuf,
     },
-    /// A folder stands where a file is needed.
+    /// The path is a folder, but a file is needed.
     #[error("{} is a folder: name a file", path.display())]
     IsFolder {
         /// The folder.
         path: PathBuf,
     },
-    /// A file stands where a folder is needed.
+    /// The path is a file, but a folder is needed.
     #[error("{} is not a folder: name a folder, or remove the file", path.display())]
     NotFolder {
         /// The file.
@@ -47,7 +46,7 @@ pub enum FileError {
     Read {
         /// The file asked for.
         path: PathBuf,
-        /// The system's answer.
+        /// The operating system's error.
         source: io::Error,
     },
     /// The operating system refused to write.
@@ -55,7 +54,7 @@ pub enum FileError {
     Write {
         /// The file or folder to be written.
         path: PathBuf,
-        /// The system's answer.
+        /// The operating system's error.
         source: io::Error,
     },
     /// Another process appends to the file.
@@ -94,7 +93,7 @@ pub fn create_folder(path: &Path) -> Result<(), FileError> {
     if path.as_os_str().is_empty() {
         return Ok(());
     }
-    // Creates before it looks: another thread may create the same folder meanwhile.
+    // Creates before checking, since another thread may create the same folder at the same time.
     fs::create_dir_all(path).map_err(|source| match path.exists() {
         true if !path.is_dir() => FileError::NotFolder { path: path.into() },
         _ => FileError::Write { path: path.into(), source },
@@ -107,9 +106,9 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// Lets `fill` write a file that appears under `path` only when it is complete: it is written under a temporary name in
-/// the same folder and renamed. A crash, a full disk or Ctrl-C leaves the old file. What a process that was killed has
-/// left under a temporary name is removed by the next one that writes into the folder. Missing parent folders are
-/// created. A device or pipe (`/dev/stdout`) is written in place.
+/// the same folder and then renamed. A crash, a full disk or Ctrl-C leaves the old file. Temporary files of killed
+/// processes are removed by the next process that writes into the folder. Missing parent folders are created. A device
+/// or pipe (`/dev/stdout`) is written in place.
 pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
@@ -134,25 +133,24 @@ pub fn write_with(
     builder.prefix(PART[0]).suffix(PART[1]);
     #[cfg(unix)]
     {
-        // The crate's default is 0600: an output should have the rights that any new file gets.
+        // The crate's default is 0600, but an output should have the permissions of any new file.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut part = builder.tempfile_in(folder).map_err(failed)?;
-    // For `sweep`; not every file system has locks.
+    // Tells `sweep` that the file is in use. Not every file system has locks.
     let _ = part.as_file().try_lock();
     fill_and_flush(part.as_file_mut(), fill).map_err(failed)?;
     part.persist(&target).map_err(|error| failed(error.error))?;
     Ok(())
 }
 
-/// Beginning and end of the names of unfinished files.
+/// Start and end of the names of unfinished files.
 const PART: [&str; 2] = [".yoro-", ".part"];
-/// Unfinished files younger than this stay: their writers may be about to lock them.
+/// Unfinished files younger than this are kept: their writers may be about to lock them.
 const YOUNG: Duration = Duration::from_secs(10);
 
-/// Removes the unfinished files of processes that were killed; looks once into each folder. Those that are being
-/// written are locked.
+/// Removes unfinished files of killed processes, once per folder. Files that are being written are locked.
 fn sweep(folder: &Path) {
     static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
@@ -173,8 +171,8 @@ fn sweep(folder: &Path) {
     }
 }
 
-/// Opens a file to append to it, and keeps other processes from doing the same until it is closed. It and missing
-/// parent folders are created.
+/// Opens a file for appending, and prevents other processes from doing the same until it is closed. Creates the file
+/// and missing parent folders.
 pub fn append(path: &Path) -> Result<fs::File, FileError> {
     if path.is_dir() {
         return Err(FileError::IsFolder { path: path.into() });
@@ -198,8 +196,8 @@ fn fill_and_flush(
     out.flush()
 }
 
-/// Returns all files below `folder` with one of the `extensions` (lower case, no dot), as sorted paths relative to
-/// it. Links to folders are not followed, hidden files and folders are left out.
+/// Returns all files below `folder` with one of the `extensions` (lower case, without a dot), as sorted paths relative
+/// to it. Links to folders are not followed; hidden files and folders are left out.
 pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileError> {
     if !folder.exists() {
         return Err(FileError::Missing { path: folder.into() });
@@ -230,7 +228,7 @@ pub fn find(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, FileErro
     Ok(found)
 }
 
-/// True if the extension of `path`, in any case, is one of `extensions` (lower case, no dot).
+/// True if the extension of `path`, ignoring case, is one of `extensions` (lower case, without a dot).
 pub fn has_extension(path: &Path, extensions: &[&str]) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     extension.is_some_and(|e| extensions.contains(&e.as_str()))

@@ -3,8 +3,8 @@
 use std::env;
 use std::path::PathBuf;
 
-/// Returns the folder that a variable names, or this one in the user's home if it is not set. None without a home, and
-/// on Android.
+/// Returns the folder that an environment variable names, or else the folder `in_home` in the user's home. `None`
+/// without a home, and on Android.
 pub fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
     if cfg!(target_os = "android") {
         return None;

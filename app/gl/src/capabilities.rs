@@ -15,7 +15,7 @@ pub enum GlApi {
     Desktop,
 }
 
-/// Driver, version and the optional features in use.
+/// The driver, its version and its optional features.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Capabilities {
@@ -31,16 +31,16 @@ pub struct Capabilities {
     pub version_string: String,
     /// Compute shaders and image stores.
     pub compute: bool,
-    /// Float colour buffers (HDR targets, EXT_color_buffer_float or half_float).
+    /// Float colour buffers for HDR targets (EXT_color_buffer_float or half_float).
     pub float_render_targets: bool,
     /// KHR_debug groups.
     pub debug_groups: bool,
-    /// Largest anisotropy, 1 without the extension and on a CPU rasterizer.
+    /// Largest anisotropy; 1 without the extension and on a CPU rasterizer.
     pub max_anisotropy: f32,
-    /// Timer queries that can be trusted: present, with bits to count in, and not a CPU rasterizer.
+    /// Reliable timer queries: supported, with counter bits, and not on a CPU rasterizer.
     pub timer_queries: bool,
-    /// The same while several views are drawn at once: GL_EXT_multiview_timer_query. Without it GL_OVR_multiview leaves
-    /// the results undefined.
+    /// Reliable timer queries while several views are drawn at once (GL_EXT_multiview_timer_query). Without that
+    /// extension, GL_OVR_multiview leaves the results undefined.
     pub multiview_timer_queries: bool,
     /// GL_OVR_multiview2 and, outside of browsers, its entry point ([`crate::Context::with_loader`]).
     pub multiview: bool,
@@ -48,30 +48,30 @@ pub struct Capabilities {
     pub clip_distances: bool,
     /// Largest texture edge in pixels.
     pub max_texture_size: u32,
-    /// Numbers of samples above 1 that a pixel of a render target can have, largest first.
+    /// Sample counts above 1 that render targets support, largest first.
     pub samples: Vec<u32>,
-    /// Multisample textures, which shaders read sample by sample: OpenGL ES 3.1 and the desktop.
+    /// Multisample textures, whose samples shaders read one by one: OpenGL ES 3.1 and desktop.
     pub multisample_textures: bool,
     /// Samples of colour and depth that exist only in the tiles of a tile-based GPU:
     /// GL_EXT_multisampled_render_to_texture and its second version.
     pub tile_samples: bool,
-    /// Bytes of shared memory of a compute workgroup.
+    /// Size in bytes of a compute workgroup's shared memory.
     pub max_compute_shared_memory: u32,
-    /// Rendered by the CPU (llvmpipe, softpipe, SwiftShader): times are CPU times.
+    /// True on CPU rasterizers (llvmpipe, softpipe, SwiftShader), where times are CPU times.
     pub software: bool,
 }
 
-/// Returns the numbers of samples above 1 that both colour and depth formats can have, largest first.
+/// Returns the sample counts above 1 that both colour and depth formats support, largest first.
 ///
 /// # Safety
 /// The context is current.
 unsafe fn samples(gl: &glow::Context) -> Vec<u32> {
-    // WebGL guarantees four for all of them.
+    // WebGL guarantees four samples for all formats.
     if cfg!(target_arch = "wasm32") {
         return vec![4];
     }
     let of = |format: Format| {
-        // What GL does not write stays 0.
+        // Entries that GL does not write stay 0.
         let mut counts = [0; 16];
         let (target, format) = (glow::RENDERBUFFER, format.gl().0);
         // SAFETY: formats that can be rendered to; at most as many values are written as there is room for.
@@ -83,27 +83,27 @@ unsafe fn samples(gl: &glow::Context) -> Vec<u32> {
     counts.map(|n| n as u32).collect()
 }
 
-/// The extension with timer queries in OpenGL ES, or in WebGL.
+/// The extension for timer queries in OpenGL ES or WebGL.
 const TIMER_QUERIES: &str = if cfg!(target_arch = "wasm32") {
     "GL_EXT_disjoint_timer_query_webgl2"
 } else {
     "GL_EXT_disjoint_timer_query"
 };
 
-/// True if the context has an extension, by its name in the OpenGL registry. WebGL names it without `GL_`.
+/// True if the context has the extension `name`, as in the OpenGL registry. WebGL's names lack `GL_`.
 pub(crate) fn has_extension(gl: &glow::Context, name: &str) -> bool {
     let name = if cfg!(target_arch = "wasm32") { name.trim_start_matches("GL_") } else { name };
     gl.supported_extensions().contains(name)
 }
 
-/// Returns GL_RENDERER. Browsers hide the driver's name there and tell it in WEBGL_debug_renderer_info.
+/// Returns GL_RENDERER. Browsers hide the driver's name there, and give it in WEBGL_debug_renderer_info.
 ///
 /// # Safety
 /// The context is current.
 unsafe fn renderer(gl: &glow::Context) -> String {
     const UNMASKED_RENDERER_WEBGL: u32 = 0x9246;
     if cfg!(target_arch = "wasm32") && has_extension(gl, "GL_WEBGL_debug_renderer_info") {
-        // SAFETY: the extension has the name.
+        // SAFETY: the extension defines the enum.
         let unmasked = unsafe { gl.get_parameter_string(UNMASKED_RENDERER_WEBGL) };
         if !unmasked.is_empty() {
             return unmasked;
@@ -114,7 +114,7 @@ unsafe fn renderer(gl: &glow::Context) -> String {
 }
 
 impl Capabilities {
-    /// Queries a current context. `counts_time` is called only if there are timer queries.
+    /// Queries the current context. `counts_time` is called only if timer queries are supported.
     pub(crate) fn query(
         gl: &glow::Context,
         multiview_loaded: bool,
@@ -151,8 +151,8 @@ impl Capabilities {
                     || has("GL_EXT_color_buffer_float")
                     || has("GL_EXT_color_buffer_half_float"),
                 debug_groups: gl.supports_debug(),
-                // llvmpipe walks the whole ellipse under a pixel, which has millions of texels where derivatives
-                // are extrapolated across the horizon: a frame in a few hundred takes minutes or crashes.
+                // llvmpipe walks the whole ellipse under a pixel, which has millions of texels where derivatives are
+                // extrapolated across the horizon: one frame in a few hundred takes minutes or crashes.
                 max_anisotropy: if !software
                     && (has("GL_EXT_texture_filter_anisotropic") || has("GL_ARB_texture_filter_anisotropic"))
                 {
@@ -182,10 +182,10 @@ impl Capabilities {
         }
     }
 
-    /// Checks that a pixel of a render target can have this many samples. One is always possible.
+    /// Checks that render targets support this many samples per pixel. One sample is always supported.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] with the possible numbers.
+    /// [`GlError::Unsupported`], which lists the supported numbers.
     pub fn check_samples(&self, samples: u32) -> Result<(), GlError> {
         if samples == 1 || self.samples.contains(&samples) {
             return Ok(());

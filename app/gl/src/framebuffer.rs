@@ -25,8 +25,8 @@ impl Destination {
 }
 
 impl Context {
-    /// Copies a rectangle of colour to another one of the same size, or stretches it without filtering. Values are
-    /// copied bit by bit, unless only one of the two is stored as sRGB.
+    /// Copies a rectangle of colour to another one, stretched without filtering if the sizes differ. Values are copied
+    /// bit by bit, unless only one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
         self.record_copy(from.framebuffer, to.framebuffer, to.size, false);
         let gl = self.raw();
@@ -75,21 +75,21 @@ impl Drop for Framebuffer {
 pub struct RenderTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,
-    /// A framebuffer of the colour attachments alone, if there is depth, too.
+    /// A framebuffer of the colour attachments alone, if the target also has depth.
     color_only: Option<Framebuffer>,
-    /// A framebuffer of depth alone, if there are colours, too.
+    /// A framebuffer of depth alone, if the target also has colour.
     depth_only: Option<Framebuffer>,
     color: Vec<Texture>,
     depth: Option<Texture>,
     formats: Vec<(Format, Filter)>,
     depth_format: Option<(Format, Filter)>,
-    /// True if the textures have two layers that are drawn to at once.
+    /// True if the textures have two layers, which are drawn to at once.
     multiview: bool,
     size: [u32; 2],
 }
 
 impl RenderTarget {
-    /// Creates a target with one colour texture per entry of `formats`, and optionally a depth texture, which can be
+    /// Creates a target with one colour texture per entry of `formats` and optionally a depth texture, which can be
     /// sampled.
     ///
     /// # Errors
@@ -103,7 +103,7 @@ impl RenderTarget {
         RenderTarget::build(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)), false)
     }
 
-    /// Creates a target of array textures with a layer for each eye, for programs with two views. It can be drawn to,
+    /// Creates a target of array textures with one layer per eye, for programs that draw two views. It can be drawn to,
     /// cleared and sampled, but not read back.
     ///
     /// # Errors
@@ -117,7 +117,7 @@ impl RenderTarget {
         RenderTarget::build(gl, size, formats, depth_format.map(|format| (format, Filter::Nearest)), true)
     }
 
-    /// Creates a target of depth alone, to sample with comparison.
+    /// Creates a target of depth alone, which is sampled with comparison.
     ///
     /// # Errors
     /// Those of [`RenderTarget::new`].
@@ -152,7 +152,7 @@ impl RenderTarget {
         Ok(target)
     }
 
-    /// Resizes the target. If the size changes, the contents are undefined afterwards.
+    /// Resizes the target. If the size changes, its contents become undefined.
     ///
     /// # Errors
     /// Those of [`RenderTarget::new`].
@@ -245,7 +245,7 @@ impl RenderTarget {
         self.gl.copy(&Destination { framebuffer: Some(self.raw()), origin: crop, size: to.size }, to);
     }
 
-    /// Starts to read colour attachment 0, as RGBA8, into a buffer. Does not wait.
+    /// Starts reading colour attachment 0 into a buffer, as RGBA8. Does not wait.
     pub fn read_into(&self, buffer: &PixelBuffer) {
         let gl = self.gl.raw();
         let [w, h] = self.size.map(|n| n as i32);
@@ -274,13 +274,12 @@ impl RenderTarget {
         self.gl.bind_framebuffer(Some(self.raw()), [0, 0], size);
     }
 
-    /// Binds the framebuffer as [`RenderTarget::bind`] does, for draws that write all of its colour: see
-    /// [`Context::overwrite`].
+    /// Binds the framebuffer, for draws that overwrite all of its colour: see [`Context::overwrite`].
     pub fn overwrite(&self) {
         self.gl.overwrite(&self.color_only(), self.color.len().min(2), false);
     }
 
-    /// Does the same with depth alone.
+    /// Binds the framebuffer, for draws that overwrite all of its depth.
     pub fn overwrite_depth(&self) {
         self.gl.overwrite(&self.depth_only(), 0, true);
     }
@@ -315,7 +314,7 @@ impl RenderTarget {
         bytes
     }
 
-    /// Reads a rectangle of an integer attachment ([`Format::R32Ui`]), rows from the bottom.
+    /// Reads a rectangle of an integer attachment ([`Format::R32Ui`]), with rows from the bottom. Waits for the GPU.
     pub fn read_u32(&self, i: usize, origin: [u32; 2], size: [u32; 2]) -> Vec<u32> {
         // OpenGL ES guarantees only RGBA_INTEGER / UNSIGNED_INT for unsigned integer buffers.
         let mut rgba = vec![0u32; size[0] as usize * size[1] as usize * 4];
@@ -330,7 +329,7 @@ impl RenderTarget {
         rgba.chunks_exact(4).map(|texel| texel[0]).collect()
     }
 
-    /// Reads a rectangle of a float attachment, all four channels, rows from the bottom.
+    /// Reads all four channels of a rectangle of a float attachment, with rows from the bottom. Waits for the GPU.
     pub fn read_rgba32f(&self, i: usize, origin: [u32; 2], size: [u32; 2]) -> Vec<[f32; 4]> {
         let mut rgba = vec![[0f32; 4]; size[0] as usize * size[1] as usize];
         self.read(i, origin, size, glow::RGBA, glow::FLOAT, bytemuck::cast_slice_mut(&mut rgba));
@@ -340,7 +339,7 @@ impl RenderTarget {
     fn read(&self, i: usize, origin: [u32; 2], size: [u32; 2], format: u32, ty: u32, bytes: &mut [u8]) {
         let gl = self.gl.raw();
         self.gl.set_tight_pack();
-        // SAFETY: the callers made `bytes` as long as what GL writes for this size, format and type.
+        // SAFETY: `bytes` is as long as what GL writes for this size, format and type.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw()));
             gl.read_buffer(glow::COLOR_ATTACHMENT0 + i as u32);
@@ -351,15 +350,14 @@ impl RenderTarget {
     }
 }
 
-/// A framebuffer around a texture of somebody else, such as an OpenXR runtime.
+/// A framebuffer for a texture that somebody else owns, such as an OpenXR runtime.
 pub struct ForeignTarget {
     framebuffer: Framebuffer,
     size: [u32; 2],
 }
 
 impl ForeignTarget {
-    /// Creates a framebuffer that draws into a 2-D texture, or into a layer of an array texture: colour, or depth
-    /// alone.
+    /// Creates a framebuffer that draws into a 2-D texture or a layer of an array texture, which holds colour or depth.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver cannot render to the texture.
@@ -408,7 +406,7 @@ impl ForeignTarget {
         }
     }
 
-    /// Returns the lower left part of this size.
+    /// Returns the lower left part of the target, of at most this size.
     pub fn part(&self, size: [u32; 2]) -> Destination {
         let size = [0, 1].map(|i| size[i].min(self.size[i]));
         Destination { framebuffer: Some(self.framebuffer.raw), origin: [0, 0], size }
@@ -416,9 +414,9 @@ impl ForeignTarget {
 }
 
 impl Context {
-    /// Binds a framebuffer and sets the viewport to a rectangle, for draws that write all of it in the first `colors`
-    /// (two at most) colour attachments and, with `depth`, in depth. What the rectangle held is given up on OpenGL ES,
-    /// so that a tile-based GPU need not read it; desktop OpenGL has the call from 4.3 only.
+    /// Binds a framebuffer and sets the viewport to a rectangle, for draws that overwrite all of it in the first
+    /// `colors` (at most two) colour attachments and, if `depth` is true, in depth. On OpenGL ES the rectangle's old
+    /// contents are invalidated, so that a tile-based GPU need not read them. On desktop OpenGL nothing is invalidated.
     pub fn overwrite(&self, to: &Destination, colors: usize, depth: bool) {
         self.bind_framebuffer(to.framebuffer, to.origin, to.size);
         if self.capabilities().api == GlApi::Desktop {
@@ -426,12 +424,12 @@ impl Context {
         }
         let attachments = match to.framebuffer {
             Some(_) => [glow::DEPTH_ATTACHMENT, glow::COLOR_ATTACHMENT0, glow::COLOR_ATTACHMENT1],
-            // The window has one colour.
+            // The window has one colour buffer.
             None => [glow::DEPTH, glow::COLOR, glow::COLOR],
         };
         let ([x, y], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
         let given_up = &attachments[usize::from(!depth)..=colors];
-        // SAFETY: attachments that every framebuffer may have, and a rectangle of no negative size.
+        // SAFETY: attachments that every framebuffer may have, and a rectangle whose size is not negative.
         unsafe { self.raw().invalidate_sub_framebuffer(glow::FRAMEBUFFER, given_up, x, y, w, h) }
     }
 

@@ -1,4 +1,4 @@
-//! GL state of a host's renderer: set for synthesis, saved and restored.
+//! The GL state of a host's renderer: set for synthesis, saved and restored.
 //!
 //! The table in the documentation of `yoro::synthesis::Synthesis` is the contract that this file keeps.
 
@@ -6,19 +6,19 @@ use glow::HasContext;
 
 use crate::{Capabilities, Context, GlApi, GlError};
 
-/// Number of texture units in use, from unit 0 on.
+/// The number of texture units in use, starting with unit 0.
 const UNITS: usize = 6;
-/// The units that are filtered: the source's colour and a history's.
+/// The units whose textures are filtered: the source's colour and a history's.
 const FILTERED_UNITS: [u32; 2] = [1, 5];
 /// The units with multisample textures: the source's depth and colour.
 const MULTISAMPLE_UNITS: [u32; 2] = [0, 3];
 /// The units with array textures: the source's depth and colour.
 const ARRAY_UNITS: [u32; 2] = [0, 1];
-/// Number of draw buffers in use: colour and, if it is written, the source map.
+/// The number of draw buffers in use: colour and, in some passes, a second output.
 const DRAW_BUFFERS: usize = 2;
 /// EXT_depth_bounds_test.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
-/// Compatibility profile.
+/// For the compatibility profile.
 const ALPHA_TEST: u32 = 0x0BC0;
 const POLYGON_STIPPLE: u32 = 0x0B42;
 
@@ -34,17 +34,18 @@ pub(crate) struct IndexedQueries {
     pub(crate) get_boolean: GetBooleanIndexed,
 }
 
-/// The state that drawing depends on in this context, and the samplers that synthesis reads through.
+/// The state in this context that drawing depends on, and the samplers that synthesis uses.
 pub(crate) struct Host {
     /// Capabilities (`glEnable`) that are off while a pipeline runs; at most 32.
     switches: Vec<u32>,
     /// True if blending and colour masks can be set for each draw buffer: OpenGL ES 3.2 and the desktop.
     indexed: bool,
     queries: Option<IndexedQueries>,
-    /// True if encoding for sRGB framebuffers can be switched.
+    /// True if sRGB encoding of framebuffers can be switched.
     encoding: bool,
     polygon_mode: bool,
-    /// True if there are several viewports: the desktop. Shaders draw to the first one, and only its state is touched.
+    /// True if there are several viewports, as on the desktop. Shaders draw to the first one, and only its state is
+    /// changed.
     viewports: bool,
     nearest: glow::Sampler,
     linear: glow::Sampler,
@@ -69,7 +70,7 @@ impl Host {
             glow::SAMPLE_ALPHA_TO_COVERAGE,
             glow::SAMPLE_COVERAGE,
         ];
-        // Always on in WebGL, which has no name for it.
+        // Primitive restart is always on in WebGL, which has no enum for it.
         if cfg!(not(target_arch = "wasm32")) {
             switches.push(glow::PRIMITIVE_RESTART_FIXED_INDEX);
         }
@@ -132,7 +133,7 @@ impl Host {
         })
     }
 
-    /// Turns a switch on or off. The scissor test of a viewport array is the first viewport's.
+    /// Turns a switch on or off. With a viewport array, the scissor test is that of the first viewport.
     ///
     /// # Safety
     /// The context is current and has the switch.
@@ -148,7 +149,7 @@ impl Host {
         }
     }
 
-    /// Sets the depth range, of the first viewport if there are several.
+    /// Sets the depth range; that of the first viewport if there are several.
     ///
     /// # Safety
     /// The context is current.
@@ -163,7 +164,7 @@ impl Host {
         }
     }
 
-    /// Sets the viewport, the first one if there are several.
+    /// Sets the viewport; the first one if there are several.
     ///
     /// # Safety
     /// The context is current.
@@ -171,7 +172,7 @@ impl Host {
         // SAFETY: desktop contexts have the function for several viewports.
         unsafe {
             if self.viewports {
-                // Mesa clamps the numbers where they are, so they must not be constants.
+                // Mesa clamps the numbers in place, so they must not be constants.
                 let own = std::hint::black_box([viewport]);
                 gl.viewport_f32_slice(0, 1, &own);
             } else {
@@ -190,7 +191,7 @@ impl Host {
     }
 }
 
-/// The state that a pipeline touches, beyond that of every pipeline.
+/// State that only some pipelines touch.
 #[derive(Clone, Copy, Debug)]
 pub struct Touched {
     /// The number of colour attachments that are drawn to, 1 or 2.
@@ -199,7 +200,7 @@ pub struct Touched {
     pub arrays: bool,
 }
 
-/// The state that synthesis changes, as [`Context::save_state`] found it.
+/// The state that synthesis changes, as saved by [`Context::save_state`].
 pub struct HostState {
     /// Bit `i` is set if switch `i` of [`Host::switches`] was on.
     switches: u32,
@@ -210,7 +211,7 @@ pub struct HostState {
     depth_func: u32,
     depth_mask: bool,
     depth_range: [f32; 2],
-    /// Front and back.
+    /// Modes of the front and the back.
     polygon_mode: [u32; 2],
     viewport: [f32; 4],
     draw_framebuffer: Option<glow::Framebuffer>,
@@ -219,9 +220,9 @@ pub struct HostState {
     vertex_array: Option<glow::VertexArray>,
     active_unit: u32,
     textures: [Option<glow::Texture>; UNITS],
-    /// Of [`MULTISAMPLE_UNITS`], if the context has multisample textures.
+    /// Textures of [`MULTISAMPLE_UNITS`], if the context has multisample textures.
     multisample_textures: [Option<glow::Texture>; MULTISAMPLE_UNITS.len()],
-    /// Of [`ARRAY_UNITS`], if the pipeline touches them.
+    /// Textures of [`ARRAY_UNITS`], if the pipeline touches them.
     arrays: Option<[Option<glow::Texture>; ARRAY_UNITS.len()]>,
     samplers: [Option<glow::Sampler>; UNITS],
 }
@@ -229,11 +230,12 @@ pub struct HostState {
 impl Context {
     /// Sets all state that a pipeline relies on and does not set in each pass: everything in the table of
     /// `yoro::synthesis::Synthesis` except program, vertex array, framebuffer, viewport and textures. `draw_buffers` is
-    /// the number of colour attachments of the target, 1 or 2. With `encode` writes to sRGB framebuffers are encoded.
+    /// the number of the target's colour attachments, 1 or 2. If `encode` is true, writes to sRGB framebuffers are
+    /// encoded.
     pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
         self.recorded(|recorder| recorder.set_depth_write(false));
         let (gl, host) = (self.raw(), &self.host);
-        // SAFETY: state calls with enums that exist in this context, as `Host::new` found out.
+        // SAFETY: `Host::new` has checked that the enums of these state calls exist in this context.
         unsafe {
             host.switches.iter().for_each(|switch| host.set_switch(gl, *switch, false));
             if encode && host.encoding {
@@ -261,7 +263,7 @@ impl Context {
         }
     }
 
-    /// Makes texture unit 0 active. New textures are bound to the active unit, which must be one that synthesis may
+    /// Makes texture unit 0 active. New textures are bound to the active unit, so it must be one that synthesis may
     /// change.
     pub fn set_first_unit(&self) {
         // SAFETY: every context has unit 0.
@@ -286,7 +288,7 @@ impl Context {
     /// Returns all state that synthesis changes. Makes about 50 queries and allocates nothing.
     pub fn save_state(&self, touched: Touched) -> HostState {
         let (gl, host) = (self.raw(), &self.host);
-        // SAFETY: the queried state exists, as `Host::new` found out, and the arrays are as long as what GL writes.
+        // SAFETY: `Host::new` has checked that the queried state exists, and the arrays are as long as what GL writes.
         unsafe {
             let integer = |name| gl.get_parameter_i32(name);
             let on = |(i, switch): (usize, &u32)| u32::from(gl.is_enabled(*switch)) << i;
@@ -321,7 +323,7 @@ impl Context {
             gl.get_parameter_f32_slice(glow::DEPTH_RANGE, &mut state.depth_range);
             gl.get_parameter_f32_slice(glow::VIEWPORT, &mut state.viewport);
             if host.polygon_mode {
-                // Core contexts have one mode, and some drivers write no second one.
+                // Core contexts have one mode, and some drivers do not write the second value.
                 let mut modes = [0; 2];
                 gl.get_parameter_i32_slice(glow::POLYGON_MODE, &mut modes);
                 state.polygon_mode =
@@ -398,7 +400,7 @@ impl Context {
                 gl.bind_texture(glow::TEXTURE_2D_ARRAY, texture);
             }
             gl.active_texture(state.active_unit);
-            // A program that was deleted while it was current went when synthesis made another one current.
+            // A program that was deleted while it was current was destroyed when synthesis made another one current.
             gl.use_program(state.program.filter(|program| gl.is_program(*program)));
             gl.bind_vertex_array(state.vertex_array);
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, state.draw_framebuffer);

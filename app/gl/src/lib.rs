@@ -1,10 +1,11 @@
 //! Objects over [`glow`]: programs, textures, framebuffers, meshes, timers, capabilities.
 //!
-//! A [`Context`] wraps the context that the caller lends; everything else is made in it, deletes itself when dropped,
-//! and is counted, so that leaks show in a test.
+//! A [`Context`] wraps the context that the caller lends. All other objects are created in it, delete themselves when
+//! dropped, and are counted, so that tests can detect leaks.
 //!
-//! Of synthesis it knows one thing: the state that it sets, saves and restores in a host's context
-//! ([`Context::begin_synthesis`], [`HostState`]). It must never know how anything is synthesized, a scene or a window.
+//! The crate knows one thing about synthesis: the state that synthesis sets, saves and restores in a host's context
+//! ([`Context::begin_synthesis`], [`HostState`]). It knows neither how anything is synthesized, nor a scene or a
+//! window.
 
 mod capabilities;
 mod framebuffer;
@@ -38,14 +39,14 @@ pub use record::{Attachments, Command, Draw, Image, Shape};
 pub use state::{Blend, DepthTest, RasterState};
 pub use texture::{Filter, Format, Texture};
 
-/// An error of GL.
+/// A GL error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GlError {
-    /// The context is too old or lacks what is needed.
+    /// The context is too old or lacks a required feature.
     #[error("{0}")]
     Unsupported(String),
-    /// A shader file that is not part of the program, or an include that does not exist.
+    /// The shader file is not part of the program, or an included file does not exist.
     #[error("shader file {0} does not exist")]
     MissingShader(String),
     /// A shader did not compile or a program did not link.
@@ -55,7 +56,7 @@ pub enum GlError {
         stage: &'static str,
         /// Shader file.
         file: String,
-        /// The driver's log, with file names in place of source string numbers.
+        /// The driver's log, with file names instead of source string numbers.
         log: String,
     },
     /// The driver refused to create or accept an object.
@@ -76,7 +77,7 @@ pub enum GlError {
         /// Height asked for.
         height: u32,
     },
-    /// An image size beyond the driver's limits.
+    /// The image is larger than the driver supports.
     #[error(
         "an image of {width}x{height} pixels is beyond what this GL driver can render ({limit}x{limit}); choose a smaller size"
     )]
@@ -93,7 +94,7 @@ pub enum GlError {
 /// glFramebufferTextureMultiviewOVR: target, attachment, texture, level, first view, number of views.
 type FramebufferTextureMultiview = unsafe extern "system" fn(u32, u32, u32, i32, i32, i32);
 
-/// glGetQueryiv: target, parameter, where the value goes.
+/// glGetQueryiv: target, parameter, pointer to the value.
 type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
 
 /// Entry points without a wrapper in glow; `None` if the driver lacks them.
@@ -116,13 +117,13 @@ impl EntryPoints {
     }
 }
 
-/// Not in glow.
+/// GL_QUERY_COUNTER_BITS, which is not in glow.
 const QUERY_COUNTER_BITS: u32 = 0x8864;
 
 /// A GL context and its capabilities, shared by all objects that live in it.
 pub struct Context {
     raw: glow::Context,
-    /// Browsers have the function without an entry point.
+    /// Browsers provide the function without an entry point.
     #[cfg(not(target_arch = "wasm32"))]
     framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
     capabilities: Capabilities,
@@ -134,11 +135,11 @@ pub struct Context {
     /// The argument of [`Context::within_columns`].
     columns: Cell<Option<[u32; 2]>>,
     empty_vertex_array: glow::VertexArray,
-    /// Sizes and formats of textures and framebuffers, for records.
+    /// Sizes and formats of the textures, for records.
     images: RefCell<HashMap<glow::Texture, Image>>,
     framebuffers: RefCell<HashMap<glow::Framebuffer, Rc<Attachments>>>,
     recorder: RefCell<Option<record::Recorder>>,
-    /// The last field, because fields are dropped in their order.
+    /// The last field, since fields are dropped in order of declaration.
     _owner: Option<Rc<dyn Any>>,
 }
 
@@ -146,15 +147,15 @@ impl Context {
     /// Wraps a glow context, which must be current, and checks that it can run the shaders. Does not change its state.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] when the context is older than OpenGL ES 3.0, or desktop GL that does not
-    /// compile GLSL ES 3.10.
+    /// [`GlError::Unsupported`] if the context is older than OpenGL ES 3.0, or is desktop GL that does not compile GLSL
+    /// ES 3.10.
     pub fn new(raw: glow::Context) -> Result<Rc<Context>, GlError> {
         Context::with_entry_points(raw, EntryPoints::default(), None)
     }
 
     /// Like [`Context::new`], with functions that glow does not wrap: multiview, the bits of timer queries, and the
-    /// state of single draw buffers. Without the last [`Context::restore_state`] sets the second draw buffer as the
-    /// first one was. `load` returns an entry point by its name, or null.
+    /// state of single draw buffers. Without the latter, [`Context::restore_state`] gives the second draw buffer the
+    /// state of the first. `load` returns an entry point by its name, or null.
     ///
     /// # Errors
     /// Those of [`Context::new`].
@@ -165,29 +166,29 @@ impl Context {
         raw: glow::Context,
         load: impl FnMut(&CStr) -> *const c_void,
     ) -> Result<Rc<Context>, GlError> {
-        // SAFETY: the caller's.
+        // SAFETY: the contract of this function is the same.
         unsafe { Context::loaded(raw, load, None) }
     }
 
-    /// Like [`Context::with_loader`], of a context and a library that `owner` destroys when it is dropped: it is kept
-    /// until the last object of the context is deleted.
+    /// Like [`Context::with_loader`], for a context and a library that `owner` destroys when it is dropped. The owner
+    /// is kept until the last object of the context is deleted.
     ///
     /// # Errors
     /// Those of [`Context::new`].
     ///
     /// # Safety
-    /// As of [`Context::with_loader`].
+    /// Those of [`Context::with_loader`].
     pub unsafe fn owned(
         raw: glow::Context,
         load: impl FnMut(&CStr) -> *const c_void,
         owner: Rc<dyn Any>,
     ) -> Result<Rc<Context>, GlError> {
-        // SAFETY: the caller's.
+        // SAFETY: the contract of this function is the same.
         unsafe { Context::loaded(raw, load, Some(owner)) }
     }
 
     /// # Safety
-    /// As of [`Context::with_loader`].
+    /// Those of [`Context::with_loader`].
     unsafe fn loaded(
         raw: glow::Context,
         mut load: impl FnMut(&CStr) -> *const c_void,
@@ -258,13 +259,13 @@ impl Context {
         &self.capabilities
     }
 
-    /// Returns the number of live textures, renderbuffers, framebuffers, programs, buffers and vertex arrays of this
-    /// library.
+    /// Returns the number of this library's live textures, renderbuffers, framebuffers, programs, buffers and vertex
+    /// arrays.
     pub fn object_count(&self) -> usize {
         self.objects.get()
     }
 
-    /// Returns the files and defines of all programs compiled so far, sorted, each once.
+    /// Returns the files and defines of all programs compiled so far, sorted and without duplicates.
     pub fn program_recipes(&self) -> Vec<ProgramRecipe> {
         self.recipes.borrow().iter().cloned().collect()
     }
@@ -273,8 +274,8 @@ impl Context {
         self.objects.set(self.objects.get().wrapping_add_signed(change));
     }
 
-    /// Returns the bytes of all live textures and render targets of this library, by their formats. Drivers may add
-    /// padding.
+    /// Returns the size in bytes of this library's live textures and render targets, computed from their formats.
+    /// Drivers may add padding.
     pub fn texture_bytes(&self) -> usize {
         self.texture_bytes.get()
     }
@@ -283,7 +284,7 @@ impl Context {
         self.texture_bytes.set(self.texture_bytes.get().wrapping_add_signed(change));
     }
 
-    /// Runs one pass inside a KHR_debug group called `name` and, while profiling, a timer of that name.
+    /// Runs one pass inside a KHR_debug group called `name` and, while profiling, with a timer of that name.
     pub fn pass<R>(&self, name: &'static str, body: impl FnOnce() -> R) -> R {
         let debug = self.capabilities.debug_groups;
         // SAFETY: the entry points exist if the capability is set; the group is popped below.
@@ -311,20 +312,20 @@ impl Context {
         self.profiler.borrow_mut().set(&self.raw, profiling);
     }
 
-    /// Returns the pass times since the last call, in the order in which the passes ran. Empty if timer queries are
+    /// Returns the pass times since the last call, in the order in which the passes ran; none if timer queries are
     /// undefined for one of them ([`Capabilities::multiview_timer_queries`]). Waits for the GPU.
     pub fn take_pass_times(&self) -> Vec<PassTime> {
         self.profiler.borrow_mut().take(&self.raw)
     }
 
-    /// Ends a frame, to time every frame without waiting ([`Profiling::Queries`]). Adds the pass times of one frame,
-    /// some frames ago, to `times`, and returns how many calls ago that frame has ended; `None` if there are none. A
-    /// frame is left out if the clock was disturbed or if timer queries are undefined for one of its passes.
+    /// Ends a frame, to time every frame without waiting ([`Profiling::Queries`]). Adds the pass times of an earlier
+    /// frame to `times`, and returns how many calls ago that frame ended; `None` if no times are available. A frame is
+    /// left out if the clock was disturbed or if timer queries are undefined for one of its passes.
     pub fn end_timed_frame(&self, times: &mut Vec<PassTime>) -> Option<u32> {
         self.profiler.borrow_mut().end_frame(&self.raw, times)
     }
 
-    /// Notes that several views are drawn at once from now on. If timer queries are undefined for that, the frame gets
+    /// Notes that several views are drawn at once from now on. If timer queries are undefined for this, the frame gets
     /// no pass times.
     fn note_multiview(&self) {
         if !self.capabilities.multiview_timer_queries {
@@ -338,7 +339,8 @@ impl Context {
         unsafe { self.raw.finish() }
     }
 
-    /// Blocks until the GPU has drawn into these. Browsers make little of glFinish: there a pixel of each is read.
+    /// Blocks until the GPU has drawn into `to`. In browsers, where glFinish has little effect, it reads a pixel of
+    /// each.
     pub fn finish_drawing(&self, to: &[Destination]) {
         #[cfg(target_arch = "wasm32")]
         for to in to {
@@ -351,7 +353,7 @@ impl Context {
         }
     }
 
-    /// True if passes are timed now, by timer queries or by waiting for the GPU.
+    /// True if passes are being timed, by timer queries or by waiting for the GPU.
     pub fn times_passes(&self) -> bool {
         self.profiler.borrow().is_on()
     }
@@ -368,10 +370,10 @@ impl Context {
         }
     }
 
-    /// The same in WebGL.
+    /// Attaches the first two layers of an array texture to the bound framebuffer, in WebGL.
     ///
     /// # Safety
-    /// The same.
+    /// The texture must be an array of at least two layers.
     #[cfg(target_arch = "wasm32")]
     unsafe fn framebuffer_texture_layers(&self, attachment: u32, texture: glow::Texture) {
         let (gl, target) = (&self.raw, glow::FRAMEBUFFER);
@@ -379,7 +381,7 @@ impl Context {
         unsafe { gl.framebuffer_texture_multiview_ovr(target, attachment, Some(texture), 0, 0, 2) }
     }
 
-    /// Draws one triangle that covers the viewport. The vertex shader `screen.vert` makes it from gl_VertexID.
+    /// Draws one triangle that covers the viewport. The vertex shader `screen.vert` computes it from gl_VertexID.
     pub fn draw_screen(&self) {
         // SAFETY: the vertex array has no attributes, so nothing is read from buffers.
         self.drawing(Shape::Screen, || unsafe {
@@ -391,7 +393,7 @@ impl Context {
     /// Returns the GL errors since the last call, separated by commas. For tests and debugging.
     pub fn take_errors(&self) -> Option<String> {
         let mut names = Vec::new();
-        // A lost context returns errors forever.
+        // A lost context keeps returning errors.
         while names.len() < 16 {
             // SAFETY: reads and clears the error flag.
             match unsafe { self.raw.get_error() } {

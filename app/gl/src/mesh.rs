@@ -7,13 +7,13 @@ use glow::HasContext;
 
 use crate::{Context, GlError, Shape};
 
-/// Copies of vertices that are rewritten: the GPU may still read those of frames that are on their way.
+/// The number of copies of vertices that are rewritten: the GPU may still be reading those of earlier frames.
 const COPIES: usize = 3;
 
-/// Vertex arrays with one interleaved vertex buffer of floats each, and 32-bit indices.
+/// One or more vertex arrays, each with an interleaved vertex buffer of floats, and 32-bit indices.
 pub struct Mesh {
     gl: Rc<Context>,
-    /// One, or [`COPIES`] if the vertices are rewritten.
+    /// One copy, or [`COPIES`] if the vertices are rewritten.
     copies: Vec<(glow::VertexArray, glow::Buffer)>,
     current: usize,
     indices: glow::Buffer,
@@ -23,14 +23,14 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Uploads vertices and indices. `attributes` are the numbers of floats of a vertex's attributes, one after the
-    /// other, for the shader's locations from 0 on.
+    /// Uploads vertices and indices. `attributes` lists the number of floats of each of a vertex's attributes in order,
+    /// for the shader's locations from 0 on.
     ///
     /// # Errors
-    /// [`GlError::Object`] when the driver has no memory.
+    /// [`GlError::Object`] if the driver has no memory.
     ///
     /// # Panics
-    /// If the attributes do not add up to a vertex.
+    /// If the sizes of the attributes do not add up to that of a vertex.
     pub fn new<V: bytemuck::Pod>(
         gl: &Rc<Context>,
         attributes: &[i32],
@@ -40,13 +40,13 @@ impl Mesh {
         Mesh::with_copies(gl, attributes, vertices, indices, 1)
     }
 
-    /// Uploads vertices that [`Mesh::rewrite`] replaces, as [`Mesh::new`] does.
+    /// Uploads vertices that [`Mesh::rewrite`] can replace, as [`Mesh::new`] does.
     ///
     /// # Errors
-    /// As [`Mesh::new`].
+    /// Those of [`Mesh::new`].
     ///
     /// # Panics
-    /// As [`Mesh::new`].
+    /// Those of [`Mesh::new`].
     pub fn rewritable<V: bytemuck::Pod>(
         gl: &Rc<Context>,
         attributes: &[i32],
@@ -112,17 +112,16 @@ impl Mesh {
         }
     }
 
-    /// Replaces the vertices of a mesh that was made by [`Mesh::rewritable`] for the draw calls that follow its next
-    /// [`Mesh::bind`].
+    /// Replaces the vertices of a mesh from [`Mesh::rewritable`], for draw calls after the next [`Mesh::bind`].
     ///
     /// # Panics
-    /// If their number is another one.
+    /// If the number of vertices differs.
     pub fn rewrite<V: bytemuck::Pod>(&mut self, vertices: &[V]) {
         let bytes: &[u8] = bytemuck::cast_slice(vertices);
         assert_eq!(bytes.len(), self.vertex_count * self.vertex_bytes as usize, "other vertices than before");
         self.current = (self.current + 1) % self.copies.len();
         let gl = self.gl.raw();
-        // SAFETY: the buffer lives as long as the mesh and has just this size.
+        // SAFETY: the buffer lives as long as the mesh and has exactly this size.
         unsafe {
             gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.copies[self.current].1));
             gl.buffer_sub_data_u8_slice(glow::ARRAY_BUFFER, 0, bytes);

@@ -1,4 +1,4 @@
-//! Render targets with several samples in each pixel.
+//! Render targets with several samples per pixel.
 
 use std::rc::Rc;
 
@@ -7,33 +7,33 @@ use glow::HasContext;
 use crate::framebuffer::Framebuffer;
 use crate::{Attachments, Context, Format, GlError, RenderTarget};
 
-/// An attachment.
+/// A colour or depth attachment.
 enum Image {
     Texture(glow::Texture),
     Renderbuffer(glow::Renderbuffer),
 }
 
-/// A framebuffer with several samples of colour and depth in each pixel, 4 bytes each. A tile-based GPU writes all of
-/// them to memory unless they are given up: [`MultisampleTarget::discard`].
+/// A framebuffer with several samples of colour and depth per pixel, 4 bytes each. A tile-based GPU writes all samples
+/// to memory unless they are discarded by [`MultisampleTarget::discard`].
 pub struct MultisampleTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,
     samples: u32,
     formats: [Format; 2],
     readable: bool,
-    /// Colour and depth.
+    /// The colour image and the depth image.
     images: Option<[Image; 2]>,
     size: [u32; 2],
 }
 
 impl MultisampleTarget {
-    /// Creates a target of `size` pixels with this many samples in each ([`crate::Capabilities::check_samples`]). Both
-    /// formats have 4 bytes and can be rendered to. A `readable` target has textures, for shaders that read single
+    /// Creates a target of `size` pixels with this many samples each ([`crate::Capabilities::check_samples`]). Both
+    /// formats must be renderable and have 4 bytes. A `readable` target has textures, for shaders that read single
     /// samples ([`crate::Capabilities::multisample_textures`]).
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver lacks this many samples or multisample textures, or cannot render to the
-    /// formats; [`GlError::TooLarge`] beyond its limit, [`GlError::Object`] when it has no memory.
+    /// formats; [`GlError::TooLarge`] beyond its size limit; [`GlError::Object`] if it has no memory.
     pub fn new(
         gl: &Rc<Context>,
         size: [u32; 2],
@@ -61,7 +61,7 @@ impl MultisampleTarget {
         Ok(target)
     }
 
-    /// Resizes the target. If the size changes, the contents are undefined afterwards.
+    /// Resizes the target. If the size changes, its contents become undefined.
     ///
     /// # Errors
     /// Those of [`MultisampleTarget::new`].
@@ -124,7 +124,7 @@ impl MultisampleTarget {
         let ([w, h], samples) = (size.map(|n| n.max(1) as i32), self.samples as i32);
         let internal = format.gl().0;
         let refused = |reason| GlError::Object { what: "a multisample image".into(), reason };
-        // SAFETY: sizes are inside the limits, and `new` checked the number of samples.
+        // SAFETY: the size is within the limits, and `new` has checked the number of samples.
         let image = unsafe {
             if self.readable {
                 let raw = gl.create_texture().map_err(refused)?;
@@ -147,7 +147,7 @@ impl MultisampleTarget {
         crate::Image { format, size: self.size, samples: self.samples }
     }
 
-    /// Returns the bytes of colour and depth.
+    /// Returns the size of colour and depth in bytes.
     fn bytes(&self) -> isize {
         2 * 4 * self.samples as isize * self.size[0] as isize * self.size[1] as isize
     }
@@ -175,14 +175,14 @@ impl MultisampleTarget {
         self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
     }
 
-    /// Averages the samples into the first colour texture of `to`, which has the same colour format. Its size selects
-    /// the lower left pixels.
+    /// Averages the samples into the first colour texture of `to`, which must have the same colour format. Resolves the
+    /// lower left pixels, up to the size of `to`.
     pub fn resolve_color(&self, to: &RenderTarget) {
         self.blit(to, glow::COLOR_BUFFER_BIT);
     }
 
-    /// Copies the depth of one sample, which the driver chooses, into the depth texture of `to`, which has the same
-    /// depth format. For drivers without multisample textures.
+    /// Copies the depth of one sample, which the driver chooses, into the depth texture of `to`, which must have the
+    /// same depth format. For drivers without multisample textures.
     pub fn resolve_depth(&self, to: &RenderTarget) {
         self.blit(to, glow::DEPTH_BUFFER_BIT);
     }
@@ -202,7 +202,7 @@ impl MultisampleTarget {
         }
     }
 
-    /// Gives up the contents of colour, depth or both, so that a tile-based GPU does not write them to memory.
+    /// Discards the contents of colour, depth or both, so that a tile-based GPU does not write them to memory.
     pub fn discard(&self, color: bool, depth: bool) {
         let attachments = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT];
         let given_up = match (color, depth) {
@@ -236,7 +236,7 @@ impl MultisampleTarget {
         }
     }
 
-    /// Returns the number of samples in a pixel.
+    /// Returns the number of samples per pixel.
     pub fn samples(&self) -> u32 {
         self.samples
     }
@@ -253,22 +253,22 @@ impl Drop for MultisampleTarget {
     }
 }
 
-/// A framebuffer that renders with several samples a pixel into the textures of a render target. A tile-based GPU keeps
-/// the samples in its tiles and averages them when it writes the tiles: 8 bytes a pixel, whatever the number of
+/// A framebuffer that renders with several samples per pixel into the textures of a render target. A tile-based GPU
+/// keeps the samples in its tiles and averages them when it writes the tiles: 8 bytes per pixel, whatever the number of
 /// samples. The samples are lost as soon as another framebuffer is bound.
 pub struct TileTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,
     samples: u32,
-    /// Colour and depth.
+    /// The colour texture and the depth texture.
     textures: Option<[glow::Texture; 2]>,
 }
 
 impl TileTarget {
-    /// Creates a framebuffer for this many samples, without textures yet.
+    /// Creates a framebuffer for this many samples, without textures.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] without [`crate::Capabilities::tile_samples`]; [`GlError::Object`] when the driver
+    /// [`GlError::Unsupported`] without [`crate::Capabilities::tile_samples`]; [`GlError::Object`] if the driver
     /// refuses.
     pub fn new(gl: &Rc<Context>, samples: u32) -> Result<TileTarget, GlError> {
         let capabilities = gl.capabilities();
@@ -281,10 +281,10 @@ impl TileTarget {
         Ok(TileTarget { gl: gl.clone(), framebuffer: Framebuffer::new(gl)?, samples, textures: None })
     }
 
-    /// Attaches the first colour texture and the depth texture of a target. Does nothing if they are attached.
+    /// Attaches the first colour texture and the depth texture of a target, unless they are attached already.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] when the driver cannot render to these with so many samples.
+    /// [`GlError::Unsupported`] if the driver cannot render to these textures with this many samples.
     pub fn fit(&mut self, target: &RenderTarget) -> Result<(), GlError> {
         let textures = [target.color(0).raw(), target.depth().raw()];
         if self.textures == Some(textures) {
@@ -327,7 +327,7 @@ impl TileTarget {
         self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
     }
 
-    /// Gives up the depth. The framebuffer must be bound.
+    /// Discards the depth. The framebuffer must be bound.
     pub fn discard_depth(&self) {
         self.gl.record_discard(self.framebuffer.raw, [false, true]);
         // SAFETY: the bound framebuffer has the attachment.

@@ -1,4 +1,4 @@
-//! A buffer for asynchronous readback of pixels.
+//! A buffer for reading pixels back asynchronously.
 
 use std::rc::Rc;
 
@@ -17,10 +17,10 @@ impl PixelBuffer {
     /// Creates a buffer of `len` bytes.
     ///
     /// # Errors
-    /// [`GlError::Object`] when the driver refuses.
+    /// [`GlError::Object`] if the driver refuses.
     pub fn new(gl: &Rc<Context>, len: usize) -> Result<PixelBuffer, GlError> {
         let raw_gl = gl.raw();
-        // SAFETY: the buffer is new. It is unbound at the end, since a bound one redirects every readback.
+        // SAFETY: the buffer is new. It is unbound at the end, since a bound buffer would redirect every readback.
         let raw = unsafe {
             let raw = raw_gl
                 .create_buffer()
@@ -39,8 +39,8 @@ impl PixelBuffer {
         self.raw
     }
 
-    /// Copies the first bytes of the buffer out, zeros if the driver cannot map it. Waits for the readback that fills
-    /// it.
+    /// Copies the beginning of the buffer into `bytes`, or zeros if the driver cannot map the buffer. Waits for the
+    /// readback that fills it.
     ///
     /// # Panics
     /// If `bytes` is longer than the buffer.

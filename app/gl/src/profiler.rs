@@ -1,4 +1,4 @@
-//! Time per pass.
+//! Times of the passes.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -11,19 +11,20 @@ use web_time::Instant;
 
 use crate::{Capabilities, GlApi};
 
-/// GL_GPU_DISJOINT_EXT of EXT_disjoint_timer_query: true if the clock was disturbed since the last query of it.
+/// GL_GPU_DISJOINT_EXT of EXT_disjoint_timer_query: true if the clock was disturbed since this was last queried.
 const GPU_DISJOINT: u32 = 0x8FBB;
-/// Results are read this many frames late, when they are available without waiting.
+/// Results are read this many frames late, when they are usually available without waiting.
 const FRAMES_LATE: usize = 4;
 
-/// The way in which passes are timed.
+/// How passes are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profiling {
-    /// Not at all.
+    /// Passes are not timed.
     Off,
-    /// Timer queries if they can be trusted, else nothing. Never waits: for programs that show frames.
+    /// Timer queries if they are reliable, otherwise nothing. Does not wait, so that it can be used while frames are
+    /// shown.
     Queries,
-    /// Timer queries if they can be trusted, else [`Profiling::Finish`].
+    /// Timer queries if they are reliable, otherwise [`Profiling::Finish`].
     Auto,
     /// glFinish before and after each pass, and a CPU clock. Needed on a CPU rasterizer, whose timer queries cover only
     /// the last tile.
@@ -35,7 +36,7 @@ pub enum Profiling {
 pub struct PassTime {
     /// The name given to [`crate::Context::pass`].
     pub name: &'static str,
-    /// Time on the GPU or, on a CPU rasterizer, on the wall clock.
+    /// GPU time or, with [`Profiling::Finish`], wall-clock time.
     pub time: Duration,
 }
 
@@ -46,7 +47,7 @@ enum Record {
     Undefined(glow::Query),
 }
 
-/// Times passes. A pass within another one is part of the outer one's time, since timer queries do not nest.
+/// Times passes. A pass within another one counts as part of the outer pass, since timer queries do not nest.
 pub(crate) struct Profiler {
     mode: Profiling,
     queries: bool,
@@ -54,11 +55,11 @@ pub(crate) struct Profiler {
     depth: usize,
     started: Option<Instant>,
     records: Vec<(&'static str, Record)>,
-    /// Records of frames whose results are not read yet, oldest first, each with the number of its frame.
+    /// Records of frames whose results have not been read yet, oldest first, each with its frame number.
     frames: VecDeque<(u32, Vec<(&'static str, Record)>)>,
     /// Number of frames that have ended.
     ended: u32,
-    /// Number of the oldest frames whose results are worthless, since the clock was disturbed.
+    /// The number of oldest frames whose results are invalid, since the clock was disturbed.
     disturbed: usize,
     pool: Vec<glow::Query>,
 }
@@ -97,7 +98,7 @@ impl Profiler {
         if !self.is_on() || self.depth > 1 {
             return;
         }
-        // SAFETY: one query at a time is active, since inner passes return above.
+        // SAFETY: only one query is active at a time, since inner passes return above.
         unsafe {
             if self.queries && self.mode != Profiling::Finish {
                 let query = self.pool.pop().map_or_else(|| gl.create_query(), Ok);
@@ -113,7 +114,7 @@ impl Profiler {
         }
     }
 
-    /// Ends the pass's query because of a draw that would leave its result undefined, and that WebGL would refuse.
+    /// Ends the pass's query before a draw that would make its result undefined, and that WebGL would refuse.
     pub(crate) fn make_undefined(&mut self, gl: &glow::Context) {
         if self.depth > 0
             && let Some((_, record)) = self.records.last_mut()
@@ -181,7 +182,7 @@ impl Profiler {
             read_number = read(gl, &mut spare, &mut self.pool, times).then_some(then);
             taken = 1;
         }
-        // SAFETY: the extension with timer queries in OpenGL ES defines this state.
+        // SAFETY: in OpenGL ES, the extension with timer queries defines this state.
         if self.queries && self.api == GlApi::Es && unsafe { gl.get_parameter_bool(GPU_DISJOINT) } {
             self.disturbed = self.frames.len() + taken + 1;
         }
@@ -195,8 +196,8 @@ impl Profiler {
     }
 }
 
-/// Reads results into `times`, waits for those that are not available yet, and returns their queries to the pool. False
-/// if one of them is undefined: then nothing is added, since times of some passes would look like those of all.
+/// Reads results into `times`, waiting for those that are not available yet, and returns their queries to the pool.
+/// Returns false, and adds nothing, if one of them is undefined: the times of some passes would look like those of all.
 fn read(
     gl: &glow::Context,
     records: &mut Vec<(&'static str, Record)>,
@@ -230,7 +231,7 @@ mod tests {
         Profiler::new(&Capabilities { timer_queries, ..Capabilities::query(gl, false, || true).unwrap() })
     }
 
-    /// llvmpipe has timer queries; that their times mean nothing does not matter here.
+    /// llvmpipe has timer queries; their values do not matter here.
     #[test]
     fn query_results_come_some_frames_late() {
         let headless = Headless::open(Backend::Egl).unwrap();
@@ -270,16 +271,16 @@ mod tests {
                 }
                 profiler.end(gl.raw());
             }
-            // Outside of a pass nothing is timed.
+            // Outside of a pass nothing is being timed.
             profiler.make_undefined(gl.raw());
             gl.finish();
             told.extend(profiler.end_frame(gl.raw(), &mut times));
             if frame == 4 {
-                // A frame without passes is one, too.
+                // A frame without passes counts, too.
                 assert_eq!(profiler.end_frame(gl.raw(), &mut times), None);
             }
         }
-        // Frames 1, 3 and 5, told at the ends of frames 5, 7 and 9.
+        // Frames 1, 3 and 5, reported at the ends of frames 5, 7 and 9.
         assert_eq!((told.as_slice(), times.len()), (&[5, 5, 4][..], 6));
         profiler.take(gl.raw());
         assert!(profiler.pool.len() <= 2 * (FRAMES_LATE + 1), "queries are used again");

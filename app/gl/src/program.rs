@@ -30,11 +30,11 @@ pub enum ShaderSource<'a> {
 pub struct ProgramRecipe {
     /// The file of each stage, as [`yoro_shaders::files`] names it: vertex and fragment shader, or a compute shader.
     pub files: Vec<String>,
-    /// Names and values of the preprocessor's macros, in order of definition.
+    /// Names and values of the preprocessor macros, in order of definition.
     pub defines: Vec<(String, String)>,
 }
 
-/// Returns a file's text with the GLSL ES version that the context compiles, at most 3.10.
+/// Returns a file's text, for the GLSL ES version that the context compiles, at most 3.10.
 fn assemble(gl: &Context, path: &str, defines: &[(&str, String)]) -> Result<Assembled, GlError> {
     let version = match gl.capabilities().api {
         GlApi::Es if !gl.capabilities().compute => "300 es",
@@ -55,8 +55,8 @@ impl Program {
     /// Compiles and links a program.
     ///
     /// # Errors
-    /// [`GlError::Shader`] with file, line and the driver's log; [`GlError::MissingShader`];
-    /// [`GlError::Unsupported`] for a compute shader without OpenGL ES 3.1.
+    /// [`GlError::Shader`] with file, line and the driver's log; [`GlError::MissingShader`]; [`GlError::Unsupported`]
+    /// for a compute shader without OpenGL ES 3.1.
     pub fn new(
         gl: &Rc<Context>,
         source: ShaderSource,
@@ -135,8 +135,8 @@ impl Program {
         self
     }
 
-    /// Sets a uniform by name; the program must be current. A name that the compiler has removed is ignored, since
-    /// variants of one shader use different uniforms. Arrays have their name without brackets.
+    /// Sets a uniform by name. The program must be current. Names that the program does not have are ignored, since
+    /// variants of one shader use different uniforms. Names of arrays have no brackets.
     pub fn set(&self, name: &str, value: impl UniformValue) -> &Program {
         if let Some(location) = self.uniforms.get(name) {
             // SAFETY: the location belongs to this program, which the caller has bound.
@@ -182,8 +182,8 @@ impl Drop for Program {
         // SAFETY: created in `new`, deleted once.
         unsafe {
             let gl = self.gl.raw();
-            // A current program would live on, and be a host's to stumble over. In browsers, which have no other host,
-            // glow panics if there is none.
+            // If the program were current, it would live on and stay current in the host. Browsers have no other host,
+            // and glow panics there if no program is current.
             let own = Some(self.raw);
             if cfg!(not(target_arch = "wasm32")) && gl.get_parameter_program(glow::CURRENT_PROGRAM) == own {
                 gl.use_program(None);

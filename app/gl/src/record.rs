@@ -1,4 +1,4 @@
-//! A record of what frames ask the GPU to do, for models of their cost on GPUs that are not here.
+//! A record of the GPU commands of frames, for models of their cost on other GPUs.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -7,18 +7,18 @@ use glow::HasContext;
 
 use crate::{Blend, Context, DepthTest, Format, GlApi, ProgramRecipe, RasterState};
 
-/// A texture, or an image with several samples in each pixel.
+/// A texture, or an image with several samples per pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Image {
     /// The format.
     pub format: Format,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Samples in each pixel.
+    /// Samples per pixel.
     pub samples: u32,
 }
 
-/// The images that a framebuffer draws into. All commands for one framebuffer share one `Rc` of them.
+/// The images that a framebuffer draws into. All commands for one framebuffer share one `Rc`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Attachments {
     /// The colour attachments.
@@ -34,12 +34,12 @@ pub enum Shape {
     Screen,
     /// A part of a mesh.
     Mesh {
-        /// Number of indices, of all instances together.
+        /// Number of indices of all instances together.
         indices: u64,
-        /// Vertices to shade: the indices' share of the mesh's vertices, so that each vertex is shaded once for each
-        /// instance.
+        /// Number of vertices to shade: the indices' share of the mesh's vertices, as if each vertex were shaded once
+        /// per instance.
         vertices: u64,
-        /// Bytes of a vertex.
+        /// Size of a vertex in bytes.
         vertex_bytes: u32,
     },
 }
@@ -47,38 +47,38 @@ pub enum Shape {
 /// A draw call.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
-    /// The name given to [`Context::pass`], the innermost; empty outside of passes.
+    /// The name given to the innermost [`Context::pass`]; empty outside of passes.
     pub pass: &'static str,
     /// The program.
     pub program: Rc<ProgramRecipe>,
-    /// The framebuffer; `None` for one that is not of this library.
+    /// The framebuffer; `None` for one that does not belong to this library.
     pub target: Option<Rc<Attachments>>,
-    /// Textures that the program samples, by the names of their uniforms, sorted.
+    /// The textures that the program samples, with the names of their uniforms, sorted by name.
     pub textures: Vec<(String, Image)>,
-    /// Columns and rows of the viewport that are drawn.
+    /// The number of columns and rows of the viewport that are drawn.
     pub area: [u32; 2],
     /// The triangles.
     pub shape: Shape,
     /// True if the colour attachments are written.
     pub writes_color: bool,
-    /// True if they are blended with.
+    /// True if the draw is blended with the colour attachments.
     pub blends: bool,
-    /// True if the depth attachment is tested against or written.
+    /// True if the depth attachment is tested or written.
     pub uses_depth: bool,
-    /// True if it is written.
+    /// True if the depth attachment is written.
     pub writes_depth: bool,
-    /// Samples that passed the depth test and were not discarded. Desktop GL counts them; OpenGL ES does not.
+    /// Samples that passed the depth test and were not discarded. Counted by desktop GL only.
     pub samples_passed: Option<u64>,
 }
 
-/// Something that a frame asks for.
+/// A command to the GPU.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Draws.
     Draw(Draw),
-    /// Clears colour and, if it is set, depth.
+    /// Clears colour and, if the flag is set, depth.
     Clear(Option<Rc<Attachments>>, bool),
-    /// Gives up the contents of colour, depth or both.
+    /// Discards the contents of colour, depth or both.
     Discard(Option<Rc<Attachments>>, [bool; 2]),
     /// Copies or averages `size` pixels of colour, or of depth, into another framebuffer.
     Copy {
@@ -99,7 +99,7 @@ pub enum Command {
 #[derive(Default)]
 pub(crate) struct Recorder {
     commands: Vec<Command>,
-    /// Of each command, the query of its samples.
+    /// The query of each command's passed samples.
     queries: Vec<Option<glow::Query>>,
     passes: Vec<&'static str>,
     program: Option<(glow::Program, Rc<ProgramRecipe>)>,
@@ -157,7 +157,7 @@ impl Recorder {
         self.masks_depth = true;
     }
 
-    /// Sets the depth test alone, as synthesis does for its target.
+    /// Sets the state of a screen pass that writes depth or not, as synthesis does for its target.
     pub(crate) fn set_depth_write(&mut self, on: bool) {
         let depth = if on { DepthTest::Always } else { DepthTest::Off };
         self.set_state(&RasterState { depth, ..RasterState::SCREEN });
@@ -190,12 +190,12 @@ impl Recorder {
 }
 
 impl Context {
-    /// Starts to record what is asked for. The sizes of textures and framebuffers are known of this library's own.
+    /// Starts recording commands. Sizes are known only for textures and framebuffers of this library.
     pub fn record(&self) {
         *self.recorder.borrow_mut() = Some(Recorder::default());
     }
 
-    /// Stops, and returns the commands since [`Context::record`]. Waits for the GPU.
+    /// Stops recording, and returns the commands since [`Context::record`]. Waits for the GPU.
     pub fn take_record(&self) -> Vec<Command> {
         let Some(recorder) = self.recorder.take() else { return Vec::new() };
         let mut commands = recorder.commands;
@@ -212,19 +212,19 @@ impl Context {
         commands
     }
 
-    /// Changes the record, if one is made.
+    /// Changes the record, if one is being made.
     pub(crate) fn recorded(&self, change: impl FnOnce(&mut Recorder)) {
         if let Some(recorder) = &mut *self.recorder.borrow_mut() {
             change(recorder);
         }
     }
 
-    /// Runs a draw call, and records it if a record is made.
+    /// Runs a draw call, and records it if a record is being made.
     pub(crate) fn drawing(&self, shape: Shape, draw: impl FnOnce()) {
         let mut counts = false;
         self.recorded(|recorder| {
             let Some(recorded) = recorder.draw(self, shape) else { return };
-            // OpenGL ES tells only whether any sample has passed.
+            // OpenGL ES only tells whether any sample has passed.
             let query = if self.capabilities().api == GlApi::Desktop {
                 // SAFETY: creates a query, which `take_record` deletes.
                 unsafe { self.raw().create_query() }.ok()
@@ -271,7 +271,7 @@ impl Context {
         });
     }
 
-    /// The images of a framebuffer of this library.
+    /// Returns the images of a framebuffer of this library.
     fn target(&self, framebuffer: Option<glow::Framebuffer>) -> Option<Rc<Attachments>> {
         self.framebuffers.borrow().get(&framebuffer?).cloned()
     }

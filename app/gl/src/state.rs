@@ -1,4 +1,4 @@
-//! Fixed-function state, set as a whole by each pass, so that none depends on what ran before it.
+//! Fixed-function state, which each pass sets completely, so that no pass depends on earlier ones.
 
 use glow::HasContext;
 
@@ -17,7 +17,7 @@ pub enum DepthTest {
     Less,
     /// Larger depth passes and is written.
     Greater,
-    /// Equal depth passes: with the far plane's, fragments where nothing was drawn.
+    /// Equal depth passes, and is not changed. With the far plane's depth: pixels where nothing was drawn.
     Equal,
     /// All depth passes and is written.
     Always,
@@ -28,9 +28,9 @@ pub enum DepthTest {
 pub enum Blend {
     /// Replaces the pixel.
     Off,
-    /// Added to the pixel.
+    /// Adds to the pixel.
     Add,
-    /// Mixed with the pixel by the fragment's alpha. The target's alpha (its luma) stays.
+    /// Mixes with the pixel by the fragment's alpha. The target's alpha (its luma) is not changed.
     Over,
 }
 
@@ -53,8 +53,8 @@ impl RasterState {
 }
 
 impl Context {
-    /// Sets depth test, blending and culling. Turns stencil test and dithering off and all writes on. The scissor test
-    /// is off, except within [`Context::within_columns`].
+    /// Sets depth test, blending and culling. Turns off the stencil test and dithering, and turns on all writes. The
+    /// scissor test is off, except within [`Context::within_columns`].
     pub fn set_raster_state(&self, state: &RasterState) {
         self.recorded(|recorder| recorder.set_state(state));
         let gl = self.raw();
@@ -88,8 +88,9 @@ impl Context {
         }
     }
 
-    /// Runs `body` with all draws bounded to the columns `[first, end]`, from the left, of any framebuffer; `None` for
-    /// all columns. `body` must set its state by [`Context::set_raster_state`]. Clearing is not bounded.
+    /// Runs `body` with all draws limited to the columns from `first` up to, but not including, `end`, counted from the
+    /// left; `None` for all columns. `body` must set its state by [`Context::set_raster_state`]. Clearing is not
+    /// limited.
     pub fn within_columns<R>(&self, columns: Option<[u32; 2]>, body: impl FnOnce() -> R) -> R {
         let before = self.columns.replace(columns);
         let result = body();
@@ -97,28 +98,28 @@ impl Context {
         result
     }
 
-    /// Returns the columns that [`Context::within_columns`] bounds draws to now.
+    /// Returns the columns that [`Context::within_columns`] currently limits draws to.
     pub fn columns(&self) -> Option<[u32; 2]> {
         self.columns.get()
     }
 
-    /// Turns colour writes off until the state is set again, for programs that write only depth into a target with
-    /// colour. Otherwise colour would be undefined, and WebGL refuses to draw.
+    /// Turns off colour writes until the state is set again, for programs that write only depth into a target with
+    /// colour. Otherwise colour would be undefined, and WebGL would refuse to draw.
     pub fn mask_color(&self) {
         self.recorded(Recorder::mask_color);
         // SAFETY: a state call without objects.
         unsafe { self.raw().color_mask(false, false, false, false) }
     }
 
-    /// Turns depth writes off until the state is set again, for surfaces that are tested and blended.
+    /// Turns off depth writes until the state is set again, for surfaces that are tested and blended.
     pub fn mask_depth(&self) {
         self.recorded(Recorder::mask_depth);
         // SAFETY: a state call without objects.
         unsafe { self.raw().depth_mask(false) }
     }
 
-    /// Turns alpha to coverage on or off: a fragment's alpha decides how many samples it covers, and is not stored.
-    /// Call it after [`Context::set_raster_state`], and turn it off again.
+    /// Turns alpha to coverage on or off: a fragment's alpha determines how many samples it covers, and is not stored.
+    /// Call it after [`Context::set_raster_state`], and turn it off afterwards.
     pub fn set_alpha_to_coverage(&self, on: bool) {
         let gl = self.raw();
         // SAFETY: a valid enum.
@@ -132,15 +133,15 @@ impl Context {
         }
     }
 
-    /// Maps depth in the clip volume, -1 to 1, to this part of the depth buffer's range 0 to 1. Set it back to all of
-    /// it.
+    /// Maps depth in the clip volume, -1 to 1, to this part of the depth buffer's range 0 to 1. Set the full range
+    /// again afterwards.
     pub fn set_depth_window(&self, [low, high]: [f32; 2]) {
         // SAFETY: GL clamps the values.
         unsafe { self.raw().depth_range_f32(low, high) }
     }
 
-    /// Turns clipping by `gl_ClipDistance[0]` on or off. Turn it off again: programs that do not write it are undefined
-    /// with it.
+    /// Turns clipping by `gl_ClipDistance[0]` on or off. Turn it off afterwards: drawing with programs that do not
+    /// write it is undefined while it is on.
     pub fn set_clip_distance(&self, on: bool) {
         debug_assert!(self.capabilities().clip_distances);
         // SAFETY: the enum exists if the context has clip distances.
@@ -160,7 +161,7 @@ impl Context {
         self.clear_unmasked(depth);
     }
 
-    /// Clears as [`Context::clear`] does, but a rectangle alone; `origin` is its lower left corner in pixels.
+    /// Like [`Context::clear`], for a rectangle only; `origin` is its lower left corner in pixels.
     pub fn clear_rectangle(&self, origin: [u32; 2], size: [u32; 2], depth: Option<f32>) {
         let gl = self.raw();
         let ([x, y], [w, h]) = (origin.map(|n| n as i32), size.map(|n| n as i32));
@@ -173,7 +174,7 @@ impl Context {
         }
     }
 
-    /// Clears what the scissor test lets through.
+    /// Clears all pixels that pass the scissor test.
     fn clear_unmasked(&self, depth: Option<f32>) {
         self.record_clear(depth.is_some());
         let gl = self.raw();
@@ -206,7 +207,7 @@ impl Context {
         }
     }
 
-    /// Sets the viewport, in pixels from the lower left corner of the framebuffer that is bound.
+    /// Sets the viewport, in pixels from the lower left corner of the bound framebuffer.
     pub fn set_viewport(&self, origin: [u32; 2], size: [u32; 2]) {
         self.recorded(|recorder| recorder.view(size));
         let ([x, y], [w, h]) = (origin.map(|n| n as f32), size.map(|n| n as f32));

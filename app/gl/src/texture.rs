@@ -1,4 +1,4 @@
-//! 2-D textures and arrays of them with immutable storage.
+//! 2-D textures and arrays of them, with immutable storage.
 
 use std::rc::Rc;
 
@@ -66,7 +66,7 @@ impl Format {
         }
     }
 
-    /// Returns the bytes of a pixel, or of a sample.
+    /// Returns the size in bytes of a pixel, or of a sample.
     pub fn bytes(self) -> usize {
         match self {
             Format::R8 => 1,
@@ -84,22 +84,22 @@ impl Format {
     }
 }
 
-/// The way in which a texture is sampled.
+/// How a texture is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
-    /// Nearest texel, clamped to the edge: depth, integers, exact copies.
+    /// Nearest texel, clamped to the edge, for depth, integers and exact copies.
     Nearest,
-    /// Bilinear, clamped to the edge: render targets.
+    /// Bilinear, clamped to the edge, for render targets.
     Linear,
-    /// Trilinear, anisotropic, repeating: material maps.
+    /// Trilinear, anisotropic, repeating, for material maps.
     Material,
     /// [`Filter::Material`] with nearest magnification.
     MaterialNearest,
-    /// Depth compared with a reference (LEQUAL), 2x2 results averaged: a shadow map for `sampler2DShadow`.
+    /// Depth compared with a reference (LEQUAL), with 2x2 results averaged, for shadow maps in a `sampler2DShadow`.
     Compare,
 }
 
-/// More taps cost time without a visible difference.
+/// A higher anisotropy costs time without a visible difference.
 const MAX_ANISOTROPY: f32 = 8.0;
 
 /// A 2-D texture, or an array of them.
@@ -110,7 +110,7 @@ pub struct Texture {
     target: u32,
     size: [u32; 2],
     format: Format,
-    /// Bytes of all levels and layers.
+    /// Size in bytes of all levels and layers.
     bytes: usize,
 }
 
@@ -118,12 +118,13 @@ impl Texture {
     /// Creates a 2-D texture. With a material filter it has a full mip chain, otherwise one level.
     ///
     /// # Errors
-    /// [`GlError::TooLarge`] beyond the driver's limit, [`GlError::OutOfMemory`].
+    /// [`GlError::TooLarge`] beyond the driver's limit; [`GlError::OutOfMemory`] if the driver has no memory;
+    /// [`GlError::Object`] if it refuses.
     pub fn new(gl: &Rc<Context>, size: [u32; 2], format: Format, filter: Filter) -> Result<Texture, GlError> {
         Texture::with_layers(gl, size, None, format, filter)
     }
 
-    /// Creates an array of `layers` textures, to render to and to sample.
+    /// Creates an array of `layers` textures, to be rendered to and sampled.
     ///
     /// # Errors
     /// Those of [`Texture::new`].
@@ -159,7 +160,7 @@ impl Texture {
         };
         let target = if layers.is_some() { glow::TEXTURE_2D_ARRAY } else { glow::TEXTURE_2D };
         let raw_gl = gl.raw();
-        // SAFETY: the texture is new, its size is inside the limit, and format and filter are valid together.
+        // SAFETY: the texture is new, its size is within the limit, and format and filter are valid together.
         let raw = unsafe {
             let raw = raw_gl
                 .create_texture()
@@ -206,7 +207,7 @@ impl Texture {
         Ok(texture)
     }
 
-    /// Uploads level 0: rows from the bottom, tightly packed.
+    /// Uploads level 0 from tightly packed pixels, with rows from the bottom.
     ///
     /// # Panics
     /// If `bytes` does not have [`Texture::byte_len`] bytes.
@@ -263,7 +264,7 @@ impl Texture {
     }
 }
 
-/// Binds any texture to a unit; `target` is the texture's own.
+/// Binds any texture to a unit; `target` must be the texture's own.
 pub(crate) fn bind_texture(gl: &Context, unit: u32, target: u32, texture: glow::Texture) {
     // SAFETY: GL refuses a name that is not a texture of this target.
     unsafe {
@@ -273,8 +274,8 @@ pub(crate) fn bind_texture(gl: &Context, unit: u32, target: u32, texture: glow::
 }
 
 impl Context {
-    /// True if the bound texture has its storage. Asks the texture, so that a host's pending error stays. In browsers,
-    /// where glow cannot, the error flag tells.
+    /// True if the bound texture has storage. Asks the texture, to leave a host's pending error alone. In browsers,
+    /// where glow cannot ask, it reads the error flag.
     fn has_storage(&self, target: u32) -> bool {
         let gl = self.raw();
         // SAFETY: a parameter of textures that every context has.

@@ -1,4 +1,4 @@
-//! `yoro compare`: how alike two images, or the images of two folders, are.
+//! `yoro compare`: the similarity of two images, or of the images of two folders.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub enum CompareError {
     /// A picture cannot be read or written.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// A file stands against a folder.
+    /// A file and a folder were given.
     #[error("{} is a folder and {} is a file: give two files or two folders", folder.display(), file.display())]
     FileAndFolder {
         /// The folder.
@@ -50,7 +50,7 @@ pub enum CompareError {
         /// The mistake.
         what: MetricsError,
     },
-    /// The user has asked for the end.
+    /// The user has asked to stop.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
 }
@@ -64,13 +64,13 @@ pub struct Inputs {
     pub b: PathBuf,
     /// A grey image that marks holes, or a folder of them; one image may serve a whole folder.
     pub mask: Option<PathBuf>,
-    /// The mask is bright, not dark, where there is a hole.
+    /// True if the mask is bright where there is a hole, and false if it is dark there.
     pub bright_holes: bool,
-    /// The file of the error map, as PNG; a folder when folders are compared.
+    /// The file for the error map, as PNG, or a folder if folders are compared.
     pub map: Option<PathBuf>,
 }
 
-/// The method behind the figures, for readers of the JSON.
+/// An explanation of the figures for readers of the JSON.
 const SETTINGS: Settings = Settings {
     psnr: "dB, data range 255; null where both images are identical; rgb: the error over all three channels",
     ssim_gaussian: "gaussian window 11x11, sigma 1.5, population covariance (Wang et al. 2004), mean without a border of 5 pixels; rgb: mean of three channels",
@@ -94,20 +94,20 @@ struct Settings {
 #[derive(Debug, Serialize)]
 pub struct CompareReport {
     settings: &'static Settings,
-    /// Each pair, sorted by name.
+    /// The pairs, sorted by name.
     pub pairs: Vec<Pair>,
     /// Means over the pairs.
     pub mean: Mean,
-    /// Files of one folder that the other lacks.
+    /// Files in one folder that the other lacks.
     pub unmatched: Vec<PathBuf>,
 }
 
-/// Two images and their likeness.
+/// Two images and their similarity.
 #[derive(Debug, Serialize)]
 pub struct Pair {
     /// The path inside the folders, or the first image.
     pub name: PathBuf,
-    /// Returns the figures.
+    /// The similarity of the two images.
     #[serde(flatten)]
     pub comparison: Comparison,
 }
@@ -121,7 +121,7 @@ pub struct Mean {
     pub luma: Quality,
     /// LDR-FLIP.
     pub flip: f64,
-    /// Pairs without any difference: in the mean SSIM, not in the mean PSNR.
+    /// The number of pairs without any difference, which count in the mean SSIM but not in the mean PSNR.
     pub identical_pairs: usize,
 }
 
@@ -136,15 +136,15 @@ pub struct PairFiles {
     pub b: PathBuf,
     /// The mask.
     pub mask: Option<PathBuf>,
-    /// The error map that is written.
+    /// The file for the error map.
     pub map: Option<PathBuf>,
 }
 
 impl Inputs {
-    /// Returns the files of each pair, sorted by name, and the files of one folder that the other lacks.
+    /// Returns the files of each pair, sorted by name, and the files in one folder that the other lacks.
     ///
     /// # Errors
-    /// [`CompareError`] when there is no pair.
+    /// [`CompareError`] if there is no pair.
     pub fn pairs(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
         let Inputs { a, b, .. } = self;
         for path in [a, b] {
@@ -190,7 +190,7 @@ impl Inputs {
 }
 
 impl CompareReport {
-    /// Compares two images, or each pair of two folders; error maps are written where they are wanted.
+    /// Compares two images, or each pair of two folders, and writes error maps if requested.
     pub fn of(inputs: &Inputs) -> Result<CompareReport, CompareError> {
         let (files, unmatched) = inputs.pairs()?;
         let bar = ProgressBar::new(files.len() as u64);
@@ -272,7 +272,7 @@ fn compare_pair(files: PairFiles, bright_holes: bool) -> Result<Pair, CompareErr
     Ok(Pair { name: files.name, comparison })
 }
 
-/// The mean over the pairs that have such pixels.
+/// Returns a line with the means over the pairs that have such pixels.
 fn part_line(what: &str, parts: &[PartQuality]) -> String {
     let share = 100.0 * parts.iter().map(|part| part.share).sum::<f64>() / parts.len() as f64;
     let psnr: Vec<Psnr> = parts.iter().filter_map(|part| part.psnr).collect();
@@ -293,7 +293,7 @@ fn part_line(what: &str, parts: &[PartQuality]) -> String {
 mod tests {
     use super::*;
 
-    /// A picture that no other seed gives.
+    /// Returns a picture that differs for every seed.
     fn image(width: u32, height: u32, seed: u32) -> image::RgbImage {
         image::RgbImage::from_fn(width, height, |x, y| {
             image::Rgb([x * 5 + y, y * 7 + x * y / 3, x * y + 90 * seed].map(|value| value as u8))
@@ -304,7 +304,7 @@ mod tests {
         Inputs { a: a.into(), b: b.into(), mask: None, bright_holes: false, map: None }
     }
 
-    /// Two folders: `same.png` and `sub/other.png` in both, one file more in each.
+    /// Creates two folders with `same.png` and `sub/other.png` in both, and one more file in each.
     fn folders() -> (tempfile::TempDir, PathBuf, PathBuf) {
         let dir = tempfile::tempdir().unwrap();
         let (a, b) = (dir.path().join("a"), dir.path().join("b"));

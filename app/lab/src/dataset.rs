@@ -1,4 +1,4 @@
-//! Image groups: one view of a scene as rendered, as reprojected, and as the other eye really sees it.
+//! Image groups: one view of a scene as rendered, as reprojected, and as a real render of the other eye.
 //!
 //! [`GroupRenderer`] makes one group in memory; the program's command `dataset` writes them to files.
 
@@ -19,13 +19,13 @@ use yoro_render::{Fxaa, GpuScene, PreparedScene, Renderer, ViewTargets};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GroupError {
-    /// The pair of eyes cannot be synthesized from one.
+    /// The other eye cannot be synthesized.
     #[error(transparent)]
     Eyes(#[from] EyesError),
     /// GL refused.
     #[error(transparent)]
     Gl(#[from] GlError),
-    /// Nothing of the rendered eye is seen by the other.
+    /// The other eye sees nothing of the rendered eye's image.
     #[error(transparent)]
     Inpaint(#[from] InpaintError),
 }
@@ -38,13 +38,13 @@ pub struct GroupOptions {
     pub synthesis: PipelineOptions,
     /// The guard band by which the dominant eye is rendered wider.
     pub guard_band: GuardBand,
-    /// FXAA on both rendered images. The reprojected image then moves blended edge pixels with one of their surfaces,
-    /// as in the paper.
+    /// Applies FXAA to both rendered images. As in the paper, the reprojected image then moves blended edge pixels with
+    /// one of their surfaces.
     pub anti_aliasing: bool,
 }
 
 impl Default for GroupOptions {
-    /// Returns options without guard band and anti-aliasing: every pixel is one surface's.
+    /// Returns options without a guard band and without anti-aliasing, so that every pixel belongs to one surface.
     fn default() -> GroupOptions {
         GroupOptions {
             synthesis: PipelineOptions::default(),
@@ -61,20 +61,20 @@ pub struct ImageGroup {
     pub pair: EyePair,
     /// The rendered view, the synthesized one, and how pixels move between them.
     pub views: SynthesisViews,
-    /// The dominant eye as rendered, transparent objects included; of the source view's size.
+    /// The rendered dominant eye, including transparent objects; as large as the source view.
     pub color: RgbImage,
     /// Its depth buffer, 0 to 1, in the convention of the pair's depth range; transparent objects are not in it.
     pub depth: DepthImage,
-    /// The other eye as really rendered.
+    /// A real render of the other eye.
     pub truth: RgbImage,
     /// The other eye as reprojected, with its holes.
     pub reprojected: Reprojected,
-    /// The other eye as the pipeline itself makes it: equal to the reprojected image but for the holes.
+    /// The other eye as the pipeline makes it: equal to the reprojected image except in the holes.
     pub synthesized: RgbImage,
 }
 
 impl ImageGroup {
-    /// Returns the depth of the reprojected image in the pair's convention, the far plane's value in holes.
+    /// Returns the depth of the reprojected image in the pair's convention, with the far plane's value in holes.
     pub fn reprojected_depth(&self) -> DepthImage {
         let (disparity, law) = (self.reprojected.disparity(), self.views.warp.law);
         let scale = law.scale.abs().max(f64::MIN_POSITIVE) as f32;
@@ -93,7 +93,7 @@ impl ImageGroup {
 pub struct SourceImage {
     /// The rendered view, the synthesized one, and how pixels move between them.
     pub views: SynthesisViews,
-    /// The dominant eye as rendered, transparent objects included; of the source view's size.
+    /// The rendered dominant eye, including transparent objects; as large as the source view.
     pub color: RgbImage,
     /// Its depth buffer; transparent objects are not in it.
     pub depth: DepthImage,
@@ -101,7 +101,7 @@ pub struct SourceImage {
     pub depth_range: DepthRange,
 }
 
-/// Makes image groups of scenes; everything is compiled once.
+/// Renders image groups of scenes. Everything is compiled once.
 pub struct GroupRenderer {
     options: GroupOptions,
     targets: ViewTargets,
@@ -112,10 +112,10 @@ pub struct GroupRenderer {
 }
 
 impl GroupRenderer {
-    /// Compiles the pipeline and makes the targets.
+    /// Compiles the pipeline and creates the targets.
     ///
     /// # Errors
-    /// [`GlError`] when the driver cannot run the pipeline.
+    /// [`GlError`] if the driver cannot run the pipeline.
     pub fn new(gl: &Rc<Context>, options: &GroupOptions) -> Result<GroupRenderer, GlError> {
         Ok(GroupRenderer {
             options: *options,
@@ -131,7 +131,7 @@ impl GroupRenderer {
     ///
     /// # Errors
     /// [`GroupError::Eyes`] for a pair that synthesis refuses, [`GroupError::Gl`] beyond the driver's limits, and
-    /// [`GroupError::Inpaint`] when the synthesized eye sees nothing of what the other one does.
+    /// [`GroupError::Inpaint`] if the synthesized eye sees nothing of what the other one sees.
     pub fn render(
         &mut self,
         renderer: &mut Renderer,
@@ -169,7 +169,7 @@ impl GroupRenderer {
         Ok(SourceImage { views, color, depth, depth_range: pair.depth })
     }
 
-    /// Renders any view. Returns its colour and its depth.
+    /// Renders any view, and returns its colour and its depth.
     ///
     /// # Errors
     /// [`GlError`] beyond the driver's limits.
@@ -191,7 +191,7 @@ impl GroupRenderer {
         Ok((picture::rgb_image(&color, view.size), depth_image(&self.depth.read(), view.size)))
     }
 
-    /// Returns RGBA of one view, rows from the bottom, and leaves its depth in `self.depth`.
+    /// Returns the RGBA of a view, rows from the bottom, and leaves its depth in `self.depth`.
     fn render_view(
         &mut self,
         renderer: &mut Renderer,
@@ -210,7 +210,7 @@ impl GroupRenderer {
     }
 }
 
-/// Returns an image of depth that was read back, whose rows run from the bottom.
+/// Returns an image of depth that was read back, and whose rows run from the bottom.
 fn depth_image(depth: &[f32], [width, height]: [u32; 2]) -> DepthImage {
     let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
     DepthImage::from_raw(width, height, flipped).expect("one value for each pixel")

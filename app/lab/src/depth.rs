@@ -1,10 +1,10 @@
-//! Depth of a rendered view, read back.
+//! Reading back the depth of a rendered view.
 
 use std::rc::Rc;
 
 use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
-/// Copies depth into a colour target, from which it can be read everywhere.
+/// Copies depth into a colour target, from which every driver can read it.
 pub struct DepthReader {
     gl: Rc<Context>,
     copy: Program,

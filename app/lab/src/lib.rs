@@ -1,12 +1,12 @@
-//! Measuring how good a synthesized eye is, and what it costs.
+//! Measures how good a synthesized eye is, and what it costs.
 //!
-//! It takes images, scenes and stereo methods, and gives figures, image groups and reports. [`metrics`] compares
+//! The crate turns images, scenes and stereo methods into figures, image groups and reports. [`metrics`] compares
 //! images, [`compare`] files and folders of them, [`picture`] reads and writes them; [`inpaint`] has patchers that fill
-//! holes after other papers; [`dataset`] renders image groups; [`run`] compares methods with rendering both eyes,
-//! [`mod@bench`] every method with every other, and [`report`] makes pages of both. [`streaming`] has both ends of a
-//! stream.
+//! holes by methods of other papers; [`dataset`] renders image groups; [`run`] compares methods with rendering both
+//! eyes, [`mod@bench`] compares every method with every other, and [`report`] makes pages from the results of both.
+//! [`streaming`] has both ends of a stream.
 //!
-//! The feature `neural` has the weights of a network and a runtime for them.
+//! The feature `neural` includes the weights of a network and a runtime for it.
 //!
 //! This crate must never know the command line; nothing that runs on a phone or in a headset depends on it.
 

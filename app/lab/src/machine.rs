@@ -1,4 +1,4 @@
-//! The origin of a measurement: machine, program, settings.
+//! The origin of a measurement: machine, program, parameters.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,19 +15,19 @@ pub struct Machine {
     pub gl_renderer: String,
     /// `GL_VERSION`.
     pub gl_version: String,
-    /// Version of yoro, with the commit if known.
+    /// The version of yoro, with the commit if it is known.
     pub yoro: String,
-    /// Date and time, ISO 8601.
+    /// The date and time in ISO 8601.
     pub date: String,
     /// The command that repeats the run.
     pub command: String,
 }
 
-/// One setting of the run.
+/// One parameter of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Its name, with the unit.
+    /// The name, with the unit.
     pub name: String,
-    /// Its value.
+    /// The value.
     pub value: String,
 }

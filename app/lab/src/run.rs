@@ -1,4 +1,4 @@
-//! The measurement of `yoro run`: methods against rendering both eyes, on one scene.
+//! The measurement of `yoro run`: methods compared with rendering both eyes, in one scene.
 
 use std::rc::Rc;
 
@@ -17,29 +17,29 @@ use yoro_render::stereo::{Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scenes::BUILTINS;
 
-/// The measurements to be made on each scene.
+/// The measurements to be made in each scene.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The eyes.
     pub eyes: EyeOptions,
     /// The renderer's settings.
     pub render: RenderSettings,
-    /// Options of the conventional method, which the others are held against.
+    /// The options of the conventional method, which the others are compared with.
     pub conventional: StereoOptions,
-    /// The others.
+    /// The other methods.
     pub candidates: Vec<Candidate>,
-    /// Viewpoints, spread over the camera path.
+    /// The number of viewpoints, spread over the camera path.
     pub viewpoints: usize,
-    /// Timed rounds; in each, every method renders one frame at each viewpoint.
+    /// The number of timed rounds. In each, every method renders one frame at each viewpoint.
     pub rounds: u32,
     /// Seed of the built-in scenes.
     pub seed: u64,
 }
 
-/// A method that is held against the conventional one.
+/// A method that is compared with the conventional one.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
-    /// Its name in the report, unlike that of any other.
+    /// The name in the report, different for each candidate.
     pub name: &'static str,
     /// The stereo method.
     pub method: Method,
@@ -48,16 +48,16 @@ pub struct Candidate {
 }
 
 impl Plan {
-    /// Returns the number of steps of progress for each scene: preparing, a warm-up, each round's viewpoints, the
+    /// Returns the number of steps of progress per scene: preparation, a warm-up, the viewpoints of each round, the
     /// passes.
     pub fn steps(&self) -> u64 {
         3 + self.viewpoints as u64 * u64::from(self.rounds)
     }
 
-    /// Measures a scene: a built-in one by name, or a file.
+    /// Measures a scene, which is a built-in one by name or a file.
     ///
     /// # Errors
-    /// [`interrupt::Interrupted`], and one sentence when the scene cannot be loaded or GL refuses.
+    /// [`interrupt::Interrupted`], and one sentence if the scene cannot be loaded or GL refuses.
     pub fn measure(&self, gl: &Rc<Context>, scene: &str, bar: &ProgressBar) -> anyhow::Result<SceneReport> {
         let mut field = Field::new(self, gl, scene, bar)?;
         field.warm_up()?;
@@ -75,7 +75,7 @@ struct Timed {
     name: &'static str,
     entrant: Entrant,
     milliseconds: Vec<f64>,
-    /// Samples of each pass, in the order of the first frame.
+    /// The samples of each pass, in the order of the first frame.
     passes: Vec<(&'static str, Vec<f64>)>,
 }
 
@@ -101,7 +101,7 @@ impl Timed {
     }
 }
 
-/// A scene with everyone who renders it, the conventional method first.
+/// A scene with all methods that render it, the conventional method first.
 struct Field<'a> {
     plan: &'a Plan,
     scene: &'a str,
@@ -160,8 +160,8 @@ impl<'a> Field<'a> {
         Ok(())
     }
 
-    /// Times a frame of every method at every viewpoint, the order rotated so that each comes first, second, ...
-    /// equally often. The first round measures the images, too.
+    /// Times one frame of every method at every viewpoint, rotating the order so that each is first, second, ...
+    /// equally often. The first round also measures the images.
     fn round(&mut self, round: u32) -> anyhow::Result<Vec<Viewpoint>> {
         self.bar.set_message(format!("{}: round {} of {}", self.scene, round + 1, self.plan.rounds));
         let count = self.entrants.len();
@@ -186,7 +186,7 @@ impl<'a> Field<'a> {
         Ok(viewpoints)
     }
 
-    /// Measures the images of one viewpoint, which are in the order of the entrants.
+    /// Measures the images of one viewpoint, which are in the order of the methods.
     fn viewpoint(&self, key: usize, images: Vec<[RgbImage; 2]>) -> anyhow::Result<Viewpoint> {
         let dominant = self.plan.eyes.dominant;
         let in_order = |[left, right]: [RgbImage; 2]| match dominant {

@@ -1,4 +1,4 @@
-//! Both ends of a stream on the desktop: the server's pictures, and the eyes that a viewer makes of them.
+//! Both ends of a stream on the desktop: the server's pictures, and the eyes that a viewer makes from them.
 
 use std::rc::Rc;
 
@@ -13,35 +13,35 @@ use yoro_render::{DecodedPicture, PreparedScene, StreamedEyes};
 use yoro_stream::{Content, DepthSpan, EyeView, ViewRequest};
 use yoro_video::{Planes, depth_luma};
 
-/// What a stream carries.
+/// The content of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// One eye and its depth, of which both eyes are made at the newest pose.
+    /// One eye and its depth, from which both eyes are made at the newest pose.
     Depth,
-    /// Both eyes, turned to the newest pose: the baseline.
+    /// Both eyes, rotated to the newest pose: the baseline.
     Eyes,
-    /// Both eyes and the depth of one, of which each eye is made at the newest pose.
+    /// Both eyes and the depth of one, from which each eye is made at the newest pose.
     EyesDepth,
 }
 
-/// The largest motion of the head between rendering and display that the guard band covers: 4 degrees, 2 cm.
+/// The largest motion of the head between rendering and display that the guard band covers: 4 degrees and 2 cm.
 const MOTION: HeadMotion = HeadMotion { rotation: 0.07, translation: 0.02 };
-/// The nearest surface that it covers the motion for, in metres.
+/// The distance in metres of the nearest surface for which the guard band covers that motion.
 const NEAREST: f32 = 1.0;
 
 /// A picture to be encoded.
 pub struct Picture {
-    /// All parts.
+    /// All parts of the picture.
     pub planes: Planes,
-    /// What they show.
+    /// What the parts show.
     pub content: Content,
-    /// Width and height of each part, without what makes them even.
+    /// The width and height of each part, without the padding that makes them even.
     pub size: [u16; 2],
-    /// True if the range of depth has changed: the frame must be an intra frame.
+    /// True if the range of depth has changed, so that the frame must be an intra frame.
     pub new_span: bool,
 }
 
-/// Makes a server's pictures of a scene.
+/// Makes the pictures that a server sends of a scene.
 pub struct FrameRenderer {
     groups: GroupRenderer,
     span: DepthSpan,
@@ -49,16 +49,16 @@ pub struct FrameRenderer {
 }
 
 impl FrameRenderer {
-    /// Compiles what it needs.
+    /// Compiles the programs.
     ///
     /// # Errors
-    /// [`GlError`] when the driver refuses.
+    /// [`GlError`] if the driver refuses.
     pub fn new(gl: &Rc<Context>, mode: Mode) -> Result<FrameRenderer, GlError> {
         let options = GroupOptions { anti_aliasing: true, ..GroupOptions::default() };
         Ok(FrameRenderer { groups: GroupRenderer::new(gl, &options)?, span: DepthSpan::default(), mode })
     }
 
-    /// Returns the picture for a request.
+    /// Returns the picture that answers a request.
     ///
     /// # Errors
     /// [`GroupError`] for eyes that cannot be rendered.
@@ -86,8 +86,8 @@ impl FrameRenderer {
             let content = Content::Eyes([eye_view(&left), eye_view(&right)]);
             return Ok(Picture { planes, content, size: size(&left), new_span: false });
         }
-        // Wide enough to synthesize the other eye of it. Eyes that are not parallel cannot be synthesized from one
-        // another: they are taken as they are.
+        // The view is wide enough to synthesize the other eye from it. Eyes that are not parallel cannot be synthesized
+        // from each other and are taken as they are.
         let source = |dominant: Eye| {
             let views = EyePair { dominant, ..pair }.synthesis_views(GuardBand::Distance(NEAREST));
             guarded(&views.map_or(pair.view(dominant), |views| views.source), MOTION)
@@ -110,7 +110,7 @@ impl FrameRenderer {
             return Ok(picture);
         }
         let dominant = pair.dominant;
-        // Mirrored eyes have one size; with another one, pixels that are no squares.
+        // Mirrored eyes have the same size. Other eyes get it, too, with pixels that are not square.
         let other = View { size: view.size, ..source(dominant.other())? };
         let planes = picture.planes.beside(&self.color(prepared, &other)?);
         let mut eyes = [eye_view(&view); 2];
@@ -123,25 +123,25 @@ impl FrameRenderer {
     }
 }
 
-/// Makes eyes of a stream's pictures, as the page does.
+/// Makes eyes from a stream's pictures, like the page.
 pub struct Receiver {
     streamed: StreamedEyes,
     frame: StereoFrame,
 }
 
 impl Receiver {
-    /// Compiles what it needs.
+    /// Compiles the programs.
     ///
     /// # Errors
-    /// [`GlError`] when the driver refuses.
+    /// [`GlError`] if the driver refuses.
     pub fn new(gl: &Rc<Context>) -> Result<Receiver, GlError> {
         Ok(Receiver { streamed: StreamedEyes::new(gl)?, frame: StereoFrame::new(gl, [1, 1])? })
     }
 
-    /// Returns both eyes of a pair, made of a picture as it was decoded. They are black where they see nothing of it.
+    /// Returns both eyes of a pair, made from a decoded picture. They are black where the picture shows nothing.
     ///
     /// # Errors
-    /// [`GlError`] without memory.
+    /// [`GlError`] if the driver has no memory.
     pub fn eyes(
         &mut self,
         planes: &Planes,

@@ -1,7 +1,7 @@
-//! An OpenXR API layer that measures another one from below. It recommends the size in YORO_MEASURED_SIZE (`1680x1760`)
-//! for every view. When the session ends, it writes the median time of a frame to the standard error output: from the
-//! return of xrWaitFrame until the application's queue is idle after xrEndFrame. So the wait for the display is not
-//! included.
+//! An OpenXR API layer that measures another layer from below. It recommends the size in YORO_MEASURED_SIZE
+//! (`1680x1760`) for every view. When the session ends, it writes the median frame time to standard error. A frame is
+//! measured from the return of xrWaitFrame until the application's queue is idle after xrEndFrame, so the wait for the
+//! display is not included.
 
 use std::ffi::{CStr, c_char};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -12,10 +12,10 @@ use ash::vk::Handle as _;
 use openxr_sys as sys;
 use sys::{Handle as _, pfn};
 
-/// The number of first frames that do not count: they create what later ones use.
+/// The number of first frames that do not count, because they create what later ones use.
 const FIRST: usize = 5;
 
-/// The functions of the runtime. One instance of a process is measured.
+/// The functions of the runtime. One instance per process is measured.
 struct Next {
     get_instance_proc_addr: pfn::GetInstanceProcAddr,
     enumerate_view_configuration_views: pfn::EnumerateViewConfigurationViews,
@@ -106,7 +106,7 @@ unsafe extern "system" fn get_instance_proc_addr(
     let Some(next) = NEXT.get().filter(|_| instance != sys::Instance::NULL) else {
         return sys::Result::ERROR_HANDLE_INVALID;
     };
-    // SAFETY: the caller's name and place; whoever asks for these names calls them as these types.
+    // SAFETY: the caller's name and place. The caller that asks for these names calls the functions as these types.
     unsafe {
         macro_rules! own {
             ($function:ident as $kind:ident) => {
@@ -177,7 +177,7 @@ unsafe extern "system" fn create_session(
                 let device = vk::Device::from_raw(binding.device as u64);
                 let device = ash::Device::load(vulkan.fp_v1_0(), device);
                 let queue = device.get_device_queue(binding.queue_family_index, binding.queue_index);
-                // The library stays: its functions are called until the process ends.
+                // The library stays loaded, because its functions are called until the process ends.
                 std::mem::forget(entry);
                 *measured() = Some(Measured { device, queue, start: Instant::now(), times: Vec::new() });
             }
@@ -203,7 +203,7 @@ unsafe extern "system" fn wait_frame(
 
 unsafe extern "system" fn end_frame(session: sys::Session, info: *const sys::FrameEndInfo) -> sys::Result {
     let Some(next) = NEXT.get() else { return sys::Result::ERROR_HANDLE_INVALID };
-    // SAFETY: the caller's arguments; in xrEndFrame nobody else uses the queue.
+    // SAFETY: the caller's arguments. During xrEndFrame nobody else uses the queue.
     unsafe {
         let result = (next.end_frame)(session, info);
         if let Some(measured) = &mut *measured()

@@ -15,13 +15,13 @@ pub enum Binding {
 }
 
 impl Binding {
-    /// Returns the binding of a session; None if the layer does not know its graphics interface.
+    /// Returns the binding of a session, or `None` if the layer does not know its graphics interface.
     ///
     /// # Safety
-    /// The structure was given to a call of xrCreateSession that has succeeded.
+    /// The structure was passed to a successful call of xrCreateSession.
     pub unsafe fn of(info: &sys::SessionCreateInfo) -> Option<Binding> {
         let mut structure = info.next.cast::<sys::BaseInStructure>();
-        // SAFETY: the runtime has read the same chain; a structure's type says what it is.
+        // SAFETY: the runtime has read the same chain, and the type of a structure tells what it is.
         unsafe {
             while let Some(header) = structure.as_ref() {
                 if header.ty == sys::GraphicsBindingVulkanKHR::TYPE {
@@ -40,12 +40,12 @@ impl Binding {
     /// Creates the synthesis pipeline of the session.
     ///
     /// # Errors
-    /// A [`Reason`] if the driver lacks something.
+    /// A [`Reason`] if the driver lacks a feature.
     ///
     /// # Safety
     /// The device or the context exists until the pipeline is dropped.
     pub unsafe fn synthesizer(&self) -> Result<Box<dyn Synthesizer>, Reason> {
-        // SAFETY: both need the device or the context to outlive the pipeline, as this function does.
+        // SAFETY: both require that the device or the context outlives the pipeline, as this function does.
         unsafe {
             Ok(match self {
                 Binding::Vulkan(binding) => Box::new(vulkan::Synthesizer::new(*binding)?),
@@ -54,7 +54,7 @@ impl Binding {
         }
     }
 
-    /// Returns the images of a swapchain of the session: VkImages, or names of textures.
+    /// Returns the images of one of the session's swapchains: VkImages, or names of textures.
     ///
     /// # Errors
     /// The result of xrEnumerateSwapchainImages.
@@ -66,7 +66,7 @@ impl Binding {
                     next: std::ptr::null_mut(),
                     image: 0,
                 };
-                // SAFETY: the structure for images of a session on Vulkan.
+                // SAFETY: this is the structure for images of a session on Vulkan.
                 let images = unsafe { next.swapchain_images(swapchain, empty)? };
                 Ok(images.iter().map(|image| image.image).collect())
             }
@@ -77,27 +77,27 @@ impl Binding {
                     next: std::ptr::null_mut(),
                     image: 0,
                 };
-                // SAFETY: the structure for images of a session on OpenGL.
+                // SAFETY: this is the structure for images of a session on OpenGL.
                 let images = unsafe { next.swapchain_images(swapchain, empty)? };
                 Ok(images.iter().map(|image| u64::from(image.image)).collect())
             }
         }
     }
 
-    /// Remembers the current OpenGL context. It is current again when the result is dropped, whatever the runtime does
-    /// in between.
+    /// Remembers the current OpenGL context. Dropping the result makes it current again, whatever the runtime has done
+    /// in the meantime.
     ///
     /// # Safety
     /// The session is live.
     pub unsafe fn hold(&self) -> Option<gl::Current> {
         match self {
             Binding::Vulkan(_) => None,
-            // SAFETY: a live session's context exists. An error is reported where the context is needed.
+            // SAFETY: the context of a live session exists. An error is reported where the context is needed.
             Binding::Gl(binding) => unsafe { binding.make_current().ok() },
         }
     }
 
-    /// True if row 0 of an image is its top.
+    /// True if row 0 of an image is at its top.
     pub fn rows_from_top(&self) -> bool {
         matches!(self, Binding::Vulkan(_))
     }

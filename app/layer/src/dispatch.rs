@@ -1,11 +1,11 @@
-//! The functions of the next layer or the runtime, one table for each instance.
+//! The functions of the next layer or the runtime, in one table per instance.
 
 use std::ffi::CStr;
 
 use openxr_sys as sys;
 use sys::pfn;
 
-/// The result of a call that returns nothing else.
+/// The result of a call, with failures as errors.
 pub type XrResult<T> = Result<T, sys::Result>;
 
 /// Returns an error for results below zero, as XR_FAILED does.
@@ -17,23 +17,23 @@ macro_rules! table {
     ($($(#[$attribute:meta])* $field:ident: $function:ident = $name:literal $(or $missing:path)?,)*) => {
         /// The functions that the layer calls or intercepts.
         pub struct Dispatch {
-            /// Finds all other functions.
+            /// The function that finds all others.
             pub get_instance_proc_addr: pfn::GetInstanceProcAddr,
             $($(#[$attribute])* pub $field: pfn::$function,)*
         }
 
         impl Dispatch {
-            /// Asks for all functions.
+            /// Looks up all functions.
             ///
             /// # Errors
-            /// The runtime's error, or ERROR_FUNCTION_UNSUPPORTED, if a function of the core is missing.
+            /// The runtime's error, or ERROR_FUNCTION_UNSUPPORTED if a core function is missing.
             ///
             /// # Safety
-            /// `next` is the xrGetInstanceProcAddr of this live instance.
+            /// `next` is the xrGetInstanceProcAddr for this live instance.
             pub unsafe fn new(next: pfn::GetInstanceProcAddr, instance: sys::Instance) -> XrResult<Dispatch> {
                 let find = |name: &CStr| {
                     let mut function = None;
-                    // SAFETY: a live instance, and a name that ends in zero.
+                    // SAFETY: a live instance, and a null-terminated name.
                     check(unsafe { next(instance, name.as_ptr(), &mut function) })?;
                     function.ok_or(sys::Result::ERROR_FUNCTION_UNSUPPORTED)
                 };
@@ -60,11 +60,11 @@ impl Dispatch {
     /// The result of xrEnumerateSwapchainImages.
     ///
     /// # Safety
-    /// The swapchain is live, and `empty` is the structure for images of its session.
+    /// The swapchain is live, and `empty` is the image structure for its session.
     pub unsafe fn swapchain_images<T: Copy>(&self, swapchain: sys::Swapchain, empty: T) -> XrResult<Vec<T>> {
         let enumerate = self.enumerate_swapchain_images;
         let mut count = 0;
-        // SAFETY: a live swapchain; with a capacity of 0 the runtime writes the count alone.
+        // SAFETY: a live swapchain. With a capacity of 0 the runtime writes only the count.
         check(unsafe { enumerate(swapchain, 0, &mut count, std::ptr::null_mut()) })?;
         let mut images = vec![empty; count as usize];
         // SAFETY: a live swapchain, and room for `count` structures of its kind.
@@ -73,7 +73,7 @@ impl Dispatch {
     }
 }
 
-/// xrGetVisibilityMaskKHR where the extension is not enabled.
+/// Stands for xrGetVisibilityMaskKHR if the extension is not enabled.
 unsafe extern "system" fn no_visibility_mask(
     _: sys::Session,
     _: sys::ViewConfigurationType,
@@ -84,7 +84,7 @@ unsafe extern "system" fn no_visibility_mask(
     sys::Result::ERROR_FUNCTION_UNSUPPORTED
 }
 
-/// xrEnumerateReprojectionModesMSFT where the extension is not enabled.
+/// Stands for xrEnumerateReprojectionModesMSFT if the extension is not enabled.
 unsafe extern "system" fn no_reprojection_modes(
     _: sys::Instance,
     _: sys::SystemId,
@@ -96,7 +96,7 @@ unsafe extern "system" fn no_reprojection_modes(
     sys::Result::ERROR_FUNCTION_UNSUPPORTED
 }
 
-/// xrGetRecommendedLayerResolutionMETA where the extension is not enabled.
+/// Stands for xrGetRecommendedLayerResolutionMETA if the extension is not enabled.
 unsafe extern "system" fn no_recommended_layer_resolution(
     _: sys::Session,
     _: *const sys::RecommendedLayerResolutionGetInfoMETA,

@@ -1,18 +1,18 @@
-//! The view that the application is offered, and the parts of its image that the eyes get.
+//! The view that is offered to the application, and the parts of its image for the two eyes.
 
 use openxr_sys as sys;
 use yoro::eyes::{DepthRange, Eye, EyePair, EyesError, Frustum, GuardBand, Pose, Warp};
 
-/// The part of a pixel by which edges may miss the pixel grid, because angles are rounded on their way.
+/// The fraction of a pixel by which edges may miss the pixel grid, because angles are rounded in transit.
 const ROUNDING: f32 = 2e-3;
 
-/// The reason why an image cannot be turned into two.
+/// The reason why an image cannot be split into two.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     /// Nothing can be synthesized between the eyes, or from the submitted view.
     #[error(transparent)]
     Eyes(#[from] EyesError),
-    /// minDepth and maxDepth are not in order.
+    /// minDepth and maxDepth are out of order.
     #[error(
         "the depth's minDepth {min} and maxDepth {max} are out of order: need 0 <= minDepth < maxDepth <= 1"
     )]
@@ -36,7 +36,7 @@ pub const IDENTITY: sys::Posef = sys::Posef {
     position: sys::Vector3f { x: 0.0, y: 0.0, z: 0.0 },
 };
 
-/// Converts a pose of OpenXR.
+/// Converts a pose from OpenXR.
 pub fn pose(pose: sys::Posef) -> Pose {
     let (p, q) = (pose.position, pose.orientation);
     Pose { position: glam::Vec3::new(p.x, p.y, p.z), orientation: glam::Quat::from_xyzw(q.x, q.y, q.z, q.w) }
@@ -51,12 +51,12 @@ pub fn xr_pose(pose: Pose) -> sys::Posef {
     }
 }
 
-/// Converts a field of view of OpenXR to tangents.
+/// Converts a field of view from OpenXR to tangents.
 pub fn frustum(fov: sys::Fovf) -> Frustum {
     Frustum::from_fov(fov.angle_left, fov.angle_right, fov.angle_up, fov.angle_down)
 }
 
-/// Converts tangents to a field of view of OpenXR.
+/// Converts tangents to an OpenXR field of view.
 pub fn xr_fov(frustum: Frustum) -> sys::Fovf {
     sys::Fovf {
         angle_left: frustum.left.atan(),
@@ -66,22 +66,22 @@ pub fn xr_fov(frustum: Frustum) -> sys::Fovf {
     }
 }
 
-/// The one view that the application gets, and the eyes behind it.
+/// The one view that the application is offered, and the eyes that it stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offer {
-    /// The eyes that will be shown: the runtime's own, or, if those are canted or unlike, parallel ones of one size
-    /// that contain them. They are submitted with their poses and fields of view, so the compositor turns them back.
+    /// The eyes that will be shown: the runtime's own or, if those are canted or unequal, parallel eyes of one size
+    /// that contain them. They are submitted with their poses and fields of view, so the compositor reprojects them.
     pub eyes: EyePair,
     /// The dominant eye's pose.
     pub pose: Pose,
-    /// The union of both frusta and the guard band.
+    /// The union of both frusta, extended by the guard band.
     pub frustum: Frustum,
-    /// Width and height in pixels. The dominant eye's part of it has the size that the runtime recommends for an eye.
+    /// Width and height in pixels. The dominant eye's part has the size that the runtime recommends for an eye.
     pub size: [u32; 2],
 }
 
 impl Offer {
-    /// Returns the offer for the runtime's two views and the size in pixels that it recommends for one.
+    /// Returns the offer for the runtime's two views and the size in pixels that it recommends for each.
     ///
     /// # Errors
     /// [`EyesError`] if nothing can be synthesized between the eyes.
@@ -94,14 +94,14 @@ impl Offer {
         let own = EyePair {
             poses: views.map(|(pose, _)| pose),
             frusta: views.map(|(_, frustum)| frustum),
-            // Known only when the application submits it; it does not change the view.
+            // The depth range is known only once the application submits it. It does not affect the view.
             depth: DepthRange::PAPER,
             size,
             dominant,
         };
         let even = own.row_aligned();
         let sized = |eyes: EyePair| {
-            // Larger frusta at the same pixels per tangent.
+            // Larger frusta with the same number of pixels per tangent.
             let (old, new) = (own.frusta[dominant.index()], eyes.frusta[dominant.index()]);
             let grow = |size: u32, by: f32| {
                 if by > 1.0001 && by < 16.0 { (size as f32 * by).ceil() as u32 } else { size }
@@ -122,14 +122,14 @@ impl Offer {
     }
 }
 
-/// One view as the application has submitted it.
+/// One view as the application submitted it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Submitted {
     /// The pose that it was rendered with, in the space of its composition layer.
     pub pose: Pose,
     /// Its field of view.
     pub frustum: Frustum,
-    /// Size in pixels of the rectangle.
+    /// Width and height of the rectangle in pixels.
     pub size: [u32; 2],
     /// The meaning of its depth buffer.
     pub depth: SubmittedDepth,
@@ -138,7 +138,7 @@ pub struct Submitted {
 /// The numbers of XrCompositionLayerDepthInfoKHR.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SubmittedDepth {
-    /// The distance in metres that is stored as `min`. It is beyond `far` if depth is reversed, and may be infinite.
+    /// The distance in metres that is stored as `min`. It exceeds `far` if depth is reversed, and may be infinite.
     pub near: f32,
     /// The distance in metres that is stored as `max`.
     pub far: f32,
@@ -158,9 +158,9 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// Converts a part of this rectangle to a rectangle of the image. The part counts from this one's upper left
-    /// corner. If rows of the image are counted from the bottom, as in OpenGL, this rectangle and the result begin at
-    /// their lower left corners.
+    /// Converts a part of this rectangle to a rectangle of the image. The part is relative to this rectangle's upper
+    /// left corner. If the rows of the image are counted from the bottom, as in OpenGL, this rectangle and the result
+    /// begin at their lower left corners.
     pub fn part(&self, part: Rectangle, rows_from_top: bool) -> Rectangle {
         let row = if rows_from_top { part.origin[1] } else { self.size[1] - part.origin[1] - part.size[1] };
         Rectangle { origin: [self.origin[0] + part.origin[0], self.origin[1] + row], size: part.size }
@@ -170,11 +170,11 @@ impl Rectangle {
 /// The two eyes of a submitted view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
-    /// The dominant eye's part of the submitted rectangle, relative to it.
+    /// The dominant eye's part of the submitted rectangle, relative to that rectangle.
     pub crop: Rectangle,
     /// The poses to submit, by [`Eye::index`].
     pub poses: [Pose; 2],
-    /// The fields of view to submit, by [`Eye::index`]. They end at edges of pixels.
+    /// The fields of view to submit, by [`Eye::index`]. They end at pixel edges.
     pub frusta: [Frustum; 2],
     /// The part that is read, relative to the submitted rectangle.
     pub source: Rectangle,
@@ -182,14 +182,14 @@ pub struct Split {
     pub warp: Warp,
 }
 
-/// Splits a submitted view into two eyes that stand to one another as those of the offer do. Its pose, field of view
-/// and size need not be the offered ones; the eyes show as much as the image contains.
+/// Splits a submitted view into two eyes with the relative poses and frusta of the offer's eyes. The view's pose, field
+/// of view and size may differ from those offered. The eyes show as much as the image contains.
 ///
 /// # Errors
-/// [`GeometryError`]. The image can still be shown as it is.
+/// [`GeometryError`]. The image can still be shown unchanged.
 pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryError> {
     let SubmittedDepth { near, far, min, max } = submitted.depth;
-    // NaN fails in this form, too.
+    // Written so that NaN fails too.
     let ordered = 0.0 <= min && min < max && max <= 1.0;
     if !ordered {
         return Err(GeometryError::Depth { min, max });
@@ -200,7 +200,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
         return Err(EyesError::Empty.into());
     }
     let tangents = [whole.width() / size[0] as f32, whole.height() / size[1] as f32];
-    // The first pixel that an interval of tangents touches, and their number, from the left or from the top.
+    // Returns the first pixel, from the left or the top, that an interval of tangents touches, and the number of them.
     let touched = |from: f32, to: f32, axis: usize| {
         let first = (from / tangents[axis] + ROUNDING).floor();
         (first, (to / tangents[axis] - ROUNDING).ceil() - first)
@@ -209,12 +209,12 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
     let [own, others] = [eyes.frusta[dominant], eyes.frusta[other]];
     let columns = touched(own.left - whole.left, own.right - whole.left, 0);
     let rows = touched(whole.top - own.top, whole.top - own.bottom, 1);
-    // Casts from float to int saturate, and take NaN to 0.
+    // Casts from float to int saturate, and turn NaN into 0.
     let extent = |pixels: f32, axis: usize| (pixels as u32).clamp(1, size[axis]);
     let part = [extent(columns.1, 0), extent(rows.1, 1)];
     let start = |first: f32, axis: usize| (first as u32).min(size[axis] - part[axis]);
     let crop = Rectangle { origin: [start(columns.0, 0), start(rows.0, 1)], size: part };
-    // The other eye's image need not begin at a whole column of the dominant one's.
+    // The other eye's image need not begin at a whole column of the dominant eye's.
     let first = ((others.left - whole.left) / tangents[0]).clamp(0.0, (size[0] - part[0]) as f32);
     let [left, top] = crop.origin.map(|pixels| pixels as f32);
     let [width, height] = part.map(|pixels| pixels as f32);
@@ -238,7 +238,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
         size: part,
         dominant: eyes.dominant,
     };
-    // The guard band is what the image has on that side beyond both eyes.
+    // The guard band is the part of the image, on that side, beyond both eyes.
     let beyond = |columns: f32| (columns - ROUNDING).ceil().max(0.0) as u32;
     let guard = match eyes.dominant.other() {
         Eye::Left => crop.origin[0].saturating_sub(beyond(left - first)),
@@ -252,7 +252,7 @@ pub fn split(eyes: &EyePair, submitted: &Submitted) -> Result<Split, GeometryErr
     };
     let origin = origin.filter(fits).ok_or(GeometryError::Rectangle { size })?;
     let source = Rectangle { origin: [origin.0, origin.1], size: views.source.size };
-    // The law is for depth from 0 to 1; the stored depth goes from minDepth to maxDepth.
+    // The law expects depth from 0 to 1, while the stored depth is between minDepth and maxDepth.
     let mut warp = views.warp;
     warp.law.scale /= f64::from(max - min);
     warp.law.offset -= warp.law.scale * f64::from(min);
@@ -268,7 +268,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [1000, 900];
 
-    /// The outer edges of a common headset's eyes are further out than the inner ones.
+    /// The outer edges of the eyes of common headsets are farther out than the inner ones.
     fn views(cant_degrees: f32) -> [(Pose, Frustum); 2] {
         let head = Quat::from_euler(glam::EulerRot::YXZ, 0.7, -0.2, 0.1);
         [-1.0f32, 1.0].map(|side| {
@@ -345,7 +345,7 @@ mod tests {
         let offer = offer(Eye::Right, 0.0);
         let moved = Pose { position: Vec3::new(-3.0, 0.5, 0.0), orientation: Quat::from_rotation_y(2.0) };
         let mut submitted = Submitted { pose: moved, size: [777, 501], ..submitted(&offer) };
-        // Narrower on the left than offered: the eyes show what there is.
+        // Narrower on the left than offered: the eyes show what the image contains.
         submitted.frustum.left *= 0.8;
         let split = split(&offer.eyes, &submitted).unwrap();
         assert_eq!(split.poses[1], moved);
@@ -361,7 +361,7 @@ mod tests {
         assert!(split.crop.size[1] <= 501);
     }
 
-    /// A point at a distance goes to the same column, however its depth is stored.
+    /// A point at a distance lands in the same column, however its depth is stored.
     #[test]
     fn depth_may_be_reversed_infinite_and_in_a_part_of_its_range() {
         let offer = offer(Eye::Right, 0.0);

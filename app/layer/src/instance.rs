@@ -12,14 +12,14 @@ use crate::dispatch::{Dispatch, XrResult, check};
 use crate::settings::{OfferedAs, Settings};
 use crate::{lock, sizes};
 
-/// The estimated width of the offered view in widths of an eye's, before a session can tell. The frusta of common
-/// headsets' eyes differ by about as much.
+/// The estimated width of the offered view, relative to an eye's, before it is known from a session. The frusta of the
+/// two eyes of common headsets differ by about this much.
 const ESTIMATED_WIDTH: f32 = 1.25;
 
 /// The recommended width and height in pixels of an image that is not used.
 const TINY: u32 = 16;
 
-/// Returns the text in an array of characters, which ends in zero.
+/// Returns the string in a null-terminated array of characters.
 pub fn text<const N: usize>(characters: &[c_char; N]) -> String {
     let bytes = characters.map(|byte| byte as u8);
     CStr::from_bytes_until_nul(&bytes).unwrap_or_default().to_string_lossy().into_owned()
@@ -30,14 +30,14 @@ pub struct Instance {
     pub handle: sys::Instance,
     pub next: Dispatch,
     pub settings: Settings,
-    /// The name that the application gives itself in XrApplicationInfo.
+    /// The name that the application states in XrApplicationInfo.
     pub application: String,
-    /// True if the application has enabled a graphics interface that the layer knows, and is not to be left alone. Else
-    /// everything passes through.
+    /// True if the application has enabled a graphics interface that the layer knows, and the settings do not turn the
+    /// layer off. Otherwise everything is passed through.
     pub serves: bool,
-    /// True if the runtime takes depth: it has the extension, and the application has enabled it.
+    /// True if the runtime accepts depth: it has the extension, and the application has enabled it.
     pub takes_depth: bool,
-    /// The recommended size of the one view of each system, in pixels. It stays as it was first told.
+    /// The recommended size of the one view of each system, in pixels. It never changes once it has been returned.
     sizes: Mutex<Vec<(sys::SystemId, [u32; 2])>>,
 }
 
@@ -53,7 +53,7 @@ impl Instance {
         Instance { handle, next, settings, application, serves, takes_depth, sizes: Mutex::default() }
     }
 
-    /// True if the application is offered one view: the system has two.
+    /// True if the application is offered one view, because the system has two.
     pub fn offers(&self, system: sys::SystemId) -> bool {
         self.serves && self.own_configurations(system).is_ok_and(|own| own.contains(&Views::PRIMARY_STEREO))
     }
@@ -64,12 +64,12 @@ impl Instance {
             && self.own_configurations(system).map_or(true, |own| own.contains(&Views::PRIMARY_STEREO))
     }
 
-    /// Returns the view configuration of the runtime that stands behind one of the application's.
+    /// Returns the runtime's view configuration for one of the application's.
     pub fn runtimes(&self, system: sys::SystemId, kind: Views) -> Views {
         if kind == Views::PRIMARY_MONO && self.offers(system) { Views::PRIMARY_STEREO } else { kind }
     }
 
-    /// Returns the runtime's own view configurations, 16 at most.
+    /// Returns the runtime's own view configurations, at most 16.
     fn own_configurations(&self, system: sys::SystemId) -> XrResult<SmallVec<[Views; 17]>> {
         let mut types = [Views::PRIMARY_MONO; 16];
         let mut count = 0;
@@ -86,20 +86,20 @@ impl Instance {
         Ok(types.into_iter().take(count as usize).collect())
     }
 
-    /// Returns the view configurations that the application gets, with the one of a single view.
+    /// Returns the view configurations that the application is offered, including the one with a single view.
     pub fn configurations(&self, system: sys::SystemId) -> XrResult<SmallVec<[Views; 17]>> {
         let mut list = self.own_configurations(system)?;
         if !list.contains(&Views::PRIMARY_STEREO) {
             return Ok(list);
         }
-        // It replaces a runtime's own configuration of one view.
+        // It replaces the runtime's own configuration with one view.
         list.retain(|kind| *kind != Views::PRIMARY_MONO && self.settings.offer != OfferedAs::Only);
         let place = if self.settings.offer == OfferedAs::Last { list.len() } else { 0 };
         list.insert(place, Views::PRIMARY_MONO);
         Ok(list)
     }
 
-    /// Returns the runtime's two views, which also fills the structures that are chained to each.
+    /// Returns the runtime's two views, and fills in the structures that are chained to each.
     pub fn own_views(
         &self,
         system: sys::SystemId,
@@ -152,7 +152,7 @@ impl Instance {
         }
     }
 
-    /// Returns two views, of which one is tiny.
+    /// Returns two views, one of which is tiny.
     pub fn shrunk_views(
         &self,
         system: sys::SystemId,
@@ -173,8 +173,8 @@ impl Instance {
         lock(&self.sizes).iter().find(|(known, _)| *known == system).map(|(_, size)| *size)
     }
 
-    /// Sets the size of a system's one view, unless there is one already: a runtime must always return the same sizes.
-    /// Returns the size that holds.
+    /// Sets the size of a system's one view, unless it is already set: a runtime must always return the same sizes.
+    /// Returns the size in force.
     pub fn latch_size(&self, system: sys::SystemId, size: [u32; 2]) -> [u32; 2] {
         let mut sizes = lock(&self.sizes);
         if let Some((_, told)) = sizes.iter().find(|(known, _)| *known == system) {
@@ -184,16 +184,16 @@ impl Instance {
         size
     }
 
-    /// Remembers the size of the one view for the next start, beside that of an eye.
+    /// Remembers the size of the one view, with that of an eye, for the next start.
     pub fn remember_size(&self, system: sys::SystemId, eye: [u32; 2], size: [u32; 2]) {
         if let Some(key) = self.circumstances(system) {
             sizes::remember(&key, eye, size);
         }
     }
 
-    /// Returns all that the frusta of the views and the offered one depend on: runtime, headset and settings.
+    /// Returns everything that the frusta of the eyes and of the offered view depend on: runtime, headset and settings.
     fn circumstances(&self, system: sys::SystemId) -> Option<String> {
-        // SAFETY: plain data, for which zeros are values; a live instance, and structures of their types.
+        // SAFETY: plain data, for which zeros are valid; a live instance, and structures with their types set.
         let (runtime, headset) = unsafe {
             let mut runtime =
                 sys::InstanceProperties { ty: sys::InstanceProperties::TYPE, ..std::mem::zeroed() };

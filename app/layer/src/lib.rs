@@ -1,25 +1,26 @@
 //! `XR_APILAYER_YORO_one_view`: an OpenXR API layer that gives stereo to applications that render one view.
 //!
-//! An application is offered the view configuration PRIMARY_MONO: one view at the dominant eye's pose that sees what
-//! both eyes see. The layer takes colour and depth of it in xrEndFrame and submits two views to the runtime: the
-//! dominant eye's is a part of the application's image, without a copy, and the other one's is synthesized. It must
-//! never know a scene, a window or a renderer, and never fail a call that would succeed without it.
+//! The layer offers applications the view configuration PRIMARY_MONO: one view at the dominant eye's pose that contains
+//! what both eyes see. In xrEndFrame it reads this view's colour and depth, and submits two views to the runtime: the
+//! dominant eye's view is a part of the application's image, without a copy, and the other is synthesized. The layer
+//! must not depend on a scene, a window or a renderer, and must not fail a call that would succeed without it.
 //!
-//! It serves applications on Vulkan (XR_KHR_vulkan_enable and enable2), OpenGL (XR_KHR_opengl_enable by Xlib or EGL)
-//! and OpenGL ES (XR_KHR_opengl_es_enable). For all others, and for those that begin PRIMARY_STEREO, everything passes
-//! through; with the setting `shrink`, the latter are told to render one of two views tiny, and that one is replaced. A
-//! frame that cannot be synthesized shows the same image to both eyes; the log gives each reason once, and counts.
+//! It serves applications on Vulkan (XR_KHR_vulkan_enable and enable2), OpenGL (XR_KHR_opengl_enable with Xlib or EGL)
+//! and OpenGL ES (XR_KHR_opengl_es_enable). Calls of all others, and of those that begin PRIMARY_STEREO, pass through;
+//! with the setting `shrink`, the latter are told to render one of two views tiny, and that view is replaced. A frame
+//! that cannot be synthesized shows the same image to both eyes; the log gives each reason once, and counts such
+//! frames.
 //!
-//! * `entry`: the functions that loader and application call.
+//! * `entry`: the functions that the loader and the application call.
 //! * `objects`: the application's instances, sessions and swapchains, and the order of locks.
 //! * `frame`: xrEndFrame.
 //! * `session`, `swapchain`, `instance`: one object each. `dispatch`: the functions of the next layer or the runtime.
-//! * `geometry`: the offered view, and the parts of a submitted one. `mirror`: those of flipped images.
-//! * `sizes`: the offered view's size, from one start to the next.
+//! * `geometry`: the offered view, and how a submitted view is split. `mirror`: the same for flipped images.
+//! * `sizes`: the offered view's size, remembered from one start to the next.
 //! * `binding`: the graphics interface of a session. `synthesizer`: the synthesis, implemented by `vulkan`, on the
 //!   application's device and queue, and by `gl`, in its context.
 //!
-//! The feature `capture` adds what tests need: pictures of what the runtime gets, and a world that stands still.
+//! The feature `capture` adds what tests need: pictures of what the runtime receives, and a world that stands still.
 
 mod binding;
 mod dispatch;
@@ -49,7 +50,7 @@ use log::say;
 pub use entry::xrNegotiateLoaderApiLayerInterface;
 pub use manifest::{DISABLE, ENABLE, Kind, MANIFEST, NAME, manifest};
 
-/// Locks a mutex, also after a panic: nothing is changed in two steps, so what a panic has left is sound.
+/// Locks a mutex, even after a panic: no change takes more than one step, so the data is valid after a panic.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! The layer's log: to the standard error output, and to a file that `yoro layer log` shows; on Android to logcat.
+//! The layer's log. It goes to standard error and to a file that `yoro layer log` shows; on Android it goes to logcat.
 
 use std::fmt;
 use std::fs::File;
@@ -9,33 +9,33 @@ use std::sync::Mutex;
 use crate::lock;
 use yoro_files::xdg;
 
-/// The longest line in bytes; the rest is cut off.
+/// The length of the longest line in bytes. Longer lines are truncated.
 const LONGEST: usize = 1024;
 
 /// Returns the path of the log of the last program, `$XDG_STATE_HOME/yoro/layer.log` (`~/.local/state` if that is not
-/// set); None without a home.
+/// set), or `None` without a home folder.
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_STATE_HOME", ".local/state")?.join("yoro/layer.log"))
 }
 
-/// Open while there is an instance. Loaders unload the layer with the last one, and what it has open then stays open.
+/// Open while there is an instance. Loaders unload the layer with the last one, and an open file would stay open.
 static FILE: Mutex<Option<File>> = Mutex::new(None);
 
-/// Returns the first line of the file, which tells this process from others: its number and when it began, in ticks of
-/// the system's clock.
+/// Returns the first line of the file, which identifies this process by its number and by the time when it began, in
+/// ticks of the system's clock.
 fn first_line() -> String {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // The name of the program, in parentheses, may have spaces.
+    // The program's name, in parentheses, may contain spaces.
     let began = stat.rsplit(')').next().and_then(|rest| rest.split_whitespace().nth(19)).unwrap_or("0");
     format!("yoro layer: log of process {}, begun at {began}\n", std::process::id())
 }
 
-/// Opens a file to append to. It is emptied unless this process has begun it.
+/// Opens a file for appending. It is emptied unless this process began it.
 fn open(path: &Path, first_line: &str) -> io::Result<File> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }
-    // Emptied, not replaced: whoever follows it goes on reading. Appended to, since two programs may run.
+    // Emptied, not replaced, so that programs that follow it go on reading. Appended to, since two programs may run.
     let mut file = File::options().create(true).append(true).read(true).open(path)?;
     let mut begins = vec![0; first_line.len()];
     if file.read_exact(&mut begins).is_err() || begins != first_line.as_bytes() {
@@ -45,7 +45,7 @@ fn open(path: &Path, first_line: &str) -> io::Result<File> {
     Ok(file)
 }
 
-/// Closes the file until the next line.
+/// Closes the file until the next line is written.
 pub fn close() {
     *lock(&FILE) = None;
 }
@@ -55,7 +55,7 @@ fn show(line: &[u8]) {
     std::io::stderr().lock().write_all(line).ok();
 }
 
-/// Under the tag `yoro`. A line has room for the zero that C wants in place of its end.
+/// Writes to logcat under the tag `yoro`. A terminating zero replaces the line break.
 #[cfg(target_os = "android")]
 fn show(line: &[u8]) {
     use std::ffi::{c_char, c_int};
@@ -66,17 +66,17 @@ fn show(line: &[u8]) {
     const INFO: c_int = 4;
     let mut text = [0u8; LONGEST];
     text[..line.len() - 1].copy_from_slice(&line[..line.len() - 1]);
-    // SAFETY: both texts end in zero.
+    // SAFETY: both strings are null-terminated.
     unsafe { __android_log_write(INFO, c"yoro".as_ptr(), text.as_ptr().cast()) };
 }
 
-/// Writes a line at once, so that no line of the application gets in between, and without an allocation. The
-/// application may have closed its standard error output.
+/// Writes a line in one piece, so that no line of the application gets in between, and without allocating. The
+/// application may have closed standard error.
 pub fn say(text: fmt::Arguments) {
     let mut line = [b'\n'; LONGEST];
     let (place, _) = line.split_at_mut(LONGEST - 1);
     let mut rest = &mut *place;
-    // Text that does not fit is cut off.
+    // Text that does not fit is truncated.
     write!(rest, "yoro layer: {text}").ok();
     let length = LONGEST - 1 - rest.len();
     line[length] = b'\n';
@@ -84,7 +84,7 @@ pub fn say(text: fmt::Arguments) {
     show(line);
     let mut file = lock(&FILE);
     if file.is_none() {
-        // If it cannot be written there is none: the lines are on the standard error output, too.
+        // If the file cannot be written, nothing is lost: the lines also go to standard error.
         *file = path().and_then(|path| open(&path, &first_line()).ok());
     }
     if let Some(file) = &mut *file {

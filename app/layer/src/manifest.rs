@@ -1,4 +1,4 @@
-//! The manifest, by which loaders find the layer.
+//! The manifest with which loaders find the layer.
 
 use std::path::Path;
 
@@ -6,23 +6,23 @@ use std::path::Path;
 pub const NAME: &str = "XR_APILAYER_YORO_one_view";
 /// The file name of the manifest.
 pub const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
-/// If this variable is set, to anything, loaders load the implicit layer.
+/// If this variable is set to any value, loaders load the implicit layer.
 pub const ENABLE: &str = "YORO_LAYER_ENABLE";
-/// If this variable is set, to anything, loaders leave the implicit layer out.
+/// If this variable is set to any value, loaders do not load the implicit layer.
 pub const DISABLE: &str = "YORO_LAYER_DISABLE";
 
 /// The applications in which loaders load the layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Those that ask for it by name.
+    /// Applications that request it by name.
     Explicit,
-    /// Those that run with [`ENABLE`].
+    /// Applications that run with [`ENABLE`].
     Implicit,
-    /// The one that it is packaged with. On Android loaders know no variables.
+    /// The application that it is packaged with. Loaders on Android do not read these variables.
     Packaged,
 }
 
-/// Returns the manifest's text for the layer's library at a path.
+/// Returns the text of the manifest for the layer's library at this path.
 pub fn manifest(library: &Path, kind: Kind) -> String {
     let mut layer = serde_json::json!({
         "name": NAME,
@@ -47,7 +47,7 @@ pub fn manifest(library: &Path, kind: Kind) -> String {
 mod tests {
     use super::*;
 
-    /// An application has the manifest in its assets; Android finds the library by its name.
+    /// An application has the manifest in its assets, and Android finds the library by name.
     #[test]
     fn the_packaged_manifest_is_the_generated_one() {
         let json = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();

@@ -1,4 +1,4 @@
-//! The eyes of a flipped image: it shows what a plain image of the mirrored world would show.
+//! The eyes of flipped images. A flipped image is treated as an unflipped image of the mirrored world.
 
 use yoro::eyes::{EyePair, Frustum, Pose};
 
@@ -11,14 +11,15 @@ struct Mirror {
     y: bool,
 }
 
-/// Splits a submitted view as [`geometry::split`](crate::geometry::split) does, also if its field of view flips it:
-/// with its left edge to the right of its right one, or its lower edge above its upper one. The results' fields of view
-/// flip theirs. `upside_down` is true if the rows of the image are in the opposite order besides.
+/// Splits a submitted view like [`geometry::split`](crate::geometry::split), but also accepts flipped fields of view,
+/// whose left edge is to the right of their right edge, or whose lower edge is above their upper edge. The resulting
+/// fields of view are flipped in the same way. `upside_down` is true if the rows of the image are also in the opposite
+/// order.
 ///
 /// # Errors
 /// Those of [`geometry::split`](crate::geometry::split).
 pub fn split(eyes: &EyePair, submitted: &Submitted, upside_down: bool) -> Result<Split, GeometryError> {
-    // From the image's first row to its last one.
+    // Orders the edges from the image's first row to its last.
     let in_rows = |frustum: Frustum| match upside_down {
         true => Frustum { bottom: frustum.top, top: frustum.bottom, ..frustum },
         false => frustum,
@@ -40,14 +41,14 @@ pub fn split(eyes: &EyePair, submitted: &Submitted, upside_down: bool) -> Result
     Ok(split)
 }
 
-/// Returns the other eye's place beside the dominant one's.
+/// Returns the position of the other eye relative to the dominant one.
 fn between(eyes: &EyePair) -> glam::Vec3 {
     let [own, other] = [eyes.dominant, eyes.dominant.other()].map(|eye| eyes.poses[eye.index()]);
     own.orientation.inverse() * (other.position - own.position)
 }
 
 impl Mirror {
-    /// Mirrors each edge, which makes a flipped field of view a plain one, and the other way round.
+    /// Mirrors each edge. This turns a flipped field of view into an unflipped one, and vice versa.
     fn edges(self, frustum: Frustum) -> Frustum {
         let [x, y] = [self.x, self.y].map(|mirrored| if mirrored { -1.0 } else { 1.0 });
         Frustum {
@@ -58,11 +59,11 @@ impl Mirror {
         }
     }
 
-    /// Returns the eyes of the mirrored world: to the sides, the left one is the right one there.
+    /// Returns the eyes of the mirrored world. If it is mirrored sideways, the left eye is the right one there.
     fn eyes(self, eyes: &EyePair) -> EyePair {
         let frusta = eyes.frusta.map(|frustum| {
             let Frustum { left, right, bottom, top } = self.edges(frustum);
-            // A plain field of view again.
+            // Turns the field of view into an unflipped one again.
             let [left, right] = if self.x { [right, left] } else { [left, right] };
             let [bottom, top] = if self.y { [top, bottom] } else { [bottom, top] };
             Frustum { left, right, bottom, top }

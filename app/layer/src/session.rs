@@ -1,4 +1,4 @@
-//! The facts that the layer knows about a session of the application.
+//! What the layer knows about one of the application's sessions.
 
 use std::ffi::c_void;
 use std::ptr;
@@ -16,21 +16,21 @@ use crate::geometry::{IDENTITY, Offer, frustum, pose};
 use crate::instance::Instance;
 use crate::{lock, sizes};
 
-/// In place of the number of views: the session has not begun.
+/// The value of `Session::views` (the field) before the session begins.
 const NOT_BEGUN: usize = usize::MAX;
 
 /// One session.
 pub struct Session {
     pub handle: sys::Session,
     pub instance: Arc<Instance>,
-    /// None if the layer does not know the graphics interface.
+    /// `None` if the layer does not know the graphics interface.
     pub binding: Option<Binding>,
-    /// True if PRIMARY_MONO is the layer's: the runtime shows two views of this system.
+    /// True if PRIMARY_MONO is implemented by the layer, because the runtime shows two views on this system.
     pub offers_mono: bool,
     system: sys::SystemId,
     /// The size in pixels that the runtime recommends for the dominant eye.
     eye_size: [u32; 2],
-    /// See [`Session::views`]; or [`NOT_BEGUN`].
+    /// The value of [`Session::views`], or [`NOT_BEGUN`].
     views: AtomicUsize,
     /// True if the size of the offered view is remembered for the next start.
     remembered: AtomicBool,
@@ -86,7 +86,7 @@ impl Session {
             ty: sys::ViewLocateInfo::TYPE,
             next: ptr::null(),
             view_configuration_type: sys::ViewConfigurationType::PRIMARY_STEREO,
-            // Any time is valid in the space of the views; the present time would need an extension.
+            // Any time is valid for the VIEW space, and the present time would need an extension.
             display_time: self.instance.settings.time(sys::Time::from_nanos(1)),
             space,
         };
@@ -96,13 +96,13 @@ impl Session {
             view_state_flags: sys::ViewStateFlags::EMPTY,
         };
         let located = self.locate(&info, &mut state, ptr::null_mut());
-        // SAFETY: made above, and not used any more.
+        // SAFETY: made above, and no longer used.
         unsafe { (next.destroy_space)(space) };
-        // Before there is tracking, poses may be invalid, but fields of view are valid.
+        // Poses may be invalid before tracking begins, but fields of view are valid.
         self.offer_for(&located.ok()?).ok().map(|offer| offer.size)
     }
 
-    /// Locates the runtime's two views. `chain` is for the dominant eye's.
+    /// Locates the runtime's two views. `chain` is chained to the dominant eye's.
     ///
     /// # Errors
     /// The result of xrLocateViews.
@@ -134,8 +134,8 @@ impl Session {
         Offer::new(views, self.eye_size, settings.dominant, settings.guard_band)
     }
 
-    /// Returns the view that the application gets in place of the runtime's two, and remembers the offer. If nothing
-    /// can be synthesized between them, it is the dominant eye's own view.
+    /// Returns the view that the application gets instead of the runtime's two, and remembers the offer. If nothing can
+    /// be synthesized between them, it is the dominant eye's own view.
     pub fn offer(&self, views: &[sys::View; 2]) -> (Pose, Frustum) {
         let offer = self.offer_for(views);
         *lock(&self.offer) = Some(offer);
@@ -148,29 +148,29 @@ impl Session {
         offer.map_or((pose(own.pose), frustum(own.fov)), |offer| (offer.pose, offer.frustum))
     }
 
-    /// Returns the size in pixels that an eye's has in the offered view.
+    /// Returns the size in pixels of the offered view for an eye of this size.
     pub fn enlarged(&self, size: [u32; 2]) -> [u32; 2] {
         let offered = lock(&self.offer).and_then(Result::ok).map_or(self.eye_size, |offer| offer.size);
         sizes::scaled(size, self.eye_size, offered)
     }
 
-    /// Begins the session; for `views` see [`Session::views`].
+    /// Begins the session. See [`Session::views`] for `views`.
     pub fn begin(&self, views: usize) {
         self.views.store(views, Ordering::Relaxed);
     }
 
-    /// The number of views in a projection layer that the layer rewrites: 1, or 2 if one of them is tiny. 0 if
-    /// everything passes through, and before the session begins.
+    /// Returns the number of views in the projection layers that are rewritten: 1, or 2 if one of them is tiny. It is 0
+    /// if everything is passed through, and before the session begins.
     pub fn views(&self) -> usize {
         Some(self.views.load(Ordering::Relaxed)).filter(|views| *views != NOT_BEGUN).unwrap_or(0)
     }
 
-    /// True if the layer answers calls for PRIMARY_MONO: until the session begins with something else.
+    /// True if the layer answers calls for PRIMARY_MONO: until the session begins with another configuration.
     pub fn answers_mono(&self) -> bool {
         self.offers_mono && [NOT_BEGUN, 1].contains(&self.views.load(Ordering::Relaxed))
     }
 
-    /// True if one of two views is tiny and replaced, should the application begin with two.
+    /// True if, should the application begin with two views, one is made tiny and replaced.
     pub fn shrinks(&self) -> bool {
         self.binding.is_some() && self.instance.settings.shrink
     }

@@ -1,5 +1,5 @@
-//! User settings: for one run by environment variables (on Android system properties), for one application or for all
-//! by a file.
+//! User settings. Environment variables (on Android, system properties) set them for one run, a file for one
+//! application or for all.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -10,23 +10,23 @@ use toml::{Table, Value};
 use yoro::eyes::{Eye, GuardBand};
 use yoro_files::xdg;
 
-/// The place of the configuration with one view in the list of view configurations.
+/// The position of the configuration with one view in the list of view configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfferedAs {
-    /// It is the whole list: an application that begins in stereo nevertheless still gets stereo.
+    /// It is the only one in the list. An application that nevertheless begins in stereo still gets stereo.
     Only,
     /// Before the runtime's own.
     First,
     /// After the runtime's own.
     Last,
-    /// Not at all: everything passes through.
+    /// It is not offered, and everything is passed through.
     Off,
 }
 
 /// The settings of one application.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// The place of the configuration with one view.
+    /// The position of the configuration with one view.
     pub offer: OfferedAs,
     /// The eye that the application renders.
     pub dominant: Eye,
@@ -34,26 +34,26 @@ pub struct Settings {
     pub guard_band: GuardBand,
     /// True if an application that begins in stereo is told that one eye's image is tiny.
     pub shrink: bool,
-    /// YORO_LAYER_CAPTURE: a folder for pictures of what the runtime gets in one frame.
+    /// YORO_LAYER_CAPTURE: a folder for pictures of what the runtime receives in one frame.
     #[cfg(feature = "capture")]
     pub capture: Option<PathBuf>,
-    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located, LOCAL space being STAGE.
-    /// The world stands still, so that pictures of two runs can be compared.
+    /// YORO_LAYER_TIME: an XrTime in nanoseconds at which all views and spaces are located. LOCAL spaces become STAGE
+    /// spaces. The world stands still, so that pictures of two runs can be compared.
     #[cfg(feature = "capture")]
     pub time: Option<i64>,
 }
 
 /// A row of the table of settings.
 pub struct Setting {
-    /// The key in the file. The environment variable is `YORO_LAYER_` and this in capitals.
+    /// The key in the file. The environment variable is `YORO_LAYER_` followed by the key in capitals.
     pub key: &'static str,
-    /// The values that it takes, as a sentence of an error names them.
+    /// The values that the setting accepts, as error messages list them.
     pub values: &'static str,
-    /// The value if nothing else is said.
+    /// The value if none is given.
     pub default: &'static str,
     /// The meaning, in one sentence.
     pub help: &'static str,
-    /// Sets a value; None if it is not one of `values`.
+    /// Sets a value. Returns `None` if it is not one of `values`.
     set: fn(&mut Settings, &str) -> Option<()>,
 }
 
@@ -92,7 +92,7 @@ pub const SETTINGS: [Setting; 4] = [
         default: "1.0",
         help: "What is rendered beyond both eyes' views: columns of pixels, or as many as objects at that distance need",
         set: |settings, text| {
-            // The view is offered before anything is rendered: the guard band cannot depend on the scene.
+            // The view is offered before anything is rendered, so the guard band cannot depend on the scene.
             let band = GuardBand::from_str(text).ok()?;
             settings.guard_band = Some(band).filter(|band| !matches!(band, GuardBand::Auto(_)))?;
             Some(())
@@ -133,7 +133,7 @@ impl Setting {
         format!("YORO_LAYER_{}", self.key.to_ascii_uppercase())
     }
 
-    /// Sets a value that `place` gives to `key`.
+    /// Sets the value that `place` gives for `key`.
     fn choose(
         &self,
         settings: &mut Settings,
@@ -163,7 +163,7 @@ impl Default for Settings {
             time: None,
         };
         for setting in SETTINGS {
-            // A test checks that every default is a value.
+            // A test checks that every default is a valid value.
             (setting.set)(&mut settings, setting.default);
         }
         settings
@@ -173,7 +173,7 @@ impl Default for Settings {
 /// A mistake in the settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
-    /// The file cannot be read, or is no TOML of these keys.
+    /// The file cannot be read, or is not TOML with these keys.
     #[error("{}: {reason}; mend it or remove it", path.display())]
     File {
         /// The file.
@@ -181,7 +181,7 @@ pub enum SettingsError {
         /// The mistake, in one line.
         reason: String,
     },
-    /// A value that the setting does not take.
+    /// A value that the setting does not accept.
     #[error("{place}: {key} is {value:?}; give {remedy}")]
     Value {
         /// The environment or the file.
@@ -190,12 +190,12 @@ pub enum SettingsError {
         key: String,
         /// The value.
         value: String,
-        /// The values that the setting takes.
+        /// The values that the setting accepts.
         remedy: &'static str,
     },
 }
 
-/// Returns the mistakes in the settings of every application that the file names, and in those for all.
+/// Returns the mistakes in the settings of every application that the file names, and in those for all applications.
 pub fn mistakes() -> Vec<SettingsError> {
     mistakes_in(&file())
 }
@@ -222,7 +222,7 @@ fn mistakes_in(file: &Option<SettingsFile>) -> Vec<SettingsError> {
 /// The path of the settings file, and its text or the reason why it cannot be read.
 type SettingsFile = (PathBuf, Result<String, String>);
 
-/// Reads the settings file, if there is one.
+/// Reads the settings file, if it exists.
 fn file() -> Option<SettingsFile> {
     let path = path()?;
     match std::fs::read_to_string(&path) {
@@ -231,13 +231,13 @@ fn file() -> Option<SettingsFile> {
     }
 }
 
-/// Returns the path of the settings file, `$XDG_CONFIG_HOME/yoro/layer.toml` (`~/.config` if that is not set); None
-/// without a home.
+/// Returns the path of the settings file, `$XDG_CONFIG_HOME/yoro/layer.toml` (`~/.config` if that is not set), or
+/// `None` without a home folder.
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_CONFIG_HOME", ".config")?.join("yoro/layer.toml"))
 }
 
-/// The source of settings for one run.
+/// The name, for error messages, of the source of settings for one run.
 const VARIABLES: &str = if cfg!(target_os = "android") { "the system properties" } else { "the environment" };
 
 #[cfg(not(target_os = "android"))]
@@ -245,21 +245,21 @@ fn variable(name: &str) -> Option<OsString> {
     std::env::var_os(name)
 }
 
-/// Returns a setting's system property; that of YORO_LAYER_OFFER is `debug.yoro.layer.offer`. A property cannot be
-/// deleted, so an empty one counts as unset.
+/// Returns the value of a setting's system property. That of YORO_LAYER_OFFER is `debug.yoro.layer.offer`. A property
+/// cannot be deleted, so an empty one counts as unset.
 #[cfg(target_os = "android")]
 fn variable(name: &str) -> Option<OsString> {
     let key = name.strip_prefix("YORO_LAYER_")?.to_ascii_lowercase();
     let name = std::ffi::CString::new(format!("debug.yoro.layer.{key}")).ok()?;
     let mut value = [0u8; libc::PROP_VALUE_MAX as usize];
-    // SAFETY: the name ends in zero, and there is room for the longest value.
+    // SAFETY: the name is null-terminated, and there is room for the longest value.
     let length = unsafe { libc::__system_property_get(name.as_ptr(), value.as_mut_ptr().cast()) };
     let value = String::from_utf8_lossy(value.get(..usize::try_from(length).ok()?)?);
     let value = value.trim();
     (!value.is_empty()).then(|| value.into())
 }
 
-/// Reads the file's text: the keys for all applications, and those for this one.
+/// Parses the file: returns the keys for all applications, and those for this one.
 fn read_file(text: &str, application: &str) -> Result<[Table; 2], String> {
     let mut all: Table = text.parse().map_err(|error: toml::de::Error| error.message().to_owned())?;
     let applications = match all.remove("application") {
@@ -292,8 +292,9 @@ fn check_keys(section: &Table) -> Result<(), String> {
 }
 
 impl Settings {
-    /// Returns the settings of an application: those of the environment before those of the file for this application,
-    /// before those of the file for all, before the defaults. A mistake is returned as an error and changes nothing.
+    /// Returns the settings of an application. The environment takes precedence over the file's settings for this
+    /// application, those over the file's settings for all, and those over the defaults. Mistakes are returned as
+    /// errors, and change nothing.
     pub fn of(application: &str) -> (Settings, Vec<SettingsError>) {
         Settings::resolve(application, file(), variable)
     }
@@ -342,7 +343,7 @@ impl Settings {
         (settings, errors)
     }
 
-    /// Returns the time at which views and spaces are located, for the one that is asked for.
+    /// Returns the time at which views and spaces are located, given the requested time.
     pub fn time(&self, asked: sys::Time) -> sys::Time {
         #[cfg(feature = "capture")]
         if let Some(time) = self.time {

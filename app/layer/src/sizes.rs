@@ -1,5 +1,5 @@
-//! The offered view's size, remembered from one start to the next. It depends on the eyes' fields of view, which are
-//! known only in a session; many applications ask for it before, and it must not change then.
+//! The size of the offered view, remembered from one start to the next. It depends on the eyes' fields of view, which
+//! are known only in a session. Many applications ask for the size before that, and then it must not change.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,26 +7,26 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 use yoro_files::xdg;
 
-/// Returns the path of the sizes, `$XDG_STATE_HOME/yoro/layer-sizes.json` (`~/.local/state` if that is not set); None
-/// without a home, and on Android.
+/// Returns the path of the file, `$XDG_STATE_HOME/yoro/layer-sizes.json` (`~/.local/state` if that is not set), or
+/// `None` without a home folder and on Android.
 pub fn path() -> Option<PathBuf> {
     Some(xdg::folder("XDG_STATE_HOME", ".local/state")?.join("yoro/layer-sizes.json"))
 }
 
-/// Returns the size in pixels that was remembered for these circumstances, scaled to an eye of this size.
+/// Returns the size in pixels that was remembered under these circumstances, scaled to an eye of this size.
 pub fn recall(circumstances: &str, eye: [u32; 2]) -> Option<[u32; 2]> {
     let [old_eye, view] = entry(&read(&path()?), circumstances)?;
     Some(scaled(eye, old_eye, view))
 }
 
-/// Remembers the size of the view for an eye of this size. If it cannot be written, the next start has an estimate.
+/// Remembers the size of the view for an eye of this size. If that fails, the next start uses an estimate.
 pub fn remember(circumstances: &str, eye: [u32; 2], view: [u32; 2]) {
     if let Some(path) = path() {
         write(&path, circumstances, [eye, view]);
     }
 }
 
-/// Returns a size that has grown as one did, rounded up.
+/// Scales `size` by the ratio of `to` to `from`, rounded up.
 pub fn scaled(size: [u32; 2], from: [u32; 2], to: [u32; 2]) -> [u32; 2] {
     [0, 1].map(|i| {
         let grown = u64::from(size[i]) * u64::from(to[i]);
@@ -34,13 +34,13 @@ pub fn scaled(size: [u32; 2], from: [u32; 2], to: [u32; 2]) -> [u32; 2] {
     })
 }
 
-/// Returns the file's content; nothing if it is absent or damaged.
+/// Returns the contents of the file, which are empty if it is absent or damaged.
 fn read(path: &Path) -> Map<String, Value> {
     let text = fs::read_to_string(path).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
 }
 
-/// Returns the sizes of an eye and of the view, if there are any that can be.
+/// Returns the sizes of an eye and of the view, if the entry exists and is possible.
 fn entry(sizes: &Map<String, Value>, circumstances: &str) -> Option<[[u32; 2]; 2]> {
     let entry = sizes.get(circumstances)?;
     let number = |name: &str, i: usize| u32::try_from(entry[name][i].as_u64()?).ok();
@@ -59,7 +59,7 @@ fn write(path: &Path, circumstances: &str, [eye, view]: [[u32; 2]; 2]) {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).ok();
     }
-    // Another program may read it at the same time.
+    // Another program may be reading the file.
     let part = path.with_extension(format!("{}.part", std::process::id()));
     if fs::write(&part, format!("{:#}\n", Value::Object(sizes))).is_ok() {
         fs::rename(&part, path).ok();

@@ -1,8 +1,8 @@
 //! The application's swapchains: their images, and when these are released.
 //!
-//! The layer reads an image in xrEndFrame, when the application has already released it. So it holds the release back
-//! until then: as long as the runtime does not know of it, the image is not the runtime's, and in Vulkan it is in the
-//! layout of an attachment.
+//! The layer reads an image in xrEndFrame, after the application has released it. It therefore holds the release back
+//! until then. As long as the runtime has not seen the release it does not own the image, and in Vulkan the image is in
+//! an attachment layout.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -20,7 +20,7 @@ pub struct Swapchain {
     pub handle: sys::Swapchain,
     pub session: sys::Session,
     instance: Arc<Instance>,
-    /// None if its images cannot be read.
+    /// `None` if its images cannot be read.
     pub content: Option<Content>,
     state: Mutex<State>,
 }
@@ -29,7 +29,7 @@ pub struct Swapchain {
 pub struct Content {
     /// VkImages, or names of textures.
     pub images: Vec<u64>,
-    /// Format as in XrSwapchainCreateInfo.
+    /// The format, as in XrSwapchainCreateInfo.
     pub format: i64,
     /// Width and height in pixels.
     pub size: [u32; 2],
@@ -38,7 +38,7 @@ pub struct Content {
 }
 
 impl Content {
-    /// Asks the runtime for the images of a swapchain that was made by `info`.
+    /// Asks the runtime for the images of a swapchain that was created with `info`.
     ///
     /// # Errors
     /// The result of xrEnumerateSwapchainImages.
@@ -62,16 +62,16 @@ impl Content {
     }
 }
 
-/// Images by their index.
+/// The states of images, which are given by their indices.
 #[derive(Default)]
 struct State {
     /// Acquired by the application, oldest first.
     acquired: VecDeque<u32>,
     /// True if the application has waited for the oldest of them.
     waited: bool,
-    /// Released by the application, but not yet by the layer.
+    /// Released by the application, but not yet passed on to the runtime.
     held: Option<u32>,
-    /// Number of images that the application has released.
+    /// The number of images that the application has released.
     releases: u64,
 }
 
@@ -87,12 +87,12 @@ impl Swapchain {
         Swapchain { handle, session, instance, content, state: Mutex::new(state) }
     }
 
-    /// The functions of the next layer or the runtime.
+    /// Returns the functions of the next layer or the runtime.
     pub fn next(&self) -> &Dispatch {
         &self.instance.next
     }
 
-    /// xrAcquireSwapchainImage.
+    /// Implements xrAcquireSwapchainImage.
     ///
     /// # Safety
     /// The arguments are those of the application's call.
@@ -110,22 +110,22 @@ impl Swapchain {
         Ok(result)
     }
 
-    /// xrWaitSwapchainImage. Waiting may take long and locks nothing: an application waits from one thread at a time.
+    /// Implements xrWaitSwapchainImage. No lock is held while it waits. An application waits on one thread at a time.
     ///
     /// # Safety
     /// The arguments are those of the application's call.
     pub unsafe fn wait(&self, info: *const sys::SwapchainImageWaitInfo) -> XrResult<sys::Result> {
         // SAFETY: the application's own arguments.
         let result = unsafe { (self.next().wait_swapchain_image)(self.handle, info) };
-        // XR_SESSION_LOSS_PENDING is a success, too.
+        // XR_SESSION_LOSS_PENDING is a success too.
         if check(result).is_ok() && result != sys::Result::TIMEOUT_EXPIRED {
             lock(&self.state).waited = true;
         }
         Ok(result)
     }
 
-    /// xrReleaseSwapchainImage. Where images are read at the end of the frame, the release is held back until then, or
-    /// until the next acquire.
+    /// Implements xrReleaseSwapchainImage. If images are read at the end of the frame, the release is held back until
+    /// then, or until the next acquire.
     ///
     /// # Safety
     /// The arguments are those of the application's call.
@@ -135,8 +135,8 @@ impl Swapchain {
         reads_images: bool,
     ) -> XrResult<sys::Result> {
         let mut state = lock(&self.state);
-        // With another image acquired already, this one is not the frame's. Its release must not wait for a later call:
-        // the runtime may use the application's queue in this one, but not in xrWaitSwapchainImage
+        // If another image has already been acquired, this one is not the frame's. Its release must not be left to a
+        // later call: the runtime may use the application's queue in this call, but not in xrWaitSwapchainImage
         // (XR_KHR_vulkan_enable).
         let is_last = state.acquired.len() == 1;
         if is_last && state.waited && self.content.is_some() && reads_images {
@@ -160,7 +160,7 @@ impl Swapchain {
         Some((content, *content.images.get(index as usize)?))
     }
 
-    /// Returns how often the application has released an image: as long as it is the same, the same image is shown.
+    /// Returns the number of images that the application has released. While it is constant, the same image is shown.
     pub fn releases(&self) -> u64 {
         lock(&self.state).releases
     }
@@ -168,7 +168,7 @@ impl Swapchain {
     /// Passes on a release that is held back.
     ///
     /// # Errors
-    /// The result of xrReleaseSwapchainImage, which the application does not know yet.
+    /// The result of xrReleaseSwapchainImage, which the application has not received yet.
     pub fn pass_on_release(&self) -> XrResult<()> {
         self.pass_on(&mut lock(&self.state))
     }
@@ -181,14 +181,14 @@ impl Swapchain {
             };
             // SAFETY: the swapchain is live, and the application has waited for this image.
             check(unsafe { (self.next().release_swapchain_image)(self.handle, &info) })?;
-            // After a failure it is passed on in a later call.
+            // After a failure the release is passed on in a later call.
             state.held = None;
         }
         Ok(())
     }
 
-    /// Forgets a release that is held back: the swapchain is about to be destroyed, and a frame that ends at the same
-    /// time must not use it any more.
+    /// Forgets a release that is held back. The swapchain is about to be destroyed, and a frame that ends at the same
+    /// time must no longer use it.
     pub fn retire(&self) {
         lock(&self.state).held = None;
     }

@@ -1,4 +1,4 @@
-//! The synthesis of one session, whichever graphics interface it uses.
+//! The synthesis of one session, independent of the graphics interface.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use yoro::eyes::Warp;
 use crate::geometry::Rectangle;
 use crate::reason::Reason;
 
-/// The longest wait for an image of the runtime or for the GPU.
+/// The longest wait for an image from the runtime or for the GPU.
 pub const TIMEOUT: Duration = Duration::from_millis(500);
 
 /// One layer of a swapchain's image.
@@ -19,13 +19,13 @@ pub struct Image {
     pub format: i64,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The index in the image's array.
+    /// The index of the layer in the image's array.
     pub layer: u32,
-    /// The length of the array. In OpenGL an image of one layer is no array.
+    /// The number of layers in the array. In OpenGL an image with one layer is not an array.
     pub layers: u32,
 }
 
-/// The synthesis of one frame. Rectangles count from the image's row 0: the top in Vulkan, the bottom in OpenGL.
+/// The synthesis of one frame. Rectangles count from row 0 of the image: the top in Vulkan, the bottom in OpenGL.
 pub struct Job<'a> {
     pub color: Image,
     pub depth: Image,
@@ -33,29 +33,29 @@ pub struct Job<'a> {
     pub source: Rectangle,
     /// The warp to the other eye.
     pub warp: &'a Warp,
-    /// The image of the other eye, which begins at its first column and row.
+    /// The image that the other eye is drawn to, beginning at its first column and row.
     pub target: Image,
     /// The other eye's depth, stored like the source's.
     pub target_depth: Option<Image>,
 }
 
-/// The synthesis pipeline of a session, with all that it needs.
+/// The synthesis pipeline of a session, and everything that it needs.
 pub trait Synthesizer: Send {
-    /// Submits the synthesis of one frame to the GPU, after the application's own work, and does not wait for it.
-    /// Returns the GPU time of an earlier frame, if it has become known.
+    /// Submits the synthesis of one frame to the GPU, after the application's own work, without waiting for it. Returns
+    /// the GPU time of an earlier frame once it is known.
     ///
     /// # Errors
     /// The reason why nothing was submitted.
     ///
     /// # Safety
-    /// The images belong to the session and are not the runtime's at the moment. In Vulkan the source's images are in
-    /// the layouts of attachments; the target's are left in them. No other thread uses the queue or the context.
+    /// The images belong to the session, and the runtime does not own them at the moment. In Vulkan the source's images
+    /// are in attachment layouts, and the target's are left in them. No other thread uses the queue or the context.
     unsafe fn synthesize(&mut self, job: &Job) -> Result<Option<Duration>, Reason>;
 
-    /// Forgets a swapchain's images, which are about to be destroyed.
+    /// Forgets the images of a swapchain, which are about to be destroyed.
     fn forget(&mut self, images: &[u64]);
 
-    /// Reads a rectangle of a colour image as red, green and blue, from the top; waits for it.
+    /// Reads a rectangle of a colour image as red, green and blue, with rows from the top. Waits for the result.
     ///
     /// # Errors
     /// The reason why it cannot be read.

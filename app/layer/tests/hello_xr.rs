@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-/// The longest time of a run. Large images can take seconds at some moments.
+/// The longest duration of a run. Large images can take seconds at times.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// The folder of `cargo tools hello-xr`; None if the tests are told to do without.
+/// Returns the folder of `cargo tools hello-xr`, or `None` if the tests are told to skip it.
 fn programs() -> Option<PathBuf> {
     let programs = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from);
     let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
@@ -24,12 +24,12 @@ fn programs() -> Option<PathBuf> {
     programs
 }
 
-/// Khronos's layer that checks what applications and other layers call.
+/// Khronos's layer that checks the calls of applications and other layers.
 const VALIDATION: &str = "XR_APILAYER_LUNARG_core_validation";
 /// This package's layer for measurements.
 const MEASURED: &str = "XR_APILAYER_YORO_measured";
 
-/// Killed when it is dropped.
+/// A process that is killed when this is dropped.
 struct Running(Child);
 
 impl Drop for Running {
@@ -39,7 +39,7 @@ impl Drop for Running {
     }
 }
 
-/// Monado's service, in a folder of its own.
+/// Monado's service, in its own folder.
 struct Monado {
     programs: PathBuf,
     folder: TempDir,
@@ -67,7 +67,7 @@ impl Monado {
         let monado = Monado { programs, folder, _service: service };
         let folder = std::env::current_exe().unwrap().parent().unwrap().to_owned();
         let layer = folder.join("libyoro_layer.so");
-        // Its name does not depend on its features: a `cargo build` beside the tests replaces it.
+        // The library's name does not depend on its features, so a `cargo build` during the tests replaces it.
         let contains = |name: &[u8]| fs::read(&layer).unwrap().windows(name.len()).any(|part| part == name);
         assert!(
             contains(b"YORO_LAYER_CAPTURE"),
@@ -96,7 +96,7 @@ impl Monado {
         fs::write(self.folder.path().join(format!("{name}.json")), manifest.to_string()).unwrap();
     }
 
-    /// Runs hello_xr until it is `done`, by its output and the files in the folder. Returns its output.
+    /// Runs hello_xr until it is `done`, judged by its output and the files in the folder. Returns its output.
     fn hello(&self, run: &Hello, folder: &Path, done: impl Fn(&str) -> bool) -> String {
         fs::create_dir(folder).unwrap();
         let mut child = self.start_hello(run, folder, done);
@@ -124,7 +124,7 @@ impl Monado {
             .env("XR_CORE_VALIDATION_EXPORT_TYPE", "text")
             .env("XR_CORE_VALIDATION_FILE_NAME", folder.join("validation"))
             .envs(run.environment.iter().map(|(name, value)| (*name, value)))
-            // It ends when a key is pressed, or when its input ends.
+            // It ends when a key is pressed or its input ends.
             .stdin(Stdio::piped())
             .stdout(file.try_clone().unwrap())
             .stderr(file)
@@ -146,7 +146,7 @@ impl Monado {
 struct Hello<'a> {
     /// `Mono` or `Stereo`.
     views: &'static str,
-    /// Names of layers, the application's side first.
+    /// Names of layers, beginning with the one nearest to the application.
     layers: &'a [&'a str],
     environment: Vec<(&'static str, OsString)>,
 }
@@ -156,7 +156,7 @@ fn output(folder: &Path) -> String {
     String::from_utf8_lossy(&fs::read(folder.join("log")).unwrap()).into_owned()
 }
 
-/// True if a folder has pictures of both eyes.
+/// True if a folder contains pictures of both eyes.
 fn has_pictures(folder: &Path) -> bool {
     ["left.png", "right.png"].iter().all(|name| folder.join(name).exists())
 }
@@ -174,9 +174,9 @@ fn picture(folder: &Path, eye: &str) -> image::RgbImage {
     image::open(folder.join(format!("{eye}.png"))).unwrap().to_rgb8()
 }
 
-/// Runs of hello_xr with one view and with two, at one moment of the world.
+/// Runs of hello_xr with one view and with two, at the same moment of the world.
 struct Run {
-    /// Output.
+    /// Output with one view and with two.
     one: String,
     two: String,
     /// Folders of pictures.
@@ -184,7 +184,7 @@ struct Run {
     stereo: PathBuf,
 }
 
-/// Runs hello_xr with two views and with one, at this size per eye if there is one.
+/// Runs hello_xr with two views and with one, at this size per eye if given.
 fn run_both(monado: &Monado, folder: &Path, size: Option<&str>) -> Run {
     fs::create_dir(folder).unwrap();
     // Any moment since the service began will do. The time since boot is that of CLOCK_MONOTONIC.
@@ -205,7 +205,7 @@ fn run_both(monado: &Monado, folder: &Path, size: Option<&str>) -> Run {
 }
 
 /// Runs hello_xr with one view and with two. Returns the PSNR in dB of the dominant eye's images, of the other eye's
-/// images, and of the same image for both eyes.
+/// images, and of the same image shown to both eyes.
 fn compared(monado: &Monado, size: Option<&str>) -> ([f64; 3], Run) {
     let run = run_both(monado, &monado.folder.path().join("compared"), size);
     let [mono_left, mono_right] = ["left", "right"].map(|eye| picture(&run.mono, eye));
@@ -213,13 +213,13 @@ fn compared(monado: &Monado, size: Option<&str>) -> ([f64; 3], Run) {
     ([psnr(&mono_right, &right), psnr(&mono_left, &left), psnr(&mono_right, &left)], run)
 }
 
-/// An unmodified application renders one view, and the runtime gets two. One is as the application would have rendered
-/// it; the other one is much closer to what it would have rendered than the same image for both eyes.
+/// An unmodified application renders one view, and the runtime receives two. One is as the application would have
+/// rendered it. The other is much closer to what it would have rendered than the same image for both eyes.
 #[test]
 fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     let Some(programs) = programs() else { return };
     let monado = Monado::start(programs);
-    // hello_xr asks for the size before there is a session.
+    // hello_xr asks for the size before a session exists.
     let run = Hello { views: "Mono", layers: &[yoro_layer::NAME], environment: Vec::new() };
     let first = monado.hello(&run, &monado.folder.path().join("first"), |log| synthesized(log) > 0);
     assert!(first.contains("dimensions Width=400 Height=240"), "the estimate: {first}");
@@ -237,7 +237,7 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
         two.contains("yoro layer: HelloXR: passed through: it begins its session with PRIMARY_STEREO"),
         "{two}"
     );
-    // The second start knows: the union of both frusta and the guard band beside Monado's 320 columns.
+    // The second start knows the size: the union of both frusta and the guard band, beyond Monado's 320 columns.
     assert!(one.contains("dimensions Width=331 Height=240"), "{one}");
 
     println!(
@@ -248,7 +248,7 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     assert!(made > same + 6.0, "{made} dB, and the same image {same} dB");
 }
 
-/// Khronos's validation layer has no message, neither above nor below the layer. A killed application leaves nothing
+/// Khronos's validation layer reports nothing, neither above nor below the layer. A killed application leaves nothing
 /// behind.
 #[test]
 fn hello_xr_is_valid_above_and_below_the_layer() {
@@ -292,12 +292,12 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// Returns the numbers between two texts, of each line that has both.
+/// Returns the numbers between two texts, from each line that contains both.
 fn numbers<'a>(log: &'a str, before: &'a str, after: &'a str) -> impl Iterator<Item = f64> + 'a {
     log.lines().filter_map(move |line| line.split_once(before)?.1.split_once(after)?.0.parse().ok())
 }
 
-/// Measures hello_xr's frame time with two views, and with one and the layer, in turn, and writes a picture:
+/// Measures hello_xr's frame time with two views, and with one view and the layer, alternately, and writes a picture:
 /// `cargo test --release -p yoro-layer hello_xr_measured -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures for some minutes"]
@@ -362,7 +362,7 @@ fn hello_xr_measured() {
     println!("{}", place.display());
 }
 
-/// Returns the PSNR in dB over all channels. The lab's metrics would make these tests wait for all of that crate.
+/// Returns the PSNR in dB over all channels. With the lab's metrics these tests would have to compile that crate.
 fn psnr(a: &image::RgbImage, b: &image::RgbImage) -> f64 {
     assert_eq!(a.dimensions(), b.dimensions());
     let squares = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));

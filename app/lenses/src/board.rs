@@ -1,4 +1,4 @@
-//! The menu's panel: tiles that stand in the world before the eyes.
+//! The menu's panel: tiles on a board that stands in the world in front of the eyes.
 
 use std::rc::Rc;
 
@@ -10,21 +10,21 @@ use yoro_gl::{
     Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
 };
 
-/// The tiles of a row.
+/// Number of tiles in a row.
 pub const ROW: usize = 4;
-/// The characters that a line of a tile has room for, and those of a line of the heading; longer lines are cut.
+/// Maximum number of characters in a line of a tile, and in a line of the heading; longer lines are cut.
 pub const TILE_COLUMNS: usize = 12;
 /// See [`TILE_COLUMNS`].
 pub const HEADING_COLUMNS: usize = 53;
 const GAP: usize = 8;
 const INSET: usize = 10;
 const TILE: [usize; 2] = [TILE_COLUMNS * CELL[0] + 2 * INSET, 2 * CELL[1] + 2 * INSET];
-/// Three rows of tiles leave room for four lines above them, two for seven.
+/// With three rows of tiles there is room for four heading lines, with two rows for seven.
 const SIZE: [usize; 2] = [ROW * (TILE[0] + GAP) + GAP, 4 * CELL[1] + 2 * INSET + 3 * (TILE[1] + GAP)];
 
-/// What a camera sees, in pixels: in the heading's right part.
+/// Size in pixels of a camera's picture, which is shown on the right of the heading.
 const PICTURE: [usize; 2] = [256, 192];
-/// The characters at the end of the heading's lines whose place a camera's picture takes.
+/// Number of characters at the end of the heading's lines that a camera's picture covers.
 pub const PICTURE_COLUMNS: usize = (PICTURE[0] + INSET).div_ceil(CELL[0]);
 
 /// Distance of the panel in metres, and its width in degrees.
@@ -36,22 +36,22 @@ const DOT_DEGREES: f32 = 0.8;
 const GROUND: u8 = 15;
 const TILE_GROUND: u8 = 45;
 const POINTED_GROUND: u8 = 95;
-/// Height in pixels of the bar that fills while a tile is looked at.
+/// Height in pixels of the bar that fills while a tile is pointed at.
 const BAR: usize = 6;
 
 /// What the panel shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tiles {
-    /// The lines above the tiles.
+    /// The lines of text above the tiles.
     pub heading: String,
-    /// Two lines for each tile, row after row from the upper left; an empty text is no tile. The last row stands at the
-    /// panel's lower edge.
+    /// The text of each tile, two lines, row after row from the upper left. An empty text leaves a gap. The last row is
+    /// at the panel's lower edge.
     pub tiles: Vec<String>,
-    /// The tile that is pointed at, and how far its choice has come, 0 to 1.
+    /// The tile that is pointed at, and the progress of its selection, 0 to 1.
     pub pointed: Option<(usize, f32)>,
 }
 
-/// The panel's place: its centre, turned so that its own Z points to who reads it.
+/// Returns the pose of a panel in front of a head: its centre, with its own Z towards the reader.
 pub fn board_pose(head: Pose) -> Pose {
     let ahead = head.forward();
     let (yaw, pitch) = ((-ahead.x).atan2(-ahead.z), ahead.y.clamp(-1.0, 1.0).asin());
@@ -65,7 +65,7 @@ pub fn board_metres() -> [f32; 2] {
     [width, width * SIZE[1] as f32 / SIZE[0] as f32]
 }
 
-/// Returns the place on the panel, 0 to 1 from the lower left, that a ray along a pose's -Z meets.
+/// Returns the point at which a ray along a pose's -Z hits the panel, 0 to 1 from the lower left; `None` if it misses.
 pub fn board_hit(board: &Pose, ray: &Pose) -> Option<Vec2> {
     let inverse = board.orientation.inverse();
     let from = inverse * (ray.position - board.position);
@@ -75,12 +75,12 @@ pub fn board_hit(board: &Pose, ray: &Pose) -> Option<Vec2> {
     (is_towards && at.cmpge(Vec2::ZERO).all() && at.cmple(Vec2::ONE).all()).then_some(at)
 }
 
-/// The height of what stands above `tiles` tiles, in pixels.
+/// Returns the height of the part above `tiles` tiles in pixels.
 fn top(tiles: usize) -> usize {
     SIZE[1] - tiles.div_ceil(ROW) * (TILE[1] + GAP)
 }
 
-/// Returns the tile, of so many, at a place on the panel, and how far to the right in it that is, 0 to 1.
+/// Returns the tile at a point on a panel with `tiles` tiles, and the position in it from the left, 0 to 1.
 pub fn tile_at(at: Vec2, tiles: usize) -> Option<(usize, f32)> {
     let [x, y] = [at.x * SIZE[0] as f32, (1.0 - at.y) * SIZE[1] as f32];
     let cell = |n: f32, size: usize| {
@@ -134,9 +134,9 @@ pub struct Board {
     gl: Rc<Context>,
     program: Program,
     texture: Texture,
-    /// What a camera sees.
+    /// A camera's picture.
     picture: Texture,
-    /// Cross and gear.
+    /// The cross and the gear.
     signs: [Texture; 2],
     letters: Letters,
     pixels: Vec<u8>,
@@ -145,16 +145,16 @@ pub struct Board {
 }
 
 impl Board {
-    /// The panel's size in pixels.
+    /// Size of the panel in pixels.
     pub const SIZE: [u32; 2] = [SIZE[0] as u32, SIZE[1] as u32];
 
-    /// The size of a camera's picture in pixels.
+    /// Size of a camera's picture in pixels.
     pub const PICTURE: [u32; 2] = [PICTURE[0] as u32, PICTURE[1] as u32];
 
     /// Makes an empty panel.
     ///
     /// # Errors
-    /// [`GlError`] when the driver refuses the program or the texture.
+    /// [`GlError`] if the driver refuses the program or the texture.
     pub fn new(gl: &Rc<Context>) -> Result<Board, GlError> {
         let sign = |is_inside: fn(Vec2) -> bool| {
             let texture = Texture::new(gl, [SIGN as u32; 2], Format::R8, Filter::Linear)?;
@@ -174,7 +174,7 @@ impl Board {
         })
     }
 
-    /// Changes what the panel shows; nothing happens if it is the same.
+    /// Changes the contents of the panel. Does nothing if they are the same.
     pub fn set(&mut self, tiles: &Tiles) {
         if self.shown != *tiles {
             self.shown.clone_from(tiles);
@@ -185,12 +185,12 @@ impl Board {
         }
     }
 
-    /// Changes the camera's picture: luma, rows from the bottom.
+    /// Changes the camera's picture; `luma` has its rows from the bottom.
     pub fn set_picture(&mut self, luma: &[u8]) {
         self.picture.upload(luma);
     }
 
-    /// Draws the panel at a place in the scene into the images of both eyes, with a dot at `pointer`.
+    /// Draws the panel at a pose in the scene into the images of both eyes, with a dot at `pointer`.
     pub fn draw_into_eyes(
         &self,
         board: &Pose,
@@ -207,7 +207,7 @@ impl Board {
         });
     }
 
-    /// Fills an image of the panel's size with linear colour, which is not multiplied by alpha: for a compositor.
+    /// Fills an image of the panel's size with linear colour for a compositor, not premultiplied by alpha.
     pub fn draw_linear(&self, pointer: Option<Vec2>, to: &Destination) {
         self.gl.pass("menu", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
@@ -215,7 +215,7 @@ impl Board {
         });
     }
 
-    /// Draws the panel flat, as large as a window allows, with or without the camera's picture in its upper right
+    /// Draws the panel flat, as large as the window allows. `has_picture` adds the camera's picture in the upper right
     /// corner.
     pub fn draw_flat(&self, window: &Destination, has_picture: bool) {
         let ([x, y], size) = flat_place(window.size);
@@ -237,7 +237,7 @@ impl Board {
         }
     }
 
-    /// Draws a cross into the upper left corner of a window and a gear into the upper right one, `side` pixels wide.
+    /// Draws a cross into a window's upper left corner and a gear into its upper right corner, each `side` pixels wide.
     pub fn draw_corners(&self, side: u32, window: &Destination) {
         self.gl.pass("menu", || {
             self.gl.set_raster_state(&RasterState { blend: Blend::Over, ..RasterState::SCREEN });
@@ -250,7 +250,7 @@ impl Board {
         });
     }
 
-    /// Draws brightness on a plane, `to_linear` or display-referred.
+    /// Draws brightness on a plane, as linear colour (`to_linear`) or display-referred.
     fn run(
         &self,
         texture: &Texture,
@@ -273,7 +273,7 @@ impl Board {
     }
 }
 
-/// Returns where the flat panel stands in a window of this size: its lower left corner, and its size, in pixels.
+/// Returns the lower left corner and the size of the flat panel in a window of this size, in pixels.
 fn flat_place(window: [u32; 2]) -> ([u32; 2], [u32; 2]) {
     let [width, height] = window.map(u64::from);
     let [across, up] = SIZE.map(|n| n as u64);
@@ -285,8 +285,8 @@ fn flat_place(window: [u32; 2]) -> ([u32; 2], [u32; 2]) {
     ([(width - size[0]) / 2, (height - size[1]) / 2].map(|n| n as u32), size.map(|n| n as u32))
 }
 
-/// Returns the place on the flat panel, 0 to 1 from the lower left, of a pixel of the window, counted from the upper
-/// left.
+/// Returns the point on the flat panel, 0 to 1 from the lower left, under a pixel of the window, counted from the upper
+/// left; `None` outside of the panel.
 pub fn flat_hit(pixel: Vec2, window: [u32; 2]) -> Option<Vec2> {
     let ([left, bottom], size) = flat_place(window);
     let from_corner = Vec2::new(pixel.x - left as f32, window[1] as f32 - pixel.y - bottom as f32);
@@ -299,12 +299,12 @@ fn onto(to: &Destination) -> Mat3 {
     Mat3::from_scale(Vec2::new(1.0 / to.size[0] as f32, 1.0 / to.size[1] as f32))
 }
 
-/// Edge of the image of a corner's sign in pixels.
+/// Edge length of a sign's image in pixels.
 const SIGN: usize = 96;
-/// A pixel of a sign is the mean of so many samples squared.
+/// Samples per pixel of a sign along each axis, of which the mean is taken.
 const SAMPLES: usize = 4;
 
-/// Draws a sign: the share of each pixel that lies inside, in coordinates from -1 to 1.
+/// Draws a sign: for each pixel, the share that is inside. `is_inside` takes coordinates from -1 to 1.
 fn sign(is_inside: fn(Vec2) -> bool) -> Vec<u8> {
     let fine = SIGN * SAMPLES;
     let place = |i: usize| 2.0 * (i as f32 + 0.5) / fine as f32 - 1.0;
@@ -323,12 +323,12 @@ fn is_in_cross(at: Vec2) -> bool {
 }
 
 fn is_in_gear(at: Vec2) -> bool {
-    // Eight teeth.
+    // A gear with eight teeth.
     let is_tooth = (8.0 * at.y.atan2(at.x)).cos() > 0.0;
     (0.18..if is_tooth { 0.52 } else { 0.38 }).contains(&at.length())
 }
 
-/// Returns the transform from pixels of an eye's image to the panel, homogeneous.
+/// Returns the homogeneous transform from pixels of an eye's image to the panel.
 fn to_panel(board: &Pose, pair: &EyePair, eye: Eye) -> Mat3 {
     let (pose, frustum) = (&pair.poses[eye.index()], &pair.frusta[eye.index()]);
     let inverse = board.orientation.inverse();

@@ -1,30 +1,30 @@
-//! Head tracking from gyroscope and accelerometer: an extended Kalman filter with bias estimation, prediction
-//! and a neck model, by the formulas of the Cardboard SDK.
+//! Head tracking from gyroscope and accelerometer: an extended Kalman filter with bias estimation, prediction and a
+//! neck model, by the formulas of the Cardboard SDK.
 //!
-//! Inside, the axes are those of the screen (X right, Y up, Z to the viewer); samples arrive in the device's
-//! own axes. The filter's state is the rotation from the world (Y up) to the screen.
+//! Internally the axes are the screen's (X right, Y up, Z to the viewer); samples arrive in the device's own axes. The
+//! filter's state is the rotation from the world (Y up) to the screen.
 
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 use crate::optics::Rotation;
 
-/// Eyes from the neck's joint in metres: up and forward.
+/// Position of the eyes relative to the neck's joint, in metres.
 const NECK: Vec3 = Vec3::new(0.0, 0.075, -0.080);
 
-/// One sample of a motion sensor, in the device's axes (X to the right and Y up when it is held upright, Z out
-/// of the screen).
+/// One sample of a motion sensor, in the device's axes: with the device upright, X to the right, Y up, Z out of the
+/// screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MotionSample {
-    /// Angular velocity in rad/s, corrected by the device.
+    /// Angular velocity in rad/s, already corrected by the device.
     Gyroscope(Vec3),
     /// Angular velocity in rad/s as measured, and the device's own estimate of its bias.
     GyroscopeUncalibrated {
         /// The angular velocity as measured.
         rate: Vec3,
-        /// The bias to subtract until there is a better estimate.
+        /// The bias to subtract until a better estimate is found.
         bias: Vec3,
     },
-    /// Acceleration in m/s^2; up at rest.
+    /// Acceleration in m/s^2; points up at rest.
     Accelerometer(Vec3),
 }
 
@@ -50,16 +50,16 @@ impl LowPass {
     }
 }
 
-/// Finds the gyroscope's bias while the device lies still.
+/// Estimates the gyroscope's bias while the device lies still.
 #[derive(Clone, Debug)]
 struct BiasEstimator {
     acceleration: LowPass,
     rate: LowPass,
     bias: LowPass,
-    /// Frames in a row without motion.
+    /// Number of consecutive frames without motion.
     still: [u32; 2],
     last_direction: Option<DVec3>,
-    /// Angular velocity by which the direction of gravity moves, rad/s.
+    /// Angular velocity at which the direction of gravity moves, rad/s.
     gravity_rate: DVec3,
 }
 
@@ -92,7 +92,7 @@ impl BiasEstimator {
         if let Some(last) = self.last_direction
             && seconds > 1e-6
         {
-            // A direction fixed in the world turns in the device's axes against the device's rotation.
+            // A direction fixed in the world turns against the device's rotation in the device's axes.
             self.gravity_rate = direction.cross(last) / seconds;
         }
         self.last_direction = Some(direction);
@@ -105,7 +105,7 @@ impl BiasEstimator {
         if self.still != [Self::STILL_FRAMES; 2] || speed >= Self::LARGEST_BIAS {
             return;
         }
-        // The faster it seems to turn, the likelier that it does.
+        // The faster it seems to turn, the more likely it really does.
         let weight = (1.0 - speed / Self::LARGEST_BIAS).powi(2);
         self.bias.add(smooth - self.gravity_rate, seconds, weight);
     }
@@ -115,7 +115,7 @@ impl BiasEstimator {
     }
 }
 
-/// Seconds between gyroscope samples, with gaps bridged by the usual interval.
+/// Seconds between gyroscope samples. The usual interval replaces gaps.
 #[derive(Clone, Copy, Debug, Default)]
 struct SampleInterval {
     seconds: f64,
@@ -136,12 +136,12 @@ impl SampleInterval {
     }
 }
 
-/// The rotation that a vector's direction and length (radians) stand for.
+/// Returns the rotation about a vector by its length in radians.
 fn rotation_of(vector: DVec3) -> DQuat {
     DQuat::from_scaled_axis(vector)
 }
 
-/// The rotation vector that turns `from` into `to`.
+/// Returns the rotation vector that turns `from` into `to`.
 fn rotation_between(from: DVec3, to: DVec3) -> DVec3 {
     match (from.try_normalize(), to.try_normalize()) {
         (Some(from), Some(to)) => DQuat::from_rotation_arc(from, to).to_scaled_axis(),
@@ -149,12 +149,12 @@ fn rotation_between(from: DVec3, to: DVec3) -> DVec3 {
     }
 }
 
-/// The head's orientation, from motion sensors.
+/// The head's orientation, computed from motion sensors.
 #[derive(Clone, Debug)]
 pub struct HeadTracker {
     rotation: Rotation,
-    /// Screen from world; none until the first accelerometer sample, or the first gyroscope sample of a device
-    /// without accelerometer.
+    /// Rotation from world to screen. `None` until the first accelerometer sample; without an accelerometer, until more
+    /// than 100 gyroscope samples have arrived.
     screen_from_world: Option<DQuat>,
     covariance: DMat3,
     /// Angular velocity in rad/s, smoothed for prediction.
@@ -174,7 +174,7 @@ impl HeadTracker {
     const LARGEST_NORM_CHANGE: f64 = 0.15;
     const LONGEST_PREDICTION: f64 = 0.1;
 
-    /// Returns a tracker without any sample yet.
+    /// Returns a tracker that has received no samples.
     pub fn new(rotation: Rotation) -> HeadTracker {
         HeadTracker {
             rotation,
@@ -191,21 +191,21 @@ impl HeadTracker {
         }
     }
 
-    /// Says how the screen's content is turned; starts over when that has changed.
+    /// Sets the rotation of the screen's content. Starts over if it has changed.
     pub fn set_rotation(&mut self, rotation: Rotation) {
         if rotation != self.rotation {
             *self = HeadTracker::new(rotation);
         }
     }
 
-    /// Starts over: straight ahead is where the head points at the next accelerometer sample. What is known of
-    /// the gyroscope's bias stays.
+    /// Starts over: straight ahead becomes where the head points at the next accelerometer sample. Keeps the estimate
+    /// of the gyroscope's bias.
     pub fn recenter(&mut self) {
         let (bias, interval) = (self.bias.clone(), self.interval);
         *self = HeadTracker { bias, interval, ..HeadTracker::new(self.rotation) };
     }
 
-    /// Forgets the velocity, so that nothing moves on by itself while no samples arrive.
+    /// Resets the velocity, so that nothing keeps moving while no samples arrive.
     pub fn pause(&mut self) {
         self.velocity = LowPass::new(self.velocity.cutoff_hz);
         self.gyroscope_ns = None;
@@ -220,8 +220,7 @@ impl HeadTracker {
         }
     }
 
-    /// Takes a sample with its time in nanoseconds. Samples out of order, and values that are not numbers, are
-    /// ignored.
+    /// Adds a sample with its time in nanoseconds. Ignores samples out of order and values that are not finite.
     pub fn add(&mut self, sample: MotionSample, timestamp_ns: i64) {
         match sample {
             MotionSample::Gyroscope(rate) => self.gyroscope(rate, Vec3::ZERO, timestamp_ns),
@@ -253,7 +252,7 @@ impl HeadTracker {
             self.screen_from_world = Some(DQuat::IDENTITY);
         }
         if let Some(pose) = &mut self.screen_from_world {
-            // The world turns against the device.
+            // In the device's axes the world turns the opposite way.
             let turn = rotation_of(-rate * seconds);
             *pose = (turn * *pose).normalize();
             let m = DMat3::from_quat(turn);
@@ -280,7 +279,7 @@ impl HeadTracker {
             self.screen_from_world = Some(upright(measured));
             return;
         };
-        // A device whose acceleration changes is being moved: what it measures is not gravity alone.
+        // If the acceleration changes, the device is being moved, and does not measure gravity alone.
         self.norm_change = 0.5 * change + 0.5 * self.norm_change;
         let [low, high] = Self::SIGMA;
         let sigma = (low + self.norm_change / Self::LARGEST_NORM_CHANGE * (high - low)).min(high);
@@ -301,17 +300,17 @@ impl HeadTracker {
         self.covariance = m * (self.covariance - gain * jacobian * self.covariance) * m.transpose();
     }
 
-    /// True once samples have given the direction.
+    /// True once samples have determined the orientation.
     pub fn is_ready(&self) -> bool {
         self.screen_from_world.is_some()
     }
 
-    /// Returns the time of the newest sample in nanoseconds, 0 without any.
+    /// Returns the time of the newest sample in nanoseconds, 0 before the first.
     pub fn newest_ns(&self) -> i64 {
         self.newest_ns
     }
 
-    /// The rotation from world to head `seconds` (up to a tenth) after the newest sample, at constant angular
+    /// Returns the rotation from world to head `seconds` (at most 0.1) after the newest sample, at constant angular
     /// velocity.
     pub fn head_from_world(&self, seconds: f64) -> Quat {
         let seconds = seconds.clamp(0.0, Self::LONGEST_PREDICTION);
@@ -320,8 +319,8 @@ impl HeadTracker {
         (rotation_of(-velocity * seconds) * pose).normalize().as_quat()
     }
 
-    /// The rotation from head to world, for a sample clock that may or may not be that of the frames: a target
-    /// within reach of the newest sample is predicted from it, any other from `now_ns`.
+    /// Returns the rotation from head to world at `target_ns`. The samples' clock may differ from that of the frames: a
+    /// target shortly after the newest sample is predicted from that sample, any other from `now_ns`.
     pub fn world_from_head(&self, now_ns: i64, target_ns: i64) -> Quat {
         let since_sample = target_ns - self.newest_ns;
         let reach = (2.0 * Self::LONGEST_PREDICTION * 1e9) as i64;
@@ -330,10 +329,10 @@ impl HeadTracker {
     }
 }
 
-/// The rotation from the world to a screen that measures `up`, with the viewing direction's heading ahead.
+/// Returns the rotation from the world to a screen that measures `up`, heading along the viewing direction.
 fn upright(up: DVec3) -> DQuat {
     let Some(up) = up.try_normalize() else { return DQuat::IDENTITY };
-    // Straight up or down there is no heading: the smallest rotation will do.
+    // Looking straight up or down there is no heading, so the smallest rotation is used.
     match DVec3::NEG_Z.reject_from_normalized(up).try_normalize() {
         Some(forward) if DVec3::NEG_Z.dot(up).abs() < 0.99 => {
             DQuat::from_mat3(&DMat3::from_cols(forward.cross(up), up, -forward))
@@ -342,8 +341,8 @@ fn upright(up: DVec3) -> DQuat {
     }
 }
 
-/// Returns how far a rotation about the neck moves the point between the eyes, in metres, relative to where it would be
-/// on the neck's axis: the rotation of (0, 0.075, -0.080), less (0, 0.075, 0).
+/// Returns how far, in metres, a rotation about the neck moves the point between the eyes from the neck's axis: (0,
+/// 0.075, -0.080) rotated, minus (0, 0.075, 0).
 pub fn neck_offset(rotation: Quat) -> Vec3 {
     rotation * NECK - Vec3::new(0.0, NECK.y, 0.0)
 }
@@ -399,7 +398,7 @@ mod tests {
         assert!((angle(1000, 1050) - 0.525).abs() < 1e-3);
         assert!((angle(1040, 1050) - 0.525).abs() < 1e-3);
         assert!((angle(1000, 1150) - 0.55).abs() < 1e-3);
-        // Another clock.
+        // The samples have another clock.
         assert!((angle(500_000, 500_020) - 0.51).abs() < 1e-3);
     }
 
@@ -425,7 +424,7 @@ mod tests {
     #[test]
     fn tilt_drift_is_corrected_by_gravity() {
         let mut tracker = upright_tracker();
-        // The gyroscope says that the head nods; gravity says that it does not.
+        // The gyroscope reports that the head nods, gravity that it does not.
         for i in 1..=1000 {
             tracker.add(MotionSample::Gyroscope(Vec3::new(0.0, 0.02, 0.0)), i * 10 * MS);
             tracker.add(MotionSample::Accelerometer(Vec3::new(9.81, 0.0, 0.0)), i * 10 * MS);
@@ -448,7 +447,7 @@ mod tests {
         let before = tracker.head_from_world(0.0);
         feed(&mut tracker, 4000, 6000);
         let drift = before.angle_between(tracker.head_from_world(0.0));
-        // Uncorrected, ten seconds would turn it by 0.2 rad.
+        // Without correction, ten seconds would turn it by 0.2 rad.
         assert!(drift < 0.01, "{drift}");
     }
 

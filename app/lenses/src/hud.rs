@@ -1,4 +1,4 @@
-//! A small panel of text that hangs before the eyes, turning with the head.
+//! A small panel of text in front of the eyes that turns with the head.
 
 use std::rc::Rc;
 
@@ -10,16 +10,16 @@ use yoro_gl::{
     Blend, Context, Destination, Filter, Format, GlError, Program, RasterState, ShaderSource, Texture,
 };
 
-/// The characters that a line of the panel has room for; longer lines are cut.
+/// Maximum number of characters in a line of the panel; longer lines are cut.
 pub const COLUMNS: usize = 34;
 const LINES: usize = 4;
 const MARGIN: usize = 11;
 const BAR_HEIGHT: usize = 16;
 const SIZE: [usize; 2] = [COLUMNS * CELL[0] + 2 * MARGIN, LINES * CELL[1] + 3 * MARGIN + BAR_HEIGHT];
-/// The width of the moving part of the progress bar, as a share of the bar.
+/// Width of the progress bar's moving part, as a share of the bar.
 const BLOCK: f32 = 0.25;
 
-/// The panel's place: metres ahead, and tangents of its width and of its centre below the horizon.
+/// Distance of the panel in metres, and the tangents of its width and of its centre's angle below the horizon.
 const DISTANCE: f32 = 1.5;
 const WIDTH: f32 = 0.42;
 const BELOW: f32 = 0.40;
@@ -29,7 +29,7 @@ const BELOW: f32 = 0.40;
 pub struct Content<'a> {
     /// At most four lines.
     pub text: &'a str,
-    /// The position of the moving part of a progress bar, 0 to 1; the work's end is not known.
+    /// The position of the progress bar's moving part, 0 to 1. The bar does not show how much work is left.
     pub progress: Option<f32>,
 }
 
@@ -56,7 +56,7 @@ impl Pixels {
         }
     }
 
-    /// Rows from the bottom, as GL takes them.
+    /// Writes the rows from the bottom, as GL takes them.
     fn flip_into(&self, rows: &mut Vec<u8>) {
         rows.clear();
         self.0.chunks_exact(SIZE[0]).rev().for_each(|row| rows.extend_from_slice(row));
@@ -71,12 +71,12 @@ pub struct Hud {
     letters: Letters,
     pixels: Pixels,
     rows: Vec<u8>,
-    /// The text that the texture shows.
+    /// The text in the texture.
     text: String,
     progress: Option<f32>,
-    /// Rows in use, from the top.
+    /// Number of rows in use, counted from the top.
     used: usize,
-    /// Number of changes.
+    /// Number of changes of the text.
     version: u64,
 }
 
@@ -84,7 +84,7 @@ impl Hud {
     /// Makes an empty panel.
     ///
     /// # Errors
-    /// [`GlError`] when the driver refuses the program or the texture.
+    /// [`GlError`] if the driver refuses the program or the texture.
     pub fn new(gl: &Rc<Context>) -> Result<Hud, GlError> {
         Ok(Hud {
             gl: gl.clone(),
@@ -100,7 +100,7 @@ impl Hud {
         })
     }
 
-    /// Changes the text of the panel; nothing happens if it is the same.
+    /// Changes the contents of the panel, unless they are the same, and returns it.
     pub fn set(&mut self, content: Content, placement: Placement) -> Panel<'_> {
         if self.text != content.text || self.progress != content.progress {
             self.text.clear();
@@ -118,7 +118,7 @@ impl Hud {
         Panel { hud: self, placement }
     }
 
-    /// Blends the part in use over a rectangle.
+    /// Draws the part in use over a rectangle.
     fn draw(&self, to: &Destination) {
         self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
         let rectangle = [to.origin[0], to.origin[1], to.size[0], to.size[1]].map(|n| n as f32);
@@ -131,16 +131,16 @@ impl Hud {
     }
 }
 
-/// The panel's direction.
+/// Where the panel is relative to the viewing direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
-    /// Below what is looked at.
+    /// Below the viewing direction.
     Below,
-    /// Straight ahead, where there is nothing else to look at.
+    /// Straight ahead, when there is nothing else to look at.
     Middle,
 }
 
-/// The panel as it is in one frame.
+/// The panel in one frame.
 pub struct Panel<'a> {
     hud: &'a Hud,
     placement: Placement,
@@ -161,18 +161,18 @@ impl Panel<'_> {
         [width, width * self.hud.used as f32 / SIZE[0] as f32]
     }
 
-    /// The panel's centre in metres, relative to the point between the eyes.
+    /// Returns the panel's centre in metres, relative to the point between the eyes.
     pub fn center(&self) -> Vec3 {
         Vec3::new(0.0, below(self.placement), -1.0) * DISTANCE
     }
 
-    /// Changes whenever the text does.
+    /// Returns a number that changes whenever the text does.
     pub fn version(&self) -> u64 {
         self.hud.version
     }
 
-    /// Fills a rectangle of the panel's size, translucent where there are no letters; colour is not multiplied by
-    /// alpha.
+    /// Fills a rectangle of the panel's size. The background of the letters is translucent; colour is not premultiplied
+    /// by alpha.
     pub fn draw(&self, to: &Destination) {
         self.hud.gl.pass("hud", || {
             self.hud.gl.set_raster_state(&RasterState::SCREEN);
@@ -196,7 +196,7 @@ impl Panel<'_> {
     }
 }
 
-/// Returns the tangent of the panel's centre.
+/// Returns the tangent of the vertical angle of the panel's centre.
 fn below(placement: Placement) -> f32 {
     match placement {
         Placement::Below => -BELOW,
@@ -204,7 +204,7 @@ fn below(placement: Placement) -> f32 {
     }
 }
 
-/// Returns the origin and size, in pixels of an eye's image, of the `used` upper rows of the panel.
+/// Returns the origin and size, in pixels of an eye's image, of the panel's upper `used` rows.
 fn place(pair: &EyePair, eye: Eye, used: usize, placement: Placement) -> ([u32; 2], [u32; 2]) {
     let frustum = &pair.frusta[eye.index()];
     let height = WIDTH * used as f32 / SIZE[0] as f32;

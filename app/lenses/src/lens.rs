@@ -1,4 +1,4 @@
-//! The pass that puts both eyes on the screen: lens distortion, chromatic correction, timewarp, vignette.
+//! The pass that draws both eyes on the screen, with lens distortion, chromatic correction, timewarp and vignette.
 
 use std::rc::Rc;
 
@@ -8,12 +8,12 @@ use crate::optics::{Optics, mesh_strip};
 use yoro::eyes::{Eye, Frustum};
 use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderSource, Texture};
 
-/// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are
-/// specified: acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
+/// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are specified. For
+/// acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
 const DISPERSION: [f32; 2] = [0.9913, 1.0106];
-/// Width of the vignette as a part of the image.
+/// Width of the vignette as a share of the image.
 const VIGNETTE: f32 = 0.03;
-/// Width of the alignment line in metres, and its grey.
+/// Width of the alignment line in metres, and its colour, a grey.
 const LINE_WIDTH: f32 = 0.0006;
 const LINE_COLOR: [f32; 4] = [0.35, 0.35, 0.35, 1.0];
 
@@ -27,10 +27,10 @@ pub struct LensPass {
 }
 
 impl LensPass {
-    /// Compiles the program and makes the meshes of a viewer; `chromatic` turns chromatic correction on.
+    /// Compiles the program and makes the meshes for a viewer. `chromatic` enables chromatic correction.
     ///
     /// # Errors
-    /// [`GlError`] when the driver refuses a program or a mesh.
+    /// [`GlError`] if the driver refuses a program or a mesh.
     pub fn new(gl: &Rc<Context>, optics: &Optics, chromatic: bool) -> Result<LensPass, GlError> {
         let defines = if chromatic { vec![("CHROMATIC", String::new())] } else { Vec::new() };
         let source = ShaderSource::Raster { vertex: "viewer/lens.vert", fragment: "viewer/lens.frag" };
@@ -45,8 +45,8 @@ impl LensPass {
         Ok(LensPass { gl: gl.clone(), program, meshes, frusta, line })
     }
 
-    /// Fills the window from the images of the left and the right eye. `turn` rotates a direction of the head as it is
-    /// now into the head as it was when the frame was rendered.
+    /// Fills the window from the images of the left and the right eye. `turn` rotates directions from the head's
+    /// current frame to its frame when the images were rendered.
     pub fn run(&self, images: [&Texture; 2], turn: Quat, window: &Destination) {
         let [width, height] = window.size;
         self.gl.pass("lens", || {
@@ -66,7 +66,7 @@ impl LensPass {
                 mesh.bind();
                 mesh.draw_strip();
             }
-            // Even, so that it lies symmetrically on an even width.
+            // An even width, so that the line is symmetric on an even window.
             let line = ((self.line * width as f32 / 2.0).round() as u32).max(1) * 2;
             let x = (width / 2).saturating_sub(line / 2);
             self.gl.fill([window.origin[0] + x, window.origin[1]], [line.min(width), height], LINE_COLOR);
@@ -97,14 +97,14 @@ mod tests {
         RenderTarget::new(gl, WINDOW, &[(Format::Rgba8, Filter::Nearest)], None).unwrap()
     }
 
-    /// A pixel of the window by metres from its lower left corner.
+    /// Reads the window's pixel at a position in metres from its lower left corner.
     fn pixel(window: &RenderTarget, metres: Vec2) -> [u8; 4] {
         let size = screen().metres();
         let at = [0, 1].map(|i| (metres[i] / size[i] * WINDOW[i] as f32) as u32);
         window.read_rgba8(0, at, [1, 1]).try_into().unwrap()
     }
 
-    /// Two images, each of one colour with a white column in the middle (tangent 0).
+    /// Two images of one colour each, with a white column in the middle (tangent 0).
     fn marked_eyes(gl: &Rc<Context>, optics: &Optics) -> [RenderTarget; 2] {
         let size = [256, 256];
         Eye::BOTH.map(|eye| {
@@ -144,15 +144,15 @@ mod tests {
 
     #[test]
     fn straight_lines_bow_towards_the_lens() {
-        // The lens magnifies the border more than the middle (pincushion), so that the screen shows a barrel: a
-        // vertical line beside the centre is nearer to the centre at its ends.
+        // The lens magnifies the border more than the middle (pincushion), so the screen shows a barrel: a vertical
+        // line beside the centre is closer to it at its ends.
         let mesh = optics().mesh(Eye::Left);
         let center = optics().lens_center(Eye::Left).x / screen().metres()[0] * 2.0 - 1.0;
         let distance = |row: usize| (mesh[row * MESH_RESOLUTION].position.x - center).abs();
         assert!(distance(0) < distance(20) && distance(39) < distance(20));
     }
 
-    /// Columns of the left half's white mark, at the height of the lens.
+    /// Returns the mean column of the white mark in the left half, at the height of the lens.
     fn mark(window: &RenderTarget, optics: &Optics) -> f32 {
         let row = (optics.lens_center(Eye::Left).y / screen().metres()[1] * WINDOW[1] as f32) as u32;
         let pixels = window.read_rgba8(0, [0, row], [WINDOW[0] / 2 - 4, 1]);
@@ -173,7 +173,7 @@ mod tests {
             mark(&window, &optics)
         };
         let still = at(Quat::IDENTITY);
-        // What is straight ahead is 10 degrees to the right once the head has turned 10 degrees to the left.
+        // What was straight ahead is 10 degrees to the right once the head has turned 10 degrees to the left.
         let angle = 10f32.to_radians();
         let turned = at(Quat::from_rotation_y(angle));
         let metres = Distortion::new(&[0.441, 0.156]).undistort(angle.tan()) * 0.042;

@@ -1,10 +1,10 @@
-//! A phone behind the lenses of a Cardboard-compatible viewer, and panels of text and of tiles before both eyes.
+//! A phone behind the lenses of a Cardboard-compatible viewer, and panels of text and tiles in front of both eyes.
 //!
-//! A viewer's parameters and a screen's size come in; frusta, the mesh that undoes the lenses' distortion, and the pass
-//! that draws both eyes through it go out. The parameters are also read from a picture of the viewer's QR code. Motion
-//! samples come in, and the head's orientation goes out.
+//! From a viewer's parameters and a screen's size this crate computes the eyes' frusta and the mesh that undoes the
+//! lenses' distortion, and draws both eyes through that mesh. It reads the parameters also from a picture of the
+//! viewer's QR code. From motion samples it computes the head's orientation.
 //!
-//! This crate must never know a renderer, a scene, settings, or where a GL context comes from; it builds for phones and
+//! This crate must never know a renderer, a scene, settings, or where a GL context comes from. It builds for phones and
 //! browsers alike.
 
 mod board;

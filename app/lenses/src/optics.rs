@@ -1,21 +1,21 @@
-//! Lenses: their distortion, what each eye sees of the screen, and the mesh that undoes the distortion.
+//! Lens optics: distortion, what each eye sees of the screen, and the mesh that undoes the distortion.
 //!
-//! The formulas are those of the Cardboard SDK, so that every viewer looks as its maker tuned it. Lengths
-//! beyond the lens are tangents of the viewing angle.
+//! The formulas are those of the Cardboard SDK, so that every viewer looks as its maker tuned it. Lengths beyond the
+//! lens are tangents of the viewing angle.
 
 use glam::Vec2;
 
 use crate::params::{VerticalAlignment, ViewerParams};
 use yoro::eyes::{Eye, Frustum};
 
-/// Rows and columns of the mesh's vertices.
+/// Number of rows and of columns of the mesh's vertices.
 pub(crate) const MESH_RESOLUTION: usize = 40;
-/// From the tray to the lower edge of the screen: the phone's border, in metres.
+/// Distance from the tray to the lower edge of the screen, in metres: the phone's border.
 const BORDER: f32 = 0.003;
-/// The size of a phone's screen in metres when the device does not know its own.
+/// Width and height of a phone's screen in metres, for devices that do not report their own.
 const FALLBACK_SCREEN: [f32; 2] = [0.110, 0.062];
 
-/// The radial distortion of a lens: a point of the screen at `r` (tangent, without the lens) is seen at
+/// The radial distortion of a lens. A point of the screen at radius `r` (tangent, without the lens) is seen at
 /// `r (1 + k1 r^2 + k2 r^4 + ...)`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Distortion {
@@ -23,7 +23,7 @@ pub(crate) struct Distortion {
 }
 
 impl Distortion {
-    /// From the coefficients k1, k2, ...
+    /// Creates it from the coefficients k1, k2, ...
     pub fn new(coefficients: &[f32]) -> Distortion {
         Distortion { coefficients: coefficients.to_vec() }
     }
@@ -35,14 +35,14 @@ impl Distortion {
         r * (1.0 + factor)
     }
 
-    /// Returns the radius of the screen that is seen at `r`: the secant method, to 1e-4 as the reference does.
+    /// Returns the radius of the screen that is seen at `r`, by the secant method to 1e-4, as in the reference.
     pub fn undistort(&self, r: f32) -> f32 {
         if r <= 0.0 {
             return 0.0;
         }
         let (mut r0, mut r1) = (r / 2.0, r / 3.0);
         let mut error0 = r - self.distort(r0);
-        // Polynomials that turn back have no inverse everywhere, hence the cap.
+        // Polynomials that are not monotonic have no inverse everywhere, hence the limit.
         for _ in 0..32 {
             if (r1 - r0).abs() <= 1e-4 {
                 break;
@@ -63,12 +63,12 @@ impl Distortion {
     }
 }
 
-/// The rotation of the screen's content against the device's own upright position.
+/// The rotation of the screen's content relative to the device's own upright position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rotation {
-    /// Upright.
+    /// The device is upright.
     Portrait,
-    /// The device's top points left: how viewers hold phones.
+    /// The device's top points left, as viewers hold phones.
     #[default]
     LandscapeLeft,
     /// The device's top points right.
@@ -80,27 +80,27 @@ pub enum Rotation {
 pub struct Screen {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Pixels per inch along both, as the device says; not finite or implausible values mean unknown.
+    /// Pixels per inch along both axes, as the device reports them; implausible and non-finite values mean unknown.
     pub dpi: [f32; 2],
-    /// The rotation of the content, for the sensors' axes.
+    /// The rotation of the content, which relates the sensors' axes to the screen's.
     pub rotation: Rotation,
 }
 
 impl Screen {
-    /// Returns the width and height in metres; those of a typical phone when `dpi` is implausible.
+    /// Returns the width and height in metres, or those of a typical phone if `dpi` is implausible.
     pub fn metres(&self) -> [f32; 2] {
         let metres = [0, 1].map(|i| self.size[i] as f32 / self.dpi[i] * 0.0254);
-        // Phones and tablets lie well inside; some devices report 0, or 160 for everything.
+        // Phones and tablets are well inside this range; some devices report 0, or 160 for everything.
         let plausible = |m: f32| m.is_finite() && (0.03..0.4).contains(&m);
         if metres.into_iter().all(plausible) { metres } else { FALLBACK_SCREEN }
     }
 }
 
-/// One vertex of the mesh. 16 bytes, uploaded as it is.
+/// One vertex of the mesh: 16 bytes, uploaded as is.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct MeshVertex {
-    /// Position on the screen, in clip coordinates of all of it.
+    /// Position on the screen, in clip coordinates of the whole screen.
     pub position: Vec2,
     /// Position in the eye's image, from its lower left corner.
     pub uv: Vec2,
@@ -115,7 +115,7 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// Puts a screen of the given size (metres) into a viewer.
+    /// Combines a viewer with a screen of the given size in metres.
     pub fn new(params: &ViewerParams, screen_metres: [f32; 2]) -> Optics {
         Optics {
             params: params.clone(),
@@ -124,7 +124,7 @@ impl Optics {
         }
     }
 
-    /// The viewer.
+    /// Returns the viewer's parameters.
     pub fn params(&self) -> &ViewerParams {
         &self.params
     }
@@ -144,14 +144,14 @@ impl Optics {
         }
     }
 
-    /// The lens centre of an eye on the screen, in metres from its lower left corner.
+    /// Returns the centre of an eye's lens on the screen, in metres from the lower left corner.
     pub fn lens_center(&self, eye: Eye) -> Vec2 {
         let x = (self.screen[0] + eye.side() * self.params.inter_lens) / 2.0;
         Vec2::new(x, self.lens_height())
     }
 
-    /// Returns the half-angles of an eye in radians: left, right, bottom, top. What the lens shows of the screen, but
-    /// not more than the viewer allows.
+    /// Returns the half-angles of an eye in radians: left, right, bottom, top. They cover what the lens shows of the
+    /// screen, but not more than the viewer allows.
     pub fn half_angles(&self, eye: Eye) -> [f32; 4] {
         let [width, height] = self.screen;
         let bottom = self.lens_height();
@@ -160,7 +160,7 @@ impl Optics {
         let mut angles = [0.0; 4];
         for (i, edge) in edges.into_iter().enumerate() {
             let seen = self.distortion.distort(edge / self.params.screen_to_lens).atan();
-            // A lens beyond the screen's edge would leave no frustum.
+            // A lens beyond the edge of the screen would leave no frustum.
             angles[i] = seen.min(self.params.fov_degrees[i].to_radians()).max(0.01);
         }
         let [outer, inner, bottom, top] = angles;
@@ -170,13 +170,13 @@ impl Optics {
         }
     }
 
-    /// The frustum of an eye.
+    /// Returns the frustum of an eye.
     pub fn frustum(&self, eye: Eye) -> Frustum {
         let [left, right, bottom, top] = self.half_angles(eye);
         Frustum::from_fov(-left, right, top, -bottom)
     }
 
-    /// Returns the pixels of an eye's image at which one of them is one pixel of the screen at the lens's centre.
+    /// Returns the size of an eye's image, in pixels, at which its pixels match the screen's at the lens's centre.
     pub fn full_size(&self, screen_pixels: [u32; 2]) -> [f32; 2] {
         let frustum = self.frustum(Eye::Left);
         let per_tangent =
@@ -184,7 +184,7 @@ impl Optics {
         [frustum.width() * per_tangent[0], frustum.height() * per_tangent[1]]
     }
 
-    /// The mesh of an eye: [`MESH_RESOLUTION`] squared vertices, row by row from the lower left corner.
+    /// Returns the mesh of an eye: [`MESH_RESOLUTION`] squared vertices, row by row from the lower left corner.
     pub(crate) fn mesh(&self, eye: Eye) -> Vec<MeshVertex> {
         let frustum = self.frustum(eye);
         let lens = self.params.screen_to_lens;
@@ -203,7 +203,7 @@ impl Optics {
     }
 }
 
-/// The mesh's triangles as one strip that goes there and back; the turns repeat a vertex.
+/// Returns the mesh's triangles as one strip that goes back and forth; each turn repeats a vertex.
 pub(crate) fn mesh_strip() -> Vec<u32> {
     let n = MESH_RESOLUTION as u32;
     let mut strip = Vec::with_capacity(3158);

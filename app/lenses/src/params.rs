@@ -1,4 +1,4 @@
-//! The parameters of a Cardboard-compatible viewer: built in, from a URI (the viewer's QR code), or from a file.
+//! The parameters of a Cardboard-compatible viewer: built in, or from a URI (the viewer's QR code) or a file.
 
 use std::path::{Path, PathBuf};
 
@@ -6,13 +6,13 @@ use base64::Engine as _;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use prost::Message;
 
-/// First word of a stored parameter file.
+/// First word of a parameter file.
 const SENTINEL: u32 = 0x3558_7a2b;
-/// The URI that stands for the first viewer, without parameters.
+/// The URI of the first viewer, which contains no parameters.
 const V1_URI: &str = "g.co/cardboard";
-/// The prefix of the parameters in every other URI.
+/// The part before the parameters in every other URI.
 const URI_PREFIX: &str = "google.com/cardboard/cfg?p=";
-/// Largest parameter file in bytes; real ones have about a hundred.
+/// Maximum size of a parameter file in bytes; real ones have about a hundred.
 const MAX_FILE: u64 = 64 << 10;
 
 /// An error in viewer parameters.
@@ -29,62 +29,62 @@ pub enum ParamsError {
         /// The system's reason.
         reason: String,
     },
-    /// Neither the stored format nor a URI.
+    /// The file has neither the stored format nor a URI.
     #[error(
         "the viewer file {path} is damaged ({reason}): store the viewer again, or write its URI into the file"
     )]
     File {
         /// The file.
         path: PathBuf,
-        /// The mistake.
+        /// What is wrong.
         reason: String,
     },
-    /// Not a viewer's URI, or a damaged one.
+    /// The text is not a viewer's URI, or is a damaged one.
     #[error(
         "\"{uri}\" is not a viewer's URI ({reason}): it reads https://google.com/cardboard/cfg?p=... as in the viewer's QR code; resolve shortened addresses first"
     )]
     Uri {
         /// The text given.
         uri: String,
-        /// The mistake.
+        /// What is wrong.
         reason: String,
     },
 }
 
-/// The edge of the screen that the viewer's lenses are measured from.
+/// The edge of the screen from which the lenses' position is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, prost::Enumeration)]
 #[repr(i32)]
 pub enum VerticalAlignment {
     /// The phone stands on a tray; the lenses are [`ViewerParams::tray_to_lens`] above it.
     Bottom = 0,
-    /// The screen is centred before the lenses.
+    /// The screen is centred behind the lenses.
     Center = 1,
-    /// The upper edge.
+    /// The lenses are [`ViewerParams::tray_to_lens`] below the upper edge.
     Top = 2,
 }
 
-/// A viewer: lengths in metres, angles in degrees as viewers state them.
+/// A viewer. Lengths are in metres, angles in degrees as viewers state them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewerParams {
-    /// Maker.
+    /// The maker.
     pub vendor: String,
-    /// Model.
+    /// The model.
     pub model: String,
-    /// From the screen to the lenses.
+    /// Distance from the screen to the lenses.
     pub screen_to_lens: f32,
-    /// Between the lenses' centres.
+    /// Distance between the lenses' centres.
     pub inter_lens: f32,
-    /// From the tray to the lenses' centres; means nothing when centred.
+    /// Distance from the tray to the lenses' centres; ignored if the screen is centred.
     pub tray_to_lens: f32,
-    /// Largest half-angles of the left eye in degrees: outer (left), inner (right), bottom, top.
+    /// Largest half-angles of the left eye: outer (left), inner (right), bottom, top.
     pub fov_degrees: [f32; 4],
-    /// Coefficients of the distortion polynomial.
+    /// Coefficients of the distortion polynomial, k1 first.
     pub distortion: Vec<f32>,
-    /// The edge that the screen is aligned by.
+    /// The edge by which the screen is aligned.
     pub alignment: VerticalAlignment,
 }
 
-/// The message of a viewer's QR code. Its other fields are of no use here and are skipped.
+/// The message in a viewer's QR code. Its other fields are not needed here and are skipped.
 #[derive(Clone, PartialEq, prost::Message)]
 struct DeviceParams {
     #[prost(string, optional, tag = "1")]
@@ -106,7 +106,7 @@ struct DeviceParams {
 }
 
 impl ViewerParams {
-    /// The first Cardboard viewer.
+    /// Returns the first Cardboard viewer.
     pub fn v1() -> ViewerParams {
         ViewerParams {
             vendor: "Google, Inc.".into(),
@@ -120,7 +120,7 @@ impl ViewerParams {
         }
     }
 
-    /// The viewer of 2015, with larger lenses; most of today's viewers are like it.
+    /// Returns the viewer of 2015, which has larger lenses. Most viewers today are like it.
     pub fn v2() -> ViewerParams {
         ViewerParams {
             vendor: "Google, Inc.".into(),
@@ -134,7 +134,7 @@ impl ViewerParams {
         }
     }
 
-    /// Finds a viewer by what a user writes: `v1`, `v2`, a URI, or the path of a file ([`ViewerParams::load`]).
+    /// Finds a viewer by the user's text: `v1`, `v2`, a URI, or the path of a file ([`ViewerParams::load`]).
     ///
     /// # Errors
     /// [`ParamsError`], one sentence with the remedy.
@@ -147,7 +147,7 @@ impl ViewerParams {
         }
     }
 
-    /// Does what [`ViewerParams::find`] does, with files looked for in folders first.
+    /// Like [`ViewerParams::find`], but looks for files in `folders` first.
     ///
     /// # Errors
     /// [`ParamsError`].
@@ -202,7 +202,7 @@ impl ViewerParams {
         }
     }
 
-    /// Decodes the protobuf message; an error is half a sentence.
+    /// Decodes the protobuf message. The error is a part of a sentence.
     fn from_message(bytes: &[u8]) -> Result<ViewerParams, String> {
         let message = DeviceParams::decode(bytes).map_err(|e| e.to_string())?;
         let length = |value: Option<f32>, name: &str| match value {
@@ -260,12 +260,12 @@ mod tests {
     const IO_2015: &str = "CgZHb29nbGUSEkNhcmRib2FyZCBJL08gMjAxNR0J-SA9JQHegj0qEAAAcEIAAHBCAABwQgAAcEJYADUpXA89OghX8as-YrENP1AAYAM";
 
     impl ViewerParams {
-        /// The URI that carries these parameters.
+        /// Returns the URI with these parameters.
         pub fn to_uri(&self) -> String {
             format!("https://{URI_PREFIX}{}", URL_SAFE_NO_PAD.encode(self.to_message()))
         }
 
-        /// The bytes of the stored format that [`ViewerParams::load`] reads.
+        /// Returns a file in the stored format that [`ViewerParams::load`] reads.
         pub fn to_file(&self) -> Vec<u8> {
             let message = self.to_message();
             let mut bytes = SENTINEL.to_be_bytes().to_vec();

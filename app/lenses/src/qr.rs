@@ -1,16 +1,16 @@
-//! QR codes in pictures.
+//! Reads QR codes in pictures.
 
 use rqrr::PreparedImage;
 
-/// Returns the text of the first QR code that can be read in a picture, RGBA with rows from the top; none without one.
+/// Returns the text of the first readable QR code in a picture, RGBA with rows from the top; `None` if there is none.
 pub fn read_qr(rgba: &[u8], width: usize) -> Option<String> {
     let (pixels, _) = rgba.as_chunks::<4>();
     let luma = |&[r, g, b, _]: &[u8; 4]| ((2 * u16::from(r) + 5 * u16::from(g) + u16::from(b)) / 8) as u8;
     read_qr_in_luma(&pixels.iter().map(luma).collect::<Vec<u8>>(), width)
 }
 
-/// Returns the text of the first QR code that can be read in a picture, a byte a pixel with rows from the top; none
-/// without one.
+/// Returns the text of the first readable QR code in a picture, one byte per pixel with rows from the top; `None` if
+/// there is none.
 pub fn read_qr_in_luma(luma: &[u8], width: usize) -> Option<String> {
     let height = luma.len().checked_div(width)?;
     let mut image = PreparedImage::prepare_from_greyscale(width, height, |x, y| luma[y * width + x]);
@@ -27,7 +27,7 @@ mod tests {
         let text = "https://google.com/cardboard/cfg?p=CgZHb29nbGUSEkNhcmRib2FyZCBJL08gMjAxNR0rGBU9JQHegj0qEAAASEIAAEhCAABIQgAASEJYADUpXA89OgiCPtw9";
         let code = QrCode::new(text).unwrap();
         let (modules, colors) = (code.width(), code.to_colors());
-        // Modules of five pixels, in the picture of a camera that is not straight, with a shadow.
+        // Modules of five pixels, in a picture taken at a slant and with a shadow.
         let side = 5 * (modules + 16);
         let pixel = |i: usize| {
             let (x, y) = ((i % side) as f32, (i / side) as f32);

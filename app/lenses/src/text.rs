@@ -1,16 +1,16 @@
-//! Text of HUD, questions and menu: one font, rasterized once, in cells of equal size.
+//! Text for HUD, questions and menu: one font, rasterized once into cells of equal size.
 
 use ab_glyph::{Font, FontRef, PxScale, point};
 
 /// Size in pixels of a character's cell.
 pub(crate) const CELL: [usize; 2] = [14, 28];
-/// Height in pixels from the font's lowest to its highest point, at which a character is as wide as its cell.
+/// Height in pixels between the font's lowest and highest points at which a character is as wide as its cell.
 const HEIGHT: f32 = CELL[0] as f32 / 1300.0 * 2430.0;
-/// The characters besides those of ASCII.
+/// The characters in addition to ASCII.
 const BEYOND_ASCII: &str = "°±·×–…";
 const FONT: &[u8] = include_bytes!("../fonts/B612Mono-Latin.otf");
 
-/// The font's characters as coverage by ink, rows from the top, 0 to 255.
+/// The ink coverage of the font's characters, rows from the top, 0 to 255.
 pub(crate) struct Letters(Vec<[u8; CELL[0] * CELL[1]]>);
 
 impl Letters {
@@ -42,7 +42,7 @@ impl Letters {
         )
     }
 
-    /// Returns a character's coverage; a question mark's for those that the font lacks.
+    /// Returns a character's coverage, or a question mark's if the font lacks it.
     fn cell(&self, c: char) -> &[u8; CELL[0] * CELL[1]] {
         let ascii = ('~' as usize) - (' ' as usize) + 1;
         let beyond = || Some(ascii + BEYOND_ASCII.chars().position(|other| other == c)?);
@@ -50,8 +50,8 @@ impl Letters {
         &self.0[at.unwrap_or('?' as usize - ' ' as usize)]
     }
 
-    /// Draws at most `columns` characters of a line in white into an image with rows from the top that are `width`
-    /// pixels wide; `origin` is the upper left corner.
+    /// Draws at most `columns` characters of a line in white. The image has rows from the top that are `width` pixels
+    /// wide; `origin` is the text's upper left corner.
     pub fn draw(&self, line: &str, columns: usize, image: &mut [u8], width: usize, origin: [usize; 2]) {
         for (i, c) in line.chars().take(columns).enumerate() {
             for (y, row) in self.cell(c).chunks_exact(CELL[0]).enumerate() {
@@ -78,7 +78,7 @@ mod tests {
             assert!(('!'..='~').take(i).all(|other| letters.cell(other) != letters.cell(c)), "{c}");
         }
         assert_eq!(letters.cell('漢'), letters.cell('?'));
-        // Nothing is cut off: capitals and descenders end inside.
+        // Nothing is cut off: capitals and descenders stay inside the cell.
         for c in ['M', 'g', '|'] {
             let rows: Vec<_> = letters.cell(c).chunks_exact(CELL[0]).collect();
             assert!(rows[0].iter().chain(rows[CELL[1] - 1]).all(|&p| p == 0), "{c}");

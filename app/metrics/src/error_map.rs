@@ -5,9 +5,9 @@ use image::{Rgb, RgbImage};
 use super::input::MetricsError;
 use super::ssim::dissimilarity_map;
 
-/// The colour map "magma" of matplotlib (N. Smith and S. van der Walt, CC0) at 17 equally spaced points, sRGB.
-/// Straight lines between them stay within 3/255 of all its 256 colours. Its lightness grows evenly, so more
-/// light is more error on any screen and for any eye.
+/// The colour map "magma" of matplotlib (N. Smith and S. van der Walt, CC0) at 17 equally spaced points, in sRGB.
+/// Linear interpolation between them stays within 3/255 of all its 256 colours. Lightness grows evenly, so that lighter
+/// means more error on any screen and for any kind of colour vision.
 const MAGMA: [[u8; 3]; 17] = [
     [0, 0, 4],
     [10, 8, 34],
@@ -28,7 +28,7 @@ const MAGMA: [[u8; 3]; 17] = [
     [252, 253, 191],
 ];
 
-/// The colour of an error from 0 (black) to 1 (pale yellow), clamped.
+/// Returns the colour of an error from 0 (black) to 1 (pale yellow), clamped.
 pub fn error_color(error: f64) -> [u8; 3] {
     let at = error.clamp(0.0, 1.0) * (MAGMA.len() - 1) as f64;
     let below = (at as usize).min(MAGMA.len() - 2);
@@ -39,8 +39,8 @@ pub fn error_color(error: f64) -> [u8; 3] {
     })
 }
 
-/// Returns 1 - SSIM of `a` and `b` at each pixel (gaussian window, mean of red, green and blue) as colours, on the
-/// fixed scale from 0 (black) to 1 (pale yellow).
+/// Returns 1 - SSIM of `a` and `b` at each pixel (gaussian window, mean of red, green and blue) as colours on a fixed
+/// scale from 0 (black) to 1 (pale yellow).
 ///
 /// # Errors
 /// [`MetricsError::SizesDiffer`] and [`MetricsError::TooSmall`].

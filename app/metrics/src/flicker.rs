@@ -1,29 +1,29 @@
-//! Flicker: the unwanted change from frame to frame.
+//! Flicker: unwanted change from frame to frame.
 
 use image::RgbImage;
 
 use super::input::{MetricsError, check_mask, check_sizes};
 
-/// Step of luma (of 255) between neighbours of the ground truth that counts as an edge.
+/// The step of luma (out of 255) between neighbouring pixels of the ground truth that counts as an edge.
 const EDGE: f32 = 24.0;
 
-/// Unwanted change of one eye's image from a frame to the next: the root of the mean square,
-/// over pixels and red, green and blue, of `(S1 - S0) - (T1 - T0)` for the images S of a method and T of the
-/// ground truth at the same two moments, in units of 1/255 of the full range.
+/// Unwanted change of one eye's image from one frame to the next: the root mean square, over pixels and red, green and
+/// blue, of `(S1 - S0) - (T1 - T0)`, where S are the images of a method and T those of the ground truth at the same two
+/// moments, in units of 1/255 of the full range.
 ///
-/// An error that stands still on the screen is not flicker, an error that appears, goes or moves is. This is dtSSD
-/// of Erofeev et al., "Perceptually Motivated Benchmark for Video Matting", BMVC 2015, on colours. For scale, the
-/// ground truth's own change `T1 - T0` is measured in the same way ([`FlickerMeter::change`]): an eye that stood
-/// still while the world moves would flicker as much as that.
+/// An error that stays in place on the screen is not flicker; an error that appears, disappears or moves is. The
+/// measure is dtSSD of Erofeev et al., "Perceptually Motivated Benchmark for Video Matting", BMVC 2015, applied to
+/// colours. For scale, the ground truth's own change `T1 - T0` is measured in the same way ([`FlickerMeter::change`]):
+/// an image that did not change while the world moves would flicker by that much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flicker {
     /// Over all pixels.
     pub all: f64,
-    /// Over the pixels that are holes in either frame; `None` without any.
+    /// Over the pixels that are holes in either frame; `None` if there are none.
     pub holes: Option<f64>,
-    /// Over the edges of the ground truth in either frame that are not in holes.
+    /// Over the pixels outside of holes that are edges of the ground truth in either frame; `None` if there are none.
     pub edges: Option<f64>,
-    /// Over everything else.
+    /// Over all other pixels; `None` if there are none.
     pub rest: Option<f64>,
 }
 
@@ -38,12 +38,12 @@ enum Region {
 pub struct FlickerMeter {
     size: (u32, u32),
     regions: Vec<Region>,
-    /// Each sample's change in the ground truth.
+    /// The change of each sample in the ground truth.
     change: Vec<i16>,
 }
 
 impl FlickerMeter {
-    /// Takes the ground truth of two consecutive frames and their holes (row by row from the top).
+    /// Creates a meter from the ground truth of two consecutive frames and their holes (row by row from the top).
     ///
     /// # Errors
     /// [`MetricsError::SizesDiffer`] and [`MetricsError::MaskSize`].
@@ -65,7 +65,7 @@ impl FlickerMeter {
         Ok(FlickerMeter { size: before.dimensions(), regions, change: difference(before, after).collect() })
     }
 
-    /// Returns the RMS change of the ground truth between the frames, in the same unit.
+    /// Returns the RMS change of the ground truth between the two frames, in the same unit as flicker.
     pub fn change(&self) -> Flicker {
         self.over_regions(self.change.iter().copied())
     }
@@ -109,7 +109,7 @@ fn difference<'a>(before: &'a RgbImage, after: &'a RgbImage) -> impl Iterator<It
     before.as_raw().iter().zip(after.as_raw()).map(|(before, after)| i16::from(*after) - i16::from(*before))
 }
 
-/// Returns which pixels differ by [`EDGE`] or more from a neighbour, on both sides of the step.
+/// Returns a mask of the pixels that differ from a neighbour by [`EDGE`] or more; both sides of the step are marked.
 fn edges(image: &RgbImage) -> Vec<bool> {
     let width = image.width() as usize;
     let luma: Vec<f32> = image
@@ -158,7 +158,7 @@ mod tests {
         let meter = FlickerMeter::new([&before, &after], [&holes, &[false; 32]]).unwrap();
         let still = meter.flicker([&before, &before]).unwrap();
         assert_eq!(still, meter.change());
-        // Two of eight columns change by 100; edges are columns 1 to 4, less one pixel that is a hole.
+        // Two of eight columns change by 100. Edges are columns 1 to 4, except one pixel that is a hole.
         assert!((still.all - (0.25f64 * 1e4).sqrt()).abs() < 1e-9);
         assert_eq!(still.holes, Some(100.0));
         assert!((still.edges.unwrap() - (7.0 / 15.0 * 1e4f64).sqrt()).abs() < 1e-9);

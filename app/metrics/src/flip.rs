@@ -1,20 +1,20 @@
-//! FLIP: the difference that is seen when two images alternate.
+//! FLIP: the difference that a viewer sees when two images alternate.
 
 use image::RgbImage;
 use rayon::prelude::*;
 
 use super::input::{MetricsError, check_sizes};
 
-/// Pixels per degree of visual angle of the usual viewing conditions: a display 0.7 m wide with 3840 pixels, seen
-/// from 0.7 m. FLIP's published figures are made with it.
+/// Pixels per degree of visual angle under the usual viewing conditions: a display 0.7 m wide with 3840 pixels, seen
+/// from 0.7 m. FLIP's published figures use it.
 pub const FLIP_PIXELS_PER_DEGREE: f64 = 67.020_643_276_582_25;
 
-/// Returns LDR-FLIP at each pixel, row by row from the top, from 0 (equal) to 1: how large the difference appears that
-/// is seen when `test` and `reference` alternate.
+/// Returns LDR-FLIP at each pixel, row by row from the top, from 0 (equal) to 1: how large the difference appears when
+/// `test` and `reference` alternate. Both images are display-referred sRGB.
 ///
-/// Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: "FLIP: A Difference Evaluator for
-/// Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020. Both
-/// images are display-referred sRGB. Agrees with the authors' program to 1e-4.
+/// Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: "FLIP: A Difference Evaluator for
+/// Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020. The values
+/// agree with the authors' program to 1e-4.
 ///
 /// # Errors
 /// [`MetricsError::SizesDiffer`].
@@ -41,10 +41,10 @@ pub fn flip_map(
     Ok(map)
 }
 
-/// The mean of [`flip_map`] with [`FLIP_PIXELS_PER_DEGREE`].
+/// Returns the mean of [`flip_map`] at [`FLIP_PIXELS_PER_DEGREE`].
 ///
 /// # Errors
-/// As [`flip_map`].
+/// Those of [`flip_map`].
 pub fn flip(test: &RgbImage, reference: &RgbImage) -> Result<f64, MetricsError> {
     let map = flip_map(test, reference, FLIP_PIXELS_PER_DEGREE)?;
     Ok(map.iter().map(|value| f64::from(*value)).sum::<f64>() / map.len() as f64)
@@ -87,7 +87,7 @@ fn hunt_lab(xyz: [f32; 3]) -> [f32; 3] {
     [lightness, chroma * 500.0 * (x - y), chroma * 200.0 * (y - z)]
 }
 
-/// The distance HyAB (Abasi et al. 2020): city-block between lightness and chroma.
+/// Returns the HyAB distance (Abasi et al. 2020): the sum of the distances in lightness and in chroma.
 fn hyab(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] - b[0]).abs() + (a[1] - b[1]).hypot(a[2] - b[2])
 }
@@ -95,7 +95,7 @@ fn hyab(a: [f32; 3], b: [f32; 3]) -> f32 {
 /// Exponent of the colour difference, section 4.1.4.
 const COLOR_EXPONENT: f32 = 0.7;
 
-/// The colour difference of the gamut's extremes, green and blue, after the exponent.
+/// Returns the colour difference between the extremes of the gamut, green and blue, after the exponent.
 fn largest_color_difference() -> f32 {
     let lab = |rgb| {
         let xyz = multiply(&TO_XYZ, rgb);
@@ -104,7 +104,7 @@ fn largest_color_difference() -> f32 {
     hyab(lab([0.0, 1.0, 0.0]), lab([0.0, 0.0, 1.0])).powf(COLOR_EXPONENT)
 }
 
-/// Compresses large colour differences: up to the share 0.4 of the largest they take 0.95 of the scale.
+/// Compresses large colour differences: those up to 0.4 of the largest take up 0.95 of the scale.
 fn color_error(difference: f32, largest: f32) -> f32 {
     let (knee, height) = (0.4 * largest, 0.95);
     let difference = difference.powf(COLOR_EXPONENT);
@@ -115,14 +115,14 @@ fn color_error(difference: f32, largest: f32) -> f32 {
     }
 }
 
-/// One number for each pixel.
+/// An image with one number per pixel.
 struct Plane {
     width: usize,
     values: Vec<f32>,
 }
 
 impl Plane {
-    /// Convolves with a kernel along x and one along y, both of odd length; the border is repeated.
+    /// Convolves with one kernel along x and one along y, both of odd length. The border is repeated.
     fn convolved(&self, along_x: &[f32], along_y: &[f32]) -> Vec<f32> {
         let (width, height) = (self.width, self.values.len() / self.width);
         let radius = along_x.len() / 2;
@@ -179,17 +179,17 @@ impl Opponent {
         opponent
     }
 
-    /// Returns the colours as seen at the viewing distance: filtered by the eye's contrast sensitivity (section
-    /// 4.1.1), clamped to the gamut, in CIELAB after Hunt.
+    /// Returns the colours as they appear at the viewing distance: filtered by the eye's contrast sensitivity (section
+    /// 4.1.1) and clamped to the gamut, in CIELAB with Hunt's adjustment.
     fn as_seen(&self, pixels_per_degree: f64) -> Vec<[f32; 3]> {
-        // The widest gaussian decides how far the kernels reach: three standard deviations.
+        // The widest gaussian determines the reach of the kernels: three standard deviations.
         let reach = 3.0 * (0.04 / (2.0 * std::f64::consts::PI.powi(2))).sqrt() * pixels_per_degree;
         let filter = |plane: &Plane, gaussians: &[(f64, f64)]| {
             let kernels: Vec<(f64, Vec<f64>)> = gaussians
                 .iter()
                 .map(|&(amplitude, spread)| sensitivity(amplitude, spread, reach, pixels_per_degree))
                 .collect();
-            // The sum of the two-dimensional kernel is the sum of squares of the one-dimensional sums.
+            // The sum of the two-dimensional kernel is the sum of the squares of the one-dimensional sums.
             let sum: f64 = kernels.iter().map(|(a, k)| a * k.iter().sum::<f64>().powi(2)).sum();
             let mut filtered = vec![0.0; plane.values.len()];
             for (amplitude, kernel) in &kernels {
@@ -213,8 +213,8 @@ impl Opponent {
         seen
     }
 
-    /// Returns how much of an edge and how much of a point each pixel is (section 4.2): the magnitudes of the first and
-    /// second derivatives of luminance.
+    /// Returns how edge-like and how point-like each pixel is (section 4.2): the magnitudes of the first and second
+    /// derivatives of luminance.
     fn features(&self, pixels_per_degree: f64) -> [Vec<f32>; 2] {
         /// Width of the features in degrees.
         const WIDTH: f64 = 0.082;
@@ -237,8 +237,8 @@ impl Opponent {
     }
 }
 
-/// A term of a contrast sensitivity function as a spatial gaussian: `amplitude sqrt(pi / spread)
-/// exp(-pi^2 d^2 / spread)`, d in degrees. The factor and the one-dimensional kernel.
+/// Returns a term of a contrast sensitivity function as a spatial gaussian: `amplitude sqrt(pi / spread) exp(-pi^2 d^2
+/// / spread)` with d in degrees, split into its factor and the one-dimensional kernel.
 fn sensitivity(amplitude: f64, spread: f64, reach: f64, pixels_per_degree: f64) -> (f64, Vec<f64>) {
     use std::f64::consts::PI;
     let radius = reach.ceil() as i32;
@@ -246,7 +246,7 @@ fn sensitivity(amplitude: f64, spread: f64, reach: f64, pixels_per_degree: f64) 
     (amplitude * (PI / spread).sqrt(), (-radius..=radius).map(at).collect())
 }
 
-/// A kernel whose positive weights sum up to 1 and whose negative ones, if any, to -1.
+/// Scales a kernel so that its positive weights sum to 1 and its negative ones, if any, to -1.
 fn balanced(mut kernel: Vec<f64>) -> Vec<f32> {
     let positive: f64 = kernel.iter().filter(|w| **w > 0.0).sum();
     let negative: f64 = -kernel.iter().filter(|w| **w < 0.0).sum::<f64>();
@@ -259,8 +259,8 @@ mod tests {
     use super::*;
     use crate::tests::{image, pair};
 
-    /// A size of the test images, pixels per degree, and what flip-evaluator 1.7 says: the mean and the map at (0,
-    /// h - 1), (5, 5), (w - 1, h / 2).
+    /// The size of the test images, pixels per degree, and the results of flip-evaluator 1.7: the mean, and the map at
+    /// (0, h - 1), (5, 5) and (w - 1, h / 2).
     type Reference = ((u32, u32), f64, f64, [f32; 3]);
 
     const FLIP_EVALUATOR_1_7: [Reference; 6] = [

@@ -14,7 +14,7 @@ pub enum MetricsError {
         /// Size of the second in pixels.
         b: (u32, u32),
     },
-    /// There is less image than the window of SSIM needs.
+    /// The image is smaller than the window of SSIM.
     #[error("an image of {width}x{height} pixels is too small: SSIM needs at least {window}x{window}")]
     TooSmall {
         /// Width in pixels.
@@ -24,7 +24,7 @@ pub enum MetricsError {
         /// Width of the window in pixels.
         window: u32,
     },
-    /// The mask belongs to another image.
+    /// The mask does not belong to these images.
     #[error("the mask has {mask} pixels and the images have {image}: give the mask of these images")]
     MaskSize {
         /// Pixels of the mask.
@@ -37,14 +37,14 @@ pub enum MetricsError {
 /// The channels of an image that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
-    /// Red, green and blue: PSNR of the error over all three, SSIM as the mean of three.
+    /// Red, green and blue: PSNR of the error over all three channels, SSIM as the mean of the three.
     Rgb,
     /// Luma of ITU-R BT.601, not rounded: .299 R + .587 G + .114 B.
     Luma,
 }
 
 impl Channels {
-    /// Returns each plane as weights of red, green and blue.
+    /// Returns the weights of red, green and blue for each plane.
     pub(super) fn planes(self) -> &'static [[f64; 3]] {
         match self {
             Channels::Rgb => &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -53,7 +53,7 @@ impl Channels {
     }
 }
 
-/// Checks that two images can be compared at all.
+/// Checks that two images have the same size.
 pub(super) fn check_sizes(a: &RgbImage, b: &RgbImage) -> Result<(), MetricsError> {
     if a.dimensions() != b.dimensions() {
         return Err(MetricsError::SizesDiffer { a: a.dimensions(), b: b.dimensions() });
@@ -61,7 +61,7 @@ pub(super) fn check_sizes(a: &RgbImage, b: &RgbImage) -> Result<(), MetricsError
     Ok(())
 }
 
-/// Checks that a mask belongs to an image.
+/// Checks that a mask has as many pixels as an image.
 pub(super) fn check_mask(image: &RgbImage, mask: &[bool]) -> Result<(), MetricsError> {
     let pixels = image.width() as usize * image.height() as usize;
     if mask.len() != pixels {

@@ -1,7 +1,7 @@
 //! Similarity of two images.
 //!
-//! All figures are computed in f64 on display-referred 8-bit values, data range 255. PSNR and SSIM agree with
-//! scikit-image's `peak_signal_noise_ratio` and `structural_similarity`, FLIP with its authors' program.
+//! All figures are computed in f64 from display-referred 8-bit values, with a data range of 255. PSNR and SSIM agree
+//! with scikit-image's `peak_signal_noise_ratio` and `structural_similarity`, FLIP with its authors' program.
 
 mod error_map;
 mod flicker;
@@ -22,7 +22,7 @@ use ssim::{mean_inside, ssim_map};
 use image::{GrayImage, RgbImage};
 use serde::{Deserialize, Serialize};
 
-/// The likeness of one image to another.
+/// The similarity of two images.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
     /// Peak signal-to-noise ratio.
@@ -46,8 +46,8 @@ impl Quality {
         })
     }
 
-    /// The mean of each figure; `None` of nothing. Identical pairs have no finite PSNR and are left out of its
-    /// mean (which is infinite when all are identical), not out of the SSIM's.
+    /// Returns the mean of each figure; `None` if there are none. Identical pairs have no finite PSNR: they are left
+    /// out of its mean (which is infinite if all pairs are identical), but not out of the means of SSIM.
     pub fn mean<'a>(all: impl IntoIterator<Item = &'a Quality>) -> Option<Quality> {
         let all: Vec<&Quality> = all.into_iter().collect();
         let mean_of = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
@@ -62,23 +62,23 @@ impl Quality {
     }
 }
 
-/// The likeness of the part of an image that a mask selects.
+/// The similarity of two images in the part that a mask selects.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PartQuality {
-    /// Share of the image's pixels, 0 to 1.
+    /// The share of the image's pixels that are selected, 0 to 1.
     pub share: f64,
-    /// PSNR over these pixels (RGB); `None` without any.
+    /// PSNR over these pixels (RGB); `None` if there are none.
     pub psnr: Option<Psnr>,
-    /// Mean of the gaussian SSIM map (RGB) over these pixels, without the border; `None` without any.
+    /// Mean of the gaussian SSIM map (RGB) over these pixels, without the border; `None` if there are none.
     pub ssim_gaussian: Option<f64>,
-    /// Mean of the FLIP map over these pixels; `None` without any.
+    /// Mean of the FLIP map over these pixels; `None` if there are none.
     pub flip: Option<f64>,
 }
 
-/// Everything that `yoro compare` says of a pair.
+/// Everything that `yoro compare` reports about a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// No sample differs; the PSNR is infinite then.
+    /// True if no sample differs. The PSNR is then infinite.
     pub identical: bool,
     /// The similarity of red, green and blue.
     pub rgb: Quality,
@@ -95,7 +95,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Measures `a` against `b`. `holes`: row by row from the top, true where a pixel was disoccluded.
+    /// Measures `a` against `b`. `holes` has the rows from the top, true where a pixel was disoccluded.
     ///
     /// # Errors
     /// [`MetricsError::SizesDiffer`], [`MetricsError::TooSmall`] and [`MetricsError::MaskSize`].
@@ -136,8 +136,8 @@ impl Comparison {
     }
 }
 
-/// Returns which pixels of a mask image are holes: the dark ones (below 128), as in the paper's data set, or the bright
-/// ones.
+/// Returns which pixels of a mask image are holes: the dark ones (below 128) if `dark_is_hole`, as in the paper's data
+/// set, or else the bright ones.
 pub fn holes_of_mask(mask: &GrayImage, dark_is_hole: bool) -> Vec<bool> {
     mask.as_raw().iter().map(|value| (*value < 128) == dark_is_hole).collect()
 }
@@ -174,14 +174,14 @@ pub(crate) mod tests {
         assert!((ours - reference).abs() < 1e-9, "{ours} is not {reference}");
     }
 
-    /// One size of the pair above and what scikit-image 0.26.0 says of it.
+    /// A size of the pair above, and scikit-image 0.26.0's results for it.
     struct Reference {
         size: (u32, u32),
         /// RGB, luma.
         psnr: [f64; 2],
         /// RGB, luma: gaussian_weights=True, sigma=1.5, use_sample_covariance=False, data_range=255.
         gaussian: [f64; 2],
-        /// RGB, luma: data_range=255 and nothing else.
+        /// RGB, luma: data_range=255, everything else by default.
         uniform: [f64; 2],
         /// 1 - the mean over the channels of the full gaussian map at (0, h - 1), (5, 5), (w - 1, h / 2).
         map: [f64; 3],
@@ -251,7 +251,7 @@ pub(crate) mod tests {
         let holes = holes_of_mask(&mask, true);
         let parts = Comparison::of(&a, &b, Some(&holes)).unwrap();
         let (inside, outside) = (parts.holes.unwrap(), parts.elsewhere.unwrap());
-        // One channel of three is off by 16.
+        // One of three channels differs by 16.
         near(inside.psnr.unwrap().0, 10.0 * (255.0f64 * 255.0 * 3.0 / 256.0).log10());
         assert_eq!(outside.psnr, Some(Psnr(f64::INFINITY)));
         near(inside.share, 3.0 / 768.0);

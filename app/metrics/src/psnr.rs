@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::input::{Channels, MetricsError, check_mask, check_sizes};
 
-/// Peak signal-to-noise ratio in dB; infinite for identical images. JSON has no infinity: it is `null` there.
+/// Peak signal-to-noise ratio in dB; infinite for identical images. In JSON, which has no infinity, it is then `null`.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Psnr(pub f64);
 
@@ -21,14 +21,14 @@ impl Psnr {
         self.0.is_infinite()
     }
 
-    /// The mean of the finite ones; infinite if there are none.
+    /// Returns the mean of the finite values; infinite if there are none.
     pub fn mean(all: impl IntoIterator<Item = Psnr>) -> Psnr {
         let finite: Vec<f64> = all.into_iter().map(|p| p.0).filter(|p| p.is_finite()).collect();
         Psnr(if finite.is_empty() { f64::INFINITY } else { finite.iter().sum::<f64>() / finite.len() as f64 })
     }
 }
 
-/// Two decimals unless a precision is given, or `inf`; right-aligned in the width.
+/// Writes two decimals unless a precision is given, or `inf`; right-aligned in the width.
 impl fmt::Display for Psnr {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(2);
@@ -65,7 +65,7 @@ pub fn psnr(a: &RgbImage, b: &RgbImage, channels: Channels) -> Result<Psnr, Metr
     Ok(Psnr::from_mean_square(sum / (a.as_raw().len() / 3 * planes.len()) as f64))
 }
 
-/// Returns the PSNR (RGB) over the pixels where `selected`, row by row from the top, is true; `None` without any.
+/// Returns the PSNR (RGB) over the pixels where `selected`, row by row from the top, is true; `None` if there are none.
 ///
 /// # Errors
 /// [`MetricsError::SizesDiffer`] and [`MetricsError::MaskSize`].

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::input::{Channels, MetricsError, check_mask, check_sizes};
 
-/// The two settings of SSIM in common use; figures of one do not compare with figures of the other.
+/// The two variants of SSIM in common use. Figures of different variants cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SsimWindow {
     /// 11x11 gaussian, sigma 1.5, population covariance: Wang et al. 2004, and scikit-image with
@@ -21,7 +21,7 @@ impl SsimWindow {
         2 * self.border() as u32 + 1
     }
 
-    /// Pixels at each side of the image that the mean leaves out.
+    /// Returns the width in pixels of the border that the mean leaves out.
     fn border(self) -> usize {
         match self {
             SsimWindow::Gaussian11 => 5,
@@ -29,7 +29,7 @@ impl SsimWindow {
         }
     }
 
-    /// The factor from the plain mean of the products to the covariance.
+    /// Returns the factor that turns the plain mean of the products into the covariance.
     fn covariance_factor(self) -> f64 {
         match self {
             SsimWindow::Gaussian11 => 1.0,
@@ -48,7 +48,7 @@ pub fn ssim(a: &RgbImage, b: &RgbImage, window: SsimWindow, channels: Channels) 
 }
 
 /// Returns the mean of the SSIM map (RGB) over the pixels where `selected`, row by row from the top, is true, without
-/// the border; `None` without any. The window of a selected pixel also sees its neighbours.
+/// the border; `None` if there are none. The window of a selected pixel also covers its neighbours.
 ///
 /// # Errors
 /// [`MetricsError::SizesDiffer`], [`MetricsError::TooSmall`] and [`MetricsError::MaskSize`].
@@ -63,8 +63,8 @@ pub fn ssim_where(
     Ok(mean_inside(&map, a, window, |at| selected[at]))
 }
 
-/// Returns 1 - SSIM at each pixel, row by row from the top: gaussian window, mean of red, green and blue, the image
-/// mirrored at its border. 0 is equal, 1 has nothing in common, above 1 is the opposite (up to 2).
+/// Returns 1 - SSIM at each pixel, row by row from the top: gaussian window, mean of red, green and blue, with the
+/// image mirrored at its border. 0 means equal, 1 nothing in common, and values up to 2 the opposite.
 ///
 /// # Errors
 /// [`MetricsError::SizesDiffer`] and [`MetricsError::TooSmall`].
@@ -74,7 +74,7 @@ pub fn dissimilarity_map(a: &RgbImage, b: &RgbImage) -> Result<Vec<f64>, Metrics
     Ok(map)
 }
 
-/// Returns the mean of an SSIM map over the pixels for which `take` says so, without the border; `None` without any.
+/// Returns the mean of an SSIM map over the pixels that `take` selects, without the border; `None` if there are none.
 pub(super) fn mean_inside(
     map: &[f64],
     image: &RgbImage,
@@ -93,7 +93,7 @@ pub(super) fn mean_inside(
     (count > 0).then(|| sum / count as f64)
 }
 
-/// Returns the SSIM at each pixel, mean over the channels.
+/// Returns the SSIM at each pixel as the mean over the channels.
 pub(super) fn ssim_map(
     a: &RgbImage,
     b: &RgbImage,
@@ -112,18 +112,18 @@ pub(super) fn ssim_map(
     })
 }
 
-/// The centre and one side of the gaussian of sigma 1.5, cut off at 5 pixels, sum (of both sides) 1.
+/// Returns the centre and one side of the gaussian with sigma 1.5, cut off at 5 pixels, such that both sides sum to 1.
 fn gaussian_half() -> [f64; 6] {
     let half: [f64; 6] = std::array::from_fn(|k| (-0.5 * (k as f64 / 1.5).powi(2)).exp());
     let sum = half[0] + 2.0 * half[1..].iter().sum::<f64>();
     half.map(|weight| weight / sum)
 }
 
-/// The values of which SSIM needs local means: a, b, a^2 + b^2 (only the sum of both variances occurs), a b.
+/// The number of values whose local means SSIM needs: a, b, a^2 + b^2 (only the sum of both variances occurs), a b.
 const MOMENTS: usize = 4;
 
-/// The SSIM map for the separable window whose centre and one side are `half`. Each thread walks down a band of
-/// rows and keeps the horizontal means of the rows that the window covers.
+/// Returns the SSIM map for the separable window whose centre and one side are `half`. Each thread processes a band of
+/// rows from top to bottom and keeps the horizontal means of the rows that the window covers.
 fn windowed<const N: usize>(
     a: &RgbImage,
     b: &RgbImage,
@@ -199,8 +199,8 @@ fn windowed<const N: usize>(
     map
 }
 
-/// The row or column that a position outside of `0..size` shows: the border pixel is repeated once, then the
-/// image runs backwards.
+/// Returns the row or column that is shown at a position outside of `0..size`: the border pixel is repeated once, then
+/// the image runs backwards.
 fn mirror(position: isize, size: usize) -> usize {
     let size = size as isize;
     (if position < 0 { -1 - position } else { position.min(2 * size - 1 - position) }) as usize
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
     use crate::tests::image;
 
-    /// Straight from the definition, one window at a time.
+    /// Computes one window directly from the definition.
     fn plain(a: &RgbImage, b: &RgbImage, x0: usize, y0: usize, channel: usize) -> f64 {
         let half = gaussian_half();
         let [mut ma, mut mb, mut aa, mut bb, mut ab] = [0.0; 5];
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn bands_meet_without_a_seam() {
-        // Higher than the bands of any thread count, so that every band border is crossed.
+        // The image is taller than the bands of any thread count, so that the window crosses all borders between bands.
         let (a, b) = (image(23, 301, 5), image(23, 301, 6));
         let map = ssim_map(&a, &b, SsimWindow::Gaussian11, Channels::Rgb).unwrap();
         for y in 0..301 {

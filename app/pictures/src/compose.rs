@@ -7,7 +7,7 @@ use crate::{PictureError, srgb};
 /// The factor by which [`difference`] multiplies.
 pub const DIFFERENCE_GAIN: u8 = 4;
 
-/// Returns an image of RGBA bytes with rows from the bottom, as GL reads them back. Alpha is dropped.
+/// Returns the image of RGBA bytes whose rows run from the bottom, as GL reads them back. Alpha is dropped.
 pub fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
     let row = size[0] as usize * 4;
     RgbImage::from_fn(size[0], size[1], |x, y| {
@@ -16,7 +16,7 @@ pub fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
     })
 }
 
-/// Puts both eyes beside each other, the left eye on the left: for parallel viewing.
+/// Places both eyes side by side with the left eye on the left, for parallel viewing.
 pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     check_sizes(left, right)?;
     let mut both = RgbImage::new(left.width() * 2, left.height());
@@ -25,12 +25,12 @@ pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, Pictu
     Ok(both)
 }
 
-/// Puts both eyes beside each other, the right eye on the left: for viewing with crossed eyes, without any device.
+/// Places both eyes side by side with the right eye on the left, for viewing with crossed eyes and no device.
 pub fn cross_eyed(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     side_by_side(right, left)
 }
 
-/// Returns an anaglyph for red (left) and cyan (right) glasses: the least-squares projection on linear light of E.
+/// Returns an anaglyph for red (left) and cyan (right) glasses, by the least-squares projection of linear light from E.
 /// Dubois, "A projection method to generate anaglyph stereo images", ICASSP 2001.
 pub fn anaglyph(left: &RgbImage, right: &RgbImage) -> Result<RgbImage, PictureError> {
     const LEFT: [[f32; 3]; 3] = [[0.456, 0.500, 0.176], [-0.040, -0.038, -0.016], [-0.015, -0.021, -0.005]];

@@ -1,4 +1,4 @@
-//! Image files in.
+//! Reading image files.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -10,8 +10,8 @@ use yoro_files::{self as files, decoder};
 
 use crate::{DepthImage, MAX_SIZE, PictureError, srgb};
 
-/// Reads a colour image. 16-bit samples are rounded to 8 bits, and grey is repeated. Alpha is dropped without blending,
-/// because engines seldom store coverage there. EXR is linear, and is encoded as sRGB.
+/// Reads a colour image. Samples of 16 bits are rounded to 8, and grey is repeated. EXR is linear and is encoded as
+/// sRGB. Alpha is dropped without blending, because engines seldom store coverage in it.
 pub fn load_color(path: &Path) -> Result<RgbImage, PictureError> {
     Ok(match decode(path)? {
         DynamicImage::ImageRgb8(image) => image,
@@ -25,7 +25,7 @@ pub fn load_color(path: &Path) -> Result<RgbImage, PictureError> {
     })
 }
 
-/// A depth file as read.
+/// A depth file as it was read.
 #[derive(Clone, Debug)]
 pub struct DepthFile {
     /// The values; row 0 is the top.
@@ -39,7 +39,7 @@ pub struct DepthFile {
 pub enum DepthSamples {
     /// Integers divided by their maximum: 0 to 1.
     Normalized {
-        /// 8 or 16.
+        /// Bits per sample: 8 or 16.
         bits: u8,
     },
     /// Floating point, unchanged.
@@ -47,8 +47,8 @@ pub enum DepthSamples {
 }
 
 /// Reads a depth image: grey (or red = green = blue) with 8 or 16 bits as 0 to 1, or one channel of an EXR file
-/// unchanged. Of an EXR file the first layer with a channel named Z, depth, Y or R is taken (a prefix like
-/// `ViewLayer.` does not count), or the only channel of the first layer.
+/// unchanged. In an EXR file this is the channel Z, depth, Y or R of the first layer that has one (a prefix such as
+/// `ViewLayer.` is ignored), or else the only channel of the first layer.
 pub fn load_depth(path: &Path) -> Result<DepthFile, PictureError> {
     let bytes = files::read(path)?;
     if image::guess_format(&bytes).is_ok_and(|format| format == ImageFormat::OpenExr) {
@@ -63,7 +63,7 @@ pub fn load_depth(path: &Path) -> Result<DepthFile, PictureError> {
     {
         return Err(PictureError::NotGrey { path: path.into() });
     }
-    // The conversions between 8 and 16 bits are exact (times 257), and of equal channels the first is the grey.
+    // The conversions between 8 and 16 bits are exact (times 257). Of equal channels, the first is the grey.
     let values: Vec<f32> = match wide {
         Some(wide) => wide.pixels().map(|p| f32::from(p.0[0]) / 65535.0).collect(),
         None => image.into_luma16().pixels().map(|p| f32::from(p.0[0]) / 65535.0).collect(),
@@ -85,14 +85,14 @@ fn decode_bytes(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, PictureErro
     let damaged = |reason| PictureError::Damaged { path: path.into(), reason };
     let format = image::guess_format(&bytes)
         .ok()
-        // TGA has no signature; anything else without one is not what its name says.
+        // TGA has no signature. Any other file without a signature is not what its name says.
         .or_else(|| ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga))
         .filter(ImageFormat::reading_enabled)
         .ok_or_else(|| PictureError::UnknownFormat { path: path.into() })?;
     if format == ImageFormat::OpenExr {
         check_exr_has_color(path, &bytes)?;
     }
-    // The decoders are compiled once for each type of reader: this is the one that `image` itself uses.
+    // Decoders are compiled once for each type of reader; this is the type that `image` itself uses.
     let reader = || ImageReader::with_format(Cursor::new(bytes.as_slice()), format);
     let of_image = |error: image::ImageError| damaged(error.to_string());
     let (width, height) = decoder::run(|| reader().into_dimensions().map_err(of_image), damaged)?;
@@ -104,7 +104,7 @@ fn decode_bytes(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, PictureErro
     decoder::run(|| reader.decode().map_err(of_image), damaged)
 }
 
-/// Refuses an EXR file that `image` cannot read, although nothing is wrong with it.
+/// Refuses a valid EXR file that `image` cannot read because it has no colour.
 fn check_exr_has_color(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
     let meta = exr_meta(path, bytes)?;
     let channels = |header: &exr::meta::header::Header| -> Vec<String> {

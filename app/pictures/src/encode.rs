@@ -1,4 +1,4 @@
-//! Image files out.
+//! Writing image files.
 
 use std::io::{self, Cursor};
 use std::path::Path;
@@ -27,7 +27,7 @@ pub fn save_gray(path: &Path, image: &GrayImage) -> Result<(), PictureError> {
     write_encoded(path, encode_png(image))
 }
 
-/// Writes depth. `.png`: 16 bits, 0 to 1 onto 0 to 65535, clamped. `.exr`: one 32-bit channel `Z`, unchanged.
+/// Writes depth. `.png`: 16 bits, 0 to 1 mapped to 0 to 65535, clamped. `.exr`: one 32-bit channel `Z`, unchanged.
 pub fn save_depth(path: &Path, image: &DepthImage) -> Result<(), PictureError> {
     if files::has_extension(path, &["png"]) {
         let wide = ImageBuffer::<Luma<u16>, Vec<u16>>::from_fn(image.width(), image.height(), |x, y| {
@@ -56,7 +56,7 @@ fn only_extension(path: &Path, extension: &str, allowed: &'static str) -> Result
     Err(PictureError::Extension { path: path.into(), allowed })
 }
 
-/// Returns the image as a PNG file in memory. An image without pixels cannot be encoded.
+/// Returns the image encoded as PNG. An image without pixels cannot be encoded.
 pub(crate) fn encode_png<P>(image: &ImageBuffer<P, Vec<P::Subpixel>>) -> image::ImageResult<Vec<u8>>
 where
     P: image::PixelWithColorType,
@@ -67,8 +67,8 @@ where
     Ok(out.into_inner())
 }
 
-/// Returns the image as a JPEG file in memory, `quality` from 1 to 100. An image without pixels, or with more than
-/// 65535 in a row or column, cannot be encoded.
+/// Returns the image encoded as JPEG, with a `quality` from 1 to 100. An image without pixels, or with more than 65535
+/// in a row or column, cannot be encoded.
 pub fn encode_jpeg(image: &RgbImage, quality: u8) -> image::ImageResult<Vec<u8>> {
     let mut out = Vec::new();
     image.write_with_encoder(image::codecs::jpeg::JpegEncoder::new_with_quality(&mut out, quality))?;

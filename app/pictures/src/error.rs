@@ -13,7 +13,7 @@ pub enum PictureError {
     /// The file itself could not be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The content has a format that is not read here.
+    /// The format of the content is not supported.
     #[error("{} is not a picture that can be read: give a PNG, JPEG, EXR, TGA or BMP file", path.display())]
     UnknownFormat {
         /// The file.
@@ -27,23 +27,23 @@ pub enum PictureError {
         /// The decoder's reason.
         reason: String,
     },
-    /// The size is beyond [`MAX_SIZE`].
+    /// The picture is larger than [`MAX_SIZE`].
     #[error("{} says it is {width}x{height} pixels: up to {MAX_SIZE}x{MAX_SIZE} are read", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// In pixels.
+        /// Width in pixels.
         width: usize,
-        /// In pixels.
+        /// Height in pixels.
         height: usize,
     },
-    /// A colour image where depth is needed.
+    /// A colour image was given where depth is needed.
     #[error("{} is a colour image: depth must be grey (one channel, or red = green = blue)", path.display())]
     NotGrey {
         /// The file.
         path: PathBuf,
     },
-    /// An EXR file without colour.
+    /// An EXR file has no colour.
     #[error("{} is no colour picture (its channels are {found}): give one with the channels R, G and B", path.display())]
     NoColor {
         /// The file.
@@ -51,7 +51,7 @@ pub enum PictureError {
         /// The channels it has.
         found: String,
     },
-    /// An EXR file without a depth channel.
+    /// An EXR file has no depth channel.
     #[error("{} has no depth channel (Z, depth, Y or R; it has {found}): name the channel Z", path.display())]
     NoDepthChannel {
         /// The file.
@@ -59,7 +59,7 @@ pub enum PictureError {
         /// The channels it has.
         found: String,
     },
-    /// An EXR file that covers only a part of its picture.
+    /// An EXR file covers only a part of its picture.
     #[error("{} covers only a part of its picture: save it without cropping (data window = display window)", path.display())]
     Cropped {
         /// The file.
@@ -70,9 +70,9 @@ pub enum PictureError {
     NotANumber {
         /// The file.
         path: PathBuf,
-        /// Column of the first one.
+        /// Column of the first such value.
         x: u32,
-        /// Row of the first one.
+        /// Row of the first such value.
         y: u32,
     },
     /// There is no encoder for the extension.
@@ -83,7 +83,7 @@ pub enum PictureError {
         /// The possible extensions.
         allowed: &'static str,
     },
-    /// Two eyes of different sizes.
+    /// Two eyes have different sizes.
     #[error("the two images differ in size ({}x{} and {}x{}): give two of one size", a.0, a.1, b.0, b.1)]
     SizesDiffer {
         /// Size of the first in pixels.

@@ -1,7 +1,7 @@
-//! Image files in and out, and the pictures made of two eyes.
+//! Reading and writing image files, and composing pictures of two eyes.
 //!
-//! Takes and gives images in memory: as in files, row 0 is the top, and colours are display-referred (sRGB) 8-bit RGB.
-//! This crate must never know where a picture comes from: a renderer, a headset, a measurement.
+//! Images in memory are like those in files: row 0 is the top, and colours are display-referred (sRGB) 8-bit RGB. This
+//! crate must never know where a picture comes from: a renderer, a headset or a measurement.
 
 mod compose;
 mod decode;
@@ -23,8 +23,8 @@ pub use stored_depth::{Nearness, StoredDepth, StoredDepthError};
 /// One `f32` for each pixel.
 pub type DepthImage = ImageBuffer<Luma<f32>, Vec<f32>>;
 
-/// The largest width or height of a picture that is read. No eye of a headset comes near it, and a damaged header often
-/// goes beyond it. A browser has 4 GB for all pictures.
+/// The largest width or height of a picture that is read. No eye of a headset comes near it, while a damaged header
+/// often exceeds it. A browser has 4 GB for all pictures.
 pub const MAX_SIZE: u32 = if cfg!(target_arch = "wasm32") { 8192 } else { 16384 };
 
 /// Extensions of the files that [`load_color`] and [`load_depth`] read.

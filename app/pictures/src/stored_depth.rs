@@ -1,22 +1,22 @@
-//! Depth images of other programs: decodes their values into depth for synthesis.
+//! Decoding other programs' depth images into depth for synthesis.
 
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, Warp};
 
 /// The encoding of a depth image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StoredDepth {
-    /// Depth buffer between the planes of this range, in its convention.
+    /// Depth buffer values between the planes of this range, in its convention.
     Window(DepthRange),
-    /// Distance along the viewing axis in metres, by this unit; 0 where there is none.
+    /// Distance along the viewing axis in metres, divided by `unit`; 0 where there is no depth.
     Distance {
-        /// Metres of the value 1.
+        /// The distance in metres that the value 1 stands for.
         unit: f32,
     },
-    /// Disparity in pixels of the IPD: `offset + scale * value`.
+    /// Disparity in pixels for the whole IPD: `offset + scale * value`.
     Disparity {
-        /// Pixels of the value 0.
+        /// The disparity in pixels of the value 0.
         offset: f64,
-        /// Pixels of the value 1, 0 or more: larger values are nearer.
+        /// The additional disparity in pixels of the value 1, at least 0: larger values are nearer.
         scale: f64,
     },
 }
@@ -25,31 +25,31 @@ pub enum StoredDepth {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoredDepthError {
-    /// Some values are NaN, such as a power of a negative value.
+    /// Some values are NaN, for example powers of negative values.
     #[error("some values are no numbers")]
     NotANumber,
-    /// Some values are outside of the encoding.
+    /// Some values are outside the range of the encoding.
     #[error("some values are outside of what the encoding allows ({smallest} to {largest})")]
     Range {
-        /// Smallest nearness, at most 0.
+        /// The smallest nearness, at most 0.
         smallest: f32,
-        /// Largest nearness.
+        /// The largest nearness.
         largest: f32,
     },
 }
 
-/// Depth as synthesis takes it.
+/// Depth in the form that synthesis uses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearness {
-    /// From 0, infinitely far or the law's offset, to 1.
+    /// Values from 0, which is infinitely far or at the law's offset, to 1.
     pub values: Vec<f32>,
-    /// The disparity in pixels between two eyes that are a whole IPD apart.
+    /// The law that gives the disparity in pixels between two eyes that are a whole IPD apart.
     pub law: DisparityLaw,
 }
 
 impl StoredDepth {
-    /// Decodes values. `reach` is the focal length in pixels times the IPD in metres: the disparity in pixels at a
-    /// metre.
+    /// Decodes values. `reach` is the focal length in pixels times the IPD in metres, which is the disparity in pixels
+    /// at a distance of one metre.
     ///
     /// # Errors
     /// [`StoredDepthError`] for values that the encoding does not have.
@@ -63,7 +63,7 @@ impl StoredDepth {
                 (stored.map(|v| if standard { 1.0 - v } else { v }).collect(), law)
             }
             StoredDepth::Distance { unit } => {
-                // Zero marks "no depth" in many depth images: infinitely far.
+                // In many depth images zero means "no depth". It is taken as infinitely far.
                 let inverse = |v: f32| if v > 0.0 { 1.0 / (v * unit).max(1e-3) } else { 0.0 };
                 (stored.map(inverse).collect(), DisparityLaw { offset: 0.0, scale: reach })
             }
@@ -86,7 +86,7 @@ impl StoredDepth {
 }
 
 impl Nearness {
-    /// Returns the warp of an image of `size` pixels to an eye that is this share of the IPD away.
+    /// Returns the warp from an image of `size` pixels to an eye that is this share of the IPD away.
     pub fn warp(&self, size: [u32; 2], target_eye: Eye, share: f64) -> Warp {
         let sign = -f64::from(target_eye.side()) * share;
         Warp {

@@ -1,4 +1,4 @@
-//! Tests of all parts together, through files.
+//! Tests of the whole crate through files.
 
 use std::path::Path;
 
@@ -181,8 +181,8 @@ fn both_eyes_are_composed_into_one_picture() {
     );
     assert!(matches!(difference(&left, &gradient(9, 5)), Err(PictureError::SizesDiffer { .. })));
 
-    // The rows of both matrices together sum to 1 within the rounding of the published coefficients (green
-    // and blue keep white, red loses .001), so grey in both eyes stays grey; and each eye has its own colours.
+    // The rows of both matrices together sum to 1 within the rounding of the published coefficients (green and blue
+    // preserve white, red loses .001). So grey in both eyes stays grey, and each eye keeps its own colours.
     let grey = RgbImage::from_pixel(1, 1, Rgb([128; 3]));
     let black = RgbImage::new(1, 1);
     let neutral = anaglyph(&grey, &grey).unwrap().get_pixel(0, 0).0;

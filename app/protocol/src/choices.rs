@@ -1,4 +1,4 @@
-//! Everything that is chosen by a name: the words of settings files, command lines and pages.
+//! Everything that is chosen by name, in settings files, on command lines and on pages.
 
 use std::str::FromStr;
 
@@ -7,24 +7,24 @@ use toml::Value;
 
 use crate::value::{Choice, SettingValue, find, named};
 
-/// The most point lights that light one view.
+/// The most point lights that can light a view.
 pub const MAX_POINT_LIGHTS: usize = 24;
 
-/// The most rows of the kernel that fills holes in the paper's pipeline.
+/// The largest number of rows of the kernel that fills holes in the paper's pipeline.
 pub const MAX_KERNEL_HEIGHT: u32 = 15;
 
-/// Numbers of samples that a pixel of the forward renderer may have.
+/// The numbers of samples per pixel that the forward renderer supports.
 pub const MSAA: [u32; 3] = [1, 2, 4];
 
-/// Numbers of bits that the depth of a pixel of several samples may have.
+/// The possible numbers of depth bits per pixel, for pixels with several samples.
 pub const DEPTH_BITS: [u32; 2] = [16, 32];
 
-/// A text that is none of the names of a type.
+/// A text that is not the name of any value of a type.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct ChoiceError(String);
 
-/// Reads and writes a type by the names of its values.
+/// Implements parsing and serde by the names of a type's values.
 macro_rules! names {
     ($type:ident) => {
         impl FromStr for $type {
@@ -49,8 +49,8 @@ macro_rules! names {
     };
 }
 
-/// Enumerations whose values go by names, the same on the command line, in settings, in results and on the page. The first
-/// line of documentation of each value is its help.
+/// Enumerations whose values have names, the same on the command line, in settings, in results and on the page. The
+/// first line of a value's documentation is its help.
 macro_rules! choices {
     ($(
         $(#[doc = $doc:literal])+
@@ -202,10 +202,10 @@ choices! {
 /// A stereo method, or the cheaper one of two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MethodChoice {
-    /// The cheaper one of conventional and yoro, which are measured in turns while they are in use.
+    /// The cheaper one of conventional and yoro, which are measured alternately while in use.
     #[default]
     Auto,
-    /// The method of this name.
+    /// The given method.
     Named(Method),
 }
 
@@ -221,7 +221,7 @@ impl MethodChoice {
         all
     };
 
-    /// The name in settings and on the page.
+    /// Returns the name in settings and on the page.
     pub fn name(self) -> &'static str {
         match self {
             MethodChoice::Auto => "auto",
@@ -229,7 +229,7 @@ impl MethodChoice {
         }
     }
 
-    /// Returns the method that is used as long as nothing is measured.
+    /// Returns the method that is used until something has been measured.
     pub fn first(self) -> Method {
         match self {
             MethodChoice::Auto => Method::Yoro,
@@ -237,7 +237,7 @@ impl MethodChoice {
         }
     }
 
-    /// True if a method may be in use.
+    /// True if this choice can result in `method`.
     pub fn may_be(self, method: Method) -> bool {
         match self {
             MethodChoice::Auto => matches!(method, Method::Conventional | Method::Yoro),
@@ -267,7 +267,7 @@ named! {
 }
 
 impl Method {
-    /// True if the method shows pixels of one eye to the other, which needs eyes that look in the same direction
+    /// True if the method shows pixels of one eye to the other, which requires eyes that look in the same direction
     /// ([`yoro::eyes::EyePair::synthesis_views`]).
     pub fn needs_aligned_eyes(self) -> bool {
         matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Yoro)

@@ -1,9 +1,9 @@
-//! The protocol between a phone and the lab: [`Settings`] one way, [`telemetry`] the other.
+//! The protocol between a phone and the lab: [`Settings`] in one direction, [`telemetry`] in the other.
 //!
-//! Settings come in as a file, as `key=value` texts or as options, and go out as typed values; frames and device states
-//! come in and go out as lines of text, which are read back into the same values.
+//! Settings are read from a file, from `key=value` texts or from options, and become typed values. Frames and device
+//! states become lines of text, which are read back into the same values.
 //!
-//! This crate must never know how anything is rendered: it calls no graphics interface.
+//! This crate must not depend on how anything is rendered: it calls no graphics interface.
 
 mod choices;
 mod quantities;

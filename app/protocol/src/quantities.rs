@@ -17,17 +17,17 @@ pub struct Ipd(f32);
 pub struct IpdError;
 
 impl Ipd {
-    /// The largest distance, a little more than people's.
+    /// The largest distance, a little more than people have.
     pub const MAX: Ipd = Ipd(0.08);
-    /// The default, which is the paper's.
+    /// The default, which is the paper's distance.
     pub const DEFAULT: Ipd = Ipd(0.063);
 
-    /// Returns the distance nearest to some metres; [`Ipd::MAX`] for NaN.
+    /// Returns the valid distance nearest to `metres`; [`Ipd::MAX`] for NaN.
     pub fn nearest(metres: f32) -> Ipd {
         Ipd(if metres.is_nan() { Ipd::MAX.0 } else { metres.clamp(0.0, Ipd::MAX.0) })
     }
 
-    /// The distance in metres.
+    /// Returns the distance in metres.
     pub fn metres(self) -> f32 {
         self.0
     }
@@ -61,16 +61,16 @@ impl Display for Ipd {
     }
 }
 
-/// The lengths in millimetres that a side of a screen behind lenses can have.
+/// The plausible lengths in millimetres of a side of a screen behind lenses.
 const PLAUSIBLE_SCREEN: RangeInclusive<f32> = 30.0..=400.0;
 
-/// Width and height of a screen in millimetres, in the position in which a viewer holds it: `158x71mm`.
+/// Width and height of a screen in millimetres, in the orientation in which a viewer holds it: `158x71mm`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSize {
     millimetres: [f32; 2],
 }
 
-/// A text that is no size of a screen.
+/// A text that is not a size of a screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "give width and height from {} to {} mm, such as 158x71mm, or auto for what the device says",
@@ -107,13 +107,13 @@ impl Display for ScreenSize {
     }
 }
 
-/// Resolution of the ImBuffer.
+/// The resolution of the ImBuffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ImBufferSize {
     /// One ImBuffer pixel per this many image pixels, on both axes: 1, 2, 4, 8 or 16 in the paper.
     Divisor(u32),
-    /// A fixed size in pixels for the target, whatever the image's size.
+    /// A fixed size in pixels, whatever the image's size.
     Fixed([u32; 2]),
 }
 
@@ -122,7 +122,7 @@ pub enum ImBufferSize {
 #[error("give a divisor from 1 to 64, such as 2, or a size, such as 512x512")]
 pub struct ParseImBufferSizeError;
 
-/// A divisor from 1 to 64 (`2`), or a width and a height from 1 to 8192 (`512x512`).
+/// Reads a divisor from 1 to 64 (`2`), or a width and a height from 1 to 8192 (`512x512`).
 impl FromStr for ImBufferSize {
     type Err = ParseImBufferSizeError;
 

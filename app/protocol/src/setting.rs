@@ -8,36 +8,36 @@ use crate::value::{Choice, SettingValue, plain};
 /// The prefix of Android's system properties that are settings: `adb shell setprop debug.yoro.method mono`.
 pub const PROPERTY_PREFIX: &str = "debug.yoro.";
 
-/// One setting of the viewer, a row of [`SETTINGS`]: what it is called, what it does, and which values it takes.
+/// A setting of the viewer, one row of [`SETTINGS`]: its name, its effect, and the values it takes.
 pub struct Setting {
-    /// The key in files, `key=value` texts, intent extras and system properties; the option's name on the command line.
+    /// The key in files, `key=value` texts, intent extras and system properties; the command line option's name.
     pub key: &'static str,
     help: &'static str,
-    /// The placeholder of the value on the command line, where it is not the key itself.
+    /// The placeholder for the value on the command line, if it is not the key.
     pub value_name: Option<&'static str>,
-    /// The default that `auto` stands for, for settings whose default depends on something else.
+    /// The default that `auto` stands for, if the default depends on something else.
     pub auto: Option<&'static str>,
-    /// Help of the command line's option `--no-KEY`, for those that are `true` by default.
+    /// The help of the command line's option `--no-KEY`, for settings that are `true` by default.
     pub off_help: Option<&'static str>,
-    /// The names that a value can have; empty where there are too many to list.
+    /// The names of the possible values; empty if there are too many to list.
     pub choices: &'static [Choice],
     /// True if the value is `true` or `false`.
     pub is_bool: bool,
-    /// True if the value may be left to the program, by the value `auto`.
+    /// True if the value may be `auto`, which leaves it to the program.
     pub is_optional: bool,
     get: fn(&Settings) -> Option<Value>,
     set: fn(&mut Settings, &Value) -> Result<(), String>,
     range: Option<Range>,
 }
 
-/// The values that a setting takes, beyond what its type says.
+/// The values that a setting accepts, in addition to the constraints of its type.
 struct Range {
     contains: fn(&Settings) -> bool,
     remedy: &'static str,
 }
 
 impl Setting {
-    /// Returns the setting of a key.
+    /// Returns the setting with this key.
     pub fn find(key: &str) -> Option<&'static Setting> {
         SETTINGS.iter().find(|setting| setting.key == key)
     }
@@ -63,7 +63,7 @@ impl Setting {
         }
     }
 
-    /// Takes only the values for which `contains` is true; `remedy` says which these are.
+    /// Restricts the values to those for which `contains` is true; `remedy` says which these are.
     pub(crate) const fn range(mut self, contains: fn(&Settings) -> bool, remedy: &'static str) -> Setting {
         self.range = Some(Range { contains, remedy });
         self
@@ -84,12 +84,12 @@ impl Setting {
         self
     }
 
-    /// The help as one line of Markdown without a full stop.
+    /// Returns the help as one line of Markdown, without a full stop.
     pub fn help(&self) -> String {
         self.help.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned()
     }
 
-    /// The row of docs/viewer.md.
+    /// Returns the setting's row in docs/viewer.md.
     #[cfg(test)]
     pub(crate) fn markdown(&self) -> String {
         let default = match (self.default().as_str(), self.auto) {
@@ -102,12 +102,12 @@ impl Setting {
         format!("| `{}` | {default} | {}{names} |\n", self.key, self.help())
     }
 
-    /// The default as a text that [`Settings::apply`] takes.
+    /// Returns the default as a text that [`Settings::apply`] accepts.
     pub fn default(&self) -> String {
         self.text(&Settings::default())
     }
 
-    /// The value in some settings as a text that [`Settings::apply`] takes.
+    /// Returns the value in `settings` as a text that [`Settings::apply`] accepts.
     pub fn text(&self, settings: &Settings) -> String {
         match self.value(settings) {
             None => "auto".into(),
@@ -116,15 +116,15 @@ impl Setting {
         }
     }
 
-    /// The value in some settings; `None` if it is left to the program.
+    /// Returns the value in `settings`; `None` if it is left to the program.
     pub(crate) fn value(&self, settings: &Settings) -> Option<Value> {
         (self.get)(settings)
     }
 
-    /// Changes the value in some settings.
+    /// Sets the value in `settings`.
     ///
     /// # Errors
-    /// The remedy; the settings stay as they were.
+    /// The remedy; the settings stay unchanged.
     pub(crate) fn set(&self, settings: &mut Settings, value: &Value) -> Result<(), String> {
         let range = self.range.as_ref().filter(|_| self.choices.is_empty());
         let remedy = |reason: String| range.map_or(reason, |range| range.remedy.into());
@@ -139,17 +139,17 @@ impl Setting {
         Ok(())
     }
 
-    /// Changes the value in some settings by a text: a list as in TOML or separated by commas, `auto` to leave it to
-    /// the program, an empty text to change nothing.
+    /// Sets the value in `settings` from a text: a list is written as in TOML or separated by commas, `auto` leaves the
+    /// value to the program, and an empty text changes nothing.
     ///
     /// # Errors
-    /// The value as it was understood, and the remedy; the settings stay as they were.
+    /// The value as it was understood, and the remedy; the settings stay unchanged.
     pub fn parse_into(&self, settings: &mut Settings, text: &str) -> Result<(), (String, String)> {
         let text = text.trim();
         if text.is_empty() {
             return Ok(());
         }
-        // A number, a switch or a list in TOML; anything else is a plain word.
+        // A number, a Boolean or a list in TOML; anything else is a plain word.
         let typed = format!("x = {text}").parse::<toml::Table>().ok().and_then(|mut table| table.remove("x"));
         if typed.as_ref().is_some_and(|value| self.set(settings, value).is_ok()) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! The settings of the viewer: one table of rows, and how files and texts change them.
+//! The settings of the viewer: the table of settings, and how files and texts change them.
 
 use std::fmt::{self, Display};
 use std::io::Read;
@@ -16,10 +16,10 @@ use crate::value::SettingValue;
 use yoro::eyes::{Eye, GuardBand};
 use yoro::synthesis::Edges;
 
-/// Largest settings file in bytes.
+/// The largest settings file in bytes.
 const MAX_FILE: u64 = 1 << 20;
 
-/// A mistake in settings: one sentence with the key and the remedy.
+/// An error in settings: one sentence with the key and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
@@ -28,7 +28,7 @@ pub enum SettingsError {
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The file is not TOML.
@@ -36,10 +36,10 @@ pub enum SettingsError {
     Syntax {
         /// The file.
         path: PathBuf,
-        /// The parser's words.
+        /// The parser's message.
         what: String,
     },
-    /// A key that does not exist.
+    /// The key does not exist.
     #[error("{origin}: there is no setting \"{key}\"; choose one of {}", keys())]
     UnknownKey {
         /// The file, or the override.
@@ -47,7 +47,7 @@ pub enum SettingsError {
         /// The key.
         key: String,
     },
-    /// A value that does not fit its key.
+    /// The value does not fit its key.
     #[error("{origin}: the setting \"{key}\" cannot be {value}: {remedy}")]
     Value {
         /// The file, or the override.
@@ -56,10 +56,10 @@ pub enum SettingsError {
         key: String,
         /// The value given.
         value: String,
-        /// The values that are possible.
+        /// The possible values.
         remedy: String,
     },
-    /// An override that is not `key=value`.
+    /// The override is not `key=value`.
     #[error("\"{0}\" is not a setting: write key=value, such as method=yoro")]
     NoPair(String),
 }
@@ -68,7 +68,7 @@ fn keys() -> String {
     SETTINGS.iter().map(|setting| setting.key).collect::<Vec<_>>().join(", ")
 }
 
-/// Makes [`Settings`], their defaults and [`SETTINGS`] of the same rows. The documentation of a field is the setting's help.
+/// Generates [`Settings`], their defaults and [`SETTINGS`] from the same rows. A field's documentation is its help.
 macro_rules! settings {
     ($(
         $(#[doc = $help:literal])+
@@ -86,8 +86,8 @@ macro_rules! settings {
             }
         }
 
-        /// The table of settings. Files, `key=value` texts, intent extras, system properties, options of the command line
-        /// and the table in docs/viewer.md follow it.
+        /// The table of settings. Files, `key=value` texts, intent extras, system properties, options of the command
+        /// line and the table in docs/viewer.md follow it.
         pub static SETTINGS: &[Setting] = &[$(
             Setting::new::<$type>(
                 $key,
@@ -245,12 +245,12 @@ fn is_positive(number: f32) -> bool {
 }
 
 impl Settings {
-    /// The defaults of measurements and pictures, in which nothing is left to the device: the method is yoro.
+    /// Returns the defaults for measurements and pictures, in which nothing depends on the device: the method is yoro.
     pub fn measured() -> Settings {
         Settings { method: Method::Yoro.into(), ..Settings::default() }
     }
 
-    /// The defaults, as [`Settings::changed`] changes them.
+    /// Returns the defaults, changed as by [`Settings::changed`].
     ///
     /// # Errors
     /// [`SettingsError`].
@@ -261,8 +261,8 @@ impl Settings {
         Settings::default().changed(file, overrides)
     }
 
-    /// Returns these settings, changed by a TOML file if there is one, then by `key=value` texts in order. An empty value
-    /// changes nothing: that is what a system property that was taken back reads as.
+    /// Returns these settings, changed first by a TOML file, if given, then by `key=value` texts in order. An empty
+    /// value changes nothing, since a system property that was unset reads as empty.
     ///
     /// # Errors
     /// [`SettingsError`].
@@ -281,10 +281,10 @@ impl Settings {
         Ok(settings)
     }
 
-    /// Changes the settings by a TOML file.
+    /// Applies a TOML file.
     ///
     /// # Errors
-    /// [`SettingsError`]; the settings stay as they were.
+    /// [`SettingsError`]; the settings stay unchanged.
     pub fn apply_file(&mut self, path: &Path) -> Result<(), SettingsError> {
         let mut changed = self.clone();
         match changed.apply_file_leniently(path).into_iter().next() {
@@ -296,8 +296,7 @@ impl Settings {
         }
     }
 
-    /// Changes the settings by what is right in a TOML file, and says what is wrong: for programs that nobody can
-    /// start again at once.
+    /// Applies whatever is valid in a TOML file, and returns the errors, for programs that cannot simply be restarted.
     pub fn apply_file_leniently(&mut self, path: &Path) -> Vec<SettingsError> {
         let mut text = String::new();
         let read = std::fs::File::open(path).and_then(|file| file.take(MAX_FILE).read_to_string(&mut text));
@@ -329,11 +328,11 @@ impl Settings {
         })
     }
 
-    /// Changes one setting by a text `key=value`. Lists are written as in TOML or separated by commas; `auto`
-    /// takes back a setting that has no fixed default.
+    /// Sets one setting by a text `key=value`. Lists are written as in TOML or separated by commas; `auto` resets a
+    /// setting that has no fixed default.
     ///
     /// # Errors
-    /// [`SettingsError`]; the settings stay as they were.
+    /// [`SettingsError`]; the settings stay unchanged.
     pub fn apply(&mut self, pair: &str) -> Result<(), SettingsError> {
         let (key, text) = pair.split_once('=').ok_or_else(|| SettingsError::NoPair(pair.into()))?;
         let key = key.trim();
@@ -347,7 +346,7 @@ impl Settings {
     }
 }
 
-/// One line: `key=value` for each setting.
+/// Writes one line with `key=value` for each setting.
 impl Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         for (i, setting) in SETTINGS.iter().enumerate() {
@@ -360,7 +359,7 @@ impl Display for Settings {
     }
 }
 
-/// Returns the row of a key that a file or a text has.
+/// Returns the setting with a key from a file or a text.
 fn find(origin: &str, key: &str) -> Result<&'static Setting, SettingsError> {
     Setting::find(key).ok_or_else(|| SettingsError::UnknownKey { origin: origin.into(), key: key.into() })
 }
@@ -491,7 +490,7 @@ mod tests {
         for (key, value) in settings.pairs() {
             read.apply(&format!("{key}={value}")).unwrap();
         }
-        // An empty list is an empty text, which changes nothing.
+        // An empty list is written as an empty text, which changes nothing.
         assert_eq!(read, settings);
         let line = settings.to_string();
         assert!(line.starts_with("scene=\"a b\" seed=1 "), "{line}");
@@ -499,7 +498,7 @@ mod tests {
         assert!(line.contains("duration=auto"), "{line}");
     }
 
-    /// docs/viewer.md lists every setting; with YORO_BLESS in the environment the list is written anew.
+    /// docs/viewer.md lists every setting. If YORO_BLESS is set in the environment, the list is rewritten.
     #[test]
     fn the_document_has_the_table() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/viewer.md");

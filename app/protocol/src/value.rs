@@ -1,4 +1,4 @@
-//! How values of each type of setting are read and written.
+//! Reading and writing of values of each type of setting.
 
 use toml::Value;
 use yoro::eyes::{Eye, GuardBand};
@@ -6,7 +6,7 @@ use yoro::synthesis::Edges;
 
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 
-/// A name that a value can have, with a line of help.
+/// The name of a possible value, with a line of help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// The name in files and on the command line.
@@ -19,13 +19,13 @@ impl Choice {
         Choice { name, help }
     }
 
-    /// The help as one line without a full stop.
+    /// Returns the help as one line without a full stop.
     pub fn help(&self) -> &'static str {
         self.help.trim().trim_end_matches('.')
     }
 }
 
-/// Returns a value without the quotes of TOML. Numbers are shown as they were given, not as doubles.
+/// Returns a value without TOML's quotes. Numbers are written as they were given, not as doubles.
 pub(crate) fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -109,7 +109,7 @@ impl<T: SettingValue> SettingValue for Option<T> {
     }
 }
 
-/// Reads whole numbers.
+/// Implements settings of whole numbers.
 macro_rules! whole {
     ($($type:ty),+) => { $(
         impl SettingValue for $type {
@@ -127,7 +127,7 @@ macro_rules! whole {
 
 whole!(u32, u64, usize);
 
-/// Types with a text of their own, which may look like a number.
+/// Implements settings whose types have a text form of their own, which may look like a number.
 macro_rules! texts {
     ($($type:ty),+) => { $(
         impl SettingValue for $type {
@@ -154,7 +154,7 @@ impl SettingValue for Ipd {
     }
 }
 
-/// Types whose values have names.
+/// Implements settings whose values have names.
 macro_rules! named {
     ($($type:ty: $choices:expr, $find:expr;)+) => { $(
         impl SettingValue for $type {
@@ -171,16 +171,16 @@ macro_rules! named {
     )+ };
 }
 
-/// Names of earlier versions, and what to do about them.
+/// Names that earlier versions accepted, and what to do about them.
 const FORMER: &[(&str, &str)] = &[(
     "rowgroup",
     "the pipeline rowgroup was taken out: choose gather, which is closer to the truth on every scene",
 )];
 
-/// Names that still mean something: those of the switch that `timewarp` was.
+/// Names that are still accepted: those of the Boolean that `timewarp` was.
 const RENAMED: &[(&str, &str)] = &[("false", "off"), ("true", "rotation")];
 
-/// Returns the value of a name; the error names all.
+/// Returns the value with a name; the error lists all names.
 pub(crate) fn find<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, text: &str) -> Result<T, String> {
     let text = RENAMED.iter().find(|(former, _)| *former == text).map_or(text, |(_, now)| now);
     all.iter().copied().find(|value| name(*value) == text).ok_or_else(|| {

@@ -1,10 +1,10 @@
-//! Shapes that the tests of several modules draw.
+//! Shapes shared by the tests of several modules.
 
 use glam::{Vec2, Vec3};
 
 use yoro_scene::{Model, Part, Vertex};
 
-/// Appends a parallelogram seen from the side of `across x up`.
+/// Appends a parallelogram whose front faces along `across x up`.
 pub fn quad(model: &mut Model, material: usize, corner: Vec3, across: Vec3, up: Vec3) {
     let (first, start) = (model.vertices.len() as u32, model.indices.len());
     let normal = across.cross(up).normalize();

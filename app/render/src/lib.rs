@@ -1,8 +1,8 @@
 //! The renderer and the stereo methods: frames to synthesize from, and every way to make two eyes of them.
 //!
-//! [`Renderer`] takes a scene and a view and gives colour and depth, deferred or forward. A [`stereo::StereoMethod`]
-//! takes a pair of eyes and fills both images: two real renders, single-pass stereo, hybrid, shading reprojection,
-//! mono, or synthesis, by `yoro`'s pipeline or the paper's. [`StreamedEyes`] makes them of a stream's decoded frames.
+//! [`Renderer`] renders a view of a scene to colour and depth, deferred or forward. A [`stereo::StereoMethod`] takes a
+//! pair of eyes and fills both images: by two renders, single-pass stereo, hybrid, shading reprojection, mono, or
+//! synthesis, with `yoro`'s pipeline or the paper's. [`StreamedEyes`] makes them from a stream's decoded frames.
 //!
 //! This crate must never know where a GL context comes from, what a viewer's lenses do, or how a result is measured.
 

@@ -7,7 +7,7 @@ use yoro_scene::Scene;
 
 use crate::render::{GpuScene, RenderSettings, Renderer};
 
-/// A scene on the GPU with the renderer that was compiled for it.
+/// A scene on the GPU and the renderer that was compiled for it.
 pub struct PreparedScene {
     /// The scene.
     pub scene: GpuScene,
@@ -16,7 +16,7 @@ pub struct PreparedScene {
 }
 
 impl PreparedScene {
-    /// Uploads a scene and compiles what it needs.
+    /// Uploads a scene and compiles the programs that it needs.
     ///
     /// # Errors
     /// As [`GpuScene::upload`] and [`Renderer::new`].
@@ -26,7 +26,7 @@ impl PreparedScene {
         Ok(PreparedScene { scene, renderer })
     }
 
-    /// Moves everything to where it is at a time in seconds. A scene in which nothing moves costs nothing.
+    /// Moves everything to its place at a time in seconds. Costs nothing for a scene in which nothing moves.
     ///
     /// # Errors
     /// As [`Renderer::set_time`].

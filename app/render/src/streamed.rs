@@ -1,4 +1,4 @@
-//! A stream's frames: both eyes at the head's newest pose, made of the newest frame.
+//! Both eyes of a stream at the head's newest pose, made from the newest frame.
 
 use std::rc::Rc;
 
@@ -13,14 +13,14 @@ use yoro_stream::{Content, EyeView, ViewRequest};
 
 /// A decoded picture.
 pub enum DecodedPicture<'a> {
-    /// Luma and both colour differences, one after another, tightly packed, rows from the top.
+    /// Luma and both colour differences, one after the other, tightly packed, rows from the top.
     Planes(&'a [u8]),
-    /// Red, green and blue of a picture of this size: the function uploads them into the texture that is bound, rows
-    /// from the top.
+    /// Red, green and blue of a picture of this size. The function uploads them into the bound texture, rows from the
+    /// top.
     Upload([u32; 2], &'a dyn Fn()),
 }
 
-/// Shows a stream: takes decoded frames, and makes both eyes of the newest one.
+/// Shows a stream: takes decoded frames and makes both eyes from the newest one.
 pub struct StreamedEyes {
     gl: Rc<Context>,
     from_planes: Program,
@@ -30,31 +30,31 @@ pub struct StreamedEyes {
     planes: Option<[Texture; 3]>,
     /// Red, green and blue of a picture that was not taken as planes, rows from the top.
     rgb: Option<Texture>,
-    /// Each eye that is in it.
+    /// The colour of each eye in the picture.
     colors: [RenderTarget; 2],
-    /// The first eye's depth. Two eyes without depth are taken as far away.
+    /// The first eye's depth. Two eyes without depth are treated as infinitely far away.
     depth: RenderTarget,
-    /// The second eye as it is synthesized from the first: its depth, which is not in the picture.
+    /// The second eye synthesized from the first, for its depth, which is not in the picture.
     moved: RenderTarget,
     newest: Option<(Content, [u16; 2])>,
-    /// True if what is beyond the border of a picture is black; otherwise it repeats the border.
+    /// True if pictures are surrounded by black. Otherwise their border is repeated outward.
     pub framed: bool,
-    /// The eyes that were made last.
+    /// The pair of eyes that was made last.
     pair: Option<EyePair>,
-    /// Pairs of eyes that were made, and the sums of the metres and the radians from the poses of their pictures to
+    /// Number of pairs of eyes made, and the sums of the metres and radians between the poses of their pictures and
     /// their own.
     corrected: [f32; 3],
 }
 
 impl StreamedEyes {
-    /// Compiles what it needs.
+    /// Compiles the programs and makes the targets.
     ///
     /// # Errors
-    /// The driver refuses.
+    /// [`GlError`] if the driver refuses.
     pub fn new(gl: &Rc<Context>) -> Result<StreamedEyes, GlError> {
         let target = |format, filter, depth| RenderTarget::new(gl, [1, 1], &[(format, filter)], depth);
         let color = || target(Format::Rgba8, Filter::Linear, None);
-        // Frames and eyes have several sizes in turn.
+        // Frames and eyes alternate between several sizes.
         let options = SynthesisOptions { parts: true, ..SynthesisOptions::default() };
         Ok(StreamedEyes {
             gl: gl.clone(),
@@ -77,11 +77,11 @@ impl StreamedEyes {
         })
     }
 
-    /// Takes a decoded picture, whose parts have this size. False if the picture has another size, or the eyes see too
+    /// Takes a decoded picture whose parts have this size. False if the picture has another size, or the eyes see too
     /// little of each other's view.
     ///
     /// # Errors
-    /// The GPU has no memory for it.
+    /// [`GlError`] if the GPU has no memory for it.
     pub fn take(
         &mut self,
         content: Content,
@@ -157,11 +157,11 @@ impl StreamedEyes {
         Ok(true)
     }
 
-    /// Makes both eyes, with their depth where the targets have a depth attachment; black before the first frame, and
-    /// where the head has turned away from all that the frame shows.
+    /// Makes both eyes, with depth if the targets have a depth attachment. They are black before the first frame, and
+    /// where the head has turned away from everything in the frame.
     ///
     /// # Errors
-    /// The GPU has no memory for it.
+    /// [`GlError`] if the GPU has no memory for it.
     pub fn render(&mut self, pair: &EyePair, to: &[Destination; 2]) -> Result<(), GlError> {
         self.pair = Some(*pair);
         if let Some((content, _)) = self.newest {
@@ -174,7 +174,7 @@ impl StreamedEyes {
         for eye in Eye::BOTH {
             let to = &to[eye.index()];
             self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
-            // The other eye may have the rest of the framebuffer.
+            // The other eye may use the rest of the framebuffer.
             self.gl.clear_rectangle(to.origin, to.size, Some(pair.depth.clear_value()));
             let Some((content, size)) = self.newest else { continue };
             let Ok((part, warp)) = content.warp(size, eye, &pair.view(eye)) else { continue };
@@ -188,14 +188,14 @@ impl StreamedEyes {
         Ok(())
     }
 
-    /// Returns the mean metres and radians by which poses were corrected since the last call; none where no eyes were
+    /// Returns the mean metres and radians by which poses were corrected since the last call; `None` if no eyes were
     /// made.
     pub fn take_correction(&mut self) -> Option<[f32; 2]> {
         let [pairs, metres, radians] = std::mem::take(&mut self.corrected);
         (pairs > 0.0).then(|| [metres / pairs, radians / pairs])
     }
 
-    /// Returns the request for the eyes that were made last; none before the first.
+    /// Returns the request for the eyes that were made last; `None` before the first.
     pub fn request(&self, time_ms: f64) -> Option<ViewRequest> {
         let pair = self.pair?;
         let eye_view =

@@ -1,4 +1,4 @@
-//! Viewpoints and lights for a model whose file has none.
+//! Viewpoints and lights for models whose files have none.
 
 use std::collections::HashMap;
 use std::f32::consts::TAU;
@@ -9,26 +9,26 @@ use super::model::{Bounds, Model, PointLight, Sky, Viewpoint};
 use super::rays::Rays;
 use super::textures::to_linear;
 
-/// Viewpoints made up for a file without `camera.json`.
+/// Number of viewpoints generated for a file without `camera.json`.
 const COUNT: usize = 8;
 
 /// Height of the eyes above the floor in metres.
 const EYE_HEIGHT: f32 = 1.6;
 
-/// Models smaller than this (metres) are looked at from around.
+/// Models smaller than this, in metres, are viewed from around them.
 const ROOM: f32 = 3.0;
 
-/// Share of a view of 60 degrees that must show the model, and share of the downward rays around a place that must end
-/// on something: less is the top of an object, not a place to walk.
+/// `LEAST_SEEN` is the share of a 60 degree view that must show the model. `LEAST_FLOOR` is the share of the downward
+/// rays around a place that must hit something; with fewer hits it is the top of an object, not a place to walk.
 const LEAST_SEEN: f32 = 0.3;
 const LEAST_FLOOR: f32 = 0.5;
 
-/// The largest number of point lights that are made up.
+/// Maximum number of generated point lights.
 const MAX_LIGHTS: usize = 16;
 
-/// Returns viewpoints and a word on how they were found. Models larger than a few metres are walked through: where
-/// there is a floor with room above and something to see around. Smaller ones, those without such places, and those of
-/// which a walk would show too little are circled.
+/// Returns viewpoints and a short description of how they were found. Models larger than a few metres are walked
+/// through, where there is a floor with headroom and something to see around it. Smaller models are circled, as are
+/// those without such places, or of which a walk would show too little.
 pub(super) fn viewpoints(model: &Model, rays: &Rays) -> (Vec<Viewpoint>, &'static str) {
     let bounds = model.bounds();
     if (bounds.max - bounds.min).max_element() >= ROOM {
@@ -50,7 +50,7 @@ fn orbit(bounds: &Bounds) -> Vec<Viewpoint> {
     let target = bounds.center();
     // The bounding sphere fits into 60 degrees.
     let distance = (2.1 * radius).max(1e-3);
-    // From the front first, a little from the side.
+    // The first is from the front, a little to the side.
     let azimuth = |i: usize| std::f32::consts::PI - 0.4 + i as f32 * TAU / COUNT as f32;
     (0..COUNT)
         .map(|i| Viewpoint { position: target + direction(azimuth(i), 18.0) * distance, target })
@@ -61,7 +61,7 @@ fn orbit(bounds: &Bounds) -> Vec<Viewpoint> {
 #[derive(Clone, Copy)]
 struct Place {
     eye: Vec3,
-    /// Rates a place by what it sees and by its room to move.
+    /// Rates a place by what is seen from it and by its room to move.
     score: f32,
 }
 
@@ -78,11 +78,11 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
     let best = places.iter().map(|p| p.score).fold(0.0, f32::max);
     places.retain(|p| p.score > 0.0 && p.score >= 0.4 * best);
     places.sort_by(|a, b| b.score.total_cmp(&a.score));
-    // Too few places are roofs and niches of an object, not a scene to walk in.
+    // A few places are roofs and niches of an object, not a scene to walk in.
     if places.len() < 4 {
         return Vec::new();
     }
-    // As far apart as leaves enough of them.
+    // As far apart as possible while leaving enough of them.
     let extent = size.max_element();
     let routes = [8.0, 12.0, 18.0].map(|parts| route(&places, (extent / parts).max(0.4), rays));
     let enough = routes.iter().find(|r| r.len() == COUNT);
@@ -90,7 +90,7 @@ fn walk(bounds: &Bounds, rays: &Rays) -> Vec<Viewpoint> {
     let mut heading: Option<Vec3> = None;
     let mut viewpoints = Vec::new();
     for i in 0..COUNT {
-        // Where the walk is shorter, the last place is looked around from.
+        // If the walk is shorter, the remaining viewpoints look around from its last place.
         let eye = eyes[i.min(eyes.len() - 1)];
         let around = i.saturating_sub(eyes.len() - 1) as f32 * TAU / COUNT as f32;
         let viewpoint = |ahead: Vec3| Viewpoint { position: eye, target: eye + ahead * 4.0 - Vec3::Y * 0.3 };
@@ -131,7 +131,7 @@ fn seen(viewpoint: &Viewpoint, rays: &Rays, reach: f32) -> f32 {
     hits as f32 / (GRID * GRID) as f32
 }
 
-/// Returns a way from the best place to the nearest that can be seen from there and so on: a camera path along it stays
+/// Returns a route from the best place to the nearest one visible from there, and so on: a camera path along it stays
 /// clear of walls.
 fn route(places: &[Place], apart: f32, rays: &Rays) -> Vec<Vec3> {
     let mut eyes = vec![places[0].eye];
@@ -147,7 +147,7 @@ fn route(places: &[Place], apart: f32, rays: &Rays) -> Vec<Vec3> {
     eyes
 }
 
-/// Returns eye positions above every floor of a column, from the top, that has room for a head above.
+/// Returns eye positions above all floors of a column that have headroom, from the top down.
 fn floors(bounds: &Bounds, rays: &Rays, column: Vec2, reach: f32) -> impl Iterator<Item = Vec3> {
     let mut found = Vec::new();
     let mut ceiling = f32::INFINITY;
@@ -182,15 +182,15 @@ fn place(eye: Vec3, rays: &Rays, reach: f32) -> Option<Place> {
         }
     }
     distances.sort_by(f32::total_cmp);
-    // Among houses the street, not the empty inside of one; on a roof there is little to see around.
+    // Prefer the street to the empty inside of a house; on a roof there is little to see around.
     let street = seen > 0.4 && rays.cast(eye, Vec3::Y, reach).is_none();
     let score = seen * (distances[16] / 8.0).min(1.0) * if street { 3.0 } else { 1.0 };
-    // Nothing nearer than half a metre: the eyes need room, and the synthesis too.
+    // Nothing may be nearer than half a metre: the eyes need room, and so does the synthesis.
     (distances[0] >= 0.5).then_some(Place { eye, score })
 }
 
-/// Returns sun, sky and point lights for a model that states none. Glowing surfaces become point lights. Where the
-/// viewpoints see (almost) no sky, lamps under the ceiling stand in for it, unless surfaces glow.
+/// Returns sun, sky and point lights for a model without any. Glowing surfaces become point lights. If the viewpoints
+/// see (almost) no sky and no surface glows, lamps under the ceiling replace the sky.
 pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sky, Vec<PointLight>) {
     let bounds = model.bounds();
     let lights = glowing(model, &bounds);
@@ -219,7 +219,7 @@ pub(super) fn light(model: &Model, rays: &Rays, viewpoints: &[Viewpoint]) -> (Sk
     (sky, lights)
 }
 
-/// Lamps under the ceiling above the viewpoints, 3 m apart at least.
+/// Returns lamps under the ceiling above the viewpoints, at least 3 m apart.
 fn lamps(rays: &Rays, viewpoints: &[Viewpoint], reach: f32) -> Vec<PointLight> {
     let mut lights: Vec<PointLight> = Vec::new();
     for v in viewpoints {
@@ -228,7 +228,7 @@ fn lamps(rays: &Rays, viewpoints: &[Viewpoint], reach: f32) -> Vec<PointLight> {
         let height = above + distance(Vec3::NEG_Y).unwrap_or(EYE_HEIGHT);
         let position = v.position + Vec3::Y * above;
         if lights.len() < MAX_LIGHTS && lights.iter().all(|l| l.position.distance(position) > 3.0) {
-            // A third of the sun's light arrives at the floor below.
+            // A third of the sun's light reaches the floor below.
             let color = Vec3::new(1.0, 0.94, 0.84) * height * height;
             lights.push(PointLight { position, color, range: (height * 4.0).max(6.0) });
         }
@@ -268,10 +268,10 @@ fn glowing(model: &Model, bounds: &Bounds) -> Vec<PointLight> {
     }
     let mut lights: Vec<PointLight> = lamps
         .into_values()
-        // Smaller than a hand: a diode, not a lamp.
+        // Smaller than a hand, so a diode rather than a lamp.
         .filter(|l| l.weight > 0.01)
         .map(|l| {
-            // A surface of radiance L and area A has the intensity L A straight ahead; none outshines a bright lamp.
+            // Radiance L and area A give the intensity L A straight ahead, limited here to a bright lamp's.
             let color = l.power * (20.0 / l.power.max_element()).min(1.0);
             let position = l.position / l.weight + l.normal.normalize_or_zero() * 0.15;
             PointLight { position, color, range: (color.max_element() / 0.01).sqrt().clamp(2.0, 30.0) }
@@ -284,7 +284,7 @@ fn glowing(model: &Model, bounds: &Bounds) -> Vec<PointLight> {
 }
 
 fn mean_linear(rgba: &[u8]) -> Vec3 {
-    // Every 37th pixel says enough.
+    // Every 37th pixel is enough.
     let picked = || rgba.chunks_exact(4).step_by(37);
     let sum: Vec3 = picked()
         .map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32))

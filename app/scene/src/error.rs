@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// No such file.
+    /// The file does not exist.
     #[error("there is no file {path}: give the path of an .obj, .gltf or .glb file")]
     NotFound {
         /// The path given.
         path: PathBuf,
     },
-    /// A folder, a device, a pipe.
+    /// The path is a folder, a device or a pipe.
     #[error("{path} is not a file: give the path of the .obj, .gltf or .glb file itself")]
     NotAFile {
         /// The path given.
         path: PathBuf,
     },
-    /// A file of another kind.
+    /// The file has another format.
     #[error("{path} is not a scene that can be read: convert it to .obj, .gltf or .glb")]
     UnknownFormat {
         /// The path given.
@@ -33,7 +33,7 @@ pub enum SceneError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A wrong statement, with its line.
+    /// A malformed statement and its line.
     #[error("{path}, line {line}: {what}; correct the line or export the model again")]
     Statement {
         /// The file.
@@ -43,7 +43,7 @@ pub enum SceneError {
         /// The fault.
         what: String,
     },
-    /// A damaged file or one that uses something unsupported; `what` contains the remedy.
+    /// The file is damaged, or uses something unsupported; `what` contains the remedy.
     #[error("{path}: {what}")]
     Unusable {
         /// The file.
@@ -51,23 +51,23 @@ pub enum SceneError {
         /// The fault and the remedy.
         what: String,
     },
-    /// Nothing to draw.
+    /// The file contains nothing to draw.
     #[error("{path} contains no triangle that can be drawn: export the model again with its faces")]
     Empty {
         /// The file.
         path: PathBuf,
     },
-    /// More than fits into 32-bit indices and memory.
+    /// The file has more than fits into 32-bit indices and memory.
     #[error("{path} has more than {limit} {what}: split the model or reduce it")]
     TooLarge {
         /// The file.
         path: PathBuf,
         /// Largest number accepted.
         limit: usize,
-        /// The things that are counted.
+        /// What is counted.
         what: &'static str,
     },
-    /// A texture that is there but cannot be decoded.
+    /// A texture exists but cannot be decoded.
     #[error("the texture {path} cannot be used ({what}): replace it, or remove it to load the model without")]
     Texture {
         /// The picture's file.
@@ -91,8 +91,8 @@ impl SceneError {
     }
 }
 
-/// Largest number of vertices, of triangle corners, and of entries of one kind in a file: keeps every index in
-/// 32 bits and bounds the memory a damaged or hostile file can take.
+/// Maximum number of vertices, of triangle corners, and of entries of one kind in a file. Keeps every index in 32 bits
+/// and bounds the memory that a damaged or hostile file can take.
 pub(super) const MAX_ELEMENTS: usize = 1 << 27;
 
 /// Checks that a path is a regular file and returns its size in bytes.

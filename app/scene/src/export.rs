@@ -1,4 +1,4 @@
-//! Scenes to files that other programs read: OBJ, MTL and PNG, and beside them what those cannot say.
+//! Writes scenes to files for other programs: OBJ, MTL and PNG, and separate files for what those cannot express.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::{self, Write};
@@ -10,15 +10,15 @@ use super::scene::Scene;
 use super::textures::unique;
 use yoro_files::{FileError, create_folder, write_with};
 
-/// Writes `NAME.obj`, `NAME.mtl`, `textures/*.png`, `NAME.camera.json`, `NAME.scene.json` and `LICENSE.txt` into
-/// a folder, which is made if necessary; [`crate::load()`] gives the same scene again. `license` is the text
-/// of the licence file.
+/// Writes `NAME.obj`, `NAME.mtl`, `textures/*.png`, `NAME.camera.json`, `NAME.scene.json` and `LICENSE.txt` into a
+/// folder, which is created if necessary. [`crate::load()`] reads the same scene back. `license` is the text of the
+/// licence file.
 ///
-/// Every file is written under a temporary name and renamed, so that none is ever half there. Returns the path of
-/// the OBJ file.
+/// Every file is written under a temporary name and renamed, so that it is never incomplete. Returns the path of the
+/// OBJ file.
 ///
 /// # Errors
-/// [`FileError`].
+/// [`FileError`] if a file or folder cannot be written.
 pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, FileError> {
     create_folder(folder)?;
     let mut taken = HashSet::new();
@@ -92,7 +92,7 @@ fn notes(material: &Material) -> MaterialNotes {
 fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[String]) -> io::Result<()> {
     let model = &scene.model;
     writeln!(out, "# {name}: {} triangles; metres, Y up\nmtllib {name}.mtl", model.triangle_count())?;
-    // Positions, texture coordinates and normals are indexed apart in OBJ: most vertices share two of them.
+    // OBJ indexes positions, texture coordinates and normals separately, and most vertices share two of them.
     let positions = Distinct::of(model.vertices.iter().map(|v| v.position.to_array()));
     let uvs = Distinct::of(model.vertices.iter().map(|v| v.uv.to_array()));
     let normals = Distinct::of(model.vertices.iter().map(|v| v.normal.to_array()));
@@ -123,7 +123,7 @@ fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[Strin
     Ok(())
 }
 
-/// The distinct ones of the vertices' values, compared bit by bit, and each vertex's number among them from 1.
+/// The distinct values of all vertices, compared bit by bit, and for each vertex the number of its value, from 1.
 struct Distinct<const N: usize> {
     values: Vec<[f32; N]>,
     number: Vec<usize>,
@@ -161,7 +161,7 @@ fn write_material(out: &mut impl Write, m: &Material, name: &str, textures: &[St
         map("map_d", m.diffuse_map)?;
     }
     map("map_Ks", m.specular_map)?;
-    // A map beside black is taken for white by readers; here it is off.
+    // Readers take a map with a black factor as white; here it is off.
     if m.emissive != glam::Vec3::ZERO {
         map("map_Ke", m.emissive_map)?;
     }

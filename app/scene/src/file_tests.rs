@@ -1,4 +1,4 @@
-//! Files of every kind, good and bad, through [`load`].
+//! Loads files of every kind, good and bad, with [`load`].
 
 use std::path::{Path, PathBuf};
 use std::{fs, time};
@@ -49,7 +49,7 @@ fn refused(text: impl AsRef<[u8]>, words: &[&str]) {
     assert!(!message.contains('\n'));
 }
 
-/// Sum of the triangles' area vectors.
+/// Returns the sum of the triangles' area vectors.
 fn area(model: &Model) -> Vec3 {
     let triangle = |t: &[u32]| {
         let [a, b, c] = [0, 1, 2].map(|k| model.vertices[t[k] as usize].position);
@@ -222,7 +222,7 @@ fn libraries_are_found_and_missing_ones_replaced() {
     let model = load(&folder.put("a.obj", text)).unwrap().model;
     let colours: Vec<_> = model.materials.iter().map(|m| m.diffuse).collect();
     assert_eq!(colours, [Vec3::X, Vec3::Y, Material::default().diffuse]);
-    // Without any library that exists, the one with the model's name.
+    // If no named library exists, the one with the model's name is used.
     folder.put("b.mtl", "newmtl red\nKd 0 0 1");
     let model = load(&folder.put("b.obj", square("mtllib gone.mtl\nusemtl red\nf 1 2 3"))).unwrap().model;
     assert_eq!(model.materials[0].diffuse, Vec3::Z);
@@ -292,7 +292,7 @@ fn every_kind_of_map_becomes_a_texture() {
     let normals = texture(rest.normal_map);
     assert!(!normals.srgb && normals.rgba[4 * 3] < 128 && normals.rgba[4 * 3 + 2] > 128);
     assert_eq!(texture(n.normal_map).rgba[..4], [128, 128, 255, 255]);
-    // Generated, since there are maps.
+    // Texture coordinates are generated, since there are maps.
     assert!(model.vertices.iter().any(|v| v.uv == Vec2::ONE));
 }
 
@@ -307,7 +307,7 @@ fn bad_pictures_are_named() {
     folder.put("p.png", &png);
     let message = load(&scene).unwrap_err().to_string();
     assert!(message.contains("p.png") && message.contains("replace"), "{message}");
-    // A header that promises 30000 x 30000 pixels.
+    // A header that claims 30000 x 30000 pixels.
     let mut huge = b"BM".to_vec();
     huge.extend([0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0]);
     huge.extend(30_000i32.to_le_bytes());
@@ -372,7 +372,7 @@ fn light_style_and_scale_are_read_from_scene_json() {
     }
 }
 
-/// A box seen from inside or outside, by its corners.
+/// Returns a box, to be seen from inside or outside, given by its corners.
 fn box_obj(min: [f32; 3], max: [f32; 3]) -> String {
     let mut text = String::new();
     for i in 0..8 {
@@ -441,8 +441,8 @@ fn streets_are_walked_on_the_ground() {
     assert_eq!(s.sky, Sky::default());
 }
 
-/// Large enough to be walked through, but with no place to walk: two cubes, a figure of blocks, and a wall whose top is
-/// a ledge.
+/// Large enough to walk through, but with no place to walk: two cubes, a figure of blocks, and a wall with a ledge on
+/// top.
 #[test]
 fn large_things_without_a_floor_are_circled() {
     let folder = Folder::new();
@@ -452,7 +452,7 @@ fn large_things_without_a_floor_are_circled() {
         + &box_obj([-3.0, 6.0, -1.0], [3.0, 14.0, 1.0])
         + &box_obj([-1.5, 14.0, -1.0], [1.5, 18.0, 1.0]);
     let wall = box_obj([-10.0, 0.0, -0.5], [10.0, 8.0, 0.5]);
-    // Of the hall in it nobody sees the walls.
+    // A closed block, whose inner walls cannot be seen from inside.
     let block = box_obj([-4.0, 0.0, -4.0], [4.0, 4.0, 4.0]);
     for (name, text) in [("cubes", cubes), ("figure", figure), ("wall", wall), ("block", block)] {
         let mut model = load(&folder.put("a.obj", text)).unwrap().model;
@@ -467,7 +467,7 @@ fn large_things_without_a_floor_are_circled() {
     }
 }
 
-/// A terrace with a small house: there is ground to walk on, and no view from it into the sky alone.
+/// A terrace with a small house has ground to walk on, but no viewpoint may see only sky.
 #[test]
 fn a_walk_shows_the_model() {
     let folder = Folder::new();
@@ -486,7 +486,7 @@ fn a_walk_shows_the_model() {
     }
 }
 
-/// A scene with all that a file must carry.
+/// A scene with everything that a file must preserve.
 fn rich_scene() -> Scene {
     let texture = |name: &str, srgb, nearest, f: fn(u32) -> [u8; 4]| TextureImage {
         name: name.into(),
@@ -603,7 +603,7 @@ fn a_failed_export_names_the_file() {
     assert!(message.contains("file is not a folder"), "{message}");
 }
 
-/// A triangle with normals and texture coordinates, one with indices, and a picture, as glTF.
+/// Returns glTF with a triangle with normals and texture coordinates, an indexed triangle, and a picture.
 fn gltf_text(folder: &Folder, embedded: bool) -> (String, Vec<u8>) {
     let floats = |v: &[f32]| v.iter().flat_map(|f| f.to_le_bytes()).collect::<Vec<u8>>();
     let mut data = floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0.]);
@@ -648,7 +648,7 @@ fn gltf_text(folder: &Folder, embedded: bool) -> (String, Vec<u8>) {
 fn check_gltf(scene: &Scene) {
     let m = &scene.model;
     assert_eq!(m.triangle_count(), 1);
-    // Mirrored, so turned round again.
+    // The mesh is mirrored, so its triangles are reversed.
     assert!(area(m).z > 0.0);
     let corner = m.vertices.iter().find(|v| v.position == Vec3::new(8., 0., 0.)).unwrap();
     assert_eq!((corner.normal, corner.uv), (Vec3::Z, Vec2::ONE));
@@ -675,7 +675,7 @@ fn gltf_is_read_in_every_packing() {
 }
 
 fn glb(text: &str, data: &[u8]) -> Vec<u8> {
-    // Cut the embedded buffer out: without a URI it is the binary chunk.
+    // Cuts out the embedded buffer: without a URI it is the binary chunk.
     let start = text.find(r#", "uri": "data:application"#).unwrap();
     let end = start + text[start..].find('}').unwrap();
     let mut json = format!("{}{}", &text[..start], &text[end..]).into_bytes();
@@ -716,7 +716,7 @@ fn damaged_gltf_is_refused_in_a_sentence() {
     }
     let without_bounds = good.replacen(r#", "min": [0,0,0], "max": [1,1,0]"#, "", 1);
     assert!(without_bounds.len() < good.len() && load(&folder.put("a.gltf", without_bounds)).is_ok());
-    // A circle of nodes ends.
+    // A cycle of nodes ends.
     let circle = good.replacen("\"mesh\": 0,", "\"mesh\": 0, \"children\": [0],", 1);
     assert!(load(&folder.put("a.gltf", circle)).is_ok());
 }
@@ -739,7 +739,7 @@ fn unusual_but_valid_gltf_is_read() {
         let text = good.replacen(from, to, 1);
         check_gltf(&load(&folder.put("a.gltf", text)).unwrap());
     }
-    // What an extension leaves out is not what is wrong.
+    // What an extension leaves out is not reported as the mistake.
     for extension in ["KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
         let required = format!("\"extensionsRequired\": [\"{extension}\"], \"scene\": 0");
         let text = changed("\"scene\": 0", &required)
@@ -754,7 +754,7 @@ fn unusual_but_valid_gltf_is_read() {
 fn sparse_accessors_replace_their_values() {
     let folder = Folder::new();
     let (good, _) = gltf_text(&folder, true);
-    // The corner at (1, 0, 0) moves to where the normals say: (0, 0, 1), by the index in bytes 100 and 101.
+    // The corner at (1, 0, 0) moves to (0, 0, 1), the value that the normals have, by the index in bytes 100 and 101.
     let sparse = |base: &str, offset: u32| {
         let sparse = format!(
             r#"{{{base}"sparse": {{"count": 1, "indices": {{"bufferView": 3, "byteOffset": {offset}, "componentType": 5123}}, "values": {{"bufferView": 1}}}}, "#
@@ -763,13 +763,13 @@ fn sparse_accessors_replace_their_values() {
     };
     let corners = |text: String| -> Vec<Vec3> {
         let model = load(&folder.put("a.gltf", text)).unwrap().model;
-        // As in the file: twice as large, mirrored, 10 m to the side.
+        // In the file's frame: the node scales by two, mirrors, and moves 10 m to the side.
         model.vertices.iter().map(|v| (v.position - Vec3::X * 10.0) / Vec3::new(-2., 2., 2.)).collect()
     };
     let mut moved = corners(sparse("\"bufferView\": 0, ", 2));
     moved.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap());
     assert_eq!(moved, [Vec3::ZERO, Vec3::Z, Vec3::Y]);
-    // All others are zero: nothing is left to draw.
+    // All other positions are zero, so nothing is left to draw.
     let message = load(&folder.put("a.gltf", sparse("", 2))).unwrap_err().to_string();
     assert!(message.contains("no triangle"), "{message}");
     let beyond = sparse("\"bufferView\": 0, ", 2).replacen("\"byteOffset\": 2,", "\"byteOffset\": 6,", 1);
@@ -777,7 +777,7 @@ fn sparse_accessors_replace_their_values() {
     assert!(message.contains("accessor 0 reaches beyond"), "{message}");
 }
 
-/// Two triangles with a colour for each vertex, in linear light, and a material.
+/// Returns glTF of two triangles with linear colours for each vertex, and a material.
 fn painted_gltf(material: &str, colors: [[f32; 4]; 3]) -> String {
     let mut data: Vec<u8> =
         [0f32, 0., 0., 1., 0., 0., 0., 1., 0.].iter().flat_map(|f| f.to_le_bytes()).collect();
@@ -817,10 +817,10 @@ fn vertex_colours_of_gltf_multiply_the_material() {
     shown.dedup();
     // The mesh without colours is white.
     assert_eq!(shown, [[255, 0, 0, 255], [255; 4]]);
-    // White says nothing.
+    // White vertex colours are ignored.
     let model = load(&folder.put("a.gltf", painted_gltf(material, [[1.0; 4]; 3]))).unwrap().model;
     assert_eq!((model.textures.len(), model.materials[0].diffuse_map), (0, None));
-    // With a texture, that is what is drawn.
+    // If there is a texture, it is drawn instead.
     folder.picture("pic.png", 4, |_, _| [90, 80, 70, 255]);
     let textured = painted_gltf(r#""pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}"#, red)
         .replacen(
@@ -849,13 +849,13 @@ fn specular_glossiness_is_a_material() {
         (model.materials[0].clone(), model.textures)
     };
     let srgb = |v: Vec3| Vec3::from(v.to_array().map(textures::to_srgb));
-    // A dielectric: nothing is taken for metal.
+    // A dielectric: nothing is treated as metal.
     let (m, _) = material(
         r#""diffuseFactor": [1, 0.5, 0, 1], "specularFactor": [0.04, 0.04, 0.04], "glossinessFactor": 0.75"#,
     );
     assert!(m.diffuse.distance(srgb(Vec3::new(0.96, 0.48, 0.0))) < 1e-5, "{}", m.diffuse);
     assert!(m.specular.distance(srgb(Vec3::splat(0.04))) < 1e-5 && m.roughness == 0.25);
-    // A metal looks as it does in the other model.
+    // A metal looks the same as in the metallic-roughness model.
     let (m, _) = material(r#""diffuseFactor": [0, 0, 0, 1], "specularFactor": [1, 0.8, 0.3]"#);
     assert!(m.diffuse.distance(srgb(Vec3::new(0.3, 0.24, 0.09))) < 0.03, "{}", m.diffuse);
     assert_eq!((m.specular, m.roughness), (srgb(Vec3::new(1.0, 0.8, 0.3)), 0.0));
@@ -865,7 +865,7 @@ fn specular_glossiness_is_a_material() {
     assert!((m.roughness - 0.9).abs() < 1e-3, "{}", m.roughness);
     let [diffuse, specular] = [m.diffuse_map, m.specular_map].map(|i| &textures[i.unwrap()]);
     assert_eq!(specular.rgba[..4], [255, 188, 0, 255]);
-    // Nothing of it is diffuse; what metal keeps of its colour is.
+    // The specular colour leaves nothing of the diffuse one; a metal keeps a share of its own colour.
     let level = |v: f32| (textures::to_srgb(v) * 255.0).round() as u8;
     assert_eq!(
         diffuse.rgba[..4],
@@ -908,7 +908,7 @@ proptest! {
         ], 0..250)) {
         let folder = Folder::new();
         let start = time::Instant::now();
-        // A start that makes faces likely to be valid.
+        // A beginning that makes faces likely to be valid.
         let text = format!("{SQUARE}vt 0 0\nvn 0 1 0\n{}\nf 1 2 3 4", words.join(" "));
         let _ = load(&folder.put("a.obj", text));
         prop_assert!(start.elapsed().as_secs() < 20);

@@ -1,6 +1,6 @@
 //! Scenes: models with materials and lights, their files, and camera paths.
 //!
-//! [`load()`] reads OBJ, glTF and GLB files with their textures and sidecar files; [`export()`] writes a scene as
+//! [`load()`] reads OBJ, glTF and GLB files with their textures and sidecar files. [`export()`] writes a scene as
 //! files. Missing parts are generated or replaced by defaults, with a warning that names the file. This crate must
 //! never know OpenGL, or which scenes are built in.
 

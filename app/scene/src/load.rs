@@ -1,4 +1,4 @@
-//! Scenes from files: the model by its extension, and what lies beside it.
+//! Loads scenes from files: the model, by its extension, and the files beside it.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -16,15 +16,15 @@ use super::path as camera_path;
 use super::rays::Rays;
 use super::scene::Scene;
 
-/// Largest `camera.json` or `scene.json`, in bytes.
+/// Maximum size of `camera.json` or `scene.json` in bytes.
 const MAX_SIDECAR: u64 = 16 << 20;
 
 /// The properties that OBJ lacks: the format of `NAME.scene.json` or `scene.json` beside a model. Every key is
-/// optional, unknown keys are refused.
+/// optional; unknown keys are refused.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SceneNotes {
-    /// Metres per unit of the file, 1 if left out; 0.01 for a model in centimetres.
+    /// Metres per unit of the file, 1 by default; 0.01 for a model in centimetres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scale: Option<f32>,
     /// Shading style.
@@ -45,7 +45,7 @@ pub struct SceneNotes {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialNotes {
-    /// Use of the diffuse map's alpha.
+    /// How the diffuse map's alpha is used.
     pub alpha: AlphaNotes,
     /// Drawn from both sides.
     pub double_sided: bool,
@@ -86,9 +86,9 @@ impl From<AlphaNotes> for Alpha {
 /// Loads a scene from an `.obj`, `.gltf` or `.glb` file.
 ///
 /// Viewpoints come from `NAME.camera.json` or `camera.json` beside the file (an array of [`Viewpoint`]), light and
-/// style from `NAME.scene.json` or `scene.json` ([`SceneNotes`]). Without these files a glTF file's own cameras and
+/// style from `NAME.scene.json` or `scene.json` ([`SceneNotes`]). Without these files, a glTF file's own cameras and
 /// lights are used. Anything still missing is generated: at least 8 viewpoints around the model or through it at eye
-/// height, point lights for glowing surfaces, and a sky, or lamps where no sky is seen.
+/// height, point lights for glowing surfaces, and a sky, or lamps where no sky is visible.
 ///
 /// # Errors
 /// [`SceneError`], one sentence for the user.
@@ -120,7 +120,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         }
         model.textures.iter_mut().filter(|t| notes.nearest.contains(&t.name)).for_each(|t| t.nearest = true);
         style = notes.style;
-        // Lights that are stated there stand still.
+        // Lights from the sidecar file do not move.
         if notes.sky.is_some() {
             motion.sun = None;
         }
@@ -159,7 +159,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
             cameras = made;
         }
         let (default_sky, default_lights) = defaults::light(&model, &rays, &cameras);
-        // A file that brings its lamps and no sky is lit by its lamps.
+        // A file with lamps but no sky is lit by its lamps alone.
         sky = sky.or(Some(default_sky));
         lights = lights.or(Some(default_lights));
     }
@@ -174,14 +174,14 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     })
 }
 
-/// Returns `NAME.suffix`, or else `suffix`, beside a file; None if neither exists.
+/// Returns `NAME.suffix` beside a file, or else `suffix`; `None` if neither exists.
 pub fn sidecar_file(path: &Path, suffix: &str) -> Option<PathBuf> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let candidates = [path.with_file_name(format!("{stem}.{suffix}")), path.with_file_name(suffix)];
     candidates.into_iter().find(|c| yoro_files::is_file(c))
 }
 
-/// Reads the [`sidecar_file`]; None if there is none.
+/// Reads the [`sidecar_file`]; `None` if there is none.
 fn sidecar<T: serde::de::DeserializeOwned>(
     path: &Path,
     suffix: &str,

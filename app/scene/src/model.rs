@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use yoro::eyes::Pose;
 
-/// One vertex. 32 bytes, uploaded as it is.
+/// One vertex: 32 bytes, uploaded as is.
 #[repr(C)]
 #[derive(
     Clone,
@@ -35,23 +35,23 @@ pub struct Part {
     pub name: String,
     /// Index into [`Model::materials`].
     pub material: usize,
-    /// Range of [`Model::indices`]; a multiple of three long.
+    /// Range of [`Model::indices`]; its length is a multiple of three.
     pub indices: Range<usize>,
 }
 
-/// The use of the diffuse map's alpha.
+/// How the diffuse map's alpha is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Alpha {
     /// Ignored.
     #[default]
     Opaque,
-    /// Fragments below the cut-off are discarded: leaves, fences, grilles. Drawn from both sides.
+    /// Fragments with alpha below this are discarded: leaves, fences, grilles. Drawn from both sides.
     Cutout(f32),
-    /// Blended in the forward pass with this opacity (times the map's alpha).
+    /// Blended after the opaque surfaces, with this opacity times the map's alpha.
     Blend(f32),
 }
 
-/// A material in the terms of MTL: colours are display-referred (sRGB), 0 to 1.
+/// A material in the terms of MTL. Colours are display-referred (sRGB), 0 to 1.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Material {
     /// Name, unique in the model.
@@ -68,7 +68,7 @@ pub struct Material {
     pub alpha: Alpha,
     /// Drawn from both sides; normals face the eye.
     pub double_sided: bool,
-    /// Texture indices into [`Model::textures`].
+    /// Diffuse colour map; as all maps, an index into [`Model::textures`].
     pub diffuse_map: Option<usize>,
     /// Specular colour map.
     pub specular_map: Option<usize>,
@@ -99,15 +99,15 @@ impl Default for Material {
 /// A picture in memory: 8-bit RGBA, row 0 at the top, not premultiplied.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TextureImage {
-    /// Name, unique in the model; the file's stem on export.
+    /// Name, unique in the model; the file name without extension on export.
     pub name: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// `width * height * 4` bytes.
     pub rgba: Vec<u8>,
-    /// Colour (sRGB) or data (normal maps).
+    /// True for colour (sRGB), false for data (normal maps).
     pub srgb: bool,
-    /// Sample without filtering between texels when magnified (pixel art, voxel scenes).
+    /// True to not filter between texels when magnified (pixel art, voxel scenes).
     pub nearest: bool,
 }
 
@@ -151,7 +151,7 @@ impl Bounds {
     /// Contains nothing.
     pub const EMPTY: Bounds = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// The box grown to contain a point.
+    /// Returns the box enlarged to contain a point.
     pub fn including(self, p: Vec3) -> Bounds {
         Bounds { min: self.min.min(p), max: self.max.max(p) }
     }
@@ -161,7 +161,7 @@ impl Bounds {
         (self.min + self.max) * 0.5
     }
 
-    /// True if nothing is inside.
+    /// True if the box contains nothing.
     pub fn is_empty(&self) -> bool {
         self.min.x > self.max.x
     }
@@ -172,7 +172,7 @@ impl Bounds {
     }
 }
 
-/// The way in which the lighting pass turns light into colour.
+/// How shading turns light into colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShadingStyle {
@@ -211,23 +211,23 @@ impl ShadingStyle {
     }
 }
 
-/// A sphere of light.
+/// A point light with a limited range.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PointLight {
     /// Position in metres.
     pub position: Vec3,
     /// Linear RGB intensity at one metre (the sun's noon value is about 3).
     pub color: Vec3,
-    /// Distance in metres at which it has faded to nothing.
+    /// Distance in metres at which the light has faded to zero.
     pub range: f32,
 }
 
-/// The light from far away.
+/// The sun and the sky.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sky {
     /// Unit vector towards the sun.
     pub sun_direction: Vec3,
-    /// Linear RGB irradiance of the sun; zero for none (no shadow map is rendered then).
+    /// Linear RGB irradiance of the sun; zero for no sun, which also skips the shadow map.
     pub sun_color: Vec3,
     /// Linear RGB of the sky overhead: background and ambient light from above.
     pub zenith: Vec3,
@@ -249,17 +249,17 @@ impl Default for Sky {
     }
 }
 
-/// A viewpoint by where it is and what it looks at; the format of `camera.json` is an array of these.
+/// A viewpoint: a position and what it looks at. An array of these is the format of `camera.json`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Viewpoint {
     /// Position of the head in metres.
     pub position: Vec3,
-    /// Point looked at.
+    /// The point that the head looks at.
     pub target: Vec3,
 }
 
 impl Viewpoint {
-    /// The head's pose.
+    /// Returns the head's pose.
     pub fn pose(&self) -> Pose {
         Pose::look_at(self.position, self.target)
     }

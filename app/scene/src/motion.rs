@@ -1,8 +1,7 @@
-//! Motion: what moves in a scene, and where it is at a time.
+//! What moves in a scene, and where it is at a given time.
 //!
 //! Nodes move by keyframes, and carry triangles, joints of skins, and lights. [`Motion::at`] is a pure function of
-//! time. It works out vertices on the CPU, so that every pass draws what moves as it draws everything else, on any
-//! driver.
+//! time. It computes vertices on the CPU, so that every pass draws moving surfaces like all others, on any driver.
 
 use std::ops::Range;
 
@@ -11,37 +10,37 @@ use serde::{Deserialize, Serialize};
 
 use super::model::{Bounds, PointLight, Sky, Vertex};
 
-/// Moments of the longest loop at which [`Motion::bounds`] looks.
+/// Number of moments of the longest loop that [`Motion::bounds`] samples.
 const LOOKS: u32 = 32;
 
-/// The way from one key to the next.
+/// How values between two keys are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interpolation {
-    /// The earlier key holds.
+    /// The earlier key's value.
     Step,
-    /// Straight; rotations the short way round at an even speed.
+    /// Linear; rotations go the short way round at constant speed.
     #[default]
     Linear,
-    /// A cubic Hermite spline through the keys, with tangents as glTF has them.
+    /// A cubic Hermite spline through the keys, with tangents as in glTF.
     CubicSpline,
 }
 
-/// A value by keyframes. Before the first key that one holds, after the last key the last.
+/// A value animated by keyframes. Before the first key it has that key's value, after the last key that one's.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Track {
     /// Index into [`Motion::loops`].
     pub clock: usize,
-    /// Seconds of the keys, increasing, at least one.
+    /// Times of the keys in seconds, increasing; at least one.
     pub times: Vec<f32>,
-    /// The keys' values one after the other; of a cubic spline the tangent before, the value and the tangent after of
-    /// each key.
+    /// The keys' values, one after the other. For a cubic spline each key has the tangent before it, the value, and the
+    /// tangent after it.
     pub values: Vec<f32>,
-    /// The way from one key to the next.
+    /// How values between two keys are computed.
     pub interpolation: Interpolation,
 }
 
 impl Track {
-    /// Writes the value at a time of its clock.
+    /// Writes the value at the current time of its clock.
     fn sample(&self, clocks: &[f32], out: &mut [f32]) {
         let width = out.len();
         let spline = self.interpolation == Interpolation::CubicSpline;
@@ -96,30 +95,30 @@ impl Track {
     }
 }
 
-/// Returns the rotation of length one; none for the zeros of a damaged file.
+/// Returns the rotation normalized, or the identity for the zeros of a damaged file.
 fn unit(rotation: Quat) -> Quat {
     let length = rotation.length();
     if length > 0.0 && length.is_finite() { rotation / length } else { Quat::IDENTITY }
 }
 
-/// A node: a frame that others, triangles or lights stand in.
+/// A node: a frame that contains other nodes, triangles or lights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Node {
-    /// Index of the node that it stands in, a smaller one; the world without.
+    /// Index of the parent node, smaller than this node's; `None` for the world.
     pub parent: Option<usize>,
-    /// The transform from its own frame before it moves to the parent's.
+    /// The transform from the node's own frame, before its motion, to the parent's.
     pub fixed: Affine3A,
-    /// Translation in metres, unless it moves.
+    /// Translation in metres, if `moves` is `None`.
     pub translation: Vec3,
-    /// Rotation, unless it turns.
+    /// Rotation, if `turns` is `None`.
     pub rotation: Quat,
-    /// Scale, unless it grows.
+    /// Scale, if `grows` is `None`.
     pub scale: Vec3,
-    /// The keys of the translation: three numbers each.
+    /// The keys of the translation, three numbers each.
     pub moves: Option<Track>,
-    /// The keys of the rotation: quaternions x, y, z, w.
+    /// The keys of the rotation, quaternions x, y, z, w.
     pub turns: Option<Track>,
-    /// The keys of the scale: three numbers each.
+    /// The keys of the scale, three numbers each.
     pub grows: Option<Track>,
 }
 
@@ -164,34 +163,34 @@ pub enum Carrier {
     Node(usize),
     /// Joints.
     Skin {
-        /// Nodes, and the transforms from the mesh's frame to theirs in the pose that the mesh was made in.
+        /// Nodes, and the transforms from the mesh's frame to theirs in the bind pose.
         joints: Vec<(usize, Affine3A)>,
-        /// One for each vertex.
+        /// The influences on each vertex.
         influences: Vec<Influence>,
     },
 }
 
-/// Shapes that are blended into the one at rest.
+/// Shapes that are blended into the shape at rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Morph {
-    /// For each shape the differences of each vertex's position and normal.
+    /// For each shape, the differences of each vertex's position and normal from the shape at rest.
     pub targets: Vec<Vec<[Vec3; 2]>>,
-    /// The shapes' weights, unless they change.
+    /// The shapes' weights, if `changes` is `None`.
     pub weights: Vec<f32>,
-    /// The keys of the weights: as many numbers each as there are shapes.
+    /// The keys of the weights, each with one number per shape.
     pub changes: Option<Track>,
 }
 
 /// Vertices that move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MovingMesh {
-    /// Range of the model's vertices. All triangles of a part of the model have vertices in one such range, or in none.
+    /// Range of the model's vertices. A part of the model has all of its vertices in one such range, or none of them.
     pub vertices: Range<usize>,
     /// These vertices in the frame of their carrier.
     pub rest: Vec<Vertex>,
     /// What carries them.
     pub carrier: Carrier,
-    /// The shapes that are blended in before that.
+    /// The shapes that are blended in before the vertices are carried.
     pub morph: Option<Morph>,
 }
 
@@ -206,10 +205,10 @@ pub struct MovingLight {
     pub position: Vec3,
 }
 
-/// All that moves in a scene; by default nothing does.
+/// Everything that moves in a scene; by default nothing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
-    /// Clocks: the seconds after which each starts over, 0 for one that stands.
+    /// For each clock, the seconds after which it starts over; 0 for a clock that stands still.
     pub loops: Vec<f32>,
     /// Nodes, each after its parent.
     pub nodes: Vec<Node>,
@@ -221,7 +220,7 @@ pub struct Motion {
     pub sun: Option<usize>,
 }
 
-/// What moves, at one time. Made once, and filled by [`Motion::at`] without allocation.
+/// The state of everything that moves at one time. Made once, and filled by [`Motion::at`] without allocation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moment {
     /// The vertices of all of [`Motion::meshes`], one mesh after the other.
@@ -233,9 +232,9 @@ pub struct Moment {
     /// The direction to the sun, if it moves.
     pub sun: Option<Vec3>,
     clocks: Vec<f32>,
-    /// To world space.
+    /// Transforms of the nodes to world space.
     nodes: Vec<Affine3A>,
-    /// From a skin's mesh to world space.
+    /// Transforms from a skin's mesh to world space, by joint.
     joints: Vec<Affine3A>,
     weights: Vec<f32>,
 }
@@ -246,7 +245,7 @@ impl Motion {
         self.meshes.is_empty() && self.lights.is_empty() && self.sun.is_none()
     }
 
-    /// Returns room for what moves, filled for time 0.
+    /// Allocates a moment and fills it for time 0.
     pub fn start(&self) -> Moment {
         let joints = self.meshes.iter().map(|mesh| match &mesh.carrier {
             Carrier::Node(_) => 0,
@@ -267,7 +266,7 @@ impl Motion {
         moment
     }
 
-    /// Fills a moment of this motion for a time in seconds. Every clock starts over after its loop, before 0 too.
+    /// Fills a moment of this motion for a time in seconds. Every clock repeats its loop, also before time 0.
     pub fn at(&self, seconds: f64, moment: &mut Moment) {
         self.place_nodes(seconds, moment);
         let Moment { vertices, bounds, lights, sun, clocks, nodes, joints, weights } = moment;
@@ -317,8 +316,8 @@ impl Motion {
         moment.nodes
     }
 
-    /// Returns the smallest box around all that triangles reach in the longest loop, as far as 32 looks tell; empty
-    /// without such triangles.
+    /// Returns the smallest box around all moving triangles, sampled at 32 moments of the longest loop; empty if no
+    /// triangles move.
     pub fn bounds(&self) -> Bounds {
         let mut moment = self.start();
         let longest = self.loops.iter().copied().fold(0.0, f32::max);
@@ -330,7 +329,7 @@ impl Motion {
         all
     }
 
-    /// Enlarges everything, around the origin.
+    /// Scales everything around the origin.
     pub(crate) fn enlarge(&mut self, scale: f32) {
         for node in self.nodes.iter_mut().filter(|node| node.parent.is_none()) {
             node.fixed = Affine3A::from_scale(Vec3::splat(scale)) * node.fixed;
@@ -339,7 +338,7 @@ impl Motion {
 }
 
 impl Morph {
-    /// Adds the shapes to the vertices. `weights` is room for their weights.
+    /// Adds the shapes to the vertices. `weights` is scratch space for their weights.
     fn blend(&self, clocks: &[f32], weights: &mut [f32], vertices: &mut [Vertex]) {
         match &self.changes {
             Some(track) => track.sample(clocks, weights),
@@ -356,7 +355,7 @@ impl Morph {
     }
 }
 
-/// Carries vertices by a node. One that stands where it stood leaves them as they are, to the bit.
+/// Moves vertices with a node. A node that has not moved leaves them unchanged, to the bit.
 fn carry(to_world: &Affine3A, vertices: &mut [Vertex]) {
     if *to_world == Affine3A::IDENTITY {
         return;
@@ -368,7 +367,7 @@ fn carry(to_world: &Affine3A, vertices: &mut [Vertex]) {
     }
 }
 
-/// Carries vertices by the mean of their joints. Joints that stand where they stood leave them as they are, to the bit.
+/// Moves vertices by the mean of their joints. Joints that have not moved leave them unchanged, to the bit.
 fn skin(joints: &[Affine3A], influences: &[Influence], vertices: &mut [Vertex]) {
     if joints.iter().all(|joint| *joint == Affine3A::IDENTITY) {
         return;
@@ -388,7 +387,7 @@ fn skin(joints: &[Affine3A], influences: &[Influence], vertices: &mut [Vertex]) 
     }
 }
 
-/// Returns the cofactors: the inverse transpose, by which normals turn, without the division. Mirroring keeps the side.
+/// Returns the cofactors: the inverse transpose, for normals, without the division. Mirroring keeps the side.
 fn normal_matrix(linear: &Mat3A) -> Mat3A {
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     let cofactors = Mat3A::from_cols(y.cross(z), z.cross(x), x.cross(y));
@@ -396,7 +395,7 @@ fn normal_matrix(linear: &Mat3A) -> Mat3A {
 }
 
 impl Moment {
-    /// Puts the vertices that move into their places in a model.
+    /// Copies the moving vertices to their places in a model.
     pub(crate) fn place(&self, motion: &Motion, vertices: &mut [Vertex]) {
         let mut from = 0;
         for mesh in &motion.meshes {
@@ -406,7 +405,7 @@ impl Moment {
         }
     }
 
-    /// Moves a scene's lights and its sun.
+    /// Updates a scene's moving lights and its sun.
     pub fn light(&self, motion: &Motion, lights: &mut [PointLight], sky: &mut Sky) {
         for (light, position) in motion.lights.iter().zip(&self.lights) {
             lights[light.light].position = *position;

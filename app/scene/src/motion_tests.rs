@@ -1,4 +1,4 @@
-//! Animated glTF files, against positions worked out by hand in f64.
+//! Tests animated glTF files against positions computed by hand in f64.
 
 use std::fs;
 
@@ -76,14 +76,14 @@ fn loaded(text: &str) -> Scene {
     try_load(text, None).unwrap()
 }
 
-/// The corners of a triangle, which are told apart by their order.
+/// The corners of a triangle, identified by their order.
 const CORNERS: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [3.0, 0.5, 0.0], [1.5, 2.0, -0.5]];
 
 fn triangle(file: &mut File) -> usize {
     file.floats("VEC3", CORNERS.as_flattened())
 }
 
-/// The triangle's corners in the model of a scene, in the file's order.
+/// Returns the triangle's corners in a scene's model, in the file's order.
 fn corners(scene: &Scene) -> [Vec3; 3] {
     assert_eq!(scene.model.triangle_count(), 1);
     [0, 1, 2].map(|k| scene.model.vertices[scene.model.indices[k] as usize].position)
@@ -103,25 +103,25 @@ fn dvec(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
 
-/// Turns by degrees about Y.
+/// Rotates by degrees about Y.
 fn turned(p: DVec3, degrees: f64) -> DVec3 {
     let (sin, cos) = degrees.to_radians().sin_cos();
     DVec3::new(cos * p.x + sin * p.z, p.y, cos * p.z - sin * p.x)
 }
 
-/// Quaternion of a turn by degrees about Y.
+/// Returns the quaternion of a rotation by degrees about Y.
 fn about_y(degrees: f64) -> [f32; 4] {
     let (sin, cos) = (0.5 * degrees.to_radians()).sin_cos();
     [0.0, sin as f32, 0.0, cos as f32]
 }
 
-/// A parent that turns by 150 degrees in two seconds from .5 on and the long way back at once, and a child that moves
-/// along a spline and grows in steps.
+/// A parent that turns by 150 degrees in two seconds, starting at 0.5 s, and then keeps its rotation with the sign
+/// reversed; and a child that moves along a spline and grows in steps.
 fn nodes() -> String {
     let mut file = File::default();
     let mesh = triangle(&mut file);
     let turn_times = file.floats("SCALAR", &[0.5, 2.5, 4.0]);
-    // The same rotation as the second one, with the other sign: the short way is no way at all.
+    // The same rotation as the second one with the opposite sign: the short way between them is no motion.
     let back = about_y(150.0).map(|x| -x);
     let turns = file.floats("VEC4", [about_y(0.0), about_y(150.0), back].as_flattened());
     let times = file.floats("SCALAR", &[0.0, 1.0, 3.0]);
@@ -201,7 +201,7 @@ fn nodes_move_by_their_keys_and_start_over() {
             scene.at(f64::from(time) / 8.0).model.vertices.iter().all(|v| all.distance(v.position) == 0.0)
         );
     }
-    // Normals turn along: this face's own at rest, and turned by 90 degrees.
+    // Normals turn with the surface.
     let face = |scene: &Scene| {
         let [a, b, c] = corners(scene);
         (b - a).cross(c - a).normalize()
@@ -212,7 +212,7 @@ fn nodes_move_by_their_keys_and_start_over() {
     }
 }
 
-/// A triangle on two joints, of which the second bends by 90 degrees in a second, and rises by 1 m.
+/// A triangle on two joints, the second of which bends by 90 degrees in a second and rises by 1 m.
 fn bent(weights: [[f32; 4]; 3], joints: [[u8; 4]; 3], more: impl FnOnce(&mut File) -> String) -> String {
     let mut file = File::default();
     let mesh = triangle(&mut file);
@@ -250,14 +250,14 @@ fn skins_follow_their_joints_and_not_their_node() {
     for time in [0.0, 0.2, 0.5, 0.99] {
         assert_near(corners(&scene.at(time)), expected(time), time);
     }
-    // Colours split the vertices of the file: they stay with their joints.
+    // Colours split the file's vertices; the vertices keep their joints.
     let painted = bent(WEIGHTS, [[0, 1, 0, 0]; 3], |file| {
         let colors =
             file.floats("VEC4", [[1.0f32, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]].as_flattened());
         format!(", \"COLOR_0\": {colors}")
     });
     assert_near(corners(&loaded(&painted).at(0.5)), expected(0.5), 0.5);
-    // A skin whose joints stand still is still, in their pose.
+    // A skin whose joints do not move stays in their pose.
     let text = bent(WEIGHTS, [[0, 1, 0, 0]; 3], |_| String::new());
     let (start, end) = (text.find("\"animations\"").unwrap(), text.rfind('}').unwrap());
     let still = loaded(&format!("{}\"extras\": 0{}", &text[..start], &text[end..]));
@@ -300,7 +300,7 @@ fn shapes_blend_by_their_weights() {
             "at {time}"
         );
     }
-    // Without an animation the mesh's own weights hold.
+    // Without an animation, the mesh's own weights are used.
     let text = morphing();
     let (start, end) = (text.find("\"animations\"").unwrap(), text.rfind('}').unwrap());
     let still = loaded(&format!("{}\"extras\": 0{}", &text[..start], &text[end..]));
@@ -367,16 +367,16 @@ fn a_scale_in_the_notes_scales_what_moves() {
 fn of_animations_of_one_node_the_first_plays() {
     let text = nodes();
     let at = text.find("\"animations\": [").unwrap() + "\"animations\": [".len();
-    // The first turns node 2 in its own loop; the second is that of before, and moves it too.
+    // The first animation turns node 2 in its own loop. The second is the earlier one, which also moves node 2.
     let first = r#"{"channels": [{"sampler": 0, "target": {"node": 2, "path": "rotation"}}], "samplers": [{"input": 3, "output": 2}]}, "#;
     let refused = try_load(&format!("{}{first}{}", &text[..at], &text[at..]), None).unwrap();
     assert_eq!(refused.motion.loops, [3.0]);
-    // Another node's plays beside it.
+    // An animation of another property plays beside it.
     let first = r#"{"channels": [{"sampler": 0, "target": {"node": 2, "path": "translation"}}], "samplers": [{"input": 3, "output": 5}]}, "#;
     let both = loaded(&format!("{}{first}{}", &text[..at], &text[at..]));
     assert_eq!(both.motion.loops, [3.0, 4.0]);
     let apart = corners(&both.at(1.0))[0] - corners(&loaded(&text).at(1.0))[0];
-    // Of the first's scales, taken as places, the second: its key is at 1 s.
+    // The second of the scales in the first animation, used as translations: its key is at 1 s.
     assert!(apart.distance(Vec3::new(2.0, 1.0, 1.0)) < 1e-5, "{apart}");
 }
 
@@ -451,7 +451,7 @@ proptest! {
         let mut text = text.into_bytes();
         for (at, byte) in cuts {
             let at = at.index(text.len());
-            // Digits become other digits: most of the text stays readable.
+            // Digits become other digits, so that most of the text stays readable.
             text[at] = if text[at].is_ascii_digit() { b'0' + byte % 10 } else { byte % 128 };
         }
         if let Ok(scene) = try_load(&String::from_utf8_lossy(&text), None) {

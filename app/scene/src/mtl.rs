@@ -1,8 +1,8 @@
-//! MTL material libraries: what [`tobj::load_mtl_buf`] reads, made safe and complete.
+//! MTL material libraries: makes what [`tobj::load_mtl_buf`] reads safe and complete.
 //!
-//! tobj knows one spelling of each keyword, leaves the options of map statements to its caller, and panics on a
-//! colour of fewer than three numbers. So a library is first rewritten statement by statement: keywords in tobj's
-//! spelling, numbers checked, what cannot be understood left out with a warning.
+//! tobj knows one spelling of each keyword, leaves the options of map statements to its caller, and panics on a colour
+//! with fewer than three numbers. So a library is first rewritten statement by statement: keywords in tobj's spelling,
+//! numbers checked, and unintelligible statements left out with a warning.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -11,21 +11,21 @@ use glam::{Vec2, Vec3};
 
 use super::model::{Alpha, Material};
 
-/// A picture that a material asks for.
+/// A picture that a material uses.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MapStatement {
-    /// As written, without options.
+    /// The file name as written, without options.
     pub file: String,
     /// `-bm`: strength of bumps.
     pub bump: f32,
-    /// `-s`, `-o`: texture coordinates are multiplied, then moved.
+    /// `-s`, `-o`: texture coordinates are multiplied by `scale`, then moved by `offset`.
     pub scale: Vec2,
     pub offset: Vec2,
     /// `-imfchan`: `r`, `g`, `b`, `m`, `l` or `z`.
     pub channel: Option<char>,
 }
 
-/// A material of a library with the pictures it asks for.
+/// A material of a library, with the pictures it uses.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MtlEntry {
     pub material: Material,
@@ -34,12 +34,12 @@ pub(super) struct MtlEntry {
     pub emissive: Option<MapStatement>,
     /// A height or normal map.
     pub bump: Option<MapStatement>,
-    /// Surely a normal map.
+    /// A map that is certainly a normal map.
     pub normal: Option<MapStatement>,
     pub alpha: Option<MapStatement>,
 }
 
-/// Reads the text of a library. Never fails: what cannot be understood is warned about and left out.
+/// Reads the text of a library. Never fails: unintelligible statements are left out with a warning.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Vec<MtlEntry> {
     let mut text = String::new();
     let mut faults = 0;
@@ -66,14 +66,14 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Vec<MtlEntry> {
     }
 }
 
-/// Returns lines without comments and surrounding blanks, joined where they end in a backslash.
+/// Returns the lines without comments and surrounding blanks. A line that ends in a backslash is joined with the next.
 fn statements(text: &str) -> Vec<String> {
     let mut all = Vec::new();
     let mut open = String::new();
     for line in text.trim_start_matches('\u{feff}').split(['\n', '\r']) {
         let line = without_comment(line).trim();
         match line.strip_suffix('\\') {
-            // No statement is a folder that ends in a backslash, so nothing is lost.
+            // No statement is a folder name that ends in a backslash, so nothing is lost.
             Some(start) => {
                 open.push_str(start);
                 open.push(' ');
@@ -90,7 +90,7 @@ fn statements(text: &str) -> Vec<String> {
     all
 }
 
-/// Cuts at a `#` that stands at the start or after a blank: names may contain one.
+/// Cuts a line at the first `#` at the start or after a blank, since names may contain one.
 pub(super) fn without_comment(line: &str) -> &str {
     let start = line
         .match_indices('#')
@@ -99,7 +99,7 @@ pub(super) fn without_comment(line: &str) -> &str {
     start.map_or(line, |i| &line[..i])
 }
 
-/// The start of a statement, for messages.
+/// Returns the beginning of a statement, for messages.
 pub(super) fn abridged(statement: &str) -> String {
     let mut s: String = statement.chars().filter(|c| !c.is_control()).take(60).collect();
     if s.len() < statement.len() {
@@ -108,7 +108,7 @@ pub(super) fn abridged(statement: &str) -> String {
     s
 }
 
-/// The statement as tobj wants it; none if it cannot be understood.
+/// Returns the statement in tobj's spelling, or `None` if it is unintelligible.
 fn canonical(statement: &str) -> Option<String> {
     let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
     let rest = rest.trim();
@@ -138,7 +138,7 @@ fn canonical(statement: &str) -> Option<String> {
         "map_bump" | "bump" => "bump",
         "norm" | "map_norm" | "map_kn" => "norm",
         "map_d" => "map_d",
-        // Of no use here, but not worth a warning either.
+        // Not used here, but not worth a warning either.
         _ if rest.is_empty() => return Some(String::new()),
         _ => return Some(format!("other {rest}")),
     };
@@ -156,7 +156,7 @@ fn entry(m: &tobj::Material) -> MtlEntry {
         |c: Option<[f32; 3]>, otherwise: Vec3| c.map_or(otherwise, |c| Vec3::from(c).max(Vec3::ZERO));
     let mut kd =
         colour(m.diffuse, if diffuse.is_some() { Vec3::ONE } else { default.diffuse }).min(Vec3::ONE);
-    // Exporters that leave Kd black beside a map mean the map.
+    // Exporters that leave Kd black beside a map mean the map's colour.
     if diffuse.is_some() && kd == Vec3::ZERO {
         kd = Vec3::ONE;
     }
@@ -180,7 +180,7 @@ fn entry(m: &tobj::Material) -> MtlEntry {
         (None, None) => default.roughness,
     };
     let opacity = m.dissolve.or_else(|| number("tr").map(|t| 1.0 - t)).unwrap_or(1.0);
-    // Nobody models what cannot be seen: some exporters swap the meaning of d and Tr.
+    // Opacity 0 is taken as opaque: nobody models the invisible, and some exporters swap the meaning of d and Tr.
     let alpha = if opacity > 0.0 && opacity < 1.0 { Alpha::Blend(opacity) } else { Alpha::Opaque };
     MtlEntry {
         material: Material {
@@ -201,8 +201,8 @@ fn entry(m: &tobj::Material) -> MtlEntry {
     }
 }
 
-/// The material of faces without one. OBJ does not say which side of a face is seen, and many files are wound
-/// both ways or have walls without thickness: both sides are drawn.
+/// Returns the material of faces without one. It is double-sided, because OBJ does not say which side of a face is
+/// visible, and many files mix windings or have walls without thickness.
 pub(super) fn obj_default() -> Material {
     Material { double_sided: true, ..Material::default() }
 }
@@ -215,7 +215,7 @@ pub(super) fn map_statement(value: &str) -> Option<MapStatement> {
     while let Some(after) = option(rest, &mut map) {
         rest = after;
     }
-    // Options behind the name count only if nothing else follows: ` -s` may be part of a name.
+    // Options after the name count only if nothing follows them: ` -s` may be part of a name.
     for (i, _) in rest.match_indices(" -") {
         let mut with_tail = map.clone();
         let mut tail = rest[i..].trim_start();
@@ -232,7 +232,7 @@ pub(super) fn map_statement(value: &str) -> Option<MapStatement> {
     (!map.file.is_empty()).then_some(map)
 }
 
-/// Reads one option with its arguments; what follows it, or none if there is no option.
+/// Reads one option with its arguments. Returns the text after it, or `None` if there is no option.
 fn option<'a>(text: &'a str, map: &mut MapStatement) -> Option<&'a str> {
     let word = |s: &'a str| {
         let s = s.trim_start();

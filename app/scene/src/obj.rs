@@ -1,9 +1,9 @@
 //! OBJ files with their MTL libraries.
 //!
-//! [`tobj`] reads the numbers and builds the single index. Statements reach it through a normalizer, because on
-//! its own it has no line numbers, joins materials that it does not know, lets vertices with and without normals
-//! run out of step, overflows on absurd indices, and knows neither continued lines nor trailing comments nor
-//! smoothing groups. Polygons are cut here: tobj cuts them as fans, which is wrong for concave ones.
+//! [`tobj`] reads the numbers and builds the single index. Statements reach it through a normalizer, because on its own
+//! it has no line numbers, joins materials that it does not know, lets vertices with and without normals get out of
+//! step, overflows on absurd indices, and does not support continued lines, trailing comments or smoothing groups.
+//! Polygons are triangulated here: tobj makes fans of them, which is wrong for concave ones.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read, Write as _};
@@ -19,27 +19,27 @@ use super::polygon::Triangulator;
 use super::repair::{RawMesh, assemble};
 use super::textures::{AlphaUse, Built, Recipe, Source, TextureSet, find_file};
 
-/// Longest statement accepted, in bytes: a face of a million corners.
+/// Maximum length of a statement in bytes: a face of a million corners.
 const MAX_STATEMENT: usize = 16 << 20;
 
-/// Largest MTL library read, in bytes.
+/// Maximum size of an MTL library in bytes.
 const MAX_LIBRARY: u64 = 64 << 20;
 
-/// Faces after which a new tobj model is begun: it keeps tobj's tables small.
+/// Number of faces after which a new tobj model begins, to keep tobj's tables small.
 const FACES_PER_MODEL: usize = 1 << 16;
 
 /// Reads an OBJ file with its materials and textures. One unit is one metre.
 ///
-/// Missing libraries and textures are warned about and replaced by a default material or plain colour; missing
-/// normals and texture coordinates are generated; materials are double-sided.
+/// Missing libraries and textures are replaced by a default material or a plain colour, with a warning. Missing normals
+/// and texture coordinates are generated. Materials are double-sided.
 ///
 /// # Errors
-/// [`SceneError`] for a file that cannot be read or understood, and for textures that are there but damaged.
+/// [`SceneError`] if the file cannot be read or parsed, or a texture exists but is damaged.
 pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
     let file = yoro_files::open(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
     let mut input = Normalizer::new(path, BufReader::with_capacity(1 << 20, file));
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
-    // Statements about materials do not reach tobj: the libraries are read below.
+    // tobj does not see statements about materials: the libraries are read below.
     let parsed = tobj::load_obj_buf(&mut input, &options, |_| Ok(Default::default()));
     if let Some(error) = input.error.take() {
         return Err(error);
@@ -77,7 +77,7 @@ pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
     let meshes = models
         .into_iter()
         .filter_map(|model| {
-            // The name is the number of the part.
+            // The name is the index of the part.
             let part = model.name.parse::<usize>().ok().and_then(|i| input.parts.get(i))?;
             let name = input.names.names[part.name].clone();
             Some(raw_mesh(model.mesh, part, name, wanted[part.material].placement, painted[part.material]))
@@ -96,12 +96,12 @@ pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
     Ok(model)
 }
 
-/// Reads the libraries an OBJ file names, or the one with its own name; the first definition of a name counts.
+/// Reads the libraries that an OBJ file names, or else the one with its own name. First definitions count.
 fn libraries(path: &Path, input: &Normalizer<impl BufRead>) -> HashMap<String, MtlEntry> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files: Vec<PathBuf> = Vec::new();
     for statement in &input.libraries {
-        // Names may contain blanks, and a statement several names.
+        // A statement may contain several names, and names may contain blanks.
         let found: Vec<PathBuf> = match find_file(folder, statement.trim_matches('"')) {
             Some(file) => vec![file],
             None => statement.split_whitespace().filter_map(|name| find_file(folder, name)).collect(),
@@ -249,7 +249,7 @@ impl Names {
     }
 }
 
-/// The properties that the faces of one tobj model share.
+/// The properties that all faces of one tobj model share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PartKey {
     name: usize,
@@ -257,27 +257,26 @@ struct PartKey {
     flat: bool,
 }
 
-/// Reads an OBJ file and gives it out in the form that tobj understands without doubt: one statement a line;
-/// only `v`, `vt`, `vn`, `f` and `g`; every corner with all three indices, absolute and within the file.
-/// The first `vt` and `vn` are not numbers: corners without refer to them. `g` carries the number of an entry of
-/// [`Normalizer::parts`].
+/// Reads an OBJ file and outputs it in a form that tobj reads unambiguously: one statement per line; only `v`, `vt`,
+/// `vn`, `f` and `g`; every corner with all three indices, absolute and within the file. The first `vt` and `vn` are
+/// NaN, and stand for missing ones. `g` carries the index of an entry of [`Normalizer::parts`].
 struct Normalizer<R> {
     path: PathBuf,
     input: R,
     line: usize,
-    /// The statement as read, and as given out from `given` on.
+    /// The statement as read, and the output, which is consumed up to `given`.
     statement: Vec<u8>,
     out: Vec<u8>,
     given: usize,
-    /// `v`, `vt`, `vn` so far.
+    /// Number of `v`, `vt` and `vn` so far.
     counts: [usize; 3],
     corners: usize,
-    /// True if the first vertex had a colour; then all have.
+    /// True if the first vertex had a colour; then all of them get one.
     coloured: bool,
     name: String,
     material: String,
     flat: bool,
-    /// True if a name, material or smoothing was stated since the last face.
+    /// True if a name, material or smoothing group was stated since the last face.
     restated: bool,
     faces_in_part: usize,
     names: Names,
@@ -286,8 +285,8 @@ struct Normalizer<R> {
     libraries: Vec<String>,
     curves: bool,
     error: Option<SceneError>,
-    /// The first face that refers to a vertex further down: right only if that
-    /// follows before the faces of the next group.
+    /// The first face that refers to a later vertex. This is valid only if the vertex comes before the faces of the
+    /// next group.
     beyond: Option<SceneError>,
 }
 
@@ -322,7 +321,7 @@ impl<R: BufRead> Normalizer<R> {
         SceneError::Statement { path: self.path.clone(), line: self.line, what: what.into() }
     }
 
-    /// Reads one statement, continued lines joined; false at the end.
+    /// Reads one statement and joins continued lines. False at the end of the file.
     fn next_statement(&mut self) -> Result<bool, SceneError> {
         self.statement.clear();
         loop {
@@ -399,7 +398,7 @@ impl<R: BufRead> Normalizer<R> {
     }
 
     fn vector(&mut self, keyword: &str, rest: &str) -> Result<(), SceneError> {
-        // Passed on as they are written: printing numbers anew takes longer than all the rest.
+        // Passed on as written: formatting the numbers again takes longer than everything else.
         let mut words = [""; 7];
         let mut n = 0;
         for word in rest.split_ascii_whitespace().take(7) {
@@ -458,7 +457,7 @@ impl<R: BufRead> Normalizer<R> {
             for (kind, slot) in indices.iter_mut().enumerate() {
                 let part = parts.next().unwrap_or("");
                 if let Some(index) = self.index(part, kind, word)? {
-                    // Behind the first of vt and vn, which stand for missing ones.
+                    // The first vt and vn stand for missing ones, so the file's own come after them.
                     *slot = if kind == 0 { index } else { index + 1 };
                 }
             }
@@ -479,7 +478,7 @@ impl<R: BufRead> Normalizer<R> {
             });
         }
         if corners < 3 {
-            // Points and lines; the part that was begun for them stays open.
+            // Points and lines are dropped; the part that was begun for them stays open.
             self.out.truncate(began);
         } else {
             self.out.push(b'\n');
@@ -503,7 +502,7 @@ impl<R: BufRead> Normalizer<R> {
         self.parts.push(key);
     }
 
-    /// Returns an index of a corner, counted from 1; none if it is left out.
+    /// Returns an index of a corner, counted from 1; `None` if it is left out.
     fn index(&mut self, text: &str, kind: usize, corner: &str) -> Result<Option<usize>, SceneError> {
         let what = ["vertex", "texture coordinate", "normal"][kind];
         if text.is_empty() {
@@ -514,7 +513,7 @@ impl<R: BufRead> Normalizer<R> {
             text.parse().map_err(|_| self.fault(format!("`{}` is not the corner of a face", corner())))?;
         let count = self.counts[kind];
         match index {
-            // Some exporters write 0 for what is missing.
+            // Some exporters write 0 for missing indices.
             0 if kind > 0 => Ok(None),
             0 => Err(self.fault(format!("`{}` names {what} 0, but they are counted from 1", corner()))),
             i if i < 0 => match usize::try_from(i.unsigned_abs()).ok().filter(|&back| back <= count) {
@@ -542,7 +541,7 @@ impl<R: BufRead> Normalizer<R> {
     }
 }
 
-/// Returns a number, also the ways in which C libraries write what is none.
+/// Returns a number. Accepts the spellings of C libraries for values that are not numbers.
 fn number(word: &str) -> Option<f32> {
     let none = || {
         let w = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
@@ -556,7 +555,7 @@ impl<R: BufRead> BufRead for Normalizer<R> {
         if self.given >= self.out.len() {
             self.out.clear();
             self.given = 0;
-            // Many at once: tobj asks line by line.
+            // Many statements at once, because tobj asks line by line.
             while self.out.len() < 1 << 16 {
                 match self
                     .next_statement()

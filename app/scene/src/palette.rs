@@ -1,5 +1,5 @@
-//! Colours of vertices, for a renderer that has materials alone: a texture of all colours, and one texel of it for each
-//! triangle.
+//! Vertex colours for a renderer that has only materials: a texture of all colours, of which each triangle uses one
+//! texel.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use super::model::{TextureImage, Vertex};
 /// Levels per channel.
 const LEVELS: u32 = 64;
 
-/// Returns all colours of [`LEVELS`] per channel, a block of red and green for every blue, 8 x 8 blocks.
+/// Returns all colours with [`LEVELS`] levels per channel: a block of red and green for each blue, in 8 x 8 blocks.
 pub(super) fn palette() -> TextureImage {
     let edge = LEVELS * 8;
     let level = |i: u32| (i * 255 / (LEVELS - 1)) as u8;
@@ -27,9 +27,9 @@ pub(super) fn palette() -> TextureImage {
     }
 }
 
-/// Gives every triangle the texture coordinates of its colour in the [`palette`]: display-referred (sRGB), 0 to 1. One
-/// colour a triangle, since neighbours in the palette are not neighbours in colour; vertices that triangles of
-/// different colours share are split. Returns each vertex's former index.
+/// Gives every triangle the texture coordinates of its colour in the [`palette`]: display-referred (sRGB), 0 to 1. A
+/// triangle has one colour, since neighbours in the palette are not neighbours in colour. Vertices shared by triangles
+/// of different colours are split. Returns each vertex's former index.
 pub(super) fn paint(
     vertices: &mut Vec<Vertex>,
     indices: &mut [u32],
@@ -52,12 +52,12 @@ pub(super) fn paint(
     former
 }
 
-/// Returns the middle of a colour's texel in the palette.
+/// Returns the centre of a colour's texel in the palette.
 fn palette_uv(color: Vec3) -> Vec2 {
     let c = if color.is_finite() { color.clamp(Vec3::ZERO, Vec3::ONE) } else { Vec3::ONE };
     let [r, g, b] = (c * (LEVELS - 1) as f32).round().to_array().map(|l| l as u32);
     let (x, y) = (b % 8 * LEVELS + r, b / 8 * LEVELS + g);
     let edge = (LEVELS * 8) as f32;
-    // Rows are stored from the top, texture coordinates count from the bottom.
+    // Rows are stored from the top, while texture coordinates count from the bottom.
     Vec2::new((x as f32 + 0.5) / edge, 1.0 - (y as f32 + 0.5) / edge)
 }

@@ -12,10 +12,10 @@ use yoro_files::{self as files, FileError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It says something else.
+    /// The file has other contents.
     #[error("{} is not a camera path ({what}): give a JSON array of {{position, target}}", path.display())]
     Malformed {
         /// The file.
@@ -25,10 +25,10 @@ pub enum PathError {
     },
 }
 
-/// Reads the key viewpoints of a camera path: a file in the format of `camera.json`.
+/// Reads the key viewpoints of a camera path from a file in the format of `camera.json`.
 ///
 /// # Errors
-/// [`PathError`], also for a file without a viewpoint.
+/// [`PathError`], also if the file has no viewpoint.
 pub fn read(file: &Path) -> Result<Vec<Viewpoint>, PathError> {
     let malformed = |what: String| PathError::Malformed { path: file.into(), what };
     let viewpoints: Vec<Viewpoint> =
@@ -37,11 +37,10 @@ pub fn read(file: &Path) -> Result<Vec<Viewpoint>, PathError> {
     Ok(viewpoints)
 }
 
-/// The farthest place from the origin, in metres: f32 has steps of 8 mm there, an eighth of the distance between the
-/// eyes.
+/// Maximum distance from the origin in metres: f32 has steps of 8 mm there, an eighth of the distance between the eyes.
 pub const FARTHEST: f32 = 1e5;
 
-/// Checks the viewpoints of a file; the error is the fault.
+/// Checks the viewpoints of a file. The error describes the fault.
 pub(super) fn check(viewpoints: &[Viewpoint]) -> Result<(), String> {
     if viewpoints.is_empty() {
         return Err("there is no viewpoint in it".into());
@@ -64,24 +63,23 @@ pub(super) fn check(viewpoints: &[Viewpoint]) -> Result<(), String> {
     Ok(())
 }
 
-/// Steps per segment of the table that maps path length to curve parameter.
+/// Steps per segment of the table that maps path length to the curve parameter.
 const STEPS: usize = 32;
 
-/// A smooth path through key viewpoints: centripetal Catmull-Rom splines (no loops, no overshoot) for the
-/// position and for the target, run through at an even pace. A pure turn, whose position stands still, takes the
-/// time of its target's way.
+/// A smooth path through key viewpoints: centripetal Catmull-Rom splines (no loops, no overshoot) for position and
+/// target, traversed at constant speed. Where only the target moves, its path determines the time.
 #[derive(Clone, Debug)]
 pub struct CameraPath {
     keys: Vec<Viewpoint>,
-    /// Pace along the path up to every step of every segment, from 0 to 1; first and last included.
+    /// Share of the path's length up to every step of every segment, from 0 to 1, including the first and the last.
     lengths: Vec<f32>,
 }
 
 impl CameraPath {
-    /// Returns a path through these viewpoints; consecutive equal ones count once.
+    /// Creates a path through these viewpoints. Consecutive equal ones count once.
     ///
     /// # Panics
-    /// Without any viewpoint: a [`crate::Scene`] has at least one.
+    /// If there is no viewpoint; a [`crate::Scene`] has at least one.
     pub fn new(viewpoints: &[Viewpoint]) -> CameraPath {
         assert!(!viewpoints.is_empty(), "a camera path needs at least one viewpoint");
         let mut keys = viewpoints.to_vec();
@@ -107,7 +105,7 @@ impl CameraPath {
         path
     }
 
-    /// The viewpoint at `t`, 0 at the first key and 1 at the last; clamped outside. Exact at the keys.
+    /// Returns the viewpoint at `t`, 0 at the first key and 1 at the last; clamped outside. Exact at the keys.
     pub fn viewpoint(&self, t: f32) -> Viewpoint {
         let steps = self.lengths.len() - 1;
         if steps == 0 {
@@ -120,17 +118,17 @@ impl CameraPath {
         self.at(i / STEPS, ((i % STEPS) as f32 + f) / STEPS as f32)
     }
 
-    /// The head's pose at `t`, 0 at the first key and 1 at the last.
+    /// Returns the head's pose at `t`, 0 at the first key and 1 at the last.
     pub fn pose(&self, t: f32) -> Pose {
         self.viewpoint(t).pose()
     }
 
-    /// `n` poses at even pace from the first key to the last, both included; the first key for `n` = 1.
+    /// Returns `n` evenly spaced poses from the first key to the last, inclusive; the first key for `n` = 1.
     pub fn poses(&self, n: usize) -> Vec<Pose> {
         (0..n).map(|i| self.pose(i as f32 / (n.max(2) - 1) as f32)).collect()
     }
 
-    /// The key viewpoints the path goes through.
+    /// Returns the key viewpoints that the path goes through.
     pub fn keys(&self) -> &[Viewpoint] {
         &self.keys
     }
@@ -152,7 +150,7 @@ impl CameraPath {
             centripetal(p0, p1, p2, p3, u)
         };
         let (position, target) = (curve(|v| v.position), curve(|v| v.target));
-        // Targets that cross the position would turn the head arbitrarily.
+        // A target that passes through the position would turn the head arbitrarily.
         if position.distance_squared(target) < 1e-8 {
             return Viewpoint { position, target: position + key(segment).pose().forward() };
         }
@@ -160,7 +158,7 @@ impl CameraPath {
     }
 }
 
-/// Centripetal Catmull-Rom between `p1` and `p2` (the pyramid of Barry and Goldman, 1988).
+/// Evaluates centripetal Catmull-Rom between `p1` and `p2` (the pyramid of Barry and Goldman, 1988).
 fn centripetal(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, u: f32) -> Vec3 {
     let interval = |a: Vec3, b: Vec3| a.distance(b).sqrt();
     let middle = interval(p1, p2);

@@ -12,13 +12,13 @@ pub(super) struct Triangulator {
 }
 
 impl Triangulator {
-    /// Returns triangles with the polygon's winding, as places of their corners in `points`.
+    /// Returns triangles with the polygon's winding, as indices of their corners in `points`.
     ///
-    /// A convex polygon becomes a fan, as does one that covers no area or whose coordinates are not numbers.
+    /// A convex polygon becomes a fan, as does one without area or with coordinates that are not finite.
     pub(super) fn triangulate(&mut self, points: &[Vec3]) -> &[u32] {
         self.triangles.clear();
         let origin = points.first().map_or_else(Default::default, |p| p.as_dvec3());
-        // In f64 and from a corner on: f32 loses small polygons far from the origin.
+        // In f64 relative to a corner: f32 loses small polygons far from the origin.
         let local: Vec<_> = points.iter().map(|p| (p.as_dvec3() - origin).to_array()).collect();
         let is_finite = points.iter().all(|p| p.is_finite());
         let has_area = points.len() > 3 && is_finite && project3d_to_2d(&local, local.len(), &mut self.flat);
@@ -55,7 +55,7 @@ mod tests {
         (b - a).cross(c - a) * 0.5
     }
 
-    /// Triangles cover a planar polygon exactly when the areas add up with none of them turned over.
+    /// Triangles cover a planar polygon exactly if their areas add up and none is reversed.
     fn covers(points: &[Vec3], area: f32) {
         for turned in [false, true] {
             let mut points = points.to_vec();
@@ -99,7 +99,7 @@ mod tests {
             };
             covers(&l.iter().map(lift).collect::<Vec<_>>(), 3.0);
             covers(&comb.iter().map(lift).collect::<Vec<_>>(), 11.0);
-            // Every corner first, so that either diagonal must be chosen.
+            // Starts at each corner in turn, so that either diagonal must be chosen.
             let mut arrow: Vec<Vec3> = arrow.iter().map(lift).collect();
             for _ in 0..4 {
                 covers(&arrow, 1.0);
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(cut(&same).len(), 38);
         let crossing: Vec<Vec3> =
             (0..200).map(|i| Vec3::new((i * 37 % 100) as f32, (i * 61 % 90) as f32, 0.0)).collect();
-        // No triangles cover such a polygon once; those that come out are of its corners.
+        // No triangles can cover such a polygon once, but the indices must be those of its corners.
         assert!(cut(&crossing).into_iter().flatten().all(|corner| corner < 200));
     }
     #[test]

@@ -1,4 +1,4 @@
-//! Rays against a model's triangles: where there is room for a camera, and whether the sky is seen.
+//! Casts rays at a model's triangles, to find room for a camera and whether the sky is visible.
 
 use glam::Vec3;
 
@@ -10,7 +10,7 @@ const LEAF: usize = 8;
 /// A bounding volume hierarchy over all triangles, split at the median.
 pub(super) struct Rays<'a> {
     model: &'a Model,
-    /// By material: drawn from both sides.
+    /// For each material, true if it is drawn from both sides.
     two_sided: Vec<bool>,
     triangles: Vec<u32>,
     nodes: Vec<Node>,
@@ -24,14 +24,14 @@ struct Node {
     count: u32,
 }
 
-/// The first triangle that a ray meets.
+/// The first triangle that a ray hits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
-    /// In lengths of the direction.
+    /// Distance in lengths of the direction.
     pub distance: f32,
-    /// Unit normal of the face, either way.
+    /// Unit normal of the face, facing either way.
     pub normal: Vec3,
-    /// True if the side that the ray meets is drawn; the inside of a solid body mostly is not.
+    /// True if the side that the ray hits is drawn; the inside of a solid body is usually not.
     pub is_drawn: bool,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Rays<'a> {
         self.split(right, first + middle);
     }
 
-    /// The first face, of either side, at `origin + t * direction` with 0 < t < `reach`.
+    /// Returns the first face, seen from either side, at `origin + t * direction` with 0 < t < `reach`.
     pub fn cast(&self, origin: Vec3, direction: Vec3, reach: f32) -> Option<Hit> {
         let inverse = direction.recip();
         let mut best: Option<Hit> = None;
@@ -90,7 +90,7 @@ impl<'a> Rays<'a> {
             let Some(node) = self.nodes.get(i as usize) else { break };
             let limit = best.map_or(reach, |h| h.distance);
             let (a, b) = ((node.bounds.min - origin) * inverse, (node.bounds.max - origin) * inverse);
-            // An axis without direction gives NaN on the border; max and min pass over it.
+            // A direction of 0 along an axis gives NaN on the border, which max and min ignore.
             let enter = a.min(b).max_element().max(0.0);
             let leave = a.max(b).min_element();
             if enter > leave || enter > limit {
@@ -109,7 +109,7 @@ impl<'a> Rays<'a> {
         best
     }
 
-    /// Möller and Trumbore, 1997.
+    /// Intersects a ray with a triangle (Möller and Trumbore, 1997).
     fn meet(&self, triangle: u32, origin: Vec3, direction: Vec3, limit: f32) -> Option<Hit> {
         let [a, b, c] = self.corners(triangle);
         let (u, v) = (b - a, c - a);

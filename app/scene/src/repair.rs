@@ -1,4 +1,4 @@
-//! Makes a file's contents fit to be drawn: drops bad triangles, generates missing normals and texture coordinates, and
+//! Makes a file's contents fit to draw: drops bad triangles, generates missing normals and texture coordinates, and
 //! sorts triangles by material.
 
 use std::collections::HashMap;
@@ -11,30 +11,30 @@ use rayon::prelude::*;
 use super::error::{MAX_ELEMENTS, SceneError};
 use super::model::{Material, Model, Part, Vertex};
 
-/// Cosine of the angle between two faces above which a generated normal keeps the edge between them: 40 degrees.
+/// Cosine of 40 degrees. Generated normals smooth the edge between faces that differ by less than this angle.
 const CREASE_COSINE: f32 = 0.766;
 
-/// Faces around a point above which generated normals are flat: comparing all with all takes the square.
+/// Number of faces around a point above which generated normals are flat: comparing all pairs takes quadratic time.
 const MAX_NEIGHBOURS: usize = 128;
 
-/// Triangles as a file has them. Normals and texture coordinates may be missing vertex by vertex: not finite, or
-/// a zero normal.
+/// Triangles as a file has them. Normals and texture coordinates may be missing for single vertices: these are not
+/// finite, or zero normals.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RawMesh {
     pub name: String,
     pub material: usize,
     pub vertices: Vec<Vertex>,
     pub indices: Vec<u32>,
-    /// Missing normals are those of the faces.
+    /// True if missing normals are those of the faces.
     pub flat: bool,
-    /// A number for meshes that move: their vertices are in the frame of what carries them.
+    /// A number for a moving mesh, whose vertices are in the frame of what carries it.
     pub moving: Option<usize>,
-    /// For such meshes, each vertex's index in the file.
+    /// For a moving mesh, each vertex's index in the file.
     pub sources: Vec<u32>,
 }
 
 impl RawMesh {
-    /// Notes that the vertices were split: the former index of each.
+    /// Notes that the vertices were split. `former` has the former index of each.
     pub fn split(&mut self, former: &[u32]) {
         if self.moving.is_some() {
             self.sources = former.iter().map(|&i| self.sources[i as usize]).collect();
@@ -42,9 +42,9 @@ impl RawMesh {
     }
 }
 
-/// The place of a mesh that moves in the model.
+/// The place of a moving mesh in the model.
 pub(super) struct Placed {
-    /// Its [`RawMesh::moving`].
+    /// The mesh's [`RawMesh::moving`].
     pub moving: usize,
     /// Range of the model's vertices.
     pub vertices: Range<usize>,
@@ -57,8 +57,8 @@ pub(super) const NO_NORMAL: Vec3 = Vec3::NAN;
 /// Marks missing texture coordinates.
 pub(super) const NO_UV: Vec2 = Vec2::NAN;
 
-/// Makes the model, and tells where what moves is in it; textures are left to the caller, who must have set the
-/// materials' maps.
+/// Makes the model, and returns the places of moving meshes in it. The caller adds the textures, and must have set the
+/// materials' maps before.
 pub(super) fn assemble(
     path: &Path,
     mut meshes: Vec<RawMesh>,
@@ -105,8 +105,8 @@ fn clean(mesh: &mut RawMesh) {
     }
 }
 
-/// Returns the normal times twice the area; zero where rounding leaves no direction. In f64: f32 underflows on small
-/// parts.
+/// Returns the normal times twice the area; zero if rounding leaves no direction. Uses f64, since f32 underflows on
+/// small parts.
 fn area_vector([a, b, c]: [Vec3; 3]) -> DVec3 {
     let (u, v) = ((b - a).as_dvec3(), (c - a).as_dvec3());
     let cross = u.cross(v);
@@ -118,8 +118,8 @@ fn corners(mesh: &RawMesh, triangle: usize) -> [Vertex; 3] {
     [0, 1, 2].map(|k| mesh.vertices[mesh.indices[triangle * 3 + k] as usize])
 }
 
-/// Fills in what is missing: normals are averages, weighted by area, over the faces around a point that differ by
-/// less than the crease angle; texture coordinates are the two coordinates across the face's main axis, 1 per metre.
+/// Fills in what is missing. Normals are averages, weighted by area, over the faces around a point that differ by less
+/// than the crease angle. Texture coordinates are the two coordinates across the face's main axis, 1 per metre.
 fn generate(meshes: &mut [RawMesh], materials: &[Material]) {
     let mapped: Vec<bool> = materials
         .iter()
@@ -177,10 +177,10 @@ fn box_projection(p: Vec3, normal: Vec3) -> Vec2 {
     }
 }
 
-/// The faces around every point of the meshes whose normals are missing. Points are one where their coordinates
-/// are: exporters and groups split them.
+/// The faces around every point of the meshes with missing normals. Vertices with equal coordinates are one point,
+/// because exporters and groups split them.
 struct Neighbours {
-    /// For every mesh, the point of every vertex; empty for meshes that need none.
+    /// For every mesh, the point of each vertex; empty for meshes without missing normals.
     points: Vec<Vec<u32>>,
     /// Index of each point's first face, and one more at the end.
     starts: Vec<u32>,
@@ -236,8 +236,8 @@ impl Neighbours {
     }
 }
 
-/// Returns one vertex and one index list, sorted by material, parts of one name and material joined, unused vertices
-/// left out; otherwise in the order of the file. What moves is a part of its own.
+/// Returns one vertex and one index list, sorted by material and otherwise in the file's order. Joins parts with the
+/// same name and material, and drops unused vertices. A moving mesh is a part of its own.
 fn sorted(meshes: Vec<RawMesh>, materials: Vec<Material>) -> (Model, Vec<Placed>) {
     let mut placed = Vec::new();
     let mut model = Model { materials, ..Model::default() };
@@ -301,7 +301,7 @@ mod tests {
         Material { diffuse_map: Some(0), ..Material::default() }
     }
 
-    /// A ridge of two faces at the given angle to each other.
+    /// Returns a ridge of two faces at the given angle to each other.
     fn ridge(degrees: f32) -> Model {
         let (s, c) = degrees.to_radians().sin_cos();
         let m = mesh(&[[0., 0., 0.], [0., 0., -1.], [-1., 0., 0.], [c, -s, 0.]], &[0, 1, 2, 0, 3, 1]);

@@ -3,27 +3,27 @@
 use super::model::{Model, PointLight, ShadingStyle, Sky, Viewpoint};
 use super::motion::Motion;
 
-/// A scene: a model, its light, and viewpoints.
+/// A scene: a model, its light, its viewpoints, and what moves.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Scene {
     /// Name: a built-in one, or the file's stem.
     pub name: String,
     /// Triangles, materials and pictures.
     pub model: Model,
-    /// The shading style that it is made for.
+    /// The shading style that the scene is made for.
     pub style: ShadingStyle,
     /// Sun and sky.
     pub sky: Sky,
     /// Point lights, brightest first; the renderer uses the first few in view.
     pub lights: Vec<PointLight>,
-    /// Camera path: key viewpoints, at least one. Smooth in between by [`crate::path`].
+    /// Camera path: key viewpoints, at least one, interpolated by [`crate::path`].
     pub viewpoints: Vec<Viewpoint>,
-    /// What moves. All else says how the scene stands at time 0.
+    /// What moves. The other fields are the scene's state at time 0.
     pub motion: Motion,
 }
 
 impl Scene {
-    /// Returns the scene as it stands at a time in seconds: one in which nothing moves.
+    /// Returns the scene in its state at a time in seconds, without motion.
     pub fn at(&self, seconds: f64) -> Scene {
         let mut scene = Scene { motion: Motion::default(), ..self.clone() };
         let mut moment = self.motion.start();

@@ -1,4 +1,4 @@
-//! Pictures for materials: found, decoded in parallel, converted and kept within a memory budget.
+//! Pictures for materials: finds, decodes (in parallel) and converts them, and keeps them within a memory budget.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -14,45 +14,45 @@ use super::error::SceneError;
 use super::model::TextureImage;
 use yoro_files::decoder;
 
-/// Longest edge of a picture that is read.
+/// Maximum edge length of a picture that is read.
 const MAX_SOURCE_EDGE: u32 = 16384;
-/// Most pixels of a picture that is read: 512 MiB decoded.
+/// Maximum number of pixels of a picture that is read: 512 MiB decoded.
 const MAX_SOURCE_PIXELS: u64 = 1 << 27;
-/// Longest edge that is kept; larger pictures are scaled down.
+/// Maximum edge length that is kept; larger pictures are scaled down.
 const MAX_EDGE: u32 = 8192;
-/// Pixels that all pictures of a model may have together (1 GiB); if they have more, the largest are scaled down.
+/// Maximum number of pixels of a model's pictures (1 GiB). If they have more, the largest are scaled down.
 const PIXEL_BUDGET: u64 = 1 << 28;
 
-/// Share of the diffuse colour that metals lose. All of it in truth; but without reflections of the surroundings
-/// they would be black.
+/// Share of the diffuse colour that metals lose. Real metals lose all of it, but would be black here without
+/// reflections of their surroundings.
 pub(super) const METAL_DIFFUSE_LOSS: f32 = 0.7;
 
 /// The source of a picture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Source {
     File(PathBuf),
-    /// Number of an entry of [`TextureSet::memory`].
+    /// Index into [`TextureSet::memory`].
     Memory(usize),
 }
 
-/// How a texture is made from pictures. Numbers are the bits of f32, so that equal recipes make one texture.
+/// How a texture is made from pictures. Numbers are stored as the bits of f32, so that equal recipes make one texture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Recipe {
     /// The picture as it is.
     Color(Source),
-    /// A colour picture (or white) with the opacity of another.
+    /// A colour picture (or white) with the opacity of another picture.
     Masked { color: Option<Source>, mask: Source, channel: Option<char> },
-    /// A normal map, or, unless `normal` says that it is one, a height map to be made one.
+    /// A normal map. Unless `normal` is set, the picture may also be a height map, which is converted.
     Bump { source: Source, strength: u32, normal: bool },
-    /// glTF: the diffuse or the specular colour of a base colour and the metalness in the blue of `orm`.
+    /// glTF: the diffuse or the specular colour from a base colour and the metalness in the blue channel of `orm`.
     Metal { base: Option<Source>, base_factor: [u32; 3], orm: Source, metallic: u32, specular: bool },
-    /// glTF: the diffuse colour of a specular-glossiness material, of the factors and the colours of its two pictures.
+    /// glTF: the diffuse colour of a specular-glossiness material, from its two factors and two pictures.
     Gloss { diffuse: Option<Source>, diffuse_factor: [u32; 3], gloss: Source, specular_factor: [u32; 3] },
-    /// glTF: the specular colour of a specular-glossiness material, which has its glossiness in the alpha.
+    /// glTF: the specular colour of a specular-glossiness material, with the glossiness in alpha.
     Specular(Source),
 }
 
-/// The use of a texture's alpha.
+/// How a texture's alpha is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum AlphaUse {
     Opaque,
@@ -63,14 +63,14 @@ pub(super) enum AlphaUse {
 /// A finished texture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Finished {
-    /// Its number in [`Built::images`].
+    /// Index into [`Built::images`].
     pub index: usize,
     pub alpha: AlphaUse,
-    /// Mean of the roughness, for [`Recipe::Metal`]; of what glossiness lacks to 1, for [`Recipe::Specular`].
+    /// For [`Recipe::Metal`] the mean roughness; for [`Recipe::Specular`] 1 minus the mean glossiness.
     pub roughness: f32,
 }
 
-/// All textures of a model, and which recipe became which; none where the picture is missing.
+/// All textures of a model, and the texture of each recipe; `None` if its picture is missing.
 #[derive(Debug, Default)]
 pub(super) struct Built {
     pub images: Vec<TextureImage>,
@@ -87,12 +87,12 @@ impl Built {
     }
 }
 
-/// Collects what the materials of a model ask for.
+/// Collects the textures that a model's materials use.
 #[derive(Debug, Default)]
 pub(super) struct TextureSet {
     /// Pictures that are not files: a name for messages, and their encoded bytes.
     pub memory: Vec<(PathBuf, Vec<u8>)>,
-    /// Each with whether it is unfiltered when magnified.
+    /// The recipes, each with true if it is not filtered when magnified.
     recipes: Vec<(Recipe, bool)>,
     known: HashMap<(Recipe, bool), usize>,
 }
@@ -103,7 +103,7 @@ impl TextureSet {
         self.request_sampled(recipe, false)
     }
 
-    /// Requests a texture as [`TextureSet::request`] does. If it is `nearest`, it is not filtered when magnified.
+    /// Like [`TextureSet::request`]. With `nearest`, the texture is not filtered when magnified.
     pub fn request_sampled(&mut self, recipe: Recipe, nearest: bool) -> usize {
         let next = self.recipes.len();
         *self.known.entry((recipe.clone(), nearest)).or_insert_with(|| {
@@ -112,10 +112,10 @@ impl TextureSet {
         })
     }
 
-    /// Decodes and converts everything.
+    /// Decodes and converts all requested textures.
     ///
     /// # Errors
-    /// A picture that is damaged or too large. One in an unknown format is warned about and left out.
+    /// If a picture is damaged or too large. A picture in an unknown format is left out with a warning.
     pub fn build(&self) -> Result<Built, SceneError> {
         let sizes =
             self.recipes.par_iter().map(|(r, _)| self.size(r.main())).collect::<Result<Vec<_>, _>>()?;
@@ -196,7 +196,7 @@ impl TextureSet {
         }
     }
 
-    /// Returns the width and height; none, with a warning, if the format is unknown.
+    /// Returns the width and height; `None`, with a warning, if the format is unknown.
     fn size(&self, source: &Source) -> Result<Option<[u32; 2]>, SceneError> {
         let path = self.path(source);
         let found = self.bytes(source).and_then(|bytes| {
@@ -235,7 +235,7 @@ impl TextureSet {
             let mut limits = image::Limits::default();
             limits.max_image_width = Some(MAX_SOURCE_EDGE);
             limits.max_image_height = Some(MAX_SOURCE_EDGE);
-            // EXR has 16 bytes a pixel.
+            // EXR has 16 bytes per pixel.
             limits.max_alloc = Some(MAX_SOURCE_PIXELS * 16);
             reader.limits(limits);
             decoder::run(|| reader.decode(), damaged)
@@ -268,7 +268,7 @@ impl TextureSet {
         })
     }
 
-    /// Returns a reader of a picture's encoded bytes: of this type, because the decoders are compiled once for each
+    /// Returns a reader of a picture's encoded bytes. It has this one type because decoders are compiled once for each
     /// type.
     fn reader<'b>(
         &self,
@@ -276,7 +276,7 @@ impl TextureSet {
         bytes: &'b [u8],
     ) -> Result<ImageReader<Cursor<&'b [u8]>>, ImageError> {
         let mut reader = ImageReader::new(Cursor::new(bytes));
-        // TGA has no signature: the extension decides where the content does not.
+        // TGA has no signature, so the extension decides if the content does not.
         if let Ok(format) = image::ImageFormat::from_path(self.path(source)) {
             reader.set_format(format);
         }
@@ -284,13 +284,13 @@ impl TextureSet {
     }
 }
 
-/// Returns an error of a decoder.
+/// Wraps a decoder's message in an error.
 fn damaged(reason: String) -> ImageError {
     ImageError::Decoding(DecodingError::new(ImageFormatHint::Unknown, reason))
 }
 
 impl Recipe {
-    /// The picture that gives the texture its size and name.
+    /// Returns the picture that gives the texture its size and name.
     fn main(&self) -> &Source {
         match self {
             Recipe::Color(source) | Recipe::Specular(source) | Recipe::Bump { source, .. } => source,
@@ -301,7 +301,7 @@ impl Recipe {
     }
 }
 
-/// Makes a name unique by a number, and fit for a file name.
+/// Makes a name suitable for a file, and unique by appending a number.
 pub(super) fn unique(taken: &mut HashSet<String>, name: String) -> String {
     let safe: String =
         name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
@@ -320,8 +320,8 @@ fn fitted([w, h]: [u32; 2], edge: u32) -> [u32; 2] {
     [w, h].map(|n| ((n as u64 * edge as u64 / longest as u64) as u32).max(1))
 }
 
-/// Returns the use of the alpha channel. Some hold something else, such as gloss: transparency is believed only if a
-/// good part is either clearly opaque or nearly everything is translucent.
+/// Returns how the alpha channel is used. Some hold something else, such as gloss, so transparency is assumed only if a
+/// good part is clearly opaque or nearly everything is translucent.
 fn alpha_use(image: &RgbaImage) -> AlphaUse {
     let total = image.pixels().len().max(1) as f32;
     let share = |range: std::ops::RangeInclusive<u8>| {
@@ -346,8 +346,8 @@ fn luminance(p: &Rgba<u8>) -> f32 {
     (0.2126 * p[0] as f32 + 0.7152 * p[1] as f32 + 0.0722 * p[2] as f32) / 255.0
 }
 
-/// Puts the opacity in `mask` into the alpha of `color`. Without a stated channel it is the mask's alpha if that
-/// says something, else its brightness.
+/// Copies the opacity in `mask` to the alpha of `color`. Without a stated channel, uses the mask's alpha unless it is
+/// opaque everywhere, and then its brightness.
 fn masked(color: Option<RgbaImage>, mask: &RgbaImage, channel: Option<char>) -> RgbaImage {
     let from_alpha = mask.pixels().any(|p| p[3] != 255);
     let opacity = |p: &Rgba<u8>| match channel {
@@ -367,13 +367,13 @@ fn masked(color: Option<RgbaImage>, mask: &RgbaImage, channel: Option<char>) -> 
     image
 }
 
-/// The pixel of another picture at the same place of the surface.
+/// Returns the pixel of another picture at the same place on the surface.
 fn at(image: &RgbaImage, x: u32, y: u32, w: u32, h: u32) -> &Rgba<u8> {
     let scaled = |i: u32, from: u32, to: u32| (i as u64 * to as u64 / from as u64) as u32;
     image.get_pixel(scaled(x, w, image.width()), scaled(y, h, image.height()))
 }
 
-/// Bumps as a tangent-space normal map, green up. A picture that is blue on the whole is one already.
+/// Converts bumps to a tangent-space normal map, green up. A picture that is mostly blue is one already.
 fn normal_map(mut image: RgbaImage, strength: f32, surely: bool) -> RgbaImage {
     let n = image.pixels().len().max(1) as f32;
     let sum = image.pixels().fold(Vec3::ZERO, |s, p| s + Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32));
@@ -405,18 +405,18 @@ fn normal_map(mut image: RgbaImage, strength: f32, surely: bool) -> RgbaImage {
     image
 }
 
-/// Returns one channel from sRGB to linear, both 0 to 1.
+/// Converts one channel from sRGB to linear, both 0 to 1.
 pub(super) fn to_linear(c: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Returns one channel from linear to sRGB; continues above 1.
+/// Converts one channel from linear to sRGB; also defined above 1.
 pub(super) fn to_srgb(c: f32) -> f32 {
     if c <= 0.0031308 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The diffuse or specular colour of glTF's metallic-roughness model (its appendix B.3: dielectrics reflect 4 %),
-/// and the mean of the roughness in the green of `orm`.
+/// Returns the diffuse or specular colour of glTF's metallic-roughness model (its appendix B.3: dielectrics reflect 4
+/// %), and the mean of the roughness in the green channel of `orm`.
 fn metal(
     base: Option<RgbaImage>,
     factor: Vec3,
@@ -447,14 +447,14 @@ fn metal(
     (image, roughness as f32)
 }
 
-/// The diffuse colour (linear) that a surface of glTF's specular-glossiness model has here: what the specular colour
-/// leaves of it, and for metals, whose diffuse colour is black, what [`METAL_DIFFUSE_LOSS`] leaves of the specular one.
+/// Returns the diffuse colour (linear) of glTF's specular-glossiness model: what the specular colour leaves of it, and
+/// for metals, whose diffuse colour is black, what [`METAL_DIFFUSE_LOSS`] leaves of the specular colour.
 pub(super) fn diffuse_of_gloss(diffuse: Vec3, specular: Vec3) -> Vec3 {
     let metal = (specular - 0.04).max(Vec3::ZERO) * (1.0 - METAL_DIFFUSE_LOSS);
     diffuse * (1.0 - specular.max_element()) + metal
 }
 
-/// The diffuse colour of a specular-glossiness material, pixel by pixel, with the factors of both colours.
+/// Returns the diffuse colour of a specular-glossiness material, pixel by pixel, with the factors of both colours.
 fn matt(
     diffuse: Option<RgbaImage>,
     gloss: &RgbaImage,
@@ -476,7 +476,7 @@ fn matt(
     image
 }
 
-/// The specular colour of a specular-glossiness picture, opaque, and 1 less the mean of its glossiness.
+/// Returns the specular colour of a specular-glossiness picture, made opaque, and 1 minus the mean of its glossiness.
 fn glossy(mut image: RgbaImage) -> (RgbaImage, f32) {
     let gloss =
         image.pixels().map(|p| p[3] as f64).sum::<f64>() / (image.pixels().len().max(1) as f64 * 255.0);
@@ -484,8 +484,8 @@ fn glossy(mut image: RgbaImage) -> (RgbaImage, f32) {
     (image, 1.0 - gloss as f32)
 }
 
-/// Finds a file that a model refers to, as people's files need it: backslashes, another case, absolute paths of
-/// another machine, and the usual folders for textures. None if there is none.
+/// Finds a file that a model refers to. Allows for backslashes, different case, absolute paths of another machine, and
+/// the usual folders for textures. `None` if it is not found.
 pub(super) fn find_file(folder: &Path, name: &str) -> Option<PathBuf> {
     let exact = folder.join(name);
     if yoro_files::is_file(&exact) {
@@ -509,7 +509,7 @@ fn descend(folder: &Path, names: &[&str]) -> Option<PathBuf> {
             next
         } else {
             let wanted = name.to_lowercase();
-            // Sorted: which of `A.png` and `a.PNG` is taken must not depend on the file system.
+            // Sorted, since the choice between `A.png` and `a.PNG` must not depend on the file system.
             let mut found = yoro_files::names(&path).ok()?;
             found.retain(|n| n.to_string_lossy().to_lowercase() == wanted);
             path.join(found.into_iter().min()?)

@@ -42,7 +42,7 @@ pub struct PatcherArgs {
 }
 
 impl PatcherArgs {
-    /// Refuses a model without the patcher that runs it.
+    /// Refuses a model if the chosen patcher does not use one.
     pub fn check(&self) -> anyhow::Result<()> {
         ensure!(
             self.model.is_none() || self.patcher == Some(PatcherKind::Neural),
@@ -51,14 +51,14 @@ impl PatcherArgs {
         Ok(())
     }
 
-    /// Makes the patcher, if one was asked for.
+    /// Creates the patcher, if one was chosen.
     pub fn create(&self, gl: &Rc<Context>) -> Result<Option<Box<dyn Patcher>>, InpaintError> {
         let options = PatcherOptions { model: self.model.clone() };
         self.patcher.map(|kind| inpaint::create(gl, kind, &options)).transpose()
     }
 }
 
-/// A share of the work, for array jobs: the `index`th of `count` parts, from 1.
+/// A part of the work, for array jobs: the `index`th of `count` parts, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -66,8 +66,8 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Returns this part of the positions below `total`. The parts of one `count` are consecutive, differ by one
-    /// position at most, and together are everything.
+    /// Returns this part of the positions below `total`. The parts of one `count` are consecutive, differ in size by at
+    /// most one position, and together cover all positions.
     pub fn part(self, total: usize) -> Range<usize> {
         let end = |parts: usize| (total as u128 * parts as u128 / self.count as u128) as usize;
         end(self.index - 1)..end(self.index)
@@ -92,7 +92,7 @@ impl FromStr for Shard {
     }
 }
 
-/// Returns names as an option takes several of them.
+/// Joins names in the form in which an option takes several of them.
 pub fn list(names: impl IntoIterator<Item = &'static str>) -> String {
     names.into_iter().collect::<Vec<_>>().join(",")
 }
@@ -113,7 +113,7 @@ pub fn parse_positive(text: &str) -> Result<f32, String> {
     }
 }
 
-/// Parses an angle in degrees that a flat image can have, and returns radians.
+/// Parses an angle in degrees that is possible for a flat image, and returns radians.
 pub fn parse_fov(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(value) if (1.0..=170.0).contains(&value) => Ok(value.to_radians()),

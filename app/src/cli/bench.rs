@@ -206,7 +206,7 @@ impl BenchArgs {
             quick: self.quick,
             whole_frames: self.frame,
             eyes,
-            // Phones render by the viewer's settings.
+            // Phones render with the viewer's settings.
             render: if self.frame {
                 RenderSettings::of_settings(self.renderer.settings())
             } else {
@@ -237,7 +237,7 @@ impl BenchArgs {
     }
 }
 
-/// Warns of an OBJ file without a camera path, whose viewpoints are generated and thus of little significance.
+/// Warns about an OBJ file without a camera path: its viewpoints are generated and mean little.
 fn warn_without_camera(scene: &Path) {
     let is_obj = scene.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
     if is_obj && sidecar_file(scene, "camera.json").is_none() {
@@ -248,7 +248,7 @@ fn warn_without_camera(scene: &Path) {
     }
 }
 
-/// The settings of all suites; each is measured once.
+/// Returns the settings of all suites, each once.
 fn jobs(args: &BenchArgs, choices: &Choices, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
     let mut jobs: Vec<Job> = Vec::new();
     for suite in &args.suites {

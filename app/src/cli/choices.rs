@@ -1,4 +1,4 @@
-//! Values that go by a name on the command line, with a line of help for each.
+//! Parsers of named values on the command line, with a line of help for each value.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use yoro::synthesis::Edges;
@@ -8,7 +8,7 @@ use yoro_lab::inpaint::PatcherKind;
 use yoro_protocol::Setting;
 use yoro_scene::ShadingStyle;
 
-/// A parser of the values given, by their names.
+/// Returns a parser that accepts these values by their names.
 fn choice<T: Copy + Send + Sync + 'static>(
     values: impl IntoIterator<Item = T>,
     name: fn(T) -> &'static str,
@@ -21,7 +21,7 @@ fn choice<T: Copy + Send + Sync + 'static>(
     })
 }
 
-/// `--gl`.
+/// Parses `--gl`.
 pub fn backend() -> impl TypedValueParser<Value = Backend> {
     choice(Backend::ALL, Backend::name, |backend| match backend {
         Backend::Auto => "EGL, then OSMesa",
@@ -30,7 +30,7 @@ pub fn backend() -> impl TypedValueParser<Value = Backend> {
     })
 }
 
-/// `--edges` of pictures, which have one depth for each pixel.
+/// Parses `--edges` of pictures, which have one depth per pixel.
 pub fn stored_edges() -> impl TypedValueParser<Value = Edges> {
     let help = |edges: Edges| {
         let choices = Setting::find("edges").map_or(&[][..], |setting| setting.choices);
@@ -39,7 +39,7 @@ pub fn stored_edges() -> impl TypedValueParser<Value = Edges> {
     choice([Edges::Hard, Edges::Nearest, Edges::Sample], Edges::name, help)
 }
 
-/// `--style`.
+/// Parses `--style`.
 pub fn style() -> impl TypedValueParser<Value = ShadingStyle> {
     choice(ShadingStyle::ALL, ShadingStyle::name, |style| match style {
         ShadingStyle::Realistic => "GGX, smooth normals",
@@ -52,7 +52,7 @@ pub fn style() -> impl TypedValueParser<Value = ShadingStyle> {
     })
 }
 
-/// `--patcher`.
+/// Parses `--patcher`.
 pub fn patcher() -> impl TypedValueParser<Value = PatcherKind> {
     choice(PatcherKind::ALL, PatcherKind::name, |kind| match kind {
         PatcherKind::Paper => "Algorithm 3 of the paper, as corrected",
@@ -65,7 +65,7 @@ pub fn patcher() -> impl TypedValueParser<Value = PatcherKind> {
     })
 }
 
-/// The suites of `yoro bench`.
+/// Parses the suites of `yoro bench`.
 pub fn suite() -> impl TypedValueParser<Value = Suite> {
     choice(Suite::EACH.iter().copied().chain([Suite::All]), Suite::name, Suite::about)
 }

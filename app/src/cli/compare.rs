@@ -1,4 +1,4 @@
-//! `yoro compare`: how alike two images, or the images of two folders, are.
+//! `yoro compare`: the similarity of two images, or of the images of two folders.
 
 use std::path::PathBuf;
 
@@ -52,7 +52,7 @@ impl Subcommand for CompareArgs {
         Ok(files)
     }
 
-    /// Compares and prints; error maps are written if asked for.
+    /// Compares, prints, and writes error maps if requested.
     fn run(&self) -> anyhow::Result<()> {
         let report = CompareReport::of(&self.inputs())?;
         for path in &report.unmatched {

@@ -29,11 +29,11 @@ use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scene::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
 use yoro_scenes::{self, BUILTINS};
 
-/// The pictures of a group; each has a folder of this name.
+/// The kinds of pictures in a group. Each has a folder of this name.
 const PICTURES: [&str; 7] = ["rgb", "depth", "truth", "reprojected", "reprojected-depth", "mask", "patched"];
-/// Folder of the groups' JSON files, which are written last: a group that has one is finished.
+/// The folder of the groups' JSON files. They are written last, so that a group that has one is finished.
 const GROUPS: &str = "group";
-/// The options with which a scene's groups were made.
+/// The file with the options that a scene's groups were made with.
 const SETTINGS: &str = "dataset.json";
 
 /// Write image groups of scenes: both eyes, depth, the reprojected eye, its holes, and the patched eye
@@ -87,12 +87,12 @@ struct Settings<'a> {
     ipd_metres: f32,
     dominant: Eye,
     near: f32,
-    /// Null for infinity.
+    /// The far plane in metres; null for infinity.
     far: f32,
     depth: DepthConvention,
     patcher: Option<PatcherKind>,
     model: Option<&'a Path>,
-    /// Settings of the forward renderer alone: folders of the deferred one stay valid.
+    /// The forward renderer's settings; absent for the deferred renderer, so that its existing folders stay valid.
     #[serde(skip_serializing_if = "Option::is_none")]
     renderer: Option<String>,
     #[serde(flatten)]
@@ -104,7 +104,7 @@ struct Settings<'a> {
 struct Group<'a> {
     scene: &'a str,
     index: u32,
-    /// Place on the camera path, 0 to 1.
+    /// The place on the camera path, 0 to 1.
     at: f32,
     head: Pose,
     eyes: BTreeMap<&'static str, Camera>,
@@ -113,11 +113,11 @@ struct Group<'a> {
     fov_y_degrees: f64,
     size: [u32; 2],
     depth: Depth,
-    /// Share of the reprojected image.
+    /// The share of the reprojected image that is holes.
     holes: f64,
-    /// Paths of the pictures by kind, relative to the scene's folder.
+    /// The paths of the pictures by kind, relative to the scene's folder.
     pictures: BTreeMap<&'static str, String>,
-    /// The command that makes the other eye from `rgb` and `depth`, in the scene's folder.
+    /// The command that makes the other eye from `rgb` and `depth` when run in the scene's folder.
     synthesize: String,
 }
 
@@ -130,11 +130,11 @@ struct Camera {
 #[derive(Serialize)]
 struct Depth {
     near_metres: f32,
-    /// Null for infinity.
+    /// The far plane in metres; null for infinity.
     far_metres: f32,
     encoding: &'static str,
     bits: u8,
-    /// `x_other = x + offset + scale * value`, value from 0 to 1.
+    /// The law `x_other = x + offset + scale * value`, with values from 0 to 1.
     law: DisparityLaw,
 }
 
@@ -217,7 +217,7 @@ fn group_options(args: &DatasetArgs) -> GroupOptions {
     }
 }
 
-/// The groups of one scene.
+/// The missing groups of one scene.
 struct Job<'a> {
     name: &'a str,
     folder: PathBuf,
@@ -226,7 +226,7 @@ struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// Returns what is missing of the groups `indices` of a scene.
+    /// Returns the job for those of a scene's groups `indices` that are missing.
     fn new(
         args: &DatasetArgs,
         name: &'a str,
@@ -347,7 +347,7 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Returns rounded degrees: 60 degrees in radians are 60.000004 degrees in f32.
+/// Returns the field of view in rounded degrees: 60 degrees, stored as radians in f32, would be 60.000004.
 fn fov_y_degrees(args: &DatasetArgs) -> f64 {
     (f64::from(args.eyes.fov_y).to_degrees() * 1e4).round() / 1e4
 }
@@ -369,7 +369,7 @@ fn group_name(index: u32) -> String {
     format!("{GROUPS}/{index:06}.json")
 }
 
-/// The name that `yoro synthesize` has for a depth convention.
+/// Returns the name of a depth convention in the options of `yoro synthesize`.
 fn encoding(convention: DepthConvention) -> &'static str {
     match convention {
         DepthConvention::Standard => "standard-z",
@@ -377,7 +377,7 @@ fn encoding(convention: DepthConvention) -> &'static str {
     }
 }
 
-/// The command line that makes `patched` again from `rgb` and `depth`.
+/// Returns the command line that makes `patched` again from `rgb` and `depth`.
 fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
     let eyes = &args.eyes;
     let mut command = format!(
@@ -418,13 +418,13 @@ fn synthesize_command(args: &DatasetArgs, index: u32) -> String {
     command
 }
 
-/// A group is finished when its JSON file, which is written last, and all pictures are there.
+/// True if a group is finished: its JSON file, which is written last, and all pictures exist.
 fn is_finished(folder: &Path, index: u32) -> bool {
     folder.join(group_name(index)).is_file()
         && PICTURES.iter().all(|kind| folder.join(picture_name(kind, index)).is_file())
 }
 
-/// Refuses to mix groups of different settings in one folder.
+/// Refuses to mix groups with different settings in one folder.
 fn check_settings(folder: &Path, settings: &serde_json::Value) -> anyhow::Result<()> {
     let file = folder.join(SETTINGS);
     if !file.exists() {

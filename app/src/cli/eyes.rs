@@ -46,7 +46,7 @@ pub struct EyeArgs {
 }
 
 impl EyeArgs {
-    /// Returns the eyes as the library takes them.
+    /// Returns the options in the library's form.
     pub fn options(&self) -> EyeOptions {
         let convention = if self.reversed_z { DepthConvention::Reversed } else { DepthConvention::Standard };
         EyeOptions {
@@ -59,18 +59,18 @@ impl EyeArgs {
         }
     }
 
-    /// The two eyes around a head pose.
+    /// Returns the two eyes of a head at this pose.
     pub fn pair(&self, head: Pose) -> EyePair {
         self.options().pair(head)
     }
 
-    /// Refuses near and far planes in the wrong order.
+    /// Refuses a near plane that is not in front of the far plane.
     pub fn check(&self) -> anyhow::Result<()> {
         ensure!(self.near < self.far, "--near {} must be less than --far {}", self.near, self.far);
         Ok(())
     }
 
-    /// Returns a line about how near objects may come.
+    /// Returns a line that says how near objects may come.
     pub fn distances(&self, guard: GuardBand) -> String {
         let frustum = self.pair(Pose::IDENTITY).frusta[self.dominant.index()];
         let fov_x = frustum.right.atan() - frustum.left.atan();
@@ -88,20 +88,20 @@ impl EyeArgs {
     }
 }
 
-/// Returns the head's pose at a scene's viewpoint, counted from 0.
+/// Returns the head's pose at one of the scene's viewpoints, counted from 0.
 pub fn scene_pose(scene: &Scene, pose: usize) -> anyhow::Result<Pose> {
     let count = scene.viewpoints.len();
     ensure!(pose < count, "--pose {pose} does not exist: {} has poses 0 to {}", scene.name, count - 1);
     Ok(scene.viewpoints[pose].pose())
 }
 
-/// Returns the viewpoint of `--position` and `--target`.
+/// Returns the viewpoint that `--position` and `--target` describe.
 pub fn viewpoint(position: Option<Vec3>, target: Option<Vec3>) -> Option<Viewpoint> {
     let position = position?;
     Some(Viewpoint { position, target: target.unwrap_or(position + Vec3::NEG_Z) })
 }
 
-/// Returns the name that a built-in scene or a file gives to its pictures.
+/// Returns the name for the pictures of a built-in scene or a file.
 pub fn stem(scene: &str) -> String {
     let is_builtin = BUILTINS.iter().any(|builtin| builtin.name == scene);
     let stem = Path::new(scene).file_stem().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `yoro info`: what this machine offers.
+//! `yoro info`: the GL drivers of this machine.
 
 use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
@@ -20,7 +20,7 @@ impl Subcommand for InfoArgs {
         Ok(Files::default())
     }
 
-    /// Prints one block per backend. Fails only when no backend works.
+    /// Prints one block per backend. Fails only if no backend works.
     fn run(&self) -> anyhow::Result<()> {
         let backends = match self.gl.backend {
             Backend::Auto => vec![("egl", Backend::Egl), ("osmesa", Backend::Osmesa)],

@@ -19,7 +19,7 @@ use yoro_layer::library::version;
 use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME};
 
 const LIBRARY: &str = "libyoro_layer.so";
-/// Interval at which the log is checked for more.
+/// The interval at which the log is checked for new lines.
 const PAUSE: Duration = Duration::from_millis(200);
 
 /// Stereo in OpenXR applications that render one view: an API layer that synthesizes the other
@@ -68,7 +68,7 @@ struct LibraryArgs {
 }
 
 impl LibraryArgs {
-    /// Returns the absolute path of the library, which is the layer's.
+    /// Returns the absolute path of the layer's library.
     fn find(&self) -> anyhow::Result<PathBuf> {
         let path = self.look()?;
         version(&path)?;
@@ -86,7 +86,7 @@ impl LibraryArgs {
         }
         let program = env::current_exe().context("this program's own place is not known; give --library")?;
         let folder = program.parent().unwrap_or(Path::new("/"));
-        // A build for tests leaves it in deps.
+        // Builds for tests leave the library in `deps`.
         let places =
             [folder.join(LIBRARY), folder.join("../lib").join(LIBRARY), folder.join("deps").join(LIBRARY)];
         let found = places.iter().find_map(|place| place.canonicalize().ok());
@@ -99,7 +99,7 @@ impl LibraryArgs {
     }
 }
 
-/// Returns the folder of this user's data, where loaders look.
+/// Returns the folder of this user's data, in which loaders look for manifests.
 fn data() -> anyhow::Result<PathBuf> {
     let set = env::var_os("XDG_DATA_HOME").map(PathBuf::from).unwrap_or_default();
     if !set.as_os_str().is_empty() && !set.is_absolute() {
@@ -116,7 +116,7 @@ fn data() -> anyhow::Result<PathBuf> {
     Ok(data)
 }
 
-/// The manifest as an implicit layer and as an explicit one.
+/// Returns the path of the manifest as an implicit or as an explicit layer.
 fn manifest_path(data: &Path, implicit: bool) -> PathBuf {
     let kind = if implicit { "implicit.d" } else { "explicit.d" };
     data.join("openxr/1/api_layers").join(kind).join(MANIFEST)
@@ -126,7 +126,7 @@ fn library_path(data: &Path) -> PathBuf {
     data.join("yoro").join(LIBRARY)
 }
 
-/// Removes a file, if it is there.
+/// Removes a file if it exists. Returns whether it did.
 fn remove(path: &Path) -> anyhow::Result<bool> {
     match fs::remove_file(path) {
         Ok(()) => Ok(true),
@@ -137,7 +137,7 @@ fn remove(path: &Path) -> anyhow::Result<bool> {
     }
 }
 
-/// Removes the folders of a file below this one, as far as they are empty.
+/// Removes the empty ones among a file's parent folders that are inside `below`.
 fn remove_empty_folders(path: &Path, below: &Path) {
     let folders = path.ancestors().skip(1).take_while(|folder| folder.starts_with(below) && *folder != below);
     for folder in folders {
@@ -147,7 +147,7 @@ fn remove_empty_folders(path: &Path, below: &Path) {
     }
 }
 
-/// Writes a file. A link in its place is replaced, and its target stays.
+/// Writes a file. If there is a symbolic link at `path`, it is replaced and its target stays unchanged.
 fn write(path: &Path, content: &[u8]) -> anyhow::Result<()> {
     if path.is_symlink() {
         remove(path)?;
@@ -160,7 +160,7 @@ fn write(path: &Path, content: &[u8]) -> anyhow::Result<()> {
 
 impl Subcommand for LayerArgs {
     fn files(&self) -> anyhow::Result<Files> {
-        // The installed layer is replaced by the library that is read, which may be the same.
+        // The installed layer is replaced by the library that is read, which may be the same file.
         Ok(Files::default())
     }
 
@@ -196,7 +196,7 @@ fn install(implicit: bool, library: &Path) -> anyhow::Result<()> {
     let kind = if implicit { Kind::Implicit } else { Kind::Explicit };
     write(&own, &files::read(library)?)?;
     write(&manifest, yoro_layer::manifest(&own, kind).as_bytes())?;
-    // One of the two, or loaders would find it twice.
+    // Only one of the two manifests may exist, or loaders would find the layer twice.
     remove(&manifest_path(&data, !implicit))?;
     println!("{}\n{}", own.display(), manifest.display());
     if implicit {
@@ -254,7 +254,7 @@ fn show_log(follow: bool) -> anyhow::Result<()> {
             return Ok(());
         }
         std::thread::sleep(PAUSE);
-        // Another program has begun it anew.
+        // The file has shrunk: another program has started it anew.
         if file.metadata()?.len() < file.stream_position()? {
             file.rewind()?;
         }

@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime};
 use yoro_gl::Capabilities;
 use yoro_lab::machine::Machine;
 
-/// Describes this machine, this moment and this command line.
+/// Describes this machine, the current time and this command line.
 pub fn describe(capabilities: &Capabilities) -> Machine {
     Machine {
         cpu: cpu_name().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
@@ -20,7 +20,7 @@ pub fn describe(capabilities: &Capabilities) -> Machine {
     }
 }
 
-/// Returns what made a file: program, version, command line and date.
+/// Returns the origin of a file: command line, program, version and date.
 pub fn made_by() -> String {
     format!("{} (yoro {}, {})", command(), env!("CARGO_PKG_VERSION"), date(SystemTime::now()))
 }
@@ -37,7 +37,7 @@ fn os_name() -> Option<String> {
     Some(line.trim_matches('"').to_owned())
 }
 
-/// The command line without the folder of the program.
+/// Returns the command line, without the folder of the program.
 fn command() -> String {
     let mut arguments = std::env::args();
     arguments.next();

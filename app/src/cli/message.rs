@@ -1,5 +1,5 @@
-//! An error as the command line tells it: one sentence, with the option by which its remedy is taken; libraries know no
-//! options.
+//! Errors as messages of the command line: one sentence, followed by the option that provides its remedy, since
+//! libraries do not know the options.
 
 use yoro_context::ContextError;
 use yoro_devices::adb::{DeviceError, quoted};
@@ -7,17 +7,17 @@ use yoro_devices::experiment::ExperimentError;
 use yoro_files::FileError;
 use yoro_lab::bench::record::RecordError;
 
-/// Characters of the longest message, and of its end where its middle is left out. The remedy is at the end.
+/// The length of the longest message in characters, and that of the end, with the remedy, if its middle is left out.
 const LONGEST: usize = 2000;
 const END: usize = 600;
 
-/// The sentence, and the option of its remedy if it has one, in one line.
+/// Returns the message for an error in one line: its sentence, and the option that provides the remedy, if any.
 pub fn of(error: &anyhow::Error) -> String {
     let sentence = one_line(&sentence(error));
     option(error).map_or_else(|| sentence.clone(), |option| format!("{sentence} ({option})"))
 }
 
-/// Returns a message, which may quote any file, without control characters and not longer than a person reads.
+/// Returns a message without control characters, which quoted files may contain, and shortened to what a person reads.
 pub fn one_line(text: &str) -> String {
     let parts = text.split(char::is_control).map(str::trim).filter(|part| !part.is_empty());
     let line = parts.collect::<Vec<_>>().join(" ");
@@ -30,7 +30,7 @@ pub fn one_line(text: &str) -> String {
     format!("{begin} [{} characters left out] {end}", count - LONGEST)
 }
 
-/// An error and what caused it. Many errors of libraries tell their cause in their own words: it is not told again.
+/// Returns an error followed by its causes. A cause that the error's own message already contains is not repeated.
 pub fn sentence(error: &anyhow::Error) -> String {
     error.chain().skip(1).fold(error.to_string(), |told, cause| {
         let cause = cause.to_string();
@@ -38,7 +38,7 @@ pub fn sentence(error: &anyhow::Error) -> String {
     })
 }
 
-/// The option by which the remedy of an error is taken, for the end of the message.
+/// Returns the option that provides the remedy of an error, for the end of the message.
 fn option(error: &anyhow::Error) -> Option<String> {
     error.chain().find_map(|cause| {
         if let Some(error) = cause.downcast_ref::<DeviceError>() {

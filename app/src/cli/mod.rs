@@ -31,13 +31,13 @@ use outputs::Files;
 
 /// A subcommand with its arguments.
 pub trait Subcommand {
-    /// Returns the files that it reads and writes, as far as its arguments tell. [`run`] checks them first.
+    /// Returns the files that the subcommand reads and writes, as far as its arguments tell. [`run`] checks them first.
     ///
     /// # Errors
-    /// When a folder of inputs cannot be read.
+    /// If a folder of inputs cannot be read.
     fn files(&self) -> anyhow::Result<Files>;
 
-    /// Does the work.
+    /// Runs the subcommand.
     ///
     /// # Errors
     /// One sentence for the user.
@@ -47,7 +47,7 @@ pub trait Subcommand {
 /// Runs a subcommand, unless one of its outputs would replace an input.
 ///
 /// # Errors
-/// The subcommand's.
+/// Those of the check and of the subcommand.
 pub fn run(subcommand: &dyn Subcommand) -> anyhow::Result<()> {
     subcommand.files()?.check()?;
     subcommand.run()

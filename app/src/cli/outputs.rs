@@ -1,5 +1,5 @@
-//! The files of a run of the program, checked before anything is written: no output replaces an input, and each has a
-//! place of its own.
+//! The files of a run, checked before anything is written: no output may replace an input, and no two outputs may have
+//! the same path.
 
 use std::collections::HashMap;
 use std::ffi::OsStr;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-/// What a run reads and writes, as far as its options tell.
+/// The files that a run reads and writes, as far as its options tell.
 #[derive(Debug, Default)]
 pub struct Files {
     inputs: Vec<PathBuf>,
@@ -18,7 +18,7 @@ pub struct Files {
 struct Output {
     path: PathBuf,
     what: String,
-    /// All in it belongs to this output.
+    /// True if everything in the folder belongs to this output.
     is_folder: bool,
 }
 
@@ -28,23 +28,23 @@ impl Files {
         self.inputs.extend(paths.into_iter().map(|path| path.as_ref().to_owned()));
     }
 
-    /// Adds a file that is written, with its description for messages.
+    /// Adds a file that is written, with a description for messages.
     pub fn write(&mut self, path: impl Into<PathBuf>, what: impl Into<String>) {
         self.outputs.push(Output { path: path.into(), what: what.into(), is_folder: false });
     }
 
-    /// Adds a folder in which all files may be written.
+    /// Adds a folder in which any file may be written, with a description for messages.
     pub fn fill(&mut self, folder: impl Into<PathBuf>, what: impl Into<String>) {
         self.outputs.push(Output { path: folder.into(), what: what.into(), is_folder: true });
     }
 
-    /// Refuses outputs that are inputs, and two outputs with the same place.
+    /// Refuses outputs that would replace inputs, and two outputs at the same path.
     pub fn check(&self) -> anyhow::Result<()> {
         let inputs: HashMap<PathBuf, &Path> =
             self.inputs.iter().map(|path| (identity(path), path.as_path())).collect();
         let mut taken: HashMap<PathBuf, &str> = HashMap::new();
         for Output { path, what, is_folder } in &self.outputs {
-            // A device takes any number of files.
+            // Several outputs may go to the same device.
             if !is_folder && path.exists() && !path.is_file() {
                 continue;
             }

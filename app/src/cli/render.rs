@@ -123,7 +123,7 @@ pub struct RenderArgs {
     gl: GlArgs,
 }
 
-/// Parses a time.
+/// Parses a finite time in seconds.
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite());
     seconds.ok_or_else(|| "give a number of seconds".into())
@@ -136,7 +136,7 @@ struct FrameReport {
     pictures: Vec<PathBuf>,
     #[serde(skip_serializing_if = "Option::is_none")]
     quality: Option<Quality>,
-    /// Baseline: the same image to both eyes.
+    /// The baseline: the same image for both eyes.
     #[serde(skip_serializing_if = "Option::is_none")]
     same_image: Option<Quality>,
 }
@@ -235,7 +235,7 @@ fn frame_stem(scene: &str, frame: usize, frames: usize) -> String {
     if frames > 1 { format!("{scene}-{frame:04}") } else { scene.to_owned() }
 }
 
-/// Warns if pictures will show nothing of the scene.
+/// Warns if pictures would show nothing of the scene.
 fn warn_of_blank(
     gl: &Rc<Context>,
     args: &RenderArgs,

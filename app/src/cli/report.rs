@@ -1,4 +1,4 @@
-//! `yoro report`: results of `yoro bench` as a page and as tables.
+//! `yoro report`: turns results of `yoro bench` into a page and tables.
 
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ impl Subcommand for ReportArgs {
         for name in bench::FILES {
             files.write(self.out.join(name), format!("the report's {name}"));
         }
-        // Figures and suites are known when the results are read, their extensions before.
+        // The names of figures and suites are known only after reading the results, but their extensions are known now.
         for (folder, extension) in [(&self.figures, "svg"), (&self.results, "md")] {
             let Some(folder) = folder else { continue };
             let same = self.files.iter().filter(|file| files::has_extension(file, &[extension]));
@@ -47,7 +47,7 @@ impl Subcommand for ReportArgs {
     fn run(&self) -> anyhow::Result<()> {
         let results = self.files.iter().map(|path| Results::read(path)).collect::<Result<Vec<_>, _>>()?;
         let report = BenchReport::new(results)?;
-        // Figures are drawn for a while; a folder that cannot be is told at once.
+        // Drawing figures takes a while, so that a folder that cannot be created is reported first.
         for folder in [Some(&self.out), self.figures.as_ref(), self.results.as_ref()].into_iter().flatten() {
             files::create_folder(folder)?;
         }

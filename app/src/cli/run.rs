@@ -1,4 +1,4 @@
-//! `yoro run`: the main job on the built-in scenes, with pictures, figures and a report page.
+//! `yoro run`: compares methods on the built-in scenes, with pictures, figures and a report page.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, Pipeline};
 use yoro_scenes::{self, BUILTINS};
 
-/// Pictures of the report and of the output folder come from this many viewpoints of each scene.
+/// The number of viewpoints per scene whose pictures are in the report and in the output folder.
 const PICTURED: usize = 1;
 
 /// Compare rendering both eyes with synthesizing one, on built-in scenes or on files: pictures, figures, a report
@@ -139,13 +139,13 @@ impl Subcommand for RunArgs {
     }
 }
 
-/// The methods to be measured, each once.
+/// Returns the plan with each chosen method once.
 fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
     let mut candidates = Vec::new();
     for (i, &method) in args.methods.iter().enumerate() {
         match method {
             _ if args.methods[..i].contains(&method) => {}
-            // Always there, as the reference.
+            // The reference is always measured.
             Method::Conventional => {}
             Method::Yoro => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
                 name: pipeline.name(),

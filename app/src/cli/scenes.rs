@@ -1,4 +1,4 @@
-//! `yoro scenes`: the built-in scenes, and their export.
+//! `yoro scenes`: lists and exports the built-in scenes.
 
 use std::path::PathBuf;
 
@@ -44,7 +44,7 @@ impl Subcommand for ScenesArgs {
         Ok(Files::default())
     }
 
-    /// Prints a table, or exports.
+    /// Prints a table, or exports a scene.
     fn run(&self) -> anyhow::Result<()> {
         match &self.command {
             Some(Command::Export(export)) => run_export(export),
@@ -83,7 +83,7 @@ fn list_json() -> anyhow::Result<()> {
 }
 
 fn run_export(args: &ExportArgs) -> anyhow::Result<()> {
-    // The folder is created before the work, so that errors come early.
+    // The folder is created first, so that errors come early.
     files::create_folder(&args.folder)?;
     let scene: Scene = yoro_scenes::build(&args.name, args.seed)?;
     let license = format!(

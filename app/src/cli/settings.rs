@@ -1,4 +1,4 @@
-//! Options that are settings of the viewer, made from the table of settings.
+//! Options for settings of the viewer, generated from the table of settings.
 
 use std::ffi::OsStr;
 use std::marker::PhantomData;
@@ -14,11 +14,11 @@ use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
 
 /// A group of settings that a subcommand has options for.
 pub trait Group {
-    /// The settings in the order of the help.
+    /// The keys of the settings, in the order of the help.
     const KEYS: &'static [&'static str];
 }
 
-/// The renderer.
+/// The settings of the renderer.
 #[derive(Clone, Copy, Debug)]
 pub struct Renderer;
 
@@ -26,7 +26,7 @@ impl Group for Renderer {
     const KEYS: &'static [&'static str] = &["renderer", "msaa", "depth-bits"];
 }
 
-/// The synthesis pipeline and its knobs.
+/// The settings of the synthesis pipeline.
 #[derive(Clone, Copy, Debug)]
 pub struct Synthesis;
 
@@ -35,7 +35,7 @@ impl Group for Synthesis {
         &["pipeline", "imbuffer", "linear-interpolation", "kernel-height", "strict"];
 }
 
-/// Stereo frames.
+/// The settings of stereo frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Stereo;
 
@@ -56,7 +56,7 @@ impl Group for Stereo {
     ];
 }
 
-/// The picture behind lenses.
+/// The settings of the picture behind lenses.
 #[derive(Clone, Copy, Debug)]
 pub struct Lenses;
 
@@ -64,22 +64,22 @@ impl Group for Lenses {
     const KEYS: &'static [&'static str] = &["viewer", "method"];
 }
 
-/// Options of a [`Group`]: `--KEY VALUE`; for switches `--KEY`, or `--no-KEY` where they are on by default.
+/// The options of a [`Group`]: `--KEY VALUE`; for switches `--KEY`, or `--no-KEY` if they are on by default.
 #[derive(Clone, Debug)]
 pub struct SettingOptions<G> {
-    /// The defaults, with what was given.
+    /// The defaults, changed by the given options.
     settings: Settings,
     given: Vec<(&'static str, String)>,
     group: PhantomData<G>,
 }
 
 impl<G: Group> SettingOptions<G> {
-    /// Returns what was given, as `key=value`.
+    /// Returns the given options as `key=value`.
     pub fn pairs(&self) -> impl Iterator<Item = String> {
         self.given.iter().map(|(key, value)| format!("{key}={value}"))
     }
 
-    /// The default settings, with what was given.
+    /// Returns the default settings, changed by the given options.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -90,7 +90,7 @@ impl<G: Group> SettingOptions<G> {
 }
 
 impl SettingOptions<Renderer> {
-    /// Returns the renderer; what has no option is as on the desktop.
+    /// Returns the renderer's settings. Those without an option have the desktop's defaults.
     pub fn render_settings(&self) -> anyhow::Result<RenderSettings> {
         let Settings { renderer, msaa, depth_bits, .. } = self.settings;
         let of_forward = self.given.iter().find(|(key, _)| *key != "renderer");
@@ -102,19 +102,19 @@ impl SettingOptions<Renderer> {
 }
 
 impl SettingOptions<Synthesis> {
-    /// Returns the pipeline and its knobs.
+    /// Returns the options of the pipeline.
     pub fn options(&self) -> PipelineOptions {
         StereoOptions::of_settings(&self.settings, self.settings.pipeline).synthesis
     }
 }
 
 impl SettingOptions<Stereo> {
-    /// Returns the options for the pipeline that was chosen.
+    /// Returns the options with the chosen pipeline.
     pub fn options(&self) -> StereoOptions {
         self.options_of(self.settings.pipeline)
     }
 
-    /// Returns the options for any pipeline, with the knobs that were given.
+    /// Returns the options with any pipeline.
     pub fn options_of(&self, pipeline: Pipeline) -> StereoOptions {
         StereoOptions::of_settings(&self.settings, pipeline)
     }
@@ -153,7 +153,7 @@ impl<G: Group> clap::FromArgMatches for SettingOptions<G> {
     }
 }
 
-/// Returns the option of a setting.
+/// Returns the command-line option for a setting.
 fn option(setting: &'static Setting) -> Arg {
     let help = setting.help().replace('`', "");
     if setting.is_bool {
@@ -177,11 +177,11 @@ fn option(setting: &'static Setting) -> Arg {
         .allow_negative_numbers(true)
 }
 
-/// Parses the value of a setting, which stays a text.
+/// Checks the value of a setting, which stays a text.
 #[derive(Clone, Copy)]
 struct ValueOf {
     setting: &'static Setting,
-    /// True for the names that the option takes.
+    /// True for the names that the option accepts.
     fits: fn(&str) -> bool,
 }
 
@@ -191,7 +191,7 @@ impl TypedValueParser for ValueOf {
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<String, clap::Error> {
         let setting = self.setting;
         let check = move |text: String| {
-            // The guard band `auto` on the command line is the one that sets its own width.
+            // On the command line, the guard band `auto` is the one that sets its own width.
             let text = if setting.key == "guard-band" && text == "auto" { "auto:1".into() } else { text };
             match setting.parse_into(&mut Settings::default(), &text) {
                 Ok(()) => Ok(text),
@@ -208,7 +208,7 @@ impl TypedValueParser for ValueOf {
     }
 }
 
-/// Parses a type whose names are among those of a setting.
+/// Returns a parser for a type whose names are among the values of a setting.
 pub fn value_of<T>(key: &'static str) -> impl TypedValueParser<Value = T>
 where
     T: std::str::FromStr<Err: std::error::Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
@@ -232,13 +232,13 @@ pub struct SettingsArgs {
 }
 
 impl SettingsArgs {
-    /// Returns the file of settings.
+    /// Returns the file of settings, if one was given.
     pub fn file(&self) -> Option<&Path> {
         self.settings.as_deref()
     }
 
-    /// Returns the settings, which change `defaults`; what has an option of its own, as `key=value`, is stronger than
-    /// `--set`.
+    /// Returns `defaults` changed by the given settings. Settings with options of their own, given as `key=value`, take
+    /// precedence over `--set`.
     pub fn resolve(
         &self,
         defaults: Settings,

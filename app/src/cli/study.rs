@@ -1,4 +1,4 @@
-//! `yoro study`: plan a user study, collect its ratings, analyse them.
+//! `yoro study`: plans a user study, collects its ratings, analyses them.
 
 use std::collections::BTreeMap;
 use std::io::Read as _;
@@ -232,7 +232,7 @@ fn conditions(names: &[String], settings: &[String]) -> anyhow::Result<Vec<Condi
     names.iter().map(condition).collect()
 }
 
-/// Damaged lines that are told one by one.
+/// The number of damaged lines that are listed individually.
 const DAMAGED_SHOWN: usize = 10;
 
 fn collect(args: &CollectArgs) -> anyhow::Result<()> {

@@ -1,4 +1,4 @@
-//! `yoro synthesize`: the other eye from a colour and a depth image, or of a video.
+//! `yoro synthesize`: makes the other eye from a colour and a depth image, or from a video.
 
 use std::path::{Path, PathBuf};
 
@@ -125,7 +125,7 @@ struct Job {
 }
 
 impl SourceEye {
-    /// The eyes to synthesize, and the share of the IPD that each is away.
+    /// Returns the eyes to synthesize, with the share of the IPD that each is away from the source.
     fn targets(self) -> &'static [(Eye, f64)] {
         match self {
             SourceEye::Right => &[(Eye::Left, 1.0)],
@@ -187,7 +187,7 @@ impl Subcommand for SynthesizeArgs {
     /// Synthesizes one image or a folder of them.
     fn run(&self) -> anyhow::Result<()> {
         if let Some(file) = &self.video {
-            // A wrong file is told before a context is opened.
+            // A wrong file is reported before a context is opened.
             Reader::open(file)?.rgbd()?;
             let headless = self.gl.open()?;
             return video::synthesize(
@@ -277,7 +277,7 @@ fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
         .collect()
 }
 
-/// Returns the paths of the synthesized images.
+/// Synthesizes one image group, and returns the paths of the synthesized images.
 fn run_job(
     args: &SynthesizeArgs,
     job: &Job,
@@ -331,13 +331,13 @@ fn run_job(
     Ok(written)
 }
 
-/// The source map, rows from the top.
+/// Returns the source map's entries, rows from the top.
 fn entries(result: &SynthesizedImage, warp: &Warp) -> Vec<SourceMapEntry> {
     let rows = result.source_map.chunks_exact(warp.target_size[0] as usize).rev();
     rows.flat_map(|row| (0u32..).zip(row).map(|(x, &entry)| SourceMapEntry::decode(entry, x, warp))).collect()
 }
 
-/// Returns the meaning of a depth image's values, rows from the bottom.
+/// Decodes the values of a depth image, with rows from the bottom.
 fn decode_depth(
     args: &SynthesizeArgs,
     image: &DepthImage,

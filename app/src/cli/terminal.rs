@@ -1,4 +1,4 @@
-//! The program and its terminal: standard output, panics, log, Ctrl-C, progress.
+//! The program's terminal: standard output, panics, log, Ctrl-C, progress.
 
 use std::fmt;
 use std::io::{self, Write as _};
@@ -10,19 +10,19 @@ use log::Level;
 use super::message;
 use yoro_files::{FileError, decoder, interrupt};
 
-/// Prints to standard output by [`write`](crate::cli::terminal::write), where the macro of `std` would panic.
+/// Prints to standard output with [`write`](crate::cli::terminal::write), where the macro of `std` would panic.
 macro_rules! print {
     ($($text:tt)*) => { $crate::cli::terminal::write(format_args!($($text)*)) };
 }
 
-/// Prints a line as `print!` does.
+/// Prints a line like `print!`.
 macro_rules! println {
     () => { print!("\n") };
     ($($text:tt)*) => { print!("{}\n", format_args!($($text)*)) };
 }
 
-/// Writes to standard output. Ends the program if that is not possible: without a word when nobody reads it any more,
-/// as after `| head`.
+/// Writes to standard output. If that fails, ends the program: silently if nobody reads the output any more, as after
+/// `| head`.
 pub fn write(text: fmt::Arguments<'_>) {
     let mut out = io::stdout().lock();
     let Err(source) = out.write_fmt(text).and_then(|()| out.flush()) else { return };
@@ -33,7 +33,7 @@ pub fn write(text: fmt::Arguments<'_>) {
     std::process::exit(2);
 }
 
-/// Leaves panics of decoders to the sentence about the damaged file.
+/// Moves panics of decoders to the debug log, because an error about the damaged file replaces them.
 pub fn quiet_decoders() {
     let before = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
@@ -45,7 +45,7 @@ pub fn quiet_decoders() {
     }));
 }
 
-/// Logs to stderr what is at least as important as `level`, or what RUST_LOG names; each warning in one line.
+/// Logs messages of at least `level`, or those that RUST_LOG selects, to stderr, with each warning in one line.
 pub fn log_from(level: &str) {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(level))
         .format(|out, record| {
@@ -60,8 +60,8 @@ pub fn log_from(level: &str) {
         .init();
 }
 
-/// Makes Ctrl-C and SIGTERM end the program at the next step instead of at once, so that no half-made file
-/// stays; a second one ends it at once.
+/// Makes the first Ctrl-C or SIGTERM end the program at the next step, so that no incomplete file remains, and a second
+/// one end it at once.
 pub fn catch_interrupt() {
     let handler = || {
         if interrupt::request() {
@@ -73,7 +73,7 @@ pub fn catch_interrupt() {
     }
 }
 
-/// A progress bar on stderr; hidden when that is not a terminal.
+/// Returns a progress bar on stderr, which is hidden if that is not a terminal.
 pub fn progress_bar(steps: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed}, {eta} left  {wide_msg}");
     let bar = ProgressBar::new(steps).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

@@ -26,7 +26,7 @@ pub struct EncodingArgs {
     pub quantizer: u8,
 }
 
-/// Renders the dominant eye from each of `heads`, with its guard band, and writes an RGBD video.
+/// Renders the dominant eye at each of the poses `heads`, with its guard band, and writes an RGBD video.
 pub fn render(
     gl: &Rc<Context>,
     file: &Path,
@@ -40,7 +40,7 @@ pub fn render(
     let options =
         GroupOptions { synthesis: stereo.synthesis, guard_band: stereo.guard_band, anti_aliasing: true };
     let mut groups = GroupRenderer::new(gl, &options)?;
-    // Twice: 8 bits of depth are spread over the distances that all frames show.
+    // Everything is rendered twice: the 8 bits of depth cover the distances of all frames, which must be known first.
     let bar = progress_bar(2 * heads.len() as u64);
     bar.set_message("distances");
     let ([mut nearest, mut farthest], mut guard_columns) = ([f32::INFINITY, 0.0], 0);
@@ -127,7 +127,7 @@ pub fn synthesize(
     Ok(())
 }
 
-/// Returns kbit/s, of 1000 bits.
+/// Returns the bit rate in kbit/s (1000 bits).
 fn rate(bytes: u64, frames: usize, frame_rate: u32) -> f64 {
     bytes as f64 * 8e-3 * f64::from(frame_rate) / frames.max(1) as f64
 }

@@ -1,4 +1,4 @@
-//! `yoro view`: what a phone in a Cardboard-compatible viewer shows.
+//! `yoro view`: draws what a phone in a Cardboard-compatible viewer shows.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -19,9 +19,9 @@ use yoro_lenses::{Rotation, Screen};
 use yoro_protocol::Settings;
 use yoro_viewer::{Cardboard, Event, FrameTiming, HeldHead, SceneState};
 
-/// The refresh rate of the imagined display.
+/// The refresh rate in Hz of the imagined display.
 const REFRESH_HZ: f32 = 60.0;
-/// Frames after the scene is there: the first decides whether the second one is synthesized.
+/// The number of frames after the scene is loaded. The first one decides whether the second one is synthesized.
 const FRAMES: u32 = 2;
 
 /// Draw what a phone in a Cardboard-compatible viewer shows: both eyes behind lenses
@@ -70,7 +70,7 @@ pub struct ViewArgs {
 impl ViewArgs {
     fn resolve(&self) -> anyhow::Result<Settings> {
         let scene = self.scene.iter().map(|scene| format!("scene={scene}"));
-        // A picture is no measurement of two methods.
+        // A single picture cannot measure which of two methods is cheaper.
         self.settings
             .resolve(Settings::measured(), scene.chain(self.lenses.pairs()).chain(self.renderer.pairs()))
     }
@@ -160,7 +160,7 @@ fn wait_for_first_scene(viewer: &mut Cardboard) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Waits until the scene that an action has asked for is there, if it has.
+/// Waits for the scene that an action has requested, if any.
 fn wait_for_other_scene(viewer: &mut Cardboard) -> anyhow::Result<()> {
     while viewer.viewer().is_loading() {
         poll_scene(viewer)?;
@@ -188,7 +188,7 @@ enum Act {
         seconds: f32,
     },
     StartScreen,
-    /// A finger, 0 to 1 from the upper left.
+    /// Touches with a finger at a position from 0 to 1, measured from the upper left.
     Touch {
         x: f32,
         y: f32,

@@ -1,4 +1,4 @@
-//! `yoro xr`: in a headset, by any OpenXR runtime.
+//! `yoro xr`: shows a scene in a headset, with any OpenXR runtime.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -26,9 +26,9 @@ use yoro_viewer::openxr::runtime::{self, NoBroker, Place, Runtime};
 use yoro_viewer::openxr::{Capture, Description, Frame, Headset, Options, Step};
 use yoro_viewer::{SceneState, Viewer};
 
-/// The pause before asking a runtime again that wants no frame.
+/// The pause before polling a runtime again that wants no frame.
 const PAUSE: Duration = Duration::from_millis(5);
-/// The longest time without a frame, with --frames.
+/// The longest time without a frame if `--frames` is given.
 const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Show a scene in a headset, by any OpenXR runtime with XR_MNDX_egl_enable
@@ -95,22 +95,22 @@ impl XrArgs {
 struct MethodSummary {
     method: String,
     frames: u32,
-    /// Medians in milliseconds: this program's thread, and the GPU where it is measured.
+    /// Medians in milliseconds: this program's thread, and the GPU if it can be measured.
     cpu_ms: Option<f64>,
     gpu_ms: Option<f64>,
-    /// Frames per second, by the times at which the runtime expects the frames to be seen.
+    /// Frames per second, from the times at which the runtime expects the frames to be seen.
     fps: Option<f64>,
     stale: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     capture: Option<Captured>,
 }
 
-/// The last frame.
+/// The last frame of a method.
 #[derive(Clone, Debug, Serialize)]
 struct Captured {
     left: PathBuf,
     right: PathBuf,
-    /// The eyes in the scene.
+    /// The poses and frusta of the eyes in the scene.
     eyes: EyePair,
 }
 
@@ -123,18 +123,18 @@ struct XrSummary {
     scene: String,
     states: Vec<String>,
     restarts: u32,
-    /// Frames without images, which the runtime asks for while nobody looks.
+    /// Frames without images, which the runtime requests while the headset is not worn.
     empty_frames: u32,
     methods: Vec<MethodSummary>,
 }
 
-/// Frames of one method.
+/// The measured frames of one method.
 #[derive(Default)]
 struct Collected {
     frames: u32,
     cpu_ms: Vec<f64>,
     gpu_ms: Vec<f64>,
-    /// The first and the last, in nanoseconds.
+    /// The display times of the first and the last frame, in nanoseconds.
     shown_ns: Option<[i64; 2]>,
     stale: u32,
     captured: Option<Captured>,
@@ -143,7 +143,7 @@ struct Collected {
 impl Collected {
     fn add(&mut self, frame: &Frame, now_ns: i64) {
         self.frames += 1;
-        // Enough for any median, and bounded for those who watch for hours.
+        // This many samples are enough for any median. The limit keeps sessions of hours from using ever more memory.
         if self.cpu_ms.len() < 10_000 {
             self.cpu_ms.push(frame.cpu_ms);
             self.gpu_ms.extend(frame.report.and_then(|report| report.gpu_ms).map(f64::from));
@@ -182,7 +182,7 @@ impl Subcommand for XrArgs {
         Ok(files)
     }
 
-    /// Shows the scene until the user, the runtime or --frames ends it.
+    /// Shows the scene until the user, the runtime or `--frames` ends it.
     fn run(&self) -> anyhow::Result<()> {
         let settings = self.resolve()?;
         let runtime = self.find_runtime()?;
@@ -210,7 +210,7 @@ impl Subcommand for XrArgs {
             empty_frames,
             methods,
         });
-        // Framebuffers are deleted while the context is current.
+        // Framebuffers are deleted while the context is still current.
         drop(headset);
         let summary = summary?;
         if let Some(errors) = gl.take_errors() {
@@ -225,7 +225,7 @@ impl Subcommand for XrArgs {
     }
 }
 
-/// Returns the path of an eye's last frame.
+/// Returns the path of the last frame of an eye.
 fn capture_path(folder: &Path, method: MethodChoice, eye: Eye) -> PathBuf {
     folder.join(format!("{}.{}.png", method.name(), eye.name()))
 }
@@ -275,7 +275,7 @@ fn show(
             continue;
         }
         if args.frames.is_none() && viewer.method() != method {
-            // By controller.
+            // The method was changed with a controller.
             summaries.push(std::mem::take(&mut collected).summary(method));
             method = viewer.method();
         }
@@ -314,7 +314,7 @@ fn show(
     Ok((summaries, empty_frames))
 }
 
-/// Waits for a runtime that wants no frame; up to [`TIMEOUT`] if frames are wanted.
+/// Pauses when a runtime wants no frame, and fails after [`TIMEOUT`] if frames are `wanted`.
 fn pause(last_frame: Instant, wanted: bool) -> anyhow::Result<()> {
     ensure!(
         !wanted || last_frame.elapsed() <= TIMEOUT,
@@ -325,7 +325,7 @@ fn pause(last_frame: Instant, wanted: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses a session that has ended before each of `methods` methods had its frames.
+/// Refuses a session that ended before each of `methods` methods had its frames.
 fn check_end(frames: Option<u32>, methods: usize, summaries: &[MethodSummary]) -> anyhow::Result<()> {
     let Some(frames) = frames else { return Ok(()) };
     if summaries.len() == methods && summaries.iter().all(|s| s.frames >= frames) {

@@ -1,42 +1,42 @@
-//! When a frame of a stream is made, and how finely it is encoded.
+//! Decides when a stream's frames are made, and how finely they are encoded.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The largest quantizer that is used: coarser pictures are no use, and frames are left out instead.
+/// The largest quantizer used. Coarser pictures are useless, so frames are dropped instead.
 const MAX_QUANTIZER: u8 = 44;
-/// A frame that takes so much longer than the fastest ones has waited in a queue.
+/// A frame whose round trip exceeds the fastest one by this much has waited in a queue and counts as late.
 const LATE_DELAY: Duration = Duration::from_millis(15);
-/// A frame that takes so much longer stands for several late ones.
+/// A frame whose round trip exceeds the fastest one by this much counts as [`LATE_FRAMES_LIMIT`] late frames.
 const STALL_DELAY: Duration = Duration::from_millis(60);
-/// So many late frames in a row make pictures coarser.
+/// After this many consecutive late frames, pictures become coarser.
 const LATE_FRAMES_LIMIT: u32 = 3;
-/// The quantizer falls by one when the newest frame was not late and the quantizer has not changed for so long.
+/// The quantizer decreases by one if the newest frame was not late and the quantizer has not changed for this long.
 const QUANTIZER_RECOVERY: Duration = Duration::from_secs(1);
-/// The fastest round trip is that of the last one or two of these.
+/// The fastest round trip is taken over the last one or two windows of this length.
 const ROUND_TRIP_WINDOW: Duration = Duration::from_secs(5);
-/// Frames may come at so much more than the frame rate: a client that asks at this rate by its own clock must not wait
-/// for the server's.
+/// The factor by which frames may exceed the frame rate. A client that requests frames at this rate by its own clock
+/// must not have to wait for the server's clock.
 const RATE_HEADROOM: f32 = 1.05;
-/// Frames that are on their way for so long are given up, where the transport can; the next ones after twice the time,
-/// until one is decoded.
+/// If a frame is in flight for this long, all frames in flight are given up, where the transport supports it. The time
+/// doubles with each round that is given up, until a frame is decoded.
 const GIVE_UP_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Decides when a frame is made and how finely it is encoded, from the times at which the client has decoded frames.
-/// All times are of one clock, the server's, so that no clocks need to agree.
+/// All times are of one clock, the server's, so clocks need not be synchronized.
 ///
-/// Nothing waits in a queue: while the oldest frame on its way takes too long, none is made, and the next one that is
-/// made shows the newest pose. After a frame that is lost or given up comes an intra frame.
+/// Nothing waits in a queue: while the oldest frame in flight takes too long, no frame is made, and the next one that
+/// is made shows the newest pose. A frame that is lost or given up is followed by an intra frame.
 #[derive(Clone, Debug)]
 pub struct RateControl {
     interval: Duration,
     min_quantizer: u8,
     quantizer: u8,
-    /// The next frame is not made before.
+    /// The earliest time for the next frame.
     next: Duration,
-    /// Number and time of the frames that are on their way.
+    /// Number and sending time of each frame in flight.
     in_flight: VecDeque<(u32, Duration)>,
-    /// The fastest round trips of this window and the one before.
+    /// The fastest round trips of the present window and the previous one.
     fastest: [Option<Duration>; 2],
     window_start: Duration,
     late: u32,
@@ -51,7 +51,7 @@ pub struct RateControl {
 }
 
 impl RateControl {
-    /// Starts with frames of quantizer `min_quantizer`, which is never undercut, about `frame_rate` a second at most.
+    /// Starts with quantizer `min_quantizer`, which is also the lower limit, and at most about `frame_rate` frames/s.
     pub fn new(min_quantizer: u8, frame_rate: f32) -> RateControl {
         RateControl {
             interval: Duration::from_secs_f32(1.0 / (RATE_HEADROOM * frame_rate)),
@@ -80,7 +80,7 @@ impl RateControl {
             }
             (Some(_), None) => false,
         };
-        // A client does not ask at exactly equal times.
+        // A quarter of an interval of tolerance, since a client's requests are not exactly evenly spaced.
         now + self.interval / 4 >= self.next && flows
     }
 
@@ -89,7 +89,7 @@ impl RateControl {
         self.quantizer
     }
 
-    /// Returns the time from sending a frame to knowing that it is decoded, of the newest that is.
+    /// Returns the round trip of the newest decoded frame: the time from sending it to learning that it is decoded.
     pub fn round_trip(&self) -> Option<Duration> {
         self.round_trip
     }
@@ -99,12 +99,12 @@ impl RateControl {
         self.needs_intra
     }
 
-    /// Returns the number of frames that the client could not decode, or that were given up.
+    /// Returns the number of frames that the client could not decode or that were given up.
     pub fn lost(&self) -> u32 {
         self.lost
     }
 
-    /// Notes that a frame is handed to the transport.
+    /// Records that a frame was handed to the transport.
     pub fn sent(&mut self, number: u32, is_intra: bool, now: Duration) {
         if is_intra {
             (self.intra, self.needs_intra) = (number, false);
@@ -113,10 +113,10 @@ impl RateControl {
         self.next = (self.next + self.interval).max(now);
     }
 
-    /// Notes that the client has decoded a frame. Numbers that are not on their way change nothing.
+    /// Records that the client has decoded a frame. Numbers of frames that are not in flight are ignored.
     pub fn decoded(&mut self, number: u32, now: Duration) {
         let Some(at) = self.in_flight.iter().position(|(in_flight, _)| *in_flight == number) else { return };
-        // Those before it were not shown.
+        // Frames before this one were not shown.
         let (_, sent) = self.in_flight.drain(..=at).next_back().unwrap_or((number, now));
         self.give_up = GIVE_UP_TIMEOUT;
         let round_trip = now.saturating_sub(sent);
@@ -133,7 +133,7 @@ impl RateControl {
             _ => 0,
         };
         let since = now.saturating_sub(self.changed);
-        // What was on its way at the last change tells nothing about it.
+        // A frame sent before the last change says nothing about that change.
         if self.late >= LATE_FRAMES_LIMIT && sent >= self.changed {
             // Two steps save about a fifth of the bits.
             self.quantizer = (self.quantizer + 2).min(MAX_QUANTIZER.max(self.min_quantizer));
@@ -144,15 +144,15 @@ impl RateControl {
         }
     }
 
-    /// Notes that the client misses a frame, and so cannot decode those after it, unless an intra frame is among them.
+    /// Records that the client misses a frame, without which it cannot decode any before the next intra frame.
     pub fn missing(&mut self, number: u32) {
         if number >= self.intra {
             self.drop_from(number);
         }
     }
 
-    /// True if what is on its way takes so long that it is given up: none of it is of use any more, as the next frame
-    /// is an intra frame.
+    /// True if the frames in flight take so long that they are given up. All of them are useless then, as the next
+    /// frame is an intra frame.
     pub fn gives_up(&mut self, now: Duration) -> bool {
         let oldest = self.in_flight.front().filter(|_| self.fastest().is_some());
         let gives_up = oldest.is_some_and(|(_, sent)| now.saturating_sub(*sent) > self.give_up);
@@ -163,7 +163,7 @@ impl RateControl {
         gives_up
     }
 
-    /// Forgets the frames on their way from a number on.
+    /// Forgets all frames in flight, and counts those from `number` on as lost.
     fn drop_from(&mut self, number: u32) {
         let kept = self.in_flight.partition_point(|(in_flight, _)| *in_flight < number);
         self.lost = self.lost.saturating_add((self.in_flight.len() - kept) as u32);
@@ -183,7 +183,7 @@ mod tests {
     use rand::{Rng as _, SeedableRng as _};
     use rand_pcg::Pcg32;
 
-    /// A link, on which frames take these seconds.
+    /// A link, with the times in seconds that it takes.
     #[derive(Clone, Copy)]
     struct Link {
         bytes_per_second: f64,
@@ -191,10 +191,10 @@ mod tests {
         jitter: f64,
         /// The share of frames of which a part is sent again.
         again: f64,
-        /// The share of frames that never come.
+        /// The share of frames that never arrive.
         lost: f64,
-        /// True if frames come in order, each after those before it, as by WebSocket. Else each comes on its own, and
-        /// what is given up takes no time any more, as by WebTransport.
+        /// True if frames arrive in order, each after those before it, as with WebSocket. Otherwise each arrives
+        /// independently, and frames that were given up take no time, as with WebTransport.
         in_order: bool,
     }
 
@@ -203,21 +203,21 @@ mod tests {
     const FRAME_RATE: f32 = 60.0;
     /// Bytes of a frame at quantizer 20: 24 Mbit/s at 60 Hz.
     const BYTES_AT_20: f64 = 50e3;
-    /// Seconds that a frame takes to decode.
+    /// Seconds that it takes to decode a frame.
     const DECODE: f64 = 0.004;
 
     struct Outcome {
-        /// Seconds from making to decoding a frame, by the time of making.
+        /// For each frame, the time at which it was made, and the seconds from then until it was decoded.
         ages: Vec<(f64, f64)>,
         quantizer: u8,
         bytes: f64,
         intra: u32,
-        /// Frames that the client did not decode, as it and the server count them.
+        /// Frames that the client did not decode, as counted by the client and by the server.
         lost: [u32; 2],
     }
 
     impl Outcome {
-        /// Frames a second, and the age in seconds that 95 % undercut, from a time on.
+        /// Returns frames/s and the 95th percentile of ages in seconds, of frames made from `start` to `end`.
         fn from(&self, start: f64, end: f64) -> (f64, f64) {
             let within = self.ages.iter().filter(|(made, _)| (start..end).contains(made));
             let mut ages: Vec<f64> = within.map(|(_, age)| *age).collect();
@@ -226,15 +226,15 @@ mod tests {
         }
     }
 
-    /// Runs a stream for some virtual seconds over a link that may change with time. What the client decodes has all
-    /// that it refers to.
+    /// Runs a stream for some virtual seconds over a link that may change with time. Checks that the client has every
+    /// frame that a decoded one refers to.
     fn run(seconds: f64, link: impl Fn(f64) -> Link) -> Outcome {
         let mut control = RateControl::new(20, FRAME_RATE);
         let mut buffer = ReorderBuffer::default();
         let mut random = Pcg32::seed_from_u64(7);
         let mut outcome = Outcome { ages: Vec::new(), quantizer: 20, bytes: 0.0, intra: 0, lost: [0; 2] };
         let (mut free, mut last_arrival) = (0.0f64, 0.0f64);
-        // What is on its way, with the time at which it comes: frames, and the client's messages.
+        // Frames and the client's messages in flight, each with its time of arrival.
         let mut down: Vec<(f64, Frame)> = Vec::new();
         let mut up: VecDeque<(f64, FromClient)> = VecDeque::new();
         let (mut number, mut decoded) = (0, None);
@@ -296,7 +296,7 @@ mod tests {
         outcome
     }
 
-    /// A frame on its way.
+    /// A frame in flight.
     struct Frame {
         number: u32,
         is_intra: bool,
@@ -317,7 +317,7 @@ mod tests {
 
     #[test]
     fn on_a_narrow_link_pictures_become_coarser_until_nothing_waits() {
-        // A third of what the min_quantizer pictures take.
+        // A third of what pictures at `min_quantizer` take.
         let narrow = Link { bytes_per_second: 1e6, ..LAN };
         let outcome = run(20.0, |_| narrow);
         let (rate, age) = outcome.from(5.0, 20.0);
@@ -369,7 +369,7 @@ mod tests {
 
     #[test]
     fn after_a_gap_the_newest_frame_comes_first_where_others_can_be_given_up() {
-        // For two seconds nothing comes through.
+        // For two seconds nothing arrives.
         let delay = |now| LAN.delay + if (5.0..7.0).contains(&now) { 7.0 - now } else { 0.0 };
         let outcome = run(10.0, |now| Link { delay: delay(now), in_order: false, ..LAN });
         assert!(outcome.lost[0] > 0 && outcome.intra < 6, "{:?}, {} intra", outcome.lost, outcome.intra);
@@ -398,24 +398,24 @@ mod tests {
         assert!(control.is_due(now), "the newest frame that was decoded lets the next one be made");
     }
 
-    /// When a client asks for frames.
+    /// When a client requests frames.
     #[derive(Clone, Copy, PartialEq)]
     enum Asking {
-        /// Every 1/60 s by a timer of its own.
+        /// Every 1/60 s, by a timer of its own.
         Timer,
         /// At each refresh of its display.
         Refresh,
     }
 
     /// Runs a stream for a virtual minute, with frames that take from `fastest` to `fastest + jitter` seconds from
-    /// their request. Returns the mean age of what is shown, in seconds: the time since the refresh at which its pose
+    /// their request. Returns the mean age in seconds of what is shown: the time since the refresh at which its pose
     /// was drawn.
     fn mean_age(asking: Asking, refresh_rate: f64, fastest: f64, jitter: f64) -> f64 {
         let mut control = RateControl::new(20, FRAME_RATE);
         let mut random = Pcg32::seed_from_u64(3);
         let (mut refresh, mut ask, mut pose, mut number) = (0.0, 0.0, 0.0, 0);
         let (mut request, mut shown, mut sum, mut refreshes) = (None, None, 0.0, 0.0);
-        // Frames that are on their way: the time at which they are decoded, their number and pose.
+        // The frames in flight: the time at which they are decoded, their number and pose.
         let mut down: Vec<(f64, u32, f64)> = Vec::new();
         for step in 0..240_000 {
             let now = f64::from(step) * 0.25e-3;
@@ -437,7 +437,7 @@ mod tests {
             }
             if now >= ask {
                 request = Some(pose);
-                // The clocks differ a little, so that all phases come.
+                // The clocks differ slightly, so that all phases occur.
                 ask = if asking == Asking::Timer { ask + 1.001 / 60.0 } else { f64::INFINITY };
             }
             if control.is_due(time)

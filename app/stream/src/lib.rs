@@ -1,9 +1,8 @@
-//! Streaming one eye with its depth to a client that makes both eyes of it at the head's newest pose.
+//! Streaming of one eye with its depth to a client, which makes both eyes from it at the head's newest pose.
 //!
-//! [`FromClient`] and [`FromServer`] are the messages, [`RateControl`] says when a frame is due and how finely it is
-//! encoded, [`ReorderBuffer`] puts frames into their order, and [`DepthSpan`] says what the depth's 8 bits stand for.
-//! The server (`yoro serve`) and the page use the same code. This crate must never open a connection, read a clock or
-//! draw.
+//! [`FromClient`] and [`FromServer`] are the messages, [`RateControl`] decides when a frame is due and how finely it is
+//! encoded, [`ReorderBuffer`] puts frames in order, and [`DepthSpan`] maps the depth's 8 bits to distances. The server
+//! (`yoro serve`) and the page use the same code. This crate must not open connections, read clocks or draw.
 
 mod control;
 mod messages;

@@ -1,21 +1,21 @@
-//! The messages between a client and the server, and their form in bytes.
+//! The messages between client and server, and their encoding in bytes.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyesError, Frustum, Pose, PoseWarp, View};
 
-/// The version of the messages. Other versions are refused.
+/// The version of the messages. Clients with another version are refused.
 pub const VERSION: u16 = 2;
 
-/// What a client must know to be served: 128 random bits.
+/// The secret that a client must send to be served: 128 random bits.
 pub type Token = [u8; 16];
 
-/// A head is no farther from the origin than this, in metres, as on the page.
+/// The largest magnitude of a coordinate of a head's position, in metres; the page has the same limit.
 const FARTHEST: f32 = 1e6;
-/// No side of a frustum is farther from its axis than this tangent: that of 80 degrees.
+/// The largest tangent of a frustum's sides: that of 80 degrees.
 const STEEPEST: f32 = 5.671;
-/// Sides of pictures in pixels.
+/// Valid side lengths of pictures in pixels.
 const SIDES: std::ops::RangeInclusive<u16> = 16..=4096;
 
 /// An eye's pose and frustum.
@@ -28,7 +28,7 @@ pub struct EyeView {
 }
 
 impl EyeView {
-    /// Returns the view with this size in pixels and depth uniform in 1/z, 1 at `nearest` to 0 at `farthest` metres.
+    /// Returns the view of `size` pixels with depth uniform in 1/z, from 1 at `nearest` to 0 at `farthest` metres.
     pub fn view(&self, size: [u16; 2], [nearest, farthest]: [f32; 2]) -> View {
         let depth = DepthRange { near: nearest, far: farthest, convention: DepthConvention::Reversed };
         View { pose: self.pose, frustum: self.frustum, depth, size: size.map(u32::from) }
@@ -36,7 +36,7 @@ impl EyeView {
 
     fn is_valid(&self) -> bool {
         let EyeView { pose, frustum: f } = self;
-        // In this form NaN fails, too.
+        // Written so that NaN fails, too.
         let sides = [f.left, f.right, f.bottom, f.top].iter().all(|side| side.abs() <= STEEPEST);
         let place = pose.position.to_array().iter().all(|n| n.abs() <= FARTHEST);
         let turned = (pose.orientation.length_squared() - 1.0).abs() < 1e-2;
@@ -44,16 +44,16 @@ impl EyeView {
     }
 }
 
-/// What a client shows, and so what the server is to render for.
+/// What a client shows, and therefore what the server is to render for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ViewRequest {
-    /// Milliseconds of the client's clock. The frame that is rendered for it brings them back.
+    /// Milliseconds of the client's clock. The frame rendered for this request returns them.
     pub time_ms: f64,
     /// Left and right eye at the newest pose of the head.
     pub eyes: [EyeView; 2],
     /// The eye to render.
     pub dominant: Eye,
-    /// Width and height of each eye in pixels. The server may answer with fewer.
+    /// Width and height of each eye in pixels. The server may send fewer.
     pub size: [u16; 2],
 }
 
@@ -64,24 +64,24 @@ pub enum FromClient {
     Hello {
         /// [`VERSION`].
         version: u16,
-        /// The token of the link.
+        /// The token of the link that the server printed.
         token: Token,
     },
-    /// The head has moved, or time has passed.
+    /// The head has moved, or time has passed: a frame for this view is wanted.
     Request(ViewRequest),
-    /// The frame of this number was decoded.
+    /// The frame with this number was decoded.
     Decoded(u32),
-    /// The frame of this number is missing, and so those after it cannot be decoded: an intra frame is needed.
+    /// The frame with this number is missing, so those after it cannot be decoded: an intra frame is needed.
     Missing(u32),
 }
 
-/// What the parts of a frame's picture show, side by side from the left, all of one size. Eyes are wider than those
-/// that were requested.
+/// What the parts of a frame's picture show. The parts are side by side from the left and of one size. Eyes are wider
+/// than requested.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Content {
-    /// An eye, and its depth as luma: 255 at the first distance in metres to 0 at the second, uniform in 1/z.
+    /// An eye, and its depth as luma: from 255 at the first distance in metres to 0 at the second, uniform in 1/z.
     Depth(EyeView, [f32; 2]),
-    /// The left eye and the right one.
+    /// The left eye and the right eye.
     Eyes([EyeView; 2]),
     /// The dominant eye, its depth as in [`Content::Depth`], and the other eye.
     EyesDepth {
@@ -103,7 +103,7 @@ impl Content {
         }
     }
 
-    /// Returns the parts that show eyes.
+    /// Returns the indices of the parts that show eyes.
     pub fn eye_parts(&self) -> &'static [u32] {
         match self {
             Content::Depth(..) => &[0],
@@ -112,8 +112,8 @@ impl Content {
         }
     }
 
-    /// Returns which of the parts that show eyes an eye is made of, its view, and the distances of its depth, if it has
-    /// one.
+    /// Returns the source of an eye: its index among the parts that show eyes, its view, and the distances of its
+    /// depth, if it has depth.
     pub fn source(&self, eye: Eye) -> (usize, EyeView, Option<[f32; 2]>) {
         match *self {
             Content::Depth(eye_view, span) => (0, eye_view, Some(span)),
@@ -124,8 +124,8 @@ impl Content {
         }
     }
 
-    /// Returns the eye that has depth with the warp that moves its depth to the other eye, where that has none of its
-    /// own.
+    /// Returns the warp that moves the dominant eye's depth to the other eye, if both eyes are shown but only the
+    /// dominant one has depth.
     ///
     /// # Errors
     /// [`EyesError`] for eyes that see too little of each other's view.
@@ -135,10 +135,10 @@ impl Content {
         PoseWarp::new(&view(*dominant), &view(dominant.other())).map(Some)
     }
 
-    /// Returns which of the parts that show eyes a view is made of, and how: by rotation alone without depth.
+    /// Returns a view's source among the parts that show eyes, and the warp, a rotation only if there is no depth.
     ///
     /// # Errors
-    /// [`EyesError`] where the view sees too little of the part.
+    /// [`EyesError`] if the view sees too little of the part.
     pub fn warp(&self, size: [u16; 2], eye: Eye, target: &View) -> Result<(usize, PoseWarp), EyesError> {
         let (part, eye_view, span) = self.source(eye);
         let warp = PoseWarp::new(&eye_view.view(size, span.unwrap_or([1.0, 2.0])), target)?;
@@ -153,31 +153,31 @@ impl Content {
     }
 }
 
-/// What stands before a frame's H.264.
+/// The header before a frame's H.264 data.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameHeader {
-    /// [`ViewRequest::time_ms`] of the request that it was rendered for.
+    /// The [`ViewRequest::time_ms`] of the request that the frame was rendered for.
     pub time_ms: f64,
-    /// What is in it.
+    /// What the picture shows.
     pub content: Content,
     /// Width and height of each part in pixels, without the padding to an even size.
     pub size: [u16; 2],
-    /// Milliseconds that it took to render.
+    /// Milliseconds that rendering took.
     pub render_ms: f32,
-    /// Milliseconds that it took to encode.
+    /// Milliseconds that encoding took.
     pub encode_ms: f32,
     /// H.264's quantizer.
     pub quantizer: u8,
 }
 
-/// Why a client is not served.
+/// The reason why a client is not served.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Refusal {
-    /// The token is another one.
+    /// The token is wrong.
     Token,
     /// Another client is being served.
     Busy,
-    /// The client speaks another version.
+    /// The client has another version.
     Version,
 }
 
@@ -194,20 +194,20 @@ impl fmt::Display for Refusal {
 /// A message to the client.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FromServer<'a> {
-    /// The answer to a hello: the head's first pose.
+    /// The answer to a hello: the head's initial pose.
     Welcome(Pose),
-    /// The answer to a hello, for a video: it is shown whole, with the left and the right eye's frustum, from the
-    /// origin. The eye is the one that was rendered.
+    /// The answer to a hello, for a video: it is shown whole, with the frusta of the left and the right eye, from the
+    /// origin. The [`Eye`] is the one that was rendered.
     Video([Frustum; 2], Eye),
-    /// The answer to a hello that is not accepted, and the last message.
+    /// The answer to a hello that is rejected, and the last message.
     Refused(Refusal),
     /// A frame.
     Frame {
         /// Consecutive from 0.
         number: u32,
-        /// True if it can be decoded without others.
+        /// True if the frame can be decoded without others.
         intra: bool,
-        /// What it shows.
+        /// What the frame shows.
         header: FrameHeader,
         /// H.264 in the format of Annex B.
         data: &'a [u8],
@@ -215,7 +215,7 @@ pub enum FromServer<'a> {
 }
 
 impl FromClient {
-    /// Returns the first message; none for a token that is not 32 hexadecimal digits.
+    /// Returns the first message; `None` if the token is not 32 hexadecimal digits.
     pub fn hello(token: &str) -> Option<FromClient> {
         let digits = token.len() == 32 && token.bytes().all(|digit| digit.is_ascii_hexdigit());
         let token = digits.then(|| u128::from_str_radix(token, 16).ok()).flatten()?.to_be_bytes();
@@ -227,7 +227,7 @@ impl FromClient {
         bytes_of(self)
     }
 
-    /// Reads a message; none for anything that a client does not send, or that has numbers out of bounds.
+    /// Reads a message; `None` if it is not a client's message, or if it has numbers out of range.
     pub fn read(bytes: &[u8]) -> Option<FromClient> {
         let message = exact(bytes)?;
         let valid = match &message {
@@ -246,8 +246,8 @@ const WELCOME: u8 = 0;
 const REFUSED: u8 = 1;
 const FRAME: u8 = 2;
 const VIDEO: u8 = 3;
-/// Bytes before a frame's header: [`FRAME`], 1 for an intra frame, the header's length (16 bits), the number (32 bits),
-/// all little-endian. The page's worker reads these without the module.
+/// The length of what precedes a frame's header: [`FRAME`], 1 for an intra frame, the header's length (16 bits), the
+/// number (32 bits), all little-endian. The page's worker reads these without the module.
 const PREFIX: usize = 8;
 
 impl<'a> FromServer<'a> {
@@ -269,7 +269,7 @@ impl<'a> FromServer<'a> {
         }
     }
 
-    /// Reads a message; none for anything that a server does not send, or that has numbers out of bounds.
+    /// Reads a message; `None` if it is not a server's message, or if it has numbers out of range.
     pub fn read(bytes: &'a [u8]) -> Option<FromServer<'a>> {
         match bytes.split_first()? {
             (&WELCOME, rest) => {
@@ -303,7 +303,7 @@ fn bytes_of(value: &impl Serialize) -> Vec<u8> {
     postcard::to_allocvec(value).expect("numbers have bytes")
 }
 
-/// Reads a value that takes all of the bytes.
+/// Reads a value that must take up all of the bytes.
 fn exact<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Option<T> {
     let (value, rest) = postcard::take_from_bytes(bytes).ok()?;
     rest.is_empty().then_some(value)
@@ -392,7 +392,7 @@ mod tests {
     }
 
     proptest! {
-        /// Nothing that comes over a network is more than a message or none.
+        /// Arbitrary bytes from the network never panic.
         #[test]
         fn any_bytes_are_read_without_a_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
             let _ = (FromClient::read(&bytes), FromServer::read(&bytes));

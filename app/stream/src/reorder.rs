@@ -1,39 +1,39 @@
-//! The order of a stream's frames at the client, and what is done for one that is lost.
+//! The order of a stream's frames at the client, and what to do about a lost one.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// A missing frame is waited for so long after a newer one has come.
+/// How long a missing frame is waited for after a newer one has arrived.
 const REORDER_TIMEOUT: Duration = Duration::from_millis(50);
-/// An intra frame that does not come is asked for again after so long.
+/// After this time, an intra frame that does not arrive is requested again.
 const INTRA_REQUEST_INTERVAL: Duration = Duration::from_millis(250);
-/// The number of frames that may wait for a missing one.
+/// The most frames that can wait for a missing one.
 const MAX_WAITING_FRAMES: usize = 32;
 
-/// Puts a stream's frames into their order at the client, as a decoder needs them. What refers to a frame that is lost
-/// is not decoded: an intra frame goes on. All times are of one clock, the client's.
+/// Puts a stream's frames in order at the client, as a decoder needs them. Frames that depend on a lost one are not
+/// decoded; decoding continues with an intra frame. All times are of one clock, the client's.
 #[derive(Clone, Debug)]
 pub struct ReorderBuffer<T> {
-    /// The number of the frame that is decoded next.
+    /// The number of the next frame to decode.
     next: u32,
-    /// Frames that have come before others, and whether they are intra frames.
+    /// Frames that arrived before others, and whether they are intra frames.
     waiting: BTreeMap<u32, (bool, T)>,
-    /// The time since when the next frame is missed, or at which an intra frame was asked for.
+    /// The time from which the next frame has been missing, or at which an intra frame was last requested.
     since: Option<Duration>,
-    /// True if an intra frame was asked for.
+    /// True if an intra frame was requested.
     asked: bool,
     lost: u32,
 }
 
 impl<T> Default for ReorderBuffer<T> {
-    /// Returns the buffer of a new connection, which begins with frame 0.
+    /// Returns the buffer for a new connection, which begins with frame 0.
     fn default() -> ReorderBuffer<T> {
         ReorderBuffer { next: 0, waiting: BTreeMap::new(), since: None, asked: false, lost: 0 }
     }
 }
 
 impl<T> ReorderBuffer<T> {
-    /// Takes a frame that has come, in any order.
+    /// Adds a frame that has arrived, in any order.
     pub fn insert(&mut self, number: u32, is_intra: bool, frame: T) {
         if number < self.next {
             return;
@@ -44,10 +44,10 @@ impl<T> ReorderBuffer<T> {
         self.waiting.insert(number, (is_intra, frame));
     }
 
-    /// Returns the frame that is to be decoded next, if it is there.
+    /// Removes and returns the next frame to decode, if it has arrived.
     pub fn pop(&mut self) -> Option<T> {
         if *self.waiting.first_key_value()?.0 != self.next {
-            // The newest intra frame needs none of those before it.
+            // The newest intra frame does not depend on any frame before it.
             let (&intra, _) = self.waiting.iter().rev().find(|(_, (is_intra, _))| *is_intra)?;
             self.waiting = self.waiting.split_off(&intra);
             self.lost = self.lost.saturating_add(intra - self.next);
@@ -59,8 +59,8 @@ impl<T> ReorderBuffer<T> {
         Some(frame)
     }
 
-    /// Returns the number of a frame that is lost, when an intra frame is to be asked for. To be called from time to
-    /// time, after all frames were taken that can be decoded.
+    /// Returns the number of a missing frame if an intra frame is to be requested now. Call this regularly, after all
+    /// frames that can be decoded were taken.
     pub fn missing(&mut self, now: Duration) -> Option<u32> {
         if self.waiting.is_empty() && !self.asked {
             return None;
@@ -73,7 +73,7 @@ impl<T> ReorderBuffer<T> {
         Some(self.next)
     }
 
-    /// Returns the number of frames that were not decoded, because they or others before them were lost or came late.
+    /// Returns the number of frames that were not decoded, because they or frames before them were lost or late.
     pub fn lost(&self) -> u32 {
         self.lost
     }
@@ -87,7 +87,7 @@ mod tests {
         Duration::from_millis(milliseconds)
     }
 
-    /// Inserts frames that are their own numbers, and returns those that can be decoded then.
+    /// Inserts frames whose content is their number, and returns those that can be decoded then.
     fn decoded(buffer: &mut ReorderBuffer<u32>, frames: &[(u32, bool)]) -> Vec<u32> {
         frames.iter().for_each(|(number, is_intra)| buffer.insert(*number, *is_intra, *number));
         std::iter::from_fn(|| buffer.pop()).collect()

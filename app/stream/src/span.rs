@@ -1,24 +1,24 @@
-//! The distances that a stream's 8 bits of depth stand for.
+//! The range of distances that a stream's 8 bits of depth cover.
 
-/// The distances that the 8 bits of depth are spread over. They change at intra frames only, as a change moves all
+/// The range of distances that the 8 bits of depth cover. It changes only at intra frames, since a change alters all
 /// values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthSpan(Option<[f32; 2]>);
 
-/// The span reaches further than what is seen, by this factor at its near end and its square at the far one, where a
-/// step is long.
+/// The factor by which the span extends beyond the visible surfaces at its near end. At its far end, where a step is
+/// long, it is the square of this.
 const SPAN_MARGIN: f32 = 1.25;
-/// A span is renewed when the nearest surface is farther by more than this factor than when it was chosen: steps are
-/// wasted then.
+/// A span is renewed if the nearest surface is farther than when the span was chosen by more than this factor, since
+/// steps are wasted then.
 const RENEWAL_FACTOR: f32 = 3.0;
 
 impl DepthSpan {
-    /// Returns the span for a frame that shows surfaces from `nearest` to `farthest` metres; with true if it is a new
-    /// one, and the frame must be an intra frame. A frame without surfaces keeps the span.
+    /// Returns the span in metres for a frame that shows surfaces from `nearest` to `farthest` metres, and true if the
+    /// span is new, so that the frame must be an intra frame. A frame without surfaces keeps the span.
     pub fn fit(&mut self, nearest: f32, farthest: f32) -> ([f32; 2], bool) {
         let [near, far] = self.0.unwrap_or([f32::INFINITY, 0.0]);
         let seen = nearest <= farthest;
-        // What is beyond the far end is shown there: nobody sees it move, if the end is far enough.
+        // Surfaces beyond the far end are shown at the far end. If that is far enough, their parallax is invisible.
         let fits = near <= nearest && nearest <= near * RENEWAL_FACTOR * SPAN_MARGIN && farthest <= far * 2.0;
         if self.0.is_some() && (fits || !seen) {
             return ([near, far], false);

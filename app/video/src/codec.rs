@@ -1,4 +1,4 @@
-//! H.264 encoders and decoder, by openh264.
+//! H.264 encoders and a decoder, by openh264.
 
 use image::GrayImage;
 use openh264::OpenH264API;
@@ -11,30 +11,30 @@ use openh264_sys2::{ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, SEncParamExt};
 use crate::ffmpeg::{Ffmpeg, FfmpegEncoder};
 use crate::{Planes, VideoError};
 
-/// An H.264 encoder at one quantizer.
+/// An H.264 encoder with a constant quantizer.
 pub struct Encoder(openh264::encoder::Encoder);
 
 impl Encoder {
-    /// Starts at `quantizer` (QP, 0 to 51), for `frame_rate` pictures a second. The first picture is an intra frame.
+    /// Starts with `quantizer` (QP, 0 to 51), for `frame_rate` pictures/s. The first picture is an intra frame.
     ///
     /// # Errors
     /// [`VideoError::Codec`].
     pub fn new(quantizer: u8, frame_rate: f32) -> Result<Encoder, VideoError> {
-        // Quality is what is asked for, so the quantizer is held and the rate is what comes of it: of the encoder's
-        // modes this one moves the quantizer within its range only, and never skips a frame for it.
+        // A constant quality is wanted, so the quantizer is fixed and the bit rate follows. Of the encoder's modes,
+        // this is the one that keeps the quantizer within its range and never skips a frame.
         let config = config(RateControlMode::Bufferbased, frame_rate).qp(QpRange::new(quantizer, quantizer));
         Ok(Encoder(start(config)?))
     }
 
-    /// Makes the next picture an intra frame, from which players can start.
+    /// Makes the next picture an intra frame, at which players can start.
     pub fn force_intra_frame(&mut self) {
         self.0.force_intra_frame();
     }
 
-    /// Returns the next picture in the format of Annex B.
+    /// Encodes the next picture, in the format of Annex B.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] for a picture that is too large, or of another size than the one before.
+    /// [`VideoError::Codec`] if the picture is too large, or of another size than the previous one.
     pub fn encode(&mut self, picture: &Planes) -> Result<Vec<u8>, VideoError> {
         encode(&mut self.0, picture)
     }
@@ -43,11 +43,11 @@ impl Encoder {
 /// The encoder of a live stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LiveEncoderKind {
-    /// The graphics card's by ffmpeg, where it works; else openh264.
+    /// The graphics card's encoder through ffmpeg, if it works; otherwise openh264.
     Auto,
     /// openh264, on one core.
     OpenH264,
-    /// One of ffmpeg's.
+    /// One of ffmpeg's encoders.
     Ffmpeg(FfmpegEncoder),
 }
 
@@ -58,7 +58,7 @@ pub struct LivePicture {
     pub data: Vec<u8>,
     /// True if it is an intra frame.
     pub is_intra: bool,
-    /// Its quantizer.
+    /// The quantizer that it was encoded with.
     pub quantizer: u8,
 }
 
@@ -66,18 +66,18 @@ pub struct LivePicture {
 pub enum LiveEncoder {
     /// openh264.
     OpenH264(Box<LiveOpenH264>),
-    /// An ffmpeg, which is started again for another size or quantizer.
+    /// An ffmpeg process, which is restarted for another size or quantizer.
     Ffmpeg(FfmpegEncoder, Option<Ffmpeg>),
 }
 
 impl LiveEncoder {
-    /// Starts for at most `frame_rate` pictures a second.
+    /// Starts an encoder for at most `frame_rate` pictures per second.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] for an encoder that is not there or does not work.
+    /// [`VideoError::Codec`] for an encoder that is missing or does not work.
     pub fn new(kind: LiveEncoderKind, frame_rate: f32) -> Result<LiveEncoder, VideoError> {
         let ffmpeg = |encoder| {
-            // What a graphics card cannot do shows with the first picture.
+            // Whether a graphics card can encode is known only after a picture.
             let gray = Planes::of_gray(&GrayImage::new(256, 256));
             Ffmpeg::start(encoder, gray.size, 24)?.encode(&gray, true)?;
             Ok(LiveEncoder::Ffmpeg(encoder, None))
@@ -100,11 +100,11 @@ impl LiveEncoder {
         }
     }
 
-    /// Returns the next picture, encoded with `quantizer` (QP, 0 to 51) or up to three steps coarser. It is an intra
-    /// frame if `intra`, if its size is another one, or if the encoder had to be started again.
+    /// Encodes the next picture with `quantizer` (QP, 0 to 51) or up to three steps coarser. It is an intra frame if
+    /// `intra` is set, if its size has changed, or if the encoder had to be restarted.
     ///
     /// # Errors
-    /// [`VideoError::Codec`], for a picture that is too large or an encoder that has ended.
+    /// [`VideoError::Codec`] if the picture is too large or the encoder has ended.
     pub fn encode(
         &mut self,
         picture: &Planes,
@@ -124,7 +124,7 @@ impl LiveEncoder {
     }
 }
 
-/// openh264, whose quantizer and size may change from picture to picture.
+/// An openh264 encoder whose quantizer and size may change from picture to picture.
 pub struct LiveOpenH264 {
     encoder: openh264::encoder::Encoder,
     quantizer: u8,
@@ -140,7 +140,7 @@ impl LiveOpenH264 {
     fn encode(&mut self, picture: &Planes, quantizer: u8, intra: bool) -> Result<LivePicture, VideoError> {
         let resized = self.size != picture.size;
         if resized {
-            // A quantizer can be set only once the encoder has a size, which the first picture gives it.
+            // The quantizer can be set only once the encoder has a size, which it gets from the first picture.
             encode(&mut self.encoder, picture)?;
         }
         if resized || self.quantizer != quantizer {
@@ -156,8 +156,8 @@ impl LiveOpenH264 {
     fn set_quantizer(&mut self, quantizer: u8) -> Result<(), VideoError> {
         let mut parameters = SEncParamExt::default();
         let pointer = &raw mut parameters;
-        // SAFETY: the encoder has been initialized by a picture; this option reads and writes one `SEncParamExt`, in
-        // which only the layer's quantizer is changed, that no other part of the wrapper relies on.
+        // SAFETY: the encoder has been initialized by a picture. This option reads and writes one `SEncParamExt`, of
+        // which only the layer's quantizer is changed, and no other part of the wrapper relies on that.
         let failed = unsafe {
             let api = self.encoder.raw_api();
             let got = api.get_option(ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, pointer.cast());
@@ -169,7 +169,7 @@ impl LiveOpenH264 {
 }
 
 fn config(mode: RateControlMode, frame_rate: f32) -> EncoderConfig {
-    // One thread, so that a repeated run gives the same bytes.
+    // One thread, so that repeated runs give the same bytes.
     EncoderConfig::new()
         .rate_control_mode(mode)
         .bitrate(BitRate::from_bps(100_000_000))
@@ -212,11 +212,11 @@ impl Decoder {
         Ok(Decoder(decoder.map_err(|error| codec_error("the decoder does not start", &error))?))
     }
 
-    /// Decodes the next picture, which is in the format of Annex B.
+    /// Decodes the next picture, in the format of Annex B.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] for damaged bytes, and for streams whose pictures do not come in the order in which they
-    /// are shown.
+    /// [`VideoError::Codec`] for damaged bytes, and for streams whose pictures are not decoded in the order in which
+    /// they are shown.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<Planes, VideoError> {
         let decoded =
             self.0.decode(bytes).map_err(|error| codec_error("a picture cannot be decoded", &error))?;
@@ -268,7 +268,7 @@ mod tests {
             let decoded = decoder.decode(&encoder.encode(&planes).unwrap()).unwrap();
             for (plane, (a, b)) in decoded.planes.iter().zip(&planes.planes).enumerate() {
                 let psnr = psnr(a, b);
-                // A step of the quantizer is 6.5: 43 dB where errors are spread evenly over it.
+                // A quantizer step is 6.5, which gives 43 dB if errors are uniformly distributed over it.
                 assert!(psnr > 40.0, "frame {t}, plane {plane}: {psnr:.1} dB");
             }
         }
@@ -318,7 +318,7 @@ mod tests {
                 assert_eq!(decoded.size, planes.size);
                 sums.0 += data.len();
                 sums.1 += psnr(&decoded.planes[0], &planes.planes[0]) / 4.0;
-                // A sequence's parameters stand before each intra frame.
+                // Each intra frame begins with the sequence's parameter set.
                 assert_eq!(data[4] & 31 == 7, is_intra);
                 sums.2 |= is_intra;
             }

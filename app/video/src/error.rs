@@ -1,17 +1,17 @@
-//! The errors of videos.
+//! Errors of videos.
 
 use std::path::{Path, PathBuf};
 
 use yoro_files::FileError;
 
-/// Errors of videos.
+/// An error of a video.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VideoError {
     /// The file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The file holds no video that can be read.
+    /// The file contains no readable video.
     #[error("{} cannot be read as a video ({what}): give an MP4 file with H.264", path.display())]
     Format {
         /// The file.
@@ -28,7 +28,7 @@ pub enum VideoError {
         /// The file.
         path: PathBuf,
     },
-    /// The encoder or the decoder refused.
+    /// The encoder or the decoder failed.
     #[error("H.264: {0}")]
     Codec(String),
 }

@@ -1,5 +1,5 @@
-//! H.264 by an ffmpeg process, which reaches the encoders of graphics cards: pictures go in as a live Matroska file,
-//! whose times say which of them are intra frames, and come out as FLV, whose packets say their length.
+//! H.264 encoding by an ffmpeg process, which can use the encoders of graphics cards. Pictures go in as a live Matroska
+//! file, whose timestamps mark intra frames, and come out as FLV, whose packets contain their lengths.
 
 use std::io::{BufWriter, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -15,15 +15,15 @@ use crate::codec::LivePicture;
 use crate::index::{length_size, parameters};
 use crate::{Planes, VideoError};
 
-/// An encoder takes at most so long for a picture; the first one waits for a graphics card to start.
+/// The longest time that an encoder may take for a picture; for the first one, a graphics card has to start.
 const TIMEOUT: Duration = Duration::from_secs(5);
-/// Milliseconds between pictures, as ffmpeg is told. Real times would say nothing to an encoder that keeps its
+/// Milliseconds between pictures in the timestamps for ffmpeg. Real times do not matter to an encoder with a constant
 /// quantizer.
 const STEP: u64 = 1000;
-/// An intra frame comes so many milliseconds later, by which ffmpeg knows it: see `-force_key_frames`.
+/// Milliseconds added to an intra frame's timestamp, by which `-force_key_frames` recognizes it.
 const INTRA: u64 = 500;
 
-/// An encoder of ffmpeg's.
+/// One of ffmpeg's encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FfmpegEncoder {
     /// NVIDIA's graphics cards.
@@ -35,7 +35,7 @@ pub enum FfmpegEncoder {
 }
 
 impl FfmpegEncoder {
-    /// Returns the name that ffmpeg has for it.
+    /// Returns ffmpeg's name for the encoder.
     pub fn name(self) -> &'static str {
         match self {
             FfmpegEncoder::Nvenc => "h264_nvenc",
@@ -44,7 +44,7 @@ impl FfmpegEncoder {
         }
     }
 
-    /// Returns its options: one picture out for each picture in, no B-frames, constrained baseline.
+    /// Returns the encoder's options: one picture out for each picture in, no B-frames, constrained baseline.
     fn options(self) -> &'static [&'static str] {
         match self {
             FfmpegEncoder::Nvenc => &[
@@ -67,7 +67,7 @@ impl FfmpegEncoder {
     }
 }
 
-/// A running ffmpeg that encodes pictures of one size at one quantizer.
+/// A running ffmpeg process that encodes pictures of one size at one quantizer.
 pub struct Ffmpeg {
     child: Child,
     pictures: BufWriter<ChildStdin>,
@@ -78,17 +78,17 @@ pub struct Ffmpeg {
 }
 
 impl Ffmpeg {
-    /// Starts an ffmpeg for pictures of `size` at `quantizer`.
+    /// Starts ffmpeg for pictures of `size` at `quantizer`.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] if there is no ffmpeg. What else is wrong is found at the first picture.
+    /// [`VideoError::Codec`] if ffmpeg is not installed. Other problems are found at the first picture.
     pub fn start(encoder: FfmpegEncoder, size: [usize; 2], quantizer: u8) -> Result<Ffmpeg, VideoError> {
         let mut command = Command::new("ffmpeg");
         command.args(["-hide_banner", "-loglevel", "error"]);
         if encoder == FfmpegEncoder::Vaapi {
             command.args(["-vaapi_device", &render_node()]);
         }
-        // It would otherwise look at the first pictures before it encodes one.
+        // Otherwise ffmpeg would analyse several pictures before it encodes the first one.
         command.args(["-probesize", "32", "-analyzeduration", "1", "-fpsprobesize", "0"]);
         command.args(["-f", "matroska", "-i", "-", "-fps_mode", "passthrough"]);
         command
@@ -125,16 +125,16 @@ impl Ffmpeg {
         Ok(ffmpeg)
     }
 
-    /// True if it encodes pictures of `size` at `quantizer` or up to three steps coarser. ffmpeg cannot change the
-    /// quantizer of a running encoder, and starting it again takes tenths of a second.
+    /// True if this process encodes pictures of `size` at `quantizer` or up to three steps coarser. ffmpeg cannot
+    /// change the quantizer of a running encoder, and restarting it takes tenths of a second.
     pub fn suits(&self, size: [usize; 2], quantizer: u8) -> bool {
         self.size == size && (self.quantizer.saturating_sub(3)..=self.quantizer).contains(&quantizer)
     }
 
-    /// Returns the next picture, an intra frame if `intra`, or if it is the first one.
+    /// Encodes the next picture; it is an intra frame if `intra` is set, or if it is the first one.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] with ffmpeg's words.
+    /// [`VideoError::Codec`] with ffmpeg's message.
     pub fn encode(&mut self, picture: &Planes, intra: bool) -> Result<LivePicture, VideoError> {
         let time = self.count * STEP + if intra { INTRA } else { 0 };
         self.count += 1;
@@ -149,7 +149,7 @@ impl Ffmpeg {
 
     fn write(&mut self, picture: &Planes, time: u64) -> std::io::Result<()> {
         let length: usize = picture.planes.iter().map(Vec::len).sum();
-        // Track 1, at the cluster's time, without a picture before it.
+        // Track 1, at the cluster's time, a key frame.
         let block = [&id(0xA3)[..], &size_of(4 + length as u64), &[0x81, 0, 0, 0x80]].concat();
         let time = number(0xE7, time);
         self.pictures.write_all(&id(0x1F43_B675))?;
@@ -162,7 +162,7 @@ impl Ffmpeg {
         self.pictures.flush()
     }
 
-    /// Ends it, and returns what it said.
+    /// Kills the process and returns its error message.
     fn failure(&mut self) -> VideoError {
         let _ = self.child.kill();
         let mut said = String::new();
@@ -190,7 +190,7 @@ fn render_node() -> String {
     node.map_or("/dev/dri/renderD128".into(), |path| path.to_string_lossy().into_owned())
 }
 
-/// Returns an element's identifier as Matroska has it, without leading zeros.
+/// Returns an element's identifier in Matroska's encoding, without leading zeros.
 fn id(id: u32) -> Vec<u8> {
     id.to_be_bytes().into_iter().skip_while(|byte| *byte == 0).collect()
 }
@@ -208,8 +208,7 @@ fn number(name: u32, value: u64) -> Vec<u8> {
     element(name, &value.to_be_bytes())
 }
 
-/// Returns what stands before the pictures of a live Matroska file (RFC 9559): uncompressed, 4:2:0, full range, times
-/// in milliseconds.
+/// Returns the header of a live Matroska file (RFC 9559): uncompressed, 4:2:0, full range, times in milliseconds.
 fn header([width, height]: [usize; 2]) -> Vec<u8> {
     let file_type = [element(0x4282, b"matroska"), number(0x4287, 4), number(0x4285, 2)].concat();
     let colour = [number(0x55B9, 2), number(0x55B1, 6)].concat();
@@ -227,14 +226,14 @@ fn header([width, height]: [usize; 2]) -> Vec<u8> {
         element(0xE0, &video.concat()),
     ];
     let mut bytes = element(0x1A45_DFA3, &file_type);
-    // The segment's length is unknown.
+    // The segment has an unknown length.
     bytes.extend([&id(0x1853_8067)[..], &[1, 255, 255, 255, 255, 255, 255, 255]].concat());
     bytes.extend(element(0x1549_A966, &number(0x2A_D7B1, 1_000_000)));
     bytes.extend(element(0x1654_AE6B, &element(0xAE, &track.concat())));
     bytes
 }
 
-/// Passes on the pictures of an FLV in the format of Annex B, until it ends or is damaged.
+/// Passes on the pictures of an FLV stream in the format of Annex B, until it ends or is damaged.
 fn read(mut flv: impl Read, encoded: &Sender<(Vec<u8>, bool)>) {
     let mut start = [0; 13];
     if flv.read_exact(&mut start).is_err() {
@@ -242,7 +241,7 @@ fn read(mut flv: impl Read, encoded: &Sender<(Vec<u8>, bool)>) {
     }
     let mut avcc: Option<AvccBox> = None;
     while let Some(tag) = tag(&mut flv) {
-        // Video: frame type and codec, packet type, three bytes of time offset, data.
+        // Video tag: frame type and codec, packet type, three bytes of time offset, data.
         let (Some(kind), Some(packet), Some(data)) = (tag.first(), tag.get(1), tag.get(5..)) else {
             continue;
         };
@@ -254,7 +253,7 @@ fn read(mut flv: impl Read, encoded: &Sender<(Vec<u8>, bool)>) {
             (1, Some(avcc)) => {
                 let is_intra = kind >> 4 == 1;
                 let Ok(picture) = length_prefixed_to_annexb(data, length_size(avcc)) else { return };
-                // Some encoders leave the parameter sets to the file's header.
+                // Some encoders put the parameter sets only into the file's header.
                 let sets = if is_intra { parameters(avcc) } else { Vec::new() };
                 if encoded.send(([sets, picture].concat(), is_intra)).is_err() {
                     return;
@@ -265,12 +264,12 @@ fn read(mut flv: impl Read, encoded: &Sender<(Vec<u8>, bool)>) {
     }
 }
 
-/// Returns the content of the next tag of video, or nothing of another kind's.
+/// Returns the content of the next tag if it is a video tag, and otherwise an empty vector. Returns `None` at the end.
 fn tag(flv: &mut impl Read) -> Option<Vec<u8>> {
     let mut head = [0; 11];
     flv.read_exact(&mut head).ok()?;
     let length = u32::from_be_bytes([0, head[1], head[2], head[3]]);
-    // The tag's length follows it once more.
+    // The tag is followed by its length once more.
     let mut content = vec![0; length as usize + 4];
     flv.read_exact(&mut content).ok()?;
     content.truncate(length as usize);

@@ -21,21 +21,21 @@ use crate::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Planes, Rgbd, Vi
 /// How a video is encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Format {
-    /// Pictures a second. Players can start once a second.
+    /// Pictures per second. There is an intra frame, at which players can start, once a second.
     pub frame_rate: u32,
     /// H.264's quantizer (QP), 0 to 51.
     pub quantizer: u8,
-    /// The number of pictures, for which room is kept at the file's beginning: players need not read its end first.
+    /// The expected number of pictures, for whose index room is reserved at the file's beginning, for fast starts.
     pub frames: usize,
-    /// What the pictures mean where they have depth.
+    /// The meaning of the depth, for an RGBD video.
     pub rgbd: Option<Rgbd>,
 }
 
-/// Writes the pictures that `next` returns until it returns `None`, all of one size, and returns the number of bytes of
-/// encoded pictures. The file appears when it is complete.
+/// Writes the pictures that `next` returns, all of one size, until it returns `None`. Returns the number of bytes of
+/// the encoded pictures. The file appears only when it is complete.
 ///
 /// # Errors
-/// [`VideoError`], and whatever `next` returns.
+/// [`VideoError`], and the errors of `next`.
 pub fn write<E: From<VideoError>>(
     path: &Path,
     format: &Format,
@@ -59,7 +59,7 @@ pub fn write<E: From<VideoError>>(
     }
 }
 
-/// Writes all pictures, and returns the number of bytes of encoded pictures.
+/// Writes all pictures, and returns the number of bytes of the encoded pictures.
 fn fill<E: From<VideoError>>(
     out: &mut (impl Write + Seek),
     path: &Path,
@@ -93,7 +93,7 @@ impl<E: From<VideoError>> From<VideoError> for Stop<E> {
 
 const LENGTH_SIZE: LengthSize = LengthSize::FourBytes;
 
-/// A file of which the pictures are written one after the other.
+/// A file that is being written picture by picture.
 struct Muxer<'a, W> {
     out: &'a mut W,
     path: &'a Path,
@@ -112,7 +112,7 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
         format: &'a Format,
     ) -> Result<Muxer<'a, W>, Stop<E>> {
         let encoder = Encoder::new(format.quantizer, format.frame_rate as f32)?;
-        // The box of an RGBD video is below 1 KiB.
+        // The box with the depth's meaning takes less than 1 KiB.
         let room = estimate_maximum_moov_box_size(&[format.frames]) + 1024;
         let options = Mp4FileMuxerOptions { reserved_moov_box_size: room, ..Mp4FileMuxerOptions::default() };
         let muxer = Mp4FileMuxer::with_options(options)
@@ -153,7 +153,7 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
         Ok(())
     }
 
-    /// Returns the description of the encoded pictures, with what their depth means.
+    /// Returns the sample entry that describes the encoded pictures and the meaning of their depth.
     fn entry(&self, encoded: &[u8]) -> Result<Avc1Box, VideoError> {
         let config = H264SampleEntryConfig { length_size: LENGTH_SIZE };
         let mut entry = build_avc1_box_from_annexb(encoded, &config)
@@ -184,18 +184,18 @@ pub struct Reader {
     path: PathBuf,
     file: BufReader<File>,
     index: Index,
-    /// Pictures that have been read.
+    /// The number of pictures that have been read.
     read: usize,
-    /// Parameter sets in the format of Annex B, which come before the first picture.
+    /// The parameter sets in the format of Annex B, which precede the first picture.
     parameters: Vec<u8>,
     decoder: Decoder,
 }
 
 impl Reader {
-    /// Opens a file and reads what is in it; pictures are read by [`Reader::read`].
+    /// Opens a file and reads its index. [`Reader::read`] reads the pictures.
     ///
     /// # Errors
-    /// [`VideoError::File`], and [`VideoError::Format`] for a file that is no MP4 or has no H.264 video.
+    /// [`VideoError::File`], and [`VideoError::Format`] for a file that is not an MP4 file or has no H.264 video.
     pub fn open(path: &Path) -> Result<Reader, VideoError> {
         if path.is_dir() {
             return Err(FileError::IsFolder { path: path.into() }.into());
@@ -211,17 +211,17 @@ impl Reader {
         Ok(Reader { path: path.into(), file, index, read: 0, parameters, decoder })
     }
 
-    /// Returns the number of pictures that are still to be read.
+    /// Returns the number of pictures that remain to be read.
     pub fn frames(&self) -> usize {
         self.index.pictures.len() - self.read
     }
 
-    /// Returns the pictures a second, rounded up.
+    /// Returns the number of pictures per second, rounded up.
     pub fn frame_rate(&self) -> u32 {
         self.index.frame_rate
     }
 
-    /// Returns what the depth in the pictures means.
+    /// Returns the meaning of the depth in the pictures.
     ///
     /// # Errors
     /// [`VideoError::NoDepth`] for an ordinary video.
@@ -229,24 +229,24 @@ impl Reader {
         self.index.rgbd()
     }
 
-    /// Returns colour and depth of the next picture, or `None` after the last. Depth is as [`Rgbd`] tells.
+    /// Returns colour and depth of the next picture, or `None` after the last. [`Rgbd`] describes the depth.
     ///
     /// # Errors
-    /// As [`Reader::read`], and [`VideoError::NoDepth`] for an ordinary video.
+    /// Those of [`Reader::read`], and [`VideoError::NoDepth`] for an ordinary video.
     pub fn read_rgbd(&mut self) -> Result<Option<(RgbImage, GrayImage)>, VideoError> {
         let rgbd = self.rgbd()?;
         Ok(self.read_packed()?.map(|picture| rgbd.unpack(&picture)))
     }
 
-    /// Returns the next picture as [`Rgbd::pack`] has it, or `None` after the last.
+    /// Returns the next picture in the layout of [`Rgbd::pack`], or `None` after the last.
     ///
     /// # Errors
-    /// As [`Reader::read`].
+    /// Those of [`Reader::read`].
     pub fn read_packed(&mut self) -> Result<Option<Planes>, VideoError> {
         Ok(self.read()?.map(|picture| self.index.packed(picture)))
     }
 
-    /// Returns how long the picture that was read last is shown, in seconds; 0 before the first.
+    /// Returns for how long the picture that was read last is shown, in seconds; 0 before the first.
     pub fn duration(&self) -> f64 {
         self.read.checked_sub(1).map_or(0.0, |last| self.index.pictures[last].duration)
     }
@@ -263,8 +263,8 @@ impl Reader {
     /// Returns the next picture, or `None` after the last.
     ///
     /// # Errors
-    /// [`VideoError::File`], and [`VideoError::Format`] for a damaged picture or one of another size than its depth
-    /// says.
+    /// [`VideoError::File`], and [`VideoError::Format`] for a damaged picture, or for one whose size does not match the
+    /// depth's description.
     pub fn read(&mut self) -> Result<Option<Planes>, VideoError> {
         let Some(&EncodedPicture { offset, size, .. }) = self.index.pictures.get(self.read) else {
             return Ok(None);
@@ -337,7 +337,7 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"old");
     }
 
-    /// Colour of one tone beside depth of 0.5 to 3.5 m in 4 m of hues.
+    /// Writes a video with a uniform colour beside depth of 0.5 to 3.5 m, as hues for 4 m.
     fn record3d_video(path: &Path) {
         let hues = RgbImage::from_fn(60, 32, |x, _| color((0.5 + f32::from(x as u8 / 4) / 5.0) / 4.0));
         let grey = RgbImage::from_pixel(60, 32, Rgb([100, 120, 140]));
@@ -374,7 +374,7 @@ mod tests {
         assert!(reader.read_rgbd().unwrap().is_none());
     }
 
-    /// Every byte of a file may be wrong, and it may end anywhere.
+    /// Any byte of a file may be wrong, and it may end anywhere.
     #[test]
     fn damaged_files_are_errors() {
         let dir = tempfile::tempdir().unwrap();
@@ -407,7 +407,7 @@ mod tests {
                 let at = next() % damaged.len();
                 damaged[at] = next() as u8;
             }
-            // No crash and no endless work; what can be read is read.
+            // No crash and no endless loop; whatever can be read is read.
             let _ = read(&damaged);
         }
         fs::write(&path, "no video").unwrap();

@@ -1,4 +1,4 @@
-//! Where the pictures of an MP4 file are, and what it says of their depth.
+//! The index of an MP4 file: where its pictures are, and what their depth means.
 
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -15,41 +15,41 @@ use yoro_files::FileError;
 use crate::record3d::{self, Recording};
 use crate::{DEPTH_BOX, Planes, Rgbd, VideoError};
 
-/// What is in an MP4 file with H.264.
+/// The index of an MP4 file with H.264 video.
 pub struct Index {
     path: PathBuf,
-    /// The encoded pictures, in the order in which they are decoded.
+    /// The encoded pictures in decoding order.
     pub pictures: Vec<EncodedPicture>,
-    /// Pictures a second, rounded up.
+    /// Pictures per second, rounded up.
     pub frame_rate: u32,
     depth: Option<Depth>,
     entry: Box<Avc1Box>,
 }
 
-/// What depth a video has.
+/// The kind of depth that a video has.
 enum Depth {
-    /// As [`Rgbd::pack`] writes it.
+    /// Luma, as [`Rgbd::pack`] writes it.
     Luma(Rgbd),
-    /// As the application Record3D writes it.
+    /// Hue, as the application Record3D writes it.
     Hue(Recording),
 }
 
-/// The place of an encoded picture in a file.
+/// The location of an encoded picture in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncodedPicture {
-    /// Bytes from the file's beginning.
+    /// Offset in bytes from the beginning of the file.
     pub offset: u64,
-    /// Bytes of the picture.
+    /// Size in bytes.
     pub size: usize,
-    /// True if it can be decoded without others.
+    /// True if the picture can be decoded without others.
     pub intra: bool,
-    /// The time at which it is decoded, in seconds.
+    /// Decoding time in seconds.
     pub time: f64,
-    /// How long it is shown, in seconds.
+    /// How long the picture is shown, in seconds.
     pub duration: f64,
 }
 
-/// Returns a piece of a file.
+/// Reads a part of a file.
 pub(crate) fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize) -> io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(position))?;
     let mut bytes = vec![0; size];
@@ -58,12 +58,11 @@ pub(crate) fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize)
 }
 
 impl Index {
-    /// Finds out what is in a file of this length in bytes, from the pieces of it that are needed for that. Errors name
+    /// Reads the index of a file that is `length` bytes long; only the parts needed for it are read. Errors name
     /// `path`.
     ///
     /// # Errors
-    /// [`VideoError::File`] when it cannot be read, [`VideoError::Format`] for a damaged file, and for one without
-    /// H.264.
+    /// [`VideoError::File`] if the file cannot be read, [`VideoError::Format`] if it is damaged or has no H.264 video.
     pub fn read(path: &Path, file: &mut (impl Read + Seek), length: u64) -> Result<Index, VideoError> {
         let failed = |source| VideoError::from(FileError::Read { path: path.into(), source });
         let mut demuxer = Mp4FileDemuxer::new();
@@ -113,7 +112,7 @@ impl Index {
         Ok(Index { path: path.into(), pictures, frame_rate, depth, entry })
     }
 
-    /// Returns what the depth in the pictures means.
+    /// Returns the meaning of the depth in the pictures.
     ///
     /// # Errors
     /// [`VideoError::NoDepth`] for an ordinary video.
@@ -129,7 +128,7 @@ impl Index {
         matches!(self.depth, Some(Depth::Hue(_)))
     }
 
-    /// Returns a decoded picture as [`Rgbd::pack`] has it.
+    /// Returns a decoded picture in the layout of [`Rgbd::pack`].
     pub fn packed(&self, picture: Planes) -> Planes {
         match &self.depth {
             Some(Depth::Hue(recording)) => recording.packed(&picture),
@@ -137,7 +136,7 @@ impl Index {
         }
     }
 
-    /// Returns the codec's name as browsers take it: `avc1.42C01F`.
+    /// Returns the codec's name in the form that browsers take: `avc1.42C01F`.
     ///
     /// # Errors
     /// [`VideoError::Format`].
@@ -153,7 +152,7 @@ impl Index {
     pub fn description(&self) -> Result<Vec<u8>, VideoError> {
         let bytes = self.entry.avcc_box.encode_to_vec();
         let bytes = bytes.map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
-        // Length and type stand before it.
+        // Without the length and type before it.
         Ok(bytes[8..].to_vec())
     }
 
@@ -164,14 +163,14 @@ impl Index {
     }
 }
 
-/// Returns the parameter sets in the format of Annex B, which come before the first picture.
+/// Returns the parameter sets in the format of Annex B, which precede the first picture.
 #[cfg(feature = "codec")]
 pub fn parameters(avcc: &AvccBox) -> Vec<u8> {
     let sets = avcc.sps_list.iter().chain(&avcc.pps_list);
     sets.flat_map(|set| [&[0, 0, 0, 1], &set[..]].concat()).collect()
 }
 
-/// Returns how many bytes the length before each NAL unit of a picture has.
+/// Returns the number of bytes of the length before each NAL unit of a picture.
 #[cfg(feature = "codec")]
 pub fn length_size(avcc: &AvccBox) -> LengthSize {
     match avcc.length_size_minus_one.get() {

@@ -1,8 +1,8 @@
 //! H.264 video in MP4 files, and RGBD videos: one eye with its depth, from which the other eye is synthesized.
 //!
-//! [`Planes`] is a picture as the encoder and the decoder take it; `write` and `Reader` are the files, and [`Rgbd`]
-//! says what the depth in one means. [`Index`] finds the pictures of a file for those who have a decoder of their own.
-//! This crate must never know who renders or shows a picture.
+//! [`Planes`] is a picture in the form that encoder and decoder use; `write` and `Reader` handle files, and [`Rgbd`]
+//! describes the depth in one. [`Index`] finds the pictures of a file for callers with a decoder of their own. This
+//! crate must not depend on what renders or shows a picture.
 
 #[cfg(feature = "codec")]
 mod codec;

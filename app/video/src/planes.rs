@@ -1,19 +1,19 @@
-//! Pictures in the form that encoders take: luma and two colour differences.
+//! Pictures in the form that encoders take: luma and chroma planes.
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
 
-/// A picture as video coders take it, in 4:2:0, rows from the top.
+/// A picture in the form that video codecs take: 4:2:0, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planes {
     /// Width and height in pixels, both even.
     pub size: [usize; 2],
-    /// Luma, and both colour differences of half the width and height.
+    /// Luma, and two chroma planes of half the width and height.
     pub planes: [Vec<u8>; 3],
 }
 
 impl Planes {
-    /// Converts to BT.601, full range, as in JPEG; colour differences are the mean of 2x2 pixels. An odd last column or
-    /// row is repeated.
+    /// Converts to BT.601, full range, as in JPEG; chroma is the mean over 2x2 pixels. An odd last column or row is
+    /// repeated.
     pub fn of_rgb(image: &RgbImage) -> Planes {
         let size = even(image.dimensions());
         let at = |x: usize, y: usize| {
@@ -40,7 +40,7 @@ impl Planes {
         Planes { size, planes }
     }
 
-    /// Takes samples as luma, without colour.
+    /// Creates a picture with the samples as luma, without colour.
     pub fn of_gray(image: &GrayImage) -> Planes {
         let [w, h] = even(image.dimensions());
         let at = |x: usize, y: usize| {
@@ -50,7 +50,7 @@ impl Planes {
         Planes { size: [w, h], planes: [luma, vec![128; w * h / 4], vec![128; w * h / 4]] }
     }
 
-    /// Returns both pictures, of one height, side by side in one.
+    /// Returns a picture with both pictures, of the same height, side by side.
     pub fn beside(&self, right: &Planes) -> Planes {
         let planes = std::array::from_fn(|i| {
             let [row, right_row] = [self.size[0], right.size[0]].map(|w| if i == 0 { w } else { w / 2 });
@@ -60,7 +60,7 @@ impl Planes {
         Planes { size: [self.size[0] + right.size[0], self.size[1]], planes }
     }
 
-    /// Returns the two pictures that [`Planes::beside`] put together.
+    /// Splits a picture that [`Planes::beside`] has put together.
     pub fn halves(&self) -> [Planes; 2] {
         let [w, h] = self.size;
         [0, 1].map(|side| {
@@ -73,7 +73,7 @@ impl Planes {
         })
     }
 
-    /// Returns red, green and blue, without the padding that made the size even.
+    /// Converts to red, green and blue, without the padding that made the size even.
     pub fn rgb(&self, (width, height): (u32, u32)) -> RgbImage {
         let [w, _] = self.size;
         let byte = |value: f32| value.round().clamp(0.0, 255.0) as u8;
@@ -91,7 +91,7 @@ impl Planes {
         })
     }
 
-    /// Returns luma alone, likewise.
+    /// Returns only luma, also without the padding.
     pub fn gray(&self, (width, height): (u32, u32)) -> GrayImage {
         GrayImage::from_fn(width, height, |x, y| {
             Luma([self.planes[0][y as usize * self.size[0] + x as usize]])

@@ -14,9 +14,9 @@ use crate::{Planes, Rgbd};
 
 /// The beginning of the JSON object.
 const BEGIN: &[u8] = br#"{"intrinsic"#;
-/// The most metadata that is searched, in bytes.
+/// The most metadata to search, in bytes.
 const METADATA_LIMIT: u64 = 64 << 20;
-/// The default distances of the hues 0 and 1 in metres.
+/// The default distances in metres of the hues 0 and 1.
 const DEFAULT_RANGE: [f32; 2] = [0.0, 3.0];
 /// The nearest distance that phones measure, in metres. Pixels without a measurement are red.
 const NEAREST: f32 = 0.1;
@@ -27,13 +27,13 @@ const IPD: f32 = 0.063;
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "camelCase")]
 struct Camera {
-    /// Focal lengths and principal point in pixels, a matrix by columns.
+    /// Focal lengths and principal point in pixels: a matrix in column-major order.
     intrinsic_matrix: [f32; 9],
     /// Distances of the hues 0 and 1 in metres.
     range_of_encoded_depth: Option<[f32; 2]>,
 }
 
-/// What a video shows.
+/// A recording's views, and the distances of its hues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Recording {
     pub(crate) rgbd: Rgbd,
@@ -41,10 +41,10 @@ pub(crate) struct Recording {
     range: [f32; 2],
 }
 
-/// Returns what pictures of this size in pixels show, or why that cannot be. `None` if the file has no such metadata.
+/// Describes pictures of this size in pixels, or says why that fails. `None` if the file has no such metadata.
 ///
 /// # Errors
-/// When the file cannot be read.
+/// The file cannot be read.
 pub(crate) fn find(
     file: &mut (impl Read + Seek),
     length: u64,
@@ -58,7 +58,7 @@ pub(crate) fn find(
     Ok(Some(camera.and_then(|camera| camera.recording(size))))
 }
 
-/// Returns the contents of all boxes of an MP4 file but those of the video itself.
+/// Returns the contents of all boxes of an MP4 file except for those of the video itself.
 fn metadata(file: &mut (impl Read + Seek), length: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut at = 0;
@@ -86,8 +86,8 @@ fn metadata(file: &mut (impl Read + Seek), length: u64) -> io::Result<Vec<u8>> {
 }
 
 impl Camera {
-    /// Returns what pictures of this size in pixels show. The other eye is as high as the camera, so where the optical
-    /// axis meets the picture counts in width alone.
+    /// Returns the description of pictures of this size in pixels. The other eye is level with the camera, so only the
+    /// horizontal position of the principal point matters.
     fn recording(&self, [width, height]: [u32; 2]) -> Result<Recording, String> {
         let [focal_x, _, _, _, focal_y, _, center_x, ..] = self.intrinsic_matrix;
         let [low, high] = self.range_of_encoded_depth.unwrap_or(DEFAULT_RANGE);
@@ -101,7 +101,7 @@ impl Camera {
             eye: Eye::Right,
             guard_columns: 0,
             fov_y: 2.0 * angle(height as f32 / 2.0, focal_y),
-            // The outer side of a right eye is on the right.
+            // The outer side of the right eye is on the right.
             outer_inner: Some([angle(columns as f32 - center_x, focal_x), angle(center_x, focal_x)]),
             ipd: IPD,
             nearest: low.max(NEAREST),
@@ -116,13 +116,13 @@ impl Camera {
 }
 
 impl Recording {
-    /// Returns a picture as [`Rgbd::pack`] has it.
+    /// Returns a picture in the layout of [`Rgbd::pack`].
     pub(crate) fn packed(&self, picture: &Planes) -> Planes {
         let [hues, color] = picture.halves();
         color.beside(&Planes::of_gray(&self.depth(&hues.rgb(self.rgbd.size.into()))))
     }
 
-    /// Returns the distances that hues stand for, as [`Rgbd`]'s depth. What was not measured is as far as can be.
+    /// Converts hues to depth as in [`Rgbd`]. Pixels without a measurement are at the farthest distance.
     fn depth(&self, hues: &RgbImage) -> GrayImage {
         let [low, high] = self.range;
         GrayImage::from_fn(hues.width(), hues.height(), |x, y| {
@@ -133,7 +133,7 @@ impl Recording {
     }
 }
 
-/// Returns the hue, 0 to 1, or `None` for grey.
+/// Returns the hue, 0 to 1, or `None` for colours close to grey.
 fn hue(color: [u8; 3]) -> Option<f32> {
     let [r, g, b] = color.map(f32::from);
     let largest = r.max(g).max(b);
@@ -155,7 +155,7 @@ pub(crate) mod tests {
     use image::Rgb;
     use std::io::Cursor;
 
-    /// A camera whose axis is left of the middle of 60 x 32 pixels, as the application writes it.
+    /// A camera whose axis is left of the centre of 60 x 32 pixels, as the application writes it.
     pub(crate) const CAMERA: &str =
         r#"{"intrinsicMatrix":[50,0,0,0,50,0,25,16,1],"rangeOfEncodedDepth":[0,4]}"#;
 

@@ -1,4 +1,4 @@
-//! What an RGBD video says of its depth, as a box in the MP4 file.
+//! The description of an RGBD video's depth, as a box in the MP4 file.
 
 use image::{GrayImage, Luma, RgbImage};
 use serde::{Deserialize, Serialize};
@@ -8,37 +8,37 @@ use yoro::eyes::{
 
 use crate::Planes;
 
-/// The type of the box in a video's `avc1` sample entry that holds an [`Rgbd`] as JSON: a `uuid` box.
+/// The type of the `uuid` box in a video's `avc1` sample entry that contains an [`Rgbd`] as JSON.
 pub const DEPTH_BOX: [u8; 16] = *b"yoro RGBD video1";
 
-/// What an RGBD video shows. Its pictures have the rendered eye's colour on the left and its depth, as luma, on the
-/// right. Depth has 8 bits, 0 at [`Rgbd::farthest`] to 255 at [`Rgbd::nearest`], uniform in 1/z: a reversed depth
-/// buffer between these planes.
+/// The description of an RGBD video. Its pictures have the rendered eye's colour on the left and its depth, as luma, on
+/// the right. Depth has 8 bits, from 0 at [`Rgbd::farthest`] to 255 at [`Rgbd::nearest`], uniform in 1/z: a reversed
+/// depth buffer between these planes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rgbd {
     /// Width and height of each eye in pixels. The rendered eye is wider by its guard band.
     pub size: [u32; 2],
     /// The rendered eye.
     pub eye: Eye,
-    /// Columns that the rendered eye has more, on the side of the other eye.
+    /// Additional columns of the rendered eye, on the side of the other eye.
     pub guard_columns: u32,
     /// Vertical field of view in radians.
     pub fov_y: f32,
-    /// Outer and inner half-angle in radians where frusta are asymmetric.
+    /// Outer and inner half-angle in radians, for asymmetric frusta.
     pub outer_inner: Option<[f32; 2]>,
     /// Distance between the eyes in metres.
     pub ipd: f32,
-    /// Distance of the value 255 in metres.
+    /// Distance in metres of the value 255.
     pub nearest: f32,
-    /// Distance of the value 0 in metres.
+    /// Distance in metres of the value 0.
     pub farthest: f32,
 }
 
 impl Rgbd {
-    /// Returns how the other eye is synthesized from a picture.
+    /// Returns the views by which the other eye is synthesized from a picture.
     ///
     /// # Errors
-    /// [`EyesError`] where the numbers make no pair of eyes.
+    /// [`EyesError`] if the numbers do not describe a valid pair of eyes.
     pub fn views(&self) -> Result<SynthesisViews, EyesError> {
         self.pair().synthesis_views(GuardBand::Pixels(self.guard_columns))
     }
@@ -51,7 +51,7 @@ impl Rgbd {
         EyeOptions { size, fov_y, ipd, dominant, depth, outer_inner }.pair(Pose::IDENTITY)
     }
 
-    /// True if all numbers are such as a renderer has them.
+    /// True if all numbers are in the range that a renderer can produce.
     pub(crate) fn is_valid(&self) -> bool {
         let sides = self.size.iter().all(|side| (1..=16384).contains(side));
         let angles = [Some(self.fov_y), self.outer_inner.map(|a| a[0] + a[1])];
@@ -60,7 +60,7 @@ impl Rgbd {
         sides && self.guard_columns <= self.size[0] && angles && (0.0..1000.0).contains(&self.ipd) && planes
     }
 
-    /// Returns colour and depth as one picture. `distance` has the distances of the colour's pixels in metres, along
+    /// Packs colour and depth into one picture. `distance` returns the distances of the colour's pixels in metres along
     /// the viewing axis, rows from the top.
     pub fn pack(&self, color: &RgbImage, distance: impl Fn(u32, u32) -> f32) -> Planes {
         let depth =
@@ -68,7 +68,7 @@ impl Rgbd {
         Planes::of_rgb(color).beside(&Planes::of_gray(&depth))
     }
 
-    /// Returns colour and depth of a picture, of the size of the rendered eye with its guard band.
+    /// Splits a picture into colour and depth, both of the size of the rendered eye with its guard band.
     #[cfg(feature = "codec")]
     pub(crate) fn unpack(&self, picture: &Planes) -> (RgbImage, GrayImage) {
         let [color, depth] = picture.halves();
@@ -81,7 +81,7 @@ impl Rgbd {
     }
 }
 
-/// Returns the luma that stands for a distance in metres: uniform in 1/z, 255 at the nearest to 0 at the farthest.
+/// Returns the luma for a distance in metres: uniform in 1/z, from 255 at the nearest to 0 at the farthest.
 pub fn depth_luma(distance: f32, span: [f32; 2]) -> u8 {
     let [near, far] = span.map(f32::recip);
     ((distance.recip() - far) / (near - far) * 255.0).round().clamp(0.0, 255.0) as u8

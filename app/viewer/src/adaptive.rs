@@ -1,16 +1,16 @@
-//! A controller that finds the quality with which the display's rate holds; it has no clock and no GL.
+//! A controller that finds the best quality at which the display's refresh rate holds. It has no clock and no GL.
 
 /// A quality to render with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     /// Render scale per axis, as a factor on the setting.
     pub render_scale: f32,
-    /// Factor on the divisor of the ImBuffer's resolution.
+    /// Factor by which the divisor of the ImBuffer's resolution is multiplied.
     pub imbuffer: u32,
 }
 
 impl Quality {
-    /// Full quality: everything as the settings ask for.
+    /// Full quality: exactly what the settings ask for.
     pub const FULL: Quality = Quality { render_scale: 1.0, imbuffer: 1 };
 }
 
@@ -24,26 +24,26 @@ const LADDER: [Quality; 6] = [
     Quality { render_scale: 0.5, imbuffer: 4 },
 ];
 
-/// The load of one frame.
+/// What one frame cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
     /// The time at which the frame was finished, in nanoseconds.
     pub now_ns: i64,
     /// Refresh rate of the display in Hz; 0 if unknown.
     pub refresh_hz: f32,
-    /// Refreshes for which it came too late.
+    /// Number of refreshes by which the frame was late.
     pub late_refreshes: u32,
-    /// Its GPU time in milliseconds, if known.
+    /// The frame's GPU time in milliseconds, if known.
     pub gpu_ms: Option<f32>,
 }
 
-/// Chooses a quality frame by frame.
+/// Chooses the quality frame by frame.
 ///
-/// Frames are judged in windows of half a second. Down: at once after a window with more than 5 % late frames, or a
-/// mean GPU time beyond 95 % of a refresh. Up: after three seconds without a late frame, if the GPU time, where it
-/// is known, is expected to stay below 80 % there. A step up that fails doubles the wait before the next, up to
-/// 48 s, so that the quality does not swing. Heat: no step up from a thermal headroom of 0.85, steps down from
-/// 0.95, at most one in ten seconds; 1 is severe throttling.
+/// Frames are judged in windows of half a second. The quality is lowered after a window with more than 5 % late frames
+/// or a mean GPU time above 95 % of a refresh. It is raised after three seconds without a late frame, unless the GPU
+/// time is known and expected to exceed 80 % of a refresh then. If raising it fails, the wait before the next attempt
+/// doubles, up to 48 s, so that the quality does not oscillate. Heat: the quality is not raised from a thermal headroom
+/// of 0.85 and is lowered from 0.95, at most once in ten seconds; 1 is severe throttling.
 #[derive(Clone, Debug)]
 pub struct Controller {
     level: usize,
@@ -74,12 +74,12 @@ impl Controller {
     const HOT: f32 = 0.95;
     const WINDOWS_UP: u32 = 6;
     const MOST_WINDOWS_UP: u32 = 96;
-    /// A step up that lasts less long has failed.
+    /// A step up that does not last this many windows has failed.
     const TRIAL: u32 = 10;
-    /// Frames that take longer than this are breaks.
+    /// Frames longer than this are interruptions, not load.
     const LONGEST_FRAME_NS: i64 = 1_000_000_000;
 
-    /// Starts at full quality.
+    /// Creates a controller at full quality.
     pub fn new() -> Controller {
         Controller {
             level: 0,
@@ -92,23 +92,23 @@ impl Controller {
         }
     }
 
-    /// The quality to render with.
+    /// Returns the quality to render with.
     pub fn quality(&self) -> Quality {
         LADDER[self.level]
     }
 
-    /// Sets the device's thermal headroom, where it is known.
+    /// Sets the device's thermal headroom, if it is known.
     pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
         self.headroom = headroom.filter(|h| h.is_finite());
     }
 
-    /// Forgets the frames so far: there was a break, or the load has changed by itself.
+    /// Forgets the frames so far, after a break or a change of the load that is not due to the quality.
     pub fn restart(&mut self) {
         self.window = Window::default();
         self.good_windows = 0;
     }
 
-    /// Takes a frame; returns the quality for the next one.
+    /// Records a frame and returns the quality for the next one.
     pub fn frame(&mut self, load: &Load) -> Quality {
         let begin = *self.window.begin_ns.get_or_insert(load.now_ns);
         let elapsed = load.now_ns - begin;
@@ -132,7 +132,7 @@ impl Controller {
     fn judge(&mut self, load: &Load) {
         let window = self.window;
         let late_share = window.late as f32 / window.frames as f32;
-        // Share of a refresh that the GPU is busy.
+        // The share of a refresh for which the GPU is busy.
         let gpu = (window.timed > 0 && load.refresh_hz > 0.0)
             .then(|| window.gpu_ms / window.timed as f32 * load.refresh_hz / 1e3);
         self.since_up = self.since_up.saturating_add(1);
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_slow_device_settles_where_it_holds_the_rate() {
-        // 24 ms * 0.8^2 = 15.4 ms is in time, 24 * 0.9^2 = 19.4 is not.
+        // 24 ms * 0.8^2 = 15.4 ms fits into a refresh; 24 ms * 0.9^2 = 19.4 ms does not.
         let mut device = Device::new(24.0, true);
         assert_eq!(device.run(5.0), 0.8);
         let changes = device.changes;

@@ -1,4 +1,4 @@
-//! The text of the HUD: figures, and the user's last action.
+//! The text of the HUD: frame statistics and the user's last action.
 
 use std::fmt::{self, Write};
 
@@ -6,27 +6,27 @@ use yoro_lenses::COLUMNS;
 use yoro_protocol::telemetry::Line;
 use yoro_render::stereo::Auto;
 
-/// How long a line of a message stays in view, in nanoseconds.
+/// How long a message is shown per line of its text, in nanoseconds.
 const MESSAGE_NS: i64 = 2_000_000_000;
 
 /// The application's state that the HUD shows.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Status<'a> {
-    /// The line of the last second.
+    /// The log line of the last second.
     pub frames: Option<&'a Line>,
     /// The device's temperature in degrees Celsius.
     pub celsius: Option<f32>,
     pub method: &'a str,
-    /// The reason for the method, if it was not named.
+    /// The automatic choice of the method, unless the settings name a method.
     pub auto: Option<&'a Auto>,
     pub pipeline: Option<&'a str>,
-    /// The scene that is on its way.
+    /// The name of the scene that is being loaded.
     pub loading: Option<&'a str>,
 }
 
-/// The HUD's words, and whether they are to be seen.
+/// The HUD's text, and whether the HUD is shown.
 pub(crate) struct Caption {
-    /// True if the user wants to see it.
+    /// True if the user wants to see the HUD.
     pub is_shown: bool,
     message: String,
     message_until_ns: i64,
@@ -39,15 +39,15 @@ impl Caption {
         Caption { is_shown, message: String::new(), message_until_ns: 0, text }
     }
 
-    /// Shows a message for two seconds a line, also where the HUD is hidden; one of several lines takes the HUD's
-    /// place. An empty one takes away the one before.
+    /// Shows a message for two seconds per line, even while the HUD is hidden. A message of several lines replaces the
+    /// HUD's text. An empty message removes the previous one.
     pub fn announce(&mut self, message: String, now_ns: i64) {
         let lines = message.lines().count() as i64;
         self.message_until_ns = if message.is_empty() { 0 } else { now_ns + lines * MESSAGE_NS };
         self.message = message;
     }
 
-    /// True if there is something to see: the HUD, or a message.
+    /// True if the HUD or a message is to be shown.
     pub fn is_in_view(&self, now_ns: i64) -> bool {
         self.is_shown || self.has_message(now_ns)
     }
@@ -56,17 +56,17 @@ impl Caption {
         now_ns < self.message_until_ns
     }
 
-    /// The words as they were written last.
+    /// Returns the text that was written last.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The text, to write another one.
+    /// Returns the text for a caller that writes its own.
     pub fn text_mut(&mut self) -> &mut String {
         &mut self.text
     }
 
-    /// Writes rate, frame time and temperature as far as they are known, the method, and what happens.
+    /// Writes the known ones of frame rate, frame time and temperature, the method, and the loading scene or message.
     pub fn write_status(&mut self, status: &Status, now_ns: i64) {
         let message = self.has_message(now_ns).then_some(self.message.as_str());
         let text = &mut self.text;
@@ -96,18 +96,18 @@ impl Caption {
                 (None, None) => Ok(()),
             }
         };
-        // A string takes everything.
+        // Writing to a `String` cannot fail.
         let _ = write();
     }
 
-    /// Writes a sentence in lines of the panel's width, words kept whole.
+    /// Writes a sentence, wrapped between words to the panel's width.
     pub fn write_sentence(&mut self, sentence: &str) {
         self.text.clear();
         wrap(&mut self.text, sentence, COLUMNS);
     }
 }
 
-/// Appends a sentence in lines of so many characters at most, words kept whole.
+/// Appends a sentence, wrapped between words into lines of at most `columns` characters.
 pub(crate) fn wrap(text: &mut String, sentence: &str, columns: usize) {
     let mut column = 0;
     for word in sentence.split_whitespace() {

@@ -4,18 +4,18 @@ use yoro_gl::GlError;
 use yoro_lenses::ParamsError;
 use yoro_render::stereo::StereoError;
 
-/// An error after which the viewer cannot go on. A scene that cannot be loaded is not among these: it is shown in view,
-/// see [`Viewer::failure`](crate::Viewer::failure).
+/// An error after which the viewer cannot continue. A scene that cannot be loaded is not such an error: its reason is
+/// shown to the user, see [`Viewer::failure`](crate::Viewer::failure).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewerError {
-    /// The viewer's parameters.
+    /// The viewer's parameters are missing or wrong.
     #[error(transparent)]
     Params(#[from] ParamsError),
     /// The scene does not exist.
     #[error("{0}")]
     NoScene(String),
-    /// GL refused.
+    /// A GL operation failed.
     #[error(transparent)]
     Gl(#[from] GlError),
     /// A method cannot render a frame.

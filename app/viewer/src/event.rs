@@ -7,60 +7,60 @@ use yoro_protocol::{Ipd, MethodChoice};
 /// An action of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A tap on the screen, the viewer's trigger, or a controller's: the next method, or the tile of the menu that is
-    /// pointed at.
+    /// A tap on the screen, or the trigger of the viewer or a controller: the next method, or the tile of the menu that
+    /// is pointed at.
     Tap,
-    /// The method before.
+    /// The previous method.
     PreviousMethod,
-    /// A long press: opens the menu; in the menu, straight ahead is where the head points now.
+    /// A long press: opens the menu; in the menu, makes the head's present direction straight ahead.
     LongPress,
-    /// The trigger goes down: in the menu, comparing begins.
+    /// The trigger was pressed: in the menu, starts a comparison.
     Press,
-    /// The trigger goes up.
+    /// The trigger was released.
     Release,
-    /// Volume up: the eyes a millimetre further apart.
+    /// Volume up: moves the eyes 1 mm further apart.
     IpdUp,
-    /// Volume down: the eyes a millimetre closer.
+    /// Volume down: moves the eyes 1 mm closer together.
     IpdDown,
     /// Shows or hides the HUD.
     ToggleHud,
     /// Goes to the scene's next viewpoint.
     NextViewpoint,
-    /// Loads the next scene: the built-in ones, then the files in the scene folders.
+    /// Loads the next scene; the built-in scenes come first, then the files in the scene folders.
     NextScene,
 }
 
 /// The effect of an event, for the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Action {
-    /// The method that is used now.
+    /// The method now in use.
     Method(MethodChoice),
-    /// The head's direction starts over: that is for the display to do.
+    /// The head's present direction becomes straight ahead. The display has to do this.
     Recenter,
     /// The menu was opened or closed.
     Menu(bool),
-    /// The menu has changed settings, which the display takes: `Viewer::take_settings`.
+    /// The menu has changed settings. The display applies them, see `Viewer::take_settings`.
     Settings,
-    /// The start screen came into view (true), or the user starts from it: the head's direction starts over.
+    /// The start screen was opened (true) or left (false), which makes the head's direction straight ahead.
     StartScreen(bool),
-    /// The user wants to give the log to another application: that is for the platform to do.
+    /// The user wants to share the log with another application. The platform has to do this.
     ShareLog,
-    /// The user wants the phone's camera to look for a viewer's code, or no longer: that is for the platform to do.
+    /// The platform has to start (true) or stop (false) looking for a viewer's code with the phone's camera.
     Scan(bool),
     /// The distance between the eyes.
     Ipd(Ipd),
     /// True if the HUD is shown.
     Hud(bool),
-    /// The viewpoint's number.
+    /// The HUD is now shown (true) or hidden (false).
     Viewpoint(usize),
-    /// Another scene is being loaded: [`Viewer::scene_name`](crate::Viewer::scene_name).
+    /// Another scene is being loaded, see [`Viewer::scene_name`](crate::Viewer::scene_name).
     Scene,
-    /// The marker of the slider was moved to this rating.
+    /// The slider's marker was moved to this rating.
     Marker(f32),
-    /// A question was answered: the last of [`Viewer::ratings`](crate::Viewer::ratings).
+    /// A question was answered; the answer is the last of [`Viewer::ratings`](crate::Viewer::ratings).
     Answer,
     #[default]
-    /// Nothing, because a question is being asked, or there is no other method, viewpoint or scene.
+    /// Nothing, because a question is being asked, or because there is no other method, viewpoint or scene.
     Nothing,
 }
 

@@ -1,9 +1,9 @@
 //! The input and output of a frame: its times, and a report.
 
-/// The times of a frame, all on the monotonic clock of the sensors' timestamps where the platform has one.
+/// The times of a frame, on the monotonic clock of the sensors' timestamps where the platform has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTiming {
-    /// Now, in nanoseconds.
+    /// The present time in nanoseconds.
     pub now_ns: i64,
     /// The time at which the frame is expected to be seen, in nanoseconds.
     pub expected_display_ns: i64,
@@ -14,35 +14,35 @@ pub struct FrameTiming {
 /// The state of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneState {
-    /// Being loaded or generated; a progress bar is in view.
+    /// Being loaded or generated; a progress bar is shown.
     Loading,
-    /// In view.
+    /// Shown.
     Ready,
-    /// It cannot be loaded; the reason is in view and in [`Viewer::failure`](crate::Viewer::failure).
+    /// Cannot be loaded. The reason is shown to the user, and returned by [`Viewer::failure`](crate::Viewer::failure).
     Failed,
 }
 
-/// The report of a presented frame, with what the platform should do next.
+/// A report on a presented frame, which tells the platform what to do next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameReport {
     /// The state of the scene.
     pub scene: SceneState,
-    /// Refreshes of the display for which this frame came too late.
+    /// Number of the display's refreshes by which this frame was late.
     pub late_refreshes: u32,
-    /// GPU time in milliseconds of a frame some frames ago, where it is measured.
+    /// GPU time in milliseconds of a frame a few frames ago, if it is measured.
     pub gpu_ms: Option<f32>,
     /// A second has passed: collect a [`DeviceState`](yoro_protocol::telemetry::DeviceState) and call
     /// [`Viewer::telemetry`](crate::Viewer::telemetry).
     pub telemetry_due: bool,
-    /// The session's `duration` has passed since the scene came into view, and its questions are answered: log
-    /// [`Viewer::summary`](crate::Viewer::summary). True in one report only.
+    /// The session's `duration` has passed since the scene was first shown, and its questions are answered: log
+    /// [`Viewer::summary`](crate::Viewer::summary). True in only one report.
     pub session_over: bool,
-    /// The session is over and `auto-exit` is on: end the program. True from then on.
+    /// The session is over and `auto-exit` is on: end the program. Stays true from then on.
     pub exit: bool,
 }
 
 impl FrameReport {
-    /// The report of a picture that is no frame of the session.
+    /// Returns the report for a start screen, which does not count as a frame of the session.
     pub(crate) fn of_start_screen(scene: SceneState) -> FrameReport {
         FrameReport {
             scene,

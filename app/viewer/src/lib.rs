@@ -1,11 +1,11 @@
-//! The VR viewer: Cardboard phones and OpenXR headsets.
+//! The VR viewer for Cardboard phones and OpenXR headsets.
 //!
-//! [`Viewer`] is the whole application without a platform: scene, renderer, stereo method, HUD, settings, statistics.
-//! [`Cardboard`] and [`openxr::Headset`] are the displays; each owns the viewer that draws for it. A platform gives a
-//! GL context, events and somewhere to draw, and gets frames and a log line a second.
+//! [`Viewer`] is the whole application except for the platform: scene, renderer, stereo method, HUD, settings,
+//! statistics. [`Cardboard`] and [`openxr::Headset`] are the displays; each owns the viewer that draws for it. A
+//! platform provides a GL context, events and a surface to draw on, and receives frames and one log line per second.
 //!
-//! This crate must never know how a frame is measured against another, a command line, or JNI: it
-//! hands two opaque pointers to OpenXR, and Android answers the trait [`openxr::runtime::Broker`].
+//! This crate must not depend on metrics, a command line, or JNI: it passes two opaque pointers to OpenXR, and Android
+//! implements the trait [`openxr::runtime::Broker`].
 
 mod adaptive;
 mod caption;

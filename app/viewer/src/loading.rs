@@ -8,32 +8,32 @@ use crate::error::ViewerError;
 use yoro_scene::Scene;
 use yoro_scenes::BUILTINS;
 
-/// Endings of scene files.
+/// File extensions of scenes.
 const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
 
-/// Stack of the loading thread in bytes: that of a main thread, on which scenes are loaded elsewhere.
+/// Stack size of the loading thread in bytes: that of a main thread, on which scenes are loaded elsewhere.
 const STACK: usize = 8 << 20;
 
-/// The source of a scene.
+/// Where a scene comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneSource {
-    /// Generated.
+    /// Generated from a seed.
     Builtin {
         /// Its name.
         name: &'static str,
         /// Its seed.
         seed: u64,
     },
-    /// Loaded.
+    /// Loaded from a file.
     File(PathBuf),
 }
 
 impl SceneSource {
-    /// Finds a scene: a built-in one by its name, or a file by its path, by its name (with or without ending) in one
-    /// of the folders or in a folder of one of those, or by the name of the folder that it is in.
+    /// Finds a scene: a built-in one by its name, or a file by its path, by its name (with or without extension) in one
+    /// of the folders or their direct subfolders, or by the name of the folder that contains it.
     ///
     /// # Errors
-    /// [`ViewerError::NoScene`], which lists what there is.
+    /// [`ViewerError::NoScene`], which lists the available scenes.
     pub fn find(name: &str, seed: u64, folders: &[PathBuf]) -> Result<SceneSource, ViewerError> {
         if let Some(builtin) = BUILTINS.iter().find(|b| b.name == name) {
             return Ok(SceneSource::Builtin { name: builtin.name, seed });
@@ -60,7 +60,7 @@ impl SceneSource {
         )))
     }
 
-    /// Returns everything that there is: the built-in scenes, then the files in the folders and in their folders.
+    /// Returns all scenes: the built-in ones, then the files in the folders and their direct subfolders.
     pub fn all(seed: u64, folders: &[PathBuf]) -> Vec<SceneSource> {
         let builtin = BUILTINS.iter().map(|b| SceneSource::Builtin { name: b.name, seed });
         builtin.chain(list_scenes(folders).into_iter().map(SceneSource::File)).collect()
@@ -82,7 +82,7 @@ impl SceneSource {
     }
 }
 
-/// The scene files in the folders and in their folders, sorted. Folders that cannot be read are empty.
+/// Returns the scene files in the folders and their direct subfolders, sorted. Unreadable folders count as empty.
 pub fn list_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
     fn collect(folder: &Path, depth: u32, files: &mut Vec<PathBuf>) {
         for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
@@ -100,17 +100,17 @@ pub fn list_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
     files
 }
 
-/// A scene on its way. Dropping it lets the thread end by itself.
+/// A scene that is being loaded. If this is dropped, the thread runs to its end unobserved.
 pub(crate) struct Loader {
     result: Receiver<Result<Scene, String>>,
 }
 
 impl Loader {
-    /// Starts a thread.
+    /// Starts to load a scene on a thread of its own.
     pub fn start(source: &SceneSource) -> Loader {
         let (sender, result) = channel();
         let source = source.clone();
-        // Nobody listens once the viewer is gone.
+        // Sending fails if the viewer is gone, which is fine.
         let work = move || drop(sender.send(source.load()));
         let thread = thread::Builder::new().name("yoro scene".into()).stack_size(STACK);
         if let Err(error) = thread.spawn(work) {
@@ -119,7 +119,7 @@ impl Loader {
         Loader { result }
     }
 
-    /// The scene, once, when it is there.
+    /// Returns the scene or the error, once, when loading has finished.
     pub fn poll(&self) -> Option<Result<Scene, String>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),

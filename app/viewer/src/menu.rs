@@ -1,20 +1,20 @@
-//! The menu: what is pointed at and chosen, without GL.
+//! The menu's logic, without GL: which tile is pointed at, and which is chosen.
 
 use glam::{Quat, Vec2, Vec3};
 
 use yoro::eyes::Pose;
 use yoro_lenses::{Tiles, board_hit, board_pose, tile_at};
 
-/// Looking at a tile for so long chooses it, in nanoseconds.
+/// How long a tile has to be looked at to be chosen, in nanoseconds.
 const DWELL_NS: i64 = 1_500_000_000;
-/// Looking down for so long opens the menu, in nanoseconds.
+/// How long the user has to look down to open the menu, in nanoseconds.
 const DOWN_NS: i64 = 1_000_000_000;
-/// Looking down means that straight ahead is lower than this: the sine of 50 degrees below the horizon.
+/// The user looks down if the Y coordinate of the head's forward direction is below this: 50 degrees below the horizon.
 const DOWN: f32 = -0.766;
-/// The steps in which the bar of a tile fills.
+/// Number of steps in which a tile's progress bar fills.
 const STEPS: f32 = 24.0;
 
-/// A tile of the menu, in the order in which they stand.
+/// A tile of the menu. The variants are in the order of the tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Item {
     Recenter,
@@ -48,41 +48,41 @@ impl Item {
     ];
 }
 
-/// A tile and its half: 1 for the next or more (right), -1 for the one before or less (left).
+/// A tile and which half of it: 1 for the right half (next, more), -1 for the left half (previous, less).
 pub(crate) type Choice = (Item, isize);
 
-/// The menu, open or not.
+/// The menu, whether open or not.
 #[derive(Default)]
 pub(crate) struct Menu {
-    /// The place of the open panel, relative to the viewpoint.
+    /// The pose of the open panel, relative to the viewpoint.
     board: Option<Pose>,
-    /// The head in the last frame.
+    /// The head's pose in the last frame.
     head: Option<Pose>,
-    /// The place on the panel that is pointed at.
+    /// The point on the panel that is pointed at.
     hit: Option<Vec2>,
     pointed: Option<Choice>,
-    /// The time since which that tile is pointed at.
+    /// The time from which that tile has been pointed at.
     since_ns: i64,
     is_spent: bool,
-    /// The time since which the head looks down; `Some(None)` when the menu was opened by that.
+    /// The time from which the head has looked down; `Some(None)` once this has opened the menu.
     down: Option<Option<i64>>,
     is_pressed: bool,
-    /// What the panel shows.
+    /// The panel's content.
     pub tiles: Tiles,
 }
 
 impl Menu {
-    /// The place of the open panel, relative to the viewpoint.
+    /// Returns the pose of the open panel, relative to the viewpoint.
     pub fn board(&self) -> Option<Pose> {
         self.board
     }
 
-    /// The place on the panel that is pointed at, 0 to 1 from the lower left.
+    /// Returns the point on the panel that is pointed at, 0 to 1 from the lower left.
     pub fn hit(&self) -> Option<Vec2> {
         self.hit
     }
 
-    /// Opens the menu where the head looks.
+    /// Opens the menu in front of the head.
     pub fn open(&mut self) {
         self.board = Some(board_pose(self.head.unwrap_or(Pose::IDENTITY)));
         (self.hit, self.pointed, self.is_pressed) = (None, None, false);
@@ -93,13 +93,13 @@ impl Menu {
         (self.board, self.hit, self.pointed, self.is_pressed) = (None, None, None, false);
     }
 
-    /// Notes that the trigger goes down or up.
+    /// Records that the trigger was pressed or released.
     pub fn press(&mut self, is_pressed: bool) {
         self.is_pressed = is_pressed && self.board.is_some();
     }
 
-    /// True while two real renders are asked for: the trigger is held on the tile, or it has been looked at long
-    /// enough.
+    /// True while two real renders are to be compared: the trigger is held on the tile, or the tile has been looked at
+    /// for long enough.
     pub fn is_comparing(&self) -> bool {
         matches!(self.pointed, Some((Item::Compare, _))) && (self.is_pressed || self.is_spent)
     }
@@ -109,9 +109,9 @@ impl Menu {
         self.pointed
     }
 
-    /// The user looks somewhere: opens the menu if that was down for long enough, and returns the tile that has been
-    /// looked at for long enough. A ray along the -Z of one of `rays` that meets the panel points in place of the head,
-    /// and chooses by the trigger alone.
+    /// Updates the menu with the direction of the head. Opens it if the user has looked down for long enough, and
+    /// returns the tile that has been looked at for long enough. If a ray along the -Z of one of `rays` hits the panel,
+    /// it points instead of the head, and then only the trigger chooses a tile.
     pub fn look(&mut self, head: Pose, rays: [Option<Pose>; 2], now_ns: i64) -> Look {
         self.head = Some(head);
         let Some(board) = &self.board else { return self.look_down(head, now_ns) };
@@ -126,7 +126,7 @@ impl Menu {
             .map(|(i, share)| (i, if share < 0.5 { -1 } else { 1 }));
         let pointed = tile.map(|(i, step)| (Item::ALL[i], step));
         if pointed != self.pointed {
-            // Either half of the tile for comparing is the same.
+            // Both halves of the comparison's tile do the same.
             let is_same =
                 matches!((pointed, self.pointed), (Some((Item::Compare, _)), Some((Item::Compare, _))));
             self.pointed = pointed;
@@ -154,7 +154,7 @@ impl Menu {
             None => self.down = Some(Some(now_ns)),
             Some(Some(since)) if now_ns - since >= DOWN_NS => {
                 self.down = Some(None);
-                // The panel stands at the horizon: what is up for a head that looks down is ahead for the body.
+                // The panel stands at the horizon. The top of a head that looks down points to the body's front.
                 let ahead = head.forward() + head.orientation * Vec3::Y;
                 let heading = Quat::from_rotation_y((-ahead.x).atan2(-ahead.z));
                 self.open();
@@ -166,13 +166,13 @@ impl Menu {
         Look::Nothing
     }
 
-    /// Notes that a tile was chosen by the trigger: looking at it on does nothing more.
+    /// Records that the trigger has chosen a tile: continuing to look at it does not choose it again.
     pub fn spend(&mut self) {
         self.is_spent = !matches!(self.pointed, Some((Item::Compare, _)));
     }
 }
 
-/// What follows from looking somewhere.
+/// The outcome of [`Menu::look`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Look {
     Nothing,
@@ -208,7 +208,7 @@ mod tests {
         assert!(menu.tiles.pointed.unwrap().1 > 0.9);
         assert!(matches!(menu.look(at, [None; 2], 1500 * MS), Look::Choose((Item::Recenter, _))));
         assert_eq!(menu.look(at, [None; 2], 9000 * MS), Look::Nothing);
-        // Away and back.
+        // Looks away and back.
         menu.look(head(60.0, 0.0), [None; 2], 9100 * MS);
         assert_eq!((menu.pointed(), menu.hit()), (None, None));
         menu.look(at, [None; 2], 9200 * MS);
@@ -255,7 +255,7 @@ mod tests {
         let mut menu = Menu::default();
         menu.look(head(0.0, 0.0), [None; 2], 0);
         menu.open();
-        // A hand at the right of the body; its ray meets the tile that the head would see at the upper left.
+        // A hand to the right of the body. Its ray hits the tile that the head would point at in the upper left.
         let hand = Vec3::new(0.2, -0.3, -0.2);
         let target = 2.0 * head(15.0, 2.0).forward();
         let ray = Pose {
@@ -266,7 +266,7 @@ mod tests {
         menu.look(gaze, [Some(ray), None], 0);
         assert_eq!(menu.pointed().unwrap().0, Item::Recenter);
         assert_eq!(menu.look(gaze, [Some(ray), None], 9000 * MS), Look::Nothing);
-        // Past the panel: the head points again, from now on.
+        // The ray misses the panel: the head points again, and the time starts anew.
         let past = Pose { orientation: Quat::IDENTITY, position: Vec3::new(3.0, 0.0, 0.0) };
         assert_eq!(menu.look(gaze, [None, Some(past)], 9100 * MS), Look::Nothing);
         assert_eq!(menu.pointed().unwrap().0, Item::Method);

@@ -1,4 +1,4 @@
-//! The stereo method in use, and the quality that it renders with.
+//! The stereo method in use, and the quality at which it renders.
 
 use std::rc::Rc;
 
@@ -15,31 +15,31 @@ use yoro_render::stereo::{
     Substitute,
 };
 
-/// The stereo method in use, made once there is a scene.
+/// The stereo method in use. It is created once a scene is loaded.
 pub(crate) struct MethodSlot {
     choice: MethodChoice,
     pipeline: Pipeline,
     controller: Controller,
-    /// The device's thermal headroom, where it is known.
+    /// The device's thermal headroom, if it is known.
     headroom: Option<f32>,
-    /// Both methods of [`MethodChoice::Auto`] were rendered in this second.
+    /// True if both methods of [`MethodChoice::Auto`] were rendered in this second.
     is_mixed: bool,
     /// The quality that the controller asked for last.
     quality: Quality,
-    /// The reason why neither eye of the last frame can be synthesized from the other, if so.
+    /// The reason why neither eye of the last frame could be synthesized from the other, if so.
     unfit: Option<EyesError>,
-    /// The method, while there is a scene to use it on.
+    /// The compiled method, while a scene is shown.
     made: Option<Chosen>,
-    /// Both eyes are rendered, to be compared with the method.
+    /// True while both eyes are rendered for a comparison with the method.
     is_comparing: bool,
-    /// Renders both eyes while they are unfit or compared.
+    /// Renders both eyes while they are unfit for synthesis or compared.
     substitute: Substitute,
-    /// Time of the last frame that was rendered, while it can be shown again.
+    /// Time of the last frame that was rendered, while that frame may be shown again.
     rendered_ns: Option<i64>,
 }
 
 impl MethodSlot {
-    /// The method of the settings, at full quality.
+    /// Creates a slot for the settings' method, at full quality.
     pub fn new(settings: &Settings) -> MethodSlot {
         MethodSlot {
             choice: settings.method,
@@ -66,7 +66,7 @@ impl MethodSlot {
         (self.choice, self.pipeline) = (choice, pipeline);
     }
 
-    /// Chooses the pipeline of the settings, or the one that every driver can do.
+    /// Chooses the settings' pipeline, or the one that works with every driver.
     pub fn choose_pipeline(&mut self, gl: &Context, settings: &Settings) {
         self.pipeline = settings.pipeline;
         if self.pipeline != Pipeline::Gather && !gl.capabilities().compute {
@@ -79,17 +79,17 @@ impl MethodSlot {
         }
     }
 
-    /// The method in use: of [`MethodChoice::Auto`] the one that was chosen last.
+    /// Returns the method in use; with [`MethodChoice::Auto`], the one chosen last.
     pub fn method(&self) -> Method {
         self.auto().map_or(self.choice.first(), Auto::method)
     }
 
-    /// The choice between two methods, if the settings ask for that and they are made.
+    /// Returns the automatic choice between two methods, if the settings ask for it and the methods are compiled.
     pub fn auto(&self) -> Option<&Auto> {
         self.made.as_ref()?.auto()
     }
 
-    /// The reason for the method in use in the log line; `None` if it was named.
+    /// Returns the reason for the method in use, for the log line; `None` if the settings name the method.
     pub fn reason(&self) -> Option<String> {
         let auto = self.auto()?;
         Some(if self.is_mixed { "measuring".into() } else { auto.to_string() })
@@ -104,17 +104,17 @@ impl MethodSlot {
         self.pipeline
     }
 
-    /// The pipeline's name, where the method synthesizes.
+    /// Returns the pipeline's name if the method synthesizes.
     pub fn pipeline_name(&self) -> Option<&'static str> {
         (self.method() == Method::Yoro).then(|| self.pipeline.name())
     }
 
-    /// The factor by which the quality reduces the render scale.
+    /// Returns the factor by which the quality reduces the render scale.
     pub fn render_scale(&self) -> f32 {
         self.quality.render_scale
     }
 
-    /// Returns the divisor of the ImBuffer's resolution, where there is an ImBuffer of the eye's size.
+    /// Returns the divisor of the ImBuffer's resolution, if the method has an ImBuffer sized relative to the eye.
     pub fn imbuffer_divisor(&self, settings: &Settings) -> Option<u32> {
         match self.options(settings).synthesis.paper.imbuffer {
             ImBufferSize::Divisor(n) if self.method() == Method::Yoro && self.pipeline == Pipeline::Paper => {
@@ -124,7 +124,7 @@ impl MethodSlot {
         }
     }
 
-    /// The options of the settings with the pipeline and the ImBuffer that are in use.
+    /// Returns the settings' options with the pipeline and the ImBuffer in use.
     fn options(&self, settings: &Settings) -> StereoOptions {
         let mut options = StereoOptions::of_settings(settings, self.pipeline);
         let (imbuffer, divisor) = (&mut options.synthesis.paper.imbuffer, self.quality.imbuffer);
@@ -135,12 +135,12 @@ impl MethodSlot {
         options
     }
 
-    /// Compiles the chosen method with the options in use.
+    /// Compiles the chosen method with the present options.
     fn create(&self, gl: &Rc<Context>, settings: &Settings) -> Result<Chosen, GlError> {
         Chosen::new(gl, self.choice, &RenderSettings::of_settings(settings), &self.options(settings))
     }
 
-    /// Compiles the current method, if there is a context with a scene to use it on.
+    /// Compiles the chosen method, if there is a context with a scene.
     pub fn make(&mut self, gl: Option<&Rc<Context>>, settings: &Settings) -> Result<(), GlError> {
         self.rendered_ns = None;
         if let Some(gl) = gl {
@@ -151,7 +151,7 @@ impl MethodSlot {
         Ok(())
     }
 
-    /// Compiles the method for the first time, or synthesis where the driver cannot do it.
+    /// Compiles the method for the first time, or synthesis if the driver does not support the method.
     pub fn make_first(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
         let made = match self.create(gl, settings) {
             Err(GlError::Unsupported(reason)) if self.choice != Method::Yoro.into() => {
@@ -170,7 +170,7 @@ impl MethodSlot {
         (self.made, self.substitute) = (None, Substitute::default());
     }
 
-    /// Goes to the next (1) or previous (-1) method of the settings' list that the driver can do.
+    /// Switches to the next (1) or previous (-1) method of the settings' list that the driver supports.
     pub fn switch(
         &mut self,
         gl: Option<&Rc<Context>>,
@@ -180,7 +180,7 @@ impl MethodSlot {
         let methods = &settings.methods;
         let count = methods.len() as isize;
         let at = methods.iter().position(|m| *m == self.choice);
-        // A method that is not in the list comes before its first and after its last.
+        // A method that is not in the list counts as before the first and after the last.
         let start = at.map_or(if step > 0 { 0 } else { -1 }, |at| at as isize + step);
         for next in (0..count).map(|i| methods[(start + i * step).rem_euclid(count) as usize]) {
             if next == self.choice {
@@ -202,7 +202,7 @@ impl MethodSlot {
         Ok(None)
     }
 
-    /// Checks that one of the eyes can be synthesized from the other, where the method needs that.
+    /// Checks whether one of the eyes can be synthesized from the other, if the method needs that.
     pub fn judge(&mut self, pair: &EyePair) {
         let unfit = Substitute::reason(self.choice.first(), pair);
         if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
@@ -216,19 +216,19 @@ impl MethodSlot {
         self.unfit = unfit;
     }
 
-    /// Compiles two real renders, so that the first frame of a comparison need not.
+    /// Compiles two real renders, so that the first frame of a comparison does not have to.
     pub fn prepare_comparison(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
         let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
         self.substitute.get(|method| stereo::create(gl, method, &render, &options)).map(drop)
     }
 
-    /// Begins or ends a comparison; true if that is new.
+    /// Starts or ends a comparison; returns true if this is a change.
     pub fn compare(&mut self, is_comparing: bool) -> bool {
         std::mem::replace(&mut self.is_comparing, is_comparing) != is_comparing
     }
 
-    /// Shows the last render again, if the settings' rate of renders asks for that now and the method can. A frame that
-    /// comes less than half a refresh too early for the next render is rendered.
+    /// Shows the last render again if the settings' render rate does not call for a new one yet, and the method can. A
+    /// frame is rendered if less than half a refresh is left until a render is due. Returns true if not rendered.
     pub fn show_again(
         &mut self,
         settings: &Settings,
@@ -250,7 +250,7 @@ impl MethodSlot {
         Ok(false)
     }
 
-    /// Renders both eyes; unfit ones without synthesis, by the substitute.
+    /// Renders both eyes. Eyes that are unfit for synthesis or compared are rendered by the substitute.
     pub fn render(
         &mut self,
         gl: &Rc<Context>,
@@ -261,7 +261,7 @@ impl MethodSlot {
     ) -> Result<(), ViewerError> {
         let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
         let method = match &mut self.made {
-            // It renders both eyes by itself.
+            // The automatic choice handles unfit eyes itself.
             Some(Chosen::Auto(auto)) if !self.is_comparing => auto.as_mut(),
             _ if self.is_comparing || self.unfit.is_some() => {
                 self.substitute.get(|method| stereo::create(gl, method, &render, &options))?
@@ -273,12 +273,12 @@ impl MethodSlot {
         Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
     }
 
-    /// Returns `StereoMethod::guard_band`; `None` while both eyes are rendered in the method's place.
+    /// Returns `StereoMethod::guard_band`; `None` while both eyes are rendered instead of one being synthesized.
     pub fn guard_band(&mut self) -> Option<GuardBandUse> {
         self.made.as_mut().filter(|_| self.unfit.is_none())?.method().guard_band()
     }
 
-    /// Ends a frame that was handed to the display, with the GPU time of an earlier one if it is known by now.
+    /// Ends a frame that was handed to the display, with the GPU time of an earlier frame if it is known by now.
     pub fn end_frame(&mut self, now_ns: i64, refresh_hz: f32, gpu: Option<Cost>) {
         let Some(auto) = self.made.as_mut().and_then(Chosen::auto_mut) else { return };
         let (was_measuring, before) = (auto.is_measuring(), auto.choice());
@@ -289,7 +289,7 @@ impl MethodSlot {
         }
     }
 
-    /// Measures again, where the cheaper method is used: another place in the scene, or another resolution.
+    /// Makes an automatic choice measure again, after a change of the viewpoint or the resolution.
     pub fn measure_again(&mut self) {
         self.rendered_ns = None;
         if let Some(auto) = self.made.as_mut().and_then(Chosen::auto_mut) {
@@ -297,8 +297,8 @@ impl MethodSlot {
         }
     }
 
-    /// Lets the controller judge a frame; not while two methods are being measured, which have to have the same size.
-    /// Returns true if the method has to be made again for another ImBuffer, which the controller keeps rare.
+    /// Lets the controller judge a frame, except while two methods are being measured, since both have to have the same
+    /// size. Returns true if the method has to be recompiled for another ImBuffer; the controller keeps this rare.
     pub fn adapt(&mut self, load: &Load, settings: &Settings) -> bool {
         if self.auto().is_some_and(Auto::is_measuring) {
             self.controller.restart();
@@ -308,7 +308,7 @@ impl MethodSlot {
         before.imbuffer != self.quality.imbuffer && self.imbuffer_divisor(settings).is_some()
     }
 
-    /// Sets the device's thermal headroom, where it is known.
+    /// Sets the device's thermal headroom, if it is known.
     pub fn set_thermal_headroom(&mut self, headroom: Option<f32>) {
         self.headroom = headroom;
         self.controller.set_thermal_headroom(headroom);
@@ -320,12 +320,12 @@ impl MethodSlot {
         self.controller.restart();
     }
 
-    /// Restarts the controller for another session.
+    /// Restarts the controller for a new session.
     pub fn restart_controller(&mut self) {
         self.controller = Controller::new();
     }
 
-    /// Goes back to full quality, after a change of the settings.
+    /// Returns to full quality after a change of the settings.
     pub fn restore_quality(&mut self) {
         self.restart_controller();
         self.quality = Quality::FULL;

@@ -1,19 +1,19 @@
-//! Questions at the end of a session, answered on a slider: by turning the head, or with the volume keys.
+//! Questions at the end of a session, answered on a slider by turning the head or with the volume keys.
 
 use std::f32::consts::{PI, TAU};
 use std::fmt::Write;
 
 use glam::{Quat, Vec3};
 
-/// Turn of the head in radians that moves the marker from one end to the other.
+/// Rotation of the head in radians that moves the marker from one end to the other.
 const SPAN: f32 = 0.7;
 /// Ratings are multiples of this.
 const STEP: f32 = 0.5;
-/// A marker that was moved and then left where it is for so long, in nanoseconds, is the answer: some viewers have no
+/// A marker that was moved and then left alone for this long, in nanoseconds, is the answer, since some viewers have no
 /// button.
 const SETTLE_NS: i64 = 5_000_000_000;
 
-/// The questions that are still open, and the marker on the slider of the first of them.
+/// The open questions, and the marker on the slider of the current one.
 #[derive(Clone, Debug)]
 pub(crate) struct Questionnaire {
     /// In reverse order.
@@ -23,12 +23,12 @@ pub(crate) struct Questionnaire {
     value: f32,
     /// The direction of the head in the last frame, in radians to the left.
     heading: Option<f32>,
-    /// The time of the rating's last change; `None` until it is moved.
+    /// The time of the rating's last change; `None` until the marker is moved.
     moved_ns: Option<i64>,
 }
 
 impl Questionnaire {
-    /// Ratings go from 1 to `best`; the marker starts in the middle.
+    /// Creates a questionnaire with ratings from 1 to `best`; the marker starts in the middle.
     pub fn new(questions: &[String], best: u32) -> Questionnaire {
         let mut questionnaire = Questionnaire {
             questions: questions.iter().rev().cloned().collect(),
@@ -62,7 +62,7 @@ impl Questionnaire {
         (self.rating() - 1.0) / (self.best - 1.0)
     }
 
-    /// Turns the head: to the right for a better rating.
+    /// Moves the marker with the head's rotation; to the right is a better rating.
     pub fn look(&mut self, orientation: Quat, now_ns: i64) {
         let ahead = orientation * Vec3::NEG_Z;
         let heading = (-ahead.x).atan2(-ahead.z);
@@ -71,7 +71,7 @@ impl Questionnaire {
         self.shift(-turn / SPAN * (self.best - 1.0), now_ns);
     }
 
-    /// Moves the marker by steps.
+    /// Moves the marker by a number of steps.
     pub fn nudge(&mut self, steps: f32, now_ns: i64) {
         self.value = self.rating();
         self.shift(steps * STEP, now_ns);
@@ -85,7 +85,7 @@ impl Questionnaire {
         }
     }
 
-    /// Forgets the head's direction: recentering is not a turn of the head.
+    /// Forgets the head's direction, since recentering is not a rotation of the head.
     pub fn recenter(&mut self) {
         self.heading = None;
     }
@@ -95,14 +95,14 @@ impl Questionnaire {
         self.moved_ns.is_some_and(|moved| now_ns - moved >= SETTLE_NS)
     }
 
-    /// Takes the marker as the answer, and asks the next question. Returns the question and its rating.
+    /// Takes the marker's rating as the answer and moves on to the next question. Returns the question and its rating.
     pub fn answer(&mut self) -> Option<(String, f32)> {
         let answer = (self.questions.pop()?, self.rating());
         self.center();
         Some(answer)
     }
 
-    /// Writes the text of the panel.
+    /// Writes the panel's text.
     pub fn write(&self, text: &mut String) {
         text.clear();
         let Some(question) = self.questions.last() else { return };
@@ -144,17 +144,17 @@ mod tests {
     fn turning_right_raises_the_rating_up_to_its_ends() {
         let mut q = asked(5);
         let look = |q: &mut Questionnaire, left: f32| q.look(Quat::from_rotation_y(left), 0);
-        // Where the head points at first is not a turn.
+        // The head's first direction is not a rotation.
         look(&mut q, 3.0);
         assert_eq!(q.rating(), 3.0);
         look(&mut q, 3.0 - SPAN / 4.0);
         assert_eq!(q.rating(), 4.0);
         look(&mut q, 3.0 - 2.0 * SPAN);
         assert_eq!((q.rating(), q.position()), (5.0, 1.0));
-        // From the end it goes back at once.
+        // At the end of the slider, turning back moves the marker at once.
         look(&mut q, 3.0 - 1.5 * SPAN);
         assert_eq!(q.rating(), 3.0);
-        // Across the back, where the angle starts over.
+        // Through the back, where the angle wraps around.
         let mut q = asked(5);
         look(&mut q, PI - 0.01);
         look(&mut q, PI - 0.01 + SPAN / 4.0);

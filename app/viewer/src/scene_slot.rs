@@ -1,4 +1,4 @@
-//! The scene: on its way, in view, or failed.
+//! The scene: being loaded, shown, or failed.
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -12,44 +12,44 @@ use yoro_gl::{Context, GlError};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_scene::{Scene, Viewpoint};
 
-/// A scene on the GPU and what renders it.
+/// A scene on the GPU, and its renderer.
 pub(crate) struct Shown {
     pub scene: GpuScene,
     pub renderer: Renderer,
-    /// Seconds for what moves in the scene, since it came into view.
+    /// Animation time in seconds since the scene was first shown.
     seconds: f64,
-    /// The frame before, in nanoseconds; none after a pause.
+    /// The time of the previous frame in nanoseconds; `None` after a pause.
     last_ns: Option<i64>,
 }
 
 impl Shown {
-    /// Uploads a scene and makes its renderer.
+    /// Uploads a scene and creates its renderer.
     pub fn new(gl: &Rc<Context>, scene: Scene, settings: &RenderSettings) -> Result<Shown, GlError> {
         let scene = GpuScene::upload(gl, scene)?;
         Ok(Shown { renderer: Renderer::new(gl, settings, &scene)?, scene, seconds: 0.0, last_ns: None })
     }
 
-    /// Moves everything on to a frame at this time.
+    /// Advances the animation to a frame at this time.
     pub fn move_on(&mut self, now_ns: i64) -> Result<(), GlError> {
         let past_ns = self.last_ns.replace(now_ns).map_or(0, |last_ns| (now_ns - last_ns).max(0));
         self.seconds += past_ns as f64 * 1e-9;
         self.renderer.set_time(&mut self.scene, self.seconds)
     }
 
-    /// Stands still until the next frame.
+    /// Stops the animation until the next frame.
     pub fn pause(&mut self) {
         self.last_ns = None;
     }
 }
 
-/// The one scene. While another is being loaded, the old one stays in view.
+/// The scene in use. While another one is being loaded, the old one stays shown.
 pub(crate) struct SceneSlot {
     source: SceneSource,
     name: String,
     loader: Option<Loader>,
     failure: Option<String>,
     viewpoints: Vec<Viewpoint>,
-    /// The number of the viewpoint in use; any number until they are known.
+    /// The number of the viewpoint in use; not checked until the viewpoints are known.
     viewpoint: usize,
     shown: Option<Shown>,
 }
@@ -77,32 +77,32 @@ impl SceneSlot {
         self.viewpoint = viewpoint;
     }
 
-    /// Shows no scene, and loads none.
+    /// Removes the scene and stops loading.
     pub fn put_away(&mut self) {
         (self.loader, self.failure, self.shown) = (None, None, None);
     }
 
-    /// Starts to load the scene again, unless it is on its way or has failed: there is a new GL context.
+    /// Loads the scene again for a new GL context, unless it is being loaded or has failed.
     pub fn reload(&mut self) {
         if self.loader.is_none() && self.failure.is_none() {
             self.loader = Some(Loader::start(&self.source));
         }
     }
 
-    /// The scene, once, when it is loaded.
+    /// Returns the scene, once, when it is loaded.
     pub fn take_loaded(&mut self) -> Option<Result<Scene, String>> {
         let result = self.loader.as_ref()?.poll()?;
         self.loader = None;
         Some(result)
     }
 
-    /// Takes over the viewpoints of a scene that is about to come into view.
+    /// Sets the viewpoints of the scene that is about to be shown.
     pub fn set_viewpoints(&mut self, viewpoints: &[Viewpoint]) {
         self.viewpoints = viewpoints.to_vec();
         self.go_to(self.viewpoint);
     }
 
-    /// Brings a scene into view.
+    /// Shows a scene.
     pub fn show(&mut self, shown: Shown) {
         self.shown = Some(shown);
     }
@@ -112,12 +112,12 @@ impl SceneSlot {
         self.shown = None;
     }
 
-    /// Notes in one sentence why the scene cannot be shown.
+    /// Records the reason, in one sentence, why the scene cannot be shown.
     pub fn fail(&mut self, reason: String) {
         self.failure = Some(reason);
     }
 
-    /// The scene in view.
+    /// Returns the scene that is shown.
     pub fn shown(&mut self) -> Option<&mut Shown> {
         self.shown.as_mut()
     }
@@ -142,12 +142,12 @@ impl SceneSlot {
         self.failure.as_deref()
     }
 
-    /// The name of the scene that is in view or on its way.
+    /// Returns the name of the scene that is shown or being loaded.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The scene after this one, if there is another.
+    /// Returns the scene after this one, if there is another.
     pub fn next(&self, seed: u64, folders: &[PathBuf]) -> Option<SceneSource> {
         let sources = SceneSource::all(seed, folders);
         let at = sources.iter().position(|source| *source == self.source);
@@ -155,12 +155,12 @@ impl SceneSlot {
         sources.into_iter().nth(next).filter(|source| *source != self.source)
     }
 
-    /// The number of the viewpoint in use.
+    /// Returns the number of the viewpoint in use.
     pub fn viewpoint(&self) -> usize {
         self.viewpoint
     }
 
-    /// Goes to a viewpoint; beyond the last it starts over.
+    /// Goes to a viewpoint; numbers beyond the last wrap around.
     pub fn go_to(&mut self, viewpoint: usize) {
         self.viewpoint = viewpoint % self.viewpoints.len().max(1);
     }
@@ -176,7 +176,7 @@ impl SceneSlot {
     /// Transforms a pose relative to the viewpoint (metres, Y up, -Z ahead) into the scene.
     pub fn place(&self, pose: Pose) -> Pose {
         let viewpoint = self.viewpoints.get(self.viewpoint).map_or(Pose::IDENTITY, Viewpoint::pose);
-        // Gravity says what is level; of the viewpoint only the heading is left.
+        // Gravity defines the level, so only the viewpoint's heading is used.
         let ahead = viewpoint.orientation * Vec3::NEG_Z;
         let heading = Quat::from_rotation_y((-ahead.x).atan2(-ahead.z));
         Pose {

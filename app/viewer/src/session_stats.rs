@@ -8,23 +8,23 @@ use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
 use yoro_render::stereo::GuardBandUse;
 
-/// Counts frames and asks questions from the time that a scene comes into view to the end of the session.
+/// Counts frames and asks questions, from the time at which a scene is first shown to the end of the session.
 #[derive(Default)]
 pub(crate) struct SessionStats {
     telemetry: Telemetry,
     last_line: Option<Line>,
     celsius: Option<f32>,
-    /// The time at which the scene came into view.
+    /// The time at which the scene was first shown.
     begin_ns: Option<i64>,
-    /// The questions after the session; `None` before its end.
+    /// The questions at the end of the session; `None` before its end.
     questionnaire: Option<Questionnaire>,
     ratings: Vec<Rating>,
     is_over: bool,
 }
 
 impl SessionStats {
-    /// Begins a session when a scene comes into view, and returns true. A scene that is only back after a lost context
-    /// goes on with its session.
+    /// Starts a session when a scene is first shown, and returns true. A scene that is shown again after a lost context
+    /// continues its session.
     pub fn begin(&mut self, now_ns: i64) -> bool {
         let is_new = self.begin_ns.is_none();
         if is_new {
@@ -34,30 +34,30 @@ impl SessionStats {
         is_new
     }
 
-    /// Makes the next scene begin a new session.
+    /// Makes the next scene start a new session.
     pub fn expect_scene(&mut self) {
         self.begin_ns = None;
         self.reopen();
     }
 
-    /// Takes back the end of the session, and its questions.
+    /// Reverts the end of the session and discards its questions.
     pub fn reopen(&mut self) {
         self.questionnaire = None;
         self.is_over = false;
     }
 
-    /// Stops counting: the time until the next frame is left out.
+    /// Pauses counting: the time until the next frame does not count.
     pub fn pause(&mut self) {
         self.telemetry.pause();
     }
 
-    /// Counts a frame, with the GPU times of `timed` earlier ones. Returns how many refreshes it was late.
+    /// Counts a frame, with the GPU times of `timed` earlier ones. Returns by how many refreshes it was late.
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32, passes: &[PassTime], timed: u32) -> u32 {
         self.telemetry.gpu(passes.iter().map(|pass| (pass.name, pass.time)), timed);
         self.telemetry.frame(now_ns, refresh_hz)
     }
 
-    /// Adds the use of the guard band in a frame.
+    /// Records how a frame used the guard band.
     pub fn guard_band(&mut self, used: GuardBandUse) {
         self.telemetry.guard_band(used.columns, used.undrawn);
     }
@@ -67,7 +67,7 @@ impl SessionStats {
         self.telemetry.is_due(now_ns)
     }
 
-    /// Ends a second, and returns its line.
+    /// Ends a second and returns its line.
     pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
         self.celsius = device.skin_celsius.or(device.battery_celsius);
         let line = self.telemetry.line(now_ns, viewer, device);
@@ -75,12 +75,12 @@ impl SessionStats {
         line
     }
 
-    /// The line of the last second.
+    /// Returns the line of the last second.
     pub fn last_line(&self) -> Option<&Line> {
         self.last_line.as_ref()
     }
 
-    /// The device's temperature in degrees Celsius.
+    /// Returns the device's temperature in degrees Celsius.
     pub fn celsius(&self) -> Option<f32> {
         self.celsius
     }
@@ -89,36 +89,36 @@ impl SessionStats {
         self.telemetry.summary(now_ns)
     }
 
-    /// True if the session's time is up.
+    /// True if the session's duration has passed.
     pub fn is_time_up(&self, settings: &Settings, now_ns: i64) -> bool {
         let shown_ns = self.begin_ns.map_or(0, |begin| now_ns - begin);
         settings.duration.is_some_and(|s| shown_ns as f64 >= s as f64 * 1e9)
     }
 
-    /// Asks the questions of the settings, if they are not being asked already.
+    /// Asks the settings' questions, unless they are being asked already.
     pub fn ask(&mut self, settings: &Settings) {
         let Settings { questions, best_rating, .. } = settings;
         self.questionnaire.get_or_insert_with(|| Questionnaire::new(questions, *best_rating));
     }
 
-    /// The question in view.
+    /// Returns the current question.
     pub fn question(&self) -> Option<&Questionnaire> {
         self.questionnaire.as_ref().filter(|questions| !questions.is_done())
     }
 
-    /// The question in view, to be answered.
+    /// Returns the current question, to be answered.
     pub fn question_mut(&mut self) -> Option<&mut Questionnaire> {
         self.questionnaire.as_mut().filter(|questions| !questions.is_done())
     }
 
-    /// Takes the head's orientation, which moves the slider.
+    /// Moves the slider with the head's orientation.
     pub fn look(&mut self, orientation: Quat, now_ns: i64) {
         if let Some(questions) = &mut self.questionnaire {
             questions.look(orientation, now_ns);
         }
     }
 
-    /// Keeps an answer.
+    /// Stores an answer.
     pub fn keep(&mut self, rating: Rating) {
         self.ratings.push(rating);
     }

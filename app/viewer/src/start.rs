@@ -1,30 +1,30 @@
-//! The start screen: when it comes into view, and its tiles, without GL.
+//! The start screen's logic, without GL: when it appears, and its tiles.
 
 use crate::caption::wrap;
 use glam::Vec3;
 use yoro_lenses::{HEADING_COLUMNS, PICTURE_COLUMNS, Rotation, TILE_COLUMNS, Tiles};
 
-/// The phone stands upright when its top is up by more than this within its own plane: the sine of 50 degrees.
+/// The phone is upright if its top points up by more than this within the screen's plane: the sine of 50 degrees.
 const UPRIGHT: f32 = 0.766;
-/// It lies in landscape again when its top is up or down by less than this: the sine of 30 degrees.
+/// The phone is in landscape again if its top points up or down by less than this: the sine of 30 degrees.
 const LANDSCAPE: f32 = 0.5;
-/// Who reads an upright phone leans it back: its screen points up by this and more, the sine of 15 degrees. Behind
-/// lenses, it points to the eyes of one who lies on a side, and hardly ever up.
+/// People who read an upright phone lean it back, so its screen points up by at least this: the sine of 15 degrees.
+/// Behind lenses, the screen points at the eyes of a person lying on one side, and hardly ever up.
 const LEANS_BACK: f32 = 0.259;
-/// It lies on a table, neither upright nor in landscape, when its screen points up by more than this: the sine of 70
-/// degrees.
+/// The phone lies on a table, neither upright nor in landscape, if its screen points up by more than this: the sine of
+/// 70 degrees.
 const FLAT: f32 = 0.94;
-/// Standing upright for so long brings the start screen into view, in nanoseconds.
+/// How long the phone has to be upright for the start screen to appear, in nanoseconds.
 const UPRIGHT_NS: i64 = 1_000_000_000;
-/// The viewers that there is room for.
+/// The number of viewers for which the start screen has tiles.
 pub(crate) const VIEWERS: usize = 4;
-/// Says how to get another viewer's parameters without yoro's own scan.
+/// Tells the user how to choose another viewer without yoro's own scan.
 pub(crate) const OTHER: &str = "Another viewer: scan the code on it with your camera application and share its address \
     with yoro, or share a picture of the code. It has no code: try v2, then v1.";
-/// Says what to do while yoro scans.
+/// Tells the user what to do while yoro scans.
 const SCAN: &str = "Hold the phone a hand's width before the code on the viewer, in even light. Or scan it with your \
     camera application, and share its address with yoro.";
-/// What is seen, in lines of the HUD; the eye's name comes between the first two.
+/// Explains the scene to a new user, in lines of the HUD. The name of the synthesized eye goes between the two parts.
 const EXPLANATION: [&str; 2] = [
     "The ",
     " eye's picture is made up\nMenu, Compare: both eyes rendered\nFigures: FPS, ms a frame, Celsius\nHold, or look down: the menu",
@@ -33,7 +33,7 @@ const EXPLANATION: [&str; 2] = [
 /// A tile of the start screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tile {
-    /// One of the viewers.
+    /// The viewer with this index.
     Viewer(usize),
     Scan,
     Log,
@@ -54,19 +54,19 @@ impl Tile {
     ];
 }
 
-/// What the HUD says once the scene is in view.
+/// What the HUD tells the user once the scene is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Hint {
     #[default]
     None,
     /// How the menu is opened.
     Menu,
-    /// What is seen, as well.
+    /// How the menu is opened, and what the picture and the figures mean.
     Explanation,
 }
 
 impl Hint {
-    /// Returns the lines for the HUD; `made_up` is the eye that is synthesized.
+    /// Returns the lines for the HUD; `made_up` names the synthesized eye.
     pub fn text(self, made_up: &str) -> Option<String> {
         let [before, after] = EXPLANATION;
         match self {
@@ -77,33 +77,33 @@ impl Hint {
     }
 }
 
-/// The start screen, in view or not.
+/// The start screen, whether shown or not.
 #[derive(Default)]
 pub(crate) struct StartScreen {
-    /// True if a person has started the application by hand: only then it comes into view.
+    /// True if a person has started the application by hand; the start screen appears only then.
     pub is_offered: bool,
     pub is_shown: bool,
-    /// A sentence in place of the explanation.
+    /// A sentence shown instead of the explanation.
     pub message: String,
-    /// What the first frame of the scene says.
+    /// What the HUD tells the user in the scene's first frame.
     pub hint: Hint,
     /// True while the phone's camera looks for a code.
     pub is_scanning: bool,
     pub tiles: Tiles,
-    /// The phone stands upright since.
+    /// The time from which the phone has been upright.
     upright_since: Option<i64>,
-    /// True from leaving the screen until the phone lies in landscape.
+    /// True from when the user leaves the start screen until the phone is in landscape.
     is_on_its_way: bool,
 }
 
 impl StartScreen {
-    /// Brings it into view.
+    /// Shows the start screen.
     pub fn show(&mut self, message: &str) {
         self.is_shown = true;
         message.clone_into(&mut self.message);
     }
 
-    /// The user starts: an upright phone means nothing until it lies in landscape.
+    /// Leaves the start screen. An upright phone is ignored until it has been in landscape.
     pub fn leave(&mut self) {
         (self.is_shown, self.upright_since, self.is_on_its_way) = (false, None, true);
         if self.hint == Hint::None {
@@ -111,8 +111,8 @@ impl StartScreen {
         }
     }
 
-    /// Notes which way is up in the picture: X to its right, Y to its top, Z out of the screen. True if the phone has
-    /// come to stand upright.
+    /// Records the up direction in the picture's axes: X to its right, Y to its top, Z out of the screen. Returns true
+    /// if the phone has been upright for long enough.
     pub fn tilt(&mut self, up: Vec3, rotation: Rotation, now_ns: i64) -> bool {
         if !self.is_offered || self.is_shown {
             return false;
@@ -120,10 +120,10 @@ impl StartScreen {
         let top = match rotation {
             Rotation::LandscapeLeft => -up.x,
             Rotation::LandscapeRight => up.x,
-            // A tablet, whose picture is wide when it stands upright.
+            // A tablet, whose picture is wide when it is upright.
             Rotation::Portrait => 0.0,
         };
-        // Within the screen's plane: it may lean back.
+        // Only the direction within the screen's plane counts, since the phone may lean back.
         let top = if up.z < FLAT { top / up.truncate().length().max(0.1) } else { 0.0 };
         self.is_on_its_way &= top.abs() >= LANDSCAPE;
         if top < UPRIGHT || up.z < LEANS_BACK || self.is_on_its_way {
@@ -133,7 +133,7 @@ impl StartScreen {
         now_ns - *self.upright_since.get_or_insert(now_ns) >= UPRIGHT_NS
     }
 
-    /// Writes the texts: the names of the viewers, which of them is chosen, and the eye that is made up.
+    /// Writes the texts: the viewers' names, which of them is chosen, and which eye is synthesized.
     pub fn write(&mut self, viewers: &[[String; 2]], chosen: Option<usize>, made_up: &str) {
         let cut = |name: &String| name.chars().take(TILE_COLUMNS).collect::<String>();
         let tile = |tile: &Tile| match *tile {

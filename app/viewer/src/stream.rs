@@ -1,4 +1,4 @@
-//! A stream in the scene's place: its frames come from a thread of the platform, which has the connection and the
+//! A stream shown instead of a scene. Its frames come from a thread of the platform, which owns the connection and the
 //! decoder.
 
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use yoro_render::stereo::EyeTarget;
 use yoro_render::{DecodedPicture, StreamedEyes};
 use yoro_stream::{FrameHeader, ViewRequest};
 
-/// What the platform's thread and the viewer hand to each other. Of everything, only the newest is kept.
+/// Passes data between the platform's thread and the viewer. Only the newest value of each kind is kept.
 #[derive(Default)]
 pub struct StreamExchange {
     newest: Mutex<Newest>,
@@ -33,25 +33,25 @@ impl StreamExchange {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Says where the head begins.
+    /// Sets the head's initial pose.
     pub fn welcome(&self, home: Pose) {
         self.newest().home = Some(home);
     }
 
-    /// Gives a decoded frame, its three planes one after another, tightly packed. They are exchanged for a buffer that
-    /// is no longer needed.
+    /// Passes on a decoded frame, its three planes one after another, tightly packed. `planes` receives a buffer for
+    /// reuse.
     pub fn put(&self, header: FrameHeader, planes: &mut Vec<u8>) {
         let mut newest = self.newest();
         newest.frame = Some(header);
         std::mem::swap(&mut newest.planes, planes);
     }
 
-    /// Gives a sentence for the user, which is in view until the next frame comes.
+    /// Sets a sentence that is shown to the user until the next frame arrives.
     pub fn say(&self, sentence: &str) {
         self.newest().sentence = Some(sentence.into());
     }
 
-    /// Returns the eyes that were made last, once; waits for them if need be. None come while nothing is drawn.
+    /// Takes the newest request, waiting for up to `wait`. No requests are made while nothing is drawn.
     pub fn take_request(&self, wait: Duration) -> Option<ViewRequest> {
         let mut newest = self.newest();
         if newest.request.is_none() && !wait.is_zero() {
@@ -64,7 +64,7 @@ impl StreamExchange {
 /// The stream that is shown.
 pub(crate) struct Stream {
     exchange: Arc<StreamExchange>,
-    /// None without a GL context.
+    /// `None` without a GL context.
     eyes: Option<StreamedEyes>,
     planes: Vec<u8>,
     has_frame: bool,
@@ -85,7 +85,7 @@ impl Stream {
         }
     }
 
-    /// Compiles what shows it.
+    /// Compiles the passes that show the stream.
     pub fn attach(&mut self, gl: &Rc<Context>) -> Result<(), GlError> {
         self.eyes = Some(StreamedEyes::new(gl)?);
         Ok(())
@@ -96,17 +96,17 @@ impl Stream {
         (self.eyes, self.has_frame) = (None, false);
     }
 
-    /// True if there is a frame to see.
+    /// True if there is a frame to show.
     pub fn is_shown(&self) -> bool {
         self.has_frame
     }
 
-    /// The sentence for the user, if there is one.
+    /// Returns the sentence for the user, if there is one.
     pub fn sentence(&self) -> Option<&str> {
         Some(self.sentence.as_str()).filter(|sentence| !sentence.is_empty())
     }
 
-    /// Takes what has come. Returns where the head begins, if that is new.
+    /// Takes what has arrived. Returns the head's initial pose if it is new.
     pub fn take(&mut self, now_ns: i64) -> Result<Option<Pose>, GlError> {
         let mut newest = self.exchange.newest();
         let home = newest.home.take();
@@ -130,7 +130,7 @@ impl Stream {
         Ok(home)
     }
 
-    /// Makes both eyes and asks for these. What has no depth is as far away as can be.
+    /// Draws both eyes and requests a frame for them. Depth targets, if any, are cleared to the far plane.
     pub fn render(
         &mut self,
         gl: &Context,

@@ -3,33 +3,33 @@
 use yoro::eyes::{DepthConvention, SynthesisViews};
 use yoro::synthesis::SourceMapEntry;
 
-/// A frame and everything that its synthesis used: images with rows from the bottom.
+/// A frame and everything that its synthesis used. Images have rows from the bottom.
 pub struct Frame<'a> {
     /// The geometry of the frame.
     pub views: &'a SynthesisViews,
-    /// The rendered view: RGBA, as large as `views.source`.
+    /// The rendered view: RGBA, of the size of `views.source`.
     pub color: &'a [u8],
-    /// Its window depth in 24 bits: red, green, blue, from the highest on; as large.
+    /// The rendered view's window depth: 24 bits in red, green and blue, the most significant in red; of the same size.
     pub depth: &'a [u8],
-    /// The synthesized eye: RGBA, as large as `views.target`.
+    /// The synthesized eye: RGBA, of the size of `views.target`.
     pub made: &'a [u8],
-    /// Its source map, as large.
+    /// The synthesized eye's source map, of the same size.
     pub map: &'a [u32],
 }
 
-/// Four pictures as large as an eye: RGBA, rows from the top.
+/// Four pictures of an eye's size: RGBA, rows from the top.
 pub struct Explanation {
     /// The rendered eye.
     pub color: Vec<u8>,
-    /// Its depth: the nearer, the brighter.
+    /// The rendered eye's depth; nearer is brighter.
     pub depth: Vec<u8>,
-    /// The other eye by the distance that its pixels have moved, from blue to yellow; black where nothing has landed.
+    /// The synthesized eye, coloured by how far pixels have moved, from blue to yellow; black where none landed.
     pub moved: Vec<u8>,
-    /// The other eye in grey, and what was filled in, in colour.
+    /// The synthesized eye in grey, with the filled pixels in colour.
     pub filled: Vec<u8>,
-    /// The farthest move in pixels, from where infinitely far things land.
+    /// The largest distance in pixels that a pixel has moved, relative to infinitely far surfaces.
     pub farthest: f64,
-    /// The share of the pixels that are filled in.
+    /// The share of filled pixels.
     pub holes: f64,
 }
 
@@ -47,7 +47,7 @@ impl Frame<'_> {
             DepthConvention::Reversed => 0.0,
         };
         let still = warp.law.displacement(infinity);
-        // Indices in the rendered and in the synthesized image, from the top.
+        // Pixels from the top, and their indices in the rendered and in the synthesized image.
         let pixels = || (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
         let seen = |x: u32, y: u32| ((y + bottom) * source.size[0] + x + left) as usize;
         let there = |x: u32, y: u32| (y * width + x) as usize;
@@ -112,7 +112,7 @@ mod tests {
         let pair =
             EyeOptions { size: [8, 1], ..EyeOptions::default() }.pair(Pose::look_at(Vec3::ZERO, Vec3::NEG_Z));
         let views = pair.synthesis_views(GuardBand::None).unwrap();
-        // A picture all infinitely far but for one near pixel, and its other eye with one hole.
+        // A picture that is infinitely far except for one near pixel, and its other eye with one hole.
         let color: Vec<u8> = (0..8).flat_map(|x| [x * 10, 200, 7, 0]).collect();
         let depth: Vec<u8> =
             (0..8u8).flat_map(|x| if x == 2 { [0xc0, 0, 0, 0] } else { [0xff; 4] }).collect();

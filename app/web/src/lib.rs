@@ -1,10 +1,10 @@
 //! The page's module: every method in a browser's WebGL 2.
 //!
 //! It takes a canvas's context, packed scenes, pictures and choices as JSON, and draws. The page's own JavaScript
-//! (`app/web/page`) has the elements, the sensors and WebXR. Scenes are generated and files decoded in a worker, by the
-//! functions of `work`; `Page` draws on the canvas. Every error that JavaScript gets is a sentence for the page.
+//! (`app/web/page`) handles the elements, the sensors and WebXR. A worker generates scenes and decodes files with the
+//! functions of `work`; `Page` draws on the canvas. Every error that JavaScript receives is a sentence for the page.
 //!
-//! It must never know HTML, nor ask a server for anything.
+//! The module must not depend on HTML or request anything from a server.
 
 mod explain;
 #[cfg(target_arch = "wasm32")]

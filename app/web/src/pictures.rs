@@ -1,4 +1,4 @@
-//! A colour and a depth picture of the user's own, with the depth settings of `yoro synthesize`.
+//! A user's own colour and depth picture, with the depth options of `yoro synthesize`.
 
 use std::path::Path;
 
@@ -16,9 +16,9 @@ pub enum Encoding {
     StandardZ,
     /// Depth buffer, 1 near to 0 far.
     ReversedZ,
-    /// Distance: metres in an EXR file, elsewhere times [`PictureOptions::metres_at_white`].
+    /// Distance in metres: in an EXR file as stored, in other files multiplied by [`PictureOptions::metres_at_white`].
     Metres,
-    /// Pixels: [`PictureOptions::disparity_offset`] and [`PictureOptions::disparity_scale`].
+    /// Disparity in pixels, by [`PictureOptions::disparity_offset`] and [`PictureOptions::disparity_scale`].
     Disparity,
 }
 
@@ -26,9 +26,9 @@ pub enum Encoding {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SourceEye {
-    /// The right one is synthesized.
+    /// The left eye; the right one is synthesized.
     Left,
-    /// The left one is synthesized.
+    /// The right eye; the left one is synthesized.
     #[default]
     Right,
     /// Neither eye: both are synthesized.
@@ -36,7 +36,7 @@ pub enum SourceEye {
 }
 
 impl SourceEye {
-    /// Returns the eyes to synthesize, and the share of the IPD by which each is away.
+    /// Returns the eyes to synthesize, each with its distance from the pictures' viewpoint as a share of the IPD.
     pub fn targets(self) -> &'static [(Eye, f64)] {
         match self {
             SourceEye::Right => &[(Eye::Left, 1.0)],
@@ -46,7 +46,7 @@ impl SourceEye {
     }
 }
 
-/// The options of `yoro synthesize` with its defaults.
+/// The options of `yoro synthesize`, with its defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PictureOptions {
@@ -54,21 +54,21 @@ pub struct PictureOptions {
     pub source: SourceEye,
     /// The meaning of the depth values.
     pub encoding: Encoding,
-    /// The power to which stored values are raised first.
+    /// The exponent that is applied to stored values first.
     pub gamma: f32,
     /// Near plane in metres.
     pub near: f32,
     /// Far plane in metres.
     pub far: f32,
-    /// Distance in metres of the largest value of a file of integers.
+    /// Distance in metres of the largest value, in a file of integers.
     pub metres_at_white: f32,
-    /// Pixels at value 0.
+    /// Disparity in pixels at value 0.
     pub disparity_offset: f64,
-    /// Pixels from value 0 to 1.
+    /// Increase of the disparity in pixels from value 0 to 1.
     pub disparity_scale: f64,
     /// Vertical field of view in degrees.
     pub fov_y_degrees: f64,
-    /// The colour of pixels on silhouettes.
+    /// How the colours of silhouettes' pixels are interpreted.
     pub edges: Edges,
 }
 
@@ -89,16 +89,16 @@ impl Default for PictureOptions {
     }
 }
 
-/// A reason why two pictures cannot be used, in a sentence.
+/// A reason why two pictures cannot be used, as a sentence.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// An option is out of range.
     #[error("{0}")]
     Option(String),
-    /// A file is no picture, or none of the kind that is needed.
+    /// A file is not a picture, or not of the required kind.
     #[error(transparent)]
     File(#[from] yoro_pictures::PictureError),
-    /// The pictures do not have one size.
+    /// The pictures differ in size.
     #[error("the colour picture is {}x{} pixels and the depth picture {}x{}: both must have one size", .0[0], .0[1], .1[0], .1[1])]
     Sizes([u32; 2], [u32; 2]),
     /// The depth values do not fit their encoding.
@@ -111,9 +111,9 @@ pub enum PictureError {
 pub struct PicturePair {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Colour, 4 bytes a pixel.
+    /// Colour, 4 bytes per pixel.
     pub rgba: Vec<u8>,
-    /// Depth as stored.
+    /// Depth values as stored.
     stored: Vec<f32>,
     samples: DepthSamples,
 }
@@ -137,10 +137,10 @@ impl PicturePair {
         })
     }
 
-    /// Returns the pixels' nearness, for eyes `ipd` metres apart.
+    /// Returns the pixels' nearness for eyes `ipd` metres apart.
     ///
     /// # Errors
-    /// [`PictureError`] for options that cannot be, and for values that they do not fit.
+    /// [`PictureError`] for invalid options, and for values that do not fit them.
     pub fn nearness(&self, options: &PictureOptions, ipd: f32) -> Result<Nearness, PictureError> {
         let refuse = |condition: bool, text: &str| {
             if condition { Err(PictureError::Option(text.into())) } else { Ok(()) }
@@ -213,7 +213,7 @@ mod tests {
             assert!(pair.nearness(&wrong, 0.063).is_err(), "{wrong:?}");
         }
 
-        // White's distance does not affect metres.
+        // The distance of white does not affect metres in EXR files.
         save_depth(&metres, &DepthImage::from_pixel(4, 2, Luma([2.0]))).unwrap();
         let pair = PicturePair::load(&color, &metres).unwrap();
         let options = PictureOptions { encoding: Encoding::Metres, metres_at_white: 9.0, ..options };

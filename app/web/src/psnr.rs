@@ -1,4 +1,4 @@
-//! The likeness of two images.
+//! The similarity of two images.
 
 /// Returns the peak signal-to-noise ratio of two RGBA images of one size, without alpha, in dB; infinite for equal
 /// images.
@@ -17,9 +17,9 @@ mod tests {
     #[test]
     fn psnr_is_that_of_the_colours() {
         assert_eq!(psnr(&[1, 2, 3, 4], &[1, 2, 3, 255]), f64::INFINITY);
-        // Black and white: the error is the whole range.
+        // Black and white: the error is the full range.
         assert_eq!(psnr(&[0, 0, 0, 255], &[255; 4]), 0.0);
-        // A mean square error of 1 of 65025.
+        // A mean square error of 1, relative to 255^2 = 65025.
         assert!((psnr(&[10, 20, 30, 0], &[11, 19, 31, 0]) - 48.1308).abs() < 1e-4);
     }
 }

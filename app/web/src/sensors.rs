@@ -1,53 +1,53 @@
-//! A phone in a viewer: its sensors, and the viewer's name.
+//! A phone in a viewer: its orientation, and the viewer's parameters.
 
 use std::f32::consts::FRAC_PI_2;
 
 use glam::{EulerRot, Quat, Vec3};
 use yoro_lenses::{ParamsError, ViewerParams};
 
-/// Returns the head's orientation for the angles alpha, beta and gamma of a `deviceorientation` event and the screen's
-/// rotation `screen`, all in degrees: in a world with Y up.
+/// Returns the head's orientation, in a world with Y up, for the angles alpha, beta and gamma of a `deviceorientation`
+/// event and the screen's rotation `screen`, all in degrees.
 pub fn orientation(angles: [f32; 3], screen: f32) -> Quat {
     let [alpha, beta, gamma] = angles.map(f32::to_radians);
-    // Turns about the Earth's axes Z, X and Y, with Z up; then the screen against the device.
+    // Rotations about the Earth's axes Z, X and Y, with Z up; then the screen relative to the device.
     let device = Quat::from_euler(EulerRot::ZXY, alpha, beta, gamma);
     Quat::from_rotation_x(-FRAC_PI_2) * device * Quat::from_rotation_z(-screen.to_radians())
 }
 
-/// Returns how far a head looks to the left, in radians.
+/// Returns the angle by which a head looks to the left of -Z, in radians.
 fn heading(head: Quat) -> f32 {
     let ahead = head * Vec3::NEG_Z;
     (-ahead.x).atan2(-ahead.z)
 }
 
-/// The head of a user who turns a phone, relative to the direction that is straight ahead.
+/// The head of a user who turns a phone, relative to the straight-ahead direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Head {
-    /// Its orientation in the world; none until the sensors tell it.
+    /// The head's orientation in the world; `None` until the sensors report it.
     world: Option<Quat>,
-    /// The heading of the direction straight ahead, in radians to the left; none until there is an orientation.
+    /// The heading that is straight ahead, in radians to the left; `None` until there is an orientation.
     ahead: Option<f32>,
 }
 
 impl Head {
-    /// Takes an orientation in the world. The first one is straight ahead.
+    /// Sets the orientation in the world. The heading of the first one is straight ahead.
     pub fn turn(&mut self, world: Quat) {
         self.world = Some(world);
         self.ahead.get_or_insert(heading(world));
     }
 
-    /// Makes the present heading straight ahead; before the first orientation, that one's.
+    /// Makes the present heading straight ahead; before the first orientation, the first one's.
     pub fn recenter(&mut self) {
         self.ahead = self.world.map(heading);
     }
 
-    /// Returns the orientation in a world where straight ahead is -Z.
+    /// Returns the orientation in a world in which straight ahead is -Z.
     pub fn orientation(&self) -> Quat {
         Quat::from_rotation_y(-self.ahead.unwrap_or_default()) * self.world.unwrap_or(Quat::IDENTITY)
     }
 }
 
-/// Finds a viewer by `v1`, `v2`, or the text of its QR code; browsers have no parameter files.
+/// Finds a viewer by `v1`, `v2`, or the text of its QR code; there are no parameter files in browsers.
 ///
 /// # Errors
 /// A sentence with the remedy.
@@ -87,7 +87,7 @@ mod tests {
     fn a_head_begins_straight_ahead_however_late_the_sensors_are() {
         let mut head = Head::default();
         assert_eq!(head.orientation(), Quat::IDENTITY);
-        // A tap before the sensors say anything.
+        // A tap before the sensors report anything.
         head.recenter();
         let looks = |head: &Head| head.orientation() * Vec3::NEG_Z;
         head.turn(orientation([150.0, 0.0, -90.0], 90.0));

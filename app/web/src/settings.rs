@@ -11,31 +11,31 @@ use yoro_render::stereo::{
 };
 use yoro_render::{RenderSettings, RendererKind};
 
-/// The way to show two images on a flat screen.
+/// The way in which two images are shown on a flat screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Display {
-    /// The left eye's image on the left.
+    /// Side by side, with the left eye's image on the left.
     #[default]
     SideBySide,
-    /// The left eye's image on the right.
+    /// Side by side, with the left eye's image on the right.
     CrossEyed,
     /// One image for glasses with a red filter on the left.
     Anaglyph,
-    /// The left eye's image.
+    /// Only the left eye's image.
     Left,
-    /// The right eye's image.
+    /// Only the right eye's image.
     Right,
-    /// The eye that is not dominant: really rendered left of a divider, and as the method makes it right of it.
+    /// The non-dominant eye: the real render left of a divider, the method's image right of it.
     Divider,
-    /// The same with the difference between both right of the divider.
+    /// As [`Display::Divider`], but with the difference of the two right of the divider.
     Difference,
-    /// Both in turn: the divider at either border.
+    /// The two alternately, by moving the divider to either border.
     Flicker,
 }
 
 impl Display {
-    /// Returns the display of one eye's image.
+    /// Returns the display that shows one eye's image.
     pub fn one_eye(eye: Eye) -> Display {
         match eye {
             Eye::Left => Display::Left,
@@ -43,23 +43,23 @@ impl Display {
         }
     }
 
-    /// True if both images are on the screen.
+    /// True if both images are shown side by side.
     fn is_split(self) -> bool {
         matches!(self, Display::SideBySide | Display::CrossEyed)
     }
 
-    /// Returns the width and height of the part of a canvas that one image may fill, in pixels.
+    /// Returns width and height in pixels of the part of a canvas that is available for one image.
     pub fn part(self, [width, height]: [u32; 2]) -> [u32; 2] {
         if self.is_split() { [(width / 2).max(1), height] } else { [width, height] }
     }
 
-    /// True if the eye that is not dominant has to be rendered, too.
+    /// True if the non-dominant eye has to be rendered, too, for comparison.
     pub fn needs_truth(self) -> bool {
         matches!(self, Display::Divider | Display::Difference | Display::Flicker)
     }
 }
 
-/// The page's choices; keys that are left out are as by default, unknown ones are refused.
+/// The page's choices. Missing keys have their defaults, unknown keys are rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Settings {
@@ -67,17 +67,17 @@ pub struct Settings {
     pub method: MethodChoice,
     /// The renderer of a view.
     pub renderer: RendererKind,
-    /// Samples in each pixel of the forward renderer.
+    /// Samples per pixel of the forward renderer.
     pub msaa: u32,
-    /// The anti-aliasing of images with one sample a pixel: before synthesis, after it, or none.
+    /// Anti-aliasing of images with one sample per pixel: before synthesis, after it, or none.
     pub anti_aliasing: AntiAliasing,
-    /// The resolution of what the other eye has really seen, for disocclusions.
+    /// The resolution of the other eye's rendered strips, which fill disocclusions.
     pub history: History,
     /// Distance between the eyes in metres.
     pub ipd: Ipd,
     /// The eye that is rendered.
     pub dominant: Eye,
-    /// The way both eyes are shown.
+    /// The way in which both eyes are shown.
     pub display: Display,
 }
 
@@ -98,43 +98,43 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Reads JSON.
+    /// Parses JSON.
     ///
     /// # Errors
-    /// A sentence about the fault.
+    /// A sentence about the error.
     pub fn parse(json: &str) -> Result<Settings, String> {
         serde_json::from_str(json).map_err(|error| format!("These settings cannot be used: {error}."))
     }
 
-    /// Returns the renderer's settings, the rest as on the desktop.
+    /// Returns the renderer's settings; those without a choice are as on the desktop.
     pub fn render_settings(&self) -> RenderSettings {
         RenderSettings { renderer: self.renderer, msaa: self.msaa, ..RenderSettings::default() }
     }
 
-    /// Returns the methods' options. They differ from the desktop's in one: no frame is rendered twice because much of
-    /// it is near, as finding that out would make the browser wait for the GPU.
+    /// Returns the methods' options. They differ from the desktop's in one: frames are never rendered twice because
+    /// much of the view is near, since detecting that would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
         let &Settings { anti_aliasing, history, .. } = self;
         StereoOptions { anti_aliasing, history, policy: None, ..StereoOptions::default() }
     }
 
-    /// Returns the method that is in use, or the choice between two. Displays that compare with a real render show what
-    /// they compare.
+    /// Returns the method in use, or the automatic choice between two. Displays that compare with a real render never
+    /// use the automatic choice.
     pub fn choice(&self) -> MethodChoice {
         if self.display.needs_truth() { self.method.first().into() } else { self.method }
     }
 
-    /// True if renderer and method of other choices are the same ones.
+    /// True if renderer and method are the same for other choices.
     pub fn makes_same(&self, other: &Settings) -> bool {
         self.choice() == other.choice()
             && self.stereo_options() == other.stereo_options()
             && self.render_settings() == other.render_settings()
     }
 
-    /// Returns the reason why a browser cannot do a method with these choices; none if it can.
+    /// Returns the reason why the browser does not support a method with these choices; `None` if it does.
     pub fn lacks(&self, method: Method, capabilities: &Capabilities) -> Option<String> {
         let reason = self.render_settings().supports(method, capabilities).err()?;
-        // The desktop's advice is another driver.
+        // On the desktop, the advice is to use another driver.
         let browser = method == Method::Multiview && self.renderer == RendererKind::Deferred;
         Some(if browser {
             "This browser has no OVR_multiview2, which headsets' browsers have: choose instanced.".into()
@@ -151,7 +151,7 @@ impl Settings {
         stereo::create(gl, method, &self.render_settings(), &self.stereo_options())
     }
 
-    /// Compiles the method that is in use, or both of the choice.
+    /// Compiles the method in use, or both methods of the automatic choice.
     ///
     /// # Errors
     /// Those of [`stereo::create`].
@@ -183,7 +183,7 @@ mod tests {
         assert_eq!((settings.method, settings.dominant), (Method::ShadingReprojection.into(), Eye::Left));
         assert_eq!(settings.anti_aliasing, AntiAliasing::After);
         assert_eq!(settings.render_settings(), RenderSettings::default());
-        // What is compared is not chosen.
+        // Displays with a comparison do not use the automatic choice.
         let chosen = |json| Settings::parse(json).unwrap().choice();
         assert_eq!(chosen(r#"{"display":"anaglyph"}"#), MethodChoice::Auto);
         assert_eq!(chosen(r#"{"display":"divider"}"#), Method::Yoro.into());

@@ -1,16 +1,16 @@
-//! Views as WebXR describes them.
+//! Views in WebXR's form.
 
 use glam::{Quat, Vec3};
 use yoro::eyes::{Frustum, Pose};
 
-/// The number of floats of a view: position, orientation (x, y, z, w), projection matrix by columns.
+/// The number of floats per view: position, orientation (x, y, z, w), projection matrix in column-major order.
 pub const VIEW_FLOATS: usize = 3 + 4 + 16;
 
-/// Returns pose and frustum of a view; none if floats are missing.
+/// Returns pose and frustum of a view; `None` if floats are missing.
 pub fn view(floats: &[f32]) -> Option<(Pose, Frustum)> {
     let [x, y, z, qx, qy, qz, qw, m @ ..]: &[f32; VIEW_FLOATS] = floats.first_chunk()?;
     let orientation = Quat::from_xyzw(*qx, *qy, *qz, *qw);
-    // x_clip = m0 x + m8 z, w_clip = -z: the edges are where x_clip is -w_clip and w_clip.
+    // x_clip = m0 x + m8 z and w_clip = -z; at the edges, x_clip is -w_clip or w_clip.
     let frustum = Frustum {
         left: (m[8] - 1.0) / m[0],
         right: (m[8] + 1.0) / m[0],

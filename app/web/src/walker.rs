@@ -1,34 +1,34 @@
-//! A head that is turned and walked about by hand, or goes around an object.
+//! A head that is turned and moved by hand, or moves around an object.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{EulerRot, Quat, Vec3};
 use yoro::eyes::Pose;
 
-/// The head's position and direction; it never tilts to the side.
+/// The head's position and direction. It never tilts sideways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walker {
     position: Vec3,
-    /// Radians to the left of -Z, and above the horizon.
+    /// Rotation to the left of -Z, and above the horizon, in radians.
     heading: [f32; 2],
-    /// The pose it began with, bit for bit, while it has not moved.
+    /// The initial pose, bit for bit, until the head moves.
     start: Option<Pose>,
-    /// The middle of the object that it goes around, if so.
+    /// The centre of the object that the head moves around, if any.
     object: Option<Vec3>,
 }
 
-/// The steepest look up or down in radians: a little less than straight up, where a heading has no meaning.
+/// The largest pitch up or down in radians: a little less than straight up, where the heading is undefined.
 const STEEPEST: f32 = FRAC_PI_2 - 0.01;
 
 impl Walker {
-    /// Stands at a pose.
+    /// Creates a head at a pose.
     pub fn new(pose: Pose) -> Walker {
         let ahead = pose.forward();
         let heading = [(-ahead.x).atan2(-ahead.z), ahead.y.clamp(-1.0, 1.0).asin()];
         Walker { position: pose.position, heading, start: Some(pose), object: None }
     }
 
-    /// Returns a walker at a place that [`Walker::place`] returned; none for numbers that are not a place.
+    /// Creates a head at a place that [`Walker::place`] returned; `None` if the numbers are not a place.
     pub fn at(place: [f32; 5]) -> Option<Walker> {
         let [x, y, z, yaw, pitch] = place;
         place.iter().all(|n| n.is_finite() && n.abs() < 1e6).then(|| Walker {
@@ -39,19 +39,19 @@ impl Walker {
         })
     }
 
-    /// Returns the position in metres and the radians to the left and upwards; none while it stands where it began.
+    /// Returns the position in metres and the rotation to the left and upwards in radians; `None` until the head moves.
     pub fn place(&self) -> Option<[f32; 5]> {
         let ([x, y, z], [yaw, pitch]) = (self.position.to_array(), self.heading);
         self.start.is_none().then_some([x, y, z, yaw, pitch])
     }
 
-    /// Goes around the object with this middle from now on; walks for none.
+    /// Moves around the object with this centre from now on; `None` walks instead.
     pub fn go_around(&mut self, object: Option<Vec3>) {
         self.object = object;
     }
 
-    /// Turns by radians to the left and upwards. Around an object it is the object that seems to turn, under the same
-    /// hand: it stays where it is in the picture.
+    /// Turns by angles to the left and upwards, in radians. Around an object, the object seems to turn with the hand
+    /// that drags it: it stays in place in the picture.
     pub fn turn(&mut self, [left, up]: [f32; 2]) {
         let seen = self.object.map(|object| self.orientation().inverse() * (object - self.position));
         let sign = if self.object.is_some() { -1.0 } else { 1.0 };
@@ -63,8 +63,8 @@ impl Walker {
         self.start = None;
     }
 
-    /// Walks by metres to the right, upwards and ahead; the ground is level. Around an object a metre ahead divides the
-    /// distance by e, and one to the right or upwards moves the object by a third of it.
+    /// Walks by distances to the right, upwards and ahead in metres, on level ground. Around an object, a metre ahead
+    /// divides the distance to it by e, and a metre to the right or upwards shifts the head by a third of the distance.
     pub fn walk(&mut self, [right, up, ahead]: [f32; 3]) {
         match self.object {
             None => self.position += Quat::from_rotation_y(self.heading[0]) * Vec3::new(right, up, -ahead),
@@ -87,7 +87,7 @@ impl Walker {
         self.start.unwrap_or_else(|| Pose { position: self.position, orientation: self.orientation() })
     }
 
-    /// Returns a pose in the world that is `pose` relative to the head's place and heading: metres, Y up, -Z ahead.
+    /// Returns the pose in the world of a `pose` relative to the head's position and heading: metres, Y up, -Z ahead.
     pub fn locate(&self, pose: Pose) -> Pose {
         let heading = Quat::from_rotation_y(self.heading[0]);
         Pose {
@@ -121,7 +121,7 @@ mod tests {
         let from = object + Vec3::new(0.0, 0.3, 2.0);
         let mut walker = Walker::new(Pose::look_at(from, object));
         walker.go_around(Some(object));
-        // Dragged a quarter to the right, the side that was on the left is in front.
+        // After dragging by a quarter turn to the right, the side that was on the left is in front.
         walker.turn([FRAC_PI_2, 0.0]);
         close(walker.pose().position, object + Vec3::new(-2.0, 0.3, 0.0));
         walker.turn([0.0, 0.4]);

@@ -1,19 +1,19 @@
-//! Both eyes in turn, as an animated GIF.
+//! Both eyes alternately, as an animated GIF.
 
 use gif::{Encoder, EncodingError, Frame, Repeat};
 use image::{RgbaImage, imageops};
 use yoro::eyes::Eye;
 
-/// The time for which each eye is shown, in hundredths of a second.
+/// How long each eye is shown, in hundredths of a second.
 const DELAY: u16 = 15;
-/// The quantizer looks at one of so many pixels: its own choice between quality and time.
+/// The quantizer samples one in this many pixels, the encoder's own compromise between quality and time.
 const SPEED: i32 = 10;
 
-/// Returns both eyes in turn for ever, at most `width` pixels wide. `eyes` are RGBA, left and right, rows from the
-/// bottom.
+/// Encodes a GIF that shows both eyes alternately forever, at most `width` pixels wide. `eyes` are RGBA, left and
+/// right, rows from the bottom.
 ///
 /// # Errors
-/// Those of the encoder: images that are too large for a GIF, or empty.
+/// Those of the encoder, for images that are empty or too large for a GIF.
 pub fn wiggle(eyes: [Vec<u8>; 2], size: [u32; 2], width: u32) -> Result<Vec<u8>, EncodingError> {
     let small = size.map(|n| (n * width.min(size[0]) / size[0].max(1)).max(1));
     let sides = small.map(|n| u16::try_from(n).unwrap_or(u16::MAX));
@@ -24,7 +24,7 @@ pub fn wiggle(eyes: [Vec<u8>; 2], size: [u32; 2], width: u32) -> Result<Vec<u8>,
         let image = RgbaImage::from_raw(size[0], size[1], eyes[eye.index()].clone()).unwrap_or_default();
         let image = imageops::flip_vertical(&image);
         let mut image = if small == size { image } else { imageops::thumbnail(&image, small[0], small[1]) };
-        // The alpha of images is luma; GIF would take it as transparent.
+        // The images' alpha is luma, which GIF would treat as transparency.
         image.pixels_mut().for_each(|pixel| pixel.0[3] = 255);
         let mut frame = Frame::from_rgba_speed(sides[0], sides[1], &mut image, SPEED);
         frame.delay = DELAY;
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn both_eyes_take_turns() {
-        // Upper half red and green, lower half black; luma in alpha.
+        // Upper half red or green, lower half black; luma in alpha.
         let eye = |top: [u8; 4]| [[[0, 0, 0, 0]; 64].concat(), [top; 64].concat()].concat();
         let bytes = wiggle([eye([255, 0, 0, 76]), eye([0, 255, 0, 150])], [16, 8], 8).unwrap();
         let mut options = gif::DecodeOptions::new();

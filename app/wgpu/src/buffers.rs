@@ -7,20 +7,20 @@ use yoro::synthesis::{Edges, span_tiles, tiles};
 
 use crate::Options;
 
-/// Format of the layers, and of their tile map and span map.
+/// Format of the layers, and of the tile map and span map that belong to them.
 const MAP: TextureFormat = TextureFormat::R32Uint;
-/// Format of the tile map and the span map of sources with hard edges, whose tiles have laws.
+/// Format of the tile map and span map of sources with hard edges, whose tiles have laws.
 const LAW_MAP: TextureFormat = TextureFormat::Rgba32Uint;
 
-/// The format of the maps of tiles and of spans.
+/// Returns the format of the tile map and the span map.
 pub(crate) fn map_format(edges: Edges) -> TextureFormat {
     if edges == Edges::Hard { LAW_MAP } else { MAP }
 }
 
-/// The formats of the surfaces that each source pixel shows and of the colour behind them.
+/// Returns the formats of two textures: the surfaces that each source pixel shows, and the colour behind them.
 ///
-/// The colour has the encoding of the source's, because unmixing is right in the space of the resolve. Its alpha holds
-/// the share of the front surface, for which ten-bit formats have no room.
+/// The colour has the encoding of the source, because unmixing must use the same colour space as the resolve. Its alpha
+/// holds the share of the front surface, for which ten-bit formats have no room.
 pub(crate) fn layer_formats(color: TextureFormat) -> [TextureFormat; 2] {
     let background = match color {
         TextureFormat::Rgba8UnormSrgb | TextureFormat::Bgra8UnormSrgb => TextureFormat::Rgba8UnormSrgb,
@@ -30,23 +30,23 @@ pub(crate) fn layer_formats(color: TextureFormat) -> [TextureFormat; 2] {
     [MAP, background]
 }
 
-/// Buffers that are as large as the largest sizes so far.
+/// Buffers for the largest sizes so far.
 pub(crate) struct Buffers {
     source_size: [u32; 2],
     target_size: [u32; 2],
     pub(crate) tiles: TextureView,
     pub(crate) spans: TextureView,
-    /// None for hard edges.
+    /// `None` for hard edges.
     pub(crate) layers: Option<[TextureView; 2]>,
 }
 
 impl Buffers {
-    /// True if images of these sizes have room.
+    /// True if images of these sizes fit.
     pub(crate) fn hold(&self, source_size: [u32; 2], target_size: [u32; 2]) -> bool {
         self.grown(source_size, target_size) == (self.source_size, self.target_size)
     }
 
-    /// The sizes that these buffers and the given images need.
+    /// Returns the sizes that are needed for both these buffers and the given images.
     pub(crate) fn grown(&self, source_size: [u32; 2], target_size: [u32; 2]) -> ([u32; 2], [u32; 2]) {
         let larger = |a: [u32; 2], b: [u32; 2]| [a[0].max(b[0]), a[1].max(b[1])];
         (larger(self.source_size, source_size), larger(self.target_size, target_size))
@@ -75,7 +75,7 @@ impl Buffers {
         }
     }
 
-    /// Returns the bytes of the texels.
+    /// Returns the size of all texels in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let bytes = |view: &TextureView| {
             let (texture, texel) = (view.texture(), view.texture().format().block_copy_size(None));

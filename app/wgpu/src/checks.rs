@@ -1,4 +1,4 @@
-//! What the caller gives, against what the device and the pipelines can use.
+//! Checks of what the caller passes against what the device and the pipelines can use.
 
 use wgpu::{
     Backend, Device, Features, TextureFormat, TextureFormatFeatureFlags, TextureFormatFeatures,
@@ -8,18 +8,18 @@ use yoro::synthesis::Edges;
 
 use crate::{Options, Source, Target, WgpuError};
 
-/// What the device and the pipelines can use.
+/// The abilities of the device and the options of the pipelines.
 pub(crate) struct Checks {
     pub(crate) options: Options,
     features: Features,
     /// Largest width and height of a texture.
     limit: [u32; 2],
-    /// True for wgpu's OpenGL back end. It has no views of textures: it samples a layer of an array as something else.
+    /// True for wgpu's OpenGL back end. It has no texture views, so it cannot sample a single layer of an array.
     opengl: bool,
 }
 
 impl Checks {
-    /// Checks that the device can do what the options ask for.
+    /// Checks that the device supports what the options request.
     pub(crate) fn new(device: &Device, options: &Options) -> Result<Checks, WgpuError> {
         let checks = Checks {
             options: *options,
@@ -55,8 +55,8 @@ impl Checks {
         Ok(checks)
     }
 
-    /// Checks a format against what all devices with these features can do. With adapter-specific features only the
-    /// adapter knows, and wgpu says what is wrong.
+    /// Checks a format against what all devices with these features support. With adapter-specific features only the
+    /// adapter knows, and wgpu reports what is wrong.
     fn format(
         &self,
         format: TextureFormat,
@@ -72,7 +72,7 @@ impl Checks {
         }
     }
 
-    /// Checks everything that is given to one call.
+    /// Checks the arguments of one call.
     pub(crate) fn frame(
         &self,
         source: &Source,
@@ -108,7 +108,7 @@ impl Checks {
         Ok(())
     }
 
-    /// Checks colour that is filtered, and depth of one size.
+    /// Checks a colour that is filtered, and a depth of the same size.
     fn sampled(
         &self,
         [color, depth]: [&TextureView; 2],
@@ -128,7 +128,7 @@ impl Checks {
         self.texture(role, depth, samples, color)
     }
 
-    /// Checks a texture to read, beside a colour of its size.
+    /// Checks a texture to read, which must have the size of `color`.
     fn texture(
         &self,
         what: &'static str,
@@ -146,7 +146,7 @@ impl Checks {
 
     fn target(&self, target: &Target) -> Result<(), WgpuError> {
         let format = |view: &TextureView| view.texture().format();
-        // A view may be sRGB where its texture is not; which one only wgpu knows.
+        // A view may be sRGB although its texture is not. Only wgpu knows the format of a view.
         let (expected, found) = (self.options.color_format, format(target.color));
         if expected.remove_srgb_suffix() != found.remove_srgb_suffix() {
             return Err(WgpuError::OtherFormat { expected, found });
@@ -207,8 +207,8 @@ fn check_rectangle(
     if fits(0) && fits(1) { Ok(()) } else { Err(WgpuError::Rectangle { what, origin, size, image }) }
 }
 
-/// Makes objects, and returns wgpu's first error about them. In browsers errors come later, to the device's handler of
-/// uncaptured errors.
+/// Creates objects, and returns the first error that wgpu reports about them. In browsers errors arrive later, at the
+/// device's handler of uncaptured errors.
 pub(crate) fn made<T>(device: &Device, make: impl FnOnce() -> T) -> Result<T, WgpuError> {
     if cfg!(target_arch = "wasm32") {
         return Ok(make());
@@ -218,7 +218,7 @@ pub(crate) fn made<T>(device: &Device, make: impl FnOnce() -> T) -> Result<T, Wg
     let mut scopes = filters.map(|filter| Some(device.push_error_scope(filter)));
     let objects = make();
     let mut first = None;
-    // The innermost first.
+    // The innermost scope must be popped first.
     for scope in scopes.iter_mut().rev().filter_map(Option::take) {
         let mut popped = std::pin::pin!(scope.pop());
         let mut context = std::task::Context::from_waker(std::task::Waker::noop());

@@ -1,15 +1,15 @@
-//! Render one eye, synthesize the other, on wgpu: the passes of [`yoro`] in the caller's command encoder.
+//! Renders one eye and synthesizes the other, on wgpu: the passes of [`yoro`] in the caller's command encoder.
 //!
-//! [`Gather`] takes colour and depth of one eye as views of textures, and draws the other eye: the counterpart of
-//! `yoro::vulkan`, from the same shaders. [`yoro::eyes`] says which view to render, and gives the
-//! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp): it draws
-//! a view in any pose near that of the source. wgpu is part of the interface, and is handed on as [`wgpu`].
+//! [`Gather`] takes colour and depth of one eye as texture views, and draws the other eye. It is the counterpart of
+//! `yoro::vulkan`, and uses the same shaders. [`yoro::eyes`] computes which view to render, and the
+//! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp), and
+//! draws a view in any pose near that of the source. wgpu is part of the public API, and is re-exported as [`wgpu`].
 //!
-//! Images have wgpu's own orientation, row 0 at the top. Give the warp as
+//! Images have wgpu's own orientation, with row 0 at the top. Pass the warp as
 //! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the
-//! bottom, are turned inside.
-//! [`SynthesisViews::dominant_crop_from_top`](yoro::eyes::SynthesisViews::dominant_crop_from_top) is the place of the
-//! dominant eye's own image in the source.
+//! bottom, are converted internally.
+//! [`SynthesisViews::dominant_crop_from_top`](yoro::eyes::SynthesisViews::dominant_crop_from_top) is the position of
+//! the dominant eye's own image in the source.
 //!
 //! ```no_run
 //! use yoro::eyes::SynthesisViews;
@@ -45,7 +45,7 @@ use yoro::synthesis::{Edges, Strips};
 
 pub use pipeline::{AnyView, Gather, Pipeline};
 
-/// Errors of creating a pipeline and of recording.
+/// The errors of creating a pipeline and of recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WgpuError {
@@ -88,23 +88,23 @@ pub enum WgpuError {
         /// The usage that is missing.
         usage: TextureUsages,
     },
-    /// A texture has another number of samples than its role needs.
+    /// A texture does not have the number of samples that its role needs.
     #[error("{what} of {found} samples cannot be used; give a texture of {expected}")]
     Samples {
         /// The role of the texture.
         what: &'static str,
-        /// The number that is needed.
+        /// The required number.
         expected: u32,
-        /// The texture's.
+        /// The number of samples of the texture.
         found: u32,
     },
     /// The number of depth samples in [`Options`] is not 2 or 4.
     #[error("a source's depth of {0} samples cannot be used; give 4, or 2 where the device has that")]
     SampleCount(u32),
-    /// A source has the colour of its samples, which only [`Edges::Multisample`] uses.
+    /// A source has multisampled colour, which only [`Edges::Multisample`] uses.
     #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
     SampleColors,
-    /// A size is zero, or beyond the device's.
+    /// A size is zero or exceeds the device's limit.
     #[error(
         "{what} of {}x{} pixels is not between 1x1 and {}x{}; give a size in that range, or a device with larger limits",
         size[0], size[1], limit[0], limit[1]
@@ -112,37 +112,37 @@ pub enum WgpuError {
     Size {
         /// The image that has the size.
         what: &'static str,
-        /// Width and height.
+        /// The width and height.
         size: [u32; 2],
-        /// The largest.
+        /// The largest width and height.
         limit: [u32; 2],
     },
-    /// The textures of a source, or of a target, are not of one size.
+    /// The textures of a source, or of a target, have different sizes.
     #[error(
         "{what} of {}x{} pixels does not go with colour of {}x{} pixels; give textures of one size",
         size[0], size[1], color[0], color[1]
     )]
     Sizes {
-        /// The texture beside colour.
+        /// The role of the other texture.
         what: &'static str,
-        /// Its width and height.
+        /// The width and height of the other texture.
         size: [u32; 2],
-        /// Those of colour.
+        /// The width and height of the colour texture.
         color: [u32; 2],
     },
     /// A source has a history, but [`Options::history`] is off.
     #[error("a history is for pipelines made with one; set Options::history, or give none")]
     History,
-    /// [`AnyView`] was asked for other edges than [`Edges::Hard`], or for a history.
+    /// [`AnyView`] was requested with edges other than [`Edges::Hard`], or with a history.
     #[error("any view is synthesized from hard edges, without a history; choose these")]
     AnyView,
-    /// A rectangle reaches beyond its image.
+    /// A rectangle extends beyond its image.
     #[error(
         "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
         size[0], size[1], origin[0], origin[1], image[0], image[1]
     )]
     Rectangle {
-        /// The rectangle.
+        /// The role of the rectangle.
         what: &'static str,
         /// Upper left corner.
         origin: [u32; 2],
@@ -151,7 +151,7 @@ pub enum WgpuError {
         /// Width and height of the image.
         image: [u32; 2],
     },
-    /// wgpu's OpenGL back end cannot sample something that the others can.
+    /// wgpu's OpenGL back end cannot sample something that the other back ends can.
     #[error("wgpu's OpenGL back end cannot sample {what}; take another back end, or give {instead}")]
     OpenGl {
         /// What it cannot sample.
@@ -159,10 +159,10 @@ pub enum WgpuError {
         /// What it can sample.
         instead: &'static str,
     },
-    /// wgpu refused to make a pipeline or a texture.
+    /// wgpu refused to create a pipeline or a texture.
     #[error("wgpu cannot make the pipelines or buffers of synthesis: {0}")]
     Refused(String),
-    /// The device is lost, or has no memory left for a few bytes: create it and all of its objects again.
+    /// The device is lost, or has no memory left even for a few bytes. Create it and all of its objects again.
     #[error("the wgpu device is lost or out of memory; create it and all of its objects again")]
     DeviceLost,
 }
@@ -171,17 +171,17 @@ fn depth_of(format: &Option<TextureFormat>) -> String {
     format.map_or("no depth".into(), |format| format!("depth of {format:?}"))
 }
 
-/// The formats and the kind of sources for which pipelines are made.
+/// The formats and the kind of sources that pipelines are created for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Format of the targets' colour, any that the device can render to: that of the view, where it differs from the
-    /// texture's.
+    /// Format of the targets' colour: any format that the device can render to. If the view's format differs from the
+    /// texture's, this is the view's.
     pub color_format: TextureFormat,
-    /// Format of the targets' depth, which is written in the source's encoding; None for colour only.
+    /// Format of the targets' depth, which is written in the source's encoding. `None` for colour only.
     pub depth_format: Option<TextureFormat>,
     /// The kind of source images; docs/library.md says which to choose.
     pub edges: Edges,
-    /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 4, or 2 where the device has that.
+    /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 4, or 2 if the device supports that.
     pub samples: u32,
     /// True if sources may have a history ([`Source::history`]).
     pub history: bool,
@@ -200,15 +200,15 @@ impl Default for Options {
     }
 }
 
-/// The rendered eye and its guard band: views of one layer and one mip level, the largest, of 2-D textures of one size,
-/// with the usage TEXTURE_BINDING. The source's size is the warp's.
+/// The rendered eye and its guard band. The views each show one layer and the largest mip level of 2-D textures, which
+/// have the same size and the usage TEXTURE_BINDING. The size of the rendered rectangle is the warp's source size.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
-    /// Colour in any format that can be filtered: Rgba8Unorm or Rgba8UnormSrgb, Rgb10a2Unorm, Rgba16Float and others.
-    /// All four channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the edges are
-    /// [`Edges::Hard`] it is resolved, with values between 0 and 1.
+    /// Colour in any filterable format: Rgba8Unorm or Rgba8UnormSrgb, Rgb10a2Unorm, Rgba16Float and others. All four
+    /// channels are carried over. A source that is sampled as sRGB needs an sRGB target. With edges other than
+    /// [`Edges::Hard`] this is the resolved image, with values between 0 and 1.
     pub color: &'a TextureView,
-    /// Depth: R32Float, R16Unorm, or any depth format; of one with stencil a view of the depth alone
+    /// Depth: R32Float, R16Unorm, or any depth format. If the format has stencil, the view must show the depth only
     /// ([`wgpu::TextureAspect::DepthOnly`]). For [`Edges::Multisample`] it has [`Options::samples`] samples.
     pub depth: &'a TextureView,
     /// For [`Edges::Multisample`], the texture with as many samples that the colour was resolved from, if it still
@@ -216,42 +216,42 @@ pub struct Source<'a> {
     pub sample_color: Option<&'a TextureView>,
     /// Upper left corner of the rendered rectangle in the textures, in pixels.
     pub origin: [u32; 2],
-    /// What the other eye has seen, for pipelines with [`Options::history`].
+    /// The history, for pipelines with [`Options::history`].
     pub history: Option<History<'a>>,
 }
 
-/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
-/// Views of one layer and one mip level, the largest, of 2-D textures of one size, any, with the usage TEXTURE_BINDING.
+/// A rendered image of the synthesized eye, from this frame or earlier ones. Disocclusions are filled from it. The
+/// views each show one layer and the largest mip level of 2-D textures, of the same size (any), with the usage
+/// TEXTURE_BINDING.
 #[derive(Clone, Copy, Debug)]
 pub struct History<'a> {
-    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes
-    /// afterwards. In the encoding of the source's.
+    /// Colour, in any filterable format and in the encoding of the source's colour. It must show only what the source
+    /// shows, and nothing that is drawn over both eyes after synthesis.
     pub color: &'a TextureView,
-    /// Depth in one of the formats of [`Source::depth`], one value a pixel, with the planes and encoding of the
-    /// source's.
+    /// Depth in one of the formats of [`Source::depth`], with one value per pixel and the planes and encoding of the
+    /// source.
     pub depth: &'a TextureView,
-    /// The views of its strips, from the top on, as [`Strips::new`] returns them: its rows, which are counted from the
-    /// bottom, are turned inside.
+    /// The views of its strips, beginning at the top, as [`Strips::new`] returns them. Their rows, which are counted
+    /// from the bottom, are converted internally.
     pub strips: Strips,
 }
 
 impl<'a> Source<'a> {
-    /// Returns a source that begins at the upper left corner of two textures, without the colours of samples or
-    /// a history.
+    /// Returns a source that begins at the upper left corner of two textures, without multisampled colour or a history.
     pub fn new(color: &'a TextureView, depth: &'a TextureView) -> Source<'a> {
         Source { color, depth, sample_color: None, origin: [0, 0], history: None }
     }
 }
 
-/// Where the other eye goes: views of one layer of 2-D textures of one size, with the usage RENDER_ATTACHMENT. The
-/// target's size is the warp's.
+/// The place for the other eye. The views each show one layer of 2-D textures, which have the same size and the usage
+/// RENDER_ATTACHMENT. The size of the rectangle is the warp's target size.
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
     /// Colour, in [`Options::color_format`].
     pub color: &'a TextureView,
-    /// Depth, in [`Options::depth_format`], with all of its aspects. Stencil stays as it is.
+    /// Depth, in [`Options::depth_format`], with all of its aspects. Stencil is unchanged.
     pub depth: Option<&'a TextureView>,
-    /// Upper left corner of the rectangle to write in the textures, in pixels. Pixels outside of it stay as they are.
+    /// Upper left corner of the rectangle to write in the textures, in pixels. Pixels outside it are unchanged.
     pub origin: [u32; 2],
 }
 
@@ -262,7 +262,7 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The code of the README is compiled with the tests of the documentation.
+/// Compiles the README's code with the documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! The fragment passes of the pipeline, in the order of their recording.
+//! The fragment passes of the pipeline, in the order in which they are recorded.
 
 use bytemuck::NoUninit;
 use wgpu::{
@@ -19,9 +19,9 @@ use crate::{Options, Source};
 
 /// All passes.
 pub(crate) struct Passes {
-    /// None for hard edges.
+    /// `None` for hard edges.
     split: Option<Pass>,
-    /// For sources with the samples' colours.
+    /// For sources with multisampled colour.
     split_samples: Option<Pass>,
     tiles: Pass,
     spans: Pass,
@@ -38,7 +38,7 @@ struct Pass {
     pipeline: RenderPipeline,
 }
 
-/// Bindings, as `TEXTURE` in the shaders counts them.
+/// The bindings, with the numbers that `TEXTURE` has in the shaders.
 const DEPTH: u32 = 0;
 const COLOR: u32 = 1;
 const TILE_MAP: u32 = 2;
@@ -53,7 +53,7 @@ const HISTORY_DEPTH: u32 = 10;
 const HISTORY_COLOR: u32 = 11;
 const STRIPS: u32 = 12;
 
-/// What is bound in the passes for one source.
+/// The bind groups of the passes for one source.
 pub(crate) struct Groups {
     split: Option<BindGroup>,
     tiles: BindGroup,
@@ -63,7 +63,7 @@ pub(crate) struct Groups {
 }
 
 impl Passes {
-    /// `uniforms` is the size of the passes' block.
+    /// `uniforms` is the size of the passes' uniform block.
     pub(crate) fn new(device: &Device, options: &Options, set: PassSet, uniforms: BufferSize) -> Passes {
         let Options { color_format, depth_format, edges, samples, history } = *options;
         let module = |label, text: &'static str| {
@@ -116,7 +116,7 @@ impl Passes {
         }
     }
 
-    /// Binds a source and the buffers.
+    /// Creates the bind groups for a source and the buffers.
     pub(crate) fn groups(
         &self,
         device: &Device,
@@ -136,7 +136,7 @@ impl Passes {
                     LAYERS => layer(0),
                     BACKGROUND => layer(1),
                     SAMPLE_COLOR => source.sample_color,
-                    // Without a history nothing is looked up there.
+                    // Without a history these bindings are not read.
                     HISTORY_DEPTH => source.history.map_or(Some(source.color), |history| Some(history.depth)),
                     HISTORY_COLOR => source.history.map_or(Some(source.color), |history| Some(history.color)),
                     _ => None,
@@ -164,25 +164,25 @@ impl Passes {
         }
     }
 
-    /// The first pass for a source with or without the samples' colours.
+    /// Returns the first pass for a source with or without multisampled colour.
     fn split(&self, with_samples: bool) -> Option<&Pass> {
         self.split_samples.as_ref().filter(|_| with_samples).or(self.split.as_ref())
     }
 }
 
-/// Where the last pass draws.
+/// The place that the last pass draws to.
 pub(crate) struct Drawn<'a> {
     pub(crate) color: &'a TextureView,
     pub(crate) depth: Option<&'a TextureView>,
-    /// Upper left corner, width and height.
+    /// X and Y of the upper left corner, width and height, in pixels.
     pub(crate) area: [u32; 4],
-    /// True if the area is all of the texture, so that nothing in it is kept.
+    /// True if the area is the whole texture, so that nothing in it needs to be kept.
     pub(crate) whole: bool,
 }
 
 impl Passes {
-    /// Records all passes for a source of this size in pixels; the sizes of the maps are in tiles. Uniforms and strips
-    /// are offsets in their buffers.
+    /// Records all passes for a source of this size in pixels. The sizes of the maps are in tiles. `uniforms` and
+    /// `strips` are offsets in their buffers.
     pub(crate) fn record(
         &self,
         encoder: &mut CommandEncoder,
@@ -210,14 +210,14 @@ impl Passes {
     }
 }
 
-/// Returns a colour attachment, of which nothing is kept if it is overwritten.
+/// Returns a colour attachment. Its contents are discarded if it is overwritten.
 fn color(view: &TextureView, overwritten: bool) -> RenderPassColorAttachment<'_> {
     let load = if overwritten { LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { LoadOp::Load };
     let ops = Operations { load, store: StoreOp::Store };
     RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
-/// Returns a depth attachment, of which nothing but stencil is kept if it is overwritten.
+/// Returns a depth attachment. Its contents, except stencil, are discarded if it is overwritten.
 fn depth(view: &TextureView, overwritten: bool) -> RenderPassDepthStencilAttachment<'_> {
     let load = if overwritten { LoadOp::Clear(0.0) } else { LoadOp::Load };
     let stencil = view.texture().format().has_stencil_aspect();
@@ -233,7 +233,7 @@ impl Pass {
         &self,
         encoder: &mut CommandEncoder,
         group: &BindGroup,
-        // Of the blocks in their buffers.
+        // Offsets of the uniform blocks in their buffers.
         places: &[u32],
         colors: &[Option<RenderPassColorAttachment>],
         depth: Option<RenderPassDepthStencilAttachment>,
@@ -253,11 +253,11 @@ impl Pass {
     }
 }
 
-/// What the pipelines of a pass need beside their shaders and formats.
+/// What all pipelines of a pass need besides their shaders and formats.
 struct PassMaker<'a> {
     device: &'a Device,
     options: &'a Options,
-    /// Bytes of the passes' block.
+    /// The size of the passes' uniform block in bytes.
     uniforms: BufferSize,
     label: &'static str,
     bindings: Vec<u32>,
@@ -320,7 +320,7 @@ impl PassMaker<'_> {
             multisampled,
         };
         let ty = match binding {
-            // What depth formats and float formats have in common.
+            // The sample type that depth formats and float formats have in common.
             DEPTH | SAMPLE_COLOR | BACKGROUND | HISTORY_DEPTH => {
                 texture(TextureSampleType::Float { filterable: false })
             }

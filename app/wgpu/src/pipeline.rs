@@ -10,58 +10,58 @@ use crate::passes::{Drawn, Groups, Passes};
 use crate::uniforms::{self, UniformRing};
 use crate::{History, Options, Source, Target, WgpuError};
 
-/// The bindings of a source that was not used for so many calls are dropped, and with them its textures.
+/// The bindings of a source are dropped, and with them its textures, after this many calls without it.
 const KEPT_CALLS: u64 = 32;
 
-/// The passes between parallel eyes: tile bounds, tile spans, march. For anti-aliased sources there is a split into
-/// layers before them.
+/// The passes between parallel eyes: tile bounds, tile spans, march. For anti-aliased sources, a pass that splits them
+/// into layers comes first.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of any view: tile bounds, tile spans, march. It draws a view in any pose near the source's, of sources
-/// with [`Edges::Hard`] and without a history.
+/// The passes of any view: tile bounds, tile spans, march. They draw a view in any pose near that of the source. The
+/// source must have [`Edges::Hard`] and no history.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// The passes of a kind of warp: [`Gather`] or [`AnyView`].
+/// The passes for one kind of warp: [`Gather`] or [`AnyView`].
 ///
-/// All calls share the intermediate buffers: submit what they have recorded to one queue. Up to 64 calls may be
-/// recorded before the first of them is submitted.
+/// All calls share the intermediate buffers, so submit what they record to one queue. Up to 64 calls may be recorded
+/// before the first of them is submitted.
 pub struct Pipeline<W: WarpKind> {
     checks: Checks,
     passes: Passes,
     uniforms: UniformRing<W::Uniforms>,
-    /// For sources that may have a history.
+    /// `Some` if sources may have a history.
     strips: Option<UniformRing<Strips>>,
     buffers: Option<Buffers>,
     kept: Vec<Kept>,
     calls: u64,
 }
 
-/// What was made for a source.
+/// The objects that were created for a source.
 struct Kept {
-    /// Colour, depth, colour of the samples; colour and depth of a history.
+    /// Colour, depth and multisampled colour of the source; colour and depth of its history.
     views: [Option<TextureView>; 5],
     groups: Groups,
-    /// The number of the last call that used it.
+    /// The number of the last call that used them.
     used: u64,
 }
 
 impl<W: WarpKind> Pipeline<W> {
-    /// Makes everything that does not depend on the textures: the pipelines.
+    /// Creates the pipelines, which do not depend on the textures.
     ///
     /// # Errors
-    /// [`WgpuError::Format`], [`WgpuError::SampleCount`] and [`WgpuError::OpenGl`] for what the device cannot do,
-    /// [`WgpuError::AnyView`] for what [`AnyView`] cannot, [`WgpuError::Refused`] for whatever else wgpu refuses. In a
-    /// browser the device's handler of uncaptured errors gets those.
+    /// [`WgpuError::Format`], [`WgpuError::SampleCount`] or [`WgpuError::OpenGl`] if the device does not support the
+    /// options, [`WgpuError::AnyView`] if [`AnyView`] does not, and [`WgpuError::Refused`] for any other error of wgpu.
+    /// In a browser such errors go to the device's handler of uncaptured errors instead.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
         let on_cpu = device.adapter_info().device_type == DeviceType::Cpu;
         Pipeline::with_passes(device, options, PassSet::of::<W>(on_cpu))
     }
 
-    /// Does what [`Pipeline::new`] does with the passes for another device: for tests of shaders that this one would
-    /// not use.
+    /// Does what [`Pipeline::new`] does, but with the passes for another kind of device, so that tests can run shaders
+    /// that this device would not use.
     ///
     /// # Errors
-    /// As [`Pipeline::new`].
+    /// As for [`Pipeline::new`].
     #[doc(hidden)]
     pub fn with_passes(
         device: &Device,
@@ -82,11 +82,11 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(Pipeline { checks, passes, uniforms, strips, buffers: None, kept: Vec::new(), calls: 0 })
     }
 
-    /// Makes the intermediate buffers for sources and targets up to these sizes in pixels. [`Pipeline::record`] does so
-    /// when it meets a size that is larger than all before; called beforehand, no frame has to.
+    /// Creates the intermediate buffers for sources and targets up to these sizes in pixels. [`Pipeline::record`] does
+    /// so when a size is larger than all before; call this first so that no frame has to.
     ///
     /// # Errors
-    /// [`WgpuError::Refused`] without memory for them.
+    /// [`WgpuError::Refused`] if there is not enough memory.
     pub fn prepare(
         &mut self,
         device: &Device,
@@ -99,19 +99,19 @@ impl<W: WarpKind> Pipeline<W> {
             None => (max_source_size, max_target_size),
         };
         self.buffers = Some(made(device, || Buffers::new(device, &self.checks.options, W::ANY_VIEW, sizes))?);
-        // They bind the buffers.
+        // The bindings refer to the old buffers.
         self.kept.clear();
         Ok(())
     }
 
-    /// Records the passes, each of which is a render pass: call it outside of passes. Source and target are as their
-    /// types say; the target is none of the source's textures.
+    /// Records the passes. Each is a render pass, so call this outside render passes. The target must not be one of the
+    /// source's textures. See [`Source`] and [`Target`] for what they must be.
     ///
-    /// What is made for the views of a source is kept for the next calls with the same views, until 32 calls in a row
-    /// were without them. Buffers are made when sizes are larger than all before.
+    /// The bindings for the views of a source are kept for the next calls with the same views, until 32 calls in a row
+    /// were without them. Buffers are created when sizes are larger than all before.
     ///
     /// # Errors
-    /// One of [`WgpuError`] for what does not fit, [`WgpuError::DeviceLost`]; nothing is recorded then.
+    /// A [`WgpuError`] if the arguments do not fit, or [`WgpuError::DeviceLost`]. Nothing is recorded then.
     pub fn record(
         &mut self,
         device: &Device,
@@ -150,7 +150,7 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(())
     }
 
-    /// Returns the place of a source's bindings among those that are kept.
+    /// Returns the index of a source's bindings in `kept`.
     fn bound(&mut self, device: &Device, source: &Source) -> usize {
         let calls = self.calls;
         let former = source.history.map(|history| [history.color, history.depth]);
@@ -167,7 +167,7 @@ impl<W: WarpKind> Pipeline<W> {
         index
     }
 
-    /// Returns the bytes of the intermediate buffers' texels; 0 before there are any.
+    /// Returns the size of the intermediate buffers' texels in bytes; 0 before they exist.
     pub fn buffer_bytes(&self) -> u64 {
         self.buffers.as_ref().map_or(0, Buffers::bytes)
     }

@@ -1,10 +1,10 @@
-//! The shaders of the passes as WGSL, compiled beforehand from the files of `yoro-shaders`: `cargo tools wgsl`.
+//! The shaders of the passes as WGSL, compiled in advance from the files of `yoro-shaders` by `cargo tools wgsl`.
 
 use yoro::synthesis::{Edges, PassSet};
 
 pub(crate) const SCREEN: &str = include_str!("wgsl/screen.wgsl");
 
-/// Returns the first pass for resolved colour; None for hard edges.
+/// Returns the first pass for resolved colour, or `None` for hard edges.
 pub(crate) fn split(edges: Edges, samples: u32) -> Option<&'static str> {
     match (edges, samples) {
         (Edges::Hard, _) => None,
@@ -33,7 +33,7 @@ pub(crate) fn tiles(edges: Edges, passes: PassSet) -> &'static str {
     }
 }
 
-/// Returns the pass that finds what each tile of the target has to search.
+/// Returns the pass that finds the part of the source that each tile of the target must search.
 pub(crate) fn spans(edges: Edges, passes: PassSet) -> &'static str {
     match (edges, passes) {
         (_, PassSet::AnyView) => include_str!("wgsl/any-view-spans.wgsl"),
@@ -50,9 +50,9 @@ pub(crate) fn march_vertex(passes: PassSet) -> &'static str {
     }
 }
 
-/// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
+/// Returns the last pass, which optionally writes depth and looks up disocclusions in a history.
 pub(crate) fn march(edges: Edges, passes: PassSet, depth: bool, history: bool) -> &'static str {
-    /// The four modules of a source's kind.
+    /// Selects one of the four modules for a kind of source.
     macro_rules! of {
         ($name:literal) => {
             match (depth, history) {

@@ -1,4 +1,4 @@
-//! The blocks of several calls in one buffer.
+//! The uniform blocks of several calls in one buffer.
 
 use std::marker::PhantomData;
 
@@ -9,16 +9,16 @@ use wgpu::{
 
 use crate::WgpuError;
 
-/// So many calls can be recorded before the first of them is submitted: what is written for one is in place when the
-/// next submission begins, and must not be overwritten before.
+/// The number of calls that can be recorded before the first of them is submitted. The block of a call is written when
+/// the next submission begins, and must not be overwritten before.
 pub(crate) const CALLS: u64 = 64;
 
-/// The bytes of a block.
+/// Returns the size of a block in bytes.
 pub(crate) const fn size<T>() -> BufferSize {
     BufferSize::new(size_of::<T>() as u64).expect("the block has members")
 }
 
-/// A buffer of blocks whose places are used in turn.
+/// A buffer of blocks that are used in turn.
 pub(crate) struct UniformRing<T> {
     buffer: Buffer,
     stride: u64,
@@ -39,7 +39,7 @@ impl<T: NoUninit> UniformRing<T> {
         UniformRing { buffer, stride, next: 0, block: PhantomData }
     }
 
-    /// Writes the block of a call, and returns its place in the buffer.
+    /// Writes the block of a call, and returns its offset in the buffer.
     pub(crate) fn write(&mut self, queue: &Queue, block: &T) -> Result<u32, WgpuError> {
         let offset = self.next % CALLS * self.stride;
         let view = queue.write_buffer_with(&self.buffer, offset, size::<T>());
@@ -48,7 +48,7 @@ impl<T: NoUninit> UniformRing<T> {
         Ok(offset as u32)
     }
 
-    /// Returns what a group binds of it.
+    /// Returns the binding of a block, for a dynamic offset.
     pub(crate) fn binding(&self) -> BindingResource<'_> {
         let buffer = &self.buffer;
         BindingResource::Buffer(BufferBinding { buffer, offset: 0, size: Some(size::<T>()) })

@@ -1,6 +1,6 @@
-//! A room in both eyes without a window: both modes beside two rendered cameras.
+//! A room in both eyes without a window: both modes, compared with two rendered cameras.
 //!
-//! `cargo run --example headless -- FOLDER` writes pictures into the folder, and prints how good and how fast they are.
+//! `cargo run --example headless -- FOLDER` writes pictures into the folder, and prints the modes' quality and speed.
 
 mod support;
 
@@ -10,7 +10,7 @@ use bevy::prelude::*;
 use bevy_yoro::{StereoCamera, StereoMode};
 
 const SIZE: [u32; 2] = [1024, 512];
-/// Frames of each mode that are timed, in turn.
+/// The number of frames that are timed for each mode, in turn.
 const ROUNDS: usize = 9;
 
 fn main() -> Result {
@@ -39,7 +39,7 @@ fn main() -> Result {
     for _ in 0..ROUNDS {
         for (mode, times) in modes.into_iter().zip(&mut times) {
             set(&mut app, mode);
-            // Cameras of another mode come and go.
+            // Cameras of the other mode are spawned or despawned.
             app.update();
             app.update();
             let begin = Instant::now();

@@ -1,4 +1,4 @@
-//! A room in an OpenXR headset: one eye is rendered, the other one synthesized.
+//! A room in an OpenXR headset: one eye is rendered, the other is synthesized.
 //!
 //! `cargo run --features openxr --example headset`
 

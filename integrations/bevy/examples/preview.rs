@@ -1,7 +1,7 @@
 //! A room in both eyes, side by side in a window.
 //!
-//! Space shows two rendered eyes while it is held, M changes how the other eye is made, D which eye is rendered, and
-//! the arrow keys move the head.
+//! Holding the space bar shows two rendered eyes. M changes how the other eye is produced, D changes which eye is
+//! rendered, and the arrow keys move the head.
 
 mod support;
 
@@ -24,7 +24,7 @@ fn setup(mut commands: Commands) {
     ));
 }
 
-/// Changes what the keys are for, and tells it in the window's title.
+/// Applies the keys, and shows the mode in the window's title.
 fn choose(
     keys: Res<ButtonInput<KeyCode>>,
     mut chosen: Local<StereoMode>,

@@ -1,4 +1,4 @@
-//! Stereo cameras: which view is rendered, and the cameras beside it.
+//! Stereo cameras: the view that they render, and the cameras that belong to them.
 
 use bevy::camera::visibility::{RenderLayers, VisibilitySystems};
 use bevy::camera::{CameraMainTextureUsages, CameraUpdateSystems, ClearColorConfig, RenderTarget};
@@ -20,7 +20,7 @@ use crate::plan::{Plan, Rendering};
 use crate::projection::EyeProjection;
 use crate::shared::{OtherCamera, ShareSystems};
 
-/// The orders of the cameras beside a stereo camera, from its own.
+/// The orders of the cameras that belong to a stereo camera, relative to its own order.
 const OTHER_EYE_ORDER: isize = 1;
 const SCREEN_ORDER: isize = 2;
 
@@ -44,18 +44,18 @@ impl From<Eye> for eyes::Eye {
     }
 }
 
-/// Stereo from this `Camera3d`, whose transform is the head's. Both eyes go side by side into the camera's render
-/// target, each as wide as half of it. Distances are in the camera's unit, which is that of the world unless a parent
-/// is scaled.
+/// Renders stereo from this `Camera3d`, whose transform is the head's. Both eyes are written side by side to the
+/// camera's render target, each to one half of its width. Distances are in the camera's unit, which is the world's
+/// unless a parent is scaled.
 ///
-/// While this component is there, the camera's projection and render target are the plugin's: set the target anew to
-/// show the eyes elsewhere. Post-processing, anti-aliasing and the like are those of the camera. When the component is
-/// removed the camera gets its target back, and a perspective projection.
+/// While this component is present, the plugin controls the camera's projection and render target. To show the eyes
+/// elsewhere, set the target again. Post-processing, anti-aliasing and similar settings are those of the camera. When
+/// the component is removed, the camera gets its target back, and a perspective projection.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Camera3d, Eyes)]
 pub struct StereoCamera {
-    /// How the other eye is made.
+    /// How the other eye is produced.
     pub mode: StereoMode,
     /// The eye that is rendered.
     pub dominant: Eye,
@@ -63,18 +63,18 @@ pub struct StereoCamera {
     pub ipd: f32,
     /// Vertical field of view of each eye in radians.
     pub fov_y: f32,
-    /// Distance of the near plane, which is more than 0.
+    /// Distance of the near plane, more than 0.
     pub near: f32,
     /// Distance beyond which objects are culled.
     pub far: f32,
-    /// Distance of the nearest object that is not cut off at the other eye's outer border: the rendered image is
-    /// widened by a guard band for it. Infinity for none.
+    /// Distance of the nearest object that is not cut off at the other eye's outer border. The rendered image is
+    /// widened by a guard band for it. Infinity for no guard band.
     pub guard_distance: f32,
 }
 
 impl Default for StereoCamera {
-    /// Opaque surfaces synthesized, the right eye rendered, 63 mm, the field of view and planes of Bevy's perspective
-    /// projection, a guard band for objects at 1 m or farther.
+    /// Synthesizes opaque surfaces, renders the right eye, and uses an IPD of 63 mm, the field of view and planes of
+    /// Bevy's perspective projection, and a guard band for objects at 1 m or farther.
     fn default() -> StereoCamera {
         let PerspectiveProjection { fov, near, far, .. } = PerspectiveProjection::default();
         StereoCamera {
@@ -104,7 +104,7 @@ impl StereoCamera {
     }
 }
 
-/// Returns Bevy's encoding of depth: reversed, without a far plane.
+/// Returns a depth range in Bevy's encoding: reversed, without a far plane.
 pub(crate) fn reversed(near: f32) -> DepthRange {
     DepthRange { near, far: f32::INFINITY, convention: DepthConvention::Reversed }
 }
@@ -112,39 +112,39 @@ pub(crate) fn reversed(near: f32) -> DepthRange {
 /// The state of a stereo camera.
 #[derive(Component, Default)]
 pub(crate) struct Eyes {
-    /// What is done; None before the first frame.
+    /// The current arrangement, or `None` before the first frame.
     pub(crate) arrangement: Option<Arrangement>,
     /// The views of this frame.
     pub(crate) views: Option<Views>,
-    /// Where the camera renders to: an image for the widened view.
+    /// The image that the camera renders the widened view to.
     pub(crate) source: Handle<Image>,
-    /// Where the other eye's camera renders to.
+    /// The image that the other eye's camera renders to.
     pub(crate) other: Handle<Image>,
-    /// Shows both eyes.
+    /// The camera that shows both eyes.
     screen: Option<Entity>,
-    /// Where the camera rendered to before, and its size in pixels as the screen knows it.
+    /// The camera's original render target, and its size in pixels as the screen knows it.
     output: Option<RenderTarget>,
     size: UVec2,
-    /// The head in the world.
+    /// The head's transform in the world.
     head: Option<GlobalTransform>,
-    /// Why both eyes are rendered although one should be synthesized.
+    /// The reason why both eyes are rendered although one should be synthesized.
     reason: Option<String>,
 }
 
 impl Eyes {
-    /// True if this is the image for the widened view.
+    /// True if this target is the image for the widened view.
     fn renders_to(&self, target: &RenderTarget) -> bool {
         matches!(target, RenderTarget::Image(to) if to.handle == self.source)
     }
 }
 
-/// What requires other images, projections or cameras when it changes.
+/// Everything that requires new images, projections or cameras when it changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrangement {
     pub(crate) plan: Plan,
     pub(crate) samples: u32,
     format: TextureFormat,
-    /// Without their poses.
+    /// The views of the two eyes, without their poses.
     views: [View; 2],
     far: f32,
 }
@@ -152,19 +152,19 @@ pub(crate) struct Arrangement {
 /// The views of the two eyes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Views {
-    /// What the camera renders: the dominant eye, widened unless both are rendered.
+    /// The view that the camera renders: the dominant eye's, widened unless both eyes are rendered.
     pub(crate) source: View,
-    /// The other eye.
+    /// The view of the other eye.
     pub(crate) target: View,
-    /// Upper left corner in pixels of the dominant eye's own image in the source.
+    /// Upper left corner, in pixels, of the dominant eye's own image in the source.
     pub(crate) crop: [u32; 2],
     pub(crate) dominant: eyes::Eye,
-    /// None if both are rendered.
+    /// `None` if both eyes are rendered.
     pub(crate) warp: Option<Warp>,
 }
 
 impl Views {
-    /// Returns the views where both eyes are rendered.
+    /// Returns the views if both eyes are rendered.
     pub(crate) fn rendered(pair: &EyePair) -> Views {
         let dominant = pair.dominant;
         let (source, target) = (pair.view(dominant), pair.view(dominant.other()));
@@ -174,7 +174,7 @@ impl Views {
     /// Returns the views for a plan.
     ///
     /// # Errors
-    /// Why the other eye cannot be synthesized from these.
+    /// The reason why the other eye cannot be synthesized from these eyes.
     pub(crate) fn new(pair: &EyePair, plan: Plan, guard: GuardBand) -> Result<Views, eyes::EyesError> {
         if plan == Plan::Rendered {
             return Ok(Views::rendered(pair));
@@ -186,7 +186,7 @@ impl Views {
     }
 }
 
-/// On a camera that shows both eyes: the stereo camera.
+/// The stereo camera whose eyes are shown, on the camera that shows them.
 #[derive(Component, Clone, Copy)]
 pub(crate) struct Screen(pub(crate) Entity);
 
@@ -205,7 +205,7 @@ pub(crate) fn build(app: &mut App) {
         .add_observer(restore_camera);
 }
 
-/// The components of a stereo camera that decide about its arrangement, or are part of it.
+/// The components of a stereo camera that determine its arrangement or belong to it.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(crate) struct StereoCameraParts {
@@ -219,24 +219,24 @@ pub(crate) struct StereoCameraParts {
     other: Option<&'static OtherCamera>,
 }
 
-/// Which eyes a camera is to show.
+/// The eyes that a camera should show.
 pub(crate) struct EyesRequest<'a> {
     pub(crate) mode: StereoMode,
     pub(crate) pair: &'a EyePair,
     pub(crate) guard_distance: f32,
     pub(crate) far: f32,
-    /// Format of the images that cameras render to.
+    /// Format of the images that the cameras render to.
     pub(crate) format: TextureFormat,
-    /// True if the other eye's camera gets an image to render to, and a projection.
+    /// True if the other eye's camera needs an image to render to, and a projection.
     pub(crate) images: bool,
 }
 
-/// Returns the guard band for everything from a distance on.
+/// Returns a guard band for everything beyond a distance.
 pub(crate) fn guard_band(distance: f32) -> GuardBand {
     if distance == f32::INFINITY { GuardBand::None } else { GuardBand::Distance(distance) }
 }
 
-/// Where cameras render to.
+/// The render targets of cameras.
 #[derive(SystemParam)]
 struct Targets<'w, 's> {
     windows: Query<'w, 's, (Entity, &'static Window)>,
@@ -245,7 +245,7 @@ struct Targets<'w, 's> {
 }
 
 impl Targets<'_, '_> {
-    /// Returns size in pixels and format of what a camera without `Hdr` renders for a target.
+    /// Returns the size in pixels and the format that a camera without `Hdr` renders for a target.
     fn info(&self, target: &RenderTarget, images: &Assets<Image>) -> Option<(UVec2, TextureFormat)> {
         let normalized = target.normalize(self.primary.iter().next())?;
         let info = normalized.get_render_target_info(&self.windows, images, &self.manual).ok()?;
@@ -294,20 +294,20 @@ fn update_cameras(
         parts.arrange(&mut commands, &mut images, &request);
         if let Some(screen) = parts.eyes.screen.filter(|_| parts.eyes.size != size) {
             parts.eyes.size = size;
-            // Bevy looks at a camera's target again when its projection changes.
+            // Bevy re-reads a camera's target when its projection changes.
             let projection = Projection::Orthographic(OrthographicProjection::default_2d());
             commands.entity(screen).try_insert(projection);
         }
     }
 }
 
-/// Copies `is_active` and `order` plus an offset from a stereo camera, and for the other eye's camera `clear_color`,
-/// too.
+/// Copies `is_active`, and `order` plus an offset, from a stereo camera. Also copies `clear_color` to the other eye's
+/// camera.
 fn follow(camera: &mut Mut<Camera>, stereo: &Camera, offset: isize) {
     if camera.is_active != stereo.is_active || camera.order != stereo.order + offset {
         (camera.is_active, camera.order) = (stereo.is_active, stereo.order + offset);
     }
-    // The screen clears what is beside the eyes.
+    // The screen's camera clears what lies outside the eyes.
     if offset == OTHER_EYE_ORDER && !same_clear_color(camera.clear_color, stereo.clear_color) {
         camera.clear_color = stereo.clear_color;
     }
@@ -320,7 +320,7 @@ fn same_clear_color(a: ClearColorConfig, b: ClearColorConfig) -> bool {
     }
 }
 
-/// Shows both eyes where the camera would render to.
+/// Shows both eyes in the target that the camera would render to.
 fn show_eyes(commands: &mut Commands, parts: &mut StereoCameraPartsItem) {
     let output = parts.target.clone();
     parts.eyes.output = Some(output.clone());
@@ -349,7 +349,7 @@ fn show_eyes(commands: &mut Commands, parts: &mut StereoCameraPartsItem) {
 }
 
 impl StereoCameraPartsItem<'_, '_> {
-    /// Prepares images, projections and the other eye's camera that were requested. Returns that camera if it is new.
+    /// Prepares the images, the projections and the other eye's camera for a request. Returns that camera if it is new.
     pub(crate) fn arrange(
         &mut self,
         commands: &mut Commands,
@@ -437,7 +437,7 @@ impl StereoCameraPartsItem<'_, '_> {
     }
 }
 
-/// Moves the cameras from the head to the eyes. Transforms stay the head's.
+/// Moves the cameras from the head to the eyes. Only `GlobalTransform` changes; `Transform` remains the head's.
 fn to_eyes(
     mut cameras: Query<(&mut Eyes, &mut GlobalTransform, Option<&OtherCamera>), With<StereoCamera>>,
     mut others: Query<&mut GlobalTransform, Without<StereoCamera>>,
@@ -453,7 +453,7 @@ fn to_eyes(
     }
 }
 
-/// Moves the cameras back, so that nobody else sees them moved.
+/// Moves the cameras back, so that no other system sees them moved.
 fn back_to_head(mut cameras: Query<(&mut Eyes, &mut GlobalTransform), With<StereoCamera>>) {
     for (mut eyes, mut transform) in &mut cameras {
         if let Some(head) = eyes.head.take() {
@@ -462,13 +462,13 @@ fn back_to_head(mut cameras: Query<(&mut Eyes, &mut GlobalTransform), With<Stere
     }
 }
 
-/// Returns a pose as Bevy's transform.
+/// Returns a pose as a Bevy transform.
 pub(crate) fn bevy_transform(pose: &Pose) -> Transform {
     Transform::from_translation(Vec3::from_array(pose.position.to_array()))
         .with_rotation(Quat::from_array(pose.orientation.to_array()))
 }
 
-/// Forgets cameras that somebody else has removed.
+/// Forgets cameras that were removed by other code.
 fn forget_removed_cameras(
     mut commands: Commands,
     mut stereo: Query<(Entity, &mut Eyes, Option<&OtherCamera>)>,

@@ -1,8 +1,9 @@
-//! Render one eye, synthesize the other: stereo in Bevy from one camera's colour and depth.
+//! Renders one eye and synthesizes the other: stereo in Bevy from one camera's colour and depth.
 //!
-//! Bevy has no multiview: two cameras run visibility, shadows and all passes twice. [`StereoCamera`] on a `Camera3d`
-//! renders that camera as one eye, a little wider, and makes the other eye's image of it ([`yoro_wgpu`] has the
-//! passes). Both are written side by side into the camera's render target, the left eye in its left half.
+//! Bevy has no multiview, so two cameras run visibility, shadows and all passes twice. [`StereoCamera`] on a `Camera3d`
+//! renders that camera as one eye, a little wider, and synthesizes the other eye's image from it ([`yoro_wgpu`]
+//! contains the passes). Both images are written side by side to the camera's render target, the left eye's into its
+//! left half.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -18,10 +19,11 @@
 //! }
 //! ```
 //!
-//! [`StereoMode`] says how the other eye is made, and what each way does with transparent objects, post-processing and
-//! anti-aliasing. What cannot be synthesized is rendered twice, with one line in the log that says why.
+//! [`StereoMode`] selects how the other eye is produced. It documents how each mode treats transparent objects,
+//! post-processing and anti-aliasing. If the other eye cannot be synthesized both eyes are rendered, and one line in
+//! the log gives the reason.
 //!
-//! With the feature `openxr`, [`XrStereoCamera`](openxr::XrStereoCamera) does the same in a headset, by
+//! With the feature `openxr`, [`XrStereoCamera`](openxr::XrStereoCamera) does the same in a headset, using
 //! bevy_mod_openxr.
 
 mod camera;
@@ -39,8 +41,8 @@ pub use plan::StereoMode;
 pub use shared::ShareComponent;
 pub use yoro_wgpu;
 
-/// Adds stereo: [`StereoCamera`], and with the feature `openxr` [`XrStereoCamera`](openxr::XrStereoCamera). Add it
-/// after `DefaultPlugins`.
+/// Adds stereo cameras: [`StereoCamera`] and, with the feature `openxr`, [`XrStereoCamera`](openxr::XrStereoCamera).
+/// Add it after `DefaultPlugins`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct YoroPlugin;
 
@@ -54,7 +56,7 @@ impl Plugin for YoroPlugin {
     }
 }
 
-/// The code of the README is compiled with the tests of the documentation.
+/// Compiles the README's code with the documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

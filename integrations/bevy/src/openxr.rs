@@ -1,6 +1,6 @@
-//! Stereo in a headset, by bevy_mod_openxr: one camera is rendered, and fills both layers of the projection.
+//! Stereo in a headset, using bevy_mod_openxr: one camera is rendered, and fills both layers of the projection.
 //!
-//! Leave the cameras to [`XrStereoCamera`]:
+//! Let [`XrStereoCamera`] replace bevy_mod_openxr's cameras:
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -43,29 +43,29 @@ use crate::projection::clip_from_view;
 use crate::shared::{OtherCamera, ShareSystems};
 use crate::{Eye, StereoMode};
 
-/// Stereo in the headset from this `Camera3d`. The runtime's views say where the eyes are and what they see; the
-/// camera's transform, projection and render target are the plugin's. It renders while a session does. Despawn the
-/// entity to end it: without this component the camera is inactive.
+/// Renders stereo in the headset from this `Camera3d`. The runtime's views determine the eyes' poses and frusta. The
+/// plugin controls the camera's transform, projection and render target. The camera renders while a session does.
+/// Despawn the entity to end this: without this component the camera is inactive.
 #[derive(Component, Clone, Debug, PartialEq, Reflect, ExtractComponent)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Camera3d, Camera { is_active: false, ..default() }, Eyes, XrTracker)]
 pub struct XrStereoCamera {
-    /// How the other eye is made.
+    /// How the other eye is produced.
     pub mode: StereoMode,
     /// The eye that is rendered.
     pub dominant: Eye,
-    /// Distance of the near plane in metres, which is more than 0.
+    /// Distance of the near plane in metres, more than 0.
     pub near: f32,
     /// Distance in metres beyond which objects are culled.
     pub far: f32,
-    /// Distance in metres of the nearest object that is not cut off at the other eye's outer border; infinity for no
+    /// Distance in metres of the nearest object that is not cut off at the other eye's outer border. Infinity for no
     /// guard band.
     pub guard_distance: f32,
 }
 
 impl Default for XrStereoCamera {
-    /// Opaque surfaces synthesized, the right eye rendered, planes at 0.1 m and 1000 m, a guard band for objects at 1 m
-    /// or farther.
+    /// Synthesizes opaque surfaces, renders the right eye, and uses planes at 0.1 m and 1000 m and a guard band for
+    /// objects at 1 m or farther.
     fn default() -> XrStereoCamera {
         XrStereoCamera {
             mode: StereoMode::default(),
@@ -78,7 +78,7 @@ impl Default for XrStereoCamera {
 }
 
 impl XrStereoCamera {
-    /// Returns the eyes in the space of the tracking root, or None while the runtime knows none.
+    /// Returns the eyes in the space of the tracking root, or `None` while the runtime has none.
     fn pair(&self, views: &OxrViews, config: &OxrCurrentSessionConfig) -> Option<EyePair> {
         let [left, right] = views.as_slice() else { return None };
         let poses = [left, right].map(|view| eye_pose(&view.pose.to_transform()));
@@ -165,7 +165,7 @@ fn update_cameras(
     }
 }
 
-/// Nothing is rendered without a session.
+/// Deactivates the cameras, since nothing is rendered without a session.
 fn pause_cameras(mut cameras: Query<&mut Camera, With<XrStereoCamera>>) {
     for mut camera in &mut cameras {
         if camera.is_active {
@@ -174,7 +174,7 @@ fn pause_cameras(mut cameras: Query<&mut Camera, With<XrStereoCamera>>) {
     }
 }
 
-/// bevy_mod_openxr removes its cameras at the end of a session.
+/// Resets the cameras at the end of a session, when bevy_mod_openxr removes its own.
 fn reset_cameras(mut commands: Commands, cameras: Query<Entity, With<XrStereoCamera>>) {
     for entity in &cameras {
         commands.entity(entity).remove::<OtherCamera>().insert(Eyes::default());
@@ -195,7 +195,7 @@ fn remove_other_camera(
     commands.entity(removed.entity).try_remove::<(Eyes, OtherCamera)>();
 }
 
-/// Moves the rendered eye to the newest views, those that its image is submitted with.
+/// Moves the rendered eye to the newest views, with which its image is submitted.
 fn use_newest_views(
     views: Res<OxrViews>,
     config: Res<OxrCurrentSessionConfig>,
@@ -206,7 +206,7 @@ fn use_newest_views(
         let newest = camera
             .pair(&views, &config)
             .and_then(|pair| Views::new(&pair, stereo.plan, guard_band(camera.guard_distance)).ok());
-        // Where the sizes differ, the image has that of the older views.
+        // If the sizes differ, the image has the size of the older views.
         let Some(views) = newest.filter(|views| views.source.size == stereo.views.source.size) else {
             continue;
         };
@@ -217,7 +217,7 @@ fn use_newest_views(
     }
 }
 
-/// Fills both layers, or the dominant eye's where the other one has a camera.
+/// Fills both layers, or only the dominant eye's if the other eye has a camera.
 fn fill_layers(
     view: ViewQuery<(&Stereo, &ViewDepthTexture), With<XrStereoCamera>>,
     images: Res<RenderAssets<GpuImage>>,

@@ -32,7 +32,7 @@ pub(crate) fn build(app: &mut App) {
             Render,
             leave_out_opaque
                 .in_set(RenderSystems::Prepare)
-                // Bevy makes the texture for transmission only for views that have all phases.
+                // Bevy creates the texture for transmission only for views that have all phases.
                 .after(RenderSystems::PrepareResources)
                 .before(RenderSystems::PrepareResourcesBatchPhases),
         )
@@ -47,7 +47,7 @@ pub(crate) fn build(app: &mut App) {
         .add_systems(Core2d, show_eyes.in_set(Core2dSystems::EarlyPostProcess));
 }
 
-/// On a stereo camera in the render world: a frame's [`Eyes`].
+/// What the passes need of a camera's [`Eyes`] in a frame, on a stereo camera in the render world.
 #[derive(Component, Clone)]
 pub(crate) struct Stereo {
     pub(crate) plan: Plan,
@@ -58,11 +58,11 @@ pub(crate) struct Stereo {
     other_camera: Option<Entity>,
 }
 
-/// On the camera of a synthesized eye in the render world: its opaque objects are not drawn.
+/// Marks the camera of a synthesized eye in the render world. Its opaque objects are not drawn.
 #[derive(Component)]
 struct Synthesized;
 
-/// On a camera in the render world that shown the eyes of this stereo camera.
+/// The stereo camera whose eyes are shown, on the camera in the render world that shows them.
 #[derive(Component)]
 struct ShownEyes(Entity);
 
@@ -112,11 +112,11 @@ fn leave_out_opaque(
     }
 }
 
-/// The passes of synthesis for each format and kind of source. None if the device refuses them.
+/// The passes of synthesis for each format and kind of source, or `None` if the device refuses them.
 #[derive(Resource, Default)]
 pub(crate) struct Pipelines(Vec<(Options, Option<Gather>)>);
 
-/// Synthesis in a system of a camera's schedule.
+/// The parameters of systems that synthesize in a camera's schedule.
 #[derive(SystemParam)]
 pub(crate) struct Synthesis<'w, 's> {
     pipelines: ResMut<'w, Pipelines>,
@@ -126,7 +126,7 @@ pub(crate) struct Synthesis<'w, 's> {
 }
 
 impl Synthesis<'_, '_> {
-    /// Records the passes, or logs once why it cannot be done.
+    /// Records the passes, or logs once why this fails.
     pub(crate) fn record(&mut self, options: &Options, source: &Source, warp: &Warp, target: &Target) {
         let device = self.device.wgpu_device();
         let pipelines = &mut self.pipelines.0;
@@ -143,7 +143,7 @@ impl Synthesis<'_, '_> {
         }
     }
 
-    /// Copies a rectangle from one texture into another, as far as both have it.
+    /// Copies a rectangle from one texture to another, clipped to both.
     pub(crate) fn copy(
         &mut self,
         from: &wgpu::Texture,
@@ -174,7 +174,7 @@ fn log_once(error: &WgpuError) {
     error_once!("the other eye cannot be synthesized: {error}");
 }
 
-/// Draws the opaque surfaces of the other eye, which its own camera has left out.
+/// Draws the opaque surfaces of the other eye, which its own camera leaves out.
 fn synthesize_opaque(
     view: ViewQuery<(&Stereo, &ViewTarget, &ViewDepthTexture)>,
     others: Query<(&ViewTarget, &ViewDepthTexture)>,
@@ -185,7 +185,8 @@ fn synthesize_opaque(
     let Some((color, depth)) = stereo.other_camera.and_then(|camera| others.get(camera).ok()) else {
         return;
     };
-    // The attachments are cleared when they are asked for the first time: later passes must not clear them.
+    // Requesting the attachments for the first time clears them. This must happen here, so that later passes do not
+    // clear them.
     let color_attachment = color.get_unsampled_color_attachment();
     drop(depth.get_attachment(StoreOp::Store));
     let options = Options {
@@ -200,7 +201,7 @@ fn synthesize_opaque(
     synthesis.record(&options, &source, warp, &target);
 }
 
-/// ShownEyes both eyes side by side.
+/// Shows both eyes side by side.
 fn show_eyes(
     view: ViewQuery<(&ShownEyes, &ViewTarget)>,
     cameras: Query<(&Stereo, &ViewDepthTexture)>,
@@ -224,7 +225,7 @@ fn show_eyes(
 }
 
 impl Stereo {
-    /// Draws the other eye from the finished image of this one.
+    /// Draws the other eye from the finished image of this eye.
     pub(crate) fn synthesize_finished(
         &self,
         synthesis: &mut Synthesis,

@@ -1,4 +1,4 @@
-//! How the other eye of a camera is made.
+//! How the other eye of a camera is produced.
 
 use bevy::anti_alias::{fxaa::Fxaa, smaa::Smaa};
 use bevy::camera::Hdr;
@@ -7,23 +7,23 @@ use bevy::prelude::*;
 use bevy::render::camera::TemporalJitter;
 use yoro_wgpu::yoro::synthesis::Edges;
 
-/// How the other eye is made.
+/// How the other eye is produced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Debug, PartialEq, Hash, Clone)]
 pub enum StereoMode {
-    /// Opaque surfaces and sky are synthesized; transparent objects, bloom, tone mapping, FXAA and SMAA are drawn for
-    /// each eye by itself. With 4 or 2 samples the synthesis uses the depth of each. Not with temporal anti-aliasing,
-    /// and with `Hdr` not with samples: both eyes are rendered then.
+    /// Opaque surfaces and the sky are synthesized. Transparent objects, bloom, tone mapping, FXAA and SMAA are drawn
+    /// for each eye. With 4 or 2 MSAA samples the synthesis uses the depth of each sample. Both eyes are rendered with
+    /// temporal anti-aliasing, and with `Hdr` and MSAA together.
     #[default]
     Opaque,
-    /// The finished image is synthesized: the cheapest way, and it goes with temporal anti-aliasing. Transparent
+    /// The finished image is synthesized. This is the cheapest mode, and works with temporal anti-aliasing. Transparent
     /// objects move with what is behind them, and highlights with their surface.
     Finished,
     /// Both eyes are rendered, for comparison.
     Rendered,
 }
 
-/// What is done: the mode, as far as the camera's other components allow.
+/// What is actually done: the mode, as far as the camera's other components allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Plan {
     Opaque(Edges),
@@ -38,7 +38,7 @@ impl Plan {
     }
 }
 
-/// The components of a camera that decide about its plan.
+/// The components of a camera that determine its plan.
 #[derive(QueryData)]
 pub(crate) struct Rendering {
     msaa: &'static Msaa,
@@ -49,14 +49,14 @@ pub(crate) struct Rendering {
 }
 
 impl RenderingItem<'_, '_> {
-    /// Returns what can be done.
+    /// Returns the plan for a mode.
     ///
     /// # Errors
-    /// The reason why the mode is impossible: both eyes are to be rendered.
+    /// The reason why the mode is impossible. Both eyes must then be rendered.
     pub(crate) fn plan(&self, mode: StereoMode) -> Result<Plan, &'static str> {
         let samples = self.msaa.samples();
         let edges = match samples {
-            // Colour is smoothed at edges, depth is not.
+            // Anti-aliasing smooths the colour at edges, but not the depth.
             1 if mode == StereoMode::Finished && (self.jitter | self.fxaa | self.smaa) => Edges::Sample,
             1 => Edges::Hard,
             _ => Edges::Multisample,

@@ -1,10 +1,10 @@
-//! An eye's projection for Bevy's cameras.
+//! The projection of an eye, for Bevy's cameras.
 
 use bevy::camera::{CameraProjection, SubCameraView};
 use bevy::math::{Mat4, Vec3A};
 use yoro_wgpu::yoro::eyes::{Frustum, View};
 
-/// The projection of an eye: any frustum, reversed depth without a far plane.
+/// The projection of an eye: any frustum, with reversed depth and no far plane.
 #[derive(Clone, Debug)]
 pub(crate) struct EyeProjection {
     clip_from_view: Mat4,
@@ -33,7 +33,7 @@ impl CameraProjection for EyeProjection {
         self.clip_from_view
     }
 
-    /// The frustum is the eye's, whatever the size of the image.
+    /// Does nothing: the frustum is the eye's, independent of the size of the image.
     fn update(&mut self, _: f32, _: f32) {}
 
     fn far(&self) -> f32 {

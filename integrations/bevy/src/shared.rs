@@ -1,4 +1,4 @@
-//! The components of the rendered camera that the other eye's camera has, too.
+//! The components of the rendered camera that are shared with the other eye's camera.
 
 use bevy::anti_alias::contrast_adaptive_sharpening::ContrastAdaptiveSharpening;
 use bevy::anti_alias::{fxaa::Fxaa, smaa::Smaa, taa::TemporalAntiAliasing};
@@ -16,18 +16,18 @@ use bevy::prelude::*;
 use bevy::render::camera::MipBias;
 use bevy::render::view::ColorGrading;
 
-/// On a stereo camera: the camera of its other eye.
+/// The camera of the other eye, on a stereo camera.
 #[derive(Component, Clone, Copy)]
 pub(crate) struct OtherCamera {
     pub(crate) entity: Entity,
-    /// False if it draws only what is not synthesized.
+    /// False if the camera draws only what is not synthesized.
     pub(crate) rendered: bool,
 }
 
-/// Components that both eyes' cameras have.
+/// Shares components between both eyes' cameras.
 pub trait ShareComponent {
-    /// Gives the other eye's camera this component of the rendered camera, whenever it changes: for post-processing of
-    /// your own. Bevy's own components need no call.
+    /// Copies this component of the rendered camera to the other eye's camera whenever it changes. Use it for your own
+    /// post-processing; Bevy's components are already shared.
     fn share_with_other_eye<C: Component + Clone>(&mut self) -> &mut Self;
 }
 
@@ -37,7 +37,7 @@ impl ShareComponent for App {
     }
 }
 
-/// Before Bevy looks at its cameras, and after those of the other eyes are there.
+/// Runs before Bevy updates its cameras, and after the other eyes' cameras have been spawned.
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ShareSystems;
 
@@ -65,7 +65,7 @@ pub(crate) fn build(app: &mut App) {
         .share_with_other_eye::<Tonemapping>()
         .share_with_other_eye::<Vignette>()
         .share_with_other_eye::<VolumetricFog>()
-        // What draws opaque surfaces, or needs passes that do (and brings them along).
+        // Components that draw opaque surfaces, or that need passes which do and that add their components.
         .add_systems(
             PostUpdate,
             (
@@ -77,7 +77,8 @@ pub(crate) fn build(app: &mut App) {
         );
 }
 
-/// `SYNTHESIZED` is false for components that the camera of a synthesized eye must not have.
+/// Copies a component to the other eyes' cameras. `SYNTHESIZED` is false for components that the camera of a
+/// synthesized eye must not have.
 fn share<C: Component + Clone, const SYNTHESIZED: bool>(
     mut commands: Commands,
     changed: Query<(&OtherCamera, &C), Or<(Changed<C>, Changed<OtherCamera>)>>,

@@ -1,5 +1,5 @@
-//! A session with an OpenXR runtime: both layers, against the same eyes rendered by a second stereo camera in the same
-//! frames.
+//! A session with an OpenXR runtime: compares both layers with the same eyes, rendered by a second stereo camera in the
+//! same frames.
 //!
 //! It needs a runtime: `cargo xtask bevy test` starts Monado with a simulated headset.
 
@@ -25,11 +25,11 @@ use bevy_yoro::{Eye, StereoMode, YoroPlugin};
 use image::RgbImage;
 use support::{finish, psnr, read, rendered, room, windowless};
 
-/// Frames that are shown.
+/// The number of frames that are shown.
 const FRAMES: u32 = 100;
 
-/// Puts textures that can be read in the place of the swapchain's, whose usage forbids it. The runtime shows its own
-/// ones.
+/// Replaces the swapchain's textures, whose usage does not allow reading, by readable ones. The runtime shows its own
+/// textures.
 fn readable_layers(
     mut images: ResMut<OxrSwapchainImages>,
     config: Res<OxrCurrentSessionConfig>,
@@ -99,7 +99,7 @@ fn both_layers_show_the_eyes() {
     );
     finish(&mut app);
 
-    // The other eye really, in the same frames; the camera with the higher order fills the layers.
+    // A second camera renders the other eye in the same frames. The one with the higher order fills the layers.
     let world = app.world_mut();
     let truth = world
         .spawn((XrStereoCamera { mode: StereoMode::Rendered, dominant: Eye::Left, ..default() }, Msaa::Off))

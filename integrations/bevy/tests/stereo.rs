@@ -1,4 +1,4 @@
-//! Both modes against Bevy's own second camera, on whatever device wgpu finds.
+//! Compares both modes with a second camera of Bevy's, on any device that wgpu finds.
 
 #[path = "../examples/support/mod.rs"]
 mod support;
@@ -45,9 +45,10 @@ impl Stage {
         self.picture()
     }
 
-    /// Checks the synthesized eye in both modes against the rendered one, by at least these values in dB, and returns
-    /// the values. The rendered eye must be the same with and without synthesis, and the other one nearer to the truth
-    /// than the rendered one in its place. Pictures of all modes are written beside the test.
+    /// Compares the synthesized eye in both modes with the rendered one, requires at least these values in dB, and
+    /// returns the values. The rendered eye must be the same with and without synthesis, and the synthesized eye must
+    /// be closer to the truth than the rendered eye in its place. Pictures of all modes are written to the tests'
+    /// folder.
     fn check(&mut self, what: &str, at_least: [f64; 2]) -> [f64; 2] {
         let truth = self.in_mode(StereoMode::Rendered);
         save(&truth, what, StereoMode::Rendered);
@@ -82,8 +83,8 @@ impl Stage {
         values.map(|[psnr, _]| psnr)
     }
 
-    /// Checks that the finished image is synthesized with temporal anti-aliasing, and that both eyes are rendered where
-    /// opaque surfaces should be.
+    /// Checks that with temporal anti-aliasing the finished image is synthesized, and that both eyes are rendered in
+    /// the mode for opaque surfaces.
     fn check_temporal_anti_aliasing(&mut self) {
         let settled = |stage: &mut Stage, mode| {
             stage.in_mode(mode);
@@ -104,18 +105,18 @@ impl Stage {
         assert!(value.0 > same.0 + 5.0 && value.1 > same.1, "{value:.4?}, {same:.4?} for the rendered eye");
     }
 
-    /// Runs `check` with a new camera that has these components, too.
+    /// Runs `check` with a new camera that also has these components.
     fn with(&mut self, components: impl Bundle, check: impl FnOnce(&mut Stage)) {
         self.app.world_mut().despawn(self.camera);
         self.camera = spawn(&mut self.app, &self.image);
-        // Occlusion is seen in ambient light alone.
+        // Occlusion is visible in ambient light only.
         let light = AmbientLight { brightness: 1500.0, ..default() };
         self.app.world_mut().entity_mut(self.camera).insert((light, components));
         check(self);
     }
 }
 
-/// Writes a picture of this mode.
+/// Writes a picture of this mode to a file.
 fn save(picture: &RgbImage, what: &str, mode: StereoMode) {
     let name = format!("{what} {mode:?}.png").to_lowercase().replace(' ', "-");
     picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
@@ -132,7 +133,7 @@ fn the_other_eye_is_near_to_the_rendered_one() {
     stage.check("glass", [30.5, 28.0]);
     stage.stereo().dominant = Eye::Left;
     stage.check("left eye rendered", [30.5, 28.0]);
-    // Without glass both modes see the same.
+    // Without glass, both modes show the same.
     let glass: Vec<Entity> =
         stage.app.world_mut().query_filtered::<Entity, With<Glass>>().iter(stage.app.world()).collect();
     for entity in glass {
@@ -140,7 +141,7 @@ fn the_other_eye_is_near_to_the_rendered_one() {
     }
     let [opaque, finished] = stage.check("opaque alone", [30.0, 30.0]);
     assert!((opaque - finished).abs() < 0.5, "{opaque:.2} and {finished:.2} dB");
-    // Without a distance between the eyes both see the same.
+    // Without a distance between the eyes, both show the same.
     stage.stereo().ipd = 0.0;
     for mode in [StereoMode::Opaque, StereoMode::Finished] {
         let [left, right] = halves(&stage.in_mode(mode));
@@ -155,7 +156,7 @@ fn hdr_and_samples_are_synthesized_where_they_can_be() {
     let camera = stage.camera;
     stage.app.world_mut().entity_mut(camera).insert((Hdr, Bloom::NATURAL));
     stage.check("Hdr and bloom", [32.0, 29.0]);
-    // What changes on the camera changes for the other eye.
+    // Changes of the camera also apply to the other eye.
     stage.in_mode(StereoMode::Opaque);
     stage.app.world_mut().entity_mut(camera).insert(Exposure { ev100: 8.5 });
     let made = stage.picture();
@@ -165,17 +166,17 @@ fn hdr_and_samples_are_synthesized_where_they_can_be() {
         assert!(value > 30.0, "another exposure: {value:.2} dB");
     }
     stage.app.world_mut().entity_mut(camera).insert(Exposure::default());
-    // Samples.
+    // MSAA.
     stage.app.world_mut().entity_mut(camera).remove::<(Hdr, Bloom)>().insert(Msaa::Sample4);
     stage.check("4 samples", [37.5, 31.0]);
-    // Both eyes are rendered.
+    // MSAA with `Hdr`: both eyes are rendered.
     stage.app.world_mut().entity_mut(camera).insert(Hdr);
     let truth = stage.in_mode(StereoMode::Rendered);
     let value = psnr(&stage.in_mode(StereoMode::Opaque), &truth);
     assert!(value > 60.0, "4 samples with Hdr are not rendered twice: {value:.2} dB");
 }
 
-/// The features of Bevy that the README's table tells of.
+/// Tests the features of Bevy that the README's table lists.
 #[test]
 fn features_of_bevy_work_in_both_modes() {
     let mut stage = Stage::new();
@@ -192,7 +193,7 @@ fn features_of_bevy_work_in_both_modes() {
         stage.check("fog", [30.0, 28.0]);
     });
     stage.with(TemporalAntiAliasing::default(), |stage| stage.check_temporal_anti_aliasing());
-    // A cube that cameras of layer 1 see.
+    // A cube that only cameras of layer 1 see.
     let mesh = stage.app.world_mut().resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(0.4));
     let red = StandardMaterial::from_color(Color::srgb(0.9, 0.05, 0.05));
     let red = stage.app.world_mut().resource_mut::<Assets<StandardMaterial>>().add(red);
@@ -227,7 +228,7 @@ fn features_of_bevy_work_in_both_modes() {
     });
     *glass.single_mut(stage.app.world_mut()).unwrap() = blended;
 
-    // Lines near and far.
+    // Near and distant lines.
     stage.app.add_systems(Update, |mut gizmos: Gizmos| {
         gizmos.sphere(Isometry3d::from_translation(Vec3::new(0.2, 1.4, 0.8)), 0.3, Color::WHITE);
         gizmos.line(Vec3::new(-2.0, 0.2, -5.0), Vec3::new(2.0, 2.5, -5.0), Color::srgb(1.0, 1.0, 0.0));
@@ -243,7 +244,7 @@ fn cameras_come_and_go_and_images_change_size() {
     let mut stage = Stage::new();
     let first = stage.picture();
 
-    // Another size, then the first again.
+    // Another size, then the first one again.
     let (own, larger) = (stage.image.clone(), target(&mut stage.app, [800, 300]));
     for image in [&larger, &own] {
         stage.image = image.clone();
@@ -273,14 +274,14 @@ fn cameras_come_and_go_and_images_change_size() {
     stage.stereo().mode = StereoMode::Opaque;
     set(&mut stage, 0, default());
     assert_eq!(stage.picture(), first);
-    // Somebody removes the cameras beside it, whose images are then made anew.
+    // Other code removes the cameras that belong to it. They are created again, with new images.
     stage.app.world_mut().entity_mut(camera).despawn_children();
     stage.app.world_mut().entity_mut(camera).insert(DebandDither::Disabled);
     stage.app.update();
     stage.app.world_mut().entity_mut(camera).insert(DebandDither::Enabled);
     assert_eq!(stage.picture(), first);
 
-    // A second stereo camera beside it, with the other eye rendered.
+    // A second stereo camera, which renders the other eye.
     let image = target(&mut stage.app, SIZE);
     let second = spawn(&mut stage.app, &image);
     stage.app.world_mut().get_mut::<StereoCamera>(second).unwrap().dominant = Eye::Left;
@@ -291,7 +292,7 @@ fn cameras_come_and_go_and_images_change_size() {
         assert!(value > 28.0, "either eye rendered: {value:.2} dB");
     }
 
-    // The cameras beside a stereo camera go with it, and a new one shows the same.
+    // The cameras that belong to a stereo camera are despawned with it, and new ones show the same.
     let cameras = |app: &mut App| app.world_mut().query::<&Camera>().iter(app.world()).count();
     let before = cameras(&mut stage.app);
     stage.app.world_mut().despawn(second);
@@ -305,7 +306,7 @@ fn cameras_come_and_go_and_images_change_size() {
     stage.camera = spawn(&mut stage.app, &image);
     assert_eq!(stage.picture(), first);
 
-    // Without the component it is one camera again, for the whole image.
+    // Without the component it is a single camera again, for the whole image.
     let camera = stage.camera;
     stage.app.world_mut().entity_mut(camera).remove::<StereoCamera>();
     let single = stage.picture();

@@ -1,4 +1,4 @@
-//! The APK, and the AAR of an API layer: libraries and assets come out of the built file itself.
+//! The APK, and the AAR of an API layer. Libraries and assets are read from the built file itself.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -9,9 +9,9 @@ use anyhow::{Context, Result, bail};
 
 /// The parts of an APK that the host uses.
 pub struct Apk {
-    /// Path in the APK and bytes of the one library of this ABI.
+    /// Path in the APK and content of the only library for this ABI.
     pub library: (String, Vec<u8>),
-    /// Assets by their path below `assets/`.
+    /// Assets by path, relative to `assets/`.
     pub assets: BTreeMap<String, Vec<u8>>,
 }
 
@@ -19,7 +19,7 @@ impl Apk {
     /// Reads the library for `abi` and all assets.
     ///
     /// # Errors
-    /// The file cannot be read, is no APK, or does not hold exactly one library for the ABI.
+    /// Fails if the file cannot be read, is not an APK, or does not contain exactly one library for the ABI.
     pub fn read(path: &Path, abi: &str) -> Result<Self> {
         let file = File::open(path)
             .with_context(|| format!("cannot open {}: build it by `cargo xtask apk`", path.display()))?;
@@ -27,7 +27,7 @@ impl Apk {
             .with_context(|| format!("{} is not an APK that the host can run", path.display()))
     }
 
-    /// Reads an AAR like [`Apk::read`]: the parts that go into the APK of an application that depends on it.
+    /// Reads an AAR like [`Apk::read`]: the parts that become part of the APK of an application that depends on it.
     ///
     /// # Errors
     /// Those of [`Apk::read`].
@@ -40,7 +40,7 @@ impl Apk {
         Ok(aar)
     }
 
-    /// `folder` holds the libraries of the ABI.
+    /// Reads an archive in which `folder` contains the libraries of the ABI.
     fn read_from(file: impl Read + Seek, folder: &str) -> Result<Self> {
         let mut archive = zip::ZipArchive::new(file)?;
         let mut libraries = Vec::new();

@@ -1,6 +1,6 @@
-//! libc.so, libm.so and libdl.so. Most functions have the same interface in bionic and in glibc on 64-bit Linux and are
-//! glibc's own; here are the lists of those, and the ones that differ or that must not see the real machine. Functions
-//! in neither get a trap: `sigaction`, `sem_t`, `addrinfo`, `termios`, `FILE` have other layouts in bionic.
+//! libc.so, libm.so and libdl.so. Most functions have the same interface in bionic and in glibc on 64-bit Linux. Those
+//! in the lists below are glibc's; those that differ, or that must not see the real machine, are implemented here. All
+//! others become traps: in bionic, `sigaction`, `sem_t`, `addrinfo`, `termios` and `FILE` have other layouts.
 
 #![allow(non_snake_case)]
 
@@ -13,7 +13,7 @@ use crate::exports::{self, Export, System, exports};
 use crate::host::{fatal, host, lock};
 use crate::{loader, openxr};
 
-/// Functions of libc.so that are glibc's.
+/// Functions of libc.so that are those of glibc.
 const SAME_C: &str = "\
     __cxa_atexit __cxa_finalize __cxa_thread_atexit_impl __errno_location accept4 aligned_alloc bind calloc chmod close \
     closedir connect copy_file_range dirfd dup dup2 dup3 environ epoll_create1 epoll_ctl epoll_wait eventfd fchmod fcntl \
@@ -31,7 +31,7 @@ const SAME_C: &str = "\
     sendfile sendto setenv setpriority getpriority setsockopt shutdown socket socketpair splice stat statvfs statx strchr \
     strcmp strlen strncmp strnlen strtol strtoul strtoull symlink uname unlink unlinkat unsetenv utimensat write writev";
 
-/// Functions of libm.so that are glibc's.
+/// Functions of libm.so that are those of glibc.
 const SAME_M: &str = "\
     acos acosf acosh acoshf asin asinf asinh asinhf atan atan2 atan2f atanf atanh atanhf cbrt cbrtf ceil ceilf copysign copysignf cos \
     cosf cosh coshf erf erfc erfcf erff exp exp2 exp2f expf expm1 expm1f fabs fabsf fdim fdimf floor floorf fma fmaf fmax fmaxf fmin \
@@ -50,8 +50,8 @@ pub fn exports() -> Vec<Export> {
         ];
         System::Dl, 1: [dl_iterate_phdr, dladdr, dlclose, dlerror, dlopen, dlsym];
     ];
-    // Loads libm, as nothing else ensures that. It stays for the process's life.
-    // SAFETY: glibc's own library, whose constructors do nothing to others.
+    // Loads libm, which may not have been loaded yet. It is never unloaded. SAFETY: glibc's own library, whose
+    // constructors do not affect other code.
     let math = unsafe { libc::dlopen(c"libm.so.6".as_ptr(), libc::RTLD_NOW) };
     for (library, handle, names) in [(System::C, libc::RTLD_DEFAULT, SAME_C), (System::M, math, SAME_M)] {
         for name in names.split_ascii_whitespace() {
@@ -80,9 +80,9 @@ unsafe extern "C" {
     fn __xpg_strerror_r(error: c_int, buffer: *mut c_char, length: usize) -> c_int;
 }
 
-/// POSIX's `strerror_r`, as in bionic; glibc's default is GNU's.
+/// POSIX's `strerror_r` as in bionic, whereas glibc's default is GNU's.
 unsafe extern "C" fn strerror_r(error: c_int, buffer: *mut c_char, length: usize) -> c_int {
-    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
     unsafe { __xpg_strerror_r(error, buffer, length) }
 }
 
@@ -129,8 +129,8 @@ pub fn thread_name() -> String {
     unsafe { text(name.as_ptr()) }
 }
 
-/// The thread of `android_main` is known by the name that android-activity gives it. Threads that it starts inherit the
-/// name, so later it would be too late to ask.
+/// Recognises the thread of `android_main` by the name that android-activity gives it. This must happen here, since
+/// threads that it starts inherit the name.
 unsafe extern "C" fn pthread_setname_np(thread: libc::pthread_t, name: *const c_char) -> c_int {
     // SAFETY: a terminated name by contract; the rest takes nothing.
     unsafe {
@@ -141,10 +141,10 @@ unsafe extern "C" fn pthread_setname_np(thread: libc::pthread_t, name: *const c_
     }
 }
 
-/// Returns a C string as text; null is empty.
+/// Returns a C string as text, empty for null.
 ///
 /// # Safety
-/// Null, or a terminated string.
+/// `string` must be null or a terminated string.
 pub unsafe fn text(string: *const c_char) -> String {
     if string.is_null() {
         return String::new();
@@ -155,14 +155,14 @@ pub unsafe fn text(string: *const c_char) -> String {
 
 // Threads
 
-/// The application's room for a `pthread_attr_t` has 56 bytes. glibc's has 64 on arm64. It therefore lies elsewhere,
-/// and the room holds its address.
+/// The application reserves 56 bytes for a `pthread_attr_t`, but glibc's has 64 on arm64. The object is therefore
+/// stored elsewhere, and these bytes hold its address.
 type Attributes = *mut *mut libc::pthread_attr_t;
 
 /// # Safety
-/// `attributes` has room, and holds nothing that must be released.
+/// `attributes` must have room for a pointer, and must not hold anything that has to be released.
 unsafe fn new_attributes(attributes: Attributes) -> *mut libc::pthread_attr_t {
-    // SAFETY: plain data for which zero is valid; all functions of glibc expect it to be filled in at first.
+    // SAFETY: this is plain data for which zero is valid. All of glibc's functions that get it fill it in first.
     let new = Box::into_raw(Box::new(unsafe { std::mem::zeroed::<libc::pthread_attr_t>() }));
     // SAFETY: the caller gives room for one pointer.
     unsafe { attributes.write(new) };
@@ -225,14 +225,14 @@ unsafe extern "C" fn pthread_create(
     }
 }
 
-/// The application's room for a `pthread_mutex_t` has 40 bytes. glibc's has 48 on arm64, of which it uses 40, but it
-/// clears all of them here.
+/// The application reserves 40 bytes for a `pthread_mutex_t`. glibc's has 48 on arm64, of which it uses 40; but this
+/// function of glibc clears all of them.
 unsafe extern "C" fn pthread_mutex_init(
     mutex: *mut [u64; 5],
     attributes: *const libc::pthread_mutexattr_t,
 ) -> c_int {
     let mut new = libc::PTHREAD_MUTEX_INITIALIZER;
-    // SAFETY: the attributes are glibc's or null; a mutex that nobody uses yet may be moved.
+    // SAFETY: the attributes are glibc's or null. A mutex may be moved as long as nobody uses it.
     unsafe {
         let result = libc::pthread_mutex_init(&raw mut new, attributes);
         mutex.write((&raw const new).cast::<[u64; 5]>().read());
@@ -242,9 +242,9 @@ unsafe extern "C" fn pthread_mutex_init(
 
 // Files
 
-/// True if an application on a phone may not read the path: the answers would be this machine's.
+/// True if applications on a phone may not read this path. The content would be that of this machine.
 fn is_closed(path: *const c_char) -> bool {
-    // SAFETY: open and its kin take a terminated path.
+    // SAFETY: `open` and similar functions get a terminated path.
     let path = unsafe { text(path) };
     [
         "/sys/class/power_supply",
@@ -256,18 +256,18 @@ fn is_closed(path: *const c_char) -> bool {
     .any(|closed| path.starts_with(closed))
 }
 
-/// The variadic `mode` arrives in the register of a third argument on both architectures.
+/// The variadic `mode` is in the register of a third argument on both architectures.
 unsafe extern "C" fn open(path: *const c_char, flags: c_int, mode: c_uint) -> c_int {
     if is_closed(path) {
         set_errno(libc::EACCES);
         return -1;
     }
-    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
     unsafe { libc::open(path, flags, mode) }
 }
 
 unsafe extern "C" fn open64(path: *const c_char, flags: c_int, mode: c_uint) -> c_int {
-    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
     unsafe { open(path, flags, mode) }
 }
 
@@ -276,7 +276,7 @@ unsafe extern "C" fn openat(folder: c_int, path: *const c_char, flags: c_int, mo
         set_errno(libc::EACCES);
         return -1;
     }
-    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
     unsafe { libc::openat(folder, path, flags, mode) }
 }
 
@@ -285,7 +285,7 @@ unsafe extern "C" fn opendir(path: *const c_char) -> *mut libc::DIR {
         set_errno(libc::EACCES);
         return std::ptr::null_mut();
     }
-    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
     unsafe { libc::opendir(path) }
 }
 
@@ -299,7 +299,7 @@ fn timespec(nanoseconds: u64) -> libc::timespec {
     libc::timespec { tv_sec: (nanoseconds / 1_000_000_000) as _, tv_nsec: (nanoseconds % 1_000_000_000) as _ }
 }
 
-/// The virtual time of a clock; none for those that measure CPU time, which are the machine's.
+/// Returns the virtual time of a clock, or `None` for clocks that measure CPU time, which are the machine's.
 fn virtual_time(clock: c_int) -> Option<u64> {
     match clock {
         libc::CLOCK_BOOTTIME => Some(host().clock.boottime_of(host().clock.now())),
@@ -318,7 +318,7 @@ unsafe extern "C" fn clock_gettime(clock: c_int, time: *mut libc::timespec) -> c
             unsafe { time.write(timespec(now)) };
             0
         }
-        // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+        // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
         None => unsafe { libc::clock_gettime(clock, time) },
     }
 }
@@ -344,7 +344,7 @@ unsafe extern "C" fn time(seconds: *mut i64) -> i64 {
     now
 }
 
-/// Real time between two looks at the virtual clock.
+/// Interval in real time at which the virtual clock is checked.
 const SLICE: Duration = Duration::from_millis(1);
 
 fn sleep_until(deadline: u64) {
@@ -361,7 +361,7 @@ unsafe extern "C" fn nanosleep(time: *const libc::timespec, _rest: *mut libc::ti
     0
 }
 
-/// Waits for a time in seconds.
+/// Sleeps for a virtual time in seconds.
 pub fn sleep(seconds: f64) {
     sleep_until(host().clock.now() + (seconds * 1e9) as u64);
 }
@@ -387,8 +387,8 @@ unsafe extern "C" fn clock_nanosleep(
     0
 }
 
-/// Waits of any kind with a deadline on the virtual clock, in slices of real time: `wait` waits that long and gives a
-/// result when it ended for another reason than time.
+/// Waits until a deadline on the virtual clock, in slices of real time. `wait` waits for a slice, and returns a result
+/// if it has ended for another reason.
 fn timed_wait<T>(deadline: u64, mut wait: impl FnMut(Duration) -> Option<T>) -> Option<T> {
     let waiting = host().clock.wait_for(deadline);
     loop {
@@ -403,7 +403,7 @@ fn timed_wait<T>(deadline: u64, mut wait: impl FnMut(Duration) -> Option<T>) -> 
     }
 }
 
-/// The real instant that lies `slice` ahead.
+/// Returns the real time at which `slice` will have passed.
 fn real_deadline(clock: c_int, slice: Duration) -> libc::timespec {
     let mut now = timespec(0);
     // SAFETY: room for one timespec.
@@ -411,7 +411,7 @@ fn real_deadline(clock: c_int, slice: Duration) -> libc::timespec {
     timespec(nanoseconds(&now) + slice.as_nanos() as u64)
 }
 
-/// Deadlines are of CLOCK_REALTIME, unless the condition variable says otherwise, which cannot be asked.
+/// Deadlines are on CLOCK_REALTIME unless the condition variable was set to another clock, which cannot be queried.
 unsafe extern "C" fn pthread_cond_timedwait(
     condition: *mut libc::pthread_cond_t,
     mutex: *mut libc::pthread_mutex_t,
@@ -419,7 +419,7 @@ unsafe extern "C" fn pthread_cond_timedwait(
 ) -> c_int {
     // SAFETY: the caller gives a timespec.
     let deadline = nanoseconds(unsafe { &*deadline });
-    // Instants of the two clocks are decades apart.
+    // Times of the two clocks are decades apart, so the value shows which clock is meant.
     let monotonic = deadline < host().clock.realtime() / 2;
     let (clock, virtual_deadline) = if monotonic {
         (libc::CLOCK_MONOTONIC, deadline)
@@ -435,7 +435,7 @@ unsafe extern "C" fn pthread_cond_timedwait(
     .unwrap_or(libc::ETIMEDOUT)
 }
 
-/// The system call of std's mutexes, condition variables and parked threads gives deadlines on the virtual clock.
+/// std's mutexes, condition variables and parked threads use futexes, whose deadlines are on the virtual clock.
 unsafe extern "C" fn syscall(
     number: c_long,
     a: usize,
@@ -502,7 +502,7 @@ unsafe extern "C" fn __system_property_get(name: *const c_char, value: *mut c_ch
     length as c_int
 }
 
-/// A `prop_info` is a terminated name, kept for the process's life as Android does.
+/// A `prop_info` is a terminated name. It is never freed, as on Android.
 unsafe extern "C" fn __system_property_find(name: *const c_char) -> *const c_char {
     // SAFETY: a terminated name.
     let name = unsafe { text(name) };
@@ -535,7 +535,7 @@ fn dl_error(message: String) {
     ERROR.with_borrow_mut(|error| *error = (true, CString::new(message).unwrap_or_default()));
 }
 
-/// Handle of the application's own library; system libraries have 1 more than their place in [`System::ALL`].
+/// Handle of the application's own library. Handles of system libraries are their index in [`System::ALL`] plus 1.
 const SELF: usize = 0x5e1f;
 
 unsafe extern "C" fn dlopen(path: *const c_char, _flags: c_int) -> *mut c_void {
@@ -578,7 +578,7 @@ unsafe extern "C" fn dlsym(handle: *mut c_void, name: *const c_char) -> *mut c_v
         index if (1..=System::ALL.len()).contains(&index) => {
             exports::find(System::ALL[index - 1], &name, host.device.sdk)
         }
-        // RTLD_DEFAULT of 64-bit Android: the libraries that the application's needs, here all of them.
+        // RTLD_DEFAULT on 64-bit Android: the libraries that the application's needs, here all of them.
         0 => [System::C, System::M, System::Dl, System::Log, System::Android, System::Egl]
             .into_iter()
             .find_map(|library| exports::find(library, &name, host.device.sdk)),
@@ -613,7 +613,7 @@ unsafe extern "C" fn dladdr(address: *const c_void, info: *mut libc::Dl_info) ->
             }
             1
         }
-        // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+        // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
         None => unsafe { libc::dladdr(address, info) },
     }
 }
@@ -634,6 +634,6 @@ unsafe extern "C" fn dl_iterate_phdr(visit: VisitLibrary, data: *mut c_void) -> 
             return result;
         }
     }
-    // SAFETY: glibc gets the application's arguments to bionic, and the two agree here.
+    // SAFETY: the application's arguments are passed to glibc, whose contract is the same here.
     unsafe { libc::dl_iterate_phdr(Some(visit), data) }
 }

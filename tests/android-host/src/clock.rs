@@ -1,6 +1,6 @@
-//! Virtual time. The application sees a clock that advances with the frames that it shows, at the display's rate, and
-//! otherwise only when every thread waits: then to the earliest instant that one of them waits for. A run gives the
-//! same pictures and the same log on a fast machine and on a slow one.
+//! Virtual time. The application's clock advances with each frame that it shows, by the display's rate. Otherwise it
+//! only advances while all threads wait, to the earliest time that one of them waits for. A run therefore has the same
+//! pictures and the same log on fast and on slow machines.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::host::{host, lock};
 use crate::threads;
 
-/// Time since boot, nanoseconds, that the application's clocks show.
+/// The clock that the application sees: time since boot in nanoseconds.
 pub struct Clock {
     now: AtomicU64,
     period: u64,
@@ -19,7 +19,7 @@ pub struct Clock {
     last_wait: AtomicU64,
 }
 
-/// A thread's wait for an instant, until this is dropped.
+/// A thread that waits for a time, until this is dropped.
 pub struct Wait<'a> {
     clock: &'a Clock,
     number: u64,
@@ -33,33 +33,33 @@ impl Drop for Wait<'_> {
 }
 
 impl Wait<'_> {
-    /// True if the instant has come.
+    /// True if the time has come.
     pub fn is_over(&self) -> bool {
         self.clock.now() >= self.instant
     }
 
-    /// Lets the instant come if it is the next that anybody waits for, the script lets time pass, and no thread of the
-    /// process has anything to do. To be called again and again, with a short sleep in between.
+    /// Advances the clock to the time waited for, if no other thread waits for an earlier one, the script lets time
+    /// pass, and no thread of the process is running. Call it repeatedly, with short sleeps in between.
     pub fn try_advance(&self) {
         let is_next = || lock(&self.clock.waiting).values().all(|other| *other >= self.instant);
-        // Asked again at the end: a thread that ran at first may have begun to wait for something earlier.
+        // `is_next` is checked again at the end, since a thread that was running may now wait for an earlier time.
         if is_next() && host().frames.time_may_pass() && nobody_runs() && is_next() {
             self.clock.advance_to(self.instant);
         }
     }
 }
 
-/// True if every other thread of the process sleeps. A thread that is ready but gets no processor counts as running, so
-/// a loaded machine does not make time pass.
+/// True if all other threads of the process sleep. A thread that is ready but gets no processor counts as running, so a
+/// busy machine does not make time pass.
 fn nobody_runs() -> bool {
     threads::others().is_some_and(|mut others| others.all(|(_, state)| !matches!(state, 'R' | 'D')))
 }
 
-/// A device is never asked at the moment of its boot.
+/// Virtual time at the start of a run in nanoseconds: a device is never used at the moment of its boot.
 const BOOTED: u64 = 1_000_000_000_000;
 
 impl Clock {
-    /// A clock of a device whose display refreshes `refresh_hz` times a second, and that has slept for a time.
+    /// Creates the clock of a device whose display has this refresh rate in Hz, and which has slept for this time.
     pub fn new(refresh_hz: f64, slept_seconds: f64) -> Self {
         let realtime = std::time::SystemTime::now()
             .duration_since(std::time::UNIX_EPOCH)
@@ -74,49 +74,49 @@ impl Clock {
         }
     }
 
-    /// Nanoseconds of CLOCK_MONOTONIC.
+    /// Returns the time of CLOCK_MONOTONIC in nanoseconds.
     pub fn now(&self) -> u64 {
         self.now.load(Ordering::Acquire)
     }
 
-    /// An instant of CLOCK_MONOTONIC as one of CLOCK_BOOTTIME, which goes on while the device sleeps.
+    /// Converts a time of CLOCK_MONOTONIC to one of CLOCK_BOOTTIME, which also advances while the device sleeps.
     pub fn boottime_of(&self, instant: u64) -> u64 {
         instant + self.slept
     }
 
-    /// Nanoseconds of CLOCK_REALTIME.
+    /// Returns the time of CLOCK_REALTIME in nanoseconds.
     pub fn realtime(&self) -> u64 {
         self.now() + self.realtime_offset
     }
 
-    /// A CLOCK_REALTIME instant as one of CLOCK_MONOTONIC.
+    /// Converts a time of CLOCK_REALTIME to one of CLOCK_MONOTONIC.
     pub fn monotonic_of(&self, instant: u64) -> u64 {
         instant.saturating_sub(self.realtime_offset)
     }
 
-    /// Seconds since the start of the run.
+    /// Returns the seconds since the start of the run.
     pub fn seconds(&self) -> f64 {
         (self.now() - BOOTED) as f64 * 1e-9
     }
 
-    /// Moves the time forward, never back: several threads that wait for the same instant move it once.
+    /// Advances the clock. It never goes back: several threads that wait for the same time advance it only once.
     pub fn advance_to(&self, instant: u64) {
         self.now.fetch_max(instant, Ordering::AcqRel);
     }
 
-    /// Notes that the calling thread waits for an instant.
+    /// Registers that the calling thread waits for a time.
     pub fn wait_for(&self, instant: u64) -> Wait<'_> {
         let number = self.last_wait.fetch_add(1, Ordering::Relaxed);
         lock(&self.waiting).insert(number, instant);
         Wait { clock: self, number, instant }
     }
 
-    /// Nanoseconds between two refreshes.
+    /// Returns the time between two refreshes in nanoseconds.
     pub fn period(&self) -> u64 {
         self.period
     }
 
-    /// The first refresh after `instant`.
+    /// Returns the time of the first refresh after `instant`.
     pub fn next_refresh(&self, instant: u64) -> u64 {
         let since = instant.saturating_sub(BOOTED);
         BOOTED + (since / self.period + 1) * self.period

@@ -1,19 +1,18 @@
-//! Crashes of the application become failures with an address that can be looked up.
+//! Reports crashes of the application as failures, with an address that can be looked up.
 
 use std::ffi::{c_int, c_void};
 
 use crate::bionic::thread_name;
 use crate::host::{fatal, host};
 
-/// The part of the stack in which callers are looked for, in bytes.
+/// Size in bytes of the part of the stack in which callers are searched.
 const STACK: usize = 64 * 1024;
 
-/// Catches the signals of crashes, and the host's own panics, from now on.
+/// From now on, catches signals of crashes and panics of the host.
 pub fn install() {
     std::panic::set_hook(Box::new(|panic| fatal(format!("the host itself panicked: {panic}"))));
     for signal in [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT] {
-        // SAFETY: the structure is plain data for which zero is valid; the handler has the type that SA_SIGINFO asks
-        // for.
+        // SAFETY: the structure is plain data for which zero is valid. The handler has SA_SIGINFO's type.
         unsafe {
             let mut action: libc::sigaction = std::mem::zeroed();
             action.sa_sigaction = crashed as *const () as usize;
@@ -23,12 +22,12 @@ pub fn install() {
     }
 }
 
-/// Reports a crash. Not everything here is allowed in a signal handler. The process is lost anyway, and only the
-/// address matters; if the summary cannot be written any more, the alarm ends the process.
+/// Reports a crash. Some of this is not allowed in a signal handler, but the process is lost anyway, and only the
+/// address matters. If the summary can no longer be written, the alarm ends the process.
 extern "C" fn crashed(signal: c_int, information: *mut libc::siginfo_t, context: *mut c_void) {
-    // SAFETY: takes a number; the default action of SIGALRM ends the process.
+    // SAFETY: takes a number. The default action of SIGALRM ends the process.
     unsafe { libc::alarm(10) };
-    // SAFETY: the kernel gives both pointers to a handler installed with SA_SIGINFO.
+    // SAFETY: the kernel passes both pointers to a handler installed with SA_SIGINFO.
     let (address, (counter, stack)) = unsafe { ((*information).si_addr() as usize, registers(context)) };
     let name = match signal {
         libc::SIGSEGV => "SIGSEGV",
@@ -56,10 +55,10 @@ fn in_library(address: usize) -> Option<String> {
     Some(format!("{file}+{:#x}", address - library.base()))
 }
 
-/// Returns program counter and stack pointer.
+/// Returns the program counter and the stack pointer.
 ///
 /// # Safety
-/// `context` is the third argument of a signal handler.
+/// `context` must be the third argument of a signal handler.
 unsafe fn registers(context: *mut c_void) -> (usize, usize) {
     // SAFETY: the kernel passes a context of this type to signal handlers.
     let context = unsafe { &(*context.cast::<libc::ucontext_t>()).uc_mcontext };
@@ -69,12 +68,12 @@ unsafe fn registers(context: *mut c_void) -> (usize, usize) {
     return (context.pc as usize, context.sp as usize);
 }
 
-/// Returns the words of the stack from `start` on, as far as they can be read.
+/// Returns the words of the stack from `start` on, as far as they are readable.
 fn words(start: usize) -> Vec<usize> {
     let mut words = vec![0_usize; STACK / 8];
     let local = libc::iovec { iov_base: words.as_mut_ptr().cast(), iov_len: STACK };
     let remote = libc::iovec { iov_base: start as *mut c_void, iov_len: STACK };
-    // SAFETY: reads this process's own memory into a live vector; unmapped pages are left out.
+    // SAFETY: reads this process's own memory into a live vector. Unmapped pages are skipped.
     let read =
         unsafe { libc::process_vm_readv(libc::getpid(), &raw const local, 1, &raw const remote, 1, 0) };
     words.truncate(usize::try_from(read).unwrap_or(0) / 8);

@@ -1,5 +1,5 @@
-//! Reads a package's library from its file, and refuses libraries that Android or the host cannot load. goblin parses
-//! the ELF file; the two packed forms of relocations, which it does not know, are unpacked here.
+//! Parses a library of a package, and rejects libraries that Android or the host cannot load. goblin parses the ELF
+//! file; the two packed formats of relocations, which it does not support, are unpacked here.
 
 use anyhow::{Context, Result, bail, ensure};
 use goblin::elf::Elf;
@@ -14,7 +14,7 @@ use goblin::elf::sym::STB_WEAK;
 /// The page size of newer Android devices.
 pub const PAGE: u64 = 0x4000;
 
-/// The machine's number, and the types of relocations that the host knows.
+/// The number of the machine, and the types of relocations that the host supports.
 #[cfg(target_arch = "x86_64")]
 pub mod machine {
     pub use goblin::elf::header::EM_X86_64 as NUMBER;
@@ -23,7 +23,7 @@ pub mod machine {
         R_X86_64_RELATIVE as RELATIVE,
     };
 }
-/// The machine's number, and the types of relocations that the host knows.
+/// The number of the machine, and the types of relocations that the host supports.
 #[cfg(target_arch = "aarch64")]
 pub mod machine {
     pub use goblin::elf::header::EM_AARCH64 as NUMBER;
@@ -41,7 +41,7 @@ const DT_ANDROID_RELASZ: u64 = 0x6000_0012;
 const DT_ANDROID_RELR: u64 = 0x6fff_e000;
 const DT_ANDROID_RELRSZ: u64 = 0x6fff_e001;
 
-/// The pages that a segment touches, as offsets from the library's start: the first, and the end of the last.
+/// Returns a segment's pages as offsets from the library's start: the start of the first, and the end of the last.
 pub fn pages(segment: &ProgramHeader) -> Result<(u64, u64)> {
     let end = segment.p_vaddr.checked_add(segment.p_memsz);
     let end = end.and_then(|end| end.checked_next_multiple_of(PAGE)).context("a segment wraps around")?;
@@ -50,30 +50,30 @@ pub fn pages(segment: &ProgramHeader) -> Result<(u64, u64)> {
 
 /// A symbol of the dynamic table.
 pub struct Symbol<'a> {
-    /// Empty for the first one, which stands for no symbol.
+    /// The name, empty for the first symbol, which stands for none.
     pub name: &'a str,
-    /// True if nothing is wrong when nobody defines it.
+    /// True if the symbol may remain undefined.
     pub weak: bool,
-    /// The address in the library, for symbols that the library defines.
+    /// The address in the library, if the library defines the symbol.
     pub defined: Option<u64>,
 }
 
 /// One relocation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Relocation {
-    /// Address in the library.
+    /// The address in the library.
     pub at: u64,
-    /// `R_*` of the machine.
+    /// The type, one of the machine's `R_*`.
     pub kind: u32,
-    /// Index in the dynamic symbol table.
+    /// The index in the dynamic symbol table.
     pub symbol: usize,
-    /// Added to the symbol's address.
+    /// The value added to the symbol's address.
     pub addend: i64,
 }
 
-/// A shared library as its file describes it, checked.
+/// The description of a shared library in its file, which has been checked.
 pub struct Image<'a> {
-    /// The file's bytes.
+    /// The content of the file.
     pub file: &'a [u8],
     /// All symbols of the dynamic table, by index.
     pub symbols: Vec<Symbol<'a>>,
@@ -86,7 +86,7 @@ impl<'a> Image<'a> {
     /// Parses and checks a file.
     ///
     /// # Errors
-    /// The file is damaged, or Android or the host would refuse it.
+    /// Fails if the file is damaged, or Android or the host would reject it.
     pub fn parse(file: &'a [u8]) -> Result<Self> {
         let elf = Elf::parse(file).context("it is no sound ELF file")?;
         let header = &elf.header;
@@ -109,37 +109,37 @@ impl<'a> Image<'a> {
         Ok(image)
     }
 
-    /// The LOAD segments.
+    /// Returns the LOAD segments.
     pub fn loads(&self) -> impl Iterator<Item = &ProgramHeader> {
         self.elf.program_headers.iter().filter(|segment| segment.p_type == PT_LOAD)
     }
 
-    /// The part that is read-only after the relocations.
+    /// Returns the segment that becomes read-only after the relocations.
     pub fn relro(&self) -> Option<&ProgramHeader> {
         self.elf.program_headers.iter().find(|segment| segment.p_type == PT_GNU_RELRO)
     }
 
-    /// The file names of the libraries that it needs.
+    /// Returns the file names of the libraries that this one needs.
     pub fn needed(&self) -> &[&'a str] {
         &self.elf.libraries
     }
 
-    /// The program headers as bytes of the file.
+    /// Returns the program headers as bytes of the file.
     pub fn program_headers(&self) -> &'a [u8] {
         let start = self.elf.header.e_phoff as usize;
         &self.file[start..start + self.elf.program_headers.len() * program_header64::SIZEOF_PHDR]
     }
 
-    /// The last value of a tag of the dynamic section.
+    /// Returns the last value of a tag in the dynamic section.
     pub fn tag(&self, tag: u64) -> Option<u64> {
         let entries = &self.elf.dynamic.as_ref()?.dyns;
         entries.iter().rev().find(|entry| entry.d_tag == tag).map(|entry| entry.d_val)
     }
 
-    /// The file offset of an address in the library.
+    /// Returns the file offset of an address in the library.
     ///
     /// # Errors
-    /// The address lies in no segment.
+    /// Fails if the address is not in a segment.
     pub fn offset(&self, address: u64) -> Result<usize> {
         self.loads()
             .find(|segment| address.checked_sub(segment.p_vaddr).is_some_and(|at| at < segment.p_filesz))
@@ -147,7 +147,7 @@ impl<'a> Image<'a> {
             .with_context(|| format!("address {address:#x} lies in no segment"))
     }
 
-    /// The table that two tags of the dynamic section describe: its address and its size in bytes.
+    /// Returns the table whose address and size in bytes are the values of two tags of the dynamic section.
     fn table(&self, address: u64, size: u64) -> Result<Option<&'a [u8]>> {
         let Some(address) = self.tag(address) else { return Ok(None) };
         let size = self.tag(size).context("a table of relocations has no size")?;
@@ -238,7 +238,7 @@ fn check_segments(file: &[u8], segments: &[ProgramHeader]) -> Result<()> {
     Ok(())
 }
 
-/// Unpacks RELR: an even word is an address, an odd word is a bitmap of the 63 words that follow.
+/// Unpacks RELR: an even word is an address, an odd word is a bitmap of the next 63 words.
 fn unpack_relative(packed: &[u8]) -> Vec<u64> {
     let mut addresses = Vec::new();
     let mut next = 0_u64;
@@ -315,14 +315,14 @@ mod tests {
         let bytes = |words: &[u64]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
         let packed = bytes(&[0x1000, 0b1011, 0x2000]);
         assert_eq!(unpack_relative(&packed), [0x1000, 0x1008, 0x1018, 0x2000]);
-        // A bitmap covers 63 words, and the next one goes on behind them.
+        // A bitmap covers 63 words. The next bitmap continues behind them.
         assert_eq!(unpack_relative(&bytes(&[0x1000, 1, 0b11])), [0x1000, 0x1008 + 63 * 8]);
     }
 
     #[test]
     fn packed_relocations_unpack() {
-        // Three relocations from 0x100 on: a group of two that shares delta 8 and info 8 and has addends 5 and 5 - 3,
-        // then one without addend, of info 6 and delta 16.
+        // Three relocations from 0x100 on: a group of two that shares delta 8 and info 8 and has the addends 5 and 5 -
+        // 3, then one without an addend, with info 6 and delta 16.
         let mut packed = b"APS2".to_vec();
         packed.extend([3, 0x80, 0x02, 2, 1 | 2 | 8, 8, 8, 5, 0x7d, 1, 0, 16, 6]);
         let relocations = unpack_relocations(&packed).unwrap();
@@ -332,7 +332,7 @@ mod tests {
         assert!(unpack_relocations(b"nope").is_err());
     }
 
-    /// A library of one segment and nothing in it but its own headers, with bytes put over it at an offset.
+    /// Returns the error for a library with one segment and only its headers, after overwriting bytes at an offset.
     fn refused(at: usize, bytes: &[u8]) -> String {
         let mut file = vec![0; 64 + 2 * 56];
         let number = machine::NUMBER.to_le_bytes();

@@ -29,7 +29,7 @@ pub enum System {
 }
 
 impl System {
-    /// All libraries.
+    /// All of the libraries.
     pub const ALL: [Self; 10] = [
         Self::C,
         Self::M,
@@ -43,7 +43,7 @@ impl System {
         Self::Media,
     ];
 
-    /// Returns the file name, as in DT_NEEDED and `dlopen`.
+    /// Returns the file name, as used in DT_NEEDED and `dlopen`.
     pub fn name(self) -> &'static str {
         match self {
             Self::C => "libc.so",
@@ -59,13 +59,13 @@ impl System {
         }
     }
 
-    /// Returns the library of this file name.
+    /// Returns the library with this file name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|library| library.name() == name)
     }
 }
 
-/// One function.
+/// An exported function.
 #[derive(Clone, Copy)]
 pub struct Export {
     /// Its library.
@@ -74,11 +74,11 @@ pub struct Export {
     pub name: &'static str,
     /// Its address.
     pub address: usize,
-    /// The first API level that has it; 1 for functions older than any supported level.
+    /// The first API level that has it. 1 if it is older than all supported levels.
     pub since: i32,
 }
 
-/// Functions of one library, as a list of [`Export`]s: `exports!(System::Android, 1: [ALooper_prepare, ...])`.
+/// Makes a list of [`Export`]s: `exports!(System::Android, 1: [ALooper_prepare, ...])`.
 macro_rules! exports {
     ($($library:expr, $since:literal: [$($function:ident),* $(,)?]);* $(;)?) => {
         vec![$($($crate::exports::Export {
@@ -116,7 +116,7 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
     })
 }
 
-/// Returns the address of a function that `library` exports to a device of API level `sdk`.
+/// Returns the address of a function that `library` exports on a device with API level `sdk`.
 pub fn find(library: System, name: &str, sdk: i32) -> Option<usize> {
     if matches!(library, System::GlesV2 | System::GlesV3) {
         return crate::graphics::gl::function(name);

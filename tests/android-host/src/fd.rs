@@ -1,20 +1,20 @@
-//! File descriptors owned by the host, beside those of the application.
+//! File descriptors that belong to the host rather than to the application.
 
 use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
 
-/// An eventfd: readable after [`EventFd::signal`] until [`EventFd::clear`].
+/// An eventfd, which is readable between [`EventFd::signal`] and [`EventFd::clear`].
 pub struct EventFd(OwnedFd);
 
 impl EventFd {
-    /// Makes one that is not readable.
+    /// Creates an eventfd that is not readable.
     ///
     /// # Panics
-    /// The process has no file descriptor left.
+    /// Panics if the process has no file descriptors left.
     pub fn new() -> Self {
         // SAFETY: eventfd takes no pointers.
         let fd = unsafe { libc::eventfd(0, libc::EFD_NONBLOCK | libc::EFD_CLOEXEC) };
         assert!(fd >= 0, "eventfd: {}", std::io::Error::last_os_error());
-        // SAFETY: fd was just made and belongs to nobody else.
+        // SAFETY: the descriptor was just created and has no other owner.
         Self(unsafe { OwnedFd::from_raw_fd(fd) })
     }
 
@@ -26,15 +26,14 @@ impl EventFd {
     /// Makes it readable.
     pub fn signal(&self) {
         let one = 1u64;
-        // SAFETY: eight bytes are read from a live u64. It fails only when the counter is full, and then it is
-        // readable.
+        // SAFETY: reads eight bytes from a live u64. Only fails if the counter is full, and then it is readable anyway.
         unsafe { libc::write(self.raw(), (&raw const one).cast(), 8) };
     }
 
     /// Makes it unreadable.
     pub fn clear(&self) {
         let mut count = 0u64;
-        // SAFETY: eight bytes are written to a live u64. It fails only when the counter is zero.
+        // SAFETY: writes eight bytes to a live u64. Only fails if the counter is zero.
         unsafe { libc::read(self.raw(), (&raw mut count).cast(), 8) };
     }
 }

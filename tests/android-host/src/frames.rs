@@ -1,5 +1,5 @@
-//! The gate in `eglSwapBuffers`: the script decides how many frames are shown, so that events between two frames happen
-//! there in every run.
+//! The gate in `eglSwapBuffers`. The script decides how many frames pass, so that events between two frames happen at
+//! the same point in every run.
 
 use std::sync::{Condvar, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
@@ -17,7 +17,7 @@ const OPEN_FRAME: Duration = Duration::from_millis(3);
 pub struct Frames {
     state: Mutex<State>,
     changed: Condvar,
-    /// Readable after each change, for the main thread, which waits in its looper.
+    /// Readable after each change. The main thread waits for it in its looper.
     pub event: EventFd,
 }
 
@@ -28,14 +28,14 @@ struct State {
     granted: u64,
     waiting: bool,
     shown: u64,
-    /// The time at which the frame before is on the display.
+    /// The time at which the previous frame is on the display.
     displayed: u64,
     capture: bool,
     captured: Option<Result<RgbaImage, String>>,
 }
 
 impl Frames {
-    /// Makes a closed gate.
+    /// Creates a closed gate.
     pub fn new() -> Self {
         Self { state: Mutex::new(State::default()), changed: Condvar::new(), event: EventFd::new() }
     }
@@ -49,7 +49,7 @@ impl Frames {
         self.event.signal();
     }
 
-    /// Called by the thread that swaps: waits until the frame may be shown. `read` gives its picture.
+    /// Waits until the frame may be shown. Called by the thread that swaps. `read` returns the frame's picture.
     pub fn present(&self, mut read: impl FnMut() -> Result<RgbaImage, String>) {
         let mut state = self.state();
         state.waiting = true;
@@ -57,7 +57,7 @@ impl Frames {
         let arrived = Instant::now();
         while state.granted == 0 {
             if state.open {
-                // The callback that opened the gate may end any moment; only if it does not, it waits for this thread.
+                // Most callbacks that open the gate end soon. One that does not waits for this frame, so let it pass.
                 let left = OPEN_FRAME.saturating_sub(arrived.elapsed());
                 if left.is_zero() {
                     break;
@@ -76,7 +76,7 @@ impl Frames {
         state.granted = state.granted.saturating_sub(1);
         state.waiting = false;
         state.shown += 1;
-        // Double buffering: this frame can be handed over when the one before is on the display.
+        // Double buffering: this frame can be submitted once the previous one is on the display.
         let clock = &host().clock;
         clock.advance_to(state.displayed);
         state.displayed = clock.next_refresh(clock.now());
@@ -85,30 +85,30 @@ impl Frames {
         self.notify();
     }
 
-    /// Lets time pass until a frame waits at the gate, or no longer.
+    /// Lets time pass until a frame waits at the gate, or stops that.
     pub fn set_wanted(&self, wanted: bool) {
         self.state().wanted = wanted;
     }
 
-    /// Opens the gate, for callbacks that the application answers from its frame loop, or closes it.
+    /// Opens or closes the gate. It is open during callbacks that the application may answer from its frame loop.
     pub fn set_open(&self, open: bool) {
         self.state().open = open;
         self.notify();
     }
 
-    /// Lets that many more frames pass.
+    /// Lets this many more frames pass.
     pub fn grant(&self, frames: u64) {
         self.state().granted += frames;
         self.notify();
     }
 
-    /// True if everything granted was used and a frame waits at the gate.
+    /// True if all granted frames have passed and another one waits at the gate.
     pub fn is_waiting(&self) -> bool {
         let state = self.state();
         state.waiting && state.granted == 0
     }
 
-    /// True if virtual time may pass without a frame: while the script waits for something.
+    /// True if virtual time may pass without a frame, because the script waits for something.
     pub fn time_may_pass(&self) -> bool {
         let state = self.state();
         state.open || state.granted > 0 || state.wanted && !state.waiting
@@ -119,7 +119,7 @@ impl Frames {
         self.state().shown
     }
 
-    /// Asks for the picture of the frame that waits; [`Frames::captured`] has it later.
+    /// Requests the picture of the waiting frame, which [`Frames::captured`] then returns.
     pub fn request_capture(&self) {
         let mut state = self.state();
         state.captured = None;
@@ -128,7 +128,7 @@ impl Frames {
         self.notify();
     }
 
-    /// Returns the picture, once it is there.
+    /// Returns the requested picture once it is available.
     pub fn captured(&self) -> Option<Result<RgbaImage, String>> {
         self.state().captured.take()
     }

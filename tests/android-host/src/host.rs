@@ -1,5 +1,4 @@
-//! The one simulated device of the process. The library calls C functions without a context argument, so there can be
-//! no second one.
+//! The simulated device. There is one per process, since the library calls C functions without a context argument.
 
 use std::collections::BTreeMap;
 use std::os::fd::{AsRawFd, OwnedFd};
@@ -23,15 +22,15 @@ use crate::script::{Battery, Device, Script, Share, Thermal};
 use crate::summary::{InputFacts, LABEL, LibraryFacts, Mark, Summary};
 use crate::threads::{self, Progress};
 
-/// The simulated device: everything that the application can ask.
+/// The simulated device: everything that the application can query.
 pub struct Host {
-    /// The device at power-on, as the script describes it.
+    /// The device at power-on, as described by the script.
     pub device: Device,
-    /// The battery, which steps change.
+    /// The battery, which steps of the script can change.
     pub battery: Mutex<Option<Battery>>,
-    /// The thermal state, which steps change.
+    /// The thermal state, which steps of the script can change.
     pub thermal: Mutex<Thermal>,
-    /// What another application shares with the next activity, and what it shared with the present one.
+    /// What another application shares with the next activity, and what it has shared with the current one.
     pub shared: [Mutex<Option<Share>>; 2],
     /// System properties.
     pub properties: Mutex<BTreeMap<String, String>>,
@@ -39,31 +38,29 @@ pub struct Host {
     pub clock: Clock,
     /// The gate in `eglSwapBuffers`.
     pub frames: Frames,
-    /// liblog.
+    /// The log (liblog).
     pub log: Log,
-    /// AAssetManager.
     /// The camera.
     pub camera: Camera,
-    /// AInputQueue.
+    /// Numbers of input events.
     pub input: InputCounts,
-    /// ASensorManager.
+    /// The sensors (ASensorManager).
     pub sensors: Sensors,
-    /// AThermal.
-    /// ANativeWindow.
+    /// The window (ANativeWindow).
     pub window: Window,
     /// EGL and OpenGL ES.
     pub graphics: Graphics,
-    /// Java.
+    /// The Java virtual machine.
     pub jni: Jni,
     /// The application's folders.
     pub directories: Directories,
     /// The application's library.
     pub library: OnceLock<Library>,
-    /// The library of an API layer, if the application carries one.
+    /// The library of an API layer, if the application contains one.
     pub layer: OnceLock<Library>,
-    /// True if the application asked for its end by `ANativeActivity_finish`.
+    /// True if the application has called `ANativeActivity_finish`.
     pub finish_asked: AtomicBool,
-    /// Kernel's number of the thread that runs `android_main`; 0 before the first.
+    /// The kernel's number of the thread that runs `android_main`, or 0 before the first one.
     pub main_thread: AtomicI32,
     ndk_objects: Mutex<BTreeMap<&'static str, i64>>,
     requests: Mutex<BTreeMap<String, u64>>,
@@ -73,9 +70,9 @@ pub struct Host {
     watch: Watch,
 }
 
-/// Facts for the summary beside the live state.
+/// Facts for the summary, in addition to the live state.
 pub struct Report {
-    /// The APK.
+    /// The path of the APK.
     pub apk: PathBuf,
     /// The script's name.
     pub script: String,
@@ -83,13 +80,13 @@ pub struct Report {
     pub out: PathBuf,
     /// Facts of the libraries.
     pub libraries: Vec<LibraryFacts>,
-    /// Imported, but answered by a trap.
+    /// Imported symbols that are traps.
     pub trapped_symbols: Vec<String>,
-    /// Marks so far.
+    /// The marks so far.
     pub marks: Vec<Mark>,
-    /// Pictures so far.
+    /// The pictures so far.
     pub captures: Vec<PathBuf>,
-    /// The real standard error: the library redirects its own.
+    /// The real standard error, since the library redirects its own.
     pub stderr: OwnedFd,
     /// Start of the run.
     pub started: Instant,
@@ -106,7 +103,7 @@ static HOST: OnceLock<Host> = OnceLock::new();
 /// Returns the device.
 ///
 /// # Panics
-/// Before [`Host::install`].
+/// Panics before [`Host::install`].
 pub fn host() -> &'static Host {
     HOST.get().expect("the host is installed before the library is loaded")
 }
@@ -114,16 +111,16 @@ pub fn host() -> &'static Host {
 /// The name of this machine's ABI in an APK.
 pub const ABI: &str = if cfg!(target_arch = "aarch64") { "arm64-v8a" } else { "x86_64" };
 
-/// Locks a mutex; a panic elsewhere has already been reported.
+/// Locks a mutex. Ignores poisoning, since the panic has already been reported.
 pub fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 impl Host {
-    /// Switches the device on. Once per process.
+    /// Switches the device on, once per process.
     ///
     /// # Errors
-    /// EGL or the folders cannot be set up.
+    /// Fails if EGL or the folders cannot be set up.
     pub fn install(script: &Script, verbose: bool, report: Report) -> anyhow::Result<&'static Self> {
         let device = script.device.clone();
         let host = Self {
@@ -171,12 +168,12 @@ impl Host {
         self.library.get().into_iter().chain(self.layer.get())
     }
 
-    /// Writes one line to the real standard error.
+    /// Writes a line to the real standard error.
     pub fn say(&self, text: &str) {
         say_to(lock(&self.report).stderr.as_raw_fd(), &format!("{text}\n"));
     }
 
-    /// Notes something that Android forbids or punishes, each text once.
+    /// Records something that Android forbids or penalises. Each text is recorded once.
     pub fn violation(&self, text: impl Into<String>) {
         let text = text.into();
         let mut violations = lock(&self.violations);
@@ -185,17 +182,17 @@ impl Host {
         }
     }
 
-    /// Counts an NDK object made (+1) or released (-1).
+    /// Counts an NDK object that was created (+1) or released (-1).
     pub fn count(&self, kind: &'static str, change: i64) {
         *lock(&self.ndk_objects).entry(kind).or_default() += change;
     }
 
-    /// Sets the script's present activity, for the text of a failure; empty for nothing special.
+    /// Sets what the script is doing, for the text of a failure. Empty if it is nothing special.
     pub fn set_context(&self, context: String) {
         *lock(&self.context) = context;
     }
 
-    /// Notes a request of the application for the device's performance.
+    /// Records a request of the application about the device's performance.
     pub fn request(&self, what: impl Into<String>) {
         *lock(&self.requests).entry(what.into()).or_default() += 1;
     }
@@ -205,12 +202,12 @@ impl Host {
         lock(&self.report)
     }
 
-    /// Returns the patience with a step.
+    /// Returns the time that a step may take without progress.
     pub fn timeout(&self) -> Duration {
         self.watch.timeout
     }
 
-    /// Runs something that must end in time, or the run fails with its name.
+    /// Runs a closure that must end in time. Otherwise the run fails, and the failure contains `what`.
     pub fn watched<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
         let progress = Progress::new(Instant::now(), threads::processor_time());
         *lock(&self.watch.doing) = Some((what.to_owned(), progress));
@@ -219,7 +216,7 @@ impl Host {
         result
     }
 
-    /// Runs a callback on the activity's main thread, watched like [`Host::watched`].
+    /// Runs a callback on the activity's main thread, with the same time limit as [`Host::watched`].
     pub fn callback<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
         let started = Instant::now();
         let result = self.watched(what, run);
@@ -227,7 +224,7 @@ impl Host {
         result
     }
 
-    /// Returns the resources that are in use now.
+    /// Returns the resources currently in use.
     pub fn mark(&self, name: &str) -> Mark {
         Mark {
             name: name.to_owned(),
@@ -249,7 +246,7 @@ impl Host {
         }
     }
 
-    /// Returns the summary as things stand.
+    /// Returns the summary so far.
     pub fn summary(&self, failure: Option<String>) -> Summary {
         let end = self.mark("end");
         let log = self.log.collected();
@@ -284,12 +281,12 @@ impl Host {
         }
     }
 
-    /// Writes the summary, prints it and ends the process: threads of the application may still run, so nothing is torn
-    /// down. Exit code 0 for a clean run, 1 otherwise.
+    /// Writes and prints the summary, and ends the process without cleaning up, since threads of the application may
+    /// still run. The exit code is 0 after a clean run, otherwise 1.
     pub fn finish(&self, failure: Option<String>) -> ! {
         static FINISHING: AtomicBool = AtomicBool::new(false);
         if FINISHING.swap(true, Ordering::SeqCst) {
-            // Another thread is writing the summary and ends the process.
+            // Another thread is writing the summary and will end the process.
             loop {
                 std::thread::sleep(Duration::from_secs(1));
             }
@@ -311,12 +308,12 @@ impl Host {
             code = 1;
         }
         say_to(self.report().stderr.as_raw_fd(), &text);
-        // SAFETY: ends the process without running destructors that the application's threads may still need.
+        // SAFETY: ends the process without running destructors, whose objects the application's threads may still use.
         unsafe { libc::_exit(code) }
     }
 }
 
-/// Ends the run with a failure: something happened after which nothing can be trusted.
+/// Ends the run with a failure after which nothing can be trusted.
 pub fn fatal(text: impl Into<String>) -> ! {
     let text = text.into();
     match HOST.get() {
@@ -329,7 +326,7 @@ pub fn fatal(text: impl Into<String>) -> ! {
     }
 }
 
-/// Writes to a file descriptor, as far as that works.
+/// Writes to a file descriptor, ignoring errors.
 pub fn say_to(fd: i32, text: &str) {
     let mut rest = text.as_bytes();
     while !rest.is_empty() {
@@ -356,11 +353,10 @@ fn watch() {
     }
 }
 
-/// The number of times that entries are counted; the smallest count is taken.
+/// Number of times that entries are counted again. The smallest count is used.
 const LOOKS: usize = 8;
 
-/// Returns the number of entries of a folder that stay: a file that another thread, of the host or of Mesa, has open
-/// for a moment does not count.
+/// Returns the number of entries in a folder, without files that other threads, such as Mesa's, open only briefly.
 fn held(folder: &str) -> u64 {
     let count = || std::fs::read_dir(folder).map_or(0, |entries| entries.count() as u64);
     let later = || {

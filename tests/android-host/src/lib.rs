@@ -1,12 +1,12 @@
-//! A simulated Android host: runs the libraries of the built APK on Linux, without a device and without Google's tools.
+//! A simulated Android host: runs the libraries of the built APK on Linux, without a device or Google's tools.
 //!
-//! It takes the library and the assets out of the APK, loads the library with an ELF loader of its own, and provides
-//! the library's imports: bionic, ALooper, ANativeActivity, input, sensors, JNI, and EGL on Mesa. A script
-//! ([`script::Script`]) describes the device and the events; the result is a [`summary::Summary`].
+//! The host takes the library and the assets from the APK, loads the library with its own ELF loader, and provides the
+//! library's imports: bionic, ALooper, ANativeActivity, input, sensors, JNI, and EGL on Mesa. A script
+//! ([`script::Script`]) describes the device and the events. The result is a [`summary::Summary`].
 //!
-//! A clean run shows that the APK's own code starts, draws correctly, and survives Android's events. It says nothing
-//! about speed, power, drivers or manufacturers' peculiarities. The host must know nothing of the application but its
-//! entry point.
+//! A clean run shows that the APK's own code starts, draws correctly, and survives Android's events. It shows nothing
+//! about speed, power, drivers or the differences between manufacturers. The host must not know anything about the
+//! application except its entry point.
 
 mod android;
 mod apk;
@@ -43,12 +43,12 @@ use crate::library::Library;
 use crate::player::Player;
 use crate::script::Script;
 
-/// Plays `script` on the APK, writes `summary.json` and pictures into `out`, prints the summary and ends the process:
-/// exit code 0 for a clean run, 1 for one with a failure, a GL error or a violation. Returns only if the run cannot
-/// begin.
+/// Runs `script` with the APK, writes `summary.json` and pictures to `out`, prints the summary, and ends the process.
+/// The exit code is 0 for a clean run, and 1 if there was a failure, a GL error or a violation. Only returns if it
+/// cannot start.
 ///
 /// # Errors
-/// The APK, the library or the output folder cannot be used, or Mesa is missing.
+/// Fails if the APK, the library or the output folder cannot be used, or Mesa is missing.
 pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Result<std::convert::Infallible> {
     let started = Instant::now();
     std::fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
@@ -68,7 +68,7 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
         started,
     };
     if let Some(headset) = headset {
-        // SAFETY: the process has one thread.
+        // SAFETY: the process has a single thread.
         unsafe { openxr::install(headset) }?;
     }
     let host = Host::install(script, verbose, report)?;
@@ -88,13 +88,13 @@ pub fn run(apk_path: &Path, script: &Script, out: &Path, verbose: bool) -> Resul
     }
     crash::install();
     for library in host.libraries() {
-        // SAFETY: the library can reach everything it needs through the host from now on.
+        // SAFETY: from now on the library can reach everything it needs through the host.
         unsafe { library.initialize() };
     }
     let create = library
         .symbol("ANativeActivity_onCreate")
         .with_context(|| format!("{} does not export ANativeActivity_onCreate", apk.library.0))?;
-    // SAFETY: a symbol of this name has this type by the NDK's contract.
+    // SAFETY: by the NDK's contract, the symbol with this name has this type.
     let create: OnCreate = unsafe { std::mem::transmute(create) };
     let mut player = Player::new(create, out.to_owned());
     player.play(&script.steps);

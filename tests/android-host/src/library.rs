@@ -1,5 +1,5 @@
-//! Loads a package's library. The loader is our own and not glibc's `dlopen`, because imports must be bound to the
-//! exports of Android's libraries. It is stricter than Android's.
+//! Loads the libraries of a package. glibc's `dlopen` cannot be used, because imports must be bound to the exports of
+//! Android's libraries. This loader is stricter than Android's.
 
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_void};
@@ -14,7 +14,7 @@ use crate::exports::System;
 use crate::summary::LibraryFacts;
 use crate::thunk;
 
-/// A library in memory.
+/// A loaded library.
 pub struct Library {
     /// The path that `dladdr` reports.
     pub path: CString,
@@ -32,16 +32,16 @@ pub struct Loaded {
     pub library: Library,
     /// Facts for the summary.
     pub facts: LibraryFacts,
-    /// The imports without a definition: a call of one ends the run with its name.
+    /// The imported symbols without a definition. Calling one ends the run with its name.
     pub trapped: Vec<String>,
 }
 
 impl Library {
-    /// Maps and links a library. An import is looked for in the libraries that this one needs; `find` returns the
-    /// address of a symbol that a system library exports.
+    /// Maps and links a library. Imports are searched in the libraries that this one needs. `find` returns the address
+    /// of a symbol that a system library exports.
     ///
     /// # Errors
-    /// One sentence on the part that Android or the host would refuse.
+    /// Fails with one sentence on what Android or the host would reject.
     pub fn load(name: &str, file: &[u8], find: impl Fn(System, &str) -> Option<usize>) -> Result<Loaded> {
         let image = Image::parse(file).with_context(|| format!("{name} cannot be loaded"))?;
         let needed = image.needed().iter().map(|library| {
@@ -88,10 +88,10 @@ impl Library {
     /// Runs the constructors.
     ///
     /// # Safety
-    /// Once, after everything that they may call is in place.
+    /// Must be called once, when everything that they may call is in place.
     pub unsafe fn initialize(&self) {
         for function in &self.init {
-            // SAFETY: DT_INIT and DT_INIT_ARRAY hold functions of this type; the caller vouches for the moment.
+            // SAFETY: DT_INIT and DT_INIT_ARRAY contain functions of this type. The caller allows them to run.
             let function: extern "C" fn(i32, *const *const u8, *const *const u8) =
                 unsafe { std::mem::transmute(*function) };
             function(0, std::ptr::null(), std::ptr::null());
@@ -124,9 +124,9 @@ impl Library {
     }
 }
 
-/// Maps the segments like a kernel with 16 KiB pages, writable for the moment, and returns the library's start.
+/// Maps the segments as a kernel with 16 KiB pages would, for now writable, and returns the start of the library.
 fn map(image: &Image, span: u64) -> Result<usize> {
-    // SAFETY: a new anonymous mapping at an address of the kernel's choice.
+    // SAFETY: creates a new anonymous mapping at an address chosen by the kernel.
     let memory = unsafe {
         libc::mmap(
             std::ptr::null_mut(),
@@ -144,8 +144,8 @@ fn map(image: &Image, span: u64) -> Result<usize> {
         protect_range(base, first, last, libc::PROT_READ | libc::PROT_WRITE)?;
         let start = segment.p_offset - (segment.p_vaddr - first);
         let source = &image.file[start as usize..(segment.p_offset + segment.p_filesz) as usize];
-        // SAFETY: the pages were just made writable and hold at least the segment; the file's bytes before the segment
-        // on its first page are mapped along, like a kernel does.
+        // SAFETY: the pages were just made writable, and hold at least the segment. As by a kernel, bytes of the file
+        // that precede the segment on its first page are mapped as well.
         unsafe {
             std::ptr::copy_nonoverlapping(source.as_ptr(), (base as u64 + first) as *mut u8, source.len())
         };
@@ -153,7 +153,7 @@ fn map(image: &Image, span: u64) -> Result<usize> {
     Ok(base)
 }
 
-/// Returns the value of every symbol, and the names of those without a definition.
+/// Returns the values of all symbols, and the names of those without a definition, which become traps.
 fn bind(
     image: &Image,
     base: usize,
@@ -181,7 +181,7 @@ fn bind(
     Ok((values, names))
 }
 
-/// Writes the relocations; `values` are those of the symbols.
+/// Applies the relocations. `values` are the values of the symbols.
 fn relocate(image: &Image, base: usize, values: &[usize]) -> Result<()> {
     for relocation in &image.relocations {
         let value = match relocation.kind {
@@ -198,19 +198,19 @@ fn relocate(image: &Image, base: usize, values: &[usize]) -> Result<()> {
         });
         ensure!(is_writable, "a relocation lies outside of the writable segments");
         let value = (value as u64).wrapping_add_signed(relocation.addend);
-        // SAFETY: the address was checked to lie in a segment that `map` made writable.
+        // SAFETY: the address was checked to be in a segment that `map` has made writable.
         unsafe { ((base as u64 + relocation.at) as *mut u64).write_unaligned(value) };
     }
     Ok(())
 }
 
-/// Returns the addresses of the constructors. The relocations are in place.
+/// Returns the addresses of the constructors. The relocations must have been applied.
 fn constructors(image: &Image, base: usize) -> Result<Vec<usize>> {
     let mut init: Vec<_> = image.tag(DT_INIT).map(|init| base + init as usize).into_iter().collect();
     let [start, length] = [DT_INIT_ARRAY, DT_INIT_ARRAYSZ].map(|tag| image.tag(tag).unwrap_or(0));
     for at in (start..start.saturating_add(length)).step_by(8) {
         image.offset(at)?;
-        // SAFETY: the address lies in a mapped segment; the relocations have filled the table in.
+        // SAFETY: the address is in a mapped segment, and the relocations have filled in the table.
         init.push(unsafe { ((base as u64 + at) as *const usize).read_unaligned() });
     }
     Ok(init)
@@ -230,7 +230,7 @@ fn protect(image: &Image, base: usize) -> Result<()> {
 }
 
 fn protect_range(base: usize, first: u64, last: u64, protection: i32) -> Result<()> {
-    // SAFETY: the range lies in the mapping made by `map`, which nothing else uses yet.
+    // SAFETY: the range is in the mapping made by `map`, which nothing else uses yet.
     let result =
         unsafe { libc::mprotect((base as u64 + first) as *mut c_void, (last - first) as usize, protection) };
     ensure!(result == 0, "memory protection cannot be set: {}", std::io::Error::last_os_error());

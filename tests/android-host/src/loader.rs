@@ -1,8 +1,8 @@
-//! The OpenXR loader of an application that carries an API layer: as much of Khronos's loader as this application uses.
+//! The OpenXR loader of an application that contains an API layer: what it uses of Khronos's loader.
 //!
-//! The layer's library and its manifest come out of its AAR, and are in the application's package as Gradle would put
-//! them there; the library is loaded like the application's own. The loader finds the manifest among the assets,
-//! negotiates with the layer whenever an instance is made, and ends the chain with the simulated runtime.
+//! The layer's library and manifest come from its AAR, and are placed in the application's package as Gradle would. The
+//! library is loaded like the application's own. The loader finds the manifest among the assets, negotiates with the
+//! layer whenever an instance is created, and ends the chain with the simulated runtime.
 
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char, c_void};
@@ -16,11 +16,11 @@ use sys::{Handle as _, pfn};
 use crate::library::Library;
 use crate::openxr;
 
-/// The name under which an application carries its loader.
+/// The file name of an application's loader.
 const FILE: &str = "libopenxr_loader.so";
-/// The handle that `dlopen` returns for it.
+/// The handle that `dlopen` returns for the loader.
 const HANDLE: usize = 0x10ad;
-/// The folder of implicit layers' manifests among an application's assets.
+/// The folder of implicit layers' manifests in an application's assets.
 const MANIFESTS: &str = "openxr/1/api_layers/implicit.d/";
 
 #[derive(Deserialize)]
@@ -28,7 +28,7 @@ struct Manifest {
     api_layer: ApiLayer,
 }
 
-/// A layer as its manifest describes it.
+/// A layer as described by its manifest.
 #[derive(Deserialize)]
 struct ApiLayer {
     name: String,
@@ -44,20 +44,20 @@ struct Extension {
     extension_version: String,
 }
 
-/// The layer, and its functions.
+/// The layer and its functions.
 struct Layer {
     manifest: ApiLayer,
     negotiate: pfn::NegotiateLoaderApiLayerInterface,
-    /// The function of the instance that was made last: all instances have the same.
+    /// The function of the instance that was created last. It is the same for all instances.
     get_instance_proc_addr: OnceLock<pfn::GetInstanceProcAddr>,
 }
 
 static LAYER: OnceLock<Layer> = OnceLock::new();
 
-/// Makes the layer of these assets known to the loader; its library is loaded already.
+/// Registers the layer in these assets with the loader. Its library must have been loaded.
 ///
 /// # Errors
-/// There is no manifest of an implicit layer, or it is of another library.
+/// Fails if there is no manifest of an implicit layer, or it belongs to another library.
 pub fn install(assets: &BTreeMap<String, Vec<u8>>, library: &Library) -> Result<()> {
     let manifest = assets.iter().find(|(path, _)| path.starts_with(MANIFESTS));
     let (path, bytes) = manifest.with_context(|| format!("there is no manifest in assets/{MANIFESTS}"))?;
@@ -74,25 +74,25 @@ pub fn install(assets: &BTreeMap<String, Vec<u8>>, library: &Library) -> Result<
     let negotiate = library
         .symbol(NEGOTIATE)
         .with_context(|| format!("{:?} does not export {NEGOTIATE}", library.path))?;
-    // SAFETY: a layer's function of this name has this type.
+    // SAFETY: a layer's function with this name has this type.
     let negotiate = unsafe { std::mem::transmute::<usize, pfn::NegotiateLoaderApiLayerInterface>(negotiate) };
     LAYER.get_or_init(|| Layer { manifest, negotiate, get_instance_proc_addr: OnceLock::new() });
     Ok(())
 }
 
-/// Returns the loader by its name; none for any other name, and if the application carries no layer.
+/// Returns the handle of the loader, or `None` for any other name or if the application contains no layer.
 pub fn open(name: &str) -> Option<*mut c_void> {
     (name == FILE && LAYER.get().is_some()).then_some(HANDLE as *mut c_void)
 }
 
-/// Returns a symbol of the loader, null for those that it does not have; none if the handle is another library's.
+/// Returns a symbol of the loader, null if the loader does not have it, or `None` if the handle is another library's.
 pub fn symbol(handle: *mut c_void, name: &CStr) -> Option<*mut c_void> {
     let get: pfn::GetInstanceProcAddr = get_instance_proc_addr;
     let has = name == c"xrGetInstanceProcAddr";
     (handle as usize == HANDLE).then_some(if has { get as *mut c_void } else { std::ptr::null_mut() })
 }
 
-/// Returns the layer. The loader is only opened if there is one.
+/// Returns the layer. The loader can only be opened if there is one.
 fn layer() -> &'static Layer {
     LAYER.get().expect("the loader is opened where there is a layer")
 }
@@ -100,14 +100,14 @@ fn layer() -> &'static Layer {
 /// Returns a function of the runtime that needs no instance.
 ///
 /// # Safety
-/// It is of this type.
+/// The function must be of type `T`.
 unsafe fn of_runtime<T: Copy>(name: &CStr) -> Result<T, sys::Result> {
     let mut function = None;
-    // SAFETY: a name, and room for a function.
+    // SAFETY: the name is terminated, and there is room for a function.
     let result = unsafe { runtime()?(sys::Instance::NULL, name.as_ptr(), &mut function) };
     match (result, function) {
         (sys::Result::SUCCESS, Some(function)) => {
-            // SAFETY: both are pointers to functions, and the caller names the type that the name has in OpenXR.
+            // SAFETY: both are function pointers, and the caller gives the type that the function has in OpenXR.
             Ok(unsafe { std::mem::transmute_copy::<pfn::VoidFunction, T>(&function) })
         }
         (sys::Result::SUCCESS, None) => Err(sys::Result::ERROR_FUNCTION_UNSUPPORTED),
@@ -127,7 +127,7 @@ fn loader_info() -> sys::NegotiateLoaderInfo {
     }
 }
 
-/// Returns the runtime's function that gives all others. Khronos's loader asks the broker for it; here it is known.
+/// Returns the runtime's function that returns all others. The runtime is known; Khronos's loader asks the broker.
 fn runtime() -> Result<pfn::GetInstanceProcAddr, sys::Result> {
     let mut request = sys::NegotiateRuntimeRequest {
         struct_type: sys::NegotiateRuntimeRequest::TYPE,
@@ -139,14 +139,14 @@ fn runtime() -> Result<pfn::GetInstanceProcAddr, sys::Result> {
     };
     let library = openxr::library().ok_or(sys::Result::ERROR_RUNTIME_UNAVAILABLE)?;
     let negotiate = openxr::symbol(library, c"xrNegotiateLoaderRuntimeInterface");
-    // SAFETY: a runtime's function of this name has this type, and null is `None`.
+    // SAFETY: a runtime's function with this name has this type, and null becomes `None`.
     let negotiate = unsafe {
         std::mem::transmute::<*mut c_void, Option<pfn::NegotiateLoaderRuntimeInterface>>(
             negotiate.unwrap_or(std::ptr::null_mut()),
         )
     };
     let negotiate = negotiate.ok_or(sys::Result::ERROR_RUNTIME_UNAVAILABLE)?;
-    // SAFETY: complete structures.
+    // SAFETY: the structures are complete.
     match unsafe { negotiate(&loader_info(), &mut request) } {
         sys::Result::SUCCESS => request.get_instance_proc_addr.ok_or(sys::Result::ERROR_RUNTIME_UNAVAILABLE),
         refused => Err(refused),
@@ -158,12 +158,12 @@ unsafe extern "system" fn get_instance_proc_addr(
     name: *const c_char,
     function: *mut Option<pfn::VoidFunction>,
 ) -> sys::Result {
-    // SAFETY: the application's name.
+    // SAFETY: the application passes a terminated name.
     let wanted = unsafe { CStr::from_ptr(name) };
-    // If there is an instance, its uppermost layer answers.
+    // If there is an instance, its topmost layer answers.
     let next = if instance == sys::Instance::NULL { None } else { layer().get_instance_proc_addr.get() };
     if let Some(next) = next {
-        // SAFETY: the application's call.
+        // SAFETY: the application's call is passed on.
         return unsafe { next(instance, name, function) };
     }
     macro_rules! own {
@@ -171,11 +171,11 @@ unsafe extern "system" fn get_instance_proc_addr(
             match wanted.to_bytes() {
                 $($name => {
                     let own: pfn::$kind = $function;
-                    // SAFETY: whoever asks for this name calls it as this type.
+                    // SAFETY: whoever asks for this name calls the function with this type.
                     Ok(unsafe { std::mem::transmute::<pfn::$kind, pfn::VoidFunction>(own) })
                 })*
-                // The runtime's own function, as the loader does not use Java.
-                // SAFETY: the function is returned unchanged under the name that was asked for.
+                // The runtime's own function, since the loader does not use Java. SAFETY: the function is returned
+                // unchanged under the requested name.
                 b"xrInitializeLoaderKHR" => unsafe { of_runtime(wanted) },
                 _ => Err(sys::Result::ERROR_HANDLE_INVALID),
             }
@@ -191,12 +191,12 @@ unsafe extern "system" fn get_instance_proc_addr(
         Ok(found) => (sys::Result::SUCCESS, Some(found)),
         Err(result) => (result, None),
     };
-    // SAFETY: the caller gives room for a function.
+    // SAFETY: the caller provides room for a function.
     unsafe { function.write(found) };
     result
 }
 
-/// Returns a text as an array of characters, cut off if it is too long.
+/// Returns a text as an array of characters. Truncates it if it is too long.
 fn characters<const N: usize>(text: &str) -> [c_char; N] {
     let mut characters = [0; N];
     for (to, from) in characters[..N - 1].iter_mut().zip(text.bytes()) {
@@ -205,12 +205,12 @@ fn characters<const N: usize>(text: &str) -> [c_char; N] {
     characters
 }
 
-/// Answers the two calls with which OpenXR's callers ask for an array: for its length, then for its elements.
+/// Answers the two calls by which OpenXR's callers query an array: first its length, then its elements.
 ///
 /// # Safety
-/// Room for a number, and for as many elements as is said.
+/// `count` must have room for a number, and `place` for `capacity` elements.
 unsafe fn answer<T: Copy>(all: &[T], capacity: u32, count: *mut u32, place: *mut T) -> sys::Result {
-    // SAFETY: OpenXR's callers give room for the count, and for as many elements as they say.
+    // SAFETY: OpenXR's callers provide room for the count, and for as many elements as they say.
     unsafe {
         count.write(all.len() as u32);
         if capacity != 0 && (capacity as usize) < all.len() {
@@ -237,11 +237,11 @@ unsafe extern "system" fn enumerate_api_layer_properties(
         layer_version: manifest.implementation_version.parse().unwrap_or(0),
         description: characters(""),
     };
-    // SAFETY: the application's call.
+    // SAFETY: the application's call is passed on.
     unsafe { answer(&[one], capacity, count, properties) }
 }
 
-/// Lists the runtime's extensions and those that the layer adds. The application asks for no layer's own.
+/// Lists the runtime's extensions and those that the layer adds. The application never asks for a single layer's.
 unsafe extern "system" fn enumerate_instance_extension_properties(
     of_layer: *const c_char,
     capacity: u32,
@@ -258,7 +258,7 @@ unsafe extern "system" fn enumerate_instance_extension_properties(
         extension_version: version,
     };
     let mut all = Vec::new();
-    // SAFETY: a function of this name has this type; room for as many as is said.
+    // SAFETY: a function with this name has this type, and there is room for as many elements as stated.
     let listed = unsafe {
         of_runtime::<pfn::EnumerateInstanceExtensionProperties>(c"xrEnumerateInstanceExtensionProperties")
             .and_then(|list| {
@@ -282,7 +282,7 @@ unsafe extern "system" fn enumerate_instance_extension_properties(
             all.push(more);
         }
     }
-    // SAFETY: the application's call.
+    // SAFETY: the application's call is passed on.
     unsafe { answer(&all, capacity, count, properties) }
 }
 
@@ -301,7 +301,7 @@ unsafe extern "system" fn create_instance(
         create_api_layer_instance: None,
     };
     let name: [c_char; sys::MAX_API_LAYER_NAME_SIZE] = characters(&layer.manifest.name);
-    // SAFETY: complete structures, and a name.
+    // SAFETY: the structures are complete, and the name is terminated.
     let agreed = unsafe { (layer.negotiate)(&loader_info(), name.as_ptr(), &mut request) };
     let functions = request.get_instance_proc_addr.zip(request.create_api_layer_instance);
     let (sys::Result::SUCCESS, Some((get, create)), Ok(runtime)) = (agreed, functions, runtime()) else {
@@ -325,17 +325,17 @@ unsafe extern "system" fn create_instance(
         settings_file_location: [0; sys::API_LAYER_MAX_SETTINGS_PATH_SIZE],
         next_info: &mut next,
     };
-    // SAFETY: the application's call, and complete structures.
+    // SAFETY: the application's call is passed on, with complete structures.
     unsafe { create(info, &chain, instance) }
 }
 
-/// The end of the chain.
+/// Creates the runtime's instance, at the end of the chain.
 unsafe extern "system" fn create_runtime_instance(
     info: *const sys::InstanceCreateInfo,
     _: *const sys::ApiLayerCreateInfo,
     instance: *mut sys::Instance,
 ) -> sys::Result {
-    // SAFETY: a function of this name has this type; the layer's call.
+    // SAFETY: a function with this name has this type. The layer's call is passed on.
     unsafe {
         match of_runtime::<pfn::CreateInstance>(c"xrCreateInstance") {
             Ok(create) => create(info, instance),

@@ -1,8 +1,8 @@
-//! A headset: the runtime broker's answers, and the library that they name.
+//! A headset: the answers of the runtime broker, and the library that they name.
 //!
-//! The library is the simulated runtime of `tests/openxr-stub`, a library of this machine and not of Android, which the
-//! application loads all the same: its functions are called like Android's. Frames go through the same gate as those of
-//! a window.
+//! The library is the simulated runtime of `tests/openxr-stub`. It is a library for this machine rather than for
+//! Android, but the application can load it, since its functions are called in the same way. Frames pass the same gate
+//! as a window's.
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::os::unix::ffi::OsStringExt;
@@ -23,34 +23,34 @@ const SYSTEM_BROKER: &str = "org.khronos.openxr.system_runtime_broker";
 /// The environment variable with the path of the library's script.
 const SCRIPT: &str = "YORO_OPENXR_STUB";
 
-/// The folder of the library, once it was looked for.
+/// The folder of the library, once it has been found.
 static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-/// The handle of the library, once it was loaded.
+/// The handle of the library, once it has been loaded.
 static LIBRARY: OnceLock<usize> = OnceLock::new();
 
-/// Puts the headset on.
+/// Attaches the headset to the device.
 ///
 /// # Errors
-/// The library is not where cargo puts it: beside this program, or in `deps`.
+/// Fails if the library is not where cargo puts it, which is beside this program or in `deps`.
 ///
 /// # Safety
-/// No other thread reads the environment.
+/// No other thread may read the environment.
 pub unsafe fn install(openxr: &OpenXr) -> Result<()> {
     let program = std::env::current_exe().context("this program does not know where it lies")?;
     let folder = program.parent().context("this program lies in no folder")?;
-    // Cargo renews the one in `deps`; the other may be left from an earlier build.
+    // Cargo updates the library in `deps`; the other one may be left over from an earlier build.
     let found =
         [folder.join("deps"), folder.to_owned()].into_iter().find(|folder| folder.join(FILE).is_file());
     let found = found.with_context(|| {
         format!("{FILE} is not beside {}: build it by `cargo build -p yoro-openxr-stub`", program.display())
     })?;
     FOLDER.get_or_init(|| found);
-    // SAFETY: as the caller says.
+    // SAFETY: guaranteed by the caller.
     unsafe { std::env::set_var(SCRIPT, &openxr.script) };
     Ok(())
 }
 
-/// Returns the answer of a content provider; none if there is no provider.
+/// Returns the answer of a content provider, or `None` if the provider does not exist.
 pub fn query(uri: &str, columns: Vec<String>) -> Option<Arc<Object>> {
     let openxr = host().device.openxr.as_ref()?;
     let (broker, path) = uri.strip_prefix("content://")?.split_once('/')?;
@@ -76,19 +76,19 @@ pub fn query(uri: &str, columns: Vec<String>) -> Option<Arc<Object>> {
     Some(Object::new("android/database/Cursor", Data::Cursor(cursor)))
 }
 
-/// The runtime's library by the path that the broker gave; none for any other.
+/// Returns the runtime's library for the path that the broker has returned, or `None` for any other path.
 pub fn open(path: &str) -> Option<*mut c_void> {
     if Path::new(path) == FOLDER.get()?.join(FILE) { library() } else { None }
 }
 
-/// The runtime's library; none without a headset.
+/// Returns the runtime's library, or `None` without a headset.
 pub fn library() -> Option<*mut c_void> {
     let file = FOLDER.get()?.join(FILE);
     let handle = *LIBRARY.get_or_init(|| {
         let path = CString::new(file.into_os_string().into_vec()).unwrap_or_default();
-        // SAFETY: a library of this project, which has no constructors of its own.
+        // SAFETY: this library of the project has no constructors.
         let handle = unsafe { libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL) };
-        // SAFETY: the handle is that of a library, or null, for which nothing is found.
+        // SAFETY: the handle is a library's or null, for which nothing is found.
         let pace = unsafe { libc::dlsym(handle, c"yoro_openxr_stub_pace".as_ptr()) };
         if !handle.is_null() && !pace.is_null() {
             // SAFETY: the library's function has this type.
@@ -100,17 +100,17 @@ pub fn library() -> Option<*mut c_void> {
     (handle != 0).then_some(handle as *mut c_void)
 }
 
-/// A symbol of the runtime's library; none if the handle is another library's.
+/// Returns a symbol of the runtime's library, or `None` if the handle is another library's.
 pub fn symbol(handle: *mut c_void, name: &CStr) -> Option<*mut c_void> {
     if LIBRARY.get() != Some(&(handle as usize)) {
         return None;
     }
-    // SAFETY: the handle is that of a library.
+    // SAFETY: the handle is a library's.
     let address = unsafe { libc::dlsym(handle, name.as_ptr().cast::<c_char>()) };
     Some(address)
 }
 
-/// The runtime's callback before each frame of the headset.
+/// Called by the runtime before each frame of the headset.
 extern "C" fn frame() {
     host().frames.present(|| Err("a headset shows no window: its script has `pictures`".into()));
 }

@@ -1,4 +1,4 @@
-//! Plays a script, in the place of the user and of the part of Android that starts activities.
+//! Plays a script, acting as the user and as the part of Android that starts activities.
 
 use std::ffi::c_void;
 use std::path::PathBuf;
@@ -16,22 +16,22 @@ use crate::random;
 use crate::script::{Battery, Key, Step, Thermal};
 use crate::threads;
 
-/// The stages of an activity that the script has reached.
+/// The state of the activity that the script has reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stage {
-    /// Between `onCreate` and `onDestroy`.
+    /// True between `onCreate` and `onDestroy`.
     pub created: bool,
-    /// Between `onStart` and `onStop`.
+    /// True between `onStart` and `onStop`.
     pub started: bool,
-    /// Between `onResume` and `onPause`.
+    /// True between `onResume` and `onPause`.
     pub resumed: bool,
-    /// Between `onNativeWindowCreated` and `onNativeWindowDestroyed`.
+    /// True between `onNativeWindowCreated` and `onNativeWindowDestroyed`.
     pub window: bool,
-    /// Has the focus.
+    /// True while the activity has the focus.
     pub focus: bool,
 }
 
-/// The player.
+/// Plays scripts.
 pub struct Player {
     host: &'static Host,
     looper: &'static ALooper,
@@ -41,32 +41,32 @@ pub struct Player {
     queue: Option<&'static AInputQueue>,
     stage: Stage,
     saved: Vec<u8>,
-    /// Number of the first log line that no step has waited for.
+    /// Number of the first log line that no step has waited for yet.
     log_read: usize,
 }
 
-/// An activity as the library sees it. It stays after its end: the library's threads may still look at it.
+/// An activity as seen by the library. It is kept after its end, since the library's threads may still access it.
 struct Activity {
     native: ANativeActivity,
     callbacks: Callbacks,
 }
 
-/// Calls one of an activity's callbacks, if the application has it, on the main thread.
+/// Calls one of an activity's callbacks on the main thread, if the application has set it.
 macro_rules! call {
     ($activity:ident, $function:expr $(, $argument:expr)*) => {
         if let Some(function) = $function {
-            // SAFETY: the application's callback, on the main thread, with its own activity and arguments that outlive
-            // the call.
+            // SAFETY: the application's callback, on the main thread, with its activity and arguments that outlive the
+            // call.
             unsafe { function(&raw mut $activity.native $(, $argument)*) }
         }
     };
 }
 
-/// The time a finger stays on the screen, in nanoseconds.
+/// Time that a finger stays on the screen, in nanoseconds.
 const TAP: u64 = 80_000_000;
 
 impl Player {
-    /// Makes a player on the main thread, whose looper it runs.
+    /// Creates a player on the main thread, whose looper it runs.
     pub fn new(create: OnCreate, out: PathBuf) -> Self {
         jni::attach_main_thread();
         Self {
@@ -146,7 +146,7 @@ impl Player {
                     if self.finish_asked() {
                         return;
                     }
-                    // Counted before it is granted: it may be shown at once.
+                    // Counted before the frame is granted, since it may be shown at once.
                     let shown = self.host.frames.shown();
                     self.host.frames.grant(1);
                     self.wait("a frame, or the application's wish to finish", |host| {
@@ -202,7 +202,7 @@ impl Player {
         }
     }
 
-    /// Runs the main looper until `done` is true. The message of a timeout contains `what`.
+    /// Runs the main looper until `done` returns true. The message of a timeout contains `what`.
     fn wait(&self, what: &str, done: impl Fn(&Host) -> bool) {
         self.host.watched(what, || {
             while !done(self.host) {
@@ -212,7 +212,7 @@ impl Player {
         });
     }
 
-    /// Calls back with the gate open, for the application may answer from its frame loop.
+    /// Calls a callback with the gate open, since the application may answer from its frame loop.
     fn callback<T>(&mut self, what: &str, call: impl FnOnce(&mut Activity) -> T) -> T {
         let host = self.host;
         let Some(activity) = self.activity.as_deref_mut() else {
@@ -225,7 +225,7 @@ impl Player {
         result
     }
 
-    /// Calls a callback that takes nothing but the activity.
+    /// Calls a callback that takes only the activity.
     fn event(&mut self, what: &str, get: impl Fn(&Callbacks) -> Event) {
         self.callback(what, |activity| call!(activity, get(&activity.callbacks)));
     }
@@ -236,7 +236,7 @@ impl Player {
         self.callback(what, |activity| call!(activity, get(&activity.callbacks), window));
     }
 
-    /// Calls a callback at a stage at which Android may, and says which stage follows.
+    /// Calls a callback that Android may call in the current state. Returns the state, which the caller updates.
     fn advance(
         &mut self,
         step: &str,
@@ -275,7 +275,7 @@ impl Player {
         self.callback("ANativeActivity_onCreate", |activity| {
             let state: *const c_void =
                 if saved.is_empty() { std::ptr::null() } else { saved.as_ptr().cast() };
-            // SAFETY: the application's entry point, with a complete activity, on the main thread.
+            // SAFETY: the application's entry point gets a complete activity, on the main thread.
             unsafe { create(&raw mut activity.native, state, saved.len()) };
         });
         self.stage.created = true;
@@ -326,7 +326,7 @@ impl Player {
         self.callback("onInputQueueDestroyed", |activity| {
             call!(activity, activity.callbacks.onInputQueueDestroyed, queue)
         });
-        // Once android_main has ended, it cannot take the queue off its looper, and android-activity does not.
+        // After `android_main` has ended, it can no longer detach the queue, and android-activity does not do so.
         if queue.is_attached() && main_runs(self.host) {
             self.host.violation("the input queue is still attached after onInputQueueDestroyed");
         }
@@ -372,12 +372,12 @@ impl Player {
         self.saved = self.callback("onSaveInstanceState", |activity| {
             let Some(function) = activity.callbacks.onSaveInstanceState else { return Vec::new() };
             let mut size = 0;
-            // SAFETY: the application's callback, with its own activity and room for the size, on the main thread.
+            // SAFETY: the application's callback gets its own activity and room for the size, on the main thread.
             let state = unsafe { function(&raw mut activity.native, &raw mut size) };
             if state.is_null() {
                 return Vec::new();
             }
-            // SAFETY: the application gives `size` bytes from malloc, which become the system's.
+            // SAFETY: the application returns `size` bytes from malloc, which the system then owns.
             unsafe {
                 let bytes = std::slice::from_raw_parts(state.cast::<u8>(), size).to_vec();
                 libc::free(state);
@@ -386,7 +386,7 @@ impl Player {
         });
     }
 
-    /// True if frames can be expected.
+    /// True if frames are expected.
     fn renders(&self) -> bool {
         self.stage.resumed && self.stage.window
     }
@@ -401,7 +401,7 @@ impl Player {
         self.wait_for_gate();
     }
 
-    /// Waits until a frame is drawn that waits to be shown.
+    /// Waits until a frame has been drawn and waits to be shown.
     fn wait_for_gate(&mut self) {
         self.host.frames.set_wanted(true);
         self.wait(&format!("frame {}", self.host.frames.shown() + 1), |host| host.frames.is_waiting());
@@ -465,7 +465,7 @@ impl Player {
         }
     }
 
-    /// The user answers the question for a permission, which stands before the activity.
+    /// Answers the request for a permission as the user, in a dialog in front of the activity.
     fn answer(&mut self, is_allowed: bool) {
         self.wait("the question for a permission", |host| host.camera.is_asked.load(Ordering::Acquire));
         self.focus(false);

@@ -1,4 +1,4 @@
-//! Random events, each of which Android can send in the activity's present state.
+//! Random events that Android can send in the activity's current state.
 
 use rand::Rng;
 
@@ -84,7 +84,7 @@ pub fn step(generator: &mut impl Rng, stage: Stage, width: i32, height: i32) -> 
     }
 }
 
-/// Returns the steps from a stage to the one in which the activity shows frames.
+/// Returns the steps that lead from this state to one in which the activity shows frames.
 pub fn back_to_running(stage: Stage) -> Vec<Step> {
     if !stage.created {
         return vec![Step::Launch];

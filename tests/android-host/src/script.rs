@@ -1,4 +1,4 @@
-//! The script of a run as TOML: the device, and the steps that happen to the application.
+//! The script of a run, in TOML: the device, and the steps that happen to the application.
 //!
 //! ```toml
 //! name = "boot"
@@ -11,8 +11,8 @@
 //! "debug.yoro.scene" = "prototype"
 //! ```
 //!
-//! followed or preceded by `steps = ["launch", { frames = 10 }, { capture = "boot.png" }, "quit"]`. Unknown keys are
-//! errors.
+//! The key `steps = ["launch", { frames = 10 }, { capture = "boot.png" }, "quit"]` comes before the first table.
+//! Unknown keys are errors.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,20 +20,20 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
-/// A device and its events.
+/// A device, and what happens to it.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Script {
-    /// Shown in the summary.
+    /// The name in the summary.
     pub name: String,
-    /// Real seconds for which one step, or one callback of the activity, may stand still before the run fails; it may
+    /// Real seconds that a step or a callback of the activity may take without progress before the run fails. It may
     /// use 20 times as much processor time.
     #[serde(default = "default_timeout")]
     pub patience_seconds: f64,
     /// The device at power-on.
     #[serde(default)]
     pub device: Device,
-    /// The steps, in order.
+    /// The steps in order.
     pub steps: Vec<Step>,
 }
 
@@ -42,17 +42,17 @@ fn default_timeout() -> f64 {
 }
 
 impl Script {
-    /// Reads a script and refuses one that cannot be played.
+    /// Reads a script, and rejects one that cannot be played.
     ///
     /// # Errors
-    /// The file cannot be read, is not TOML, or holds an unknown key, step or value.
+    /// Fails if the file cannot be read, is not TOML, or contains an unknown key, step or value.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path)
             .with_context(|| format!("cannot read the script {}: check the path", path.display()))?;
         Self::parse(&text).with_context(|| format!("the script {} cannot be played", path.display()))
     }
 
-    /// Reads a script from text.
+    /// Parses a script.
     ///
     /// # Errors
     /// Those of [`Script::read`].
@@ -78,77 +78,78 @@ impl Script {
     }
 }
 
-/// The simulated device and its answers.
+/// The simulated device and the values that it reports.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Device {
-    /// Window, pixels, landscape.
+    /// Width of the window in pixels, in landscape.
     pub width: i32,
-    /// Window, pixels.
+    /// Height of the window in pixels.
     pub height: i32,
-    /// Logical density (`AConfiguration_getDensity`), dots per inch.
+    /// Logical density in dots per inch (`AConfiguration_getDensity`).
     pub density: i32,
-    /// Physical pixels per inch (`DisplayMetrics.xdpi`).
+    /// Physical pixels per inch, horizontally (`DisplayMetrics.xdpi`).
     pub xdpi: f32,
-    /// Physical pixels per inch (`DisplayMetrics.ydpi`).
+    /// Physical pixels per inch, vertically (`DisplayMetrics.ydpi`).
     pub ydpi: f32,
-    /// The display's refresh rate, Hz; virtual time advances by one period per frame.
+    /// Refresh rate of the display in Hz. Virtual time advances by one period per frame.
     pub refresh_hz: f64,
-    /// Pixels of the display's mode if the user has chosen another size for the window; absent: those of the window.
+    /// Width and height of the display's mode in pixels, if the user has selected another size for the window. By
+    /// default those of the window.
     pub mode: Option<[i32; 2]>,
-    /// Refreshes after which the choreographer's timeline says that a frame is seen.
+    /// Number of refreshes after which a frame is visible, according to the choreographer's timeline.
     pub refreshes_ahead: u32,
-    /// Seconds that the device has slept since its boot: CLOCK_BOOTTIME, the sensors' clock, is ahead of
-    /// CLOCK_MONOTONIC by them.
+    /// Seconds that the device has slept since its boot. CLOCK_BOOTTIME, the clock of the sensors, is ahead of
+    /// CLOCK_MONOTONIC by this time.
     pub slept_seconds: f64,
-    /// Features that the package manager says are there, with their versions.
+    /// Features that the package manager reports, with their versions.
     pub features: BTreeMap<String, i32>,
-    /// True if sustained performance mode is offered.
+    /// True if the device supports sustained performance mode.
     pub sustained_performance: bool,
-    /// API level. Newer functions are not found by `dlsym`.
+    /// API level. `dlsym` does not find newer functions.
     pub sdk: i32,
-    /// The newest OpenGL ES version that a context can have.
+    /// The newest OpenGL ES version that contexts can have.
     pub gles: GlesVersion,
     /// Sensors that the device has.
     pub sensors: Vec<SensorKind>,
-    /// Battery; absent for a device without one.
+    /// The battery, or `None` for a device without one.
     pub battery: Option<Battery>,
     /// Thermal state.
     pub thermal: Thermal,
     /// System properties.
     pub properties: BTreeMap<String, String>,
-    /// Extras of the intent that starts the activity; all are strings, as `am start --es` gives them.
+    /// Extras of the intent that starts the activity. All are strings, as given by `am start --es`.
     pub extras: BTreeMap<String, String>,
-    /// The activity is started for a game loop, as Firebase Test Lab does.
+    /// Starts the activity for a game loop, as Firebase Test Lab does.
     pub game_loop: Option<GameLoop>,
     /// Text files in the application's external folder, by relative path.
     pub files: BTreeMap<String, String>,
-    /// The picture that the camera sees; absent for a device without one.
+    /// The picture that the camera sees, or `None` for a device without a camera.
     pub camera: Option<PathBuf>,
-    /// A headset: a runtime broker names the simulated OpenXR runtime. Without it no broker answers.
+    /// A headset, whose runtime broker names the simulated OpenXR runtime. Without it, no broker answers.
     pub openxr: Option<OpenXr>,
 }
 
-/// What starts a game loop.
+/// The intent that starts a game loop.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct GameLoop {
     /// The extra `scenario`.
     pub scenario: i32,
-    /// The file that the intent's data names; absent: it names none.
+    /// The file in the intent's data, if there is one.
     pub results: Option<PathBuf>,
 }
 
-/// A headset's OpenXR runtime, the library of `tests/openxr-stub`.
+/// A headset's OpenXR runtime, which is the library of `tests/openxr-stub`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenXr {
     /// The runtime's own script, in JSON.
     pub script: PathBuf,
-    /// The broker that names it is the system's, not one that a user has installed.
+    /// True if the broker that names it is the system's rather than one installed by the user.
     #[serde(default)]
     pub system: bool,
-    /// An API layer that the application carries, by its AAR, with a loader that puts it between.
+    /// The AAR of an API layer that the application contains, together with a loader that inserts it.
     #[serde(default)]
     pub layer: Option<PathBuf>,
 }
@@ -158,7 +159,7 @@ impl Default for Device {
         Self {
             width: 320,
             height: 180,
-            // A phone's screen, 110 mm wide, with few pixels.
+            // A phone's screen with a width of 110 mm and few pixels.
             density: 160,
             xdpi: 74.0,
             ydpi: 74.0,
@@ -187,25 +188,25 @@ impl Default for Device {
     }
 }
 
-/// Newest version of OpenGL ES.
+/// A version of OpenGL ES.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 pub enum GlesVersion {
     /// 2.0.
     #[serde(rename = "2.0")]
     Es20,
-    /// 3.0: no compute shaders.
+    /// 3.0, which has no compute shaders.
     #[serde(rename = "3.0")]
     Es30,
     /// 3.1.
     #[serde(rename = "3.1")]
     Es31,
-    /// 3.2, Mesa's own version.
+    /// 3.2, the newest version of Mesa.
     #[serde(rename = "3.2")]
     Es32,
 }
 
 impl GlesVersion {
-    /// Major and minor number.
+    /// Returns the major and the minor number.
     pub fn numbers(self) -> (i32, i32) {
         match self {
             Self::Es20 => (2, 0),
@@ -220,35 +221,36 @@ impl GlesVersion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SensorKind {
-    /// Type 1.
+    /// `ASENSOR_TYPE_ACCELEROMETER` (1).
     Accelerometer,
-    /// Type 4.
+    /// `ASENSOR_TYPE_GYROSCOPE` (4).
     Gyroscope,
-    /// Type 16.
+    /// `ASENSOR_TYPE_GYROSCOPE_UNCALIBRATED` (16).
     GyroscopeUncalibrated,
 }
 
-/// Answers of `BatteryManager` and of the sticky intent `ACTION_BATTERY_CHANGED`.
+/// Values of `BatteryManager` and of the sticky intent `ACTION_BATTERY_CHANGED`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Battery {
-    /// Percent.
+    /// Level in percent.
     pub level: i32,
-    /// Millivolts.
+    /// Voltage in millivolts.
     pub millivolts: i32,
-    /// Tenths of a degree Celsius.
+    /// Temperature in tenths of a degree Celsius.
     pub decidegrees: i32,
     /// `EXTRA_PLUGGED`: 0 on battery, 1 AC, 2 USB, 4 wireless.
     pub plugged: i32,
     /// `EXTRA_STATUS`: 2 charging, 3 discharging, 4 not charging, 5 full.
     pub status: i32,
-    /// `BATTERY_PROPERTY_CURRENT_NOW`, microamperes by specification, negative when discharging; absent: unsupported.
+    /// `BATTERY_PROPERTY_CURRENT_NOW` in microamperes if to specification, negative while discharging. `None` if
+    /// unsupported.
     pub current_now: Option<i32>,
-    /// `BATTERY_PROPERTY_CURRENT_AVERAGE`, microamperes; absent: unsupported.
+    /// `BATTERY_PROPERTY_CURRENT_AVERAGE` in microamperes. `None` if unsupported.
     pub current_average: Option<i32>,
-    /// `BATTERY_PROPERTY_CHARGE_COUNTER`, microampere-hours; absent: unsupported.
+    /// `BATTERY_PROPERTY_CHARGE_COUNTER` in microampere-hours. `None` if unsupported.
     pub charge_counter: Option<i32>,
-    /// `BATTERY_PROPERTY_ENERGY_COUNTER`, nanowatt-hours; absent: unsupported.
+    /// `BATTERY_PROPERTY_ENERGY_COUNTER` in nanowatt-hours. `None` if unsupported.
     pub energy_counter: Option<i64>,
 }
 
@@ -268,13 +270,13 @@ impl Default for Battery {
     }
 }
 
-/// Answers of `AThermal` and `PowerManager`.
+/// Values of `AThermal` and `PowerManager`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Thermal {
-    /// 0 none to 6 shutdown.
+    /// Thermal status from 0 (none) to 6 (shutdown).
     pub status: i32,
-    /// 1.0 is severe.
+    /// Thermal headroom. 1.0 is severe throttling.
     pub headroom: f32,
 }
 
@@ -284,15 +286,15 @@ impl Default for Thermal {
     }
 }
 
-/// One step of the script.
+/// A step of the script.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Step {
-    /// `create`, `start`, `resume`, `input-queue`, `window` and `focus`, as the system starts an activity.
+    /// The steps by which the system starts an activity: `create`, `start`, `resume`, `input-queue`, `window`, `focus`.
     Launch,
-    /// The steps of the system when the user leaves for good: `unfocus`, `pause`, `window-lost`, `stop`, `destroy`.
+    /// The steps by which the system ends an activity: `unfocus`, `pause`, `window-lost`, `stop`, `destroy`.
     Quit,
-    /// `ANativeActivity_onCreate`, with the state that the last `save-state` gave.
+    /// `ANativeActivity_onCreate`, with the state returned by the last `save-state`.
     Create,
     /// `onStart`.
     Start,
@@ -304,11 +306,11 @@ pub enum Step {
     Window,
     /// `onNativeWindowDestroyed`.
     WindowLost,
-    /// The window changes its size, with `onNativeWindowResized` and `onContentRectChanged`.
+    /// Changes the window's size, with `onNativeWindowResized` and `onContentRectChanged`.
     Resize {
-        /// Pixels.
+        /// Width in pixels.
         width: i32,
-        /// Pixels.
+        /// Height in pixels.
         height: i32,
     },
     /// `onWindowFocusChanged(1)`.
@@ -321,111 +323,111 @@ pub enum Step {
     SaveState,
     /// `onStop`.
     Stop,
-    /// `onDestroy`; the end of `android_main` is awaited.
+    /// `onDestroy`. Waits for the end of `android_main`.
     Destroy,
     /// `onLowMemory`.
     LowMemory,
     /// `onConfigurationChanged`.
     ConfigurationChanged,
-    /// Shows that many frames.
+    /// Shows this many frames.
     Frames(u64),
-    /// Shows frames for that many virtual seconds.
+    /// Shows frames for this many virtual seconds.
     Seconds(f64),
-    /// Frames are shown until a log line contains the text, one after the line that such a step waited for before.
+    /// Shows frames until a log line contains the text, starting behind the line that the previous such step found.
     WaitLog {
-        /// A part of the line.
+        /// The text.
         text: String,
-        /// Frames after which the run fails.
+        /// Number of frames after which the run fails.
         frames: u64,
     },
-    /// Frames are shown until the application asks for its end.
+    /// Shows frames until the application asks to be finished.
     WaitFinish {
-        /// Frames after which the run fails.
+        /// Number of frames after which the run fails.
         frames: u64,
     },
-    /// The application shows nothing (no window, paused): virtual time passes all the same.
+    /// Lets this many virtual seconds pass while the application shows nothing, because it is paused or has no window.
     Idle(f64),
-    /// A finger touches and leaves after 80 ms.
+    /// A finger touches the screen for 80 ms.
     Tap {
-        /// The position from the left, 0 to 1.
+        /// Horizontal position, from 0 at the left to 1 at the right.
         #[serde(default = "half")]
         x: f32,
-        /// The position from the top, 0 to 1.
+        /// Vertical position, from 0 at the top to 1 at the bottom.
         #[serde(default = "half")]
         y: f32,
     },
-    /// A finger stays for a time.
+    /// A finger touches the screen for a longer time.
     LongPress {
-        /// The position from the left, 0 to 1.
+        /// Horizontal position, from 0 at the left to 1 at the right.
         #[serde(default = "half")]
         x: f32,
-        /// The position from the top, 0 to 1.
+        /// Vertical position, from 0 at the top to 1 at the bottom.
         #[serde(default = "half")]
         y: f32,
-        /// Virtual seconds.
+        /// Time that the finger stays, in virtual seconds.
         #[serde(default = "long_press_seconds")]
         seconds: f64,
     },
-    /// A key goes down and up.
+    /// Presses and releases a key.
     Key(Key),
-    /// The head turns to an orientation, relative to the start: yaw to the left, then pitch up, then roll to the left.
+    /// Turns the head to an orientation relative to the start. The angles are applied in the order yaw, pitch, roll.
     Head {
-        /// Degrees.
+        /// Yaw in degrees, positive to the left.
         #[serde(default)]
         yaw: f32,
-        /// Degrees.
+        /// Pitch in degrees, positive upwards.
         #[serde(default)]
         pitch: f32,
-        /// Degrees.
+        /// Roll in degrees, positive to the left.
         #[serde(default)]
         roll: f32,
-        /// Virtual seconds that the movement takes; frames are shown meanwhile.
+        /// Duration of the movement in virtual seconds. Frames are shown meanwhile.
         seconds: f64,
-        /// The next steps come while the head moves.
+        /// True if the next steps happen while the head moves.
         #[serde(default)]
         go_on: bool,
     },
-    /// The battery answers differently from now on.
+    /// Changes the battery's values.
     Battery(Battery),
-    /// The battery is gone.
+    /// Removes the battery.
     BatteryMissing,
-    /// The thermal state is another; listeners are called.
+    /// Changes the thermal state, and calls its listeners.
     Thermal(Thermal),
-    /// The camera sees another picture.
+    /// Makes the camera see another picture.
     Camera(PathBuf),
-    /// Another application takes the camera, which is open.
+    /// Lets another application take the camera, which must be open.
     CameraLost,
-    /// The user answers the question whether the application may use the camera.
+    /// Answers whether the application may use the camera, as the user.
     Permission(bool),
-    /// Another application shares something: the intent of the next `create`.
+    /// Shares something from another application, in the intent of the next `create`.
     Share(Share),
-    /// A system property has a new value.
+    /// Sets a system property.
     Property {
-        /// Its name.
+        /// The property's name.
         name: String,
-        /// Its new value; empty removes it.
+        /// The new value. An empty one removes the property.
         value: String,
     },
-    /// The current EGL context is lost at the next swap.
+    /// Makes the current EGL context lost at the next swap.
     ContextLoss,
-    /// The frame that is about to be shown becomes a PNG of this name in the output folder.
+    /// Writes the frame that is about to be shown as a PNG with this name in the output folder.
     Capture(PathBuf),
-    /// Resources in use are noted under this name.
+    /// Records the resources in use under this name.
     Mark(String),
-    /// Steps several times.
+    /// Repeats steps.
     Repeat {
         /// The number of times.
         times: u32,
         /// The steps.
         steps: Vec<Step>,
     },
-    /// Random sequences of valid events. Each begins in the state in which the one before ended.
+    /// Random sequences of valid events. Each starts in the state in which the previous one has ended.
     Random {
-        /// Same seed, same events.
+        /// Seed of the events.
         seed: u64,
         /// The number of sequences.
         sequences: u32,
-        /// Events in each, at most.
+        /// Maximum number of events in each sequence.
         events: u32,
     },
 }
@@ -438,7 +440,7 @@ fn long_press_seconds() -> f64 {
     0.8
 }
 
-/// Something shared: either a text or a file.
+/// Something that is shared: either a text or a file.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Share {
@@ -446,9 +448,9 @@ pub struct Share {
     pub text: Option<String>,
     /// The file that the content resolver opens.
     pub file: Option<PathBuf>,
-    /// Virtual seconds that its owner takes to open it.
+    /// Virtual seconds that the file's owner takes to open it.
     pub after: f64,
-    /// By `ACTION_VIEW` and the intent's data; otherwise by `ACTION_SEND` and its extras.
+    /// True to share by `ACTION_VIEW` and the intent's data, false to share by `ACTION_SEND` and its extras.
     pub view: bool,
 }
 
@@ -462,9 +464,9 @@ pub enum Key {
     VolumeUp,
     /// KEYCODE_VOLUME_DOWN.
     VolumeDown,
-    /// KEYCODE_HEADSETHOOK, the button of wired remotes.
+    /// KEYCODE_HEADSETHOOK, the button of wired remote controls.
     Headset,
-    /// KEYCODE_DPAD_CENTER, the trigger of some viewers.
+    /// KEYCODE_DPAD_CENTER, the trigger of some VR viewers.
     DpadCenter,
     /// KEYCODE_ENTER.
     Enter,
@@ -475,7 +477,7 @@ pub enum Key {
 }
 
 impl Key {
-    /// `AKEYCODE_*`.
+    /// Returns the `AKEYCODE_*` constant.
     pub fn code(self) -> i32 {
         match self {
             Self::Back => 4,

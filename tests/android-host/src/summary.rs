@@ -6,93 +6,92 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-/// A part of every output, so that no figure is taken for a device's.
+/// Part of every output, so that no figure is mistaken for that of a device.
 pub const LABEL: &str = "simulated Android host";
 
-/// Result of a run.
+/// The result of a run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Summary {
     /// Always [`LABEL`].
     pub host: String,
     /// The script's name.
     pub script: String,
-    /// The APK.
+    /// The path of the APK.
     pub apk: PathBuf,
-    /// `x86_64` or `arm64-v8a`.
+    /// The ABI: `x86_64` or `arm64-v8a`.
     pub abi: String,
-    /// The application's library, as loaded, and after it an API layer's.
+    /// The application's library as loaded, followed by that of an API layer.
     pub libraries: Vec<LibraryFacts>,
-    /// The reason why the run ended early; absent if the script was played to its end.
+    /// The reason why the run ended early. `None` if the script was played to its end.
     pub failure: Option<String>,
-    /// Frames shown.
+    /// Number of frames shown.
     pub frames: u64,
-    /// Virtual seconds.
+    /// Duration in virtual seconds.
     pub seconds: f64,
-    /// Real seconds. They measure this machine and its CPU rasterizer, not a phone.
+    /// Duration in real seconds. It depends on this machine and its CPU rasterizer, and does not apply to a phone.
     pub real_seconds: f64,
-    /// Real milliseconds of the longest callback on the main thread.
+    /// Duration of the longest callback on the main thread, in real milliseconds.
     pub longest_callback_ms: f64,
-    /// OpenGL ES.
+    /// Facts about OpenGL ES.
     pub gl: GlFacts,
-    /// Resources in use at the marks, the last one at the end of the run.
+    /// Resources in use at the marks. The last mark is the end of the run.
     pub marks: Vec<Mark>,
-    /// Input events.
+    /// Numbers of input events.
     pub input: InputFacts,
-    /// Things that Android forbids or punishes and that the application did.
+    /// Things the application did that Android forbids or penalises.
     pub violations: Vec<String>,
-    /// Unknown JNI calls, answered by a new object of the type, zero or false.
+    /// Unknown JNI calls, which returned a new object of the type, zero or false.
     pub jni_invented: BTreeMap<String, u64>,
-    /// Requests for the device's performance, with the number of times each was made.
+    /// Requests about the device's performance, with the number of times each was made.
     pub requests: BTreeMap<String, u64>,
-    /// Symbols that the libraries import and that are answered by a trap.
+    /// Symbols that the libraries import and that are traps.
     pub trapped_symbols: Vec<String>,
-    /// Files written by `capture`.
+    /// Files written by `capture` steps.
     pub captures: Vec<PathBuf>,
-    /// The number of lines that each tag logged, errors apart.
+    /// Number of lines per tag, counting errors separately.
     pub log_counts: BTreeMap<String, u64>,
-    /// Lines of the tags `YORO`, the application's, and `yoro`, the API layer's, and every line of priority error and
-    /// above.
+    /// Lines with the tags `YORO` (the application) and `yoro` (the API layer), and all of priority error and above.
     pub log: Vec<LogLine>,
 }
 
 /// A library in the APK.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct LibraryFacts {
-    /// Path in the APK.
+    /// The path in the APK.
     pub name: String,
-    /// Bytes.
+    /// Size in bytes.
     pub size: u64,
-    /// Libraries it names.
+    /// The libraries that it needs.
     pub needed: Vec<String>,
-    /// Imported symbols that were bound.
+    /// Number of imported symbols that were bound.
     pub symbols: usize,
-    /// Relocations applied.
+    /// Number of applied relocations.
     pub relocations: usize,
-    /// Smallest alignment of a LOAD segment.
+    /// Smallest alignment of a LOAD segment in bytes.
     pub alignment: u64,
 }
 
-/// OpenGL ES.
+/// Facts about OpenGL ES.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct GlFacts {
     /// `GL_VERSION` of the last context.
     pub version: String,
     /// `GL_RENDERER` of the last context.
     pub renderer: String,
-    /// Contexts made.
+    /// Number of contexts created.
     pub contexts: u64,
-    /// Times that the application waited for a fence.
+    /// Number of times that the application waited for a fence.
     pub waits: u64,
-    /// Errors as the driver words them, with the frame; the first fifty.
+    /// The first fifty errors in the driver's words, with the number of the frame.
     pub errors: Vec<String>,
-    /// All errors.
+    /// Number of all errors.
     pub error_count: u64,
 }
 
-/// Input events.
+/// Numbers of input events.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct InputFacts {
-    /// Sent.
+    /// Sent to the application.
     pub sent: u64,
     /// Finished by the application.
     pub finished: u64,
@@ -100,37 +99,37 @@ pub struct InputFacts {
     pub handled: u64,
 }
 
-/// Resources in use.
+/// The resources in use at some point of the run.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 pub struct Mark {
     /// The mark's name.
     pub name: String,
-    /// Frames shown so far.
+    /// Number of frames shown so far.
     pub frames: u64,
-    /// Virtual seconds.
+    /// Virtual seconds since the start of the run.
     pub seconds: f64,
-    /// Live GL objects by kind.
+    /// Number of live GL objects by kind.
     pub gl_objects: BTreeMap<String, u64>,
-    /// EGL contexts not destroyed.
+    /// Number of EGL contexts that have not been destroyed.
     pub egl_contexts: u64,
-    /// EGL surfaces not destroyed.
+    /// Number of EGL surfaces that have not been destroyed.
     pub egl_surfaces: u64,
-    /// References to native windows held.
+    /// Number of references held to native windows.
     pub window_references: i64,
-    /// Loopers, sensor queues and other NDK objects not released.
+    /// Number of loopers, sensor queues and other NDK objects that have not been released.
     pub ndk_objects: BTreeMap<String, i64>,
-    /// JNI references of all kinds.
+    /// Number of JNI references of all kinds.
     pub jni_references: u64,
-    /// Open file descriptors of the process.
+    /// Number of open file descriptors of the process.
     pub file_descriptors: u64,
-    /// Threads of the process, Mesa's included.
+    /// Number of threads of the process, including Mesa's.
     pub threads: u64,
-    /// Resident memory of the process, KiB, Mesa included.
+    /// Resident memory of the process in KiB, including Mesa's.
     pub resident_kib: u64,
 }
 
 impl Mark {
-    /// Returns everything that must not grow from cycle to cycle, memory apart, as one line of text.
+    /// Returns one line of text with everything except memory that must not grow from cycle to cycle.
     pub fn objects(&self) -> String {
         format!(
             "GL {:?}, EGL contexts {} surfaces {}, windows {}, NDK {:?}, JNI {}, fds {}, threads {}",
@@ -149,11 +148,11 @@ impl Mark {
 /// A line of the log.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct LogLine {
-    /// Virtual seconds.
+    /// Time in virtual seconds.
     pub seconds: f64,
-    /// Frames shown so far.
+    /// Number of frames shown so far.
     pub frame: u64,
-    /// `V`, `D`, `I`, `W`, `E`, `F`.
+    /// Priority: `V`, `D`, `I`, `W`, `E` or `F`.
     pub priority: char,
     /// Tag.
     pub tag: String,

@@ -1,31 +1,31 @@
-//! The threads of this process: whether they go on, and when they are at rest.
+//! The threads of this process: whether they make progress, and whether they are at rest.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The number of looks that must find a thread asleep.
+/// Number of checks in which a thread must be asleep.
 const LOOKS: u32 = 4;
-/// The pause between two looks.
+/// Time between two checks.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// The part of its patience that a process that goes on spends on processors at least. On a loaded machine, and more so
-/// under qemu, a frame may take minutes; so real time alone does not tell that it hangs.
+/// Minimum processor time that counts as progress, as a fraction of the patience. On a busy machine, especially under
+/// qemu, a frame may take minutes, so real time alone does not show that a process hangs.
 const LEAST: f64 = 0.02;
-/// The processor time, in times of its patience, after which a process runs in circles.
+/// Maximum processor time, as a multiple of the patience. A process that uses more is in an endless loop.
 const MOST: f64 = 20.0;
 
 /// The progress of something that must end.
 pub struct Progress {
-    /// Processor time of the process when it began.
+    /// Processor time of the process at the beginning.
     begun: Duration,
-    /// The last moment at which the process had spent enough processor time, and how much.
+    /// When the process last made progress, and its processor time then.
     moved: (Instant, Duration),
 }
 
 impl Progress {
-    /// Begins at this moment, with this processor time of the process.
+    /// Starts now, with this processor time of the process.
     pub fn new(now: Instant, spent: Duration) -> Progress {
         Progress { begun: spent, moved: (now, spent) }
     }
@@ -52,15 +52,15 @@ pub fn processor_time() -> Duration {
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
-/// Returns name and state of a thread: R for one that runs or could, S for one that sleeps.
+/// Returns the name and the state of a thread: R if it is running or ready, S if it sleeps.
 fn state(task: &Path) -> Option<(String, char)> {
     let stat = std::fs::read_to_string(task.join("stat")).ok()?;
-    // The name, in parentheses, may have some itself.
+    // The name is in parentheses, and may itself contain some.
     let (before, after) = stat.rsplit_once(") ")?;
     Some((before.split_once('(')?.1.to_owned(), after.chars().next()?))
 }
 
-/// Returns the names of all other threads in /proc, and their states; nothing if they cannot be listed.
+/// Returns the names and states of all other threads in /proc, or `None` if they cannot be listed.
 pub fn others() -> Option<impl Iterator<Item = (OsString, char)>> {
     // SAFETY: takes nothing and cannot fail.
     let own = unsafe { libc::gettid() }.to_string();
@@ -69,8 +69,8 @@ pub fn others() -> Option<impl Iterator<Item = (OsString, char)>> {
     Some(others.filter_map(|task| Some((task.file_name(), state(&task.path())?.1))))
 }
 
-/// Waits until all other threads are at rest, so that those that end by themselves have ended. One that waits for an
-/// instant of the virtual clock looks at it again and again: it need not sleep in each look.
+/// Waits until all other threads are at rest, so that those that are about to end have ended. A thread that waits for a
+/// time on the virtual clock wakes up again and again, so it need not be asleep in consecutive checks.
 pub fn rest() {
     let mut asleep: BTreeMap<OsString, u32> = BTreeMap::new();
     loop {
@@ -87,7 +87,7 @@ pub fn rest() {
     }
 }
 
-/// Returns the kernel function that each thread waits in: the first clue to a deadlock.
+/// Returns the kernel function in which each thread waits, which is the first clue to a deadlock.
 pub fn list() -> String {
     let mut states: BTreeMap<String, u32> = BTreeMap::new();
     for task in std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
@@ -112,7 +112,7 @@ mod tests {
     fn a_step_hangs_when_it_stands_still_or_runs_in_circles_and_not_when_it_is_slow() {
         let (start, patience) = (Instant::now(), Duration::from_secs(60));
         let seconds = Duration::from_secs_f64;
-        // Returns when a process is given up that gets this share of a processor.
+        // Returns when and why the run gives up on a process with this share of a processor.
         let given_up = |share: f64| {
             let mut progress = Progress::new(start, seconds(5.0));
             (0..40_000).find_map(|second| {
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn a_thread_that_ends_by_itself_is_waited_for() {
         let count = || std::fs::read_dir("/proc/self/task").unwrap().count();
-        // It wakes often, and stays.
+        // This thread wakes often, but does not end.
         let (stop, stopped) = std::sync::mpsc::channel::<()>();
         let waker = std::thread::spawn(move || {
             while stopped.recv_timeout(Duration::from_micros(100)) == Err(RecvTimeoutError::Timeout) {}

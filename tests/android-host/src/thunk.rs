@@ -1,4 +1,4 @@
-//! Traps: small functions made at run time, one per name, so that a call to an undefined function reports its name.
+//! Traps: small functions made at run time, one per name, so that a call of an undefined function reports its name.
 
 use std::sync::Mutex;
 
@@ -8,13 +8,13 @@ use crate::host::{fatal, lock};
 
 static NAMES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Bytes of one trap.
+/// Size of a trap in bytes.
 const SIZE: usize = 32;
 
-/// Makes one trap for each name and gives their addresses. They stay for the process's life.
+/// Makes a trap for each name, and returns their addresses. Traps are never freed.
 ///
 /// # Errors
-/// No memory.
+/// Fails if there is no memory.
 pub fn traps(names: &[String]) -> Result<Vec<usize>> {
     if names.is_empty() {
         return Ok(Vec::new());
@@ -23,7 +23,7 @@ pub fn traps(names: &[String]) -> Result<Vec<usize>> {
     let first = all.len();
     all.extend_from_slice(names);
     let length = names.len() * SIZE;
-    // SAFETY: a new anonymous mapping at an address of the kernel's choice.
+    // SAFETY: creates a new anonymous mapping at an address chosen by the kernel.
     let memory = unsafe {
         libc::mmap(
             std::ptr::null_mut(),
@@ -39,15 +39,15 @@ pub fn traps(names: &[String]) -> Result<Vec<usize>> {
     for index in first..first + names.len() {
         code.extend_from_slice(&trap(index as u32, sprung as *const () as u64));
     }
-    // SAFETY: the mapping is `length` bytes, writable, and nobody else knows it.
+    // SAFETY: the mapping has `length` bytes and is writable, and nobody else knows it.
     unsafe { std::ptr::copy_nonoverlapping(code.as_ptr(), memory.cast(), length) };
-    // SAFETY: the whole mapping made above; code is never written again.
+    // SAFETY: protects the whole mapping made above. The code is never written again.
     let protected = unsafe { libc::mprotect(memory, length, libc::PROT_READ | libc::PROT_EXEC) };
     ensure!(protected == 0, "no executable memory for traps: {}", std::io::Error::last_os_error());
     Ok((0..names.len()).map(|index| memory as usize + index * SIZE).collect())
 }
 
-/// `sprung(index)` in machine code: `mov edi, index; movabs rax, target; jmp rax`.
+/// Returns the machine code of `sprung(index)`: `mov edi, index; movabs rax, target; jmp rax`.
 #[cfg(target_arch = "x86_64")]
 fn trap(index: u32, target: u64) -> [u8; SIZE] {
     let mut code = [0xcc; SIZE];
@@ -59,7 +59,7 @@ fn trap(index: u32, target: u64) -> [u8; SIZE] {
     code
 }
 
-/// `sprung(index)` in machine code: `ldr w0, 16; ldr x16, 24; br x16`.
+/// Returns the machine code of `sprung(index)`: `ldr w0, 16; ldr x16, 24; br x16`.
 #[cfg(target_arch = "aarch64")]
 fn trap(index: u32, target: u64) -> [u8; SIZE] {
     let mut code = [0; SIZE];

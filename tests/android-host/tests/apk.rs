@@ -1,4 +1,4 @@
-//! The built APK's own library in the simulated Android host. `cargo xtask test` builds the APK and names it in
+//! Runs the built APK's own library in the simulated Android host. `cargo xtask test` builds it and sets
 //! `YORO_TEST_APK`.
 
 mod host;
@@ -22,8 +22,7 @@ use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headse
 
 use host::{READY, Run, Server, device, layer, play, play_arm64, show};
 
-/// The settings of each test's device, and of the desktop it is compared with: a scene and a quality that a CPU draws
-/// fast.
+/// The settings of all devices, and of the desktop for comparison. A CPU renders this scene and quality quickly.
 const SETTINGS: [(&str, &str); 9] = [
     ("scene", "prototype"),
     ("method", "yoro"),
@@ -38,13 +37,13 @@ const SETTINGS: [(&str, &str); 9] = [
 const SIZE: [u32; 2] = [320, 180];
 const DPI: f32 = 74.0;
 
-/// The settings of all tests with those of one test, which come in their place.
+/// Returns the settings of all tests, with those of one test replacing them.
 fn settings<'a>(own: &[(&'a str, &'a str)]) -> Vec<(&'a str, &'a str)> {
     let is_shared = |(key, _): &&(&str, &str)| !own.iter().any(|(other, _)| other == key);
     SETTINGS.iter().filter(is_shared).chain(own).copied().collect()
 }
 
-/// A phone with the settings of all tests and `more`, and more keys of `[device]`.
+/// Returns a phone with the settings of all tests and `more`, and further keys of `[device]`.
 fn phone(more: &[(&str, &str)], keys: &str) -> String {
     device(&settings(more), keys)
 }
@@ -58,12 +57,12 @@ fn lines(run: &Run) -> Vec<Line> {
     lines.iter().map(|line| line.parse().unwrap_or_else(|error| panic!("{line}: {error}"))).collect()
 }
 
-/// Returns the desktop's picture with the same settings; `yaw_degrees` fixes the head's direction.
+/// Returns the picture that the desktop renders with the same settings. `yaw_degrees` fixes the direction of the head.
 fn desktop(extra: &[(&str, &str)], yaw_degrees: Option<f32>) -> RgbImage {
     desktops(extra, &[yaw_degrees]).remove(0)
 }
 
-/// Returns the desktop's pictures in several directions of the head.
+/// Returns the pictures that the desktop renders in several directions of the head.
 fn desktops(extra: &[(&str, &str)], yaws_degrees: &[Option<f32>]) -> Vec<RgbImage> {
     let pairs = SETTINGS.iter().chain(extra).map(|(key, value)| format!("{key}={value}"));
     let screen = Screen { size: SIZE, dpi: [DPI; 2], rotation: Rotation::LandscapeLeft };
@@ -110,11 +109,11 @@ fn boots_to_the_first_frame() {
     let picture = run.picture("boot.png");
     let colours: std::collections::HashSet<_> = picture.pixels().collect();
     assert!(colours.len() > 100, "the picture has {} colours", colours.len());
-    // The window is magenta again after each swap: pixels that are not drawn show.
+    // The window is filled with magenta after each swap, which remains visible where nothing is drawn.
     assert!(!colours.contains(&image::Rgb([255, 0, 255])), "parts of the window are not drawn");
     assert_eq!(run.summary.trapped_symbols, Vec::<String>::new());
 
-    // The GPU is never more than a frame behind, and the device is asked for steady performance.
+    // The GPU is at most one frame behind, and the application requests sustained performance.
     let Summary { frames, gl, requests, .. } = &run.summary;
     assert!(gl.waits + 2 >= *frames, "{} waits for the GPU in {frames} frames", gl.waits);
     let asked = |what: &str| requests.get(what).copied().unwrap_or(0);
@@ -127,7 +126,7 @@ fn boots_to_the_first_frame() {
 
 #[test]
 fn a_lower_resolution_is_the_same_screen() {
-    // The display has 427 x 240 pixels at 74 dpi; the user has lowered it to 320 x 180.
+    // The display has 427 x 240 pixels at 74 dpi, which the user has reduced to 320 x 180.
     let device = phone(&[], "mode = [427, 240]");
     let Some(run) = play("resolution", &device, r#""launch", { frames = 2 }, "quit""#) else { return };
     run.assert_clean();
@@ -156,7 +155,7 @@ fn the_phone_draws_the_same_picture_as_the_desktop() {
     );
 }
 
-/// The phone shows what a server renders, says that the server is gone, and that another one is in its place.
+/// The phone shows what a server renders, reports that the server is gone, and connects to its successor.
 #[test]
 fn a_stream_is_shown_and_its_end_is_said() {
     let Some(server) = Server::start("stream", "0") else { return };
@@ -166,7 +165,7 @@ fn a_stream_is_shown_and_its_end_is_said() {
         phone(&[("render-scale", "1")], "sensors = []") + &format!("\n[device.extras]\nstream = \"{link}\"");
     let capture = host::folder("stream").join("stream.png");
     _ = std::fs::remove_file(&capture);
-    // Once the picture is taken, the server ends, and another one comes.
+    // After the picture has been taken, the server ends and another one starts.
     let successor = std::thread::spawn(move || {
         let start = Instant::now();
         while !capture.exists() && start.elapsed() < Duration::from_secs(60) {
@@ -184,7 +183,7 @@ fn a_stream_is_shown_and_its_end_is_said() {
     let Some(run) = run else { return };
     run.assert_clean();
     let stream = run.picture("stream.png");
-    // The server's own quality, which is the default.
+    // The server renders with its own quality, which is the default.
     let full = [
         ("shadow-map", "2048"),
         ("ssao", "half"),
@@ -221,12 +220,12 @@ fn turning_the_head_turns_the_picture() {
     );
 }
 
-/// The head turns at 45 degrees a second when the picture is taken.
+/// The head turns at 45 degrees per second when the picture is taken.
 #[test]
 fn the_picture_shows_the_head_at_the_time_it_is_seen() {
     let steps = r#"{ head = { yaw = 60, seconds = 2.0, go_on = true } }, { seconds = 1.0 }, { capture = "turning.png" }"#;
     let picture = |refreshes: u32| {
-        // The GPU's time counts, too, and the simulated one's is not that of the simulated clock.
+        // Without profiling: measured GPU time would be added to the delay, and it is not on the virtual clock.
         let keys = format!("refreshes_ahead = {refreshes}\nslept_seconds = 3600");
         let device = phone(&[("profiling", "false")], &keys);
         Some(show(&format!("ahead-{refreshes}"), &device, steps)?.picture("turning.png"))
@@ -238,7 +237,7 @@ fn the_picture_shows_the_head_at_the_time_it_is_seen() {
         let likeness = |i: &usize| decibels(&picture, &desktops[*i]);
         (0..yaws.len()).max_by(|a, b| likeness(a).total_cmp(&likeness(b))).map(|i| yaws[i]).unwrap()
     });
-    // Three refreshes of a sixtieth of a second are 2.25 degrees.
+    // Three refreshes of 1/60 s correspond to 2.25 degrees.
     assert!((1.5..=3.0).contains(&(later - soon)), "{soon} and {later} degrees");
 }
 
@@ -302,7 +301,7 @@ fn telemetry_reports_battery_and_heat() {
     assert!((last.battery_celsius.unwrap() - 29.8).abs() < 0.01);
     assert!((last.thermal_headroom.unwrap() - 0.61).abs() < 0.01);
     assert_eq!((last.refresh_hz, last.performance.as_deref()), (Some(60.0), Some("sustained/hints")));
-    // Every frame takes one refresh of the virtual clock.
+    // Every frame takes one refresh on the virtual clock.
     assert!((last.fps.unwrap() - 60.0).abs() < 1.0, "{last}");
     assert_eq!(last.stale, Some(0), "{last}");
 }
@@ -318,10 +317,10 @@ fn runs_without_battery_and_sensors() {
         (last.current_raw, last.voltage_mv, last.level_percent, last.charge_uah, last.plugged),
         (None, None, None, None, None)
     );
-    // Thermal status came with API level 30, headroom with 31.
+    // Thermal status exists since API level 30, headroom since 31.
     assert_eq!((last.thermal_status, last.thermal_headroom), (None, None));
     assert!(run.summary.log_of("YORO").any(|text| text.contains("no gyroscope")));
-    // A refresh rate can be asked for from API level 30 on, hints are taken from 33 on.
+    // A refresh rate can be requested since API level 30, and hints are accepted since 33.
     assert_eq!(run.summary.requests.keys().collect::<Vec<_>>(), ["sustained performance on"]);
     assert!(run.summary.log_of("YORO").any(|text| text.contains("does not say when a frame is seen")));
 }
@@ -351,7 +350,7 @@ fn opengl_es_2_0_ends_in_one_clear_message() {
 
 #[test]
 fn without_a_choreographer_the_swap_sets_the_pace() {
-    // An API level before `AChoreographer_postFrameCallback64`.
+    // An API level without `AChoreographer_postFrameCallback64`.
     let Some(run) = show("choreographer", &phone(&[], "sdk = 28"), "{ frames = 20 }") else { return };
     assert!(
         run.summary.log_of("YORO").any(|line| line.contains("no choreographer")),
@@ -456,12 +455,12 @@ fn survives_random_events() {
     );
 }
 
-/// A `[device]` with a headset, in a folder that the runtime writes its log and pictures to.
+/// Returns a `[device]` with a headset, whose runtime writes its log and pictures to `folder`.
 fn headset(folder: &Path, system: bool) -> String {
     headset_with(folder, Headset::default().asymmetric(), &[], &format!("system = {system}"))
 }
 
-/// Returns a `[device]` with a headset of this script, with more settings and keys of `[device.openxr]`.
+/// Returns a `[device]` with a headset that has this script, and with further settings and keys of `[device.openxr]`.
 fn headset_with(folder: &Path, script: Headset, more: &[(&str, &str)], keys: &str) -> String {
     let script = Headset {
         log: Some(folder.join("log.jsonl")),
@@ -492,13 +491,13 @@ fn is_violation(entry: &Entry) -> bool {
     matches!(entry, Entry::Violation { .. })
 }
 
-/// Checks on which display the application has shown all of its frames.
+/// Checks that the application has shown all frames on this display.
 fn assert_display(run: &Run, which: &str) {
     let display: Vec<_> = run.summary.log_of("YORO").filter(|line| line.starts_with("display:")).collect();
     assert!(!display.is_empty() && display.iter().all(|line| line.contains(which)), "{display:?}");
 }
 
-/// The runtime got two views from an Android application, drawn to their edges; the last ones.
+/// Checks that the runtime got two views from an Android application, drawn up to their edges. Returns the last two.
 fn assert_both_eyes(log: &[Entry], folder: &Path) -> [RgbImage; 2] {
     assert!(log.iter().any(|entry| matches!(entry, Entry::Instance { android: true, .. })));
     assert!(log.iter().any(|entry| matches!(entry, Entry::Session { binding } if binding == "android")));
@@ -529,7 +528,7 @@ fn a_second_activity_uses_the_loaded_runtime() {
     let again = r#""launch", { wait-log = { text = "triangles", frames = 2000 } }, { frames = 4 }, "quit""#;
     let steps = format!("{IMMERSIVE}, {again}");
     let Some(run) = play("headset-again", &headset(folder.path(), false), &steps) else { return };
-    // The runtime takes it amiss to be initialised twice.
+    // The runtime returns an error if it is initialised twice.
     assert_immersive(&run, folder.path());
     let log = log::read(&folder.path().join("log.jsonl"));
     assert_eq!(log.iter().filter(|entry| matches!(entry, Entry::Instance { .. })).count(), 2);
@@ -565,19 +564,20 @@ fn a_headset_whose_runtime_fails_ends_the_application() {
     }
 }
 
-/// The application with one view on the headset, and between them the API layer's own Android library, of this AAR.
+/// Returns a device with a headset on which the application renders a single view through the API layer's Android
+/// library, which is in this AAR.
 fn layered(folder: &Path, script: Headset, aar: &Path, layer: &[(&str, &str)]) -> String {
     let own = [("one-view", "true"), ("method", "mono")];
     let settings: Vec<_> = own.iter().chain(layer).copied().collect();
     headset_with(folder, script, &settings, &format!("layer = {:?}", aar.display().to_string()))
 }
 
-/// Returns the layer's lines in logcat, without its own name and the application's.
+/// Returns the layer's lines in logcat, without its prefix.
 fn said(run: &Run) -> Vec<&str> {
     run.summary.log_of("yoro").filter_map(|line| line.strip_prefix("yoro layer: yoro: ")).collect()
 }
 
-/// The layer's library is loaded as Android loads it, nothing was forbidden, and both eyes were shown.
+/// Checks that the layer's library is loaded as on Android, nothing forbidden was done, and both eyes were shown.
 fn assert_layered(run: &Run, folder: &Path) -> [RgbImage; 2] {
     assert!(run.summary.is_clean(), "{}\n{:#?}", run.summary, run.summary.log);
     assert_display(run, "headset, by OpenXR by the loader libopenxr_loader.so");
@@ -587,7 +587,7 @@ fn assert_layered(run: &Run, folder: &Path) -> [RgbImage; 2] {
         "{libraries:?}"
     );
     let log = log::read(&folder.join("log.jsonl"));
-    // A layer may ask for functions of extensions that are not enabled, as it has no other way to find out.
+    // A layer may look up functions of extensions that are not enabled, since it cannot know which are.
     let asks =
         |entry: &&Entry| matches!(entry, Entry::Violation { call, .. } if call == "xrGetInstanceProcAddr");
     let violations: Vec<_> = log.iter().filter(|entry| is_violation(entry) && !asks(entry)).collect();
@@ -599,7 +599,7 @@ fn assert_layered(run: &Run, folder: &Path) -> [RgbImage; 2] {
     assert_both_eyes(&log, folder)
 }
 
-/// The views of the last frame that shows any.
+/// Returns the views of the last frame that has any.
 fn submitted(folder: &Path) -> [View; 2] {
     let views = |entry| match entry {
         Entry::Frame { layers, .. } => layers.into_iter().find_map(|layer| match layer {
@@ -615,11 +615,11 @@ fn submitted(folder: &Path) -> [View; 2] {
 #[test]
 fn one_view_through_the_layer_is_what_the_application_synthesizes() {
     let Some(aar) = layer("layer") else { return };
-    // The application renders multiples of 16 pixels. With these the layer's eyes are some, too: the one view is 192
-    // wide.
+    // The application renders sizes that are multiples of 16 pixels. With this size the layer's eyes are multiples,
+    // too: the single view has a width of 192.
     let mut script = Headset::default().asymmetric();
     script.eyes.iter_mut().for_each(|eye| eye.size = [154, 128]);
-    // The dominant eye by default, and set by a property.
+    // The dominant eye: once the default, once set by a property.
     for (dominant, settings) in [(1, &[][..]), (0, &[("layer.dominant", "left")][..])] {
         let folder = tempfile::tempdir().unwrap();
         let device = layered(folder.path(), script.clone(), &aar, settings);
@@ -630,7 +630,7 @@ fn one_view_through_the_layer_is_what_the_application_synthesizes() {
         let begins = format!("renders one view; the {} eye is synthesized", names[1 - dominant]);
         assert_eq!(said(&run).iter().filter(|line| **line == begins).count(), 1, "{:?}", said(&run));
 
-        // The same eyes, to the pixel: the layer's begin and end where pixels of the one view do.
+        // The same eyes to the pixel: the edges of the layer's eyes are at pixels of the single view.
         let eyes = submitted(folder.path()).map(|view| {
             let [.., width, height] = view.image.rect.map(|n| n as u32);
             Eye { size: [width, height], fov_degrees: view.fov_degrees, ..Eye::default() }
@@ -696,7 +696,7 @@ fn the_arm64_library_runs_in_a_headset() {
     }
 }
 
-/// Uses one run for all checks: under qemu, the driver's compiler takes most of the time.
+/// All checks use the same run: under qemu, compiling shaders takes most of the time.
 #[test]
 fn the_arm64_library_does_what_the_x86_64_library_does() {
     let device = phone(&[("methods", "yoro,conventional"), ("method", "yoro")], "sensors = []");
@@ -715,7 +715,8 @@ fn the_arm64_library_does_what_the_x86_64_library_does() {
     let Some(x86_64) = play("x86_64", &device, &steps) else { return };
     x86_64.assert_clean();
     assert_eq!(x86_64.summary.abi, "x86_64");
-    // llvmpipe compiles other code for arm64, in vectors of 128 bits, not 256: shades differ, no edge does.
+    // llvmpipe generates other code for arm64, with vectors of 128 bits, not 256: colours differ slightly, edges do
+    // not.
     for picture in ["yoro.png", "conventional.png"] {
         let same = decibels(&arm64.picture(picture), &x86_64.picture(picture));
         assert!(same > 40.0, "{picture}: {same:.1} dB between {} and {}", arm64.folder(), x86_64.folder());
@@ -724,7 +725,7 @@ fn the_arm64_library_does_what_the_x86_64_library_does() {
     assert!(methods < 40.0, "the two methods' pictures are the same: {methods:.1} dB");
 }
 
-/// Each scenario of a game loop plays its steps, writes them to the file that the intent names, and ends by itself.
+/// Each scenario of a game loop plays its steps, writes the results to the intent's file, and ends by itself.
 #[test]
 fn game_loops_write_their_results_and_end() {
     let folder = tempfile::tempdir().unwrap();
@@ -736,7 +737,7 @@ fn game_loops_write_their_results_and_end() {
         let keys = format!(
             "extras = {{ seconds = \"3.2\" }}\ngame_loop = {{ scenario = {scenario}, results = {file:?} }}"
         );
-        // Properties are stronger than a scenario's settings: what it changes is left to it.
+        // Properties override a scenario's settings, so the settings that it changes are left out.
         let settings: Vec<_> =
             settings(&[]).into_iter().filter(|(key, _)| !["method", "hud"].contains(key)).collect();
         let steps = r#""launch", { wait-finish = { frames = 3000 } }, "quit""#;
@@ -759,7 +760,7 @@ fn game_loops_write_their_results_and_end() {
         assert!(capture.device.simulated && capture.duration_s >= 3.0, "{capture:?}");
     }
 
-    // There is no scenario 4: it says so, and ends.
+    // Scenario 4 does not exist: the application says so, and ends.
     let device = phone(&[], "game_loop = { scenario = 4 }");
     let Some(run) = play("game-loop-4", &device, r#""launch", { wait-finish = { frames = 300 } }, "quit""#)
     else {
@@ -768,7 +769,7 @@ fn game_loops_write_their_results_and_end() {
     assert!(run.summary.log_of("YORO").any(|text| text.starts_with("there is no scenario 4")));
 }
 
-/// Saves a picture of a QR code as a camera sees it.
+/// Writes the picture that a camera sees of a QR code.
 fn save_code(text: &str, path: &Path) {
     let code = qrcode::QrCode::new(text).unwrap();
     let (modules, colors) = (code.width() as u32, code.to_colors());
@@ -781,18 +782,18 @@ fn save_code(text: &str, path: &Path) {
     .unwrap();
 }
 
-/// Steps until a line is in the log.
+/// Returns the step that waits for a line in the log.
 fn wait(text: &str) -> String {
     format!("{{ wait-log = {{ text = {text:?}, frames = 6000 }} }}")
 }
 
-/// A touch in the middle of a tile of the start screen: columns, and two rows.
+/// Returns a tap on the centre of a tile on the start screen, which has four columns and two rows.
 fn tile(column: u32, row: u32) -> String {
     let y = [0.635, 0.823][row as usize];
     format!("{{ tap = {{ x = {}, y = {y} }} }}", 0.125 + 0.25 * f64::from(column))
 }
 
-/// A device that a person starts by hand: the settings of all tests are in its file.
+/// Returns a device on which a person starts the application. Its settings file has the settings of all tests.
 fn by_hand(keys: &str) -> String {
     let toml: String = SETTINGS
         .iter()
@@ -804,9 +805,9 @@ fn by_hand(keys: &str) -> String {
     format!("[device]\n{keys}\n[device.files]\n\"yoro.toml\" = {toml:?}")
 }
 
-/// What a person does first, on a phone without a computer: chooses the viewer by the code before the camera, looks at
-/// another scene, compares, and finds it all again at the next start. Then the phone stands upright, and things are
-/// shared.
+/// What a person does first, on a phone without a computer: selects the viewer by holding its code in front of the
+/// camera, looks at another scene, compares, and finds the same choices at the next start. Then the phone is held
+/// upright, and files and texts are shared.
 #[test]
 fn a_first_start_by_hand() {
     const URI: &str = "https://google.com/cardboard/cfg?p=CgRBY21lEghQb2NrZXQgNR3sUTg9JY_CdT0qEAAANEIAADRCAAA0QgAANEI1KVwPPToImpmZPs3MzD4";
@@ -818,7 +819,7 @@ fn a_first_start_by_hand() {
     std::fs::write(file("my room.glb"), triangle()).unwrap();
 
     let device = by_hand(&format!("camera = {:?}", file("wall.png")));
-    // An activity that is left asks for its end, so that the next one sees what is shared.
+    // When the user leaves, the activity finishes itself, so that the next one receives what is shared.
     let leave = r#""unfocus", "pause", "window-lost", "stop", { wait-finish = { frames = 1 } }, "quit""#;
     let share =
         |key: &str, value: &str| format!("{leave}, {{ share = {{ {key} = {value:?} }} }}, \"launch\"");
@@ -831,7 +832,7 @@ fn a_first_start_by_hand() {
         "\"launch\"".to_owned(),
         wait("start screen: shown"),
         capture("first.png"),
-        // The user refuses, and changes their mind.
+        // The user first refuses, then allows it.
         tile(0, 1),
         "{ permission = false }".into(),
         wait("yoro may not use the camera"),
@@ -869,7 +870,7 @@ fn a_first_start_by_hand() {
         look(15.0, 40.0),
         "{ frames = 2 }, \"quit\", \"launch\"".into(),
         wait("triangles"),
-        // Upright in the hand, leaning back; lying on a side is not.
+        // Upright in the hand, tilted backwards. Lying on a side does not count as upright.
         "{ head = { roll = 90, seconds = 0.5 } }, { seconds = 2 }".into(),
         capture("again.png"),
         "{ head = { pitch = -30, roll = -90, seconds = 0.5 } }".into(),
@@ -878,10 +879,10 @@ fn a_first_start_by_hand() {
         share("text", "Look: https://goo.gl/abc"),
         wait("shared: https://goo.gl/abc may be a shortened address"),
         capture("shortened.png"),
-        // A picture with words besides, which are none of a viewer.
+        // A picture with a text that is not about a viewer.
         share("text = \"My viewer\", file", &file("code.png")),
         wait(&format!("shared: the viewer {URI}")),
-        // An owner who takes three seconds.
+        // The file's owner takes three seconds to open it.
         format!(
             "\"quit\", {{ share = {{ file = {:?}, view = true, after = 3.0 }} }}, \"launch\"",
             file("my room.glb")
@@ -918,7 +919,7 @@ fn a_first_start_by_hand() {
     }
     assert!(run.picture("explained.png") != run.picture("eyes.png"));
 
-    // What the eyes see is what the desktop draws for this viewer, but for the corners.
+    // The eyes see what the desktop renders for this viewer, except for the corners.
     let (eyes, mut expected) = (run.picture("eyes.png"), desktop(&[("viewer", URI)], None));
     for (x, y, pixel) in expected.enumerate_pixels_mut() {
         if y < 23 && !(23..SIZE[0] - 23).contains(&x) {
@@ -948,7 +949,7 @@ fn without_a_camera_the_start_screen_says_so() {
     run.assert_clean();
 }
 
-/// A GLB file with one triangle.
+/// Returns a GLB file with one triangle.
 fn triangle() -> Vec<u8> {
     let json = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36}],

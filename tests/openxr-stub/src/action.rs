@@ -14,12 +14,12 @@ use crate::world::{Answer, DONE, Refusal, World, forbid_if, forbidden, found};
 pub struct Actions {
     sets: HashMap<u64, Set>,
     actions: HashMap<u64, Action>,
-    /// The suggested bindings of each profile: actions and paths of parts.
+    /// The suggested bindings of each profile: actions, and paths of controller parts.
     bindings: HashMap<String, Vec<(u64, String)>>,
     attached: Vec<u64>,
-    /// The sets of the last synchronisation.
+    /// The sets that were active in the last synchronization.
     active: Vec<u64>,
-    /// The values at the last two synchronisations, the last one first, by action and part.
+    /// The values at the last two synchronizations, the last one first, by action and controller part.
     values: HashMap<(u64, String), [[f32; 2]; 2]>,
     /// The time of the last change in nanoseconds.
     changed_at: i64,
@@ -125,7 +125,7 @@ pub fn destroy_action(world: &mut World, action: sys::Action) -> Answer {
     DONE
 }
 
-/// The known profiles, and the extension that each needs.
+/// The known profiles, with the extension that each requires.
 const PROFILES: [(&str, Option<&str>); 5] = [
     ("/interaction_profiles/khr/simple_controller", None),
     ("/interaction_profiles/oculus/touch_controller", None),
@@ -180,7 +180,7 @@ pub fn suggest_bindings(
     DONE
 }
 
-/// True if a controller has the part, by the lists of the specification.
+/// True if the controller has the part according to the specification.
 fn part_exists(profile: &str, part: &str, left: bool) -> bool {
     const SIMPLE: [&str; 5] =
         ["input/select/click", "input/menu/click", "input/grip/pose", "input/aim/pose", "output/haptic"];
@@ -237,7 +237,7 @@ pub fn attach_action_sets(
         actions.attached.push(set);
     }
     world.session(session)?.attached = true;
-    // Runtimes find controllers once they know the actions.
+    // Runtimes find controllers only once they know the actions.
     world.current()?.events.push_back(crate::world::Event::Profile);
     DONE
 }
@@ -279,7 +279,7 @@ pub fn sync_actions(world: &mut World, session: sys::Session, info: &sys::Action
     world.success()
 }
 
-/// Returns the values of an action at the last two synchronisations; None if nothing is bound to it.
+/// Returns the values of an action at the last two synchronizations, or `None` if nothing is bound to it.
 fn state(
     world: &mut World,
     session: sys::Session,
@@ -303,7 +303,7 @@ fn state(
         return Ok(None);
     }
     let prefix = instance.path(info.subaction_path).unwrap_or_default();
-    // Among several parts, the one that is pressed most counts.
+    // Of several parts, the one that is pressed most counts.
     let mut best: Option<[[f32; 2]; 2]> = None;
     let strength = |value: [f32; 2]| value[0].hypot(value[1]);
     for ((handle, path), history) in &instance.actions.values {
@@ -320,7 +320,7 @@ fn state(
     Ok(best)
 }
 
-/// Fills the fields that the states of all types have.
+/// Fills in the fields that the states of all types have.
 fn put_state<T: PartialEq + Copy>(
     values: Option<[T; 2]>,
     idle: T,

@@ -66,7 +66,7 @@ pub fn get_recommended_layer_resolution(
     resolution: &mut sys::RecommendedLayerResolutionMETA,
 ) -> Answer {
     let views = world.session(session)?.views;
-    // SAFETY: a layer, of the type that it says.
+    // SAFETY: a layer of the type that it states.
     unsafe { submitted(world, info.layer, views) }?;
     let [width, height] = world.script.eyes[0].size.map(|pixels| pixels as i32 * 3 / 4);
     resolution.recommended_image_dimensions = sys::Extent2Di { width, height };
@@ -74,7 +74,7 @@ pub fn get_recommended_layer_resolution(
     DONE
 }
 
-/// The type of xrSetAndroidApplicationThreadKHR, which openxr-sys has on Android only.
+/// The type of xrSetAndroidApplicationThreadKHR, which openxr-sys declares only on Android.
 pub type SetAndroidApplicationThreadKHR =
     unsafe extern "system" fn(sys::Session, sys::AndroidThreadTypeKHR, u32) -> sys::Result;
 
@@ -94,7 +94,7 @@ pub fn set_android_application_thread(
     DONE
 }
 
-/// Answers with triangles that cut off the outer upper corner, in the view's plane at distance 1.
+/// Returns triangles that cover the outer upper corner, in the view's plane at distance 1.
 pub fn get_visibility_mask(
     world: &mut World,
     session: sys::Session,
@@ -134,7 +134,7 @@ pub fn get_visibility_mask(
     to_indices.fill(&indices, |to, from| *to = *from)
 }
 
-/// Returns the corners of a triangle counter-clockwise.
+/// Returns the corners of a triangle in counter-clockwise order.
 fn orient(vertices: &[[f32; 2]], [a, b, c]: [u32; 3]) -> Vec<u32> {
     let [p, q, r] = [a, b, c].map(|i| vertices[i as usize]);
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);

@@ -17,7 +17,7 @@ use crate::world::{Answer, Array, DONE, Refusal, World, forbid_if, forbidden, in
 /// The time of frame 0.
 const BEGINNING_NS: i64 = 1_000_000_000;
 
-/// The pause of each frame before the first picture, so that empty frames do not slow the loading of a scene.
+/// The pause in each frame before the first picture, so that empty frames do not slow down the loading of a scene.
 const LOADING_PAUSE: Duration = Duration::from_millis(5);
 /// True until the first picture.
 pub static IS_BLANK: AtomicBool = AtomicBool::new(true);
@@ -36,7 +36,7 @@ impl World {
     }
 }
 
-/// Calls [`PACE`], or pauses.
+/// Calls [`PACE`], or pauses while there has been no picture.
 pub fn pace() {
     let pace = *PACE.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(pace) = pace {
@@ -65,7 +65,7 @@ pub fn wait_frame(
         "the last frame that was waited for has not begun: a real runtime would wait for ever",
     )?;
     let visible = matches!(known.state, crate::script::State::Visible | crate::script::State::Focused);
-    // A session's first frame is not rendered.
+    // A session's first frame should not be rendered.
     let should_render = visible && known.frames.count > 0;
     known.frames.count += 1;
     known.frames.waited = Some(Frame { number, time, should_render });
@@ -119,7 +119,7 @@ pub fn locate_views(
     let views: Vec<(sys::Posef, sys::Fovf)> = (0..number as usize)
         .map(|i| {
             let eye = world.script.eyes[i];
-            // Outwards is to the left for the left eye.
+            // For the left eye, outwards means to the left.
             let side = if i == 0 { -1.0 } else { 1.0 };
             let (offset, cant) =
                 if number == 1 { (0.0, 0.0) } else { (side * ipd / 2.0, -side * eye.cant_degrees) };
@@ -166,7 +166,7 @@ pub fn end_frame(world: &mut World, session: sys::Session, info: &sys::FrameEndI
         // SAFETY: the array has that many pointers to layers.
         let layer = unsafe { *info.layers.add(i) };
         forbid_if(layer.is_null(), Code::ERROR_LAYER_INVALID, "a layer is null")?;
-        // SAFETY: a layer, of the type that it says.
+        // SAFETY: a layer of the type that it states.
         layers.push(unsafe { submitted(world, layer, views) }?);
     }
     world.picture(|world| is_picture(world, &layers));
@@ -187,7 +187,7 @@ pub fn end_frame(world: &mut World, session: sys::Session, info: &sys::FrameEndI
 /// Checks a layer, and returns its entry in the log.
 ///
 /// # Safety
-/// `layer` points to a structure of the type that it says.
+/// `layer` points to a structure of the type that it states.
 pub unsafe fn submitted(
     world: &mut World,
     layer: *const sys::CompositionLayerBaseHeader,
@@ -198,7 +198,7 @@ pub unsafe fn submitted(
     world.space_pose(header.space)?;
     match header.ty {
         sys::StructureType::COMPOSITION_LAYER_PROJECTION => {
-            // SAFETY: of this type.
+            // SAFETY: the structure has this type.
             let projection = unsafe { &*layer.cast::<sys::CompositionLayerProjection>() };
             forbid_if(
                 projection.view_count != expected,
@@ -219,7 +219,7 @@ pub unsafe fn submitted(
             Ok(Layer::Projection { views })
         }
         sys::StructureType::COMPOSITION_LAYER_QUAD => {
-            // SAFETY: of this type.
+            // SAFETY: the structure has this type.
             let quad = unsafe { &*layer.cast::<sys::CompositionLayerQuad>() };
             pose(&quad.pose)?;
             let image = submitted_image(world, &quad.sub_image, false)?;
@@ -229,7 +229,7 @@ pub unsafe fn submitted(
     }
 }
 
-/// True if a layer's chain says that its images are upside down.
+/// True if a layer's chain states that its images are upside down.
 fn is_upside_down(world: &mut World, layer: &sys::CompositionLayerProjection) -> Result<bool, Refusal> {
     // SAFETY: a chain of structures.
     let layout = unsafe {
@@ -254,7 +254,7 @@ fn submitted_view(world: &mut World, view: &sys::CompositionLayerProjectionView)
     let fov = [view.fov.angle_left, view.fov.angle_right, view.fov.angle_up, view.fov.angle_down];
     let [left, right, up, down] = fov;
     let limit = std::f32::consts::FRAC_PI_2;
-    // Left may be beyond right, and down beyond up: then the view is flipped.
+    // Left may be greater than right, and down greater than up. The view is flipped then.
     forbid_if(
         !(left != right && down != up && fov.iter().all(|angle| angle.abs() < limit)),
         Code::ERROR_VALIDATION_FAILURE,
@@ -341,7 +341,7 @@ fn is_picture(world: &mut World, layers: &[Layer]) -> bool {
     pixels.is_some_and(|pixels| pixels.chunks_exact(4).any(|pixel| pixel != &pixels[..4]))
 }
 
-/// Returns the pixels of a submitted image, the lowest row of its view first.
+/// Returns the pixels of a submitted image, beginning with the lowest row of its view.
 fn read(world: &mut World, image: &Image) -> Option<Vec<u8>> {
     let texture = world.swapchain(sys::Swapchain::from_raw(image.swapchain)).ok()?.shown()?;
     let mut pixels = world.its_session().ok()?.graphics.read(texture, image.layer, image.rect)?;
@@ -352,7 +352,7 @@ fn read(world: &mut World, image: &Image) -> Option<Vec<u8>> {
     Some(pixels)
 }
 
-/// Writes pictures of a frame's layers, if the script wants them.
+/// Writes pictures of a frame's layers, if the script asks for them.
 fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(), Refusal> {
     let Some(pictures) = world.script.pictures.clone().filter(|p| p.from <= frame) else {
         return Ok(());
@@ -378,7 +378,7 @@ fn write_pictures(world: &mut World, layers: &[Layer], frame: u32) -> Result<(),
             let size = [image.rect[2] as u32, image.rect[3] as u32];
             let picture = image::RgbaImage::from_raw(size[0], size[1], pixels).expect("four bytes a pixel");
             let picture = image::imageops::flip_vertical(&picture);
-            // Views are opaque for any alpha.
+            // Views are opaque whatever their alpha.
             let written = match layer {
                 Layer::Quad { .. } => picture.save(&path),
                 _ => image::DynamicImage::from(picture).into_rgb8().save(&path),

@@ -11,9 +11,9 @@ use crate::log::Entry;
 use crate::script::{At, State};
 use crate::world::{Answer, Array, DONE, Event, Instance, World, forbid_if, forbidden, in_chain};
 
-/// The version that negotiation returns.
+/// The API version that negotiation returns.
 pub const NEWEST: sys::Version = sys::Version::new(1, 1, 54);
-/// The one system.
+/// The id of the only system.
 pub const SYSTEM: u64 = 1;
 
 /// The extension for layers whose images are upside down.
@@ -39,13 +39,13 @@ pub const EXTENSIONS: [(&str, u32); 16] = [
     ("XR_META_recommended_layer_resolution", 1),
 ];
 
-/// Returns the text in an array of characters.
+/// Returns the string in an array of characters.
 pub fn text(characters: &[c_char]) -> String {
     let bytes: Vec<u8> = characters.iter().take_while(|c| **c != 0).map(|c| *c as u8).collect();
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Writes a text to an array of characters.
+/// Writes a string to an array of characters.
 pub fn put_text(target: &mut [c_char], text: &str) {
     target.fill(0);
     for (to, from) in target.iter_mut().zip(text.bytes()) {
@@ -109,7 +109,7 @@ pub fn create_instance(world: &mut World, info: &sys::InstanceCreateInfo, out: &
     }
     let mut extensions = Vec::new();
     for i in 0..info.enabled_extension_count as usize {
-        // SAFETY: the array has that many texts.
+        // SAFETY: the array has that many strings.
         let name = unsafe { CStr::from_ptr(*info.enabled_extension_names.add(i)) };
         let name = name.to_string_lossy().into_owned();
         let known = EXTENSIONS.iter().any(|(known, _)| *known == name);
@@ -202,7 +202,7 @@ pub fn get_system_properties(
     DONE
 }
 
-/// Refuses all systems but one.
+/// Refuses all systems but the only one.
 pub fn check_system(system: sys::SystemId) -> Result<(), crate::world::Refusal> {
     forbid_if(system.into_raw() != SYSTEM, Code::ERROR_SYSTEM_INVALID, "not a system")
 }
@@ -228,14 +228,14 @@ pub fn string_to_path(
 }
 
 impl Instance {
-    /// Returns the text of a path; None for the null path.
+    /// Returns the text of a path, or `None` for the null path.
     pub fn path(&self, path: sys::Path) -> Option<&str> {
         let index = path.into_raw().checked_sub(1)?;
         self.paths.get(index as usize).map(String::as_str)
     }
 }
 
-/// Writes an event to the buffer, which has room for each of them.
+/// Writes an event to the buffer, which has room for every kind of event.
 fn tell<T: Copy>(buffer: &mut sys::EventDataBuffer, event: T) -> Answer {
     const { assert!(size_of::<T>() <= size_of::<sys::EventDataBuffer>()) };
     // SAFETY: there is room, and events are plain data.
@@ -252,7 +252,7 @@ pub fn poll_event(world: &mut World, instance: sys::Instance, buffer: &mut sys::
     )?;
     let (now, frames) = (world.time(), world.frame());
     let known = world.any_instance(instance)?;
-    // A lost instance has no event but its loss.
+    // A lost instance has no event other than its loss.
     if known.lost {
         known.events.retain(|event| matches!(event, Event::InstanceLoss));
         if known.events.is_empty() {
@@ -349,7 +349,7 @@ pub fn initialize_loader(world: &mut World, info: &sys::LoaderInitInfoBaseHeader
     if ty != sys::StructureType::LOADER_INIT_INFO_ANDROID_KHR {
         return refuse("not Android's structure");
     }
-    // The specification leaves a second call open: some loaders keep the first context, others fail.
+    // The specification does not define a second call: some loaders keep the first context, others fail.
     if std::mem::replace(&mut world.is_initialized, true) {
         return refuse("it is initialised already");
     }

@@ -2,12 +2,12 @@
 //!
 //! A loader loads the library like any runtime. A script ([`script`]) describes the headset: frusta, canted views, a
 //! changing IPD, states, losses, controllers, and calls that fail. The runtime checks every call against the
-//! specification and writes a log ([`log`]); a forbidden call is a [`log::Entry::Violation`]. It composes and shows
-//! nothing, and must not depend on the application under test.
+//! specification and writes a log ([`log`]), in which a forbidden call is a [`log::Entry::Violation`]. It composes and
+//! shows nothing, and must not depend on the application under test.
 //!
 //! Time is virtual: `xrWaitFrame` does not wait for a display, and each frame is one period later than the last. Images
-//! of swapchains are real ones, in the application's GL context or on its Vulkan device. The functions are those that
-//! an application on OpenGL ES needs, or one on Vulkan that creates its device itself.
+//! of swapchains are real, and belong to the application's GL context or Vulkan device. The runtime has the functions
+//! that an application needs on OpenGL ES, or on Vulkan if it creates its device itself.
 //!
 //! Tests that link it as a Rust library call [`begin`] with a script, as often as they like.
 
@@ -28,11 +28,11 @@ pub use world::{Watch, begin, is_inside, watch};
 
 use openxr_sys as sys;
 
-/// Sets a function that is called before every frame, outside all locks. A simulated Android decides there when time
-/// goes on.
+/// Sets a function that is called before every frame, outside all locks. A simulated Android uses it to control the
+/// passing of time.
 ///
 /// # Safety
-/// `pace` can be called from any thread until the process ends.
+/// `pace` may be called from any thread until the process ends.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn yoro_openxr_stub_pace(pace: extern "C" fn()) {
     *frame::PACE.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(pace);
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn yoro_openxr_stub_pace(pace: extern "C" fn()) {
 /// Negotiates the interface. It is the first function that a loader calls.
 ///
 /// # Safety
-/// Both point to structures of the sizes that they say.
+/// Both point to structures of the sizes that they state.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn xrNegotiateLoaderRuntimeInterface(
     info: *const sys::NegotiateLoaderInfo,

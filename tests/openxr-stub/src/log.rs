@@ -1,4 +1,4 @@
-//! The log of the runtime's observations: JSON lines.
+//! The log of what the runtime observes, in JSON lines.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -22,7 +22,7 @@ pub enum Entry {
     Begun { views: u32 },
     /// A swapchain was created.
     Swapchain { id: u64, format: i64, width: u32, height: u32, layers: u32 },
-    /// The application got the event of a state.
+    /// The application received the event of a state.
     State { state: State },
     /// A frame has ended.
     Frame { frame: u32, should_render: bool, layers: Vec<Layer> },
@@ -55,13 +55,13 @@ pub enum Layer {
 pub struct View {
     /// The position in the layer's space, in metres.
     pub position: [f32; 3],
-    /// The orientation: x, y, z, w.
+    /// The orientation as a quaternion: x, y, z, w.
     pub orientation: [f32; 4],
-    /// The field of view: left, right, up, down.
+    /// The field of view in degrees: left, right, up, down.
     pub fov_degrees: [f32; 4],
-    /// The image of colour.
+    /// The colour image.
     pub image: Image,
-    /// Its depth, if it was submitted.
+    /// The depth, if it was submitted.
     pub depth: Option<Depth>,
 }
 
@@ -70,36 +70,36 @@ pub struct View {
 pub struct Image {
     /// The swapchain, as in [`Entry::Swapchain`].
     pub swapchain: u64,
-    /// The layer of its array.
+    /// The layer of the image's array.
     pub layer: u32,
-    /// x, y, width, height in pixels.
+    /// The rectangle: x, y, width, height in pixels.
     pub rect: [i32; 4],
-    /// True if its rows are in the opposite order (XR_FB_composition_layer_image_layout).
+    /// True if the rows are in the opposite order (XR_FB_composition_layer_image_layout).
     #[serde(default)]
     pub upside_down: bool,
 }
 
-/// Depth of a view.
+/// The depth of a view.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Depth {
     /// The image.
     pub image: Image,
     /// The smallest and the largest value of the depth buffer.
     pub range: [f32; 2],
-    /// The distances in metres that these stand for; f32::MAX for infinity.
+    /// The distances in metres that these values stand for. f32::MAX stands for infinity.
     pub near_far: [f32; 2],
 }
 
 /// Reads a log.
 ///
 /// # Panics
-/// If the file is no log: the test is wrong.
+/// If the file is not a log, which is a mistake in the test.
 pub fn read(path: &Path) -> Vec<Entry> {
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     text.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{line}: {e}"))).collect()
 }
 
-/// The writer. Every line is written at once, so that a crash loses none.
+/// The writer. Every line is written immediately, so that a crash loses none.
 pub(crate) struct Log(Option<File>);
 
 impl Log {

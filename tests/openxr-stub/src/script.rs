@@ -4,67 +4,67 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-/// The environment variable that names the script's file. Without it the headset is that of [`Script::default`].
+/// The environment variable that names the script's file. Without it the headset is [`Script::default`].
 pub const VARIABLE: &str = "YORO_OPENXR_STUB";
 
-/// A headset and its events. `xrWaitFrame` counts frames over all sessions of the process. The count stays 0 until the
-/// first frame whose left view has more than one colour, however long a scene takes to load.
+/// A headset and its events. Frames are counted by `xrWaitFrame`, over all sessions of the process. The count stays 0
+/// until the first frame whose left view has more than one colour, however long a scene takes to load.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Script {
-    /// The file of the log, to which JSON lines are appended.
+    /// The log file, to which JSON lines are appended.
     pub log: Option<PathBuf>,
     /// Known extensions that are not offered.
     pub missing_extensions: Vec<String>,
-    /// The number of times `xrGetSystem` answers that no headset is connected.
+    /// The number of times that `xrGetSystem` reports that no headset is connected.
     pub unavailable: u32,
-    /// Formats of swapchains in numbers of GL or Vulkan, the preferred one first.
+    /// The swapchain formats, as numbers of GL or Vulkan, in order of preference.
     pub formats: Vec<i64>,
     /// True if `PRIMARY_STEREO` is offered.
     pub stereo: bool,
     /// True if `PRIMARY_MONO` is offered.
     pub mono: bool,
-    /// The left and the right eye. A mono configuration has the left one, without its offset.
+    /// The left and the right eye. A configuration with one view has the left eye, without its offset.
     pub eyes: [Eye; 2],
-    /// The distance of the eyes in metres, each from a frame on.
+    /// Distances between the eyes in metres, each with the frame from which it applies.
     pub ipd: Vec<(u32, f32)>,
-    /// The head's position above the floor's centre, in metres.
+    /// The head's position in metres, relative to the centre of the floor.
     pub position: [f32; 3],
-    /// The head's turn to the left.
+    /// The head's rotation to the left.
     pub yaw_degrees: f32,
-    /// Frames without a valid pose of the head.
+    /// Frames without a valid head pose.
     pub untracked: Vec<u32>,
-    /// Frames in which the views' quaternions have this length instead of 1, and are called valid.
+    /// Frames in which the views' quaternions have this length instead of 1, although the poses are reported as valid.
     pub quaternion_lengths: Vec<(u32, f32)>,
-    /// True if `xrGetInstanceProcAddr` with an instance succeeds but returns null for functions that need none.
+    /// True if `xrGetInstanceProcAddr` with an instance succeeds but returns null for functions that need no instance.
     pub no_globals: bool,
-    /// The display's rates in hertz; it begins with the first.
+    /// The display's refresh rates in hertz. The first is the initial one.
     pub refresh_rates: Vec<f32>,
     /// Events and losses.
     pub events: Vec<Event>,
     /// Calls that fail.
     pub faults: Vec<Fault>,
-    /// The controllers' profile; None without controllers.
+    /// The controllers' profile, or `None` without controllers.
     pub profile: Option<String>,
     /// The input of the controllers.
     pub inputs: Vec<Input>,
-    /// The rays of the controllers; a hand without one is not tracked.
+    /// The aim rays of the controllers. A hand without one is not tracked.
     pub aims: Vec<Aim>,
     /// True if there is a visibility mask: triangles that hide the outer upper corners of the views.
     pub visibility_mask: bool,
     /// True if no context is current after any call that may change it, as with some runtimes.
     pub unbind_context: bool,
-    /// True if the application may have acquired images for later frames when it submits one. Else an acquired image is
-    /// one that it has forgotten to release.
+    /// True if the application may have acquired images for later frames when it submits one. Otherwise an acquired
+    /// image counts as one that it forgot to release.
     pub acquires_ahead: bool,
-    /// True if images are filled with [`POISON`] when they are acquired, so that pixels that were not drawn can be
-    /// seen.
+    /// True if images are filled with [`POISON`] when they are acquired, so that pixels that were not drawn are
+    /// visible.
     pub poison: bool,
-    /// The files for pictures of the submitted views.
+    /// Where pictures of the submitted views are written.
     pub pictures: Option<Pictures>,
 }
 
-/// Magenta: the colour of pixels that were not drawn. No scene has it.
+/// Magenta, the colour of pixels that were not drawn. No scene contains it.
 pub const POISON: [u8; 4] = [255, 0, 255, 255];
 
 /// One view.
@@ -73,9 +73,9 @@ pub const POISON: [u8; 4] = [255, 0, 255, 255];
 pub struct Eye {
     /// Recommended width and height in pixels.
     pub size: [u32; 2],
-    /// The field of view: left, right, up, down. Left and down are usually negative.
+    /// The field of view in degrees: left, right, up, down. Left and down are usually negative.
     pub fov_degrees: [f32; 4],
-    /// The view's turn outwards.
+    /// The view's rotation outwards.
     pub cant_degrees: f32,
 }
 
@@ -89,13 +89,13 @@ pub struct Event {
     pub what: What,
 }
 
-/// The moment of an event, which happens once.
+/// The moment of an event. Every event happens once.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum At {
     /// `xrWaitFrame` for this frame.
     Frame(u32),
-    /// The application gets the event of this state.
+    /// The application receives the event of this state.
     State(State),
 }
 
@@ -118,23 +118,23 @@ pub enum State {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum What {
-    /// The session is lost: every call returns that from now on, and its event comes.
+    /// The session is lost: its event is sent, and from now on every call reports the loss.
     LoseSession,
-    /// The event comes that the session will be lost; calls still succeed.
+    /// The event is sent that the session will be lost. Calls still succeed.
     SessionLossPending,
-    /// The instance is lost: every call returns that from now on, and its event comes.
+    /// The instance is lost: its event is sent, and from now on every call reports the loss.
     LoseInstance,
     /// The user ends the application: `STOPPING`, then `EXITING`.
     Exit,
-    /// The user takes the headset off: `STOPPING`, and `READY` again after this many polls without an event.
+    /// The user takes the headset off: `STOPPING`, and `READY` again after this many polls that return no event.
     TakeOff(u32),
     /// The highest state of the session: `synchronized`, `visible` or `focused`.
     Level(State),
-    /// The user recentres: the local space turns to the left by this many degrees.
+    /// The user recentres: the local space rotates to the left by this many degrees.
     Recenter(f32),
     /// The system changes the display's rate, in hertz.
     RefreshRate(f32),
-    /// The user takes other controllers, or none.
+    /// The user picks up other controllers, or none.
     Profile(Option<String>),
     /// The visibility mask has changed.
     MaskChanged,
@@ -146,18 +146,18 @@ pub enum What {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Fault {
-    /// The function, such as `xrWaitFrame`.
+    /// The name of the function, such as `xrWaitFrame`.
     pub call: String,
-    /// The number of its call, from 1.
+    /// The number of the call, counted from 1.
     pub nth: u32,
-    /// True if all later calls fail, too.
+    /// True if all later calls fail too.
     #[serde(default)]
     pub and_later: bool,
     /// The number of the result, such as -2 for `XR_ERROR_RUNTIME_FAILURE`.
     pub result: i32,
 }
 
-/// The value of a controller's part from a frame on.
+/// The value of a controller's part, from a frame on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Input {
@@ -165,11 +165,11 @@ pub struct Input {
     pub frame: u32,
     /// The part's path, such as `/user/hand/right/input/a/click`.
     pub path: String,
-    /// The value. Buttons are pressed from 0.5 on; only thumbsticks have a second number.
+    /// The value. Buttons are pressed at 0.5 or more. Only thumbsticks have a second number.
     pub value: [f32; 2],
 }
 
-/// The direction of a controller from a frame on, relative to the head: a hand is held beside and below it.
+/// The direction of a controller from a frame on, relative to the head. The hand is held next to the head and below it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Aim {
@@ -177,13 +177,13 @@ pub struct Aim {
     pub frame: u32,
     /// True for the left hand.
     pub is_left: bool,
-    /// The turn to the left.
+    /// The rotation to the left.
     pub yaw_degrees: f32,
-    /// The turn upwards.
+    /// The rotation upwards.
     pub pitch_degrees: f32,
 }
 
-/// The destination of pictures. `view-0.png` is the left eye's last image; `quad-0.png` is that of the first quad
+/// Where pictures are written. `view-0.png` is the left eye's last image, and `quad-0.png` is that of the first quad
 /// layer, with alpha.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -235,7 +235,7 @@ impl Default for Eye {
 }
 
 impl Script {
-    /// Sets the frusta of current headsets: 52 degrees outwards, 42 inwards.
+    /// Sets the frusta of current headsets: 52 degrees outwards, 42 degrees inwards.
     #[must_use]
     pub fn asymmetric(mut self) -> Script {
         self.eyes[0].fov_degrees = [-52.0, 42.0, 47.0, -50.0];
@@ -246,14 +246,14 @@ impl Script {
     /// Loads the script that [`VARIABLE`] names.
     ///
     /// # Panics
-    /// If it cannot be read: the test is wrong.
+    /// If it cannot be read, which is a mistake in the test.
     pub(crate) fn load() -> Script {
         let Some(path) = std::env::var_os(VARIABLE) else { return Script::default() };
         let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
     }
 
-    /// Returns the eyes' distance in a frame, in metres.
+    /// Returns the distance between the eyes in a frame, in metres.
     pub(crate) fn ipd(&self, frame: u32) -> f32 {
         let past = self.ipd.iter().filter(|(from, _)| *from <= frame);
         past.max_by_key(|(from, _)| *from).map_or(0.063, |(_, ipd)| *ipd)
@@ -264,7 +264,7 @@ impl Script {
         self.quaternion_lengths.iter().find(|(odd, _)| *odd == frame).map_or(1.0, |(_, length)| *length)
     }
 
-    /// Returns the ray of a hand in a frame.
+    /// Returns the aim ray of a hand in a frame.
     pub(crate) fn aim(&self, is_left: bool, frame: u32) -> Option<&Aim> {
         let past = self.aims.iter().filter(|aim| aim.is_left == is_left && aim.frame <= frame);
         past.max_by_key(|aim| aim.frame)

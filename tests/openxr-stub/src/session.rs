@@ -16,14 +16,14 @@ pub struct Session {
     pub handle: u64,
     pub lost: bool,
     pub loss_pending: bool,
-    /// The number of views of its configuration; 0 while it is not running.
+    /// The number of views of the session's configuration; 0 while it is not running.
     pub views: u32,
     pub state: State,
-    /// The state of the application's last event.
+    /// The state in the last event that the application received.
     pub told: State,
-    /// The highest state that it may reach.
+    /// The highest state that the session may reach.
     pub level: State,
-    /// The number of polls at which the session becomes `READY` again after its end; none if it becomes `EXITING`.
+    /// The number of polls at which the session becomes `READY` again after its end, or `None` if it becomes `EXITING`.
     put_on_again_at: Option<u32>,
     exiting: bool,
     pub frames: FrameCalls,
@@ -55,7 +55,7 @@ impl Session {
         events.push_back(Event::State(state));
     }
 
-    /// Goes from state to state as far as `level` and the ended frames allow.
+    /// Moves from state to state as far as `level` and the ended frames allow.
     pub fn settle(&mut self, events: &mut VecDeque<Event>) {
         const LEVELS: [State; 4] = [State::Ready, State::Synchronized, State::Visible, State::Focused];
         let index = |state| LEVELS.iter().position(|level| *level == state);
@@ -69,7 +69,7 @@ impl Session {
         }
     }
 
-    /// Ends the session: for ever, or until the headset is put on again.
+    /// Ends the session, either for good or until the headset is put on again.
     pub fn stop(&mut self, events: &mut VecDeque<Event>, put_on_again_at: Option<u32>) {
         self.put_on_again_at = put_on_again_at;
         self.exiting = put_on_again_at.is_none();
@@ -111,7 +111,7 @@ pub fn get_graphics_requirements(
     DONE
 }
 
-/// The only function for Vulkan: the application creates instance and device itself.
+/// Implements the only function for Vulkan: the application creates its instance and device itself.
 pub fn get_vulkan_graphics_requirements(
     world: &mut World,
     instance: sys::Instance,
@@ -253,8 +253,8 @@ pub fn enumerate_view_configurations(
     types.fill(&offered, |to, from| *to = *from)
 }
 
-/// The recommended planes in metres of XR_EXT_view_configuration_depth_range, whose structure is filled even without
-/// it.
+/// The recommended planes in metres of XR_EXT_view_configuration_depth_range. The structure is filled in even if the
+/// extension is not enabled.
 const DEPTH_RANGE: (f32, f32) = (0.1, 50.0);
 
 pub fn enumerate_view_configuration_views(
@@ -280,17 +280,17 @@ pub fn enumerate_view_configuration_views(
     })
 }
 
-/// Fills the depth range in a chain. It stands for all output structures: views' configurations have it, and here
-/// located views, too, for which the specification has none yet.
+/// Fills in the depth range in a chain. It stands for any output structure: it belongs to view configurations, but is
+/// filled in for located views too, for which the specification has none yet.
 ///
 /// # Safety
-/// A chain of structures that say their type.
+/// The structures of the chain state their types.
 pub unsafe fn fill_depth_range(chain: *mut c_void) {
     let mut next = chain.cast::<sys::BaseOutStructure>();
     // SAFETY: a structure of the chain.
     while let Some(structure) = unsafe { next.as_mut() } {
         if structure.ty == sys::ViewConfigurationDepthRangeEXT::TYPE {
-            // SAFETY: of this type.
+            // SAFETY: the structure has this type.
             let range = unsafe { &mut *next.cast::<sys::ViewConfigurationDepthRangeEXT>() };
             (range.recommended_near_z, range.recommended_far_z) = DEPTH_RANGE;
         }

@@ -7,7 +7,7 @@ use sys::{Handle, Result as Code};
 use crate::script::Aim;
 use crate::world::{Answer, DONE, Refusal, World, forbid_if, found};
 
-/// A rotation, then a translation: from a space to its parent.
+/// A rotation followed by a translation, from a space to its parent.
 pub type Pose = (Quat, Vec3);
 
 pub struct Space {
@@ -17,7 +17,7 @@ pub struct Space {
 
 enum Kind {
     Reference(sys::ReferenceSpaceType),
-    /// A controller's; true for the left hand's.
+    /// The space of a controller. True for the left hand.
     Hand(bool),
 }
 
@@ -37,7 +37,7 @@ pub fn raw_pose((turn, position): Pose) -> sys::Posef {
     }
 }
 
-/// Checks and converts a pose of the application.
+/// Checks and converts a pose that the application passes.
 pub fn pose(raw: &sys::Posef) -> Result<Pose, Refusal> {
     let turn = Quat::from_xyzw(raw.orientation.x, raw.orientation.y, raw.orientation.z, raw.orientation.w);
     let position = Vec3::new(raw.position.x, raw.position.y, raw.position.z);
@@ -50,7 +50,7 @@ pub fn pose(raw: &sys::Posef) -> Result<Pose, Refusal> {
 }
 
 impl World {
-    /// Returns the pose of a space in that of the floor.
+    /// Returns the pose of a space in the space of the floor.
     pub fn space_pose(&mut self, space: sys::Space) -> Result<Pose, Refusal> {
         let head = self.head();
         let position = Vec3::from(self.script.position);
@@ -80,7 +80,7 @@ impl World {
         known.is_some_and(|space| matches!(space.kind, Kind::Hand(_)))
     }
 
-    /// Returns the ray of a controller's space; none for other spaces and for hands that are not tracked.
+    /// Returns the aim ray of a controller's space, or `None` for other spaces and for hands that are not tracked.
     fn aim(&self, space: sys::Space) -> Option<&Aim> {
         match self.instance.as_ref()?.spaces.get(&space.into_raw())?.kind {
             Kind::Hand(is_left) => self.script.aim(is_left, self.frame()),
@@ -143,7 +143,7 @@ pub fn create_action_space(
 }
 
 pub fn destroy_space(world: &mut World, space: sys::Space) -> Answer {
-    // Lost spaces can still be destroyed, but not those that were destroyed with their session.
+    // Spaces of a lost session can still be destroyed, but not those that were destroyed with their session.
     let known = world.instance.as_mut().and_then(|instance| instance.spaces.remove(&space.into_raw()));
     found(known, "not a space")?;
     DONE

@@ -1,4 +1,4 @@
-//! Swapchains: images in the application's graphics.
+//! Swapchains, whose images belong to the application's graphics.
 
 use std::collections::VecDeque;
 
@@ -16,16 +16,16 @@ pub struct Swapchain {
     pub size: [u32; 2],
     pub layers: u32,
     pub textures: Vec<Texture>,
-    /// Acquired images, oldest first; true if they were waited for.
+    /// Acquired images, oldest first, with true for those that were waited for.
     pub acquired: VecDeque<(usize, bool)>,
-    /// The image that was released last, which is shown.
+    /// The image that was released last, which is the one shown.
     pub released: Option<usize>,
     next: usize,
 }
 
 impl Swapchain {
     pub fn is_depth(&self) -> bool {
-        // Numbers of GL, then of Vulkan.
+        // The formats' numbers in GL, then in Vulkan.
         matches!(self.format, 0x81A5 | 0x81A6 | 0x8CAC | 0x88F0 | 0x8CAD | 124 | 126 | 129 | 130)
     }
 
@@ -42,7 +42,7 @@ impl World {
         found(known, "not a swapchain")
     }
 
-    /// Refuses a call in which runtimes use the application's context, unless it is current.
+    /// Refuses a call in which runtimes use the application's context, unless the context is current.
     fn need_context(&mut self) -> Result<(), Refusal> {
         forbid_if(
             !self.its_session()?.graphics.is_current(),
@@ -145,11 +145,11 @@ pub fn enumerate_swapchain_images(
         size_of::<sys::SwapchainImageOpenGLESKHR>()
     };
     for i in 0..images.capacity.min(textures.len() as u32) as usize {
-        // SAFETY: the array has that many structures, of this size if they are of this type.
+        // SAFETY: the array has that many structures, which have this size if they have this type.
         let ty = unsafe { (*images.items.byte_add(i * size)).ty };
         forbid_if(ty != wanted, Code::ERROR_VALIDATION_FAILURE, "the images' type is wrong")?;
     }
-    // SAFETY: of the type that was checked.
+    // SAFETY: the type was checked.
     unsafe {
         if vulkan {
             images.cast::<sys::SwapchainImageVulkanKHR>().fill(&textures, |to, from| to.image = from.raw)

@@ -1,4 +1,4 @@
-//! The functions of the runtime, by their names.
+//! The functions of the runtime, by name.
 
 use std::ffi::{CStr, c_char};
 use std::mem;
@@ -10,35 +10,35 @@ use crate::extension::SetAndroidApplicationThreadKHR;
 use crate::world::{Array, DONE, enter, forbidden};
 use crate::{action, extension, frame, instance, session, space, swapchain};
 
-/// The type of a parameter in C.
+/// The C type of a parameter.
 macro_rules! parameter {
     (: $type:ty) => { $type };
     (out $type:ty) => { *mut $type };
     ($in_or_text:tt $type:ty) => { *const $type };
 }
 
-/// The argument that the Rust function gets for it.
+/// Converts a C parameter to the argument of the Rust function.
 macro_rules! argument {
     (: $name:ident) => {
         $name
     };
     (text $name:ident) => {
-        // SAFETY: applications give strings that end in zero.
+        // SAFETY: applications pass null-terminated strings.
         unsafe { CStr::from_ptr($name) }
     };
     (in $name:ident) => {
-        // SAFETY: applications give complete structures.
+        // SAFETY: applications pass complete structures.
         unsafe { &*$name }
     };
     (out $name:ident) => {
-        // SAFETY: applications give structures and places that can be written.
+        // SAFETY: applications pass structures and writable places.
         unsafe { &mut *$name }
     };
 }
 
-/// Makes a C function for each line: the name without `xr`, the Rust function, its parameters (values, structures that
-/// are read or written, texts), and after a semicolon an array that is asked for by capacity and count. After the
-/// parentheses comes the extension that the function needs.
+/// Defines a C function for each line: the name without `xr`, the Rust function, its parameters (values, structures
+/// that are read or written, texts) and, after a semicolon, an array that is returned by capacity and count. The
+/// extension that the function needs comes after the parentheses.
 macro_rules! table {
     ($($call:ident = $module:ident::$function:ident(
         $($parameter:ident $how:tt $type:ty),* $(; $array:ident: $item:ty)?
@@ -52,18 +52,18 @@ macro_rules! table {
                     $(capacity: u32, count: *mut u32, $array: *mut $item,)?
                 ) -> sys::Result {
                     enter(concat!("xr", stringify!($call)), |world| {
-                        // SAFETY: applications give room for as many elements as they say.
+                        // SAFETY: applications pass room for as many elements as they state.
                         $(let $array = unsafe { Array::<$item>::new(capacity, count, $array) };)?
                         $module::$function(world, $(argument!($how $parameter),)* $($array)?)
                     })
                 }
                 let function: $call = call;
-                // SAFETY: functions are called by the type that belongs to their name.
+                // SAFETY: callers use the type that belongs to the function's name.
                 let function = unsafe { mem::transmute::<$call, VoidFunction>(function) };
                 return Some((function, None$(.or(Some($extension)))?));
             })*
             if NOT_CALLED.contains(&name) {
-                // SAFETY: the caller cleans the stack up, so that parameters may be ignored.
+                // SAFETY: the caller cleans up the stack, so parameters may be ignored.
                 let function = unsafe { mem::transmute::<extern "system" fn() -> Result, VoidFunction>(not_called) };
                 return Some((function, None));
             }
@@ -197,7 +197,7 @@ table! {
     ), "XR_KHR_android_thread_settings";
 }
 
-/// Functions that loaders ask for, but no application here calls.
+/// Functions that loaders ask for, but that no application under test calls.
 const NOT_CALLED: [&str; 14] = [
     "xrGetActionStateFloat",
     "xrGetActionStatePose",
@@ -224,7 +224,7 @@ extern "system" fn not_called() -> sys::Result {
     })
 }
 
-/// The functions that can be found without an instance.
+/// The functions that can be obtained without an instance.
 const BEFORE_INSTANCE: [&str; 5] = [
     "xrGetInstanceProcAddr",
     "xrEnumerateInstanceExtensionProperties",
@@ -238,10 +238,10 @@ pub unsafe extern "system" fn get_instance_proc_addr(
     name: *const c_char,
     out: *mut Option<pfn::VoidFunction>,
 ) -> sys::Result {
-    // SAFETY: applications give a string that ends in zero.
+    // SAFETY: applications pass a null-terminated string.
     let name = unsafe { CStr::from_ptr(name) }.to_string_lossy().into_owned();
     enter("xrGetInstanceProcAddr", |world| {
-        // SAFETY: applications give a place for a function.
+        // SAFETY: applications pass a place for a function.
         unsafe { *out = None };
         let early = BEFORE_INSTANCE.contains(&name.as_str());
         if instance == sys::Instance::NULL && !early {

@@ -1,4 +1,4 @@
-//! The state of the runtime, and the entry of every call.
+//! The state of the runtime, and the entry point of every call.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -17,7 +17,7 @@ use crate::session::Session;
 use crate::space::Space;
 use crate::swapchain::Swapchain;
 
-/// An array that an application asks for: first its length, then its elements.
+/// An array that an application asks for in two calls: first its length, then its elements.
 pub struct Array<T> {
     pub capacity: u32,
     count: *mut u32,
@@ -25,10 +25,10 @@ pub struct Array<T> {
 }
 
 impl<T> Array<T> {
-    /// Makes the array of a call.
+    /// Wraps the array of a call.
     ///
     /// # Safety
-    /// `count` can be written; `items` has room for `capacity` of them.
+    /// `count` is writable, and `items` has room for `capacity` items.
     pub unsafe fn new(capacity: u32, count: *mut u32, items: *mut T) -> Array<T> {
         Array { capacity, count, items }
     }
@@ -41,9 +41,9 @@ impl<T> Array<T> {
         Array { capacity: self.capacity, count: self.count, items: self.items.cast() }
     }
 
-    /// Writes the length, and the elements if there is room.
+    /// Writes the length and, if the capacity is not 0, the elements.
     pub fn fill<V>(self, values: &[V], write: impl Fn(&mut T, &V)) -> Answer {
-        // SAFETY: `new` demands a place for the count, and room for `capacity` items.
+        // SAFETY: `new` requires a place for the count, and room for `capacity` items.
         unsafe {
             *self.count = values.len() as u32;
             if self.capacity == 0 {
@@ -60,7 +60,7 @@ impl<T> Array<T> {
     }
 }
 
-/// The result of a refused call. With a violation, the application has broken the specification.
+/// The result of a refused call. It has a violation if the application has broken the specification.
 pub struct Refusal {
     pub result: sys::Result,
     pub violation: Option<String>,
@@ -72,12 +72,12 @@ impl From<sys::Result> for Refusal {
     }
 }
 
-/// Makes the refusal of a call that the specification forbids.
+/// Returns the refusal of a call that the specification forbids.
 pub fn forbidden(result: sys::Result, what: impl Into<String>) -> Refusal {
     Refusal { result, violation: Some(what.into()) }
 }
 
-/// Refuses a call if `is_wrong`, because the specification forbids it.
+/// Refuses a call as forbidden by the specification if `is_wrong`.
 pub fn forbid_if(is_wrong: bool, result: sys::Result, what: impl Into<String>) -> Result<(), Refusal> {
     if is_wrong { Err(forbidden(result, what)) } else { Ok(()) }
 }
@@ -90,7 +90,7 @@ pub fn found<T>(object: Option<T>, what: &str) -> Result<T, Refusal> {
 pub type Answer = Result<sys::Result, Refusal>;
 pub const DONE: Answer = Ok(Code::SUCCESS);
 
-/// The state of the process. Script and log last over several instances.
+/// The state of the process. The script and the log last over several instances.
 pub struct World {
     pub script: Script,
     pub log: Log,
@@ -101,9 +101,9 @@ pub struct World {
     last_handle: u64,
     /// The number of frames that were waited for.
     pub frames: u32,
-    /// The number of frames before the first picture, once there was one.
+    /// The number of frames before the first picture, once there has been one.
     before_picture: Option<u32>,
-    /// The number of polls without an event.
+    /// The number of polls that returned no event.
     pub idle_polls: u32,
     /// The number of times `xrGetSystem` found no headset.
     pub unavailable: u32,
@@ -114,7 +114,7 @@ pub struct World {
     pub instance: Option<Instance>,
 }
 
-/// The instance; there is at most one.
+/// The instance. There is at most one.
 pub struct Instance {
     pub handle: u64,
     pub extensions: Vec<String>,
@@ -126,7 +126,7 @@ pub struct Instance {
     pub session: Option<Session>,
     pub spaces: HashMap<u64, Space>,
     pub swapchains: HashMap<u64, Swapchain>,
-    /// The local space's turn to the left, in radians.
+    /// The rotation of the local space to the left, in radians.
     pub local_yaw: f32,
 }
 
@@ -140,13 +140,13 @@ impl Instance {
 /// Returns the first structure of a type in a chain.
 ///
 /// # Safety
-/// `next` begins a chain of structures of the types that they say, and `ty` is that of `T`.
+/// `next` begins a chain of structures of the types that they state, and `ty` is the type of `T`.
 pub unsafe fn in_chain<'a, T>(next: *const c_void, ty: sys::StructureType) -> Option<&'a T> {
     let mut next = next.cast::<sys::BaseInStructure>();
     // SAFETY: every structure of a chain begins with this header.
     while let Some(structure) = unsafe { next.as_ref() } {
         if structure.ty == ty {
-            // SAFETY: of this type.
+            // SAFETY: the structure has this type.
             return unsafe { next.cast::<T>().as_ref() };
         }
         next = structure.next;
@@ -171,23 +171,23 @@ thread_local! {
     static IS_INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// True if this thread is in a call of the runtime. Allocations there are not the caller's.
+/// True if this thread is in a call of the runtime. Allocations made there are not the caller's.
 pub fn is_inside() -> bool {
     IS_INSIDE.get()
 }
 
-/// A function that gets the name of a call.
+/// A function that receives the name of a call.
 pub type Watch = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// Called before every call, outside all locks.
 static WATCH: Mutex<Option<Watch>> = Mutex::new(None);
 
-/// Sets a function that is called with the name of every call before it begins, outside all locks; None ends that.
+/// Sets a function that is called with the name of every call before it begins, outside all locks. `None` removes it.
 pub fn watch(watch: Option<Watch>) {
     *WATCH.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = watch;
 }
 
-/// Forgets everything, and continues with this script in place of the file's.
+/// Forgets everything, and continues with this script instead of the file's.
 pub fn begin(script: Script) {
     *WORLD.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(World::new(script));
     crate::frame::IS_BLANK.store(true, Ordering::Relaxed);
@@ -274,7 +274,7 @@ impl World {
         Ok(instance)
     }
 
-    /// Returns the instance of any object, unless it is lost.
+    /// Returns the instance that any object belongs to, unless it is lost.
     pub fn current(&mut self) -> Result<&mut Instance, Refusal> {
         let instance =
             self.instance.as_mut().ok_or_else(|| forbidden(Code::ERROR_HANDLE_INVALID, "no instance"))?;
@@ -304,27 +304,27 @@ impl World {
         Ok(session)
     }
 
-    /// Returns the result of a call that succeeds, which may tell that the session will be lost.
+    /// Returns the result of a successful call, which may announce the loss of the session.
     pub fn success(&mut self) -> Answer {
         let pending = self.its_session().is_ok_and(|session| session.loss_pending);
         Ok(if pending { Code::SESSION_LOSS_PENDING } else { Code::SUCCESS })
     }
 
-    /// Returns the number of the last frame that was waited for, as the script counts.
+    /// Returns the number of the last frame that was waited for, as the script counts frames.
     pub fn frame(&self) -> u32 {
         self.before_picture.map_or(0, |before| self.frames.saturating_sub(before + 1))
     }
 
-    /// Notes the first picture: until there was one, `look` says if this is it.
+    /// Notes the first picture. As long as there has been none, `look` decides whether this is the first.
     pub fn picture(&mut self, look: impl FnOnce(&mut World) -> bool) {
         if self.before_picture.is_none() && look(self) {
-            // The next one is frame 1.
+            // The next frame is frame 1.
             self.before_picture = Some(self.frames.saturating_sub(1));
             crate::frame::IS_BLANK.store(false, Ordering::Relaxed);
         }
     }
 
-    /// Lets the script's events of a moment happen.
+    /// Triggers the script's events of this moment.
     pub fn happen(&mut self, now: impl Fn(&At) -> bool) {
         for i in 0..self.script.events.len() {
             if !self.happened[i] && now(&self.script.events[i].at) {
@@ -395,7 +395,7 @@ impl World {
         self.calls.clone()
     }
 
-    /// Returns the head's pose in the floor's space.
+    /// Returns the head's pose in the space of the floor.
     pub fn head(&self) -> (Quat, Vec3) {
         (Quat::from_rotation_y(self.script.yaw_degrees.to_radians()), self.script.position.into())
     }

@@ -21,7 +21,7 @@ fn png(image: impl Into<DynamicImage>) -> Vec<u8> {
 const ROOM: &str = "mtllib room.mtl\nv -2 0 -4\nv 2 0 -4\nv 2 3 -4\nv -2 3 -4\nv -2 0 2\nv 2 0 2\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                     usemtl wall\nf 1/1 2/2 3/3 4/4\nf 5/1 6/2 2/3 1/4\n";
 
-/// A JPEG of this size that carries a smaller depth, as phones' portrait photos do: near on the left.
+/// Makes a JPEG of this size with a smaller embedded depth map, as in phones' portrait photos. The left is near.
 fn portrait(size: [u32; 2]) -> Vec<u8> {
     let mut jpeg = std::io::Cursor::new(Vec::new());
     let color = RgbImage::from_fn(size[0], size[1], |x, y| Rgb([(x * 2) as u8, (y * 3) as u8, 90]));
@@ -36,7 +36,7 @@ fn portrait(size: [u32; 2]) -> Vec<u8> {
     let head =
         "GDepth:Format=\"RangeInverse\" GDepth:Near=\"0.5\" GDepth:Far=\"9\" GDepth:Mime=\"image/png\"";
     out.extend(xmp(format!("http://ns.adobe.com/xap/1.0/\0<rdf {head}/>")));
-    // The parts of what does not fit into one segment may come in any order.
+    // XMP that does not fit into one segment is split into parts, which may come in any order.
     let part = |offset: u8, text: &str| {
         let id = "0".repeat(32);
         xmp(format!("http://ns.adobe.com/xmp/extension/\0{id}\0\0\0\0\0\0\0{}{text}", char::from(offset)))
@@ -47,7 +47,7 @@ fn portrait(size: [u32; 2]) -> Vec<u8> {
     out
 }
 
-/// The same as Dynamic Depth: files after the JPEG, which its directory lists.
+/// Makes the same as Dynamic Depth: files behind the JPEG, listed in its directory.
 fn dynamic_portrait(size: [u32; 2]) -> Vec<u8> {
     let jpeg = |image: DynamicImage| {
         let mut bytes = std::io::Cursor::new(Vec::new());
@@ -75,7 +75,7 @@ fn dynamic_portrait(size: [u32; 2]) -> Vec<u8> {
     [&color[..2], &[0xff, 0xe1], &length, text.as_bytes(), &color[2..], &depth, &sure].concat()
 }
 
-/// A GLB of one triangle.
+/// Makes a GLB with a single triangle.
 fn glb() -> Vec<u8> {
     let floats: Vec<u8> =
         [-1f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5, 0.0].iter().flat_map(|f| f.to_le_bytes()).collect();
@@ -119,7 +119,7 @@ fn dropped_files_are_shown_or_refused() {
     page.drop_files(&[("one.glb", glb())]);
     assert_eq!((page.message(), page.evaluate("yoro.facts.triangles")), (None, json!(1)));
 
-    // An object is gone around, unless the user walks; a scene of the list is walked in.
+    // The user moves around a single object, unless walking is selected, but walks in a built-in scene.
     let walks = |page: &mut Page| {
         page.evaluate(
             "yoro.page.turn(0.2, 0); var before = [...yoro.page.place]; yoro.page.turn(0.2, 0); \
@@ -132,7 +132,8 @@ fn dropped_files_are_shown_or_refused() {
     page.evaluate("document.getElementById('orbit').click()");
     assert_eq!(walks(&mut page), json!(true));
 
-    // The list of scenes says what is shown; a link cannot carry it, nor a place in it. What fails changes nothing.
+    // The list of scenes shows that the user's files are open. A link contains neither them nor a place in them. A
+    // failed attempt changes nothing.
     let scene = "document.getElementById('scene').value";
     assert_eq!(page.evaluate(scene), "own");
     page.evaluate("yoro.page.walk(0, 0, 1); document.getElementById('share').click(); 0");
@@ -141,7 +142,7 @@ fn dropped_files_are_shown_or_refused() {
     page.evaluate("yoro.showSource({ builtin: 'nowhere' })");
     assert_eq!((page.message().is_some(), page.evaluate(scene)), (true, json!("own")));
 
-    // Pictures are as `yoro synthesize` makes them.
+    // The page shows pictures as `yoro synthesize` renders them.
     let size = [96u32, 64];
     let color = RgbImage::from_fn(size[0], size[1], |x, y| {
         Rgb([(x * 2) as u8, (y * 3) as u8, if x / 8 % 2 == y / 8 % 2 { 200 } else { 40 }])
@@ -153,11 +154,11 @@ fn dropped_files_are_shown_or_refused() {
     gray.save(path("depth.png")).unwrap();
     let metres = DepthImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 0.7 } else { 4.0 }]));
     save_depth(&path("metres.exr"), &metres).unwrap();
-    // A distance that 8 bits do not have.
+    // A distance that 8 bits cannot store exactly.
     let tenths = DepthImage::from_fn(size[0], size[1], |x, y| Luma([if near(x, y) { 0.0713 } else { 0.4 }]));
     save_depth(&path("tenths-depth.png"), &tenths).unwrap();
     color.save(path("view.png")).unwrap();
-    // Their depth is guessed: by a brighter bottom, by the kind of file, by 16 bits.
+    // The encoding of the depth is guessed from a brighter bottom, the file format, or 16 bits per value.
     for (depth, encoding, key, value, edges) in [
         ("depth.png", "disparity", "disparity-scale", "12", "hard"),
         ("metres.exr", "metres", "metres-at-white", "3", "hard"),
@@ -185,7 +186,7 @@ fn dropped_files_are_shown_or_refused() {
         close(depth, &page.eyes(size)[0], &desktop);
     }
 
-    // What pictures have no use for cannot be chosen.
+    // Settings that do not apply to pictures cannot be changed.
     let without = "['method', 'viewpoint', 'renderer'].every((id) => document.getElementById(id).disabled)";
     assert_eq!(page.evaluate(without), json!(true));
     for (value, part) in
@@ -202,12 +203,12 @@ fn dropped_files_are_shown_or_refused() {
     let hidden = "['near', 'far', 'disparity-scale'].every((key) => document.getElementById(`picture-${key}`).labels[0].hidden)";
     assert_eq!(page.evaluate(hidden), json!(true), "fields that distances have no use for");
 
-    // Pictures have no truth for a difference: the eye itself is shown.
+    // The true image of the other eye is unknown, so instead of a difference the eye itself is shown.
     let synthesized = page.evaluate(&sum("left"));
     assert!(synthesized.as_u64().unwrap() > 0);
     assert_eq!(page.evaluate(&sum("difference")), synthesized);
 
-    // Eleven invalid inputs: a sentence each, and the content before stays.
+    // Each of eleven invalid inputs is answered with one sentence, and the previous content stays.
     type Files<'a> = &'a [(&'a str, Vec<u8>)];
     let gray = |w, h| png(GrayImage::new(w, h));
     let broken: [(Files, &str); 11] = [
@@ -237,7 +238,7 @@ fn dropped_files_are_shown_or_refused() {
         assert_eq!(page.evaluate("Boolean(yoro.source.color)"), json!(true), "{part}: the pictures stay");
     }
 
-    // A photo that carries its depth.
+    // A photo with an embedded depth map.
     page.drop_files(&[("portrait.jpg", portrait([96, 64]))]);
     assert_eq!((page.message(), page.evaluate("yoro.source.color.name")), (None, json!("portrait.jpg")));
     let fields = "['source', 'encoding', 'near', 'far'].map((key) => document.getElementById(`picture-${key}`).value).join()";
@@ -248,7 +249,7 @@ fn dropped_files_are_shown_or_refused() {
     let moved = page.eyes([96, 64]);
     assert_ne!(moved[0], moved[1], "something is near");
 
-    // The page's own examples, and back to a scene of the list.
+    // The page's own examples, then back to a built-in scene.
     page.evaluate("document.getElementById('example-pictures').click()");
     page.until("yoro.source.color?.name === 'example-color.jpg'");
     assert_eq!(
@@ -263,7 +264,7 @@ fn dropped_files_are_shown_or_refused() {
     assert_eq!((page.evaluate(orbit), walks(&mut page)), (json!([false, true]), json!(true)));
     page.browser.expect_silence();
 
-    // Opened as a file, it says what to do.
+    // If the page is opened as a file, it says what to do.
     let xtask = PathBuf::from(env::var_os("YORO_TEST_WEB").unwrap());
     page.browser.open(&xtask.ancestors().nth(2).unwrap().join("web/index.html"));
     page.until("!document.getElementById('message').hidden");

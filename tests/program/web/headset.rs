@@ -1,4 +1,4 @@
-//! A headset, played by an emulator.
+//! The page on an emulated headset.
 
 use std::env;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use yoro_render::{PreparedScene, RenderSettings};
 
 use super::{Page, close};
 
-/// The script of the Immersive Web Emulation Runtime with a headset; without it the test is to end.
+/// Returns the script of the Immersive Web Emulation Runtime. Without it, the test should end.
 pub fn emulator() -> Option<String> {
     let Some(path) = env::var_os("YORO_TEST_WEBXR") else {
         let without = env::var_os("YORO_TEST_WITHOUT_WEBXR").is_some();
@@ -27,11 +27,11 @@ pub fn emulator() -> Option<String> {
     Some(format!("{emulator}\n{HEADSET}"))
 }
 
-/// A Quest 3 with eyes that see further outwards, and a framebuffer of its own, as real ones have.
+/// A Quest 3 whose eyes see farther outwards and which has its own framebuffer, as real headsets do.
 const HEADSET: &str = "
     globalThis.headset = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: true });
     headset.installRuntime({ forceInstall: true });
-    // It says when it is asked for another rate.
+    // The emulator logs each request for another frame rate.
     const log = console.log;
     console.log = (text, ...more) => { if (!/frame rate updated/.test(text)) log(text, ...more); };
     const matrix = Object.getOwnPropertyDescriptor(XRView.prototype, 'projectionMatrix').get;
@@ -72,7 +72,7 @@ const HEADSET: &str = "
 fn a_headset_shows_both_eyes() {
     let Some(script) = emulator() else { return };
     let Some(mut page) = Page::open("#method=conventional&display=left", Some(&script)) else { return };
-    // The emulator's displays have the window's size.
+    // The emulator's displays have the size of the window.
     page.browser.resize(400, 240);
     page.until("!document.getElementById('headset').disabled");
     let press = |page: &mut Page, button: &str| {
@@ -92,7 +92,7 @@ fn a_headset_shows_both_eyes() {
             page.evaluate("[headset.activeSession.frameRate, layer.fixedFoveation]"),
             json!([120, 0.5])
         );
-        // Without the figures, which change.
+        // Without the figures, since they change.
         press(&mut page, "thumbstick");
         let expected = if visit == 0 { "conventional" } else { "instanced" };
         assert_eq!(page.evaluate("yoro.settings.method"), expected);
@@ -115,12 +115,12 @@ fn a_headset_shows_both_eyes() {
         page.until("yoro.busy === null && document.getElementById('headset').textContent === 'Enter VR'");
         assert_eq!(page.message(), None);
     }
-    // The way walked is in the link.
+    // The distance walked is stored in the link.
     page.until("location.hash.includes('at=')");
     page.browser.expect_silence();
 }
 
-/// What the headset shows: its views, and both eyes' pictures.
+/// Returns what the headset shows: its views, and both eyes' pictures.
 pub fn seen(page: &mut Page) -> (Vec<f32>, [RgbImage; 2]) {
     let number = |value: &Value| value.as_f64().unwrap() as f32;
     let views = page.evaluate("[...yoro.busy.views]").as_array().unwrap().iter().map(number).collect();
@@ -133,7 +133,7 @@ pub fn seen(page: &mut Page) -> (Vec<f32>, [RgbImage; 2]) {
     (views, eyes)
 }
 
-/// The desktop's pictures for a headset's views at the scene's first viewpoint.
+/// Renders a headset's views at the scene's first viewpoint on the desktop.
 pub fn headset_pictures(views: &[f32], size: [u32; 2]) -> [RgbImage; 2] {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();

@@ -1,4 +1,4 @@
-//! A measurement, and its report.
+//! A measurement on the page, and its report.
 
 use serde_json::json;
 
@@ -18,7 +18,7 @@ fn a_measurement_is_reported() {
     let before = page.evaluate(places);
     page.evaluate("document.getElementById('measure').click()");
     page.until("yoro.busy !== null || yoro.measured !== undefined");
-    // What it depends on stays as it is, whatever is chosen or followed.
+    // Settings that affect the measurement cannot be changed meanwhile, neither by controls nor by links.
     for id in ["scene", "renderer", "anti-aliasing", "ipd", "dominant", "measure-size", "files"] {
         let locked = format!("document.getElementById('{id}').matches(':disabled')");
         assert_eq!(page.evaluate(&locked), json!(true), "{id}");
@@ -29,7 +29,7 @@ fn a_measurement_is_reported() {
     page.until("yoro.busy === null");
     assert_eq!((page.message(), page.evaluate("yoro.settings.ipd")), (None, json!(63)));
     assert_eq!(page.evaluate(places), before, "the panels stay where they are");
-    // A second one that is stopped loses nothing of the first.
+    // Stopping a second measurement keeps the results of the first.
     page.evaluate("document.getElementById('measure').click(); document.getElementById('measure').click()");
     page.until("yoro.busy === null");
     assert_eq!(page.evaluate("document.getElementById('measure-save').hidden"), json!(false));

@@ -1,4 +1,4 @@
-//! What each method shows, against the desktop.
+//! Compares the picture of each method with the desktop's.
 
 use serde_json::{Value, json};
 use yoro::eyes::{Eye, EyeOptions};
@@ -10,9 +10,9 @@ use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 
 use super::{Page, close};
 
-/// WebGL on SwiftShader, which has OVR_multiview2 as the browsers of headsets have it.
+/// WebGL on SwiftShader, which supports OVR_multiview2, as headsets' browsers do.
 const MULTIVIEW: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-/// Size of each eye's image that is compared.
+/// Size of the compared image of each eye in pixels.
 const SIZE: [u32; 2] = [240, 160];
 
 #[test]
@@ -59,7 +59,7 @@ fn every_method_shows_what_the_desktop_shows() {
         assert!(compared >= 5, "{}: {compared} methods", renderer.name());
     }
 
-    // What was seen while walking fills what is uncovered: better than what is invented.
+    // Pixels seen while walking fill disocclusions better than invented ones.
     page.choose("renderer", "deferred");
     page.choose("method", "yoro");
     page.choose("display", "divider");

@@ -1,4 +1,4 @@
-//! The page in a real browser, which draws with the same rasterizer as the other tests.
+//! The page in a real browser, which renders with the same rasterizer as the other tests.
 
 mod files;
 mod headset;
@@ -24,19 +24,19 @@ use yoro_lab::picture::rgb_image;
 
 use crate::browser::Browser;
 
-/// WebGL on Mesa, as the desktop's pictures are made.
+/// WebGL on Mesa, like the pictures of the desktop.
 const GL: [&str; 3] = ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"];
 
-/// The page's files on this machine, until this is dropped.
+/// A server for the page's files on this machine, which is ended when this is dropped.
 struct Server {
     child: Child,
     address: String,
-    /// What listens in its place, once it has fallen silent.
+    /// The listener that replaces the server after [`Server::fall_silent`].
     silent: Option<TcpListener>,
 }
 
 impl Server {
-    /// Serves the page that `cargo xtask test` has built; none without it, and the test is to end.
+    /// Serves the page that `cargo xtask test` has built. Returns `None` if there is none; the test should then end.
     fn start() -> Option<Server> {
         let Some(xtask) = env::var_os("YORO_TEST_WEB") else {
             let without = env::var_os("YORO_TEST_WITHOUT_WEB").is_some();
@@ -54,7 +54,7 @@ impl Server {
         Some(Server { child, address: address.expect("the server says where it is"), silent: None })
     }
 
-    /// Ends the server; its port takes connections and answers none.
+    /// Ends the server. Its port continues to accept connections, but never answers.
     fn fall_silent(&mut self) {
         self.stop();
         let port = self.address.rsplit(':').next().unwrap().trim_end_matches('/');
@@ -73,20 +73,20 @@ impl Drop for Server {
     }
 }
 
-/// A browser with the page.
+/// A browser that shows the page.
 struct Page {
     browser: Browser,
     server: Server,
 }
 
 impl Page {
-    /// Opens the page with a fragment, at a window's width, and waits for its first picture; nothing where something is
-    /// missing. `before` is run before the page's own scripts.
+    /// Opens the page with a fragment, and waits for its first picture. `before` is run before the page's own scripts.
+    /// Returns `None` if the page or the browser is missing.
     fn open(fragment: &str, before: Option<&str>) -> Option<Page> {
         Page::open_with(&GL, fragment, before)
     }
 
-    /// Opens as [`Page::open`] does, in a browser with these options.
+    /// Opens the page like [`Page::open`], in a browser with these options.
     fn open_with(gl: &[&str], fragment: &str, before: Option<&str>) -> Option<Page> {
         let server = Server::start()?;
         let mut browser = Browser::start_with(gl)?;
@@ -120,14 +120,13 @@ impl Page {
         }
     }
 
-    /// The page's message, if it shows one.
+    /// Returns the page's message, if it shows one.
     fn message(&mut self) -> Option<String> {
         let said = "document.getElementById('message').hidden ? null : document.getElementById('message-text').textContent";
         self.evaluate(said).as_str().map(str::to_owned)
     }
 
-    /// Opens a fragment, loses the context before the first scene is there, and gives it back when its worker has
-    /// ended.
+    /// Opens a fragment, loses the context before the first scene is there, and restores it after the worker's end.
     fn go_and_lose(&mut self, address: &str) {
         self.browser.go(&format!("{}{address}", self.server.address));
         self.until("Boolean(globalThis.yoro?.page)");
@@ -145,7 +144,7 @@ impl Page {
         ));
     }
 
-    /// Returns both eyes, drawn with this size each: at once, before the page draws for its canvas.
+    /// Draws both eyes with this size each, and reads them at once, before the page draws for its canvas.
     fn eyes(&mut self, size: [u32; 2]) -> [RgbImage; 2] {
         let read = format!(
             "(() => {{ {}; return [0, 1].map((eye) => {{ let s = ''; \
@@ -156,7 +155,7 @@ impl Page {
         [0, 1].map(|eye| rgb_image(&STANDARD.decode(texts[eye].as_str().unwrap()).unwrap(), size))
     }
 
-    /// Drops files: names and contents.
+    /// Drops files with these names and contents on the page.
     fn drop_files(&mut self, files: &[(&str, Vec<u8>)]) {
         let entries: Vec<_> =
             files.iter().map(|(name, bytes)| json!([name, STANDARD.encode(bytes)])).collect();
@@ -170,12 +169,12 @@ impl Page {
     }
 }
 
-/// Half the width and all of the height of a canvas.
+/// Returns the expression that draws with this size per eye, which is half of the canvas's width and all of its height.
 fn draw(size: [u32; 2]) -> String {
     format!("yoro.page.draw({}, {}, false)", 2 * size[0], size[1])
 }
 
-/// Chooses a display, draws, and adds up the canvas's values.
+/// Returns the expression that selects a display, draws, and sums up the canvas's values.
 fn sum(display: &str) -> String {
     format!(
         "(() => {{ const e = document.getElementById('display'); e.value = '{display}'; \

@@ -1,4 +1,4 @@
-//! A stream from the program to the page.
+//! Streams from the program to the page.
 
 use std::io::{BufRead as _, BufReader, Read, Write};
 use std::net::{IpAddr, TcpListener, TcpStream, UdpSocket};
@@ -31,7 +31,7 @@ use crate::browser::Browser;
 use crate::program::succeed;
 
 const QUANTIZER: &str = "16";
-/// Steps of a head, in metres to the right.
+/// Length of a step of the head to the right, in metres.
 const STEP: f32 = 0.02;
 
 /// Returns the command `yoro serve`.
@@ -43,7 +43,7 @@ fn command(source: &str, frame_rate: u32, options: &[&str], home: Option<&Path>)
     command
 }
 
-/// `yoro serve`, until this is dropped.
+/// Runs `yoro serve` until the server is dropped. Returns the server and its link.
 fn serve(frame_rate: u32, options: &[&str], home: Option<&Path>) -> (Server, String) {
     serve_source("prototype", frame_rate, options, home)
 }
@@ -59,9 +59,9 @@ fn serve_source(source: &str, frame_rate: u32, options: &[&str], home: Option<&P
     (Server { child, address, silent: None }, link)
 }
 
-/// Opens the link that a server prints, and waits for its pictures; none where something is missing.
+/// Starts a server, opens its link, and waits for pictures. Returns `None` if the page or the browser is missing.
 fn open(mode: &str) -> Option<(Page, String)> {
-    // Says what is missing.
+    // Prints a message if the page is missing.
     Server::start()?;
     let browser = Browser::start_with(&GL)?;
     let (server, link) = serve(5, &["--mode", mode], None);
@@ -85,7 +85,7 @@ fn follow(mut browser: Browser, server: Server, link: &str) -> Page {
     page
 }
 
-/// The desktop's side: a scene, and what a viewer makes of its pictures.
+/// The desktop's side: a scene, and a viewer's view of its pictures.
 struct Desktop {
     prepared: PreparedScene,
     renderer: FrameRenderer,
@@ -106,7 +106,7 @@ impl Desktop {
         }
     }
 
-    /// Returns the first pose's eyes of a size, and those after a step.
+    /// Returns the eyes at the first pose and after a step, for this size in pixels.
     fn pairs(&self, size: [u32; 2]) -> [EyePair; 2] {
         let settings = yoro_web::Settings::default();
         let mut walker = yoro_web::Walker::new(self.prepared.scene.viewpoints[0].pose());
@@ -115,7 +115,7 @@ impl Desktop {
         [first, settings.pair(walker.pose(), size)]
     }
 
-    /// Returns what is seen of the first pair's picture at the poses of both.
+    /// Returns how the picture of the first pair looks from the poses of both pairs.
     fn seen(&mut self, pairs: &[EyePair; 2]) -> [[RgbImage; 2]; 2] {
         let [first, _] = pairs;
         let eye_view =
@@ -127,7 +127,7 @@ impl Desktop {
         let (mut encoder, mut decoder) =
             (LiveEncoder::new(LiveEncoderKind::OpenH264, 5.0).unwrap(), Decoder::new().unwrap());
         let mut planes = picture.planes.clone();
-        // A picture that stands still becomes better for some frames.
+        // A picture that does not change improves for some frames.
         for _ in 0..4 {
             let encoded = encoder.encode(&picture.planes, QUANTIZER.parse().unwrap(), false).unwrap();
             planes = decoder.decode(&encoded.data).unwrap();
@@ -145,7 +145,7 @@ impl Desktop {
     }
 }
 
-/// Checks that the page shows what the desktop would, at the pose of the picture and a step beside it.
+/// Checks that the page shows the same as the desktop, at the picture's pose and one step beside it.
 fn check(page: &mut Page, desktop: &mut Desktop) -> [EyePair; 2] {
     let number =
         |page: &mut Page, side: &str| page.evaluate(&format!("yoro.canvas.{side}")).as_u64().unwrap() as u32;
@@ -153,7 +153,7 @@ fn check(page: &mut Page, desktop: &mut Desktop) -> [EyePair; 2] {
     let pairs = desktop.pairs(size);
     let [still, moved] = desktop.seen(&pairs);
     for (name, step, desktop) in [("still", 0.0, still), ("moved", STEP, moved)] {
-        // At once, before a picture of the new pose can come; and back again.
+        // Read immediately, before a picture of the new pose can arrive, then walk back.
         page.evaluate(&format!("yoro.page.walk({step}, 0, 0); 0"));
         let here = page.eyes(size);
         page.evaluate(&format!("yoro.page.walk(-{step}, 0, 0); 0"));
@@ -164,7 +164,7 @@ fn check(page: &mut Page, desktop: &mut Desktop) -> [EyePair; 2] {
     pairs
 }
 
-/// Asks for the stream with these headers, and returns the answer's beginning.
+/// Requests the stream with these headers, and returns the beginning of the answer.
 fn ask(mut connection: impl Read + Write, host: &str, headers: &str) -> String {
     let key = "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==";
     write!(connection, "GET /stream HTTP/1.1\r\nHost: {host}\r\n{headers}{key}\r\n\r\n").unwrap();
@@ -173,7 +173,7 @@ fn ask(mut connection: impl Read + Write, host: &str, headers: &str) -> String {
     String::from_utf8_lossy(&answer[..length]).into_owned()
 }
 
-/// Sends a first message on a new connection, and gives the answer's bytes.
+/// Sends a first message on a new connection, and returns the bytes of the answer.
 fn knock(page: &mut Page, token: &str) -> serde_json::Value {
     page.evaluate(&format!(
         "new Promise((resolve) => {{ const s = new WebSocket(location.origin.replace('http', 'ws') + '/stream'); \
@@ -208,9 +208,9 @@ fn a_stream_is_shown_at_the_newest_pose_to_one_page_with_the_token() {
     lose(&mut page, "WebSocket");
 }
 
-/// Loses the connection, which is found again, and then the server.
+/// Loses the connection, which is restored, and then the server.
 fn lose(page: &mut Page, transport: &str) {
-    // A page that is silent for too long is left, and comes back.
+    // The server drops a page that is silent for too long. The page reconnects.
     page.evaluate("yoro.stream.frames = 0; const end = Date.now() + 4000; while (Date.now() < end); 0");
     page.until("yoro.stream.losses === 1 && yoro.stream.there && yoro.stream.frames > 2");
     assert_eq!(page.message(), None);
@@ -221,11 +221,11 @@ fn lose(page: &mut Page, transport: &str) {
          yoro.page.turn(-0.1, 0); yoro.page.walk(-{STEP}, 0, 0); [...yoro.page.streamCorrection()].map((n) => n.toFixed(1))"
     );
     let corrected = page.evaluate(&corrected);
-    // The turn moves the eye, too, which is beside the neck.
+    // Turning the head also moves the eye, which is away from the neck's axis.
     let number = |i: usize| corrected[i].as_str().unwrap().parse::<f64>().unwrap();
     assert!((1.0..4.0).contains(&number(0)) && number(1) == 5.7, "{corrected}");
 
-    // A hidden page hangs up, and comes back.
+    // A hidden page disconnects, and reconnects when it is shown.
     let see = |page: &mut Page, hidden: bool| {
         page.evaluate(&format!(
             "Object.defineProperty(document, 'hidden', {{ value: {hidden}, configurable: true }}); \
@@ -271,7 +271,7 @@ fn two_eyes_are_moved_with_the_head_by_the_depth_of_one() {
 #[test]
 fn a_headset_shows_a_stream() {
     let Some(script) = headset::emulator() else { return };
-    // Says what is missing.
+    // Prints a message if the page is missing.
     let Some(_) = Server::start() else { return };
     let Some(mut browser) = Browser::start_with(&GL) else { return };
     browser.run_before_pages(&script);
@@ -280,7 +280,7 @@ fn a_headset_shows_a_stream() {
     page.browser.resize(400, 240);
     page.until("!document.getElementById('headset').disabled");
     page.evaluate("document.getElementById('headset').click()");
-    // Pictures for its own views have come.
+    // Pictures for the headset's own views have arrived.
     page.until("yoro.busy?.frames > 1");
     page.evaluate("yoro.stream.frames = 0; headset.controllers.right.updateButtonValue('thumbstick', 1); 0");
     page.until("yoro.stream.frames > 4");
@@ -302,7 +302,7 @@ fn a_headset_shows_a_stream() {
 
 #[test]
 fn a_video_is_streamed_whole() {
-    // Says what is missing.
+    // Prints a message if the page is missing.
     let Some(_) = Server::start() else { return };
     let Some(browser) = Browser::start_with(&GL) else { return };
     let dir = tempfile::tempdir().unwrap();
@@ -317,7 +317,7 @@ fn a_video_is_streamed_whole() {
     let mut reader = yoro_video::Reader::open(&path).unwrap();
     let mut best = 0.0f64;
     while let Some((color, _)) = reader.read_rgbd().unwrap() {
-        // Its guard band is on the left.
+        // The guard band is on the left.
         let whole = imageops::crop_imm(&color, color.width() - 192, 0, 192, 128).to_image();
         let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, 184, 120).to_image();
         best = best.max(psnr(&inner(&right), &inner(&whole), Channels::Rgb).unwrap().0);
@@ -328,7 +328,7 @@ fn a_video_is_streamed_whole() {
 
 #[test]
 fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
-    // Says what is missing.
+    // Prints a message if the page is missing.
     let Some(site) = Server::start() else { return };
     let home = tempfile::tempdir().unwrap();
     let origin = site.address.trim_end_matches('/');
@@ -340,12 +340,12 @@ fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
         "it listens on the address that it prints alone"
     );
 
-    // Who connects and says nothing is left.
+    // A client that connects and sends nothing is dropped.
     let mut idle = TcpStream::connect(&host).unwrap();
     let answer = ask(TcpStream::connect(&host).unwrap(), &host, "");
     assert!(!answer.starts_with("HTTP"), "without encryption: {answer}");
 
-    // A strict client, which knows no authority but this certificate itself.
+    // A strict client, which trusts only this certificate.
     let pem = std::fs::read(home.path().join("yoro/serve/127.0.0.2.pem")).unwrap();
     let mut roots = rustls::RootCertStore::empty();
     roots.add(CertificateDer::from_pem_slice(&pem).unwrap()).unwrap();
@@ -390,12 +390,12 @@ fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
     assert_eq!(knock(&mut page, token), json!([1, 1]), "another page is served");
     check(&mut page, &mut Desktop::new(Mode::Depth));
 
-    // A certificate of another hash is refused: the WebSocket is there.
+    // If the hash in the link is another one, the certificate is refused and the page falls back to the WebSocket.
     let (start, rest) = link.split_once(',').unwrap();
     page.browser.go("about:blank");
     page.browser.go(&format!("{start},{}{}", "0".repeat(64), &rest[64..]));
     page.until("document.getElementById('facts')?.textContent.includes('by WebSocket: ')");
-    // A page of another server, whose origin was named.
+    // A page of another server, whose origin was allowed.
     page.browser.allow(&site.address);
     page.browser.go(&format!("{}#{}", site.address, link.split('#').nth(1).unwrap()));
     page.until("globalThis.yoro?.stream?.frames > 3");
@@ -408,7 +408,7 @@ fn the_local_network_is_served_by_https_with_a_certificate_for_the_address() {
 
 #[test]
 fn without_an_address_the_one_by_which_others_are_reached_is_served() {
-    // Says what is missing.
+    // Prints a message if the page is missing.
     let Some(_) = Server::start() else { return };
     let socket = UdpSocket::bind("0.0.0.0:0").unwrap();
     let own = socket.connect("192.0.2.1:9").and_then(|()| socket.local_addr());
@@ -439,8 +439,8 @@ fn resident(id: u32) -> u64 {
     pages.split(' ').nth(1).unwrap().parse::<u64>().unwrap() * 4096
 }
 
-/// A client that decodes every frame takes ten thousand; each shows the newest view that it has asked for or the one
-/// before.
+/// A client that decodes every frame receives ten thousand. Each shows the newest view that was requested, or the one
+/// before it.
 #[test]
 #[ignore = "takes minutes"]
 fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
@@ -465,7 +465,7 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     let (mut early, mut bytes) = (0, 0);
     let start = Instant::now();
     for expected in 0..FRAMES {
-        // The head walks in a circle of 40 cm.
+        // The head moves in a circle with a diameter of 40 cm.
         let angle = expected as f32 * 0.01;
         let at = home.position + 0.2 * glam::Vec3::new(angle.sin(), 0.0, angle.cos());
         let eye = EyeView { pose: Pose { position: at, ..home }, frustum: Frustum::symmetric(1.0, 1.0) };
@@ -497,8 +497,8 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     assert!(late < early + (4 << 20), "{early} bytes after a tenth, {late} at the end");
 }
 
-/// Answers like `yoro serve`, but leaves out frame 1, and sends no H.264 after frame 3. Passes on what it is told,
-/// without requests.
+/// Answers like `yoro serve`, but omits frame 1, and sends invalid H.264 after frame 3. Forwards the client's messages
+/// to `said`, except for requests.
 fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromClient>) -> Option<()> {
     let folder = Path::new(env!("CARGO_BIN_EXE_yoro")).ancestors().nth(2).unwrap().join("web");
     let mut open = Vec::new();
@@ -556,7 +556,7 @@ fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromClient>) -> Opti
 
 #[test]
 fn a_missing_frame_is_named_and_a_browser_that_cannot_decode_says_so_and_stops() {
-    // Says what is missing.
+    // Prints a message if the page is missing.
     let Some(_) = Server::start() else { return };
     let Some(mut browser) = Browser::start_with(&GL) else { return };
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -573,7 +573,7 @@ fn a_missing_frame_is_named_and_a_browser_that_cannot_decode_says_so_and_stops()
         assert!(start.elapsed() < Duration::from_secs(60), "{}", browser.evaluate(message));
         std::thread::sleep(Duration::from_millis(100));
     }
-    // It would have been back three times.
+    // Enough time for three reconnections.
     std::thread::sleep(Duration::from_secs(3));
     let hello = FromClient::Hello { version: VERSION, token: 1u128.to_be_bytes() };
     let expected = [hello, FromClient::Decoded(0), FromClient::Missing(1), FromClient::Decoded(3)];

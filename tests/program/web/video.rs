@@ -27,7 +27,7 @@ fn an_rgbd_video_plays_over_and_over_until_it_is_paused() {
     succeed(at, "synthesize rgbd.mp4 --out stereo.mp4");
     let read = |name: &str| fs::read(at.join(name)).unwrap();
 
-    // What is no such video leaves the scene where it is.
+    // A file that is not such a video leaves the scene unchanged.
     let whole = read("rgbd.mp4");
     let half = whole[..whole.len() / 2].to_vec();
     for (name, bytes, what) in [
@@ -49,8 +49,8 @@ fn an_rgbd_video_plays_over_and_over_until_it_is_paused() {
     thread::sleep(Duration::from_millis(600));
     assert_eq!(page.evaluate("yoro.stream.frames"), frames, "it is paused");
 
-    // The picture is one of the video's: both eyes, against real renders.
-    // Its border is black, so that nothing is smeared beyond it.
+    // The picture is one of the video's frames: both eyes are compared with real renders. The border is excluded: it is
+    // black, so that nothing is smeared beyond it.
     let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, SIZE[0] - 8, SIZE[1] - 8).to_image();
     let db = |a: &RgbImage, b: &RgbImage| psnr(&inner(a), &inner(b), Channels::Luma).unwrap().0;
     let truth = |frame: u32, eye: &str| {
@@ -68,12 +68,12 @@ fn an_rgbd_video_plays_over_and_over_until_it_is_paused() {
     assert!(rendered(&frame) > 30.0, "{:.1} dB", rendered(&frame));
     assert!(synthesized > same + 2.0, "{synthesized:.1} dB, same image {same:.1} dB");
 
-    // Every display shows it.
+    // Every display shows the video.
     for display in
         ["divider", "difference", "side-by-side", "cross-eyed", "anaglyph", "left", "right", "flicker"]
     {
         let sum = page.evaluate(&sum(display)).as_u64().unwrap();
-        // No error is known: that display shows what the divider does, or black.
+        // The error is unknown, so this display shows what the divider does, or black.
         assert_eq!(sum > 0, display != "difference", "{display}: {sum}");
     }
     page.evaluate("document.getElementById('play').click(); 0");
@@ -87,7 +87,7 @@ fn an_rgbd_video_plays_over_and_over_until_it_is_paused() {
 /// Squares of one shade, side by side.
 const SQUARE: u32 = 16;
 
-/// All 256 shades, each in a square, as colour and as depth; then coloured squares.
+/// Writes a video with all 256 shades, each in a square, as colour and as depth, followed by coloured squares.
 fn ramp(path: &std::path::Path) {
     let side = 16 * SQUARE;
     let rgbd = Rgbd {
@@ -111,10 +111,10 @@ fn ramp(path: &std::path::Path) {
     yoro_video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
 }
 
-/// Width and height of the pictures of a phone.
+/// Width and height of a phone's pictures in pixels.
 const PHONE: [u32; 2] = [192, 128];
 
-/// A video as Record3D writes it: stripes before a grid, with depth as hue.
+/// Writes a video in Record3D's format: stripes in front of a grid, with depth as hue.
 fn record3d(path: &std::path::Path) {
     let is_near = |x: u32| (64..128).contains(&x);
     let hues = RgbImage::from_fn(PHONE[0], PHONE[1], |x, _| {
@@ -132,7 +132,7 @@ fn record3d(path: &std::path::Path) {
     let mut pictures = [Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))].into_iter();
     let format = Format { frame_rate: 2, quantizer: 12, frames: 1, rgbd: None };
     yoro_video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
-    // Focal length and middle in pixels; hues reach to 3 m.
+    // Focal length and centre in pixels. Hues represent up to 3 m.
     let camera = r#"{"intrinsicMatrix":[150,0,0,0,150,0,96,64,1],"rangeOfEncodedDepth":[0,3]}"#;
     let length = (camera.len() as u32 + 8).to_be_bytes();
     let file = fs::read(path).unwrap();
@@ -159,7 +159,7 @@ fn pictures_come_as_planes_or_as_the_browser_has_them_and_every_shade_is_exact()
                 continue;
             }
             let [_, right] = page.eyes([side; 2]);
-            // The second shade is a gray one.
+            // The second shade is grey.
             let [r, g, b] = right.get_pixel(SQUARE * 3 / 2, SQUARE / 2).0;
             of_way[usize::from(r.abs_diff(g).max(g.abs_diff(b)) > 8)] = Some(right);
         }
@@ -178,7 +178,7 @@ fn pictures_come_as_planes_or_as_the_browser_has_them_and_every_shade_is_exact()
         let worst = planes.iter().zip(frame).map(|(a, b)| a.abs_diff(b)).max();
         assert!(worst <= Some(2), "{planes:?} as planes, {frame:?} as the browser has it");
     }
-    // Record3D's depth is hue.
+    // Record3D stores depth as hue.
     let phone = dir.path().join("phone.mp4");
     record3d(&phone);
     page.drop_files(&[("phone.mp4", fs::read(&phone).unwrap())]);

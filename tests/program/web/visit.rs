@@ -1,4 +1,4 @@
-//! A visit: links, displays, lost contexts, a viewer, no network.
+//! A visit to the page: links, displays, lost contexts, a viewer, no network.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{Page, draw};
 
-/// Has the page's second load get the module with a type that browsers do not stream.
+/// A script that makes the page's second load receive the module with a MIME type that browsers do not stream.
 const WRONG_TYPE: &str = "if (location.search === '?again') {
     const ask = fetch;
     globalThis.fetch = async (...what) => {
@@ -26,14 +26,14 @@ fn a_link_sets_everything_and_the_page_lasts() {
     page.until("performance.getEntriesByName('first-picture').length === 1");
     let first = page.evaluate("performance.getEntriesByName('first-picture')[0].startTime");
     eprintln!("first picture after {:.0} ms", first.as_f64().unwrap());
-    // Walking is kept in the link.
+    // The walked distance is stored in the link.
     page.evaluate("document.getElementById('canvas').focus()");
     page.browser.hold("KeyW", Duration::from_millis(300));
     page.until("location.hash.includes('at=')");
     let fragment = page.evaluate("location.hash");
     assert!(fragment.as_str().unwrap().contains("method=hybrid"), "{fragment}");
 
-    // Each renderer comes with its own anti-aliasing. Unsupported choices are refused, and the choice before stays.
+    // Each renderer selects its own anti-aliasing. An unsupported choice is refused, and the previous one stays.
     for (renderer, smoothing) in [("deferred", "after"), ("forward", "msaa")] {
         page.choose("renderer", renderer);
         assert_eq!(page.evaluate("yoro.settings['anti-aliasing']"), smoothing);
@@ -47,7 +47,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     page.evaluate(&draw([64, 48]));
     assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
 
-    // Every display draws; turned and resized, as a phone is.
+    // Every display draws, also after the page has been turned and resized as on a phone.
     for display in
         ["side-by-side", "cross-eyed", "left", "right", "divider", "difference", "flicker", "anaglyph"]
     {
@@ -58,7 +58,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     for (width, height) in [(390, 844), (844, 390), (320, 500), (1000, 900)] {
         page.browser.resize(width, height);
         page.until("Math.abs(yoro.canvas.width - yoro.canvas.clientWidth * 0.5) <= 1");
-        // Errors are where the user looks, however long their words, and move nothing.
+        // Errors are visible where the user has scrolled to, whatever their length, and do not move the page.
         let seen = "(() => { scrollTo(0, 1e6); const before = document.body.scrollHeight; yoro.say('x'.repeat(300)); \
                     const b = document.getElementById('message').getBoundingClientRect(); \
                     const moved = document.body.scrollHeight - before; \
@@ -70,12 +70,12 @@ fn a_link_sets_everything_and_the_page_lasts() {
     page.evaluate("document.getElementById('message-close').click()");
     assert_eq!(page.message(), None);
 
-    // Elements have names, and what is not here has a reason for browsers.
+    // Controls have labels. A missing feature is explained for browsers.
     assert_eq!(page.evaluate("document.getElementById('ipd').labels[0].textContent"), "Eyes apart");
     let reason = page.evaluate("document.querySelector('#method [value=multiview]').title");
     assert!(!reason.as_str().unwrap().contains("Mesa"), "{reason}");
 
-    // The link is copied without a loss, and followed: what was wrong before is no longer told.
+    // The copied link contains everything. After it is followed, an earlier error is no longer shown.
     let facts = page.evaluate("document.getElementById('facts').textContent");
     assert!(facts.as_str().unwrap().contains("23,558 triangles"), "{facts}");
     page.evaluate("document.getElementById('share').click()");
@@ -85,7 +85,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     page.until("document.getElementById('message').hidden");
     assert_eq!(page.evaluate("document.getElementById('facts').textContent"), facts);
 
-    // The page shows the progress while a scene is generated.
+    // The page shows progress while a scene is generated.
     let told = page.evaluate(
         "(async () => { const bar = document.getElementById('progress'), seen = []; \
          const watch = new MutationObserver(() => seen.push(bar.position)); watch.observe(bar, { attributes: true }); \
@@ -99,7 +99,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     );
     page.evaluate("yoro.showSource({ builtin: 'prototype' })");
 
-    // A thousand frames hold the same objects as ten.
+    // A thousand frames use the same number of objects as ten.
     let frames = |count: u32| {
         format!(
             "(() => {{ for (let i = 0; i < {count}; i++) {{ yoro.page.turn(0.01, 0); yoro.page.draw(32, 24, false); }} \
@@ -115,7 +115,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
         }
     }
 
-    // The context is lost, and comes back with the scene.
+    // The context is lost and restored with the scene.
     page.evaluate("yoro.lose = yoro.gl.getExtension('WEBGL_lose_context'); yoro.lose.loseContext(); 0");
     page.until("yoro.page === null");
     assert!(page.message().unwrap().contains("lost"));
@@ -126,7 +126,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
     page.browser.expect_silence();
 
-    // What is no viewer or no screen is marked at its field, and not entered.
+    // An invalid viewer or screen is marked at its field, and the viewer mode does not start.
     page.evaluate("Object.defineProperty(screen, 'width', { value: 844 }); Object.defineProperty(screen, 'height', { value: 390 }); 0");
     for (id, value, part) in [
         ("phone-viewer", "goo.gl/abc", "shortened"),
@@ -143,7 +143,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
         page.evaluate(&format!("{field}.value = {before}; {field}.dispatchEvent(new Event('input')); 0"));
     }
 
-    // In a viewer: told how to hold it, turned by the sensors, and left again.
+    // In the viewer mode, the page says how to hold the phone, is turned by the sensors, and can be left again.
     page.evaluate("document.getElementById('phone').click()");
     page.until("yoro.busy?.name === 'phone'");
     let over = "['divider', 'label-left', 'label-right'].some((id) => document.getElementById(id).checkVisibility())";
@@ -161,8 +161,8 @@ fn a_link_sets_everything_and_the_page_lasts() {
     assert_eq!(page.message(), None);
     page.browser.expect_silence();
 
-    // A link's invalid parts are reported, and the rest is applied, also where another scene is chosen while the first
-    // one loads; a host's wrong type for the module does not matter.
+    // Invalid parts of a link are reported, and the rest is applied, even if another scene is selected while the first
+    // one loads. A wrong MIME type of the module does not matter.
     let link = "?again#scene=conference&viewpoint=1&ipd=%20&method=none&size=3&anti-aliasing=msaa&toString=1&__proto__=1&at=1e9,,0,0,0";
     page.browser.go(&format!("{}{link}", page.server.address));
     page.until("globalThis.yoro?.wanted?.builtin === 'conference'");
@@ -184,7 +184,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
     page.evaluate("location.hash = '#viewpoint=98&display=left'; 0");
     page.until("document.getElementById('message-text').textContent.includes('viewpoint is 99')");
 
-    // Loaded once, it needs no network, by whatever name it is asked for; and a network that never answers is none.
+    // Once loaded, the page needs no network, under any of its names. A network that never answers counts as none.
     page.until("navigator.serviceWorker.controller !== null");
     page.until("caches.match(performance.getEntriesByType('resource').find(({ name }) => name.endsWith('wasm')).name).then(Boolean)");
     page.server.fall_silent();

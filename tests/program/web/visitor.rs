@@ -1,5 +1,5 @@
-//! What a visitor is told: which method is cheaper here, why synthesis works; and the camera that reads a viewer's
-//! code.
+//! What the page tells visitors: which method is cheaper on their device, and why synthesis works. Also scans a
+//! viewer's code.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -11,10 +11,10 @@ use super::{GL, Page};
 
 /// The code of a viewer that was given away in 2015.
 const VIEWER: &str = "https://google.com/cardboard/cfg?p=CgZHb29nbGUSEkNhcmRib2FyZCBJL08gMjAxNR0J-SA9JQHegj0qEAAAcEIAAHBCAABwQgAAcEJYADUpXA89OghX8as-YrENP1AAYAM";
-/// Width and height of the camera's picture.
+/// Width and height of the camera's picture in pixels.
 const CAMERA: [usize; 2] = [640, 480];
 
-/// Writes what a camera sees that looks at a QR code, as Chromium's simulated camera reads it: Y4M with one frame.
+/// Writes the picture of a QR code for Chromium's simulated camera, as a Y4M file with one frame.
 fn film(path: &Path, text: &str) {
     let code = QrCode::new(text).unwrap();
     let (modules, colors) = (code.width(), code.to_colors());
@@ -47,8 +47,7 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     let options: Vec<&str> = GL.into_iter().chain(seen).collect();
     let Some(mut page) = Page::open_with(&options, "#scale=0.5", None) else { return };
 
-    // A comparison shows what it compares. A picture for itself is drawn by the cheaper method, once both have been
-    // measured.
+    // A comparison shows both of its methods. A picture alone is drawn by the cheaper method, once both are measured.
     let method = "[yoro.settings.method, yoro.page.methodInUse, yoro.page.reason ?? null]";
     assert_eq!(page.evaluate(method), json!(["auto", "yoro", null]));
     page.browser.resize(320, 300);
@@ -66,12 +65,12 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     page.until("!document.getElementById('label-left').hidden");
     let label = page.evaluate("document.getElementById('label-left').textContent");
     assert_eq!(label, if two < one { "Left eye: rendered" } else { "Left eye: synthesized" });
-    // Nothing is drawn while nothing moves; another place is another choice.
+    // Nothing is drawn while nothing moves. Another place requires another choice.
     let frames = "new Promise((done) => { const draw = yoro.page.draw; let frames = 0; \
                   yoro.page.draw = function(...all) { frames++; return draw.apply(this, all); }; \
                   setTimeout(() => { delete yoro.page.draw; done(frames); }, 300); })";
     assert_eq!(page.evaluate(frames), 0);
-    // Where frames come too slowly to measure, the page says so, and draws no more of them.
+    // If frames come too slowly to measure, the page says so, and does not draw more of them.
     page.evaluate(
         "import([...document.querySelectorAll('link[rel=modulepreload]')].find(({ href }) => href.endsWith('figures.js')).href)\
          .then(({ choosing }) => { yoro.choosing = choosing; return 0; })",
@@ -84,8 +83,7 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     page.choose("display", "divider");
     assert_eq!(page.evaluate(method), json!(["auto", "yoro", null]));
 
-    // The sentence below the divider says one thing: the share is that of the times beside it, and the baseline is
-    // told.
+    // The sentence below the divider is consistent: the share follows from its times, and the baseline is named.
     page.until("document.getElementById('figures').textContent.includes('the same image to both eyes')");
     let numbers = page.evaluate(
         "document.getElementById('figures').textContent.match(/[\\d.]+(?= %| ms| dB)/g).map(Number)",
@@ -96,7 +94,7 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     assert!((100.0 * made / real - share).abs() < 2.0, "{numbers:?}");
     assert!(psnr > same, "{numbers:?}");
 
-    // Four pictures say why, once they are in sight.
+    // Four pictures explain the reason, once they are visible.
     assert_eq!(page.evaluate("document.getElementById('why-holes').textContent"), "");
     page.evaluate("document.getElementById('why').scrollIntoView()");
     page.until("document.getElementById('why-holes').textContent !== ''");
@@ -123,7 +121,7 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     assert!((told / 100.0 - holes).abs() < 0.001, "{told} % is not {holes}");
     assert_eq!((page.message(), page.evaluate("yoro.page.takeErrors() ?? null")), (None, Value::Null));
 
-    // Both eyes in turn are saved as a picture.
+    // Both eyes in turn are saved as an animation.
     let saved = page.evaluate(
         "(async () => { const make = URL.createObjectURL; let blob; \
          URL.createObjectURL = (b) => { blob = b; return make.call(URL, b); }; \
@@ -133,7 +131,7 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     let size = page.evaluate("[yoro.canvas.width, yoro.canvas.height]");
     assert_eq!(saved, json!(["image/gif", size[0], size[1]]));
 
-    // The camera reads the viewer's code, which is kept.
+    // The camera reads the viewer's code, which is stored.
     page.evaluate("document.getElementById('phone-scan').click(); 0");
     page.until("document.getElementById('phone-viewer').value.startsWith('https')");
     let kept = "[document.getElementById('phone-viewer').value, localStorage.getItem('viewer'), document.getElementById('scan').open]";
@@ -142,7 +140,7 @@ fn a_visitor_is_told_what_is_cheaper_and_why() {
     assert!(name.as_str().unwrap().contains("Cardboard"), "{name}");
     assert_eq!(page.message(), None);
 
-    // The link has everything that was chosen, also where the divider is.
+    // The link contains everything that was selected, including the divider's position.
     page.evaluate(
         "const d = document.getElementById('divider'); d.value = 30; d.dispatchEvent(new Event('change')); 0",
     );

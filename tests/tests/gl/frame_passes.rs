@@ -1,4 +1,4 @@
-//! What each pass reads and writes, as docs/performance.md says.
+//! Checks what each pass reads and writes against docs/performance.md.
 
 use std::fs;
 use std::path::Path;
@@ -19,8 +19,7 @@ use yoro_tests::{golden::BLESS, on_every_backend, scene};
 const BEGIN: &str = "<!-- passes: begin -->\n";
 const END: &str = "<!-- passes: end -->";
 
-/// Frames of every method are recorded: their passes are those of the table. With YORO_BLESS in the environment the
-/// table is written anew.
+/// Records frames of every method. Their passes must be those of the table, which YORO_BLESS rewrites.
 #[test]
 fn every_pass_reads_and_writes_what_the_documents_say() {
     let headless = Headless::open(Backend::Egl).unwrap();
@@ -55,7 +54,7 @@ fn every_pass_reads_and_writes_what_the_documents_say() {
     }
 }
 
-/// A record has the pass, the program, images and textures and, by desktop GL, the samples that were drawn.
+/// A record has the pass, the program, images and textures and, with desktop GL, the number of samples drawn.
 #[test]
 fn a_record_says_what_was_drawn() {
     let done = on_every_backend(|gl| {

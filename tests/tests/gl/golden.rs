@@ -1,4 +1,4 @@
-//! Built-in scenes look unchanged.
+//! Compares built-in scenes with golden images.
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use yoro_tests::{backends, golden};
 
 const SIZE: u32 = 256;
 
-/// Both eyes, left first, of a built-in scene's first viewpoint; the right one is rendered.
+/// Renders both eyes, left first, at a built-in scene's first viewpoint with each pipeline. The left is synthesized.
 fn render(gl: &Rc<Context>, name: &str, pipelines: &[Pipeline]) -> anyhow::Result<Vec<[RgbImage; 2]>> {
     let scene = yoro_scenes::build(name, yoro_scenes::DEFAULT_SEED)?;
     let frames = stills(gl, scene, pipelines, SIZE)?;
@@ -25,7 +25,7 @@ fn image(rgba: &[u8]) -> RgbImage {
     })
 }
 
-/// Compares everything before it fails, so that one run shows all changes.
+/// Compares all images before failing, so that one run shows all changes.
 fn check(images: &[(String, &RgbImage)]) {
     let failures: Vec<String> = images
         .iter()

@@ -1,4 +1,4 @@
-//! Synthesis from anti-aliased sources against a plain reference in f64, whose rows run in forward columns.
+//! Compares synthesis from anti-aliased sources with a simple reference in f64, whose rows are in forward columns.
 
 use std::rc::Rc;
 
@@ -21,7 +21,7 @@ fn distance_squared(a: Color, b: Color) -> f64 {
     (0..3).map(|c| (a[c] - b[c]).powi(2)).sum()
 }
 
-/// A picture in forward columns; reads beyond its borders are clamped to them.
+/// A picture in forward columns. Coordinates outside of it are clamped to the border.
 pub struct Image<T> {
     size: [usize; 2],
     values: Vec<T>,
@@ -45,12 +45,12 @@ struct Back {
     color: Color,
 }
 
-/// The surfaces of a pixel; displacements in pixels.
+/// The surfaces of a pixel. Displacements are in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer {
     front: f64,
     color: Color,
-    /// Of the whole pixel.
+    /// The colour of the whole pixel.
     resolved: Color,
     mask: [f64; 4],
     back: Option<Back>,
@@ -65,7 +65,7 @@ impl Layer {
         self.mask.iter().sum::<f64>() / 4.0
     }
 
-    /// Displacement, colour and links of the back, which may not be there.
+    /// Returns the displacement of the back, or a large value without a back. Colour and links follow likewise.
     fn reach(&self) -> f64 {
         self.back.map_or(1e9, |back| back.reach)
     }
@@ -74,14 +74,14 @@ impl Layer {
 const RING: [(i64, i64); 8] = [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)];
 const NEXT: [(i64, i64); 4] = [(-2, 0), (2, 0), (0, -2), (0, 2)];
 
-/// Colours and displacements of the four stripes of each pixel.
+/// Colours and displacements of each pixel's four stripes.
 pub struct Pixels {
     colors: Image<[Color; 4]>,
     reaches: Image<[f64; 4]>,
     resolved: Image<Color>,
 }
 
-/// Returns which samples the front covers, and the displacements of front and back.
+/// Returns which samples the front covers, and the displacements of the front and, if there is one, the back.
 fn surfaces(reaches: [f64; 4]) -> ([bool; 4], f64, Option<f64>) {
     let nearest = reaches.into_iter().fold(f64::MIN, f64::max);
     let front = reaches.map(|reach| reach > nearest - LINK);
@@ -151,7 +151,7 @@ fn shared_back(resolved: Color, front: Color, back: Color, share: f64) -> Color 
     })
 }
 
-/// Returns a layer with a back. The front's colour is the resolved colour without the back's share.
+/// Makes a layer with a back. The front's colour is the resolved colour without the back's share.
 fn with_back(front: f64, resolved: Color, mask: [f64; 4], back: Back) -> Layer {
     let share = mask.iter().sum::<f64>() / 4.0;
     let color =
@@ -159,7 +159,7 @@ fn with_back(front: f64, resolved: Color, mask: [f64; 4], back: Back) -> Layer {
     Layer { front, color, resolved, mask, back: Some(back) }
 }
 
-/// Returns front and back of a pixel with one depth, and true if its depth is that of the back.
+/// Splits a pixel with one depth. Returns the displacements of front and back, and true if the depth is the back's.
 fn split(reach: &Image<f64>, x: i64, y: i64, apart: f64, first_sample: bool) -> Option<(f64, f64, bool)> {
     let here = reach.at(x, y);
     let all = RING.map(|(dx, dy)| reach.at(x + dx, y + dy));
@@ -189,7 +189,7 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
         let here = resolved.at(x, y);
         let single = Layer { front: reach.at(x, y), color: here, resolved: here, mask: [1.0; 4], back: None };
         let Some((front, back, shows_back)) = split(reach, x, y, apart, first_sample) else { return single };
-        // Taps of front and back: pure ones, and all.
+        // Taps of front and back: the pure ones, and all.
         let mut taps: [[Vec<(f64, Color)>; 2]; 2] = Default::default();
         for (dx, dy) in RING.into_iter().chain(NEXT) {
             let tap = (4.0 / (dx * dx + dy * dy) as f64, resolved.at(x + dx, y + dy));
@@ -258,8 +258,8 @@ fn resolved_layers(reach: &Image<f64>, resolved: &Image<Color>, first_sample: bo
     })
 }
 
-/// Returns the displacement at which the search for each target tile begins, and its number of columns, as the tile
-/// passes find them in sixteenths of a pixel.
+/// Returns for each target tile the displacement at which the search begins, and the number of columns to search. The
+/// tile passes determine them in sixteenths of a pixel.
 pub fn spans(layers: &Image<Layer>, width: usize, range: [f64; 2]) -> Image<Option<(f64, i64)>> {
     let [far, near] = range;
     let [w, h] = layers.size;
@@ -315,16 +315,16 @@ struct Candidate {
     weight: f64,
 }
 
-/// Texels that the shader fetches for a pixel.
+/// Numbers of texels that the shader fetches for a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fetches {
     /// Fetches of the layers.
     pub layers: u32,
-    /// Fetches of colour: the filtered one of a single surface, or two for each layer that takes part.
+    /// Fetches of colour: a filtered one for a single surface, or two for each participating layer.
     pub colors: u32,
 }
 
-/// Front-to-back composition of the surfaces that cover a target pixel.
+/// Composes the surfaces that cover a target pixel, from front to back.
 struct Composition {
     color: Color,
     rest: f64,
@@ -339,9 +339,9 @@ impl Composition {
     }
 }
 
-/// Returns the colour between the inner two of four columns, and how many of them are needed. Keys' cubic convolution:
-/// "Cubic Convolution Interpolation for Digital Image Processing" (1981), equation 15 for u(s) with a = -3/4, clamped
-/// to the inner two.
+/// Interpolates between the inner two of four columns, and returns the colour and how many columns were needed. Keys'
+/// cubic convolution: "Cubic Convolution Interpolation for Digital Image Processing" (1981), equation 15 for u(s) with
+/// a = -3/4, clamped to the inner two.
 fn sharp_color(columns: [Color; 4], f: f64) -> (Color, u32) {
     const A: f64 = -0.75;
     let [_, here, next, _] = columns;
@@ -357,8 +357,7 @@ fn sharp_color(columns: [Color; 4], f: f64) -> (Color, u32) {
     (std::array::from_fn(|c| sum[c].clamp(here[c].min(next[c]), here[c].max(next[c]))), 4)
 }
 
-/// Returns the colour of target pixel (t, y), true if more than half of it is filled from beside the hole, and its
-/// fetches.
+/// Returns the colour of target pixel (t, y), true if most of it is filled from beside the hole, and the fetches.
 pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) -> (Color, bool, Fetches) {
     let last = layers.size[0] as i64 - 1;
     let (mut x, limit) = match span {
@@ -366,7 +365,7 @@ pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) ->
             let x = ((t - reach - 1.01).floor() as i64).clamp(0, last);
             (x, (x + steps + 2).min(last))
         }
-        // Beyond a border.
+        // Outside of the picture.
         None => {
             let border = if t < layers.size[0] as f64 / 2.0 { 0 } else { last };
             return (layers.at(border, y).color, true, Fetches { layers: 2, colors: 1 });
@@ -386,12 +385,12 @@ pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) ->
     let linked = |a: f64, b: f64| a < 1e8 && b < 1e8 && (a - b).abs() < LINK;
     let mut on_front = x > 0 && linked(before.front, here.reach());
     let mut on_back = x > 0 && linked(before.reach(), here.reach());
-    // The shader's short way: single surfaces, linked from the first column on.
+    // The shader's short way handles single surfaces that are linked from the first column on.
     let mut plain = here.back.is_none() && x as f64 + here.front <= t;
     while x < limit && out.rest > 0.01 {
         let next = layers.at(x + 1, y);
         let goes_on = plain && next.back.is_none() && linked(here.front, next.front);
-        // The long way fetches again what has ended the short one, and the layer before a split one.
+        // The long way fetches again the layer that ended the short way, and the layer before it if it is split.
         let again = u32::from(plain && !goes_on) + u32::from(plain && !goes_on && here.back.is_some());
         out.fetches.layers += 1 + again;
         plain = goes_on;
@@ -521,7 +520,7 @@ pub fn march(layers: &Image<Layer>, t: f64, y: i64, span: Option<(f64, i64)>) ->
     (out.color, hole, out.fetches)
 }
 
-/// The samples as the plain version sees them: forward columns, stripes from left to right, displacements.
+/// Converts samples to the reference's form: forward columns, stripes from left to right, displacements.
 pub fn forward(samples: &Samples, warp: &Warp) -> (Pixels, [f64; 2]) {
     let mirrored = warp.target_eye == Eye::Right;
     let size = samples.size.map(|n| n as usize);

@@ -1,4 +1,4 @@
-//! The library on a real GL context: golden images, shader variants and costs, GL objects; scenes on Vulkan.
+//! Tests on a real GL context: golden images, shader variants and costs, GL objects. Also scenes on Vulkan.
 
 mod frame_passes;
 mod golden;

@@ -1,4 +1,4 @@
-//! The laws of the stereo methods.
+//! Properties that all stereo methods must have.
 
 use std::rc::Rc;
 
@@ -57,8 +57,8 @@ fn scenes_and_renderers() -> impl Iterator<Item = (Scene, RendererKind)> {
     deferred.chain([(small, RendererKind::Forward)])
 }
 
-/// Parallel and canted eyes, symmetric and asymmetric frusta, both conventions and dominant eyes; fewer for a scene
-/// that takes longer.
+/// Returns pairs of parallel and canted eyes, with symmetric and asymmetric frusta, both depth conventions and both
+/// dominant eyes. There are fewer for a scene that takes longer.
 fn pairs(stage: &Stage) -> Vec<(&'static str, EyePair)> {
     let plain = stage.pair(Eye::Right, DepthConvention::Standard);
     let mut infinite = stage.pair(Eye::Left, DepthConvention::Reversed);
@@ -82,7 +82,7 @@ fn is_small(scene: &GpuScene) -> bool {
     scene.triangle_count() < 500
 }
 
-/// Every material, glass among them; and a room.
+/// Returns a small scene with every material, including glass, and a room.
 fn scenes() -> Vec<Scene> {
     let mut small = scene::every_material(ShadingStyle::Realistic);
     scene::keep_plain_and_full(&mut small);
@@ -95,7 +95,7 @@ fn differences<'a>(a: &'a [u8], b: &'a [u8]) -> impl Iterator<Item = u8> + 'a {
     a.chunks(4).zip(b.chunks(4)).map(difference)
 }
 
-/// Returns the share of the pixels that differ by at most `tolerance`.
+/// Returns the fraction of pixels that differ by at most `tolerance`.
 fn within(tolerance: u8, a: &[u8], b: &[u8]) -> f64 {
     let within = differences(a, b).filter(|d| *d <= tolerance).count();
     within as f64 / (a.len() / 4) as f64
@@ -108,7 +108,7 @@ fn mean_difference(a: &[u8], b: &[u8]) -> f64 {
 #[test]
 fn single_pass_stereo_equals_two_renders() {
     on_every_backend(|gl| {
-        // Anti-aliasing turns one pixel with a differently rounded edge into several.
+        // Anti-aliasing would turn one differently rounded edge pixel into several different pixels.
         let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
         for (scene, renderer) in scenes_and_renderers() {
             let mut stage = Stage::of(gl, scene, renderer)?;
@@ -163,7 +163,7 @@ fn a_missing_driver_feature_is_one_sentence() {
 #[test]
 fn hybrid_is_conventional_where_everything_is_near() {
     on_every_backend(|gl| {
-        // The split lies beyond the far plane; or beyond all that there is.
+        // The split is beyond the far plane, or beyond all objects.
         for renderer in RendererKind::ALL {
             let mut stage = Stage::of(gl, scenes().swap_remove(0), renderer)?;
             for (threshold, pair) in [
@@ -206,7 +206,7 @@ fn hybrid_with_a_split_is_close_to_conventional() {
         for (scene, renderer) in scenes_and_renderers() {
             let mut stage = Stage::of(gl, scene, renderer)?;
             for (name, pair) in pairs(&stage).into_iter().filter(|(name, _)| *name != "canted") {
-                // Squares and floor of the small scene lie on both sides of 3 metres, the room on both of 7.
+                // The small scene's squares and floor lie on both sides of 3 metres, the room on both sides of 7.
                 let split = if is_small(&stage.scene) { 3.0 } else { 7.0 };
                 let threshold = pair.focal_length_pixels() * IPD / split;
                 let options = StereoOptions { split_disparity: threshold, ..StereoOptions::default() };

@@ -1,4 +1,4 @@
-//! Multiview, which headsets have and Mesa before 25 has not.
+//! Tests of multiview, which headsets support, but Mesa before 25 does not.
 
 use std::env;
 use std::process::Command;
@@ -6,9 +6,9 @@ use std::process::Command;
 use yoro_context::{Backend, Headless};
 use yoro_tests::MULTIVIEW_EXPECTED;
 
-/// The variable with a program that runs its arguments on such a driver.
+/// The variable with a launcher that runs a command on a driver with multiview.
 const LAUNCHER: &str = "YORO_TEST_MULTIVIEW";
-/// The tests that [`yoro_tests::is_tested`] shortens on a driver without multiview.
+/// The tests that [`yoro_tests::is_tested`] restricts on a driver without multiview.
 const TESTS: [&str; 5] = [
     "methods::single_pass_stereo_equals_two_renders",
     "methods::a_missing_driver_feature_is_one_sentence",
@@ -29,7 +29,7 @@ fn every_method_on_a_driver_that_has_it() {
     command.arg(env::current_exe().unwrap()).args(["--exact", "--test-threads=1"]).args(TESTS);
     command.env(MULTIVIEW_EXPECTED, "1").env("YORO_TEST_WITHOUT_OSMESA", "1");
     let output = command.output().expect("the launcher starts");
-    // Not into this process's output, in which the names of tests have a meaning.
+    // Not printed, since names of tests have a meaning in this process's output.
     let text =
         String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
     let all = format!("{} passed; 0 failed", TESTS.len());

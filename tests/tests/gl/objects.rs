@@ -1,4 +1,4 @@
-//! Frames leak no GL objects.
+//! Checks that frames leak no GL objects.
 
 use std::rc::Rc;
 
@@ -10,7 +10,7 @@ use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_scene::ShadingStyle;
 use yoro_tests::{backends, is_tested, scene};
 
-/// Every way to make a frame, by name.
+/// Returns every way to render a frame, by name.
 fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, StereoOptions)> {
     let of = StereoOptions::of_pipeline;
     let mut small_imbuffer = of(Pipeline::Paper);
@@ -23,7 +23,7 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
         ..StereoOptions::default()
     };
     let default = StereoOptions::default();
-    // Squares and floor lie on both sides of two metres and a half.
+    // Squares and floor lie on both sides of 2.5 metres.
     let split = StereoOptions { split_disparity: 0.6, ..default };
     vec![
         ("conventional", Method::Conventional, default),
@@ -42,14 +42,14 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
     .collect()
 }
 
-/// Few pixels and few programs: only the number of frames matters here.
+/// Makes a scene with few pixels and few programs, since only the number of frames matters here.
 fn tiny(gl: &Rc<Context>) -> GpuScene {
     let mut scene = scene::every_material(ShadingStyle::Realistic);
     scene::keep_plain_and_full(&mut scene);
     GpuScene::upload(gl, scene).unwrap()
 }
 
-/// Settings of both renderers.
+/// Returns settings for both renderers.
 fn settings() -> [RenderSettings; 2] {
     RendererKind::ALL.map(|renderer| RenderSettings {
         renderer,
@@ -58,7 +58,7 @@ fn settings() -> [RenderSettings; 2] {
     })
 }
 
-/// The eyes of a moving head.
+/// Returns the eyes of a moving head.
 fn pair(frame: u32, dominant: Eye) -> EyePair {
     let position = glam::Vec3::new((frame as f32 * 0.1).sin() * 0.3, 0.0, 0.0);
     let head = Pose { position, ..Pose::IDENTITY };

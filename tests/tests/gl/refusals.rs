@@ -1,4 +1,4 @@
-//! Eyes that cannot be synthesized are refused with a sentence.
+//! Eyes that cannot be synthesized are refused with one sentence.
 
 use glam::Quat;
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, Pose};

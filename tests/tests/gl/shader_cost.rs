@@ -1,11 +1,11 @@
-//! The synthesis programs on compilers of mobile GPUs.
+//! Compiles the synthesis programs for mobile GPUs.
 
 use serde_json::Value;
 use yoro_context::{Backend, Headless};
 use yoro_tests::programs::{self, Variants};
 use yoro_tools::shader_cost::{Compilers, Options, report};
 
-/// Two generations of Adreno and one Mali; all programs on all GPUs take minutes.
+/// Two generations of Adreno and one of Mali. All programs on all GPUs would take minutes.
 const GPUS: [&str; 3] = ["a650", "a740", "g57"];
 
 #[test]
@@ -29,6 +29,6 @@ fn synthesis_programs_neither_spill_nor_starve_mobile_gpus() {
     for gpu in GPUS {
         assert!(text.contains(&format!("({gpu})\n")), "{text}");
     }
-    // Once each for OpenGL ES 3.0, a CPU rasterizer, a GPU, and with a source map.
+    // One each for OpenGL ES 3.0, for CPU rasterizers, for GPUs, and with a source map.
     assert_eq!(text.matches("synthesis/gather/march.frag WRITE_DEPTH ").count(), 4 * GPUS.len());
 }

@@ -8,7 +8,7 @@ use yoro_tests::programs::{self, Variants};
 fn every_shader_compiles_in_every_variant() {
     on_every_backend(|gl| {
         programs::make(gl, Variants::Every)?;
-        // Only the renderer's unit tests read depth back.
+        // Only unit tests of the renderer use this shader, to read depth back.
         Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?;
         let used = programs::files(gl)?;
         let unused: Vec<_> = yoro_shaders::files().filter(|file| !used.contains(*file)).collect();

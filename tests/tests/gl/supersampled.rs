@@ -1,5 +1,5 @@
-//! The quality of synthesis from four samples a pixel with a known truth: samples cut out of views rendered at four
-//! times the width and height.
+//! Measures synthesis from four samples per pixel against the known true image. The samples are taken from views
+//! rendered with four times the width and height.
 
 use std::rc::Rc;
 
@@ -18,13 +18,13 @@ use yoro_tests::samples::{Multisampled, STANDARD, Samples};
 use super::layers::{forward, march, multisample_layers, spans};
 
 const SIZE: u32 = 1024;
-/// The places of the standard pattern are centres of a 4x4 grid.
+/// Samples of the standard pattern are at centres of a 4x4 grid.
 const GRID: u32 = 4;
-/// Columns at either side that are not measured: one eye alone sees them.
+/// Width in pixels of a border at either side that only one eye sees, which is not measured.
 const BORDER: u32 = 64;
 const SCENES: [&str; 6] = ["atrium", "scifi-city", "stage", "street", "talk", "voxel"];
 
-/// Renders both eyes at four times the size, at the beginning of the scene's camera path.
+/// Renders both eyes at four times the size, at the start of the scene's camera path.
 fn large(gl: &Rc<Context>, name: &str) -> anyhow::Result<ImageGroup> {
     let scene = yoro_scenes::build(name, yoro_scenes::DEFAULT_SEED)?;
     let head = CameraPath::new(&scene.viewpoints).pose(0.0);
@@ -36,13 +36,13 @@ fn large(gl: &Rc<Context>, name: &str) -> anyhow::Result<ImageGroup> {
     Ok(groups.render(&mut renderer, &scene, &eyes.pair(head))?)
 }
 
-/// Column and row in the large picture of sample `k` of pixel (x, y), rows from the top.
+/// Returns the column and row, in the large picture, of sample `k` of pixel (x, y). Rows run from top to bottom.
 fn place(x: u32, y: u32, k: usize) -> (u32, u32) {
     let [u, v] = STANDARD[k].map(|at| (at * f64::from(GRID)) as u32);
     (GRID * x + u, GRID * y + v)
 }
 
-/// The dominant eye's samples, rows from the bottom.
+/// Returns the dominant eye's samples. Rows run from bottom to top.
 fn samples(group: &ImageGroup) -> Samples {
     let pixels = || (0..SIZE).rev().flat_map(|y| (0..SIZE).map(move |x| (x, y)));
     Samples {
@@ -65,7 +65,7 @@ fn samples(group: &ImageGroup) -> Samples {
     }
 }
 
-/// The mean of the four samples of each pixel of an eye.
+/// Returns the mean of each pixel's four samples.
 fn resolved(large: &RgbImage) -> RgbImage {
     RgbImage::from_fn(SIZE, SIZE, |x, y| {
         let all = [0, 1, 2, 3].map(|k| {
@@ -94,7 +94,7 @@ fn quality(image: &RgbImage, truth: &RgbImage) -> anyhow::Result<[f64; 2]> {
     Ok([quality.psnr.0, quality.ssim_gaussian])
 }
 
-/// Means over the pixels: the share that shows two surfaces, texels of layers and of colour that the march fetches.
+/// Returns means per pixel: the fraction with two surfaces, and the fetched texels of layers and of colour.
 fn counted(samples: &Samples, warp: &Warp) -> [f64; 3] {
     let (pixels, range) = forward(samples, warp);
     let layers = multisample_layers(&pixels, true);
@@ -153,7 +153,7 @@ fn measure(gl: &Rc<Context>, name: &str) -> anyhow::Result<Vec<(&'static str, [f
     Ok(rows)
 }
 
-/// docs/RESULTS.md has the figures.
+/// The results are in docs/RESULTS.md.
 #[test]
 #[ignore = "measures: cargo test -p yoro-tests --test gl -- --ignored --nocapture supersampled"]
 fn quality_from_known_samples() {

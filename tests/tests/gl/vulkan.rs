@@ -1,4 +1,4 @@
-//! Built-in scenes look the same on Vulkan and on OpenGL.
+//! Checks that built-in scenes look the same on Vulkan and on OpenGL.
 
 #[path = "../../../app/core/tests/vulkan/harness.rs"]
 #[expect(dead_code, reason = "shared with the core's tests, which use all of it")]
@@ -38,14 +38,14 @@ fn vulkan_equals_opengl_on_scenes() {
                     a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 1)
                 };
                 let different = pairs.filter(differs).count();
-                // Positions within rounding of a decision may go either way.
+                // Values that are within rounding of a threshold may fall on either side of it.
                 assert!(different <= 16, "{name}, {rendering:?}: {different} of 65536 pixels differ");
             });
         }
     }
 }
 
-/// Returns Vulkan's result for a group that OpenGL has synthesized.
+/// Synthesizes a group on Vulkan that OpenGL has synthesized before.
 fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
     let warp = &group.views.warp;
     let (color_format, depth_format) = (vk::Format::R8G8B8A8_UNORM, vk::Format::D32_SFLOAT);

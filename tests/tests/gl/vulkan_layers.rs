@@ -1,4 +1,4 @@
-//! Synthesis from anti-aliased sources on Vulkan gives the pictures that it gives on OpenGL.
+//! Checks that synthesis from anti-aliased sources gives the same pictures on Vulkan and on OpenGL.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -43,16 +43,16 @@ fn compile(work: &Path, name: &str, text: &str) -> Vec<u32> {
     ash::util::read_spv(&mut Cursor::new(std::fs::read(compiled).unwrap())).unwrap()
 }
 
-/// The pictures of the samples as images, and images of several samples that hold them: colour and depth of each.
+/// The samples in Vulkan images: colour and depth of each sample separately, and all samples in multisample images.
 struct Drawn<'a> {
     single: Vec<[Image<'a>; 2]>,
     multisample: [Image<'a>; 2],
-    /// The depth of one sample of each pixel, and how the render pass chose it.
+    /// The depth of one sample per pixel, and how the render pass chose it.
     resolved: Option<(vk::ResolveModeFlags, Image<'a>)>,
 }
 
 impl<'a> Drawn<'a> {
-    /// Draws each sample alone, by the sample mask, and resolves depth if that is wanted.
+    /// Draws each sample separately, by the sample mask, and resolves depth if requested.
     fn new(gpu: &'a Gpu, samples: &Samples, resolve: Option<vk::ResolveModeFlags>) -> Drawn<'a> {
         let size = samples.size;
         let single: Vec<_> = (0..4)
@@ -170,7 +170,7 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// Draws into the samples of a mask.
+/// Makes a pipeline that draws into the samples of a mask.
 unsafe fn pipeline(
     device: &ash::Device,
     modules: [vk::ShaderModule; 2],
@@ -219,7 +219,7 @@ unsafe fn pipeline(
     unsafe { device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None).unwrap()[0] }
 }
 
-/// Synthesizes what is [`GIVEN`], with maps for sources and targets of the largest size.
+/// Synthesizes one of the cases [`GIVEN`], with images for sources and targets up to the size `largest`.
 fn on_vulkan(
     gpu: &Gpu,
     host: &Host,
@@ -242,7 +242,7 @@ fn on_vulkan(
     synthesize(gpu, host, samples, edges, (depth, colors.then_some(drawn_color)), warp, largest)
 }
 
-/// Synthesizes from the samples' mean colour and what else is given of them.
+/// Synthesizes from the mean colour of the samples and whatever else is given.
 fn synthesize(
     gpu: &Gpu,
     host: &Host,
@@ -295,7 +295,7 @@ fn vulkan_equals_opengl_for_anti_aliased_sources() {
                     let convention = [DepthConvention::Standard, DepthConvention::Reversed][i % 2];
                     let (warp, samples) = example(dominant, convention, GuardBand::Pixels(21));
                     let (want, _) = on_opengl(headless.gl(), &samples, given, &warp);
-                    // Maps that just hold the source, and larger ones.
+                    // Images that just hold the source, and larger ones.
                     for largest in [warp.source_size, warp.source_size.map(|n| n + 40)] {
                         let got = on_vulkan(gpu, &host, &samples, given, &warp, largest);
                         let pixels = got.chunks_exact(4).zip(want.chunks_exact(4));
@@ -314,8 +314,8 @@ fn vulkan_equals_opengl_for_anti_aliased_sources() {
     }
 }
 
-/// Depth that the host's render pass resolves is the same source as depth that a pass of its own chose from the
-/// samples. Lavapipe has the first sample's depth only, not MIN and MAX.
+/// Depth resolved by the host's render pass gives the same source as depth chosen from the samples by a separate pass.
+/// Lavapipe only supports the first sample's depth, not MIN and MAX.
 #[test]
 fn depth_that_a_render_pass_resolved_gives_the_same_picture() {
     use vk::ResolveModeFlags as Mode;
@@ -349,7 +349,7 @@ fn samples_that_vulkan_does_not_have_are_refused() {
     with_gpu(Rendering::Core, |gpu| {
         for samples in [0, 1, 3, 8, 64] {
             let options = Options { edges: Edges::Multisample, samples, ..Options::default() };
-            // SAFETY: valid handles; nothing is made.
+            // SAFETY: the handles are valid, and nothing is created.
             let refused = unsafe { Gather::new(&gpu.host(), &options) }.err();
             assert_eq!(refused, Some(VulkanError::Samples(samples)));
         }

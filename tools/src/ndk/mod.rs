@@ -1,4 +1,4 @@
-//! Building for Android without Google's SDK and NDK.
+//! Builds for Android, with or without Google's SDK and NDK.
 
 pub mod sdk;
 pub mod stand_in;

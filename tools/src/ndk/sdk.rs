@@ -1,4 +1,4 @@
-//! Google's SDK and NDK, where the user has them.
+//! Google's SDK and NDK, if the user has them.
 
 use std::env;
 use std::fs;
@@ -8,12 +8,12 @@ use anyhow::bail;
 
 use crate::apt::find_program;
 
-/// The folder that a variable such as `ANDROID_HOME` names.
+/// Returns the folder that an environment variable such as `ANDROID_HOME` names.
 pub fn folder(variable: &str) -> Option<PathBuf> {
     env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
 }
 
-/// The newest build tools of an SDK, as cargo-apk chooses them.
+/// Returns the newest build tools of an SDK, by the same rule as cargo-apk.
 pub fn build_tools(sdk: &Path) -> Option<PathBuf> {
     let entries = fs::read_dir(sdk.join("build-tools")).ok()?;
     let names = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok());
@@ -21,10 +21,10 @@ pub fn build_tools(sdk: &Path) -> Option<PathBuf> {
     Some(sdk.join("build-tools").join(newest))
 }
 
-/// One of the SDK's tools: of the user's SDK, or of the system.
+/// Returns the path of one of the SDK's tools, from the user's SDK or else from the system.
 ///
 /// # Errors
-/// When it is nowhere; the remedy is in it.
+/// Fails if the tool is not found. The error names the remedy.
 pub fn build_tool(name: &str) -> anyhow::Result<PathBuf> {
     let sdk = folder("ANDROID_HOME");
     let own = sdk.and_then(|sdk| build_tools(&sdk)).map(|tools| tools.join(name));

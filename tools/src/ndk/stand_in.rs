@@ -1,8 +1,7 @@
-//! A stand-in for Google's SDK and NDK, made of Debian's clang and Android tools: as much of both as cargo-apk asks
-//! for.
+//! A stand-in for Google's SDK and NDK, made of Debian's clang and Android tools: what cargo-apk uses of both.
 //!
-//! The libraries to link with are empty but for their public names, so that linking fails with any other name: the
-//! device's own libraries take their place when the application starts.
+//! Its libraries contain only public names, so that linking fails with any other name. The device's own libraries take
+//! their place when the application starts.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -20,28 +19,28 @@ use crate::folders::{make_once, make_parent, write};
 
 const CRTBEGIN: &str = include_str!("../../ndk/crtbegin_so.c");
 const UNWIND: &str = include_str!("../../ndk/unwind.c");
-/// Debian's build of Android's framework: it defines what manifests and resources may say.
+/// Debian's build of Android's framework, which defines what manifests and resources may contain.
 pub const FRAMEWORK: &str = "/usr/share/android-framework-res/framework-res.apk";
 
-/// Version 0.0.1 is old enough that cargo-apk leaves out its libgcc for newer NDKs.
+/// Version 0.0.1 is old enough that cargo-apk omits its own libgcc, which newer NDKs need.
 const PROPERTIES: &str = "Pkg.Desc = Android NDK stand-in\nPkg.Revision = 0.0.1\n";
-/// cargo-apk takes an empty line for a broken file: there is no newline at the end.
+/// Without a newline at the end: cargo-apk rejects a file with an empty line.
 const PLATFORMS: &str = "NDK_MIN_PLATFORM_LEVEL := 21\nNDK_MAX_PLATFORM_LEVEL := 36";
 
-/// The folders of the two.
+/// The folders of the stand-in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StandIn {
-    /// Value of ANDROID_HOME.
+    /// The value of ANDROID_HOME.
     pub sdk: PathBuf,
-    /// Value of ANDROID_NDK_ROOT.
+    /// The value of ANDROID_NDK_ROOT.
     pub ndk: PathBuf,
 }
 
 impl StandIn {
-    /// Makes both in a folder of their own, unless what is there is made of the same.
+    /// Makes the SDK and the NDK in `folder`, unless they exist and are up to date.
     ///
     /// # Errors
-    /// When a tool is missing or fails, or the folder cannot be written.
+    /// Fails if a tool is missing or fails, or the folder cannot be written.
     pub fn make(folder: &Path) -> anyhow::Result<Self> {
         let made = Self { sdk: folder.join("sdk"), ndk: folder.join("ndk") };
         make_once(folder, &recipe(), || {
@@ -73,19 +72,19 @@ impl StandIn {
         Ok(())
     }
 
-    /// The compiler and linker.
+    /// Returns the compiler and linker.
     pub fn clang(&self) -> PathBuf {
         self.ndk.join("toolchains/llvm/prebuilt/linux-x86_64/bin/clang")
     }
 
-    /// The arguments with which Debian's clang links like the NDK's own.
+    /// Returns the arguments that make Debian's clang link like the NDK's.
     pub fn link_arguments(&self) -> [String; 2] {
         let sysroot = self.ndk.join("toolchains/llvm/prebuilt/linux-x86_64/sysroot");
         ["-fuse-ld=lld".to_owned(), format!("--sysroot={}", sysroot.display())]
     }
 }
 
-/// A hash of everything that the stand-in depends on; cargo itself does not notice when a stub changes.
+/// Returns a hash of everything that the stand-in depends on. Cargo does not notice when a stub changes.
 fn recipe() -> String {
     let mut hasher = DefaultHasher::new();
     (LISTS, CRTBEGIN, UNWIND, PROPERTIES, PLATFORMS, MIN_API, TARGET_API).hash(&mut hasher);
@@ -95,10 +94,10 @@ fn recipe() -> String {
     format!("{:016x}\n", hasher.finish())
 }
 
-/// The libraries of an API level to link with, and what a linker puts first and last.
+/// Makes the stub libraries of an API level, and the object files that a linker puts first and last.
 ///
 /// # Errors
-/// When a tool is missing or fails, or the folder cannot be written.
+/// Fails if a tool is missing or fails, or the folder cannot be written.
 pub fn make_libraries(folder: &Path, architecture: Architecture, api: u32) -> anyhow::Result<()> {
     let target = format!("--target={}{api}", architecture.triple);
     let level = folder.join(architecture.triple).join(api.to_string());
@@ -120,7 +119,7 @@ pub fn make_libraries(folder: &Path, architecture: Architecture, api: u32) -> an
     fs::remove_file(&source).with_context(|| format!("{} cannot be removed", source.display()))
 }
 
-/// The library that std has for unwinding, of this source: nothing where libc has it all.
+/// Makes the library that std uses for unwinding from this source, which is empty if libc has all of its functions.
 ///
 /// # Errors
 /// Those of [`make_libraries`].
@@ -138,7 +137,7 @@ pub fn make_unwinder(folder: &Path, architecture: Architecture, content: &str) -
     Ok(())
 }
 
-/// The assembly of a library that has the names and nothing behind them.
+/// Returns the assembly of a library that defines the names but contains no code.
 fn stub(list: &str, api: u32) -> String {
     let mut text = String::new();
     for symbol in listed(list, api) {
@@ -196,7 +195,7 @@ mod tests {
 
     #[test]
     fn cargo_apk_can_read_the_properties() {
-        // It splits each line of the first file at "=" when it looks for the version, and each of the second at " := ".
+        // cargo-apk splits each line of the first file at "=" to find the version, those of the second at " := ".
         assert!(PROPERTIES.trim_end().lines().all(|line| line.contains(" = ")));
         assert!(PLATFORMS.split('\n').all(|line| line.contains(" := ")));
     }

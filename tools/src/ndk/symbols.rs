@@ -1,7 +1,7 @@
-//! The functions that Android's public libraries offer.
+//! The symbols that Android's public libraries export.
 
-/// The lists that the stand-in NDK is made of. They hold all of EGL, GLES and libandroid, and of the others what
-/// Rust's std and this project ask for.
+/// The lists from which the stand-in NDK is made. Those of EGL, GLES and libandroid are complete; the others contain
+/// what Rust's std and this project use.
 pub const LISTS: [(&str, &str); 9] = [
     ("libEGL", include_str!("../../ndk/symbols/libEGL.txt")),
     ("libGLESv2", include_str!("../../ndk/symbols/libGLESv2.txt")),
@@ -14,16 +14,16 @@ pub const LISTS: [(&str, &str); 9] = [
     ("libm", include_str!("../../ndk/symbols/libm.txt")),
 ];
 
-/// A public name.
+/// A public symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Symbol<'a> {
-    /// Its name for the linker.
+    /// The symbol's name.
     pub name: &'a str,
     /// True for data, false for a function.
     pub object: bool,
 }
 
-/// The names of a list that an API level has.
+/// Returns the symbols of a list that exist in an API level.
 pub fn listed(list: &str, api: u32) -> impl Iterator<Item = Symbol<'_>> {
     let mut since = 0;
     list.lines().filter(|line| !line.starts_with('#') && !line.is_empty()).filter_map(move |line| {

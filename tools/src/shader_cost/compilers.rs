@@ -1,7 +1,7 @@
-//! Mesa's compilers for mobile GPUs, without the GPUs.
+//! Mesa's compilers for mobile GPUs, which run without these GPUs.
 //!
-//! Debian builds freedreno and panfrost for arm64 only. Their packages are unpacked beside the system, and qemu's user
-//! mode runs them; `mesa-drm-shim` plays the kernel's driver of a GPU that compiles shaders and draws nothing.
+//! Debian builds freedreno and panfrost for arm64 only. Their packages are unpacked into a folder, and qemu's user mode
+//! runs them. `mesa-drm-shim` replaces the kernel driver by one of a GPU that compiles shaders but draws nothing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::folders::{make_once, target_folder, write};
 use crate::packages::{self, PrivateApt};
 
 const RELEASE: &str = "trixie";
-/// Mesa 26 knows newer GPUs than the release's own 25.0.
+/// Has Mesa 26, which supports newer GPUs than Mesa 25.0 of the release itself.
 const BACKPORTS: &str = "trixie-backports";
 const MESA: [&str; 4] = ["mesa-drm-shim", "libegl-mesa0", "libgbm1", "libgl1-mesa-dri"];
 const OTHERS: [&str; 5] = [
@@ -23,10 +23,10 @@ const OTHERS: [&str; 5] = [
     "libgles2:arm64",
     "python3-minimal:arm64",
     "libpython3-stdlib:arm64",
-    // Static since this release.
+    // Statically linked since this release.
     "qemu-user:amd64",
 ];
-/// Needed by nothing here, and large.
+/// Files that are large and not needed.
 const WITHOUT: [&str; 9] = [
     "./usr/share/doc/*",
     "./usr/share/man/*",
@@ -41,42 +41,42 @@ const WITHOUT: [&str; 9] = [
 const QEMU: &str = "usr/bin/qemu-aarch64";
 const PYTHON: &str = "usr/bin/python3";
 const LIBRARIES: &str = "usr/lib/aarch64-linux-gnu";
-/// Mesa's drivers lack these, those of the GPUs' makers have them.
+/// Extensions that the GPU makers' drivers have and Mesa's lack.
 const CLAIMED: &str = "+GL_OVR_multiview +GL_OVR_multiview2 +GL_EXT_clip_cull_distance";
 
 /// The results of one run for one GPU.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Mesa's own version: `26.1.6-1~bpo13+1`.
+    /// Mesa's version, such as `26.1.6-1~bpo13+1`.
     pub mesa: String,
     /// Results in the order of the programs; fewer if the compiler crashed.
     pub programs: Vec<Said>,
 }
 
-/// The driver's statement about one program.
+/// The driver's output for one program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Said {
-    /// True if it compiles and links.
+    /// True if the program compiles and links.
     pub ok: bool,
-    /// Errors and warnings of compiler and linker.
+    /// Errors and warnings of the compiler and the linker.
     pub log: String,
-    /// Statistics, one line for each compiled shader.
+    /// Statistics, one line per compiled shader.
     pub messages: Vec<String>,
-    /// Disassembled shaders.
+    /// The disassembled shaders.
     pub listing: String,
 }
 
-/// Mesa for arm64 in a folder, and qemu.
+/// Mesa for arm64 and qemu, in a folder.
 #[derive(Clone, Debug)]
 pub struct Compilers {
     folder: PathBuf,
 }
 
 impl Compilers {
-    /// Fetches and unpacks them, unless what is there is complete.
+    /// Fetches and unpacks the compilers unless the folder is complete.
     ///
     /// # Errors
-    /// When they cannot be had on this machine.
+    /// Fails if they cannot be obtained on this machine.
     pub fn make() -> anyhow::Result<Self> {
         if !cfg!(target_arch = "x86_64") {
             bail!("they are fetched for x86_64 only");
@@ -92,7 +92,7 @@ impl Compilers {
             apt.update()?;
             let others = OTHERS.map(str::to_owned);
             for package in apt.download(&[newest.to_vec(), others.to_vec()].concat())? {
-                // qemu's package has a program of several megabytes for every processor that there is.
+                // qemu's package contains a program of several megabytes for each kind of processor.
                 let is_qemu =
                     package.file_name().is_some_and(|name| name.to_string_lossy().starts_with("qemu-user"));
                 let qemu = format!("./{QEMU}");
@@ -110,12 +110,12 @@ impl Compilers {
         Ok(compilers)
     }
 
-    /// The compilers that [`make`](Self::make) has left in a folder.
+    /// Uses the compilers that an earlier [`make`](Self::make) has left in a folder.
     pub fn at(folder: PathBuf) -> Self {
         Self { folder }
     }
 
-    /// Their folder.
+    /// Returns the compilers' folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -124,10 +124,10 @@ impl Compilers {
         self.folder.join("root")
     }
 
-    /// Compiles programs, JSON as tests/src/programs.rs writes it.
+    /// Compiles programs, which are JSON as written by tests/src/programs.rs.
     ///
     /// # Errors
-    /// When the compilers do not start or say what cannot be understood.
+    /// Fails if the compilers do not start, or their output cannot be parsed.
     pub fn run(&self, gpu: &Gpu, programs: &Path) -> anyhow::Result<Run> {
         let guest = self.folder.join("guest.py");
         write(&guest, include_str!("guest.py"))?;
@@ -140,11 +140,11 @@ impl Compilers {
         preload.push(self.stand_in(gpu)?);
         let mut command = Command::new(root.join(QEMU));
         command.arg("-L").arg(&root);
-        // Set through qemu, so that no native process of this machine loads it.
+        // Passed through qemu, so that no native process of this machine loads it.
         command.arg("-E").arg(preload);
         command.arg(root.join(PYTHON)).args([&guest, programs]).stdin(Stdio::null());
         command
-            // Variables such as LIBGL_ALWAYS_SOFTWARE would choose another driver.
+            // Variables such as LIBGL_ALWAYS_SOFTWARE would select another driver.
             .env_clear()
             .env(id, gpu.id)
             .env("PYTHONHOME", root.join("usr"))
@@ -166,7 +166,7 @@ impl Compilers {
         })
     }
 
-    /// The library that plays the kernel's driver.
+    /// Returns the library that replaces the kernel driver, changed for the GPU if it does not know it.
     fn stand_in(&self, gpu: &Gpu) -> anyhow::Result<PathBuf> {
         let name = format!("lib{}_noop_drm_shim.so", gpu.compiler.driver());
         let library = self.root().join(LIBRARIES).join(&name);
@@ -186,7 +186,7 @@ impl Compilers {
     }
 }
 
-/// Reads the guest's output; `None` if no driver of a mobile GPU answered.
+/// Parses the guest's output. Returns `None` if no driver of a mobile GPU has answered.
 fn read(lines: &str, listings: &str) -> Option<Run> {
     let mut values = lines.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     let driver = values.next()?;

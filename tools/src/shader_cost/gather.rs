@@ -1,23 +1,23 @@
-//! The costs of the pipeline gather's parts by name, as `yoro bench shader-cost` reads them.
+//! The costs of the parts of the pipeline `gather` by name, which `yoro bench shader-cost` reads.
 //!
-//! The compilers list loops in their own order. Here each loop gets the name of what it does in the shader.
+//! Compilers list loops in an order of their own. Here, each loop gets a name for what it does in the shader.
 
 use anyhow::{Context as _, bail};
 
 use super::table::Table;
 
-/// The file of the costs, in the workspace.
+/// The file with the costs, relative to the workspace.
 pub const FILE: &str = "app/lab/src/bench/gather-cost.csv";
-/// The GPUs of the devices that the suite knows.
+/// The GPUs of the devices that the benchmark supports.
 const GPUS: [&str; 5] = ["a650", "a740", "g52", "g57", "g610"];
-/// Mali's waves have 16 lanes, G52's 8; their rows do not say so.
+/// Lanes per wave: Mali's waves have 16 lanes, those of the G52 have 8. The table does not contain this.
 const MALI_LANES: u32 = 16;
 const G52_LANES: u32 = 8;
-/// Issue slots and texture instructions.
+/// Numbers of issue slots and texture instructions.
 type Work = [i64; 2];
 
-/// What a program executes once: outside of its loops, and in each of them without the loops inside, in the order of
-/// the listing.
+/// The cost of executing a program's parts once: the code outside of its loops, and each loop's body without the loops
+/// inside it, in the order of the listing.
 struct Program<const LOOPS: usize> {
     outside: Work,
     loops: [Work; LOOPS],
@@ -29,10 +29,10 @@ impl<const LOOPS: usize> Program<LOOPS> {
     }
 }
 
-/// Returns the file's text: of each part what it executes once, without the loops inside.
+/// Returns the file's text: the cost of executing each part once, without the loops inside it.
 ///
 /// # Errors
-/// When the table lacks a program, or a program has another number of loops.
+/// Fails if the table lacks a program, or a program has an unexpected number of loops.
 pub fn text(table: &Table) -> anyhow::Result<String> {
     let mut text = "# Written by cargo tools shader-cost --bless\ngpu,lanes,part,slots,fetches\n".to_owned();
     for gpu in GPUS {
@@ -43,13 +43,13 @@ pub fn text(table: &Table) -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// Lanes of a wave, name and work of each part on a GPU.
+/// Returns lanes per wave, name and cost of each part on a GPU.
 fn parts(table: &Table, gpu: &str) -> anyhow::Result<Vec<(u32, &'static str, Work)>> {
     let of = |file: &str| format!("synthesis/gather/{file}.frag TEXTURE_GATHER SHORT_WAY");
     let (tile_lanes, tiles) = program::<1>(table, gpu, &of("tiles"))?;
     let (span_lanes, spans) = program::<3>(table, gpu, &of("spans"))?;
     let (lanes, _) = program::<3>(table, gpu, &of("march"))?;
-    // Each program has the parts of the one before, and one more: tests/src/programs.rs.
+    // Each program adds one part to the previous one: see tests/src/programs.rs.
     let march = |parts: u32| format!("{} PARTS={parts}", of("march"));
     let (_, law) = program::<0>(table, gpu, &march(1))?;
     let (_, short) = program::<1>(table, gpu, &march(2))?;
@@ -57,8 +57,8 @@ fn parts(table: &Table, gpu: &str) -> anyhow::Result<Vec<(u32, &'static str, Wor
     let (_, events) = program::<2>(table, gpu, &march(14))?;
     let (_, fill) = program::<2>(table, gpu, &march(30))?;
     let (_, all) = program::<3>(table, gpu, &march(62))?;
-    // The loop over segments is the second one, that to a crossing the last. Events are handled in two places: before
-    // the loop, too.
+    // The loop over segments is the second one, the loop to a crossing is the last. Events are handled in two places,
+    // one of them before the loop.
     let event = minus(events.loops[1], segments.loops[1]);
     let crossing = minus(all.outside, fill.outside);
     let long = minus(minus(plus(events.outside, crossing), event), short.outside);
@@ -80,7 +80,7 @@ fn parts(table: &Table, gpu: &str) -> anyhow::Result<Vec<(u32, &'static str, Wor
     ])
 }
 
-/// Lanes of a wave, and the work of a program with so many loops.
+/// Returns the lanes per wave and the cost of a program with `LOOPS` loops.
 fn program<const LOOPS: usize>(
     table: &Table,
     gpu: &str,
@@ -112,7 +112,7 @@ fn minus(a: Work, b: Work) -> Work {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// Returns what each loop of a row executes once, without the loops inside.
+/// Parses the cost of executing each loop's body once, without the loops inside it.
 fn bodies(loops: &str) -> Option<Vec<Work>> {
     let mut bodies: Vec<Work> = Vec::new();
     let mut outermost = 0;

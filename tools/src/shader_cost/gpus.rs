@@ -1,22 +1,22 @@
-//! The GPUs that Mesa compiles for, and how its stand-ins for kernel drivers become one of them.
+//! The GPUs that Mesa can compile for, and how its replacements of kernel drivers are made to present them.
 
 use std::str::FromStr;
 
 use anyhow::Context as _;
 
-/// A family of compilers, which describe their results alike.
+/// A family of compilers with a common output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compiler {
-    /// Qualcomm's Adreno, Mesa's driver freedreno.
+    /// Qualcomm's Adreno, with Mesa's driver freedreno.
     Ir3,
-    /// Arm's Mali-G51 to G78 before Valhall, Mesa's driver panfrost.
+    /// Arm's Mali-G51 to G78 before Valhall, with Mesa's driver panfrost.
     Bifrost,
-    /// Arm's Mali from G57 on, Mesa's driver panfrost.
+    /// Arm's Mali from G57 on, with Mesa's driver panfrost.
     Valhall,
 }
 
 impl Compiler {
-    /// The most waves that one core or its processor keeps in flight; Mesa counts Mali's in halves.
+    /// Returns the maximum number of waves in flight on one core or its shader processor. Mesa counts Mali's in halves.
     pub fn most_waves(self) -> u32 {
         match self {
             Self::Ir3 => 16,
@@ -24,7 +24,7 @@ impl Compiler {
         }
     }
 
-    /// Mesa's driver.
+    /// Returns the name of Mesa's driver.
     pub fn driver(self) -> &'static str {
         match self {
             Self::Ir3 => "freedreno",
@@ -33,31 +33,31 @@ impl Compiler {
     }
 }
 
-/// One that can be asked for.
+/// A GPU to compile for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gpu {
-    /// Its name on the command line and in the table.
+    /// The name on the command line and in the table.
     pub name: &'static str,
-    /// Its name for people.
+    /// The name for people.
     pub title: &'static str,
-    /// Mesa's compiler for it.
+    /// Mesa's compiler for this GPU.
     pub compiler: Compiler,
     /// The value of FD_GPU_ID or PAN_GPU_ID.
     pub id: &'static str,
-    /// The stand-in does not know it: one of its entries is replaced.
+    /// The change to the replaced kernel driver, if it does not know this GPU.
     pub replaces: Option<Replacement>,
 }
 
-/// An entry of the table that Mesa's stand-in for the kernel's driver of Adreno GPUs has.
+/// An entry in the GPU table of Mesa's replacement of Adreno's kernel driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub gpu: u32,
     pub chip: u64,
-    /// Bytes of tile memory.
+    /// Size of the tile memory in bytes.
     pub gmem: u32,
 }
 
-/// One entry in the place of another, of which the size of the tile memory does not matter.
+/// An entry that replaces the one of another GPU, whatever the size of that GPU's tile memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Replacement {
     pub old_gpu: u32,
@@ -66,10 +66,10 @@ pub struct Replacement {
 }
 
 impl Replacement {
-    /// Changes the library. None when it has no such entry.
+    /// Changes the library in memory. Returns `None` if the library lacks the old entry.
     pub fn apply(&self, library: &mut [u8]) -> Option<()> {
         let Entry { gpu, chip, gmem } = self.new;
-        // Mesa 26: 64-bit chip, GPU, tile memory. Mesa 25: GPU, chip, tile memory.
+        // Layout in Mesa 26: 64-bit chip, GPU, tile memory. In Mesa 25: GPU, chip, tile memory.
         let wide = |gpu: u32, chip: u64| [&chip.to_le_bytes()[..], &gpu.to_le_bytes()].concat();
         let narrow = |gpu: u32, chip: u64| [gpu.to_le_bytes(), (chip as u32).to_le_bytes()].concat();
         let (old, new, at) = [wide as fn(u32, u64) -> Vec<u8>, narrow].into_iter().find_map(|layout| {
@@ -99,7 +99,7 @@ const fn adreno(name: &'static str, title: &'static str, id: &'static str) -> Gp
     Gpu { name, title, compiler: Compiler::Ir3, id, replaces: None }
 }
 
-/// Those that can be asked for.
+/// The GPUs that can be selected.
 pub const GPUS: [Gpu; 11] = [
     Gpu { replaces: Some(QUEST_2), ..adreno("a650", "Adreno 650, Quest 2", "650") },
     Gpu { replaces: Some(QUEST_3), ..adreno("a740", "Adreno 740v3, Quest 3", "0") },
@@ -114,7 +114,7 @@ pub const GPUS: [Gpu; 11] = [
     adreno("a830", "Adreno 830, Snapdragon 8 Elite", "830"),
 ];
 
-/// Those that the committed table has.
+/// The number of these, from the first, that are in the committed table.
 pub const IN_TABLE: usize = 5;
 
 impl FromStr for Gpu {

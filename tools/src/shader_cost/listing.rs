@@ -1,4 +1,4 @@
-//! The output of the compilers: statistics and disassembled shaders.
+//! Parses the compilers' output: statistics and disassembled shaders.
 
 use std::collections::HashMap;
 use std::collections::{BTreeMap, btree_map};
@@ -8,16 +8,16 @@ use super::gpus::Compiler;
 /// The kind of a compiled shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// Vertex shader; on Mali, the part of it that runs after triangles are culled.
+    /// A vertex shader. On Mali, the part that runs after triangles have been culled.
     Vertex,
-    /// Part of a vertex shader on Mali that runs before that.
+    /// On Mali, the part of a vertex shader that runs before culling.
     Position,
     Fragment,
     Compute,
 }
 
 impl Stage {
-    /// Its name in the table.
+    /// Returns the stage's name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Vertex => "vertex",
@@ -27,7 +27,7 @@ impl Stage {
         }
     }
 
-    /// Its name in a statistics line. Adreno's BVERT, of the binning pass, is a part of VERT.
+    /// Parses the stage in a line of statistics. Adreno's BVERT, for the binning pass, is part of VERT and ignored.
     fn of_statistics(name: &str) -> Option<Self> {
         Some(match name {
             "VERT" | "MESA_SHADER_VERTEX" | "MESA_SHADER_VARYING" => Self::Vertex,
@@ -39,12 +39,12 @@ impl Stage {
     }
 }
 
-/// Numbers by their names in one line of statistics.
+/// The named numbers of a line of statistics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics(HashMap<String, f64>);
 
 impl Statistics {
-    /// Reads `FRAG shader: 437 inst, 191 nops, ...`; `None` for any other message.
+    /// Parses `FRAG shader: 437 inst, 191 nops, ...`. Returns `None` for any other message.
     pub fn parse(message: &str) -> Option<(Stage, Self)> {
         let (name, list) = message.trim().split_once(" shader: ")?;
         let mut values = HashMap::new();
@@ -60,7 +60,7 @@ impl Statistics {
         Some((Stage::of_statistics(name)?, Self(values)))
     }
 
-    /// A number, 0 where the line has none of this name.
+    /// Returns a number by name, or 0 if the line does not have it.
     pub fn get(&self, name: &str) -> f64 {
         self.0.get(name).copied().unwrap_or(0.0)
     }
@@ -70,36 +70,36 @@ impl Statistics {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Code {
     instructions: Vec<Instruction>,
-    /// Jumps from an instruction to an earlier one.
+    /// Jumps from an instruction to an earlier one, as indices.
     back_edges: Vec<(usize, usize)>,
-    /// Adreno: instructions that run once per draw call come first; the number of them.
+    /// On Adreno, the number of instructions at the beginning that run only once per draw call.
     preamble: usize,
-    /// Adreno: fetches that are under way before the first instruction, at coordinates that are not computed.
+    /// On Adreno, the number of fetches that start before the first instruction, at coordinates not computed.
     prefetches: u32,
-    /// Adreno: waves have 128 lanes instead of 64.
+    /// On Adreno, true if waves have 128 lanes instead of 64.
     pub double_wave: bool,
 }
 
-/// One line of it; a tuple on Bifrost.
+/// One line of the listing. On Bifrost, a tuple of instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Instruction {
-    /// Issue slots: repetitions and the pauses that it encodes count.
+    /// Issue slots, including repetitions and pauses that the instruction encodes.
     slots: u32,
     fetch: bool,
 }
 
-/// The body of a loop, once through, with the loops inside.
+/// The cost of executing a loop's body once, including the loops inside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Loop {
-    /// Number of loops around it.
+    /// Number of enclosing loops.
     pub depth: usize,
-    /// Issue slots of one lane.
+    /// Issue slots per lane.
     pub slots: u32,
     pub fetches: u32,
 }
 
 impl Code {
-    /// The last fragment or compute shader in what the compiler has printed for one program.
+    /// Parses the last fragment or compute shader in the compiler's output for one program.
     pub fn parse(compiler: Compiler, listing: &str) -> Option<Self> {
         match compiler {
             Compiler::Ir3 => Self::ir3(listing),
@@ -196,12 +196,12 @@ impl Code {
         self.back_edges.extend(jumps.filter(|(from, to)| to <= from));
     }
 
-    /// Issue slots of one lane if each loop runs once, and each side of each branch.
+    /// Returns the issue slots per lane if each loop's body and both sides of each branch run once.
     pub fn slots(&self) -> u32 {
         self.instructions[self.preamble..].iter().map(|instruction| instruction.slots).sum()
     }
 
-    /// Texture instructions, however often they run.
+    /// Returns the number of texture instructions in the code, however often they run.
     pub fn fetches(&self) -> u32 {
         let fetches = self.instructions.iter().map(|instruction| u32::from(instruction.fetch));
         self.prefetches + fetches.sum::<u32>()
@@ -232,7 +232,7 @@ impl Code {
     }
 }
 
-/// Splits an Adreno instruction into the slots that its flags `(rptN)` and `(nopN)` add, and its operation.
+/// Splits an Adreno instruction into the slots that its flags `(rptN)` and `(nopN)` add, and the operation.
 fn flags(line: &str) -> (u32, &str) {
     let (mut rest, mut slots) = (line, 0);
     while let Some((flag, after)) = rest.strip_prefix('(').and_then(|rest| rest.split_once(')')) {

@@ -1,8 +1,7 @@
-//! `cargo tools shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers and without the GPUs.
+//! `cargo tools shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers alone.
 //!
-//! The library makes all programs in a context of this machine, `shader-programs` of tests/ prints their texts, and
-//! [`Compilers`] compile them. What is found is held against `docs/shader-cost.csv`; docs/performance.md says how to
-//! read it.
+//! The library builds all programs in a context on this machine, `shader-programs` of tests/ prints their texts, and
+//! [`Compilers`] compile them. The results are compared with `docs/shader-cost.csv`. See docs/performance.md.
 
 mod compilers;
 mod gather;
@@ -29,21 +28,21 @@ use compilers::Run;
 use gpus::{GPUS, IN_TABLE};
 use table::{Row, Table};
 
-/// The committed table, in the workspace.
+/// The committed table, relative to the workspace.
 const TABLE: &str = "docs/shader-cost.csv";
 
-/// A program may do on a GPU what no other may.
+/// An accepted fault of a program on a GPU.
 struct Exception {
-    /// [`Row::gpu`].
+    /// The GPU, as in [`Row::gpu`].
     gpu: &'static str,
-    /// Beginning of [`Row::program`].
+    /// How [`Row::program`] begins.
     program: &'static str,
     fault: Fault,
     reason: &'static str,
 }
 
 impl Exception {
-    /// True if it is about this shader.
+    /// True if the exception applies to this shader.
     fn is_of(&self, row: &Row) -> bool {
         self.gpu == row.gpu && row.program.starts_with(self.program)
     }
@@ -53,11 +52,11 @@ impl Exception {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
     Spills,
-    /// Fewer than half of the waves that the GPU could have in flight.
+    /// Fewer than half of the waves that the GPU can have in flight are in flight.
     FewWaves,
 }
 
-/// The file of the following list.
+/// The file that contains `EXCEPTIONS`, for messages.
 const EXCEPTIONS_IN: &str = "tools/src/shader_cost/mod.rs";
 
 const EXCEPTIONS: [Exception; 3] = [
@@ -70,22 +69,22 @@ const LAYERS_HISTORY: &str = "synthesis/layers/march.frag HISTORY";
 
 const LOOK_UP: &str = "the strip's matrix on top of the layers; neither is a default";
 
-/// The choice of programs and GPUs, and what to do with the figures.
+/// Which programs and GPUs to compile for, and what to do with the results.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Only programs whose names contain this.
+    /// Compile only programs whose names contain this.
     pub filter: Option<String>,
-    /// GPUs instead of those of the table.
+    /// GPUs to use instead of those in the table.
     pub gpus: Vec<Gpu>,
-    /// Renew the table.
+    /// Update the table.
     pub bless: bool,
 }
 
-/// Compiles programs, JSON as `shader-programs` writes it, and compares the figures with the table. Returns a text, and
-/// true if no program has a fault.
+/// Compiles programs, which are JSON as written by `shader-programs`, and compares the results with the table. Returns
+/// a text, and true if no program has a fault.
 ///
 /// # Errors
-/// When the compilers do not work, or no program is called so.
+/// Fails if the compilers do not work, or no program matches the filter.
 pub fn report(
     options: &Options,
     compilers: &Compilers,
@@ -104,7 +103,7 @@ pub fn report(
         faults.extend(refusals(gpu, &names, &run));
         for (program, said) in programs.iter().zip(&run.programs).filter(|(_, said)| said.ok) {
             let mut rows = Row::all(gpu, &text_of(program, "name"), said);
-            // Three vertices cost nothing.
+            // The cost of three vertices is negligible.
             let vertex = text_of(&program["stages"][0], "file");
             let screen = ["screen.vert", "synthesis/march.vert"].contains(&vertex.as_str());
             rows.retain(|row| !screen || row.stage == "fragment");
@@ -134,7 +133,7 @@ pub fn report(
     }
     if options.bless {
         let mut table = committed;
-        // Programs that are no more go only when all have been compiled.
+        // Rows of removed programs are only deleted if all programs have been compiled.
         table.rows.retain(|row| options.filter.is_some() || !gpus.iter().any(|gpu| gpu.name == row.gpu));
         table.mesa = found.mesa;
         table.take_over(found.rows);
@@ -145,10 +144,10 @@ pub fn report(
     Ok((text, faults.is_empty()))
 }
 
-/// Returns the texts of all programs, as `shader-programs` of tests/ writes them.
+/// Returns the texts of all programs, as written by `shader-programs` of tests/.
 ///
 /// # Errors
-/// When it does not compile or run.
+/// Fails if it does not compile or run.
 pub fn programs() -> anyhow::Result<Vec<Value>> {
     cargo::succeeds(&["xtask", "setup"], &[]);
     let text = cargo::output(&["run", "--quiet", "--package", "yoro-tests", "--bin", "shader-programs"])?;
@@ -169,7 +168,7 @@ fn text_of(value: &Value, name: &str) -> String {
     value[name].as_str().unwrap_or_default().to_owned()
 }
 
-/// Compiles on all processors; returns the runs in the order of the GPUs.
+/// Compiles on all processors. Returns the runs in the order of the GPUs.
 fn compile(compilers: &Compilers, gpus: &[Gpu], programs: &Path) -> anyhow::Result<Vec<Run>> {
     let waiting: Mutex<VecDeque<(usize, &Gpu)>> = Mutex::new(gpus.iter().enumerate().collect());
     let done = Mutex::new(Vec::new());
@@ -177,7 +176,7 @@ fn compile(compilers: &Compilers, gpus: &[Gpu], programs: &Path) -> anyhow::Resu
     thread::scope(|scope| {
         for _ in 0..processors.min(gpus.len()) {
             scope.spawn(|| {
-                // A thread that panics leaves a queue behind that is as good as before.
+                // A panic in another thread leaves the queue intact.
                 let next = || waiting.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).pop_front();
                 while let Some((place, gpu)) = next() {
                     eprintln!("compiling for {}", gpu.title);
@@ -192,7 +191,7 @@ fn compile(compilers: &Compilers, gpus: &[Gpu], programs: &Path) -> anyhow::Resu
     done.into_iter().map(|(_, run)| run).collect()
 }
 
-/// Programs that do not compile or link, or that the compiler crashed with.
+/// Returns messages about programs that do not compile or link, or that crash the compiler.
 fn refusals(gpu: &Gpu, names: &[String], run: &Run) -> Vec<String> {
     let refused = names.iter().zip(&run.programs).filter(|(_, said)| !said.ok);
     let mut faults: Vec<String> = refused
@@ -204,12 +203,12 @@ fn refusals(gpu: &Gpu, names: &[String], run: &Run) -> Vec<String> {
     faults
 }
 
-/// A fault of a compiled shader, in words.
+/// A described fault of a compiled shader.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Finding {
-    /// It is an error.
+    /// The fault is an error.
     Fault(String),
-    /// It is known and has a reason.
+    /// The fault is known and has a reason.
     Accepted(String),
 }
 
@@ -218,7 +217,7 @@ fn fault(row: &Row) -> Option<Fault> {
     if row.spills > 0 { Some(Fault::Spills) } else { (2 * row.waves < most).then_some(Fault::FewWaves) }
 }
 
-/// Judges a shader; `None` if it has no fault.
+/// Returns a description of a shader's fault, or `None` if it has none.
 fn judge(row: &Row) -> Option<Finding> {
     let gpu: Gpu = row.gpu.parse().ok()?;
     let fault = fault(row)?;
@@ -236,7 +235,7 @@ fn judge(row: &Row) -> Option<Finding> {
     })
 }
 
-/// Exceptions whose shaders are among the rows and do not need them.
+/// Returns the exceptions whose shaders are among the rows and no longer have the fault.
 fn stale<'a>(rows: &'a [Row]) -> impl Iterator<Item = &'static Exception> + 'a {
     EXCEPTIONS.iter().filter(|exception| {
         let mut own = rows.iter().filter(|row| exception.is_of(row)).peekable();
@@ -244,7 +243,7 @@ fn stale<'a>(rows: &'a [Row]) -> impl Iterator<Item = &'static Exception> + 'a {
     })
 }
 
-/// One paragraph for each GPU, with one line for each shader and one for each change.
+/// Returns a paragraph per GPU, with a line for each shader and each change.
 fn described(gpus: &[Gpu], found: &Table, committed: &Table) -> String {
     let width = found.rows.iter().map(|row| row.program.len()).max().unwrap_or(0);
     let mut text = format!("Mesa {}; loops: issue slots/fetches of each body, once through\n", found.mesa);

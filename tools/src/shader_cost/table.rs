@@ -1,4 +1,4 @@
-//! Rows of `docs/shader-cost.csv`: the cost of each compiled shader on each GPU.
+//! The rows of `docs/shader-cost.csv`: the cost of each compiled shader on each GPU.
 
 use std::fmt::Write as _;
 use std::str::FromStr;
@@ -9,39 +9,39 @@ use super::compilers::Said;
 use super::gpus::{Compiler, Gpu};
 use super::listing::{Code, Loop, Stage, Statistics};
 
-/// First line of the file.
+/// The second line of the file, its header.
 const COLUMNS: &str =
     "gpu,program,stage,instructions,slots,registers,waves,lanes_per_wave,fetches,spills,cycles,loops";
 
 /// One compiled shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// [`Gpu::name`].
+    /// The GPU, as in [`Gpu::name`].
     pub gpu: String,
-    /// The last stage's file and the macros: `synthesis/gather/march.frag WRITE_DEPTH`.
+    /// The file of the last stage and the macros, such as `synthesis/gather/march.frag WRITE_DEPTH`.
     pub program: String,
-    /// [`Stage::name`].
+    /// The stage, as in [`Stage::name`].
     pub stage: String,
     pub instructions: u32,
-    /// Issue slots of one lane if each loop runs once, and each side of each branch; fragment and compute shaders.
+    /// Issue slots per lane if each loop's body and each side of a branch run once. Not for vertex shaders.
     pub slots: Option<u32>,
-    /// Full registers (four times 32 bits on Adreno, 32 bits on Mali).
+    /// Number of full registers: four times 32 bits on Adreno, 32 bits on Mali.
     pub registers: u32,
-    /// Waves in flight at the same time, of [`Compiler::most_waves`].
+    /// Waves in flight at the same time, at most [`Compiler::most_waves`].
     pub waves: u32,
-    /// Adreno's choice between two; Mali has one.
+    /// Lanes per wave on Adreno, which has two sizes. `None` on Mali.
     pub lanes_per_wave: Option<u32>,
-    /// Texture instructions; fragment and compute shaders.
+    /// Number of texture instructions. Only for fragment and compute shaders.
     pub fetches: Option<u32>,
-    /// Reads and writes of registers that are kept in memory.
+    /// Number of loads and stores of registers that are kept in memory.
     pub spills: u32,
-    /// Mali: cycles of the busiest unit for each lane's share, loops once, and the unit.
+    /// On Mali, the cycles of the busiest unit per lane if each loop's body runs once, and the unit.
     pub cycles: String,
-    /// Bodies in the order of the listing, `SLOTS/FETCHES`, one `>` for each loop around it.
+    /// The loops' bodies in the order of the listing, as `SLOTS/FETCHES` with a `>` for each enclosing loop.
     pub loops: String,
 }
 
-/// Units of Mali by their names in statistics. Valhall's arithmetic is the busiest of three.
+/// Mali's units by their names in the statistics. Valhall's arithmetic is the busiest of three.
 const UNITS: [(&str, &str); 8] = [
     ("arith", "arithmetic"),
     ("fma", "arithmetic"),
@@ -54,12 +54,12 @@ const UNITS: [(&str, &str); 8] = [
 ];
 
 impl Row {
-    /// Reads the driver's statement about a program; stages that the compiler has removed are left out.
+    /// Parses the driver's output for a program. Omits stages that the compiler has removed.
     pub fn all(gpu: &Gpu, program: &str, said: &Said) -> Vec<Self> {
         let mut rows: Vec<Self> = Vec::new();
         for (stage, statistics) in said.messages.iter().filter_map(|message| Statistics::parse(message)) {
             let row = Self::new(gpu, program, stage, &statistics, &said.listing);
-            // The last of several variants is that of the listing.
+            // If there are several variants, the last one is that of the listing.
             rows.retain(|other| other.stage != row.stage);
             if row.instructions > 0 {
                 rows.push(row);
@@ -108,7 +108,7 @@ impl Row {
         (&self.gpu, &self.program, &self.stage)
     }
 
-    /// The numbers that are compared, by name.
+    /// Returns the numbers that are compared, by name.
     fn numbers(&self) -> [(&'static str, u32); 6] {
         [
             ("instructions", self.instructions),
@@ -120,7 +120,7 @@ impl Row {
         ]
     }
 
-    /// The differences from an older row, `instructions 437 -> 440, waves 10 -> 8`; empty if there are none.
+    /// Describes the differences from an older row, such as `instructions 437 -> 440, waves 10 -> 8`, if any.
     pub fn change_from(&self, old: &Self) -> String {
         let pairs = self.numbers().into_iter().zip(old.numbers());
         let changes = pairs.filter(|((_, new), (_, old))| new != old);
@@ -188,7 +188,7 @@ impl FromStr for Row {
     }
 }
 
-/// The rows of some version of Mesa.
+/// The rows that a version of Mesa has produced.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     /// Mesa's version.
@@ -197,12 +197,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// The row of the same shader on the same GPU.
+    /// Returns the row of the same shader on the same GPU.
     pub fn find(&self, row: &Row) -> Option<&Row> {
         self.rows.iter().find(|old| old.key() == row.key())
     }
 
-    /// Puts rows in the place of those of the same shader and GPU, or beside the others; sorted.
+    /// Adds rows, which replace those of the same shader and GPU, and sorts the table.
     pub fn take_over(&mut self, rows: impl IntoIterator<Item = Row>) {
         for row in rows {
             self.rows.retain(|old| old.key() != row.key());
@@ -211,7 +211,7 @@ impl Table {
         self.rows.sort_by(|a, b| a.key().cmp(&b.key()));
     }
 
-    /// The text that [`Table::parse`] reads.
+    /// Returns the table as the text that [`Table::parse`] reads.
     pub fn to_text(&self) -> String {
         let mut text = format!("# Mesa {}; cargo tools shader-cost --bless\n{COLUMNS}\n", self.mesa);
         let optional = |number: Option<u32>| number.map_or_else(String::new, |number| number.to_string());
@@ -237,8 +237,10 @@ impl Table {
         text
     }
 
+    /// Parses the text of a table.
+    ///
     /// # Errors
-    /// When it is no such table.
+    /// Fails if the text is not such a table.
     pub fn parse(text: &str) -> anyhow::Result<Self> {
         let mut lines = text.lines();
         let mesa = lines.next().and_then(|line| line.strip_prefix("# Mesa ")?.split(';').next());

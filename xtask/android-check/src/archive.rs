@@ -1,4 +1,4 @@
-//! The archive: which files are in it, and where they lie.
+//! The archive: the files in it, and their offsets.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::report::{Report, some};
 
-/// Mapped out of the APK.
+/// Android maps this file out of the APK.
 const RESOURCES: &str = "resources.arsc";
 
 /// The content of an APK.
@@ -25,16 +25,16 @@ pub struct Archive {
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// Offset of the content from the beginning of the file in bytes.
+    /// Offset of the content in the archive, in bytes.
     offset: u64,
     stored: bool,
 }
 
 impl Archive {
-    /// Reads all of it, and so finds damage anywhere.
+    /// Reads the whole archive, which detects damage anywhere in it.
     ///
     /// # Errors
-    /// When it is no zip archive, or damaged.
+    /// Fails if the bytes are not a zip archive, or are damaged.
     pub fn read(bytes: &[u8]) -> anyhow::Result<Self> {
         let mut zip = ZipArchive::new(Cursor::new(bytes))?;
         let mut archive = Self::default();
@@ -53,12 +53,12 @@ impl Archive {
         Ok(archive)
     }
 
-    /// True if a file of this name is in it.
+    /// True if the archive has a file with this name.
     pub fn has(&self, name: &str) -> bool {
         self.entries.contains_key(name)
     }
 
-    /// The native libraries, by their whole names.
+    /// Returns the names and contents of the native libraries. The names include the folders.
     pub fn libraries(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.libraries.iter().map(|(name, content)| (name.as_str(), content.as_slice()))
     }
@@ -68,8 +68,8 @@ impl Archive {
         self.entries.iter().any(|(name, entry)| name.starts_with("lib/") && !entry.stored)
     }
 
-    /// Adds rows for the architectures and for the alignment of what Android maps out of the file: libraries too,
-    /// unless they are unpacked at installation.
+    /// Adds rows for the architectures, and for the alignment of the files that Android maps out of the archive. These
+    /// include the libraries unless they are `unpacked` at installation.
     pub fn check(&self, unpacked: bool, report: &mut Report) {
         let wanted: Vec<&str> = ARCHITECTURES.iter().map(|architecture| architecture.abi).collect();
         let mut found: Vec<&str> = self.libraries.keys().filter_map(|name| name.split('/').nth(1)).collect();
@@ -96,10 +96,10 @@ impl Archive {
     }
 }
 
-/// Packs the files of a folder, sorted by name, so that the same files make the same archive.
+/// Packs the files of a folder, sorted by name so that the same files result in the same archive.
 ///
 /// # Errors
-/// When a file cannot be read or written.
+/// Fails if a file cannot be read or written.
 pub fn pack(folder: &Path, packed: &Path) -> anyhow::Result<()> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     add(&mut zip, folder, "")?;
@@ -127,7 +127,7 @@ fn add(zip: &mut ZipWriter<Cursor<Vec<u8>>>, folder: &Path, prefix: &str) -> any
 pub mod tests {
     use super::*;
 
-    /// An archive of files with this content; uncompressed ones lie at multiples of `alignment`.
+    /// Makes an archive of files with this content. Uncompressed files are at multiples of `alignment`.
     pub fn archive(names: &[&str], method: CompressionMethod, alignment: u16) -> Vec<u8> {
         let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
         let options = SimpleFileOptions::default().compression_method(method).with_alignment(alignment);
@@ -172,7 +172,7 @@ pub mod tests {
 
     #[test]
     fn uncompressed_files_lie_on_words() {
-        // Some name length brings the last file's content to an odd place.
+        // With one of these name lengths, the last file's content is at an offset that is not aligned.
         let odd = (0..4).any(|n| {
             let long = format!("{}{RESOURCES}", "x".repeat(n));
             problems(&archive(&[long.as_str()], CompressionMethod::Stored, 1))
@@ -219,7 +219,7 @@ pub mod tests {
         assert!(Archive::read(b"no archive at all").is_err());
         assert!(Archive::read(&bytes[..bytes.len() / 2]).is_err());
         let mut damaged = bytes;
-        // A byte in the first file's compressed content, after its header of 30 bytes and its name.
+        // Change a byte in the first file's compressed content, which follows its header of 30 bytes and its name.
         damaged[30 + LIBRARIES[0].len() + 10] ^= 0x55;
         assert!(Archive::read(&damaged).is_err());
     }

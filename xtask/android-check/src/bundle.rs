@@ -1,5 +1,5 @@
-//! Application bundles (.aab), by the layout that Google's bundletool reads: one module, `base`, with manifest and
-//! resources as protocol buffers, and what bundletool is told beside it.
+//! Application bundles (.aab) in the layout that Google's bundletool reads: a single module, `base`, with manifest and
+//! resources as protocol buffers, and files with settings for bundletool.
 
 use std::fs;
 use std::io::{Cursor, Read as _, Write as _};
@@ -15,31 +15,32 @@ use zip::{ZipArchive, ZipWriter};
 
 use crate::report::Report;
 
-/// `BundleConfig`: what made the bundle, and that libraries stay uncompressed on pages of 16 KiB.
+/// `BundleConfig`: the bundletool version, and that libraries are uncompressed and aligned to 16 KiB pages.
 const CONFIG: &str = "BundleConfig.pb";
-/// `NativeLibraries`: the folder of each processor.
+/// `NativeLibraries`: the folder of each architecture.
 const NATIVE: &str = "base/native.pb";
 const MANIFEST: &str = "base/manifest/AndroidManifest.xml";
-/// The version of bundletool whose layout this is.
+/// The bundletool version that has this layout.
 const LAYOUT: &str = "1.15.6";
 
-/// A field of a protocol buffer: a number.
+/// Encodes a number as a field of a protocol buffer.
 fn number(field: u8, value: u8) -> Vec<u8> {
     vec![field << 3, value]
 }
 
-/// A field of a protocol buffer: a text or a message of less than 128 bytes.
+/// Encodes a text or message of less than 128 bytes as a field of a protocol buffer.
 fn message(field: u8, content: &[u8]) -> Vec<u8> {
     [&[field << 3 | 2, content.len() as u8], content].concat()
 }
 
-/// `BundleConfig { bundletool { version }, optimizations { uncompress_native_libraries { enabled, alignment: 16K } } }`.
+/// Encodes `BundleConfig { bundletool { version }, optimizations { uncompress_native_libraries { enabled,
+/// alignment: 16K } } }`.
 fn config() -> Vec<u8> {
     let uncompressed = [number(1, 1), number(2, 2)].concat();
     [message(1, &message(2, LAYOUT.as_bytes())), message(2, &message(2, &uncompressed))].concat()
 }
 
-/// `NativeLibraries { directory { path, targeting { abi { alias } } } ... }`.
+/// Encodes `NativeLibraries { directory { path, targeting { abi { alias } } } ... }`.
 fn native() -> Vec<u8> {
     let directory = |abi: &str| {
         let alias = if abi == "arm64-v8a" { 3 } else { 5 };
@@ -49,7 +50,7 @@ fn native() -> Vec<u8> {
     ARCHITECTURES.iter().flat_map(|architecture| directory(architecture.abi)).collect()
 }
 
-/// Returns the place of an APK's file in a bundle's module; none for what a bundle has not.
+/// Returns where a file of an APK is in a bundle's module, or `None` if bundles do not contain it.
 fn place(name: &str) -> Option<String> {
     match name {
         "AndroidManifest.xml" => Some(MANIFEST.into()),
@@ -71,7 +72,7 @@ fn aapt2(arguments: &[&str], from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Copies the files of an archive, each to the place that `place` gives it.
+/// Copies the files of an archive, each to the path that `place` returns.
 fn copy(
     from: &Path,
     zip: &mut ZipWriter<Cursor<Vec<u8>>>,
@@ -91,10 +92,10 @@ fn copy(
     Ok(())
 }
 
-/// Makes a bundle, not signed, of a finished APK.
+/// Makes an unsigned bundle from a finished APK.
 ///
 /// # Errors
-/// When aapt2 is missing or refuses the APK, or a file cannot be read or written.
+/// Fails if aapt2 is missing or rejects the APK, or a file cannot be read or written.
 pub fn make(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
     let converted = bundle.with_extension("proto.apk");
     aapt2(&["convert", "--output-format", "proto"], apk, &converted)?;
@@ -108,16 +109,15 @@ pub fn make(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
     write(bundle, zip.finish()?.into_inner())
 }
 
-/// True if an archive is a bundle.
+/// True if an archive with these file names is a bundle.
 pub fn is_bundle(names: impl Fn(&str) -> bool) -> bool {
     names(CONFIG)
 }
 
-/// Adds rows for the layout, and turns the module into an APK without signature, as bundletool would, for the other
-/// checks.
+/// Adds rows for the layout. Converts the module to an unsigned APK for the other checks, as bundletool would.
 ///
 /// # Errors
-/// When aapt2 is missing, or cannot read manifest or resources.
+/// Fails if aapt2 is missing, or cannot read the manifest or the resources.
 pub fn check(bundle: &Path, apk: &Path, report: &mut Report) -> anyhow::Result<()> {
     let bytes = fs::read(bundle).with_context(|| format!("{} cannot be read", bundle.display()))?;
     let mut archive = ZipArchive::new(Cursor::new(bytes))?;
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn the_protocol_buffers_are_those_of_bundletool() {
-        // Written out by hand from config.proto and files.proto.
+        // Encoded by hand from config.proto and files.proto.
         let config_bytes = b"\x0a\x08\x12\x061.15.6\x12\x06\x12\x04\x08\x01\x10\x02";
         assert_eq!(config(), config_bytes);
         let native_bytes =

@@ -1,4 +1,4 @@
-//! Checks that Android will install and start an APK. It looks at the file itself, not at what it was built from.
+//! Checks whether Android will install and start an APK. Only looks at the file, not at its sources.
 
 use std::fs;
 use std::path::Path;
@@ -11,13 +11,13 @@ use crate::public::Public;
 use crate::report::Report;
 use crate::{bundle, library, manifest, signature};
 
-/// A release with its built-in scenes is smaller than this, in bytes.
+/// Maximum size in bytes of a release with its built-in scenes.
 const SIZE_LIMIT: u64 = 8_000_000;
 
-/// Runs every check.
+/// Runs all checks.
 ///
 /// # Errors
-/// When the file is missing or no APK, or a tool for looking at it is missing.
+/// Fails if the file is missing or not an APK, or a tool for the checks is missing.
 pub fn check(path: &Path) -> anyhow::Result<Report> {
     let shown = path.display();
     let bytes = fs::read(path)
@@ -44,7 +44,7 @@ pub fn check(path: &Path) -> anyhow::Result<Report> {
     Ok(report)
 }
 
-/// Checks a bundle: its layout, and the APK that it becomes, but for signature and alignment, which are the store's.
+/// Checks a bundle: its layout, and the APK made from it, without signature and alignment, which are up to the store.
 fn check_bundle(path: &Path) -> anyhow::Result<Report> {
     let mut report = Report::default();
     let apk = path.with_extension("checked.apk");

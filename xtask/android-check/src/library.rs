@@ -1,4 +1,4 @@
-//! Checks that Android's linker will load a native library, and find every symbol that it needs.
+//! Checks whether Android's linker will load a native library and find every symbol that it needs.
 
 use std::collections::BTreeSet;
 
@@ -15,10 +15,10 @@ use super::report::{Report, some};
 /// The function that NativeActivity calls.
 const ENTRY: &str = "ANativeActivity_onCreate";
 
-/// Adds rows for a library that lies in the APK under this name.
+/// Adds rows for a library with this name in the APK.
 ///
 /// # Errors
-/// When what is public cannot be found out.
+/// Fails if the public symbols cannot be determined.
 pub fn check(name: &str, content: &[u8], public: &Public, report: &mut Report) -> anyhow::Result<()> {
     let mut parts = name.split('/').skip(1);
     let (folder, file) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
@@ -42,7 +42,7 @@ pub fn check(name: &str, content: &[u8], public: &Public, report: &mut Report) -
         elf.is_64 && elf.header.e_type == header::ET_DYN && elf.header.e_machine == architecture.machine;
     let problem = (!fits).then(|| format!("should be a shared library for {folder}"));
     if file == LOADER {
-        // Somebody else's, built by other rules.
+        // Libraries of others follow other build rules.
         let problem = problem.or_else(|| (!loader::exports(&elf)).then(|| "is no OpenXR loader".to_owned()));
         report.row(format!("{folder} loader"), format!("{file}, {size:.2} MB, API layers"), problem);
         return Ok(());
@@ -72,7 +72,8 @@ fn pages(elf: &Elf<'_>, folder: &str, report: &mut Report) {
     if segments.is_empty() {
         problems.push("nothing is to be loaded".to_owned());
     }
-    // The linker protects whole pages: a part of one would stay writable, or something writable would not.
+    // The linker protects whole pages. If the end is not at a page boundary, either a part of the segment stays
+    // writable, or data behind it becomes read-only.
     let relro = elf.program_headers.iter().find(|segment| segment.p_type == PT_GNU_RELRO);
     match relro.map(|segment| segment.p_vaddr + segment.p_memsz) {
         Some(end) if !end.is_multiple_of(PAGE) => {
@@ -130,7 +131,7 @@ fn symbols(
     };
     report.row(format!("{folder} needs"), elf.libraries.join(" "), problem);
 
-    // A weak symbol may stay undefined: the program asks for its address first.
+    // A weak symbol may be undefined: the program checks its address before use.
     let undefined: Vec<&str> = elf
         .dynsyms
         .iter()
@@ -163,7 +164,7 @@ fn defined<'a>(elf: &'a Elf<'_>) -> impl Iterator<Item = &'a str> {
 mod tests {
     use super::*;
 
-    /// A small library that is made here.
+    /// A small library made by a test.
     #[derive(Clone)]
     struct Made {
         machine: u16,
@@ -193,13 +194,13 @@ mod tests {
         }
     }
 
-    /// An OpenXR loader for arm64.
+    /// Makes an OpenXR loader for arm64.
     fn loader() -> Vec<u8> {
         Made { exported: vec![loader::ENTRY], ..good() }.bytes()
     }
 
     impl Made {
-        /// An ELF file with program headers, a dynamic section, a string table, a symbol table and a hash table.
+        /// Returns an ELF file with program headers, dynamic section, string table, symbol table and hash table.
         fn bytes(&self) -> Vec<u8> {
             let mut strings = vec![0u8];
             let mut string = |text: &str| {
@@ -220,7 +221,7 @@ mod tests {
             }
             let count = (symbols.len() / 24) as u32;
             let mut hash = Vec::new();
-            // One bucket, whose chain is empty.
+            // One bucket with an empty chain.
             for word in [1, count, 0].into_iter().chain((0..count).map(|_| 0)) {
                 hash.extend(word.to_le_bytes());
             }
@@ -367,9 +368,9 @@ mod tests {
     fn every_symbol_is_in_a_needed_library() {
         let undefined = vec!["malloc", "no_such_function"];
         Made { undefined, ..good() }.fails("arm64-v8a symbols", "no_such_function not public");
-        // Public, but nobody said in which library.
+        // A public symbol of a library that is not among the needed ones.
         Made { needed: vec!["libc.so"], ..good() }.fails("arm64-v8a symbols", "eglSwapBuffers not public");
-        // A symbol of a later Android.
+        // A symbol that only later versions of Android have.
         let undefined = vec!["malloc", "_Unwind_Resume"];
         Made { undefined, ..good() }.fails("arm64-v8a symbols", "_Unwind_Resume not public");
     }

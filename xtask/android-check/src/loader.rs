@@ -1,4 +1,4 @@
-//! OpenXR loaders of somebody else's that an APK carries.
+//! OpenXR loaders of others, carried in an APK.
 
 use std::fs;
 use std::path::Path;
@@ -10,10 +10,10 @@ use yoro_tools::ndk::target::ARCHITECTURES;
 /// The function that every loader exports.
 pub const ENTRY: &str = "xrGetInstanceProcAddr";
 
-/// Returns the processor that a loader is for, by its folder in an APK.
+/// Returns the architecture of a loader as its folder name in an APK.
 ///
 /// # Errors
-/// When it is no loader for a processor that the APK has libraries for.
+/// Fails if the file is not a loader, or is for an architecture that the APK has no libraries for.
 pub fn abi(file: &Path) -> anyhow::Result<&'static str> {
     let content =
         fs::read(file).with_context(|| format!("the OpenXR loader {} cannot be read", file.display()))?;
@@ -29,7 +29,7 @@ pub fn abi(file: &Path) -> anyhow::Result<&'static str> {
     }
 }
 
-/// True if a library exports what a loader must.
+/// True if a library exports what a loader must export.
 pub fn exports(elf: &Elf<'_>) -> bool {
     let mut names = elf
         .dynsyms

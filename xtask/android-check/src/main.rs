@@ -1,8 +1,8 @@
-//! Archives and libraries for Android. `check APK` checks that Android will install and start it, and a bundle (.aab)
-//! too; `bundle APK AAB` makes a bundle of an APK, `loader LIBRARY` prints the processor that an OpenXR loader is for,
-//! and `pack AAR FOLDER` packs the files of a folder.
+//! Works with Android's archives and libraries. `check APK` checks whether Android will install and start an APK or a
+//! bundle (.aab), `bundle APK AAB` converts an APK to a bundle, `loader LIBRARY` prints the architecture of an OpenXR
+//! loader, and `pack AAR FOLDER` packs the files of a folder.
 //!
-//! A program of its own, so that only those who build for Android wait for its dependencies.
+//! This is a separate program so that only people who build for Android have to compile its dependencies.
 
 mod archive;
 mod bundle;
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
     }))
 }
 
-/// Returns what to print, and false if the APK is not as it should be.
+/// Returns the text to print, and false if a check has failed.
 fn perform(arguments: &[&str]) -> anyhow::Result<(String, bool)> {
     Ok(match arguments {
         ["check", apk] => {

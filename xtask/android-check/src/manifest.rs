@@ -1,5 +1,5 @@
-//! The manifest in the APK, as aapt reads it: cargo-apk ignores what it does not know, so that only this tells what
-//! Android is told.
+//! Checks the manifest in the APK as aapt reads it. cargo-apk ignores keys that it does not know, so only the result
+//! shows what Android will see.
 
 use std::path::Path;
 use std::process::Command;
@@ -13,27 +13,27 @@ use super::report::Report;
 
 const PACKAGE: &str = "io.github.yoro";
 const LIBRARY: &str = "yoro_android";
-/// Permissions that the application asks for: the camera reads a viewer's code, and OpenXR runtimes may want to be
-/// asked.
+/// Permissions that the application requests. It uses the camera to scan a viewer's code, and OpenXR runtimes may
+/// require permissions of their own.
 const PERMISSIONS: &str = "android.permission.CAMERA android.permission.INTERNET org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
-/// Headsets by Meta that it has to be made for by name, and all, for those that do not know the later names.
+/// Meta headsets that the manifest must name, and `all` for headsets that do not know the later names.
 const DEVICES: [&str; 2] = ["all", "quest3"];
-/// Everything that may change while the activity goes on: locale, touchscreen, keyboard, keyboardHidden, navigation,
-/// orientation, screenLayout, uiMode, screenSize, smallestScreenSize, density, layoutDirection, colorMode, fontScale.
+/// Changes that must not restart the activity: locale, touchscreen, keyboard, keyboardHidden, navigation, orientation,
+/// screenLayout, uiMode, screenSize, smallestScreenSize, density, layoutDirection, colorMode, fontScale.
 const CONFIG_CHANGES: u64 = 0x4000_7ffc;
 
 const NAME: &str = "android:name";
 const VALUE: &str = "android:value";
 const MIME_TYPE: &str = "android:mimeType";
 const REQUIRED: &str = "android:required";
-/// Any value but none.
+/// Any value, as long as there is one.
 const ANY: &str = "*";
 
-/// An element that must be there with these attributes.
+/// An element that the manifest must have, with these attributes.
 struct Rule<'a> {
     element: &'a str,
     attributes: &'a [(&'a str, &'a str)],
-    /// Consequence of its absence.
+    /// The consequence if it is missing.
     consequence: &'a str,
 }
 
@@ -50,12 +50,12 @@ const LAUNCHER: [Rule<'_>; 3] = [
     rule("action", &[(NAME, "android.intent.action.MAIN")], NO_LAUNCHER),
     rule("category", &[(NAME, "android.intent.category.LAUNCHER")], NO_LAUNCHER),
 ];
-/// Rules of an immersive application that finds its OpenXR runtime.
+/// Rules for an immersive application that finds its OpenXR runtime.
 const HEADSETS: [Rule<'_>; 9] = [
     rule("category", &[(NAME, "com.oculus.intent.category.VR")], FLAT),
     rule("category", &[(NAME, "com.htc.intent.category.VRAPP")], FLAT),
     rule("category", &[(NAME, "org.khronos.openxr.intent.category.IMMERSIVE_HMD")], FLAT),
-    // Android hides the brokers from an application that does not say that it means to talk to them.
+    // Android hides the runtime brokers from applications that do not declare that they use them.
     rule(
         "provider",
         &[(
@@ -108,7 +108,7 @@ const SCREEN: [Rule<'_>; 4] = [
 ];
 const OPTIONAL: [Rule<'_>; 3] = [
     optional(&[(NAME, "android.hardware.vr.headtracking"), (REQUIRED, "false")]),
-    // The permission for the camera requires these two where nothing is said.
+    // The camera permission implies that these two are required, unless the manifest says otherwise.
     optional(&[(NAME, "android.hardware.camera"), (REQUIRED, "false")]),
     optional(&[(NAME, "android.hardware.camera.autofocus"), (REQUIRED, "false")]),
 ];
@@ -117,7 +117,7 @@ const fn optional<'a>(attributes: &'a [(&'a str, &'a str)]) -> Rule<'a> {
     rule("uses-feature", attributes, "devices without it would be shut out")
 }
 
-/// An element of the manifest with its attributes; values are texts without quotes, `true`, `false`, or numbers like
+/// An element of the manifest with its attributes. Values are texts without quotes, `true`, `false`, or numbers like
 /// `0x1d`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Element {
@@ -140,15 +140,15 @@ impl Element {
 #[derive(Debug)]
 pub struct Manifest {
     elements: Vec<Element>,
-    /// The icon's file, which only a look into the resources tells.
+    /// The icon's file name, which is only found in the resources.
     icon: String,
 }
 
 impl Manifest {
-    /// Has aapt read it.
+    /// Reads an APK's manifest with aapt.
     ///
     /// # Errors
-    /// When aapt is missing, or cannot read the manifest.
+    /// Fails if aapt is missing, or cannot read the manifest.
     pub fn read(apk: &Path) -> anyhow::Result<Self> {
         let aapt = sdk::build_tool("aapt")?;
         let dump = |what: &str, file: Option<&str>| {
@@ -185,12 +185,12 @@ impl Manifest {
         self.elements.iter().filter(move |element| element.name == name)
     }
 
-    /// The first of its name; one without attributes when there is none.
+    /// Returns the first element with this name, or one without attributes if there is none.
     fn one(&self, name: &str) -> Element {
         self.all(name).next().cloned().unwrap_or_default()
     }
 
-    /// The value of the first meta-data of this name.
+    /// Returns the value of the first meta-data element with this name.
     fn meta_data(&self, name: &str) -> &str {
         self.elements
             .iter()
@@ -198,13 +198,13 @@ impl Manifest {
             .map_or("", |element| element.text(VALUE))
     }
 
-    /// The names of elements, in their order.
+    /// Returns the names of elements in their order, separated by spaces.
     fn names(&self, element: &str, is: impl Fn(&Element) -> bool) -> String {
         let names: Vec<&str> = self.all(element).filter(|e| is(e)).map(|e| e.text(NAME)).collect();
         names.join(" ")
     }
 
-    /// The first rule that is broken, in words.
+    /// Returns a description of the first broken rule.
     fn broken<'a>(&self, rules: impl IntoIterator<Item = &'a Rule<'a>>) -> Option<String> {
         let keeps = |rule: &&Rule<'_>| {
             self.all(rule.element).any(|element| {
@@ -221,17 +221,17 @@ impl Manifest {
         })
     }
 
-    /// True for a build for development.
+    /// True for a debug build.
     pub fn is_debuggable(&self) -> bool {
         self.one("application").text("android:debuggable") == "true"
     }
 
-    /// True if libraries are unpacked at installation, and not mapped out of the APK.
+    /// True if libraries are unpacked at installation rather than mapped out of the APK.
     pub fn unpacks_libraries(&self) -> bool {
         self.one("application").text("android:extractNativeLibs") != "false"
     }
 
-    /// Adds a row for everything that matters.
+    /// Adds all rows for the manifest.
     pub fn check(&self, archive: &Archive, report: &mut Report) {
         let manifest = self.one("manifest");
         let package = manifest.text("package");
@@ -276,7 +276,7 @@ impl Manifest {
         self.check_files(archive, report);
     }
 
-    /// Why headsets would not start it as an immersive application, or not let it find its runtime.
+    /// Returns why headsets would not start the application as immersive, or would not let it find its runtime.
     fn no_headset(&self) -> Option<String> {
         let libraries = NATIVE_LIBRARIES.map(|name| [(NAME, name), (REQUIRED, "false")]);
         let libraries = libraries
@@ -293,7 +293,7 @@ impl Manifest {
         self.broken(HEADSETS.iter().chain(&rules)).or(problem)
     }
 
-    /// Adds rows for the files that the manifest names.
+    /// Adds rows for the files that the manifest refers to.
     fn check_files(&self, archive: &Archive, report: &mut Report) {
         let problem = (!archive.has(&self.icon)).then(|| "no such file".to_owned());
         report.row("icon", self.icon.as_str(), problem);
@@ -314,8 +314,8 @@ impl Manifest {
     }
 }
 
-/// Reads `"text" (Raw: "text")`, `(type 0x10)0x1d (Raw: "29")`, a boolean `(type 0x12)0x0`, or a resource
-/// `@0x7f050000`.
+/// Extracts the value of `"text" (Raw: "text")`, `(type 0x10)0x1d (Raw: "29")`, a boolean `(type 0x12)0x0`, or a
+/// resource `@0x7f050000`.
 fn value(dumped: &str) -> &str {
     if let Some(text) = dumped.strip_prefix('"') {
         return text.split('"').next().unwrap_or_default();

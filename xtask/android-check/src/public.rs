@@ -1,4 +1,4 @@
-//! The functions that Android's public libraries offer to an application.
+//! The symbols that Android's public libraries export to applications.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,17 +10,17 @@ use goblin::elf::section_header::SHN_UNDEF;
 use yoro_tools::ndk::symbols::{LISTS, listed};
 use yoro_tools::ndk::target::{Architecture, MIN_API};
 
-/// The source of the public names.
+/// The source of the public symbols.
 #[derive(Debug)]
 pub enum Public {
-    /// The lists of this project.
+    /// This project's lists.
     Lists,
-    /// The stub libraries of an NDK: the `sysroot/usr/lib` folder.
+    /// The stub libraries of an NDK, in this `sysroot/usr/lib` folder.
     Stubs(std::path::PathBuf),
 }
 
 impl Public {
-    /// The NDK's own stubs; without an NDK the lists.
+    /// Returns the NDK's stubs, or this project's lists if there is no NDK.
     pub fn of(ndk: Option<&Path>) -> Self {
         let stubs = ndk.map(|ndk| ndk.join("toolchains/llvm/prebuilt/linux-x86_64/sysroot/usr/lib"));
         match stubs.filter(|folder| folder.is_dir()) {
@@ -29,10 +29,10 @@ impl Public {
         }
     }
 
-    /// The names that a library offers to the oldest Android; `None` when it is not public.
+    /// Returns a library's exports on the oldest supported Android, or `None` if the library is not public.
     ///
     /// # Errors
-    /// When a stub of the NDK cannot be read.
+    /// Fails if a stub of the NDK cannot be read.
     pub fn symbols(
         &self,
         library: &str,

@@ -1,11 +1,11 @@
-//! The findings of a check, as a table.
+//! The results of checks, as a table.
 
 use std::fmt;
 
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// The thing that was checked.
+    /// What was checked.
     pub what: String,
     /// The value that was found.
     pub found: String,
@@ -21,7 +21,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// True if there is no problem.
+    /// True if no row has a problem.
     pub fn passed(&self) -> bool {
         self.rows.iter().all(|row| row.problem.is_none())
     }
@@ -31,13 +31,13 @@ impl Report {
         self.rows.push(Row { what: what.into(), found: found.into(), problem });
     }
 
-    /// Adds a row that is wrong unless what is found is what is wanted.
+    /// Adds a row, with a problem unless `found` equals `wanted`.
     pub fn equal(&mut self, what: impl Into<String>, found: &str, wanted: &str) {
         let problem = (found != wanted).then(|| format!("should be {wanted}"));
         self.row(what, if found.is_empty() { "none" } else { found }, problem);
     }
 
-    /// The things with a problem.
+    /// Returns what was checked in the rows with a problem.
     #[cfg(test)]
     pub fn problems(&self) -> Vec<&str> {
         let wrong = self.rows.iter().filter(|row| row.problem.is_some());
@@ -58,7 +58,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// A list, cut where nobody would read on.
+/// Joins names to a list, which is shortened if there are too many.
 pub fn some(names: &[&str]) -> String {
     const SHOWN: usize = 5;
     match names.len().checked_sub(SHOWN) {

@@ -1,4 +1,4 @@
-//! The signature, as Android verifies it.
+//! Checks the signature as Android does.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,10 +11,10 @@ use super::report::Report;
 /// Adds a row for the signature.
 ///
 /// # Errors
-/// When apksigner cannot be started.
+/// Fails if apksigner cannot be started.
 pub fn check(apk: &Path, report: &mut Report) -> anyhow::Result<()> {
     let output = Command::new(sdk::build_tool("apksigner")?)
-        // Asked for the oldest Android that knows v2: for later ones apksigner is content with v3 alone.
+        // The oldest Android that supports v2 signatures. For later versions, apksigner accepts v3 alone.
         .args(["verify", "--verbose", "--print-certs", "--min-sdk-version", "24"])
         .arg(apk)
         .output()

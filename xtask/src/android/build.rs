@@ -1,4 +1,4 @@
-//! Building the APK: by cargo-apk, then packed anew with the completed manifest.
+//! Builds the APK with cargo-apk, then repacks it with the completed manifest.
 
 use std::fs;
 use std::path::PathBuf;
@@ -21,20 +21,20 @@ use super::toolchain::{self, Surroundings, Toolchain};
 /// `apk_name` of android/Cargo.toml.
 const NAME: &str = "yoro";
 
-/// Options of the build.
+/// Build options.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Small and fast, by the profile `android`, instead of debuggable.
+    /// Build a small and fast release with the profile `android`, instead of a debuggable build.
     pub release: bool,
     /// Install missing packages without asking.
     pub yes: bool,
-    /// OpenXR loaders that the APK is to carry: at most one for each processor.
+    /// OpenXR loaders to include in the APK, at most one per architecture.
     pub openxr_loaders: Vec<PathBuf>,
-    /// Make a bundle for a store of the APK, too.
+    /// Also convert the APK to a bundle for a store.
     pub bundle: bool,
 }
 
-/// A bundle is signed as a jar, and apksigner does so where it need not look for a manifest.
+/// Arguments of apksigner for a bundle, signed as a JAR. Given the API level, apksigner needs no manifest.
 const JAR: [&str; 10] = [
     "--min-sdk-version",
     "29",
@@ -51,7 +51,7 @@ const JAR: [&str; 10] = [
 /// Builds, signs and checks the APK, and returns its path.
 ///
 /// # Errors
-/// When something is missing or fails, or the result is not as it should be.
+/// Fails if something is missing, a step fails, or a check of the result fails.
 pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let surroundings = Surroundings::here();
@@ -76,9 +76,9 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
         .env("CARGO_TARGET_DIR", target.join("android/build"))
         .env(format!("CARGO_APK_{name}_KEYSTORE"), &keystore.path)
         .env(format!("CARGO_APK_{name}_KEYSTORE_PASSWORD"), &keystore.password)
-        // std from source cannot unwind: the stand-in NDK has no unwinder.
+        // std from source is built without unwinding, since the stand-in NDK has no unwinder.
         .env("CARGO_PROFILE_DEV_PANIC", "abort")
-        // Flags for the desktop's processor are of no use here.
+        // These flags are for this machine's processor.
         .env_remove("RUSTFLAGS");
     let mut flags = link_flags();
     let (sdk, rust) = match &toolchain {
@@ -125,17 +125,17 @@ pub fn apk(options: &Options) -> anyhow::Result<PathBuf> {
     Ok(apk)
 }
 
-/// Installs, without asking, what the building of the APK needs.
+/// Installs, without asking, what is needed to build the APK.
 ///
 /// # Errors
-/// When something cannot be had on this machine.
+/// Fails if something cannot be obtained on this machine.
 pub fn ready_for_tests() -> anyhow::Result<()> {
     let surroundings = Surroundings::here();
     let (toolchain, _) = Toolchain::choose(&surroundings);
     toolchain::ensure(&toolchain, true)
 }
 
-/// Returns the linker's flags for any NDK: pages of 16 KiB, and no name that a public library does not have.
+/// Returns the linker flags for any NDK: pages of 16 KiB, and an error for symbols that no public library has.
 pub fn link_flags() -> Vec<String> {
     let pages = format!("-Wl,-z,max-page-size={PAGE},-z,common-page-size={PAGE}");
     let mut flags: Vec<String> = [pages.as_str(), "-Wl,-z,defs", "-Wl,--build-id=sha1"]
@@ -145,7 +145,7 @@ pub fn link_flags() -> Vec<String> {
     flags
 }
 
-/// zipalign lists every file: that is shown only when something fails.
+/// Runs cargo-apk. Shows its output only on failure, since zipalign lists every file.
 fn run(command: &mut Command) -> anyhow::Result<()> {
     eprintln!(
         "$ cargo apk {}",

@@ -11,23 +11,23 @@ use super::keystore;
 
 const CARGO_APK: &str = "0.10.0";
 
-/// Installs cargo-apk, of the one version that this works with, in the project's own folder. Returns its path.
+/// Installs the required version of cargo-apk in the project's own folder, and returns its path.
 ///
 /// # Errors
-/// When it cannot be installed.
+/// Fails if cargo-apk cannot be installed.
 pub fn ensure() -> anyhow::Result<PathBuf> {
     let folder = folder()?;
     let program = program(&folder);
     if is_cargo_apk(&program) {
         return Ok(program);
     }
-    // It only starts other programs: optimising it would take longer than it saves.
+    // A debug build: cargo-apk only starts other programs, so optimizing it would take longer than it saves.
     let mut install = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     install
         .args(["install", "cargo-apk", "--version", CARGO_APK, "--locked", "--debug", "--force", "--quiet"])
         .args(["--no-track", "--root"])
         .arg(&folder)
-        // The target folder of the workspace keeps what only the APK needs out.
+        // A target folder of its own, so that the workspace's has no files that only the APK needs.
         .env_remove("CARGO_TARGET_DIR");
     eprintln!("$ cargo install cargo-apk --version {CARGO_APK} --locked --root {}", folder.display());
     let status = install.status().context("cargo cannot be started")?;
@@ -51,10 +51,10 @@ fn is_cargo_apk(program: &Path) -> bool {
     version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted)
 }
 
-/// Describes what the build brings along: cargo-apk and the key.
+/// Describes what the build provides itself: cargo-apk and the key.
 ///
 /// # Errors
-/// When the target folder is not known.
+/// Fails if the target folder is unknown.
 pub fn extras() -> anyhow::Result<[(&'static str, String); 2]> {
     let program = program(&folder()?);
     let tool = if is_cargo_apk(&program) {

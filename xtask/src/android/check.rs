@@ -1,5 +1,5 @@
-//! `yoro-android-check`, which knows archives and libraries. It is a program of its own, so that only those who build
-//! for Android wait for its dependencies.
+//! Runs `yoro-android-check`, which works with archives and libraries. It is a separate program so that only people who
+//! build for Android have to compile its dependencies.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf, absolute};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf, absolute};
 use anyhow::{Context as _, bail};
 use yoro_tools::{cargo, console};
 
-/// Returns the text that the program printed, and true if it found no fault.
+/// Returns the program's output, and true if it found no fault.
 ///
 /// # Errors
-/// The program's own sentence.
+/// Fails with the program's own message.
 fn run(arguments: &[&dyn AsRef<OsStr>]) -> anyhow::Result<(String, bool)> {
     let mut command = cargo::program("yoro-android-check")?;
     let output = command.args(arguments).output().context("yoro-android-check cannot be started")?;
@@ -27,28 +27,28 @@ fn absolute_path(path: &Path) -> anyhow::Result<PathBuf> {
     absolute(path).context("the current folder is gone: change to another")
 }
 
-/// Prints whether an APK is as Android wants it; true if it is.
+/// Checks whether Android will install and start an APK, and prints the result. Returns true if it will.
 ///
 /// # Errors
-/// When the file is missing or no APK, or a tool for looking at it is missing.
+/// Fails if the file is missing or not an APK, or a tool for the checks is missing.
 pub fn check(apk: &Path) -> anyhow::Result<bool> {
     let (report, passed) = run(&[&"check", &absolute_path(apk)?])?;
     console::print(&report);
     Ok(passed)
 }
 
-/// Returns the processor that an OpenXR loader is for, by its folder in an APK.
+/// Returns the architecture of an OpenXR loader as its folder name in an APK.
 ///
 /// # Errors
-/// When it is no loader for a processor that the APK has libraries for.
+/// Fails if the file is not a loader, or is for an architecture that the APK has no libraries for.
 pub fn loader_abi(file: &Path) -> anyhow::Result<String> {
     Ok(run(&[&"loader", &absolute_path(file)?])?.0)
 }
 
-/// Makes a bundle, not signed, of an APK.
+/// Makes an unsigned bundle from an APK.
 ///
 /// # Errors
-/// When aapt2 is missing or refuses the APK, or the bundle cannot be written.
+/// Fails if aapt2 is missing or rejects the APK, or the bundle cannot be written.
 pub fn bundle(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
     run(&[&"bundle", &absolute_path(apk)?, &absolute_path(bundle)?])?;
     Ok(())
@@ -57,7 +57,7 @@ pub fn bundle(apk: &Path, bundle: &Path) -> anyhow::Result<()> {
 /// Packs the files of a folder as an AAR.
 ///
 /// # Errors
-/// When it cannot be written.
+/// Fails if the AAR cannot be written.
 pub fn pack(packed: &Path, folder: &Path) -> anyhow::Result<()> {
     run(&[&"pack", &packed, &folder])?;
     Ok(())

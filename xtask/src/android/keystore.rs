@@ -1,4 +1,4 @@
-//! The key that an APK is signed with.
+//! The key that signs an APK.
 
 use std::env;
 use std::path::PathBuf;
@@ -6,10 +6,10 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-/// The variable that names the release's keystore; with `_PASSWORD` at its end, the password's.
+/// The variable with the path of the release keystore. Its password is in the variable with `_PASSWORD` appended.
 const RELEASE: &str = "CARGO_APK_RELEASE_KEYSTORE";
 
-/// Describes the key that a release would be signed with.
+/// Describes the key that would sign a release.
 pub fn describe() -> String {
     match env::var_os(RELEASE) {
         Some(path) => format!("{} ({RELEASE})", PathBuf::from(path).display()),
@@ -24,16 +24,16 @@ pub struct Keystore {
     pub path: PathBuf,
     /// The password of both the keystore and the key.
     pub password: String,
-    /// Made for development: Android accepts it, stores do not.
+    /// True if the key was made for development. Android accepts it, stores do not.
     pub debug: bool,
 }
 
 impl Keystore {
-    /// The keystore of the environment for a release that has one there, and otherwise this machine's debug key,
-    /// which is made when there is none yet.
+    /// Returns the keystore in the environment if this is a release and there is one. Otherwise returns this machine's
+    /// debug keystore, which is made if it does not exist.
     ///
     /// # Errors
-    /// When the environment is incomplete or names no file, or keytool fails.
+    /// Fails if the environment is incomplete or names no file, or keytool fails.
     pub fn choose(release: bool) -> anyhow::Result<Self> {
         if !release {
             return Self::debug();
@@ -42,7 +42,7 @@ impl Keystore {
         Self::given(env::var_os(RELEASE).map(PathBuf::from), password)?.map_or_else(Self::debug, Ok)
     }
 
-    /// The keystore of the environment, if it names one.
+    /// Returns the keystore in the environment, if there is one.
     fn given(path: Option<PathBuf>, password: Option<String>) -> anyhow::Result<Option<Self>> {
         let Some(path) = path else { return Ok(None) };
         let Some(password) = password else {
@@ -55,7 +55,7 @@ impl Keystore {
         Ok(Some(Self { path, password, debug: false }))
     }
 
-    /// The key that all of Android's tools share, so that an application built by any of them updates the others'.
+    /// Returns the keystore that all Android tools share, so that one's application can be updated by another's.
     fn debug() -> anyhow::Result<Self> {
         let folder = match env::var_os("ANDROID_USER_HOME") {
             Some(folder) => PathBuf::from(folder),

@@ -1,4 +1,4 @@
-//! A cargo for libraries that others build into their Android applications.
+//! A cargo for libraries that others include in their Android applications.
 
 use std::fs;
 use std::process::Command;
@@ -12,14 +12,14 @@ use yoro_tools::rust::{Panic, Rust, build_std};
 use super::build::link_flags;
 use super::toolchain::{self, Surroundings, Toolchain};
 
-/// The oldest Android that a library is for (Android 11): the first whose C library can unwind, which the stand-in NDK,
-/// having no unwinder of its own, relies on.
+/// The API level of the oldest Android that the libraries support (Android 11). It is the first whose C library can
+/// unwind; the stand-in NDK has no unwinder.
 pub const API: u32 = 30;
 
-/// A cargo that compiles and links for Android with `--target` the architecture's triple. What it compiles can unwind.
+/// Returns a cargo that compiles and links for Android with the architecture's triple. The result can unwind.
 ///
 /// # Errors
-/// When something is missing, with its remedy.
+/// Fails if something is missing. The error names the remedy.
 pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
     let surroundings = Surroundings::here();
     let (toolchain, _) = Toolchain::choose(&surroundings);
@@ -34,7 +34,7 @@ pub fn cargo(architecture: Architecture) -> anyhow::Result<Command> {
         }
         Toolchain::StandIn => {
             let stand_in = StandIn::make(&target_folder()?.join("android/stand-in"))?;
-            // Beside that of the application, which is for an older Android.
+            // Separate from the application's sysroot, which is for an older Android.
             let folder = target_folder()?.join("android/capi/sysroot");
             let libraries = folder.join("usr/lib");
             fs::create_dir_all(&libraries)

@@ -1,5 +1,5 @@
-//! OpenXR loaders of somebody else's that an APK carries: they win over the application's own way to the runtime, and
-//! bring API layers.
+//! OpenXR loaders of others, carried in an APK. They precede the application's own way to the runtime, and support API
+//! layers.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use yoro_tools::ndk::target::LOADER;
 
-/// Copies in the folder that cargo-apk packs, one below it for each processor, until this is dropped.
+/// Copies in the folder that cargo-apk packs, with a subfolder per architecture. They are deleted when this is dropped.
 pub struct Loaders(Vec<PathBuf>);
 
 impl Loaders {
-    /// Copies each file to the folder of its processor.
+    /// Copies each file to the folder of its architecture.
     ///
     /// # Errors
-    /// When there are two for one processor, or one cannot be copied.
+    /// Fails if there are two for one architecture, or one cannot be copied.
     pub fn place(files: &[(String, &Path)], folder: &Path) -> anyhow::Result<Self> {
         let mut placed = Loaders(Vec::new());
         for (abi, file) in files {

@@ -3,11 +3,11 @@
 use anyhow::Context as _;
 use yoro_tools::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
 
-/// Completes the manifest that cargo-apk has written: adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] in its application,
-/// and makes that a game: from API level 36 on Android lets only games keep their orientation on large screens.
+/// Completes the manifest written by cargo-apk. Adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] to the application, and
+/// declares it a game: from API level 36 on, Android lets only games fix their orientation on large screens.
 ///
 /// # Errors
-/// When there is no application in it.
+/// Fails if the manifest has no application.
 pub fn complete(manifest: &str) -> anyhow::Result<String> {
     const END: &str = "</application>";
     let (before, after) = manifest

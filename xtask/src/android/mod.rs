@@ -1,4 +1,4 @@
-//! The Android application: what builds it, the building, and the check of the result.
+//! The Android application: its toolchain, its build, and the check of the result.
 
 mod build;
 mod cargo_apk;

@@ -1,4 +1,4 @@
-//! The APK packed anew: cargo-apk's, with the completed manifest.
+//! Repacks cargo-apk's APK with the completed manifest.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,11 +10,11 @@ use super::keystore::Keystore;
 use super::manifest;
 use yoro_tools::ndk::sdk::build_tool;
 
-/// Packs, aligns and signs an APK of what cargo-apk has left in `folder`: its manifest, which is completed, and the
-/// libraries that are in its own APK `name`. The new APK, beside the others.
+/// Packs, aligns and signs an APK from cargo-apk's output in `folder`: its manifest, which is completed, and the
+/// libraries in its APK `name`. Returns the path of the new APK, in the same folder.
 ///
 /// # Errors
-/// When a tool fails, or cargo-apk has left something else.
+/// Fails if a tool fails, or cargo-apk's output has an unexpected form.
 pub fn pack(
     folder: &Path,
     name: &str,
@@ -27,7 +27,7 @@ pub fn pack(
     let text =
         fs::read_to_string(&written).with_context(|| format!("{} cannot be read", written.display()))?;
     let text = manifest::complete(&text)?;
-    // aapt takes the manifest by this name alone.
+    // aapt requires this file name.
     let whole = at("complete/AndroidManifest.xml");
     fs::create_dir_all(at("complete"))
         .and_then(|()| fs::write(&whole, text))
@@ -37,7 +37,7 @@ pub fn pack(
 
     let tool = |tool: &str| -> anyhow::Result<Command> {
         let mut command = Command::new(build_tool(tool)?);
-        // Libraries are added by their paths in the APK, which are those in this folder.
+        // aapt adds libraries under the paths that they have in this folder.
         command.current_dir(folder);
         Ok(command)
     };
@@ -51,22 +51,22 @@ pub fn pack(
     Ok(finished)
 }
 
-/// Signs an APK; with other arguments, something else.
+/// Signs an APK, or another file if `arguments` say so.
 pub fn sign(file: &Path, keystore: &Keystore, arguments: &[&str]) -> anyhow::Result<()> {
     let mut sign = Command::new(build_tool("apksigner")?);
     sign.arg("sign").arg("--ks").arg(&keystore.path).args(arguments);
-    // Passed through the environment: every user of this machine can read arguments.
+    // In the environment, because every user of this machine can read a program's arguments.
     sign.args(["--ks-pass", "env:YORO_KEYSTORE_PASSWORD"]).env("YORO_KEYSTORE_PASSWORD", &keystore.password);
     run(sign.arg(file)).map(drop)
 }
 
-/// The libraries in an APK, by their paths in it.
+/// Returns the paths of the libraries in an APK.
 fn libraries(apk: &Path) -> anyhow::Result<Vec<String>> {
     let listing = run(Command::new(build_tool("aapt")?).arg("list").arg(apk))?;
     Ok(listing.lines().filter(|name| name.starts_with("lib/")).map(str::to_owned).collect())
 }
 
-/// Runs a tool, and returns what it prints.
+/// Runs a tool, and returns its standard output.
 fn run(command: &mut Command) -> anyhow::Result<String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command.output().with_context(|| format!("{program} cannot be started"))?;

@@ -1,4 +1,4 @@
-//! The toolchain for the APK: Google's SDK and NDK with rustup's targets, or the stand-in for them.
+//! The toolchain for the APK: Google's SDK and NDK with rustup's targets, or the stand-in.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -12,31 +12,31 @@ use yoro_tools::rust::{Rust, source};
 
 use super::cargo_apk;
 
-/// The parts of the user's machine that decide between the two toolchains.
+/// The facts about the user's machine that decide which toolchain is used.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     android_home: Option<PathBuf>,
     ndk_root: Option<PathBuf>,
-    /// The processors that the user's Rust has std for, by [`yoro_tools::ndk::target::Architecture::triple`].
+    /// The targets that the user's Rust has std for, as [`yoro_tools::ndk::target::Architecture::triple`].
     targets: Vec<&'static str>,
 }
 
-/// One of the two toolchains.
+/// The toolchain for the APK.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Toolchain {
     /// The user's own SDK, NDK and rustup targets.
     Google {
-        /// ANDROID_HOME.
+        /// The value of ANDROID_HOME.
         sdk: PathBuf,
-        /// ANDROID_NDK_ROOT.
+        /// The value of ANDROID_NDK_ROOT.
         ndk: PathBuf,
     },
-    /// Debian's packages, and std from source.
+    /// Debian packages, and std compiled from source.
     StandIn,
 }
 
 impl Surroundings {
-    /// Reads them from this process's environment.
+    /// Reads the facts from this process's environment.
     pub fn here() -> Self {
         let rust = Rust::own();
         let has = |triple: &&str| rust.as_ref().is_some_and(|rust| rust.has_target(triple));
@@ -47,14 +47,14 @@ impl Surroundings {
         }
     }
 
-    /// True if the user wants Google's toolchain.
+    /// True if the environment names Google's SDK or NDK.
     pub fn names_google(&self) -> bool {
         self.android_home.is_some() || self.ndk_root.is_some()
     }
 }
 
 impl Toolchain {
-    /// Chooses the user's own where it is complete. Returns the reasons against Google's, too, a sentence each.
+    /// Chooses the user's own toolchain if it is complete. Also returns the reasons against it, one sentence each.
     pub fn choose(surroundings: &Surroundings) -> (Self, Vec<String>) {
         let mut against = Vec::new();
         let mut folder = |name: &str, value: &Option<PathBuf>| match value {
@@ -79,7 +79,7 @@ impl Toolchain {
         }
     }
 
-    /// The needs of this toolchain.
+    /// Returns what this toolchain needs.
     pub fn needs(&self) -> Vec<Need> {
         match self {
             Self::Google { sdk, ndk } => google(sdk, ndk),
@@ -135,10 +135,10 @@ fn stand_in() -> Vec<Need> {
     ]
 }
 
-/// Installs what the toolchain lacks, after asking unless `yes`.
+/// Installs what the toolchain needs. Asks first unless `yes`.
 ///
 /// # Errors
-/// When something is still missing: what, and the remedy.
+/// Fails if something is still missing; the error names it and the remedy.
 pub fn ensure(toolchain: &Toolchain, yes: bool) -> anyhow::Result<()> {
     apt::provide(|| toolchain.needs(), yes).map_err(|error| match toolchain {
         Toolchain::Google { .. } => error,
@@ -148,11 +148,10 @@ pub fn ensure(toolchain: &Toolchain, yes: bool) -> anyhow::Result<()> {
     })
 }
 
-/// Describes the toolchain that `cargo xtask apk` would choose, and what it lacks. Returns the text, and true if
-/// nothing is missing.
+/// Describes the toolchain of `cargo xtask apk` and what it lacks. Returns the text, and true if nothing is missing.
 ///
 /// # Errors
-/// When the target folder is not known.
+/// Fails if the target folder is unknown.
 pub fn doctor() -> anyhow::Result<(String, bool)> {
     let surroundings = Surroundings::here();
     let (toolchain, against) = Toolchain::choose(&surroundings);

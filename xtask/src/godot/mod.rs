@@ -1,4 +1,4 @@
-//! The add-on for Godot: the project that it is developed in, and its tests.
+//! The add-on for Godot: its development project, and its tests.
 
 mod pictures;
 mod session;
@@ -15,7 +15,7 @@ use crate::kit;
 
 pub use test::test;
 
-/// Where the add-on lies in a project.
+/// The add-on's folder in a project.
 pub const ADDON: &str = "addons/yoro";
 
 #[derive(Subcommand)]
@@ -26,10 +26,10 @@ pub enum Task {
     Test,
 }
 
-/// Writes the project with the shaders of the kit, and returns its folder. What Godot has imported there stays.
+/// Writes the project with the kit's shaders, and returns its folder. Keeps the files that Godot has imported there.
 ///
 /// # Errors
-/// When the kit does not compile, or a file cannot be written.
+/// Fails if the kit does not compile, or a file cannot be written.
 pub fn project() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("godot-project");
     for part in ["addons", "demo", "test"] {
@@ -42,17 +42,17 @@ pub fn project() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// The project's files by their names in it.
+/// Returns the project's files, with their names in the project.
 ///
 /// # Errors
-/// When the kit does not compile, or a folder cannot be read.
+/// Fails if the kit does not compile, or a folder cannot be read.
 pub fn files() -> anyhow::Result<Vec<(String, PathBuf)>> {
     let mut files = Vec::new();
     list(&root().join("app/godot"), "", &mut files)?;
     let mut kit = Vec::new();
     list(&kit::kit()?.join("godot"), "", &mut kit)?;
     for (name, file) in kit {
-        // The add-on has three passes; the others are tested to compile.
+        // The add-on uses three passes. The others are only tested to compile.
         let used = ["tiles.glsl", "spans.glsl", "march.glsl"].contains(&name.as_str());
         let folder = if used { format!("{ADDON}/shaders") } else { "test/kit".to_owned() };
         files.push((format!("{folder}/{name}"), file));
@@ -60,7 +60,7 @@ pub fn files() -> anyhow::Result<Vec<(String, PathBuf)>> {
     Ok(files)
 }
 
-/// Adds all files of a folder, of hidden ones only those by which Godot ignores a folder.
+/// Adds all files of a folder. Of the hidden files, adds only those that make Godot ignore a folder.
 fn list(folder: &Path, before: &str, files: &mut Vec<(String, PathBuf)>) -> anyhow::Result<()> {
     let entries = fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))?;
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();

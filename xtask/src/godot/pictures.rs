@@ -1,4 +1,4 @@
-//! Pictures of both eyes that Godot's tests write, compared by `yoro compare`.
+//! Compares the pictures of both eyes that Godot's tests write, by `yoro compare`.
 
 use std::path::Path;
 use std::process::Command;
@@ -7,23 +7,22 @@ use anyhow::{Context as _, bail};
 use serde_json::Value;
 use yoro_tools::folders::copy;
 
-/// How close a picture is to another.
+/// The similarity of two pictures.
 #[derive(Clone, Copy, Debug)]
 pub struct Quality {
-    /// In dB over all three channels; infinite for identical pictures.
+    /// PSNR in dB over all three channels. Infinite for identical pictures.
     pub psnr: f64,
-    /// Of luma.
+    /// SSIM of luma.
     pub ssim: f64,
 }
 
-/// A case of a scene: its pictures' name, the eye that is synthesized, and the case with Godot's pictures of the same
-/// view.
+/// A test case: the name of its pictures, the synthesized eye, and the case with Godot's pictures of the same view.
 pub type Case = [&'static str; 3];
 
-/// Returns for each case the synthesized eye and the rendered one, against what Godot draws for the synthesized eye.
+/// Compares the synthesized eye and the rendered eye of each case with what Godot draws for the synthesized eye.
 ///
 /// # Errors
-/// When a picture is missing.
+/// Fails if a picture is missing.
 pub fn compare(
     yoro: &mut dyn FnMut() -> Command,
     folder: &Path,
@@ -35,7 +34,7 @@ pub fn compare(
         for (kind, of, mode, eye) in [
             ("made", case, "one_view", *made),
             ("truth", godot, "both_views", *made),
-            // Godot's eyes are as far from each other in either direction.
+            // The distance between Godot's two eyes is the same in both directions.
             ("same", godot, "both_views", other),
         ] {
             if kind == "same" && case != godot {
@@ -67,7 +66,7 @@ pub fn compare(
         .collect()
 }
 
-/// Reads a pair of what `yoro compare --json` says.
+/// Reads a pair from the output of `yoro compare --json`.
 fn quality(told: &Value, case: &str) -> Option<Quality> {
     let file = format!("{case}.png");
     let pair = told["pairs"].as_array()?.iter().find(|pair| pair["name"] == *file)?;

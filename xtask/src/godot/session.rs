@@ -1,4 +1,4 @@
-//! Programs that run beside each other for a limited time: a display without a screen, a runtime, Godot.
+//! Programs that run together for a limited time: a virtual display, a runtime, Godot.
 
 use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader};
@@ -12,7 +12,7 @@ use yoro_tools::{apt, godot};
 
 use crate::monado::{self, Running};
 
-/// Both programs of Godot's folder, and a display.
+/// Godot and Monado, with a virtual display.
 pub struct Session {
     godot: PathBuf,
     display: String,
@@ -23,7 +23,7 @@ impl Session {
     /// Sets up what is missing, and starts the display.
     ///
     /// # Errors
-    /// When something cannot be had on this machine.
+    /// Fails if something cannot be obtained on this machine.
     pub fn begin() -> anyhow::Result<Self> {
         let godot = godot::make()?;
         if apt::find_program("Xvfb").is_none() {
@@ -46,16 +46,16 @@ impl Session {
         Ok(Self { godot, display: format!(":{}", number.trim()), _screen: screen })
     }
 
-    /// The program that is Godot.
+    /// Returns the path of Godot.
     pub fn program(&self) -> PathBuf {
         self.godot.join("godot")
     }
 
-    /// Runs Godot with arguments, and returns what it printed. `folder` gets its log, and is where it meets the
-    /// runtime.
+    /// Runs Godot with these arguments, and returns its output. Godot writes its log to `folder`, and finds the runtime
+    /// there. Its exit status is ignored.
     ///
     /// # Errors
-    /// When it takes longer than `limit`; its end is not looked at.
+    /// Fails if Godot takes longer than `limit`.
     pub fn godot(&self, arguments: &[&str], folder: &Path, limit: Duration) -> anyhow::Result<String> {
         let log = folder.join("log");
         let file = File::create(&log).with_context(|| format!("{} cannot be written", log.display()))?;
@@ -63,12 +63,12 @@ impl Session {
             .args(arguments)
             .env("DISPLAY", &self.display)
             .env("XDG_RUNTIME_DIR", folder)
-            // Compiled shaders are the same in all runs.
+            // All runs share the cache of compiled shaders.
             .envs(
                 ["XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME"]
                     .map(|it| (it, folder.with_file_name("cache"))),
             )
-            // Lavapipe: most shaders are drawn with for a few frames, less than optimizing them takes.
+            // Lavapipe must not optimize shaders: most draw only a few frames, which would save less than it takes.
             .env("GALLIVM_PERF", "nopt")
             .stdin(Stdio::null())
             .stdout(file.try_clone()?)
@@ -86,10 +86,10 @@ impl Session {
         Ok(String::from_utf8_lossy(&fs::read(&log)?).into_owned())
     }
 
-    /// Starts the runtime, which programs with the same folder find.
+    /// Starts the runtime. Programs with the same folder find it.
     ///
     /// # Errors
-    /// When it does not start.
+    /// Fails if the runtime does not start.
     pub fn runtime(&self, folder: &Path) -> anyhow::Result<Running> {
         monado::start(&self.godot.join("monado-service"), folder)
     }

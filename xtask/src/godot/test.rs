@@ -1,4 +1,4 @@
-//! The tests of the add-on: what the demo project shows, and what Godot says meanwhile.
+//! Tests of the add-on, by the pictures of the demo project and Godot's output.
 
 use std::path::Path;
 use std::process::Command;
@@ -13,7 +13,7 @@ use super::project;
 use super::session::Session;
 
 const RENDERERS: [&str; 2] = ["mobile", "forward_plus"];
-/// No run takes longer, on two busy processor cores.
+/// Time limit of a run. None takes longer on two busy processor cores.
 const LIMIT: Duration = Duration::from_secs(300);
 
 /// A scene of the project, and the pictures that it writes.
@@ -21,7 +21,7 @@ struct Scene {
     name: &'static str,
     headset: bool,
     cases: &'static [Case],
-    /// What it says when all is well, by its beginning.
+    /// How the lines begin that the scene prints if all is well.
     facts: &'static [&'static str],
 }
 
@@ -59,7 +59,7 @@ const SCENES: [Scene; 2] = [
         ],
         facts: &[
             "fact views 2",
-            // Two of the five places are the same, and are left and entered differently.
+            // Two of the five places are the same, but are entered and left differently.
             "fact near [false, false, true, true, false]",
             "fact paused true, drawn 0, rests true",
             "fact resumed, as before true, bytes more 0\n",
@@ -67,17 +67,17 @@ const SCENES: [Scene; 2] = [
         ],
     },
 ];
-/// The synthesized eye is not farther from Godot's own: PSNR in dB, before tone mapping and after it, and SSIM.
+/// Minimum similarity of the synthesized eye to Godot's: PSNR in dB before and after tone mapping, and SSIM.
 const FLOOR: f64 = 35.0;
 const TONE_MAPPED: f64 = 32.5;
 const SIMILAR: f64 = 0.975;
-/// The same image to both eyes is farther away by so many dB.
+/// Minimum gain in PSNR over showing the same image to both eyes, in dB.
 const GAIN: f64 = 10.0;
-/// Without a distance between the eyes there is nothing to move.
+/// Minimum PSNR in dB if the distance between the eyes is 0, where nothing has to move.
 const IDENTITY: f64 = 60.0;
-/// The pose that was rendered and the one that is shown differ by less, in radians and metres.
+/// Maximum difference of the rendered pose from the shown one, in radians and metres.
 const LAG: f64 = 1e-4;
-/// What the editor's script says when the add-on's menu does what it says.
+/// What the editor's script prints if the add-on's menu works.
 const EDITOR: [&str; 9] = [
     "fact without a camera of ours nothing is marked: true",
     "fact replaced true, near 0.2",
@@ -89,16 +89,16 @@ const EDITOR: [&str; 9] = [
     "fact put back true",
     "fact done",
 ];
-/// What Godot 4.6 says at exit of any project with OpenXR on Monado.
+/// What Godot 4.6 prints at exit for any project with OpenXR on Monado.
 const USUAL: [&str; 2] = [
     "Attempt to disconnect a nonexistent connection from '<OpenXRSpatialEntityExtension",
     "RID allocations of type 'N9OpenXRAPI18InteractionProfileE' were leaked at exit",
 ];
 
-/// Runs all of them, and prints a line for each picture.
+/// Runs all tests, and prints a line per picture. Without Godot, skips them with a message.
 ///
 /// # Errors
-/// When one fails. Where there is no Godot, they are left out with a word.
+/// Fails if a test fails.
 pub fn test() -> anyhow::Result<()> {
     let session = match Session::begin() {
         Ok(session) => session,
@@ -149,7 +149,7 @@ pub fn test() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Operates the editor's menu. What an editor leaks that a script ends is no fault.
+/// Runs a script that operates the editor's menu. Ignores leaks of an editor that is ended by a script.
 fn edit(session: &Session, project: &str, folder: &Path) -> anyhow::Result<Vec<String>> {
     make_parent(&folder.join("log"))?;
     let script = "res://test/editor.gd";
@@ -171,7 +171,7 @@ fn play(
     let out = format!("out={}", folder.display());
     let godot = format!("godot={}", session.program().display());
     let xr = if scene.headset { "on" } else { "off" };
-    // A hundred frames once: the other renderer's are the same scripts.
+    // A hundred frames for the first renderer only, since the other one runs the same scripts.
     let frames = if renderer == RENDERERS[0] { "frames=100" } else { "frames=60" };
     let arguments = [
         "--path",
@@ -193,7 +193,7 @@ fn play(
     printed.with_context(|| format!("{} {renderer}", scene.name))
 }
 
-/// Errors and warnings of Godot and of scripts that are not usual.
+/// Returns unexpected errors and warnings of Godot and of scripts.
 fn errors(printed: &str) -> Vec<String> {
     let is_one = |line: &&str| {
         let text = line.trim_start_matches("USER ").trim_start_matches("SCRIPT ");
@@ -205,7 +205,7 @@ fn errors(printed: &str) -> Vec<String> {
     found
 }
 
-/// What a scene did not say.
+/// Returns what a scene should have printed but did not.
 fn missing(scene: &Scene, printed: &str) -> Vec<String> {
     let facts = scene.facts.iter().chain(&["fact done"]).copied();
     let mut missing: Vec<String> = unsaid(facts, printed).collect();
@@ -225,7 +225,7 @@ fn unsaid<'a>(facts: impl IntoIterator<Item = &'a str>, printed: &str) -> impl I
         .map(|fact| format!("it does not say `{}`", fact.trim_end()))
 }
 
-/// The larger number of `fact lag A rad, B m`.
+/// Returns the larger number of the line `fact lag A rad, B m`.
 fn lag(printed: &str) -> Option<f64> {
     let line = printed.lines().find_map(|line| line.strip_prefix("fact lag "))?;
     let (radians, metres) = line.split_once(" rad, ")?;
@@ -234,7 +234,7 @@ fn lag(printed: &str) -> Option<f64> {
 }
 
 fn too_far(scene: &Scene, case: &str, made: Quality, same: Quality) -> Option<String> {
-    // The headset's pictures are copied before tone mapping.
+    // A headset's pictures are copied before tone mapping.
     let floor = if scene.headset || case == "linear" { FLOOR } else { TONE_MAPPED };
     let sound = match case {
         "ipd0" => made.psnr >= IDENTITY,

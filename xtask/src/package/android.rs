@@ -1,4 +1,4 @@
-//! An AAR with prefab: the way in which Gradle hands native libraries to CMake and ndk-build.
+//! An AAR with prefab, which is how Gradle provides native libraries to CMake and ndk-build.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ use super::{VERSION, build};
 
 use crate::android::{LIBRARY_API, check, library_cargo};
 
-/// Soname and file: Android's packages know no versions of libraries.
+/// The soname and file name. Android packages do not version libraries.
 const LIBRARY: &str = "libyoro.so";
 
-/// Builds and packs `yoro-VERSION.aar`, and returns the file.
+/// Builds and packs `yoro-VERSION.aar`, and returns its path.
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     let header = read(&root().join("app/capi/include/yoro.h"))?;
     let mut files: Vec<(String, Vec<u8>)> = vec![
@@ -40,7 +40,7 @@ pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     Ok(packed)
 }
 
-/// Writes an AAR of these files.
+/// Writes an AAR with these files.
 pub fn pack(files: &[(String, Vec<u8>)], packed: &Path) -> anyhow::Result<()> {
     let content = packed.with_extension("files");
     remove(&content)?;
@@ -53,18 +53,18 @@ pub fn pack(files: &[(String, Vec<u8>)], packed: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The licences, where archives of Java have them.
+/// Returns the licences under the names that Java archives use.
 pub fn licences() -> anyhow::Result<Vec<(String, Vec<u8>)>> {
     let names = ["LICENSE-APACHE", "LICENSE-MIT"];
     names.iter().map(|name| Ok((format!("META-INF/{name}"), read(&root().join(name))?))).collect()
 }
 
-/// The content of a file.
+/// Returns the content of a file.
 pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
 }
 
-/// The manifest of an AAR.
+/// Returns the manifest of an AAR.
 pub fn android_manifest(package: &str) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\

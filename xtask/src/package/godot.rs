@@ -1,5 +1,4 @@
-//! The add-on for Godot: a zip whose folders are those of a project, as the Asset Library and the editor's import want
-//! it.
+//! The add-on for Godot: a zip with the folders of a project, as the Asset Library and the editor's import require.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +10,7 @@ use super::android::{pack, read};
 
 use crate::godot::{ADDON, files};
 
-/// Packs `yoro-godot-VERSION.zip`, and returns the file.
+/// Packs `yoro-godot-VERSION.zip`, and returns its path.
 pub fn zip(folder: &Path) -> anyhow::Result<PathBuf> {
     let mut packed = Vec::new();
     for (name, file) in files()?.into_iter().filter(|(name, _)| name.starts_with(ADDON)) {

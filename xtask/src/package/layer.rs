@@ -1,5 +1,5 @@
-//! The OpenXR API layer for Android: an AAR with the library and, where loaders look for layers in an application, its
-//! manifest.
+//! The OpenXR API layer for Android: an AAR with the library, and with its manifest in the folder in which loaders look
+//! for an application's layers.
 
 use std::env::consts::ARCH;
 use std::fs;
@@ -17,15 +17,15 @@ use crate::android::library_cargo;
 const LIBRARY: &str = "libyoro_layer.so";
 const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
 
-/// Builds and packs `yoro-layer-VERSION.aar`, and returns the file.
+/// Builds and packs `yoro-layer-VERSION.aar`, and returns its path.
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     aar_for(&ARCHITECTURES, folder)
 }
 
-/// The same for this machine's processor alone, in a folder of its own: the simulated Android host runs it.
+/// Makes the AAR in a folder of its own for this machine's processor only, for the simulated Android host.
 ///
 /// # Errors
-/// When it does not compile although everything is there.
+/// Fails if it does not compile.
 pub fn aar_for_tests() -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join("android/layer");
     fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
@@ -40,7 +40,7 @@ fn aar_for(architectures: &[Architecture], folder: &Path) -> anyhow::Result<Path
         (format!("assets/openxr/1/api_layers/implicit.d/{MANIFEST}"), manifest),
     ];
     files.extend(licences()?);
-    // Beside the C library, whose dependencies it shares.
+    // Shared with the C library, which has the same dependencies.
     let build_folder = target_folder()?.join("android/capi");
     for &architecture in architectures {
         let cargo = library_cargo(architecture)?;

@@ -21,7 +21,7 @@ pub fn native(folder: &Path) -> anyhow::Result<PathBuf> {
     archive(&built, std::env::consts::ARCH, "strip", folder)
 }
 
-/// Makes the package for arm64, with this machine's clang and Debian's libraries for arm64.
+/// Makes the package for arm64, with this machine's clang and Debian's arm64 libraries.
 pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
     let mut compiler = Command::new("clang");
     compiler.arg("--target=aarch64-linux-gnu");
@@ -30,7 +30,7 @@ pub fn aarch64(folder: &Path) -> anyhow::Result<PathBuf> {
     archive(&built, "aarch64", "llvm-strip", folder)
 }
 
-/// Builds the library for old systems, without the builder's folders in it.
+/// Builds the library so that it runs on old systems and does not contain the builder's folders.
 fn portable(
     mut cargo: Command,
     target: Option<&str>,
@@ -44,7 +44,7 @@ fn portable(
     Ok(built)
 }
 
-/// Packs `yoro-VERSION-linux-ARCHITECTURE.tar.xz`, and returns the file.
+/// Packs `yoro-VERSION-linux-ARCHITECTURE.tar.xz`, and returns its path.
 fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> anyhow::Result<PathBuf> {
     let name = format!("yoro-{VERSION}-linux-{architecture}");
     let content = folder.join(&name);
@@ -80,7 +80,7 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     let packed = folder.join(format!("{name}.tar.xz"));
     let unfinished = folder.join(format!("{name}.tar.xz.tmp"));
     let mut tar = Command::new("tar");
-    // The same files make the same archive.
+    // These options make the archive depend only on the files.
     tar.args(["--create", "--xz", "--sort=name", "--owner=0", "--group=0", "--numeric-owner"]);
     tar.args(["--mtime=@0", "--file"]).arg(&unfinished).arg("--directory").arg(folder).arg(&name);
     run(&mut tar)?;
@@ -89,7 +89,7 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     Ok(packed)
 }
 
-/// The target in a package of a link in docs/library.md; `None` if it is not packed.
+/// Returns the path in the package for the target of a link in docs/library.md, or `None` if it is not packed.
 fn packaged(target: &str) -> Option<String> {
     let stays = target.starts_with('#') || target == "integration-mistakes.png";
     let example =

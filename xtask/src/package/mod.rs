@@ -1,5 +1,4 @@
-//! Packages for other people's builds: the C library for Linux and Android, the OpenXR API layer for Android, and the
-//! add-on for Godot.
+//! Packages for others' builds: the C library for Linux and Android, the OpenXR layer for Android, the Godot add-on.
 
 mod android;
 mod godot;
@@ -18,9 +17,9 @@ use yoro_tools::folders::{root, target_folder};
 
 pub use layer::aar_for_tests as layer_for_tests;
 
-/// Version of all packages.
+/// The version of all packages.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// A stripped library is not larger, in bytes.
+/// Maximum size of a stripped library in bytes.
 const LARGEST: u64 = 1_050_000;
 
 /// The target of a package.
@@ -38,10 +37,10 @@ pub enum Target {
     Godot,
 }
 
-/// Makes packages, or all of them when none is named; where they are.
+/// Makes these packages, or all if none is given, and returns their paths.
 ///
 /// # Errors
-/// When something is missing or does not compile, or the result is too large.
+/// Fails if something is missing or does not compile, or the result is too large.
 pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
     let targets = if targets.is_empty() { Target::value_variants() } else { targets };
     let folder = target_folder()?.join("package");
@@ -56,16 +55,16 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
     targets.iter().map(make).collect()
 }
 
-/// The library as cargo has built it.
+/// A library built by cargo.
 struct Built {
     shared: PathBuf,
     archive: PathBuf,
-    /// The libraries that the archive has to be linked with, such as `-lm`.
+    /// The linker arguments that the static library needs, such as `-lm`.
     needs: Vec<String>,
 }
 
-/// Has `cargo` build a package's library; where it is, and what rustc tells. `objects` are linked into it, and `folder`
-/// is where cargo puts things for this target.
+/// Builds a package's library with `cargo`, and returns its files and linker arguments. Links `objects` into it.
+/// `folder` is cargo's output folder for this target.
 fn compile(
     mut cargo: Command,
     package: &str,
@@ -94,7 +93,7 @@ fn compile(
     Ok((target.map_or(folder.to_owned(), |target| folder.join(target)).join("capi"), told))
 }
 
-/// Has `cargo` build the C library.
+/// Builds the C library with `cargo`.
 fn build(
     cargo: Command,
     target: Option<&str>,
@@ -113,7 +112,7 @@ fn build(
     Ok(Built { shared, archive: built.join("libyoro_c.a"), needs })
 }
 
-/// Reads rustc's note about the libraries that a static one needs, each once.
+/// Parses rustc's note about the libraries that a static library needs, without duplicates.
 fn needs(output: &str) -> Option<Vec<String>> {
     let line = output.lines().find_map(|line| line.trim().strip_prefix("note: native-static-libs:"))?;
     let mut needs: Vec<String> = Vec::new();

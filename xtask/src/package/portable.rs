@@ -1,5 +1,4 @@
-//! What makes a library run on other people's Linux: old functions of the C library, and nothing of the builder's
-//! machine.
+//! Makes libraries portable: they only call functions of old C libraries, and hold nothing of the builder's machine.
 
 use std::env::consts::ARCH;
 use std::ffi::OsStr;
@@ -11,12 +10,12 @@ use anyhow::{Context as _, bail};
 use yoro_tools::folders::{root, write};
 use yoro_tools::rust::anonymous_paths;
 
-/// The oldest glibc that packages for Linux run with: Debian 10, Ubuntu 18.10, RHEL 8 and all that is newer.
+/// The oldest supported glibc, which Debian 10, Ubuntu 18.10 and RHEL 8 have.
 pub const OLDEST_GLIBC: (u32, u32) = (2, 28);
 
-/// Rust's std calls `stat64` and `fstat64`, which glibc exports since 2.33. Older ones export what their headers made
-/// of these calls, and newer ones still have it. `gettid` is there since 2.30; std can do without, but LLD does not
-/// write that into the file.
+/// Rust's std calls `stat64` and `fstat64`, which glibc exports only since 2.33. The functions that older headers
+/// turned these calls into are still exported by newer versions. `gettid` exists since 2.30; std works without it, but
+/// LLD does not record that in the file.
 const OLD_FUNCTIONS: &str = r#"
 #if defined(__x86_64__)
 #define BASE "GLIBC_2.2.5"
@@ -39,7 +38,7 @@ __attribute__((visibility("hidden"))) int fstat64(int file, void *result) { retu
 __attribute__((visibility("hidden"))) int gettid(void) { return (int)syscall(GETTID); }
 "#;
 
-/// Compiles these functions by a C compiler with its arguments, and returns the object to link.
+/// Compiles these functions with a C compiler and its arguments, and returns the object file.
 pub fn old_functions(compiler: &mut Command, folder: &Path) -> anyhow::Result<PathBuf> {
     let (source, object) = (folder.join("old_functions.c"), folder.join("old_functions.o"));
     write(&source, OLD_FUNCTIONS)?;
@@ -52,7 +51,7 @@ pub fn old_functions(compiler: &mut Command, folder: &Path) -> anyhow::Result<Pa
     Ok(object)
 }
 
-/// Adds rustc's flag by which the library names source files without the builder's folders.
+/// Adds rustc's flag that removes the builder's folders from source file names.
 pub fn set_flags(cargo: &mut Command) {
     let given = cargo.get_envs().find(|(name, _)| *name == OsStr::new("CARGO_ENCODED_RUSTFLAGS"));
     let given = given.and_then(|(_, value)| value).map(|value| value.to_string_lossy().into_owned());
@@ -60,7 +59,7 @@ pub fn set_flags(cargo: &mut Command) {
     cargo.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"));
 }
 
-/// Checks that a library needs no newer glibc than the oldest, and holds no folder of the builder's.
+/// Checks that a library runs with the oldest supported glibc, and contains none of the builder's folders.
 pub fn check(file: &Path) -> anyhow::Result<()> {
     let content = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
     let newest = newest_glibc(&content);
@@ -75,7 +74,7 @@ pub fn check(file: &Path) -> anyhow::Result<()> {
     let home = std::env::home_dir();
     for folder in [Some(root()), home.as_deref().map(Path::to_owned)].into_iter().flatten() {
         let name = folder.to_string_lossy().into_owned();
-        // A home that is / or /root says nothing of anybody, but for what is in it.
+        // A home such as / or /root does not identify anybody, only folders in it do.
         if holds(&content, format!("{name}/").as_bytes()) {
             bail!("{} holds the builder's folder {name}: remap it", file.display());
         }
@@ -87,7 +86,7 @@ fn holds(content: &[u8], text: &[u8]) -> bool {
     content.windows(text.len()).any(|window| window == text)
 }
 
-/// Returns the newest version of glibc that a library's dynamic symbols have.
+/// Returns the newest glibc version among a library's dynamic symbols.
 fn newest_glibc(content: &[u8]) -> Option<(u32, u32)> {
     const NAME: &[u8] = b"GLIBC_";
     let names = content.windows(NAME.len()).enumerate().filter(|(_, window)| *window == NAME);
@@ -100,7 +99,7 @@ fn newest_glibc(content: &[u8]) -> Option<(u32, u32)> {
     versions.max()
 }
 
-/// This machine's C compiler.
+/// Returns this machine's C compiler.
 pub fn native_compiler() -> Command {
     debug_assert!(matches!(ARCH, "x86_64" | "aarch64"), "glibc's versions of {ARCH} are not known");
     Command::new("cc")
@@ -117,7 +116,7 @@ mod tests {
         assert_eq!(newest_glibc(b"nothing"), None);
     }
 
-    /// The check fails for what a package must not be.
+    /// The check fails for libraries that a package must not contain.
     #[test]
     fn newer_functions_and_the_builders_folders_are_found() {
         let folder = std::env::temp_dir().join(format!("yoro-portable-{}", std::process::id()));

@@ -1,9 +1,9 @@
-//! Files of the packages that build systems read.
+//! The files of packages that build systems read.
 
 use super::VERSION;
 
-/// Programs that were linked with one version run with another of the same soname: those that differ in the last number
-/// while the first is 0.
+/// Returns the library's soname. A program runs with any version of the library that has the same soname. While the
+/// first number is 0, these are the versions that differ only in the last number.
 pub fn soname() -> String {
     let mut parts = VERSION.split('.');
     match (parts.next(), parts.next()) {
@@ -12,7 +12,7 @@ pub fn soname() -> String {
     }
 }
 
-/// pkg-config's file, which finds its package wherever that was unpacked.
+/// Returns the file for pkg-config, which works wherever the package is unpacked.
 pub fn pkg_config(needs: &[String]) -> String {
     format!(
         "prefix=${{pcfiledir}}/../..\n\
@@ -29,7 +29,7 @@ pub fn pkg_config(needs: &[String]) -> String {
     )
 }
 
-/// CMake's file: the targets yoro::yoro and yoro::static.
+/// Returns the file for CMake, with the targets yoro::yoro and yoro::static.
 pub fn cmake(needs: &[String]) -> String {
     format!(
         "get_filename_component(_yoro_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/../../..\" ABSOLUTE)\n\
@@ -51,7 +51,7 @@ pub fn cmake(needs: &[String]) -> String {
     )
 }
 
-/// CMake's file that says whether the package is what `find_package(yoro VERSION)` asks for.
+/// Returns the CMake file that checks whether the package satisfies `find_package(yoro VERSION)`.
 pub fn cmake_version() -> String {
     let soname = soname();
     let series = soname.trim_start_matches("libyoro.so.");
@@ -71,7 +71,7 @@ pub fn cmake_version() -> String {
     )
 }
 
-/// Returns the part of docs/library.md that concerns C: its chapter first, then those that it leads to.
+/// Returns the parts of docs/library.md that concern C: the chapter on C, then those that it refers to.
 pub fn manual(text: &str) -> String {
     const CHAPTERS: [&str; 4] =
         ["## C and C++", "## GL state", "## Anti-aliased sources", "## When two renders are cheaper"];
@@ -87,7 +87,7 @@ pub fn manual(text: &str) -> String {
     manual
 }
 
-/// The first page of a package: what is in it, and how to compile the samples.
+/// Returns the README of a package: its content, and how to compile the samples.
 pub fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
     format!(
         "# yoro {VERSION} for Linux on {architecture}\n\
@@ -120,7 +120,7 @@ pub fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
     )
 }
 
-/// Replaces the targets of Markdown's links; a link without a target becomes its label.
+/// Replaces the targets of Markdown links. A link without a new target becomes its label.
 pub fn with_links(text: &str, mut target: impl FnMut(&str) -> Option<String>) -> String {
     let (mut out, mut rest) = (String::new(), text);
     while let Some((before, label, link, after)) = next_link(rest) {
@@ -134,7 +134,7 @@ pub fn with_links(text: &str, mut target: impl FnMut(&str) -> Option<String>) ->
     out + rest
 }
 
-/// Splits at the first link: the text before it, its label, its target, and the text after it.
+/// Splits a text at its first link: the text before it, the label, the target, and the text after it.
 fn next_link(text: &str) -> Option<(&str, &str, &str, &str)> {
     let middle = text.find("](")?;
     let start = text[..middle].rfind('[')?;

@@ -1,4 +1,4 @@
-//! The test programs: cargo compiles them and says where they are, and each lists its tests.
+//! The test programs: cargo compiles them and reports their paths, and each lists its tests.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,32 +11,32 @@ use yoro_tools::cargo;
 /// A test program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binary {
-    /// Name in messages: the package, and the target unless that is the package's library.
+    /// The name in messages: the package, and the target unless it is the package's library.
     pub label: String,
-    /// Its package.
+    /// The program's package.
     pub package: String,
-    /// True for tests from outside, which take seconds where those inside of a library take milliseconds.
+    /// True for integration tests. Each takes seconds, while unit tests take milliseconds.
     pub integration: bool,
     executable: PathBuf,
     /// The package's folder.
     folder: PathBuf,
 }
 
-/// A program, and the names of its tests that are chosen.
+/// A program, and the names of the selected tests.
 pub type Program = (Binary, Vec<String>);
 
 impl Binary {
-    /// Runs it where cargo does.
+    /// Returns the command that runs the program in the same folder as cargo does.
     pub fn command(&self) -> Command {
         let mut command = Command::new(&self.executable);
         command.current_dir(&self.folder).stdin(Stdio::null());
         command
     }
 
-    /// The names of its tests, in the order that it runs them in.
+    /// Returns the names of the program's tests in the order in which it runs them.
     ///
     /// # Errors
-    /// When it does not start.
+    /// Fails if the program does not start.
     pub fn list(&self) -> anyhow::Result<Vec<String>> {
         let output = self.command().args(["--list", "--format", "terse"]).stderr(Stdio::inherit()).output();
         let output = output.with_context(|| format!("{} cannot be started", self.executable.display()))?;
@@ -51,19 +51,19 @@ impl Binary {
 /// Compiles the tests of these packages, or of the whole workspace.
 ///
 /// # Errors
-/// When something does not compile.
+/// Fails if something does not compile.
 pub fn compile(packages: &[String]) -> anyhow::Result<Vec<Binary>> {
     let mut arguments = vec!["test", "--no-run", "--message-format=json-render-diagnostics"];
     arguments.extend(cargo::choice(packages));
     cargo::announce(&arguments);
     let messages = cargo::output(&arguments)?;
-    // Sorted by label: cargo's order is that in which they are ready.
+    // Sorted by label, since cargo reports programs in the order in which they are finished.
     let binaries: BTreeMap<String, Binary> =
         messages.lines().filter_map(parse).map(|binary| (binary.label.clone(), binary)).collect();
     Ok(binaries.into_values().collect())
 }
 
-/// Reads the test program in one of cargo's messages.
+/// Parses the test program in one of cargo's messages.
 fn parse(message: &str) -> Option<Binary> {
     let message: Value = serde_json::from_str(message).ok()?;
     if message["reason"] != "compiler-artifact" || message["profile"]["test"] != true {
@@ -90,7 +90,7 @@ pub mod tests {
 
     use super::*;
 
-    /// A program `program` of a package.
+    /// Makes a program `program` of a package.
     pub fn binary(package: &str, kind: &str) -> Binary {
         parse(&message(&format!("path+file:///w#{package}@0.1.0"), kind, true, "\"/w/target/p\"")).unwrap()
     }

@@ -1,4 +1,4 @@
-//! Programs and packages that some tests need: fetched while cargo compiles the tests, and built when that is done.
+//! Programs and packages that some tests need. They are fetched while cargo compiles the tests, and built afterwards.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -14,15 +14,15 @@ use crate::{android, package, setup, web};
 
 /// A program or package that some tests need.
 struct Item {
-    /// Name in messages.
+    /// The name in messages.
     what: &'static str,
-    /// `YORO_TEST_variable` tells tests where it is; with `YORO_TEST_WITHOUT_variable` they are left out.
+    /// `YORO_TEST_variable` tells the tests its path. If `YORO_TEST_WITHOUT_variable` is set, the tests skip it.
     variable: &'static str,
-    /// The tests that need it: their package, and a part of their names.
+    /// The tests that need it: the package, and a part of the tests' names.
     users: &'static [(&'static str, &'static str)],
-    /// Installs and fetches it, or what it is built from. Where that fails, its tests are left out.
+    /// Installs and fetches it, or what it is built from. If this fails, its tests are skipped.
     fetch: fn() -> anyhow::Result<PathBuf>,
-    /// Builds it. Where that fails, nothing is tested.
+    /// Builds it. If this fails, no tests run.
     build: Option<fn() -> anyhow::Result<PathBuf>>,
 }
 
@@ -51,7 +51,7 @@ static ITEMS: [Item; 11] = [
     Item {
         what: "Chromium",
         variable: "CHROMIUM",
-        // The names of the program's tests do not say which of them open a page.
+        // The test names of this program do not show which of them open a page.
         users: &[("yoro-app", "")],
         fetch: || setup::browser().context("it cannot be installed"),
         build: None,
@@ -67,7 +67,7 @@ static ITEMS: [Item; 11] = [
         what: "Mesa 25",
         variable: "MULTIVIEW",
         users: &[("yoro-tests", "multiview::")],
-        // Monado's drivers, and its launcher for programs of this machine.
+        // Monado's drivers, and its launcher for this machine's programs.
         fetch: || Ok(monado::make()?.join("run")),
         build: None,
     },
@@ -125,12 +125,12 @@ impl Item {
     }
 }
 
-/// True if a test needs any of it.
+/// True if a test needs any of the items.
 pub fn is_needed(package: &str, test: &str) -> bool {
     ITEMS.iter().any(|item| item.is_for(package, test))
 }
 
-/// Returns the patterns of the table that fit no test, since tests were renamed.
+/// Returns patterns in the table that match no test, for example because it was renamed.
 pub fn stale(programs: &[Program]) -> Vec<String> {
     let users = ITEMS.iter().flat_map(|item| item.users);
     let fits = |(package, part): &(&str, &str)| {
@@ -141,43 +141,43 @@ pub fn stale(programs: &[Program]) -> Vec<String> {
     users.filter(|user| !fits(user)).map(|(package, part)| format!("{package} {part}")).collect()
 }
 
-/// Installing and fetching that goes on in threads.
+/// Installations and downloads that are running in threads.
 pub struct Preparation<'scope> {
     system: Option<ScopedJoinHandle<'scope, anyhow::Result<Libraries>>>,
     items: Vec<(&'static Item, ScopedJoinHandle<'scope, anyhow::Result<PathBuf>>)>,
 }
 
-/// The optional system libraries: true for those that are here.
+/// The optional system libraries, true if available.
 #[derive(Clone, Copy, Debug, Default)]
 struct Libraries {
     osmesa: bool,
     vulkan: bool,
 }
 
-/// The equipment of this machine.
+/// The equipment available on this machine.
 #[derive(Debug, Default)]
 pub struct Equipment {
     libraries: Libraries,
     /// Paths by variable; `None` if the item is not available.
     items: Vec<(&'static str, Option<PathBuf>)>,
-    /// A sentence for each thing that cannot be had.
+    /// A sentence for each item that is not available.
     pub absent: Vec<String>,
 }
 
 impl<'scope> Preparation<'scope> {
-    /// Begins for the chosen tests, or for all tests.
+    /// Starts the preparation for the selected tests, or for all tests.
     ///
     /// # Errors
-    /// When a library is missing that somebody else has to install.
+    /// Fails if a library is missing that this program cannot install.
     pub fn begin(scope: &'scope Scope<'scope, '_>, programs: Option<&[Program]>) -> anyhow::Result<Self> {
-        // sudo may ask for a password, and others say what to install: not behind cargo's back.
+        // sudo may ask for a password, and other systems get instructions: not in the background of cargo.
         if !apt::installs_by_itself() {
             setup::ensure()?;
         }
         let libraries = || Ok(Libraries { osmesa: setup::ensure()?.osmesa, vulkan: setup::vulkan() });
         let wanted = |item: &&Item| match programs {
             None => true,
-            // A few chosen tests are not worth the wait for a browser: they use the one that is there.
+            // A few selected tests are not worth the wait for a browser, so they only use an installed one.
             Some(programs) => {
                 let is_user =
                     |(binary, names): &Program| names.iter().any(|name| item.is_for(&binary.package, name));
@@ -188,10 +188,10 @@ impl<'scope> Preparation<'scope> {
         Ok(Self { system: Some(scope.spawn(libraries)), items })
     }
 
-    /// Waits for the system's libraries, which all tests need.
+    /// Waits for the system libraries, which all tests need.
     ///
     /// # Errors
-    /// When one is missing.
+    /// Fails if one is missing.
     pub fn libraries(&mut self) -> anyhow::Result<Equipment> {
         let mut equipment = Equipment::default();
         if let Some(system) = self.system.take() {
@@ -208,10 +208,10 @@ impl<'scope> Preparation<'scope> {
         Ok(equipment)
     }
 
-    /// Waits for the rest, and builds what has to be built.
+    /// Waits for the other items, and builds those that have to be built.
     ///
     /// # Errors
-    /// When something cannot be built although everything for it is there.
+    /// Fails if something cannot be built.
     pub fn finish(self, equipment: &mut Equipment, summary: &mut Summary) -> anyhow::Result<()> {
         for (item, fetching) in self.items {
             let fetched = summary.measure(&format!("waiting for {}", item.what), || join(fetching));
@@ -236,7 +236,7 @@ fn join<T>(handle: ScopedJoinHandle<'_, anyhow::Result<T>>) -> anyhow::Result<T>
 }
 
 impl Equipment {
-    /// Sets the variables by which a test program knows what is here.
+    /// Sets the variables that tell a test program what is available.
     pub fn set_variables(&self, command: &mut Command) {
         if !self.libraries.osmesa {
             command.env("YORO_TEST_WITHOUT_OSMESA", "1");

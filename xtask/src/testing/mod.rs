@@ -1,9 +1,9 @@
-//! All tests of the workspace: cargo compiles them, and several processes at a time run them.
+//! Runs all tests of the workspace: cargo compiles them, and several processes run them at a time.
 //!
-//! Beyond `cargo test`: two processes run at a time, since Mesa's rasterizer crashes now and then when two threads of
-//! one process draw; a crash fails one test and the others still run; what fails runs once more, alone; what tests need
-//! is fetched and built. cargo-nextest would do most of it, but depends on 400 packages, which a clean clone would
-//! compile first.
+//! Differences from `cargo test`: several processes run at a time rather than several threads, since Mesa's rasterizer
+//! occasionally crashes when two threads of a process draw; after a crash, which fails one test, the others still run;
+//! failed tests run once more, alone; and what tests need is fetched and built. cargo-nextest provides most of this,
+//! but depends on 400 packages, which a fresh clone would have to compile first.
 
 mod binaries;
 mod equipment;
@@ -27,33 +27,32 @@ use equipment::{Equipment, Preparation};
 use process::{Finished, Outcome, shown};
 use summary::Summary;
 
-/// Tests that must not run beside others, by a part of `program name`.
+/// Parts of `program name` of the tests that must not run beside others.
 ///
-/// Almost none have to: each has folders of its own, ports are pipes, and time is measured in processor time or is
-/// simulated.
+/// Almost all tests can: each has its own folders, ports are pipes, and time is either processor time or simulated.
 const ALONE: [&str; 2] = [
-    // A small machine has no memory for two large scenes.
+    // A small machine does not have enough memory for two large scenes.
     "yoro-app::program memory::",
-    // The first frames take longer than a minute in qemu beside other tests.
+    // In qemu, beside other tests, the first frames take longer than a minute.
     "yoro-android-host::apk the_arm64_library",
 ];
-/// Tests from outside take seconds: a process runs so many of them.
+/// Number of integration tests per process. Each takes seconds.
 const INTEGRATION: usize = 4;
-/// Unit tests take milliseconds.
+/// Number of unit tests per process. Each takes milliseconds.
 const UNIT: usize = 60;
-/// More failures than this are no accident, and not retried.
+/// Maximum number of failures that are retried. More of them are no coincidence.
 const RETRIED: usize = 8;
 
-/// The choice of tests, and how to run them.
+/// Which tests to run, and how.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Only those whose names contain one of these.
+    /// Run only tests whose names contain one of these.
     pub filters: Vec<String>,
-    /// Only those of these packages.
+    /// Run only tests of these packages.
     pub packages: Vec<String>,
-    /// Renew golden images.
+    /// Renew the golden images.
     pub bless: bool,
-    /// Processes at a time, instead of one for each processor.
+    /// Number of processes at a time. `None` means one per processor.
     pub jobs: Option<NonZeroUsize>,
 }
 
@@ -70,27 +69,27 @@ impl Options {
 /// The work of one process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Job {
-    /// These tests of a program, which is named by its index.
+    /// These tests of a program, which is given by its index.
     Tests(usize, Vec<String>),
-    /// The tests in the documentation of all libraries.
+    /// The doc tests of all libraries.
     Documentation,
 }
 
-/// All jobs, in groups that run one after the other.
+/// All jobs, in groups that run one after another.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Plan {
     /// Tests that need no equipment.
     first: Vec<Job>,
     /// Tests that need equipment.
     equipped: Vec<Job>,
-    /// [`ALONE`].
+    /// The tests in [`ALONE`].
     alone: Vec<Job>,
 }
 
-/// Compiles and runs all tests of the workspace, or those that are chosen, and sums up.
+/// Compiles and runs the selected tests of the workspace, or all, and prints a summary.
 ///
 /// # Errors
-/// When a test fails twice or does not compile, or none is chosen.
+/// Fails if a test fails twice, does not compile, or none is selected.
 pub fn test(options: &Options) -> anyhow::Result<()> {
     let mut summary = Summary::begin();
     let equipment = thread::scope(|scope| {
@@ -143,7 +142,7 @@ fn is_alone(program: &str, name: &str) -> bool {
     ALONE.iter().any(|part| format!("{program} {name}").contains(part))
 }
 
-/// Returns the patterns of the tables that fit no test, since tests were renamed.
+/// Returns patterns in the tables that match no test, for example because it was renamed.
 fn stale(programs: &[Program]) -> Vec<String> {
     let fits = |part: &&&str| {
         programs.iter().any(|(binary, names)| {
@@ -154,11 +153,11 @@ fn stale(programs: &[Program]) -> Vec<String> {
     alone.chain(equipment::stale(programs)).collect()
 }
 
-/// Divides the tests among processes; tests from outside go first, since they are longer.
+/// Divides the tests into jobs. Integration tests come first, since they take longer.
 fn plan(programs: &[Program], options: &Options) -> Plan {
     let mut plan = Plan::default();
     let chosen = programs.iter().any(|(_, names)| !names.is_empty());
-    // Looking for these takes seconds in each library: a name that is found elsewhere is not looked for there.
+    // Searching doc tests takes seconds per library. It is omitted if the filter has matched other tests.
     if options.packages.is_empty() && (options.filters.is_empty() || !chosen) {
         plan.first.push(Job::Documentation);
     }
@@ -181,12 +180,12 @@ fn plan(programs: &[Program], options: &Options) -> Plan {
     plan
 }
 
-/// A run of the chosen tests.
+/// A run of the selected tests.
 struct Run<'a> {
     programs: &'a [Program],
     options: &'a Options,
     equipment: Equipment,
-    /// Folder for the output of processes.
+    /// The folder for the output of processes.
     folder: PathBuf,
 }
 
@@ -202,7 +201,7 @@ impl<'a> Run<'a> {
         let (mut command, names) = match job {
             Job::Tests(program, names) => {
                 let mut command = self.programs[*program].0.command();
-                // Output before a crash is not lost.
+                // Not captured, so that output before a crash is not lost.
                 command.args(["--exact", "--test-threads=1", "--nocapture"]).args(names);
                 (command, Some(names.as_slice()))
             }
@@ -213,7 +212,7 @@ impl<'a> Run<'a> {
                 (command, None)
             }
         };
-        // Golden images are made by Mesa's rasterizer; a GPU's own rounding is another question.
+        // The golden images were made with Mesa's rasterizer. A GPU would round differently.
         if env::var_os("LIBGL_ALWAYS_SOFTWARE").is_none() {
             command.env("LIBGL_ALWAYS_SOFTWARE", "1");
         }
@@ -224,7 +223,7 @@ impl<'a> Run<'a> {
         process::run(command, names, &self.folder)
     }
 
-    /// Runs jobs in so many processes at a time, and prints what became of the tests.
+    /// Runs jobs with `workers` processes at a time, and prints the results.
     fn all(&self, jobs: Vec<Job>, workers: usize, what: &str, summary: &mut Summary) {
         let total: usize = self.programs.iter().map(|(_, names)| names.len()).sum();
         let queue = Mutex::new(VecDeque::from(jobs));
@@ -237,7 +236,7 @@ impl<'a> Run<'a> {
                 scope.spawn(move || {
                     while let Some(job) = next() {
                         let finished = self.process(&job);
-                        // After a crash the others still run.
+                        // After a crash, the remaining tests still run.
                         if let (Job::Tests(program, _), false) = (&job, finished.rest.is_empty()) {
                             let rest = Job::Tests(*program, finished.rest.clone());
                             queue.lock().unwrap_or_else(PoisonError::into_inner).push_front(rest);
@@ -256,7 +255,7 @@ impl<'a> Run<'a> {
         summary.phase(what, start.elapsed());
     }
 
-    /// Runs what failed once more, alone.
+    /// Runs failed tests once more, alone.
     fn retry(&self, summary: &mut Summary) {
         if summary.failed.is_empty() || summary.failed.len() > RETRIED {
             return;
@@ -274,7 +273,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Prints a line for each test, and everything that a process with a failed test has printed.
+/// Prints a line per test, and the whole output of a process with a failed test.
 fn print_tests(program: &str, finished: &Finished, count: impl Fn(usize) -> String) {
     for (i, test) in finished.tests.iter().enumerate() {
         let word = match test.outcome {

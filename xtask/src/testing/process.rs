@@ -1,4 +1,4 @@
-//! One process of a test program, and what became of its tests.
+//! Runs one process of a test program, and determines the results of its tests.
 
 use std::fs::{self, File};
 use std::io::{self, Read as _};
@@ -9,21 +9,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A process that prints nothing for this long is mentioned.
+/// Time without output after which a process is mentioned.
 const SLOW: Duration = Duration::from_secs(120);
-/// One that prints nothing for this long is killed: the longest tests take a few minutes.
+/// Time without output after which a process is killed. The longest tests take a few minutes.
 const TIMEOUT: Duration = Duration::from_secs(900);
-/// Interval at which a process and its output are looked at.
+/// Interval at which a process and its output are checked.
 const POLL: Duration = Duration::from_millis(10);
 
-/// The outcome of a test.
+/// The result of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It ended well.
+    /// The test succeeded.
     Passed,
-    /// It panicked, or its process ended.
+    /// The test panicked, or ended its process.
     Failed,
-    /// It did not run.
+    /// The test was not run.
     Ignored,
 }
 
@@ -38,10 +38,10 @@ pub struct Test {
     pub seconds: f64,
 }
 
-/// A line, and when its beginning was there, in seconds since the process was started.
+/// A line of output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Without its end.
+    /// The text without the line end.
     pub text: String,
     at: f64,
 }
@@ -49,25 +49,25 @@ pub struct Line {
 /// A finished process.
 #[derive(Clone, Debug, Default)]
 pub struct Finished {
-    /// The tests that it ran.
+    /// The tests that were run.
     pub tests: Vec<Test>,
-    /// The tests that it did not come to.
+    /// The tests that were not reached.
     pub rest: Vec<String>,
-    /// Everything that it printed.
+    /// The whole output.
     pub lines: Vec<Line>,
-    /// Why it ended otherwise than test programs do.
+    /// The reason, if the process did not end as test programs do.
     pub trouble: Option<String>,
     /// Its duration.
     pub seconds: f64,
 }
 
-/// Runs these tests of a program, or with `None` whatever it runs, such as the tests in documentation. Its output goes
-/// through a file in `folder`: a process that it leaves behind may keep a pipe open.
+/// Runs these tests of a program, or whatever it runs if `None`, such as doc tests. The output goes through a file in
+/// `folder`, since a process that the program leaves behind could keep a pipe open.
 pub fn run(command: Command, names: Option<&[String]>, folder: &Path) -> Finished {
     let start = Instant::now();
     let (lines, status, timed_out) = output(command, folder, start).unwrap_or_else(|error| {
         let line = Line { text: format!("it cannot be started: {error}"), at: 0.0 };
-        // The exit status of a shell that does not find the program.
+        // The exit status of a shell that cannot find the program.
         (vec![line], ExitStatus::from_raw(127 << 8), false)
     });
     let mut finished = read(names, lines, status, start.elapsed().as_secs_f64());
@@ -77,23 +77,23 @@ pub fn run(command: Command, names: Option<&[String]>, folder: &Path) -> Finishe
     finished
 }
 
-/// Waits for a process. Returns the lines that it printed, its status, and true if it was killed for its silence.
+/// Runs a process to its end. Returns its lines, its status, and true if it was killed for being silent.
 fn output(mut command: Command, folder: &Path, start: Instant) -> io::Result<(Vec<Line>, ExitStatus, bool)> {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
     let path = folder.join(format!("tests-{}-{number}.log", std::process::id()));
     let log = File::options().append(true).create(true).open(&path)?;
     let mut reader = File::open(&path)?;
-    // Nothing is left of it, even after Ctrl-C.
+    // Removed at once, so that nothing remains, even after Ctrl-C.
     fs::remove_file(&path)?;
     command.stdout(log.try_clone()?).stderr(log);
     let mut child = command.spawn()?;
     let (mut lines, mut bytes) = (Vec::new(), Vec::new());
     let (mut last, mut mention, mut timed_out) = (Instant::now(), SLOW, false);
-    // When the beginning of a line without an end was there: the name of a test that prints nothing until it ends.
+    // When the beginning of an incomplete line appeared, such as the name of a test that prints nothing until it ends.
     let mut begun = None;
     loop {
-        // This order matters: output before the end is read after it.
+        // In this order, so that output before the end is read after it.
         let status = child.try_wait()?;
         if reader.read_to_end(&mut bytes)? > 0 {
             (last, mention) = (Instant::now(), SLOW);
@@ -127,28 +127,28 @@ fn whole_lines(bytes: &[u8]) -> usize {
     bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1)
 }
 
-/// Splits a line `test NAME ... REST` into the name and the rest. With one thread, libtest prints the name before the
-/// test runs, so that the test that ends its process is known.
+/// Splits a line `test NAME ... REST` into the name and the rest. With one thread, libtest prints the name before it
+/// runs the test, so a test that ends its process can be identified.
 fn started(line: &str) -> Option<(&str, &str)> {
     let (name, rest) = line.strip_prefix("test ")?.split_once(" ... ")?;
     Some((name.trim_end_matches(" - should panic"), rest))
 }
 
-/// The tests that a program lists as failed at its end; the tests in documentation have a list for each library.
+/// Returns the tests that a program lists as failed at its end. Doc tests have one list per library.
 fn failures(lines: &[Line]) -> Vec<&str> {
     let lists = lines.split(|line| line.text == "failures:").skip(1);
     let names = lists.map(|list| list.iter().map(|line| line.text.trim()));
     names.flat_map(|names| names.take_while(|name| !name.is_empty())).collect()
 }
 
-/// Reads the results. What processes below a test print gets in between, so that a test's own line is searched for no
-/// `ok`: the list at the end and the exit status tell.
+/// Determines the results. A child process of a test may print into the test's own line, so its `ok` is not searched
+/// for; the list at the end and the exit status decide.
 fn read(names: Option<&[String]>, lines: Vec<Line>, status: ExitStatus, seconds: f64) -> Finished {
     let chosen = |name: &str| names.is_none_or(|names| names.iter().any(|chosen| chosen == name));
     let begins = |line: &Line| started(&line.text).is_some_and(|(name, _)| chosen(name));
     let starts: Vec<usize> = (0..lines.len()).filter(|&at| begins(&lines[at])).collect();
     let failures = failures(&lines);
-    // Test programs end with 101 when a test has failed, and then list it.
+    // Test programs exit with 101 after listing the failed tests.
     let usual = status.success() || !failures.is_empty() && status.code() == Some(101);
     let mut tests: Vec<Test> = Vec::new();
     let mut since = 0.0;
@@ -166,7 +166,7 @@ fn read(names: Option<&[String]>, lines: Vec<Line>, status: ExitStatus, seconds:
             (false, true) => Outcome::Failed,
             (false, false) => Outcome::Passed,
         };
-        // A test ends when the next one begins, or the process ends.
+        // A test ends when the next one begins, or when the process ends.
         let until = next.map_or(seconds, |next| lines[next].at);
         tests.push(Test { name: name.to_owned(), outcome, seconds: until - since });
         since = until;
@@ -186,7 +186,7 @@ fn read(names: Option<&[String]>, lines: Vec<Line>, status: ExitStatus, seconds:
     Finished { tests, rest, lines, trouble, seconds }
 }
 
-/// The output of a failed test's process, without the lines of tests that passed.
+/// Returns the output of a failed test's process without the lines of tests that passed.
 pub fn shown(lines: &[Line]) -> String {
     let is_noise = |text: &str| text.starts_with("test ") && text.ends_with(" ... ok");
     lines.iter().filter(|line| !is_noise(&line.text)).map(|line| format!("    {}\n", line.text)).collect()
@@ -202,13 +202,13 @@ mod tests {
         line.split_whitespace().map(str::to_owned).collect()
     }
 
-    /// One line a second.
+    /// Makes lines, one per second.
     fn lines(text: &str) -> Vec<Line> {
         let line = |(i, text): (usize, &str)| Line { text: text.to_owned(), at: (i + 1) as f64 };
         text.lines().enumerate().map(line).collect()
     }
 
-    /// Outcomes by name, then the tests that did not run, and `!` for trouble.
+    /// Returns the tests' names and outcomes, then the tests that were not reached, and `!` for trouble.
     fn outcomes(finished: &Finished) -> String {
         let words = finished.tests.iter().map(|test| format!("{} {:?}", test.name, test.outcome));
         let rest = finished.rest.iter().cloned();
@@ -221,7 +221,7 @@ mod tests {
         let crash = ExitStatus::from_raw(SEGMENTATION_FAULT);
         let exited = |code: i32| ExitStatus::from_raw(code << 8);
         let cases = [
-            // Every kind of result.
+            // All kinds of results.
             (
                 "a b c d",
                 "\nrunning 4 tests\ntest a ... ok\ntest b - should panic ... ok\ntest c ... ignored, slow\n\
@@ -229,7 +229,7 @@ mod tests {
                 exited(101),
                 "a Passed, b Passed, c Ignored, d Failed",
             ),
-            // Output of others in between has no effect.
+            // Output of other processes in between has no effect.
             ("a b", "test a ... LEFT OUT: a\nFAILED\nok\ntest b ... x\nok", exited(0), "a Passed, b Passed"),
             (
                 "a b",
@@ -237,7 +237,7 @@ mod tests {
                 exited(101),
                 "a Passed, b Failed",
             ),
-            // A crash is the running test's failure, and the others still run.
+            // A crash fails the running test; the others still run.
             (
                 "a b c d",
                 "test a ... ok\ntest b ... FAILED\ntest c ... ",
@@ -246,7 +246,7 @@ mod tests {
             ),
             ("a", "test a ... ok\n\ntest result: ok. 1 passed", crash, "a Failed, !"),
             ("a b", "libx.so: not found", exited(127), "a Failed, b, !"),
-            // An end that looks well is none without all results.
+            // A success is not accepted if results are missing.
             ("a b", "test a ... ok", exited(0), "a Passed, b Failed, !"),
         ];
         for (chosen, text, status, expected) in cases {
@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(shown(&finished.lines), "    running\n    test b ... ignored\n");
     }
 
-    /// Runs tests of a program that prints as libtest does.
+    /// Runs tests of a shell script that prints like libtest.
     fn run_script(tests: &str) -> Finished {
         const PROGRAM: &str = r#"
             code=0

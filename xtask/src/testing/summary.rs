@@ -1,4 +1,4 @@
-//! The sums of all tests, and where the time went.
+//! Totals of all tests, and where the time went.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,25 +6,25 @@ use std::time::{Duration, Instant};
 
 use super::process::{Finished, Outcome};
 
-/// This many of the slowest tests are shown.
+/// Number of slowest tests that are listed.
 const SLOWEST: usize = 10;
 
-/// The sums of a run.
+/// The totals of a test run.
 #[derive(Debug)]
 pub struct Summary {
     start: Instant,
-    /// Names and seconds.
+    /// Names and durations in seconds.
     phases: Vec<(String, f64)>,
-    /// Programs: number of tests, and seconds in their processes.
+    /// Per program, the number of tests and the seconds of their processes.
     programs: BTreeMap<String, (usize, f64)>,
-    /// Seconds and names of tests.
+    /// Durations in seconds and names of passed tests.
     passed: Vec<(f64, String)>,
     /// Failed tests, as `program test`.
     pub failed: Vec<String>,
-    /// Tests that failed beside others and passed alone.
+    /// Tests that failed beside others, but passed alone.
     flaky: Vec<String>,
     ignored: usize,
-    /// The things that tests had to do without, and how many tests said so.
+    /// Messages about missing equipment, and the number of tests that printed each.
     left_out: BTreeMap<String, usize>,
 }
 
@@ -43,7 +43,7 @@ impl Summary {
         }
     }
 
-    /// Does something, and notes its time.
+    /// Does some work, and records its duration.
     pub fn measure<T>(&mut self, what: &str, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
@@ -51,7 +51,7 @@ impl Summary {
         result
     }
 
-    /// Notes a time.
+    /// Records a duration.
     pub fn phase(&mut self, what: &str, taken: Duration) {
         self.phases.push((what.to_owned(), taken.as_secs_f64()));
     }
@@ -69,7 +69,7 @@ impl Summary {
                 Outcome::Ignored => self.ignored += 1,
             }
         }
-        // Many tests say the same.
+        // Many tests print the same message.
         for text in finished.lines.iter().map(|line| line.text.trim()) {
             if let Some(at) = text.find("LEFT OUT: ").or_else(|| text.find("SKIPPED: ")) {
                 *self.left_out.entry(text[at..].to_owned()).or_default() += 1;
@@ -77,7 +77,7 @@ impl Summary {
         }
     }
 
-    /// Adds the second run of failed tests: those that passed now are no failures, but flaky.
+    /// Adds the second run of failed tests. Those that now pass are counted as flaky instead of failed.
     pub fn add_retry(&mut self, program: &str, finished: &Finished) {
         for test in finished.tests.iter().filter(|test| test.outcome == Outcome::Passed) {
             let full = format!("{program} {}", test.name);
@@ -87,7 +87,7 @@ impl Summary {
         }
     }
 
-    /// The number of tests that have ended.
+    /// Returns the number of finished tests.
     pub fn count(&self) -> usize {
         self.passed.len() + self.failed.len() + self.ignored
     }
@@ -120,7 +120,7 @@ impl fmt::Display for Summary {
         for name in &self.failed {
             writeln!(f, "FAILED: {name}")?;
         }
-        // The last line has the format of libtest.
+        // The last line has libtest's format.
         writeln!(
             f,
             "\ntest result: {}. {} passed; {} failed; {} ignored; finished in {:.2}s",

@@ -1,4 +1,4 @@
-//! The page: `app/web` compiled for browsers, and the files around it, for any static host.
+//! The page: `app/web` compiled for browsers and its other files, for any static host.
 
 mod npm;
 mod serve;
@@ -21,13 +21,13 @@ pub use site::publish;
 const TRIPLE: &str = "wasm32-unknown-unknown";
 /// The example of yoro-wgpu.
 const EXAMPLE: &str = "offscreen";
-/// The most bytes that a first visit may transfer: phones load it over the air.
+/// Maximum number of bytes transferred by a first visit, since phones load the page over mobile networks.
 const BUDGET: u64 = 1_200_000;
 
 /// Returns the folder of the built page.
 ///
 /// # Errors
-/// When it is not built.
+/// Fails if it has not been built.
 pub fn built() -> anyhow::Result<PathBuf> {
     as_built("web", "cargo xtask web")
 }
@@ -35,7 +35,7 @@ pub fn built() -> anyhow::Result<PathBuf> {
 /// Returns the folder of the built example of yoro-wgpu.
 ///
 /// # Errors
-/// When it is not built.
+/// Fails if it has not been built.
 pub fn built_example() -> anyhow::Result<PathBuf> {
     as_built("web-wgpu", "cargo xtask web --wgpu")
 }
@@ -51,7 +51,7 @@ fn as_built(name: &str, command: &str) -> anyhow::Result<PathBuf> {
 /// Builds the example of yoro-wgpu for browsers with WebGPU, and returns its folder, `target/web-wgpu`.
 ///
 /// # Errors
-/// When something is missing or does not compile.
+/// Fails if something is missing or does not compile.
 pub fn build_example() -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let module = compile(&["--package", "yoro-wgpu", "--example", EXAMPLE], &format!("examples/{EXAMPLE}"))?;
@@ -73,7 +73,7 @@ pub fn build_example() -> anyhow::Result<PathBuf> {
 /// Builds the page, and returns its folder, `target/web`.
 ///
 /// # Errors
-/// When something is missing or does not compile, or the module has become too large.
+/// Fails if something is missing or does not compile, or the module is too large.
 pub fn build() -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;
@@ -83,7 +83,7 @@ pub fn build() -> anyhow::Result<PathBuf> {
     remove(&unfinished)?;
     let Sizes { module, transferred, visit } =
         bind(&module, &unfinished.join(site::VERSION), &site::sources())?;
-    // After the other one, whose visitors do not load it.
+    // After the sizes have been measured, since a first visit does not load this module.
     bind(&video, &unfinished.join(site::VERSION), &site::sources())?;
     site::assemble(&unfinished)?;
     remove(&folder)?;
@@ -100,14 +100,14 @@ pub fn build() -> anyhow::Result<PathBuf> {
     Ok(folder)
 }
 
-/// True if there are a Rust and a linker for it.
+/// True if Rust and a linker for WebAssembly are available.
 pub fn can_be_built() -> bool {
     Rust::for_target(TRIPLE).is_some_and(|(rust, _)| rust.wasm_linker().is_some())
 }
 
-/// Compiles a module, and returns its file.
+/// Compiles a module, and returns its path.
 fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
-    // Its profile has the name of the page's folder.
+    // Cargo's profile has the same name as the page's folder, so use a target folder of its own.
     let target = target_folder()?.join("wasm");
     let (rust, with_std) = Rust::for_target(TRIPLE).with_context(|| {
         format!(
@@ -131,16 +131,16 @@ fn compile(what: &[&str], name: &str) -> anyhow::Result<PathBuf> {
     Ok(target.join(TRIPLE).join("web").join(name).with_extension("wasm"))
 }
 
-/// The page's sizes in bytes.
+/// Sizes of the page in bytes.
 struct Sizes {
     module: u64,
-    /// The module as transferred.
+    /// The module as it is transferred.
     transferred: u64,
-    /// All that a first visit transfers.
+    /// Everything that a first visit transfers.
     visit: u64,
 }
 
-/// Makes a module ready for browsers, for a page whose sources are in this folder.
+/// Prepares a module for browsers, into `folder`. `page` is the folder with the page's sources.
 fn bind(module: &Path, folder: &Path, page: &Path) -> anyhow::Result<Sizes> {
     let mut command = cargo::program("yoro-web-bindgen")?;
     let output = command.arg(module).arg(folder).arg(page).stderr(Stdio::inherit()).output();

@@ -1,4 +1,4 @@
-//! Packages of npm that check the page: a headset for its tests, and a checker of its types.
+//! npm packages that check the page: an emulated headset for its tests, and a type checker.
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,19 +7,19 @@ use std::process::Command;
 use anyhow::{Context as _, bail};
 use yoro_tools::folders::{make_once, root, target_folder};
 
-/// Returns the Immersive Web Emulation Runtime, which plays a headset to the page's tests: a script.
+/// Returns the script of the Immersive Web Emulation Runtime, which emulates a headset in the page's tests.
 ///
 /// # Errors
-/// When there is no npm, or it cannot fetch.
+/// Fails if npm is missing, or cannot fetch the package.
 pub fn emulator() -> anyhow::Result<PathBuf> {
     fetch("iwer", "iwer@2.5.0", "build/iwer.min.js")
 }
 
-/// Checks the types of the page's scripts by their JSDoc comments. True if nothing was found, or the checker is not to
-/// be had, which is said.
+/// Checks the types of the page's scripts by their JSDoc comments. Returns true if no fault was found. If the type
+/// checker is not available, prints a message and returns true.
 ///
 /// # Errors
-/// When Node cannot be started.
+/// Fails if Node cannot be started.
 pub fn check_types() -> anyhow::Result<bool> {
     let compiler = match fetch("typescript", "typescript@5.9.3", "lib/tsc.js") {
         Ok(compiler) => compiler,
@@ -33,7 +33,7 @@ pub fn check_types() -> anyhow::Result<bool> {
     Ok(status.context("node cannot be started: apt-get install nodejs")?.success())
 }
 
-/// Fetches a package without its dependencies, unless it is here, and returns a script of it.
+/// Fetches a package without its dependencies unless it exists, and returns the path of one of its scripts.
 fn fetch(name: &str, package: &str, script: &str) -> anyhow::Result<PathBuf> {
     let folder = target_folder()?.join(name);
     let script = folder.join("package").join(script);

@@ -1,4 +1,4 @@
-//! A server for the page's files, for this machine alone.
+//! A server for the page's files, reachable only from this machine.
 
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -12,7 +12,7 @@ use yoro_files::http::{self, Request};
 /// Serves a folder until the program is ended.
 ///
 /// # Errors
-/// When the port is taken.
+/// Fails if the port is taken.
 pub fn serve(folder: &Path, port: u16) -> anyhow::Result<()> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
         .with_context(|| format!("port {port} cannot be served: name another one with --port"))?;
@@ -28,7 +28,7 @@ pub fn serve(folder: &Path, port: u16) -> anyhow::Result<()> {
     };
     for stream in listener.incoming() {
         let folder = folder.to_owned();
-        // A browser keeps some connections open without asking for anything.
+        // In a thread, since browsers keep some connections open without sending a request.
         thread::spawn(move || -> io::Result<()> { answer(stream?, &folder) });
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! The files of the page as a host serves them: one document, and a folder for each version of everything else, so that
-//! a tab that is open while a new version comes keeps finding its own files.
+//! The page's files on a host: one document, and a folder for each version of everything else. A tab that is open while
+//! the page is updated therefore continues to find the files of its version.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hasher as _};
@@ -10,13 +10,13 @@ use anyhow::Context as _;
 use yoro_files::http::POLICY;
 use yoro_tools::folders::{self, copy, root};
 
-/// The name that stands for the version in the page's sources.
+/// The placeholder for the version in the page's sources.
 pub const VERSION: &str = "VERSION";
-/// The address of the project's repository as Cargo.toml has it; empty without one.
+/// The address of the project's repository in Cargo.toml. Empty if there is none.
 const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
-/// The archive of the source, beside the page; where there is no repository, the page links to it.
+/// The source archive beside the page, which the page links to if there is no repository.
 const ARCHIVE: &str = "yoro-source.tar.gz";
-/// The files that keep their names from version to version.
+/// The files whose names do not depend on the version.
 const LASTING: [&str; 8] = [
     "index.html",
     "offline.js",
@@ -27,7 +27,7 @@ const LASTING: [&str; 8] = [
     "example.obj",
     "example.mtl",
 ];
-/// The scripts that the page does not load as modules of its own.
+/// The scripts that the page does not load as modules.
 const SEPARATE: [&str; 7] = [
     "boot.js",
     "worker.js",
@@ -42,11 +42,10 @@ pub fn sources() -> PathBuf {
     root().join("app/web/page")
 }
 
-/// Completes a folder in which the module lies in [`VERSION`]: copies the page's sources, and names the version by its
-/// content.
+/// Completes a folder whose module is in [`VERSION`]: copies the page's sources, and names the version by a hash of it.
 ///
 /// # Errors
-/// When a file cannot be read or written.
+/// Fails if a file cannot be read or written.
 pub fn assemble(folder: &Path) -> anyhow::Result<()> {
     let unnamed = folder.join(VERSION);
     for path in files(&sources())? {
@@ -76,10 +75,10 @@ pub fn assemble(folder: &Path) -> anyhow::Result<()> {
     folders::write(&folder.join("_headers"), headers(&version))
 }
 
-/// Copies the built page into a folder that may hold earlier versions, the document last.
+/// Copies the built page into a folder that may hold earlier versions. The document is copied last.
 ///
 /// # Errors
-/// When a file cannot be written.
+/// Fails if a file cannot be written.
 pub fn publish(built: &Path, out: &Path) -> anyhow::Result<()> {
     for entry in fs::read_dir(built).with_context(|| format!("{} cannot be read", built.display()))? {
         let path = entry?.path();
@@ -97,12 +96,12 @@ pub fn publish(built: &Path, out: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Puts the version and its files into a document or a script.
+/// Inserts the version and its file names into a document or a script.
 fn fill(text: &str, version: &str, names: &[String], source: Option<&str>) -> String {
     let scripts = names.iter().filter(|name| name.ends_with(".js") && !SEPARATE.contains(&name.as_str()));
     let modules: Vec<String> =
         scripts.map(|name| format!("<link rel=\"modulepreload\" href=\"{VERSION}/{name}\">")).collect();
-    // A stream has no use without a network.
+    // Streams cannot work offline, so this file is not kept.
     let kept = names.iter().filter(|name| *name != "stream-worker.js");
     let list: Vec<String> = kept.map(|name| format!("'{VERSION}/{name}'")).collect();
     let source = source.map_or_else(String::new, |source| format!("<a href=\"{source}\">Source</a>"));
@@ -112,7 +111,7 @@ fn fill(text: &str, version: &str, names: &[String], source: Option<&str>) -> St
         .replace(VERSION, version)
 }
 
-/// Writes the committed source into an archive. Returns false where there is no git, or no repository of it.
+/// Writes an archive of the committed source. Returns false without git, or outside of a repository.
 fn archive(file: &Path) -> bool {
     let mut command = Command::new("git");
     command
@@ -123,7 +122,7 @@ fn archive(file: &Path) -> bool {
     command.stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
-/// Returns the headers that the page wants, as Netlify's and Cloudflare's hosts read them.
+/// Returns the HTTP headers that the page needs, in the format of Netlify and Cloudflare.
 fn headers(version: &str) -> String {
     format!(
         "/*\n  Content-Security-Policy: {POLICY}\n  Cache-Control: no-cache\n\
@@ -131,7 +130,7 @@ fn headers(version: &str) -> String {
     )
 }
 
-/// Returns the files of a folder in the order of their names.
+/// Returns the files of a folder, sorted by name.
 fn files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))?;
     let mut found = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;

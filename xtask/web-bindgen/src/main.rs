@@ -1,8 +1,8 @@
-//! `yoro-web-bindgen MODULE.wasm FOLDER PAGE`: writes the module and its JavaScript into FOLDER as a browser loads
-//! them, and prints three numbers: the module's bytes, its bytes as transferred, and those of a first visit, which
-//! loads the texts in PAGE, too.
+//! `yoro-web-bindgen MODULE.wasm FOLDER PAGE`: writes the module and its JavaScript into FOLDER in the form that
+//! browsers load. Prints three numbers: the module's bytes, its bytes as transferred, and the bytes of a first visit,
+//! which also loads the texts in PAGE.
 //!
-//! A program of its own, so that only those who build the page wait for its dependencies.
+//! This is a separate program so that only people who build the page have to compile its dependencies.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -10,9 +10,9 @@ use std::{env, fs};
 use anyhow::Context as _;
 use wasm_bindgen_cli_support::Bindgen;
 
-/// What a first visit loads besides the module.
+/// Extensions of the files that a first visit loads besides the module.
 const TEXTS: [&str; 5] = ["css", "html", "js", "svg", "webmanifest"];
-/// What only streams and videos load.
+/// Files that only streams and videos load.
 const LATER: [&str; 4] = ["stream.js", "stream-worker.js", "video-worker.js", "decoding.js"];
 
 fn main() -> anyhow::Result<()> {
@@ -36,7 +36,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the bytes of a folder's texts as transferred.
+/// Returns the transferred bytes of a folder's texts.
 fn texts(folder: &Path) -> anyhow::Result<usize> {
     let mut sum = 0;
     for entry in fs::read_dir(folder).with_context(|| format!("{} cannot be read", folder.display()))? {
@@ -49,7 +49,7 @@ fn texts(folder: &Path) -> anyhow::Result<usize> {
     Ok(sum)
 }
 
-/// Returns the bytes of a file as hosts transfer it (brotli, quality 9).
+/// Returns the transferred bytes of a file (brotli, quality 9).
 fn compressed(file: &Path) -> anyhow::Result<usize> {
     let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
     let mut compressed = Vec::new();

@@ -1,4 +1,4 @@
-//! Checks of the caller's textures and framebuffer, for development: GL itself says nothing about most mistakes.
+//! Checks of the caller's textures and framebuffer, for development. GL itself does not report most mistakes.
 
 use std::num::NonZeroU32;
 
@@ -8,8 +8,8 @@ use yoro::synthesis::{Edges, Outputs, Source, SynthesisOptions};
 
 use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT};
 
-/// Checks that textures and framebuffer are as [`YoroGlImages`](super::YoroGlImages) says. Leaves bindings as they
-/// were.
+/// Checks that the textures and the framebuffer are as [`YoroGlImages`](super::YoroGlImages) says. Restores all
+/// bindings.
 pub(super) fn check_images(
     context: &Context,
     options: &SynthesisOptions,
@@ -18,7 +18,7 @@ pub(super) fn check_images(
     size: [u32; 2],
     target: &Destination,
 ) -> Result<(), Failure> {
-    // Errors from before the call are not the call's own.
+    // Errors that were pending before the call are not caused by it.
     if let Some(errors) = context.take_errors() {
         return Err(Failure::new(
             YORO_ERROR_DRIVER,
@@ -113,18 +113,17 @@ struct Framebuffer {
 }
 
 impl Framebuffer {
-    /// None if the context has no such framebuffer.
+    /// Returns `None` if the context has no such framebuffer.
     fn query(context: &Context, name: Option<glow::NativeFramebuffer>) -> Option<Framebuffer> {
         let gl = context.raw();
-        // SAFETY: queries and bindings of the current context. GL refuses an unknown name with an error, which is
-        // taken.
+        // SAFETY: queries and bindings of the current context. GL reports an unknown name as an error, which is taken.
         unsafe {
             let bound = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
             gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, name);
             let is_known = context.take_errors().is_none();
             let status = gl.check_framebuffer_status(glow::DRAW_FRAMEBUFFER);
             let attachment = |attachment| {
-                // The window's framebuffer has other attachments, and none that is a texture.
+                // The window's framebuffer has attachments of other names, none of which is a texture.
                 if name.is_none() {
                     return Attachment::Other;
                 }
@@ -178,7 +177,7 @@ fn check_texture(
 struct TextureKind {
     target: u32,
     binding: u32,
-    /// The target's name, and the remedy for a texture of another target.
+    /// The name of the target, and the remedy for a texture of another target.
     remedy: &'static str,
 }
 
@@ -200,25 +199,25 @@ const MULTISAMPLE: TextureKind = TextureKind {
 
 /// The first mip level of a texture.
 struct Level {
-    /// False where the driver cannot be asked (before OpenGL ES 3.1); all numbers are 0 then.
+    /// False where the driver cannot be queried (before OpenGL ES 3.1). All numbers are 0 then.
     is_known: bool,
     /// Width and height in pixels.
     size: [u32; 2],
-    /// Of an array.
+    /// The layers of an array.
     layers: u32,
-    /// GL_FLOAT and others; 0 for depth.
+    /// The type of the colour components, such as GL_FLOAT; 0 for depth.
     color_type: u32,
-    /// Bits.
+    /// Bits of the red component.
     red: i32,
-    /// Bits.
+    /// Bits of the depth component.
     depth: i32,
 }
 
 impl Level {
-    /// None for a texture of another target.
+    /// Returns `None` for a texture of another target.
     fn query(context: &Context, texture: glow::Texture, kind: &TextureKind) -> Option<Level> {
         let gl = context.raw();
-        // SAFETY: queries and bindings of the current context. GL refuses a texture of another target with an error,
+        // SAFETY: queries and bindings of the current context. GL reports a texture of another target as an error,
         // which is taken.
         unsafe {
             let bound = gl.get_parameter_texture(kind.binding);
@@ -245,7 +244,7 @@ impl Level {
     }
 
     fn is_depth(&self) -> bool {
-        // R16 (GL_EXT_texture_norm16) has the steps of 16-bit depth; eight bits are no depth.
+        // R16 (GL_EXT_texture_norm16) has the precision of 16-bit depth. Eight bits are too few for depth.
         self.depth > 0
             || self.color_type == glow::FLOAT
             || (self.color_type == glow::UNSIGNED_NORMALIZED && self.red == 16)

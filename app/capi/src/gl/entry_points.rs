@@ -1,5 +1,5 @@
-//! The functions of GL that this library calls. glow loads all that there are, and panics in a call of one that its
-//! loader did not return.
+//! The GL functions that this library calls. glow loads every function that it knows, and panics when one that the
+//! loader did not return is called.
 
 use std::ffi::{CStr, c_void};
 
@@ -7,9 +7,9 @@ use glow::HasContext as _;
 
 use crate::result::{Failure, YORO_ERROR_NO_CONTEXT};
 
-/// Those that glow calls to find out the version.
+/// The functions that glow calls to find out the version.
 const FIRST: [&CStr; 3] = [c"glGetString", c"glGetStringi", c"glGetIntegerv"];
-/// Those of OpenGL ES 3.0.
+/// Functions of OpenGL ES 3.0.
 const ES_3_0: [&CStr; 63] = [
     c"glActiveTexture",
     c"glAttachShader",
@@ -75,18 +75,18 @@ const ES_3_0: [&CStr; 63] = [
     c"glUseProgram",
     c"glViewport",
 ];
-/// Those of OpenGL ES 3.1 and the desktop.
+/// Functions of OpenGL ES 3.1 and of desktop OpenGL.
 const ES_3_1: [&CStr; 1] = [c"glGetTexLevelParameteriv"];
-/// Those of OpenGL ES 3.2 and the desktop.
+/// Functions of OpenGL ES 3.2 and of desktop OpenGL.
 const ES_3_2: [&CStr; 3] = [c"glEnablei", c"glDisablei", c"glColorMaski"];
-/// Those of OpenGL ES alone.
+/// Functions of OpenGL ES only.
 const ES: [&CStr; 1] = [c"glInvalidateSubFramebuffer"];
 const DESKTOP: [&CStr; 3] = [c"glPolygonMode", c"glViewportArrayv", c"glDepthRangeArrayv"];
-/// Of which contexts with GL_KHR_debug have one name or the other.
+/// Functions that a context with GL_KHR_debug has under one name or the other.
 const DEBUG: [[&CStr; 2]; 2] =
     [[c"glPushDebugGroup", c"glPushDebugGroupKHR"], [c"glPopDebugGroup", c"glPopDebugGroupKHR"]];
 
-/// Returns the functions that a context must have, for tests.
+/// Returns the functions that a context must have. For tests.
 #[doc(hidden)]
 pub fn needed_functions(desktop: bool) -> impl Iterator<Item = &'static CStr> {
     let of_one = if desktop { &DESKTOP[..] } else { &ES[..] };
@@ -97,18 +97,18 @@ pub fn needed_functions(desktop: bool) -> impl Iterator<Item = &'static CStr> {
 /// Wraps the current context.
 ///
 /// # Safety
-/// `load` returns entry points of these names, or null.
+/// `load` returns the entry points of the names it is given, or null.
 pub(super) unsafe fn wrap(load: impl Fn(&CStr) -> *const c_void) -> Result<glow::Context, Failure> {
     let is_here = |name: &&CStr| !load(name).is_null();
     check(&FIRST, is_here)?;
-    // SAFETY: the caller gives the entry point of this name.
+    // SAFETY: the caller returns the entry point of this name.
     if !unsafe { is_current(load(c"glGetString")) } {
         return Err(Failure::new(
             YORO_ERROR_NO_CONTEXT,
             "no GL context is current on this thread: make it current before yoro_gl_create",
         ));
     }
-    // SAFETY: a context is current, and the caller gives its entry points.
+    // SAFETY: a context is current, and the caller returns its entry points.
     let gl = unsafe { glow::Context::from_loader_function_cstr(&load) };
     let version = gl.version();
     let (desktop, number) = (!version.is_embedded, (version.major, version.minor));
@@ -139,12 +139,12 @@ fn check(names: &[&CStr], is_here: impl Fn(&&CStr) -> bool) -> Result<(), Failur
     ))
 }
 
-/// True if a context is current, which glow takes for granted.
+/// True if a context is current. glow assumes this without checking.
 ///
 /// # Safety
-/// The pointer is glGetString.
+/// The pointer is the entry point of glGetString.
 pub(super) unsafe fn is_current(get_string: *const c_void) -> bool {
     type GetString = unsafe extern "system" fn(u32) -> *const u8;
-    // SAFETY: the caller gives the function of this signature. Without a context it returns null.
+    // SAFETY: the caller passes the function of this signature. Without a context it returns null.
     unsafe { !std::mem::transmute::<*const c_void, GetString>(get_string)(glow::VERSION).is_null() }
 }

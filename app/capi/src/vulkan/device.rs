@@ -1,4 +1,4 @@
-//! The part of a context that is made for Vulkan.
+//! The part of a context that is specific to Vulkan.
 
 use std::ffi::{CStr, c_char};
 use std::time::Duration;
@@ -12,13 +12,13 @@ use crate::result::{Failure, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL};
 use crate::types::is_pose;
 use crate::versioned::check_reserved;
 
-/// The passes of a kind of warp.
+/// The passes for one kind of warp.
 pub(super) enum Passes {
     Eyes(Gather),
     Pose(AnyView),
 }
 
-/// Calls a method that both kinds have.
+/// Calls a method that the passes of both kinds have.
 macro_rules! of_passes {
     ($passes:expr, $method:ident($($argument:expr),*)) => {
         match $passes {
@@ -33,9 +33,9 @@ pub(super) use of_passes;
 pub(crate) struct Vulkan {
     pub(super) passes: Passes,
     pub(super) writes_depth: bool,
-    /// Sources that have the colour of samples.
+    /// The sources with multisampled colour.
     pub(super) with_samples: Vec<u32>,
-    /// Sources that have a history, and its height.
+    /// The sources with a history, and the height of the history.
     pub(super) with_history: Vec<(u32, u32)>,
     instance: Instance,
     physical_device: vk::PhysicalDevice,
@@ -66,10 +66,10 @@ impl Vulkan {
         if writes_depth {
             check_format(info.depth_format, "depth_format")?;
         }
-        // ash panics in commands that were not found. These lead to all others, or are of the oldest version that is
-        // needed.
+        // ash panics when a command that was not found is called. These commands lead to all others, or belong to the
+        // oldest required version.
         let has = |name: &CStr| {
-            // SAFETY: the header asks for a live instance; the name ends with 0.
+            // SAFETY: the header requires a live instance; the name ends with 0.
             unsafe { loader(info.instance, name.as_ptr()) }.is_some()
         };
         let needed = [
@@ -86,10 +86,10 @@ impl Vulkan {
                  version 1.1 or later",
             ));
         }
-        // The loader returns it only if the extension is enabled.
+        // The loader returns this command only if the extension is enabled.
         let debug_utils = has(c"vkCmdBeginDebugUtilsLabelEXT");
-        // SAFETY: both types have the same signature, and "system" is C's calling convention on these platforms. The
-        // header asks for handles that belong together.
+        // SAFETY: both types have the same signature, and "system" is C's calling convention on these platforms. the
+        // header requires handles that belong together.
         let (instance, device) = unsafe {
             let get_instance_proc_addr = std::mem::transmute::<
                 unsafe extern "C" fn(vk::Instance, *const c_char) -> Option<unsafe extern "C" fn()>,
@@ -108,7 +108,7 @@ impl Vulkan {
             debug_utils,
         };
         let options = info.options()?;
-        // SAFETY: the header asks for handles that are valid, belong together, and outlive the context.
+        // SAFETY: the header requires handles that are valid, belong together, and outlive the context.
         let passes = unsafe {
             match is_pose(info.warp_kind)? {
                 true => Passes::Pose(AnyView::new(&host, &options)?),
@@ -135,7 +135,7 @@ impl From<PassTimes> for YoroTimes {
 
 impl Backend for Vulkan {
     fn times(&mut self) -> Result<Option<YoroTimes>, Failure> {
-        // SAFETY: the header asks that the frame has been executed.
+        // SAFETY: the header requires that the frame has been executed.
         let times = unsafe { of_passes!(&self.passes, pass_times()) }?;
         Ok(times.map(YoroTimes::from))
     }
@@ -145,7 +145,7 @@ impl Backend for Vulkan {
     }
 
     fn capabilities(&self) -> YoroCapabilities {
-        // SAFETY: the header asks for an instance that outlives the context.
+        // SAFETY: the header requires an instance that outlives the context.
         let properties = unsafe { self.instance.get_physical_device_properties(self.physical_device) };
         let mut capabilities = YoroCapabilities {
             struct_size: size_of::<YoroCapabilities>() as u32,

@@ -1,4 +1,4 @@
-//! The structures for Vulkan, and what they mean to the core.
+//! The structures for Vulkan, and their conversion to the core's types.
 
 use std::ffi::c_char;
 
@@ -14,7 +14,7 @@ use crate::result::{
 use crate::types::{YoroEdges, YoroWarpKind, edges, is_pose};
 use crate::versioned::{check_reserved, versioned};
 
-/// vkGetInstanceProcAddr of the Vulkan loader, or of a layer in its place.
+/// vkGetInstanceProcAddr of the Vulkan loader, or of a layer that replaces it.
 pub type YoroVkLoader = Option<
     unsafe extern "C" fn(instance: vk::Instance, name: *const c_char) -> Option<unsafe extern "C" fn()>,
 >;
@@ -25,7 +25,7 @@ pub type YoroVkLoader = Option<
 pub struct YoroVkInfo {
     /// sizeof(YoroVkInfo).
     pub struct_size: u32,
-    /// Family of the queue that executes the command buffers; it has graphics.
+    /// Family of the queue that executes the command buffers; it must support graphics.
     pub queue_family: u32,
     /// The loader of entry points.
     pub loader: YoroVkLoader,
@@ -35,13 +35,13 @@ pub struct YoroVkInfo {
     pub physical_device: vk::PhysicalDevice,
     /// The device, of version 1.1 or later; no extension and no feature is needed.
     pub device: vk::Device,
-    /// 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0:
+    /// 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled, which is then used. 0:
     /// render passes and framebuffers are used, with the same result.
     pub dynamic_rendering: u32,
-    /// Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled
-    /// as sRGB.
+    /// Format of the targets' colour: any format that the device can render to. Choose an sRGB format if the source is
+    /// sampled as sRGB.
     pub color_format: vk::Format,
-    /// Format of the targets' depth, which is written in the source's encoding; VK_FORMAT_UNDEFINED for no depth.
+    /// Format of the targets' depth, which is written in the source's encoding. VK_FORMAT_UNDEFINED for no depth.
     pub depth_format: vk::Format,
     /// Largest width of a source in pixels.
     pub max_source_width: u32,
@@ -51,24 +51,24 @@ pub struct YoroVkInfo {
     pub max_target_width: u32,
     /// Largest height of a synthesized image in pixels.
     pub max_target_height: u32,
-    /// The kind of source images; 0 is YORO_EDGES_HARD.
+    /// The kind of source images. 0 is YORO_EDGES_HARD.
     pub edges: YoroEdges,
-    /// For YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
+    /// With YORO_EDGES_MULTISAMPLE, the number of samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
     pub samples: u32,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
     /// A pipeline cache, or VK_NULL_HANDLE.
     pub pipeline_cache: vk::PipelineCache,
-    /// The receiver of the sentences of errors, also in later calls.
+    /// Receives error messages, including those of later calls.
     pub messages: YoroMessages,
-    /// For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0
-    /// for no times.
+    /// For yoro_times: the number of frames after which the times of a frame are returned, at least the number of
+    /// frames in flight. 0: nothing is measured.
     pub timed_frames: u32,
-    /// 1: sources may have a history (YoroVkSource). 0: none has.
+    /// 1: sources may have a history (see YoroVkSource). 0: none has.
     pub history: u32,
-    /// The kind of warp; 0 is YORO_WARP_KIND_EYES.
+    /// The kind of warp. 0 is YORO_WARP_KIND_EYES.
     pub warp_kind: YoroWarpKind,
-    /// Zero.
+    /// Must be 0.
     pub reserved_too: u32,
 }
 
@@ -78,11 +78,12 @@ versioned!(YoroVkInfo since timed_frames);
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkState {
-    /// Its layout.
+    /// The layout of the image.
     pub layout: vk::ImageLayout,
-    /// The stages that use it. 0: nothing is waited for before, or nothing waits afterwards, as where a semaphore does.
+    /// The stages that use the image. 0: nothing is waited for before the call, or nothing waits after it, for example
+    /// because a semaphore does this.
     pub stages: vk::PipelineStageFlags,
-    /// Their kinds of access; 0 without stages.
+    /// The kinds of access of these stages; 0 if there are none.
     pub access: vk::AccessFlags,
 }
 
@@ -90,16 +91,16 @@ pub struct YoroVkState {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkImage {
-    /// The image. Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
-    /// VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
+    /// The image. Its usage must include VK_IMAGE_USAGE_SAMPLED_BIT for a source, and
+    /// VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
     pub image: vk::Image,
     /// The image's format, or a compatible one if the image has VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT.
     pub format: vk::Format,
-    /// The layer of the image, for example the eye's; 0 for an image with one layer.
+    /// The layer of the image, for example that of the eye. 0 for an image with one layer.
     pub layer: u32,
-    /// Its use before yoro_vk_record: its layout then, and the stages to wait for.
+    /// Its use before yoro_vk_record: its layout at that time, and the stages to wait for.
     pub before: YoroVkState,
-    /// Its use afterwards, for which it is made ready.
+    /// Its use after yoro_vk_record, for which it is made ready.
     pub after: YoroVkState,
 }
 
@@ -113,26 +114,26 @@ pub struct YoroVkSource {
     pub width: u32,
     /// Height of the images in pixels.
     pub height: u32,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
-    /// Colour of the rendered eye, in any format that can be filtered. All four channels are carried over. Unless
-    /// YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
+    /// Colour of the rendered eye, in any filterable format. All four channels are carried over. With edges other than
+    /// YORO_EDGES_HARD this is the resolved image, with values between 0 and 1.
     pub color: YoroVkImage,
     /// Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or
-    /// R32_SFLOAT. For YORO_EDGES_MULTISAMPLE it has YoroVkInfo's samples.
+    /// R32_SFLOAT. With YORO_EDGES_MULTISAMPLE it has as many samples as YoroVkInfo says.
     pub depth: YoroVkImage,
-    /// For YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
-    /// VK_NULL_HANDLE if it does not exist any more, and for all other edges.
+    /// With YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
+    /// VK_NULL_HANDLE if that no longer exists, and for all other edges.
     pub sample_color: YoroVkImage,
-    /// Width of the history's images in pixels, any; 0 without a history.
+    /// Width of the history's images in pixels, which may be any; 0 without a history.
     pub history_width: u32,
     /// Height of the history's images in pixels.
     pub history_height: u32,
-    /// What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was
-    /// really rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so
-    /// nothing that is drawn over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
+    /// The history, for contexts with `history`: the colour of a rendered image of the synthesized eye, from this frame
+    /// or earlier ones. Disocclusions are filled from it. It must show only what the source shows, and nothing that is
+    /// drawn over both eyes after synthesis. Its image is VK_NULL_HANDLE without a history.
     pub history_color: YoroVkImage,
-    /// The depth of that image, one value a pixel, with the planes and encoding of the source's.
+    /// The depth of that image, with one value per pixel and the planes and encoding of the source.
     pub history_depth: YoroVkImage,
 }
 
@@ -148,7 +149,7 @@ pub struct YoroVkTarget {
     pub width: u32,
     /// Height of the images in pixels.
     pub height: u32,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
     /// Colour, in YoroVkInfo's color_format.
     pub color: YoroVkImage,
@@ -163,7 +164,7 @@ pub type YoroVkSourceId = u32;
 /// The id of a registered target, never 0.
 pub type YoroVkTargetId = u32;
 
-/// The images and places of one synthesis.
+/// The images of one synthesis, and the rectangles in them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkFrame {
@@ -173,7 +174,7 @@ pub struct YoroVkFrame {
     pub source: YoroVkSourceId,
     /// First column of the rendered part.
     pub source_x: u32,
-    /// First row of the rendered part; row 0 is the first in memory.
+    /// First row of the rendered part. Row 0 is the first in memory.
     pub source_y: u32,
     /// The images to write.
     pub target: YoroVkTargetId,
@@ -181,11 +182,11 @@ pub struct YoroVkFrame {
     pub target_x: u32,
     /// First row of the synthesized image.
     pub target_y: u32,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
-    /// The uses of the images around this call, in place of those of their registration; may be NULL.
+    /// The uses of the images around this call, which replace those given at registration. May be NULL.
     pub uses: *const YoroVkUses,
-    /// The views of the history's strips, for sources with one; NULL: nothing is looked up.
+    /// The views of the history's strips, for sources with a history. NULL: the history is not used.
     pub strips: *const YoroStrips,
 }
 
@@ -195,36 +196,36 @@ versioned!(YoroVkFrame since reserved);
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkUse {
-    /// Its use before yoro_vk_record: its layout then, and the stages to wait for.
+    /// Its use before yoro_vk_record: its layout at that time, and the stages to wait for.
     pub before: YoroVkState,
-    /// Its use afterwards, for which it is made ready.
+    /// Its use after yoro_vk_record, for which it is made ready.
     pub after: YoroVkState,
 }
 
-/// The uses of all images in one call, for engines whose images come from other passes and go to others in each frame.
-/// Those of images that were not registered are ignored. A source is still sampled in the layout that it was registered
-/// for: if its registered layout before is not one of those that can be sampled,
+/// The uses of all images in one call, for engines whose images come from different passes and go to different ones in
+/// each frame. Those of images that were not registered are ignored. A source is still sampled in the layout that it
+/// was registered with: the registered `before` layout if it can be sampled, otherwise
 /// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkUses {
     /// sizeof(YoroVkUses).
     pub struct_size: u32,
-    /// Zero.
+    /// Must be 0.
     pub reserved: u32,
-    /// Of the source's colour.
+    /// The use of the source's colour.
     pub source_color: YoroVkUse,
-    /// Of the source's depth.
+    /// The use of the source's depth.
     pub source_depth: YoroVkUse,
-    /// Of the source's colour of samples.
+    /// The use of the source's multisampled colour.
     pub source_sample_color: YoroVkUse,
-    /// Of the target's colour.
+    /// The use of the target's colour.
     pub target_color: YoroVkUse,
-    /// Of the target's depth.
+    /// The use of the target's depth.
     pub target_depth: YoroVkUse,
-    /// Of the history's colour.
+    /// The use of the history's colour.
     pub history_color: YoroVkUse,
-    /// Of the history's depth.
+    /// The use of the history's depth.
     pub history_depth: YoroVkUse,
 }
 
@@ -248,14 +249,14 @@ impl YoroVkInfo {
 }
 
 impl YoroVkInfo {
-    /// Returns the bytes of the buffers of a context with these options.
+    /// Returns the size of the buffers of a context with these options, in bytes.
     pub(super) fn buffer_bytes(&self) -> Result<u64, Failure> {
         let options = self.options()?;
         Ok(if is_pose(self.warp_kind)? { options.any_view_buffer_bytes() } else { options.buffer_bytes() })
     }
 }
 
-/// Checks that a format is known: drivers look it up in tables, and some do not check their bounds.
+/// Checks that a format is known. Drivers look formats up in tables, and some do not check the bounds.
 pub(super) fn check_format(format: vk::Format, what: &str) -> Result<(), Failure> {
     let last_of_version_1_0 = vk::Format::ASTC_12X12_SRGB_BLOCK.as_raw();
     if (1..=last_of_version_1_0).contains(&format.as_raw()) {
@@ -277,7 +278,7 @@ impl YoroVkUses {
         writes_depth: bool,
     ) -> Result<Uses, Failure> {
         check_reserved("uses", &[self.reserved])?;
-        // What is not there is not looked at.
+        // The uses of absent images are not checked.
         let or = |is_there: bool, one: &YoroVkUse, other: Use, what, is_read| {
             if is_there { one.checked(what, is_read) } else { Ok(other) }
         };

@@ -1,4 +1,4 @@
-//! What the tests of several files begin with: structures that are right, and their callback.
+//! Shared beginnings of the tests: valid structures, and their callback.
 
 #![allow(dead_code, reason = "no test needs all of it")]
 
@@ -8,7 +8,7 @@ use std::mem::MaybeUninit;
 use glow::HasContext;
 use yoro_c::*;
 
-/// A structure of zeros, which are valid for all structures of the interface.
+/// Returns a structure of zeros, which are valid for all structures of the interface, with its size set.
 pub fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
     // SAFETY: the structures have only numbers and nullable pointers, for which zeros are valid.
     let mut value = unsafe { MaybeUninit::<T>::zeroed().assume_init() };
@@ -17,7 +17,7 @@ pub fn zeroed<T>(size: impl FnOnce(&mut T) -> &mut u32) -> T {
 }
 
 pub unsafe extern "C" fn note(user: *mut c_void, result: YoroResult, sentence: *const c_char) {
-    // SAFETY: the vector that `messages` was given, and a string.
+    // SAFETY: the vector that `messages` was given, and a C string.
     unsafe {
         let noted = &mut *user.cast::<Vec<(YoroResult, String)>>();
         noted.push((result, CStr::from_ptr(sentence).to_str().unwrap().to_owned()));
@@ -42,7 +42,7 @@ pub fn good_eyes() -> YoroEyes {
 
 pub fn views_of(eyes: &YoroEyes) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    // SAFETY: both are whole structures of the size that they state.
+    // SAFETY: both are whole structures of the sizes that they state.
     match unsafe { yoro_views_from_eyes(eyes, &mut views) } {
         YORO_OK => Ok(views),
         code => Err(code),
@@ -62,17 +62,17 @@ pub fn matrices_of(views: &YoroViews, eyes: &YoroEyes) -> YoroMatrices {
 
 pub fn views_of_matrices(matrices: &YoroMatrices) -> Result<YoroViews, YoroResult> {
     let mut views: YoroViews = zeroed(|v: &mut YoroViews| &mut v.struct_size);
-    // SAFETY: both are whole structures of the size that they state.
+    // SAFETY: both are whole structures of the sizes that they state.
     match unsafe { yoro_views_from_matrices(matrices, &mut views) } {
         YORO_OK => Ok(views),
         code => Err(code),
     }
 }
 
-/// The loader of the current context.
+/// The loader for the current context.
 pub unsafe extern "C" fn load(name: *const c_char) -> YoroGlProc {
     type GetProcAddress = unsafe extern "C" fn(*const c_char) -> YoroGlProc;
-    // SAFETY: libEGL is there, since a context of it is current, and is never unloaded.
+    // SAFETY: libEGL is loaded, since one of its contexts is current, and it is never unloaded.
     unsafe {
         let library = libloading::Library::new("libEGL.so.1").unwrap();
         let get = *library.get::<GetProcAddress>(b"eglGetProcAddress\0").unwrap();
@@ -113,7 +113,7 @@ pub unsafe fn texture(gl: &glow::Context, target: u32, format: u32, [w, h]: [u32
 /// Creates a framebuffer of two textures.
 ///
 /// # Safety
-/// As [`texture`].
+/// As for [`texture`].
 pub unsafe fn framebuffer(gl: &glow::Context, attachments: &[(u32, u32)]) -> u32 {
     // SAFETY: live textures.
     unsafe {

@@ -1,9 +1,9 @@
-//! Which is cheaper on this device: two renders, or one with synthesis.
+//! Chooses what is cheaper on this device: two renders, or one render with synthesis.
 //!
-//! Synthesis costs the same for any scene, so where a view is cheap to render, two renders are cheaper. Nobody knows
-//! that beforehand: it depends on the GPU, the scene, the resolution and the heat. A [`Chooser`] asks for both ways in
-//! turns for about a second, takes the cheaper one, and measures again when that may have changed. It has no GL and no
-//! clock: it is told when frames ended and what they cost, and says what to render next.
+//! Synthesis costs the same for any scene, so two renders are cheaper where a view is cheap to render. This cannot be
+//! predicted: it depends on the GPU, the scene, the resolution and the temperature. A [`Chooser`] alternates between
+//! both ways for about a second, takes the cheaper one, and measures again when that may have changed. It uses no GL
+//! and no clock: it is told when frames ended and what they cost, and says what to render next.
 //!
 //! ```
 //! use yoro::choice::{Chooser, Cost, FrameEnd, Way};
@@ -42,10 +42,10 @@ pub enum Way {
 }
 
 impl Way {
-    /// Both ways, by [`Way::index`].
+    /// Both ways, in the order of [`Way::index`].
     pub const BOTH: [Way; 2] = [Way::TwoViews, Way::Synthesis];
 
-    /// The index in arrays of both ways: two views, synthesis.
+    /// Returns the index in arrays of both ways: 0 for two views, 1 for synthesis.
     pub fn index(self) -> usize {
         self as usize
     }
@@ -59,11 +59,11 @@ impl Way {
 /// The measured cost of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// The frame, as the number of calls of [`Chooser::end_frame`] since its own: 0 for the frame that ends now. Costs
-    /// of frames more than 63 ago are ignored.
+    /// The number of calls of [`Chooser::end_frame`] since the measured frame's own: 0 for the frame that ends now.
+    /// Costs of frames more than 63 calls ago are ignored.
     pub frames_ago: u32,
-    /// Milliseconds. The GPU's time for the frame if there is a timer; else the time from the beginning of the frame's
-    /// work to the end of the GPU's, if the host waits for that. One kind only, for both ways.
+    /// The cost in milliseconds: the GPU's time for the frame if there is a timer; otherwise the time from the start of
+    /// the frame's work until the GPU has finished, if the host waits for that. Use the same kind for both ways.
     pub ms: f32,
 }
 
@@ -72,33 +72,32 @@ pub struct Cost {
 pub struct FrameEnd {
     /// The time now, in nanoseconds of a monotonic clock.
     pub now_ns: i64,
-    /// Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when
-    /// the host waited for the GPU to measure it.
+    /// The display's refreshes per second; 0 if unknown, or if the display did not set the pace of this frame, for
+    /// example because the host waited for the GPU to measure it.
     pub refresh_hz: f32,
-    /// The way in which it was rendered. `None` if that was neither, such as both eyes rendered because synthesis was
-    /// not possible: such a frame counts for no way.
+    /// The way in which the frame was rendered; `None` if neither, for example if both eyes were rendered because
+    /// synthesis was not possible. Such a frame counts for no way.
     pub rendered: Option<Way>,
-    /// The cost of this frame or of an earlier one, if known by now.
+    /// The cost of this or an earlier frame, if it has become known.
     pub cost: Option<Cost>,
-    /// The device's heat, if known, on a scale on which 0.1 matters: Android's thermal headroom.
+    /// The device's heat, if known, on a scale where 0.1 is a significant change, such as Android's thermal headroom.
     pub heat: Option<f32>,
 }
 
 /// The reason for a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// Nothing is measured yet in this scene: it is the way to begin with, or the one before.
+    /// Nothing has been measured in this scene yet: the initial or the previous way is kept.
     Unmeasured,
-    /// It costs less.
+    /// The chosen way costs less.
     Cheaper,
-    /// It costs more, but too little for a change: it is the way before.
+    /// The chosen way costs more, but not by enough to change: the previous way is kept.
     Similar,
-    /// It holds the display's rate, and the other way does not.
+    /// The chosen way holds the display's rate, and the other does not.
     HoldsRate,
-    /// Both ways hold the display's rate, and nothing more is known: the display's pace hides their costs. It is the
-    /// way before.
+    /// Both ways hold the display's rate, which hides their costs, and no costs are known: the previous way is kept.
     BothHoldRate,
-    /// One of the ways could not be measured: it is the way before.
+    /// One of the ways could not be measured: the previous way is kept.
     Incomparable,
 }
 
@@ -107,7 +106,7 @@ pub enum Reason {
 pub struct Choice {
     /// The chosen way.
     pub way: Way,
-    /// Why.
+    /// The reason for the choice.
     pub reason: Reason,
     /// The compared times in milliseconds, by [`Way::index`]; `None` if there was nothing to compare.
     pub costs_ms: Option<[f32; 2]>,
@@ -115,27 +114,27 @@ pub struct Choice {
 
 /// Measures both ways in turns, and chooses the cheaper one.
 ///
-/// A measurement begins a quarter of a second after the first frame, and takes a second, or six turns of 7 frames if that
-/// is longer. The ways take turns of an eighth of a second; the first three frames of a turn do not count. Times are means of the
-/// middle half, so that spikes do not count either.
+/// A measurement begins a quarter of a second after the first frame and takes a second, or six turns of 7 frames if
+/// that is longer. Each turn lasts an eighth of a second, and its first three frames do not count. Times are means of
+/// the middle half of the samples, so that spikes do not count either.
 ///
-/// 1. If one way holds the display's rate and the other does not, it is chosen. A way holds it if the time between its
-///    frames is at most 1.25 refreshes.
-/// 2. Else the lower cost is chosen; in a scene with a choice already, if it is lower by more than a tenth. Without
-///    costs, frames that miss the display's rate are compared by the time between them; those that hold it tell nothing
-///    ([`Reason::BothHoldRate`]).
+/// 1. If only one way holds the display's rate, it is chosen. A way holds the rate if the time between its frames is at
+///    most 1.25 refreshes.
+/// 2. Otherwise the cheaper way is chosen. If a choice was already made in this scene, it changes only if the other way
+///    is cheaper by more than a tenth. Without costs, ways that miss the display's rate are compared by the time
+///    between their frames; for ways that hold it, this time says nothing ([`Reason::BothHoldRate`]).
 ///
-/// It measures again when the scene has changed; when the frames' cost or pace has changed by 30 % or the heat by 0.1,
-/// but 30 s after the last measurement at the earliest; and after so long a time (1 to 10 min) that rendering the
-/// dearer way in turns costs 0.2 % of it.
+/// A new measurement begins when the scene changes; when the frames' cost or pace has changed by 30 % or the heat by
+/// 0.1, but not within 30 s of the last measurement; and after 1 to 10 min, chosen so that rendering the dearer way
+/// during measurements costs 0.2 % of the time.
 ///
-/// GPU times depend on the clock that the device has chosen. Where it lowers the clock for light loads, both ways
-/// appear to cost nearly the same.
+/// GPU times depend on the clock that the device has chosen. If it lowers the clock for light loads, both ways appear
+/// to cost nearly the same.
 #[derive(Clone, Debug)]
 pub struct Chooser {
     choice: Choice,
     phase: Phase,
-    /// The tags of the last frames, by their number.
+    /// The tags of the last frames, by frame number.
     tags: [Tag; REMEMBERED],
     frames: usize,
     last_ns: Option<i64>,
@@ -143,16 +142,16 @@ pub struct Chooser {
     intervals: [Samples; 2],
     /// The refresh rate during the measurement.
     refresh_hz: f32,
-    /// Frames of the choice since it was made, some seconds at a time.
+    /// Watches frames of the chosen way, in windows of two seconds.
     watch: Watch,
     /// The heat at the last measurement.
     heat: Option<f32>,
 }
 
-/// What is being done.
+/// The current phase.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// Waiting a moment before measuring; the time of its first frame.
+    /// Waiting a moment before measuring, with the time of the first frame.
     Settling(Option<i64>),
     Measuring {
         begin_ns: i64,
@@ -160,7 +159,7 @@ enum Phase {
         turn_ns: i64,
         turn_frames: u32,
     },
-    /// Waiting for the costs of the last measured frames, in frames.
+    /// Waiting for at most `left` more frames for the costs of the last measured frames.
     Collecting {
         left: u32,
         begin_ns: i64,
@@ -179,13 +178,13 @@ enum Tag {
     Watched,
 }
 
-/// Watches the cost of the chosen way.
+/// Watches the cost and pace of the chosen way.
 #[derive(Clone, Debug, Default)]
 struct Watch {
     begin_ns: Option<i64>,
     costs: Samples,
     intervals: Samples,
-    /// Cost and interval in the first window.
+    /// Cost and interval in the first window, in milliseconds.
     first: Option<[Option<f32>; 2]>,
 }
 
@@ -195,22 +194,21 @@ const SETTLING_NS: i64 = 250 * MS;
 const TURN_NS: i64 = 125 * MS;
 const MEASURING_NS: i64 = 1000 * MS;
 const WATCH_NS: i64 = 2000 * MS;
-/// Longer times between frames are pauses.
+/// Longer times between frames count as pauses.
 const PAUSE_NS: i64 = 1000 * MS;
-/// The first frames of a turn, which do not count: caches are cold, and the display still shows frames of the turn
-/// before.
+/// The first frames of a turn do not count: caches are cold, and the display still shows frames of the previous turn.
 const UNCOUNTED_FRAMES: u32 = 3;
 const TURN_FRAMES: u32 = 7;
 const TURNS: u32 = 6;
-/// Late costs are waited for during so many frames.
+/// The number of frames to wait for late costs.
 const LATE_FRAMES: u32 = 16;
-/// A way holds the display's rate if the time between its frames is at most so many refreshes.
+/// A way holds the display's rate if the time between its frames is at most this many refreshes.
 const IN_TIME: f32 = 1.25;
 /// A choice is changed if the other way costs less than this share.
 const WORTH_A_CHANGE: f32 = 0.9;
 /// The share of the time that measuring may cost.
 const OVERHEAD: f32 = 0.002;
-/// The shortest time from a measurement to the next, and the bounds of that time where nothing changes.
+/// The shortest time between two measurements, and the bounds of that time if nothing changes.
 const SHORTEST_REST_NS: i64 = 30_000 * MS;
 const REST_NS: [i64; 2] = [60_000 * MS, 600_000 * MS];
 /// Changes of cost, pace and heat that are worth another measurement.
@@ -218,7 +216,7 @@ const DRIFT: f32 = 1.3;
 const HEAT_DRIFT: f32 = 0.1;
 
 impl Chooser {
-    /// Begins with a way, and measures as soon as frames come.
+    /// Returns a chooser that begins with the way `first`, and measures as soon as frames come.
     pub fn new(first: Way) -> Chooser {
         Chooser {
             choice: Choice { way: first, reason: Reason::Unmeasured, costs_ms: None },
@@ -242,24 +240,24 @@ impl Chooser {
         }
     }
 
-    /// Returns the last choice, which is rendered unless [`Chooser::is_measuring`].
+    /// Returns the last choice, which is rendered unless [`Chooser::is_measuring`] is true.
     pub fn choice(&self) -> Choice {
         self.choice
     }
 
-    /// True while a choice is being made. Keep resolution and quality meanwhile.
+    /// True while a choice is being made. Keep resolution and quality constant meanwhile.
     pub fn is_measuring(&self) -> bool {
         !matches!(self.phase, Phase::Resting { .. })
     }
 
-    /// Measures again: another scene, another place in it, another resolution.
+    /// Starts a new measurement: call it for another scene, another place in it, or another resolution.
     pub fn scene_changed(&mut self) {
         self.phase = Phase::Settling(None);
         self.choice = Choice { reason: Reason::Unmeasured, costs_ms: None, ..self.choice };
         self.last_ns = None;
     }
 
-    /// Takes a frame that was handed to the display. Allocates nothing.
+    /// Counts a frame that was handed to the display. Allocates nothing.
     pub fn end_frame(&mut self, end: &FrameEnd) {
         let interval = self.last_ns.replace(end.now_ns).map(|last| end.now_ns - last);
         if interval.is_some_and(|ns| !(0..PAUSE_NS).contains(&ns)) {
@@ -272,7 +270,7 @@ impl Chooser {
         self.proceed(end);
     }
 
-    /// Skips the time since the last frame; a measurement begins again.
+    /// Skips the time since the last frame, and restarts a measurement in progress.
     fn pause(&mut self, now_ns: i64) {
         self.tags[self.frames % REMEMBERED] = Tag::Nothing;
         self.frames += 1;
@@ -282,7 +280,7 @@ impl Chooser {
         }
     }
 
-    /// Returns what a frame counts for that ends now.
+    /// Returns what the frame that ends now counts for.
     fn tag(&self, rendered: Option<Way>) -> Tag {
         if rendered != Some(self.way()) {
             return Tag::Nothing;
@@ -296,7 +294,7 @@ impl Chooser {
         }
     }
 
-    /// Counts the time before a frame, and the cost that is known now.
+    /// Counts the time before the frame that ends, and the cost that is known now.
     fn count(&mut self, tag: Tag, end: &FrameEnd, interval: Option<i64>) {
         if let Some(ns) = interval {
             let ms = ns as f32 * 1e-6;
@@ -305,7 +303,7 @@ impl Chooser {
                     self.intervals[way.index()].add(ms);
                     self.refresh_hz = end.refresh_hz;
                 }
-                // Frames without a pace come when they are asked for.
+                // Without a display's pace, the time between frames says nothing about their cost.
                 Tag::Watched if end.refresh_hz > 0.0 => self.watch.intervals.add(ms),
                 Tag::Watched | Tag::Nothing => {}
             }
@@ -322,7 +320,7 @@ impl Chooser {
         }
     }
 
-    /// Goes on to the next turn or phase, if it is time.
+    /// Moves on to the next turn or phase, if it is time.
     fn proceed(&mut self, end: &FrameEnd) {
         let now_ns = end.now_ns;
         match &mut self.phase {
@@ -368,7 +366,7 @@ impl Chooser {
         self.phase = Phase::Measuring { begin_ns: now_ns, turn: 0, turn_ns: now_ns, turn_frames: 0 };
     }
 
-    /// Chooses, once the costs of all frames are there or enough frames were waited for.
+    /// Chooses, once the costs of all frames are known or the wait for them is over.
     fn collect(&mut self, now_ns: i64) {
         let Phase::Collecting { left, begin_ns } = &mut self.phase else { return };
         let begin_ns = *begin_ns;
@@ -422,21 +420,21 @@ fn rest(choice: &Choice, measuring_ns: i64) -> i64 {
             let more = (a.max(b) / a.min(b) - 1.0) / 2.0;
             ((measuring_ns as f32 * more / OVERHEAD) as i64).clamp(shortest, longest)
         }
-        // It tells nothing as long as both hold the rate, and if one does not, that is seen.
+        // Nothing can be compared while both hold the rate, and the watch notices when the chosen one no longer does.
         None if choice.reason == Reason::BothHoldRate => longest,
         None => shortest,
     }
 }
 
 impl Watch {
-    /// Forgets the frames of this window.
+    /// Forgets the frames of the current window.
     fn restart(&mut self) {
         self.begin_ns = None;
         self.costs.clear();
         self.intervals.clear();
     }
 
-    /// True if a window ends now in which cost or frame time were others than in the first.
+    /// True if a window ends now whose cost or frame time differs from that of the first window.
     fn has_drifted(&mut self, now_ns: i64) -> bool {
         if now_ns - *self.begin_ns.get_or_insert(now_ns) < WATCH_NS {
             return false;

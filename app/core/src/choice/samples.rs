@@ -1,11 +1,11 @@
-//! Times of frames, and their middle.
+//! Frame times, and the mean of their middle half.
 
-/// Most times that are kept; more say nothing new.
+/// The largest number of times that are kept.
 const MAX: usize = 128;
-/// Fewer times have no middle.
+/// The smallest number of times that have a middle.
 const FEWEST: usize = 4;
 
-/// Times in milliseconds.
+/// Frame times in milliseconds.
 #[derive(Clone, Debug)]
 pub(super) struct Samples {
     times: [f32; MAX],
@@ -34,8 +34,8 @@ impl Samples {
         self.len
     }
 
-    /// Returns the mean of the middle half; `None` of fewer than four. Unlike a median it tells times apart that a
-    /// coarse clock has rounded.
+    /// Returns the mean of the middle half, or `None` for fewer than four times. Unlike a median, it distinguishes
+    /// between times that a coarse clock has rounded.
     pub fn middle(&self) -> Option<f32> {
         let mut times = self.times;
         let times = &mut times[..self.len];

@@ -11,8 +11,7 @@ pub enum DepthConvention {
     Reversed,
 }
 
-/// Near and far plane (metres, along the viewing axis) and the encoding of depth between them.
-/// `far` may be infinite.
+/// Near and far plane (metres, along the viewing axis) and the encoding of depth between them. `far` may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DepthRange {

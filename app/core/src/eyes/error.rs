@@ -6,15 +6,15 @@ use super::{GuardBand, Warp};
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EyesError {
-    /// The eyes are rotated against each other.
+    /// The eyes' orientations differ.
     #[error(
         "the eyes are canted by {degrees:.2} degrees against each other; synthesis moves pixels along rows only: render both eyes, or give both the same orientation"
     )]
     Canted {
-        /// Angle between the two viewing directions.
+        /// The angle between the eyes' orientations.
         degrees: f32,
     },
-    /// One view sees what lies too far beside or behind the other.
+    /// A view shows something too far to the side of, or behind, the other view.
     #[error(
         "a view reaches further than 80 degrees from the axis of the one to render; render a view in a pose nearer to it, or allow less motion"
     )]
@@ -47,12 +47,12 @@ pub enum EyesError {
         "the eyes have different pixel densities ({left:.6} and {right:.6} tangents per pixel on one axis); give both the same size and frusta of the same width and height"
     )]
     Density {
-        /// Tangent per pixel of the left eye.
+        /// Tangents per pixel of the left eye.
         left: f32,
-        /// Tangent per pixel of the right eye.
+        /// Tangents per pixel of the right eye.
         right: f32,
     },
-    /// The rows of one eye's image lie between those of the other's.
+    /// The rows of one eye's image do not coincide with rows of the other's.
     #[error(
         "the rows of the eyes' images are {rows:.2} rows apart, and a row of one must lie on a row of the other; give both frusta the same bottom and top"
     )]
@@ -60,19 +60,19 @@ pub enum EyesError {
         /// Rows from the left eye's lower edge up to the right eye's.
         rows: f32,
     },
-    /// A pose or a frustum with a value that is not finite, or an orientation that is not a rotation.
+    /// A pose or a frustum has a value that is not finite, or an orientation is not a rotation.
     #[error("an eye's pose or frustum is invalid: need finite numbers and an orientation of length 1")]
     Invalid,
-    /// An image without pixels.
+    /// An image has no pixels.
     #[error("the eyes' images have a width or height of 0; give both in pixels")]
     NoPixels,
-    /// A frustum without area.
+    /// A frustum has no area.
     #[error("an eye's frustum is empty: need left < right and bottom < top")]
     Empty,
-    /// Depth planes out of order.
+    /// The depth planes are out of order.
     #[error("the depth planes are out of order: need 0 < near < far, and a near plane that is finite")]
     Planes,
-    /// A guard band of more than [`GuardBand::MAX_PIXELS`], or a distance that is not positive and finite.
+    /// The guard band is wider than [`GuardBand::MAX_PIXELS`], or its distance is not positive and finite.
     #[error(
         "a guard band of {0} is impossible; give none, at most {max}px, or a finite distance of more than 0",
         max = GuardBand::MAX_PIXELS

@@ -4,8 +4,7 @@ use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// The width by which the dominant view is rendered wider than its eye's image, so that it contains the other eye's
-/// outer border.
+/// How much wider than its eye's image the dominant view is rendered, so that it contains the other eye's outer border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -21,14 +20,14 @@ pub enum GuardBand {
 }
 
 impl GuardBand {
-    /// [`GuardBand::Auto`] that is complete from 1 m: the text `auto`.
+    /// The text `auto`: a [`GuardBand::Auto`] that is complete from 1 m on.
     pub const AUTO: GuardBand = GuardBand::Auto(1.0);
     /// The widest band.
     pub const MAX_PIXELS: u32 = 1024;
-    /// The distances, in metres, that can be typed. In worlds of another scale others make sense.
+    /// The distances in metres that a text may have. In worlds of another scale other distances make sense.
     pub const DISTANCES: RangeInclusive<f32> = 0.05..=1000.0;
 
-    /// True if the value is one that can be typed, for a world in metres.
+    /// True if the band can be given as text, for a world in metres.
     pub fn is_valid(&self) -> bool {
         match self {
             GuardBand::None => true,
@@ -37,7 +36,7 @@ impl GuardBand {
         }
     }
 
-    /// True if there can be such a band.
+    /// True if such a band is possible, in a world of any scale.
     pub(super) fn is_possible(&self) -> bool {
         match self {
             GuardBand::None => true,
@@ -58,7 +57,7 @@ impl GuardBand {
     }
 }
 
-/// A text that is not a [`GuardBand`].
+/// The error for a text that is not a [`GuardBand`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "give none, pixels such as 40px, metres such as 1.0, or auto, which may have metres such as auto:0.5"
@@ -84,7 +83,7 @@ impl FromStr for GuardBand {
     }
 }
 
-/// The text that [`FromStr`] reads.
+/// Writes the text that [`FromStr`] reads.
 impl Display for GuardBand {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match *self {

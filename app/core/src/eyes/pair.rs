@@ -4,10 +4,10 @@ use glam::{Quat, Vec3};
 
 use super::{DepthRange, DisparityLaw, Eye, EyesError, Frustum, GuardBand, Pose, View, Warp};
 
-/// The largest side of an image in pixels. No driver renders larger ones.
+/// The largest width or height of an image in pixels. No driver renders larger ones.
 const MAX_SIDE: f64 = 65536.0;
 
-/// Two parallel eyes of equal size, as the paper sets them up: an [`EyePair`] for any pose of the head.
+/// Options of two parallel eyes of equal size, as in the paper: they give an [`EyePair`] for any pose of the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EyeOptions {
     /// Size of each eye's image in pixels.
@@ -25,7 +25,7 @@ pub struct EyeOptions {
 }
 
 impl Default for EyeOptions {
-    /// The paper's: 60 degrees, 63 mm, the right eye, [`DepthRange::PAPER`].
+    /// The paper's values: 60 degrees, 63 mm, the right eye, [`DepthRange::PAPER`].
     fn default() -> EyeOptions {
         EyeOptions {
             size: [1024; 2],
@@ -101,8 +101,8 @@ impl EyePair {
         (self.poses[1].position - self.poses[0].position).dot(self.poses[0].right())
     }
 
-    /// Returns the same eyes with frusta of equal width over the same rows, so that rows of pixels are aligned. Each
-    /// frustum contains its original.
+    /// Returns the eyes with frusta of equal width over the same rows, so that rows of pixels are aligned. Each frustum
+    /// contains the original one.
     pub fn row_aligned(&self) -> EyePair {
         let [l, r] = self.frusta;
         let width = l.width().max(r.width());
@@ -114,9 +114,9 @@ impl EyePair {
         EyePair { frusta: self.frusta.map(grown), ..*self }
     }
 
-    /// Returns the eyes rectified: parallel, at the same positions, at right angles to the line between them, with
-    /// frusta that contain the original ones. They serve canted eyes: a view of a parallel eye can be turned back to
-    /// the canted eye exactly, since both have the same centre. `None` if an eye sees further than 80 degrees from the
+    /// Returns the rectified eyes: at the same positions, parallel, perpendicular to the line between them, with frusta
+    /// that contain the original ones. Use them for canted eyes: since both have the same centre, a view of a parallel
+    /// eye can be turned exactly into that of the canted eye. `None` if an eye sees further than 80 degrees from the
     /// common direction.
     pub fn rectified(&self) -> Option<EyePair> {
         let between = self.poses[1].position - self.poses[0].position;
@@ -157,11 +157,12 @@ impl EyePair {
 
     /// Returns the view to render, and how its pixels move to the other eye.
     ///
-    /// The source view is the dominant eye's frustum, widened (by whole pixels, so that the dominant eye's
-    /// own image is a crop of it) to the union of both frusta and by the guard band.
+    /// The source view is the dominant eye's frustum, extended to the union of both frusta and by the guard band. It is
+    /// extended by whole pixels, so that the dominant eye's own image is a crop of it.
     ///
     /// # Errors
-    /// [`EyesError`] if pixels do not move along rows only, or move too far.
+    /// [`EyesError`] if a view or the guard band is invalid, the source too large, or if pixels do not move along rows
+    /// only or move too far.
     pub fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
         Eye::BOTH.iter().try_for_each(|&eye| self.view(eye).check())?;
         if !guard.is_possible() {
@@ -173,8 +174,8 @@ impl EyePair {
         let density = self.tangents_per_pixel(self.dominant);
         let (ipd, f_px) = (self.ipd(), 1.0 / density[0]);
         let guard = guard.pixels(f_px, ipd.max(0.0));
-        // In the left eye's image surfaces lie further right than in the right eye's, so its left border shows
-        // what the right eye has beyond its own left border.
+        // Surfaces lie further right in the left eye's image than in the right eye's, so its left border shows what is
+        // beyond the right eye's left border.
         let (guard_left, guard_right) = match target_eye {
             Eye::Left => (guard, 0),
             Eye::Right => (0, guard),
@@ -217,7 +218,7 @@ impl EyePair {
         Ok(SynthesisViews { source, target: t, dominant_crop: [left, bottom], guard_columns: guard, warp })
     }
 
-    /// Checks that pixels move along rows only: parallel eyes on one horizontal line, with rows on rows.
+    /// Checks that pixels move along rows only: that the eyes are parallel, on one horizontal line, with rows on rows.
     fn check_alignment(&self) -> Result<(), EyesError> {
         let [left, right] = &self.poses;
         let angle = left.orientation.angle_between(right.orientation);
@@ -231,8 +232,8 @@ impl EyePair {
         let axis = self.poses[self.dominant.index()].right();
         let between = right.position - left.position;
         let off_axis = (between - axis * ipd).length();
-        // Far from the origin rounding displaces the eyes; a four hundredth of their distance moves what is three
-        // metres away by a tenth of a pixel at 2000 pixels and 90 degrees.
+        // Far from the origin, rounding displaces the eyes. Moving an eye by 1/400 of their distance moves a surface
+        // three metres away by a tenth of a pixel at 2000 pixels and 90 degrees.
         if off_axis > self.rounding() + between.length() / 400.0 {
             return Err(EyesError::OffAxis { off_axis });
         }
@@ -254,7 +255,7 @@ impl EyePair {
         Ok(())
     }
 
-    /// Returns the largest difference between the eyes' positions that their rounding to f32 makes: half a unit in the
+    /// Returns the largest difference between the eyes' positions that comes from rounding to f32: half a unit in the
     /// last place for each coordinate, and as much again for the computation of a position.
     fn rounding(&self) -> f32 {
         4.0 * f32::EPSILON * self.poses.iter().map(|pose| pose.position.length()).fold(0.0, f32::max)
@@ -267,7 +268,7 @@ impl EyePair {
     }
 }
 
-/// Result of [`EyePair::synthesis_views`].
+/// The result of [`EyePair::synthesis_views`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SynthesisViews {
     /// The view to render: the dominant eye, widened.
@@ -279,7 +280,7 @@ pub struct SynthesisViews {
     /// Number of columns of the guard band: the source's leftmost for a synthesized left eye, its rightmost for a right
     /// eye.
     pub guard_columns: u32,
-    /// Displacement of the source's pixels.
+    /// The displacement of the source's pixels.
     pub warp: Warp,
 }
 
@@ -418,7 +419,7 @@ mod tests {
                 assert!((warp.law.scale / expected.law.scale - 1.0).abs() < rounding + 1e-5, "{distance} m");
             }
         }
-        // A displacement that is no rounding is refused at any distance.
+        // A displacement beyond rounding is refused at any distance.
         for distance in [0.0, 1000.0] {
             let mut off = pair(Eye::Right);
             off.poses.iter_mut().for_each(|pose| pose.position.x += distance);
@@ -531,7 +532,7 @@ mod tests {
                 error.to_string().contains("near plane") && error.to_string().contains("4095"),
                 "{error}"
             );
-            // A surface that moves across the whole image is not seen, however far it moves.
+            // A surface that moves across the whole image is not visible, however far it moves.
             synthesis(pair(2048, 0.005, 0.063)).unwrap();
             synthesis(pair(64, 0.3, 100.0)).unwrap();
             let error = synthesis(pair(64, 1e-7, 0.063)).unwrap_err();
@@ -582,7 +583,7 @@ mod tests {
                 assert!(seen.x.abs() < 1.0001 && seen.y.abs() < 1.0001, "{eye:?} {seen}");
             }
         }
-        // Nearly back to back.
+        // The eyes look in nearly opposite directions.
         eyes.poses[1].orientation = Quat::from_rotation_y(-2.5);
         assert_eq!(eyes.rectified(), None);
     }

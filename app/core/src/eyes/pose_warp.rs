@@ -1,10 +1,10 @@
-//! The displacement of pixels from a view to any other one near it, and how much more the source must show for it.
+//! The displacement of pixels from a view to another one near it, and how much wider the source must be for it.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{EyesError, View};
 
-/// All that synthesis knows about two views in any poses.
+/// What synthesis needs to know about two views in any poses.
 ///
 /// The point at inverse distance k from the target's eye, along its viewing axis, that the target shows at the pixel p
 /// lies in the source at the pixel `homography * p + k * epipole`: homogeneous pixels, counted from the lower left
@@ -18,12 +18,12 @@ pub struct PoseWarp {
     pub target_size: [u32; 2],
     /// The homography of the rotation between the views, from target to source.
     pub homography: DMat3,
-    /// Place of the target's eye in the source image. Its third component is the distance, in metres, by which that eye
+    /// The target eye's position in the source image. The third component is the distance in metres by which that eye
     /// is further ahead.
     pub epipole: DVec3,
     /// `(c, m)` of the source's `1 / distance = c + m * depth`.
     pub source_law: [f64; 2],
-    /// The same of the target.
+    /// The same for the target.
     pub target_law: [f64; 2],
     /// Stored depth, in the source, of the nearest surface that the target may show.
     pub nearest: f64,
@@ -31,11 +31,11 @@ pub struct PoseWarp {
     pub far_depth: f64,
 }
 
-/// The smallest cosine of the angle between the source's axis and what the target shows: that of 80 degrees.
+/// The cosine of 80 degrees, the largest angle between the source's axis and a direction that the target shows.
 const LEAST_COSINE: f64 = 0.173_648;
 
 impl PoseWarp {
-    /// Returns the warp from a rendered view to another one. They may have different poses, frusta, sizes and depth
+    /// Returns the warp from a rendered view to another one. The views may differ in pose, frustum, size and depth
     /// planes.
     ///
     /// # Errors
@@ -53,11 +53,11 @@ impl PoseWarp {
                 return Err(EyesError::Apart);
             }
         }
-        // Differences of positions first: they are small where positions are large.
+        // Subtract the positions first: their difference is small even where positions are large.
         let moved = to_source * (target.pose.position.as_dvec3() - source.pose.position.as_dvec3());
         let pixels = pixels_of(source);
-        // Views of one orientation, frustum and size have no rounding between them: pixels that stay are taken as they
-        // are.
+        // Between views of the same orientation, frustum and size, the identity avoids rounding: pixels that do not
+        // move keep their values exactly.
         let homography = if (source.pose.orientation, source.frustum, source.size)
             == (target.pose.orientation, target.frustum, target.size)
         {
@@ -67,7 +67,7 @@ impl PoseWarp {
         };
         let (c, m) = source.depth.inverse_distance_law();
         let (target_c, target_m) = target.depth.inverse_distance_law();
-        // Nearer surfaces are before a near plane or, where the target is ahead, behind its eye.
+        // Nearer surfaces are in front of a near plane or, where the target is ahead, behind its eye.
         let near = f64::from(source.depth.near).max(LEAST_COSINE * f64::from(target.depth.near) - moved.z);
         if near >= f64::from(source.depth.far) {
             return Err(EyesError::Apart);
@@ -84,13 +84,13 @@ impl PoseWarp {
         })
     }
 
-    /// Returns the warp that moves pixels by rotation alone, as if all surfaces were at an infinite distance: what
-    /// remains without depth.
+    /// Returns the warp that moves pixels by rotation alone, as if all surfaces were infinitely far away: the best
+    /// possible without depth.
     pub fn rotation_only(&self) -> PoseWarp {
         PoseWarp { epipole: DVec3::ZERO, ..*self }
     }
 
-    /// Returns the warp for images whose rows are counted from the top: what those graphics interfaces use inside.
+    /// Returns the warp for images whose rows are counted from the top, for Vulkan and wgpu.
     #[doc(hidden)]
     pub fn rows_from_top(&self) -> PoseWarp {
         let turn = |size: [u32; 2]| {
@@ -100,15 +100,15 @@ impl PoseWarp {
         PoseWarp { homography: source * self.homography * target, epipole: source * self.epipole, ..*self }
     }
 
-    /// Returns the source pixel of a surface that the target shows at a pixel, for the inverse of its distance from the
-    /// target's eye. Pixels count from the lower left corner and have their middles at +0.5.
+    /// Returns the source pixel of the surface that the target shows at a pixel, given the inverse of its distance from
+    /// the target's eye. Pixels are counted from the lower left corner and have their centres at +0.5.
     pub fn source_pixel(&self, target: DVec2, inverse_distance: f64) -> DVec2 {
         let at = self.homography * target.extend(1.0) + inverse_distance * self.epipole;
         at.truncate() / at.z
     }
 }
 
-/// Returns the matrix from a view's local space to its homogeneous pixels, whose third component is the distance.
+/// Returns the matrix from a view's local space to its homogeneous pixels, with the distance as third component.
 fn pixels_of(view: &View) -> DMat3 {
     let f = view.frustum;
     let [x, y] =
@@ -120,7 +120,7 @@ fn pixels_of(view: &View) -> DMat3 {
     )
 }
 
-/// The bounds of a head's motion from the pose of a render to that of its display.
+/// The bounds of the head's motion between the render of a frame and its display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadMotion {
     /// Largest angle of rotation, about any axis, in radians.
@@ -132,30 +132,30 @@ pub struct HeadMotion {
 /// A view with a guard band on all four sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardedView {
-    /// The wider view: what to render.
+    /// The wider view, which is to be rendered.
     pub view: View,
-    /// Lower left corner, in pixels of the wider view, of the original one.
+    /// Lower left corner of the original view, in pixels of the wider one.
     pub crop: [u32; 2],
 }
 
 impl GuardedView {
-    /// Returns the upper left corner of the original view of this size, in pixels of the wider one, for images whose
-    /// row 0 is at the top.
+    /// Returns the upper left corner of the original view, which has this size, in pixels of the wider one, for images
+    /// with row 0 at the top.
     pub fn crop_from_top(&self, original: [u32; 2]) -> [u32; 2] {
         [self.crop[0], self.view.size[1].saturating_sub(self.crop[1] + original[1])]
     }
 }
 
 impl HeadMotion {
-    /// Returns the view widened on all four sides, by whole pixels, so that it contains what the view shows after any
-    /// such motion, of surfaces at a distance of `nearest` metres or more from its eye. With the angle `a` by which a
-    /// direction turns, the tangent T of a side becomes `tan(atan T + asin(sin a * |(T, U, 1)| / |(T, 1)|))`, U being
-    /// the larger tangent of the other two sides. Translation turns directions by `asin(translation / nearest)` at
-    /// most.
+    /// Returns the view widened on all four sides, by whole pixels, to contain whatever the view can show after such a
+    /// motion, of surfaces at a distance of at least `nearest` metres from its eye. With the angle `a` by which a
+    /// direction turns, the tangent T of a side becomes `tan(atan T + asin(sin a * |(T, U, 1)| / |(T, 1)|))`, where U
+    /// is the larger tangent of the other two sides. Translation turns directions by at most
+    /// `asin(translation / nearest)`.
     ///
     /// # Errors
-    /// [`EyesError::Apart`] if it had to see further than 80 degrees to a side; those of [`PoseWarp::new`] for a view
-    /// that is none.
+    /// [`EyesError::Apart`] if the view would reach further than 80 degrees to a side; those of [`PoseWarp::new`] for
+    /// an invalid view.
     pub fn guarded(&self, view: &View, nearest: f32) -> Result<GuardedView, EyesError> {
         view.check()?;
         let shift = f64::from(self.translation) / f64::from(nearest);
@@ -174,7 +174,7 @@ impl HeadMotion {
         let beyond = |side: f64, beside: f64, per_pixel: f64| {
             let slant = turn * (side * side + beside * beside + 1.0).sqrt() / (side * side + 1.0).sqrt();
             let angle = side.atan() + slant.asin();
-            // In this form NaN fails, too.
+            // Written so that NaN fails, too.
             if angle.cos() > LEAST_COSINE {
                 Ok(((angle.tan() - side) / per_pixel - 1e-3).ceil().max(0.0) as u32)
             } else {
@@ -280,7 +280,7 @@ mod tests {
         }
         let size = DVec2::new(f64::from(wide.size[0]), f64::from(wide.size[1]));
         assert!(low.min_element() > -0.01 && (size - high).min_element() > -0.01, "{low} {high} of {size}");
-        // The bound takes the distance along the axis for that to the eye, and both motions at their worst.
+        // The bound uses the distance along the axis as that to the eye, and assumes the worst of both motions.
         assert!(low.max_element() < 30.0 && (size - high).max_element() < 30.0, "{low} {high} of {size}");
         let still = HeadMotion { rotation: 0.0, translation: 0.0 };
         assert_eq!(still.guarded(&own, 1.0).unwrap(), GuardedView { view: own, crop: [0, 0] });

@@ -1,4 +1,4 @@
-//! One eye: pose, frustum, image.
+//! An eye's pose, frustum and image.
 
 use glam::{DVec3, Mat4, Quat, Vec3, Vec4};
 
@@ -10,7 +10,7 @@ use super::{DepthRange, EyesError};
 pub struct Pose {
     /// Position in metres.
     pub position: Vec3,
-    /// Rotation from the local axes to the world's.
+    /// Rotation from local to world axes.
     pub orientation: Quat,
 }
 
@@ -18,8 +18,8 @@ impl Pose {
     /// The pose at the origin that looks along -Z.
     pub const IDENTITY: Pose = Pose { position: Vec3::ZERO, orientation: Quat::IDENTITY };
 
-    /// Returns a pose at `position` that looks at `target`, with the world's Y up. A pose that looks straight up or
-    /// down has -Z as its up direction.
+    /// Returns a pose at `position` that looks at `target`, with the world's Y axis as its up direction; -Z if it looks
+    /// straight up or down.
     pub fn look_at(position: Vec3, target: Vec3) -> Pose {
         let forward = (target - position).try_normalize().unwrap_or(Vec3::NEG_Z);
         let up = if forward.y.abs() > 0.9999 { Vec3::NEG_Z } else { Vec3::Y };
@@ -43,18 +43,18 @@ impl Pose {
         self.orientation * Vec3::NEG_Z
     }
 
-    /// Returns the same pose moved along its own axes by `offset`, in metres.
+    /// Returns the pose moved along its own axes by `offset`, in metres.
     pub fn translated_local(&self, offset: Vec3) -> Pose {
         Pose { position: self.position + self.orientation * offset, orientation: self.orientation }
     }
 
-    /// Returns the matrix from world to local space.
+    /// Returns the matrix from world space to local space.
     pub fn view_matrix(&self) -> Mat4 {
         Mat4::from_rotation_translation(self.orientation, self.position).inverse()
     }
 }
 
-/// A view frustum, by the tangents of its four half-angles. `left` and `bottom` are negative if it contains its axis.
+/// A view frustum, as the tangents of its four half-angles. `left` and `bottom` are negative if it contains its axis.
 /// [`Frustum::from_fov`] converts OpenXR's angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -88,12 +88,12 @@ impl Frustum {
         }
     }
 
-    /// Returns the width at distance 1.
+    /// Returns the width at a distance of 1.
     pub fn width(&self) -> f32 {
         self.right - self.left
     }
 
-    /// Returns the height at distance 1.
+    /// Returns the height at a distance of 1.
     pub fn height(&self) -> f32 {
         self.top - self.bottom
     }
@@ -108,7 +108,7 @@ impl Frustum {
 pub struct View {
     /// Pose of the eye.
     pub pose: Pose,
-    /// Frustum; its edges are the outer edges of the image.
+    /// Frustum, whose edges are the outer edges of the image.
     pub frustum: Frustum,
     /// Depth planes and encoding.
     pub depth: DepthRange,
@@ -155,12 +155,12 @@ impl View {
         if self.size.contains(&0) {
             return Err(EyesError::NoPixels);
         }
-        // In this form NaN fails, too.
+        // Written so that NaN fails, too.
         if !(f.width() > 0.0 && f.height() > 0.0) {
             return Err(EyesError::Empty);
         }
         let range = &self.depth;
-        // Twice the planes' product stands in projections.
+        // Projection matrices contain twice the product of the planes.
         let product = if range.far.is_finite() { range.near * range.far } else { range.near };
         let planes = range.near > 0.0 && range.near < range.far && (2.0 * product).is_finite();
         if planes { Ok(()) } else { Err(EyesError::Planes) }

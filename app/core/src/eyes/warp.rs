@@ -21,7 +21,7 @@ impl DisparityLaw {
     }
 }
 
-/// All that synthesis knows about the eyes: sizes, displacement, and the direction of depth.
+/// What synthesis needs to know about the eyes: sizes, displacement, and the direction of depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warp {
     /// Size of the rendered colour and depth in pixels.
@@ -42,13 +42,13 @@ pub struct Warp {
 const MAX_OFFSET: f64 = (1 << 20) as f64;
 
 impl Warp {
-    /// The largest displacement beyond that of the far plane, in pixels, that the shaders can store: 16 bits in units
-    /// of 1/16 pixel (`include/tiles.glsl` of `yoro-shaders`). It bounds only images that are wider, since a surface
-    /// that moves across the whole image is not seen.
+    /// The largest displacement in pixels, beyond that of the far plane, that the shaders can store: 16 bits in units
+    /// of 1/16 pixel (`include/tiles.glsl` of `yoro-shaders`). It limits only wider images, since a surface that moves
+    /// across the whole image is not visible.
     pub const MAX_DISPLACEMENT: f64 = 4095.0;
 
-    /// Returns the displacements of the far plane and of the near plane in pixels, in forward columns: the direction in
-    /// which nearer surfaces lie further along.
+    /// Returns the displacements of the far plane and of the near plane in pixels, in forward columns, which increase
+    /// in the direction in which nearer surfaces move.
     pub(crate) fn forward_displacements(&self) -> [f64; 2] {
         let (near, far) = match self.convention {
             DepthConvention::Standard => (0.0, 1.0),
@@ -63,18 +63,18 @@ impl Warp {
         })
     }
 
-    /// Returns the warp for images whose rows are counted from the top: what those graphics interfaces use inside.
+    /// Returns the warp for images whose rows are counted from the top, for Vulkan and wgpu.
     #[doc(hidden)]
     pub fn rows_from_top(&self) -> Warp {
         let [source, target] = [self.source_size[1], self.target_size[1]].map(|rows| rows as i32);
         Warp { row_offset: (target - source).saturating_sub(self.row_offset), ..*self }
     }
 
-    /// Checks that the shaders can store all displacements that land in the target. Those of
-    /// [`EyePair::synthesis_views`](super::EyePair::synthesis_views) are checked.
+    /// Checks that the shaders can store all displacements that land in the target.
+    /// [`EyePair::synthesis_views`](super::EyePair::synthesis_views) has already checked its own.
     ///
     /// # Errors
-    /// [`EyesError::Displacement`], also for numbers that are not finite.
+    /// [`EyesError::Displacement`], also if a number is not finite.
     pub fn check(&self) -> Result<(), EyesError> {
         let [far, near] = self.forward_displacements();
         let landing = (near - far).min(f64::from(self.target_size[0]) - far);

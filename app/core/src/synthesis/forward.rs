@@ -1,4 +1,4 @@
-//! Forward columns: the direction in which the shaders count columns.
+//! Forward columns: the order in which the shaders count columns.
 
 use crate::eyes::{Eye, Warp};
 

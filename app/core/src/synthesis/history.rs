@@ -1,18 +1,18 @@
-//! Where a really rendered image of the synthesized eye shows the surfaces of the present one.
+//! Where earlier renders of the synthesized eye show the surfaces of the current frame.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3, Mat4};
 
 use crate::eyes::View;
 
-/// The relation of the synthesized eye to a history: an image of that eye that was really rendered, in strips of
-/// equally many rows, each in a frame of its own. Inputs of `include/history.glsl` of `yoro-shaders`, with the layout
-/// of a std140 block.
+/// The relation of the synthesized eye to a history: a rendered image of that eye, in strips of equally many rows that
+/// may come from different frames. These are the inputs of `include/history.glsl` of `yoro-shaders`, with the layout of
+/// a std140 block.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Strips {
-    /// From a pixel of the target and its depth to a pixel of each strip's image and its depth. Zero for strips with
-    /// nothing in them.
+    /// The matrices from a target pixel and its depth to a pixel of each strip's image and its depth. Zero for empty
+    /// strips.
     pub to_history: [Mat4; Strips::MAX],
     /// Number of strips, at least 1.
     pub history_strips: i32,
@@ -22,21 +22,21 @@ pub struct Strips {
 impl Strips {
     /// The largest number of strips.
     pub const MAX: usize = 8;
-    /// A history with nothing in it.
+    /// An empty history.
     pub const NONE: Strips =
         Strips { to_history: [Mat4::ZERO; Strips::MAX], history_strips: 1, _padding: [0; 3] };
 
-    /// Returns the relation of a target to the strips of a history, from row 0 of the image on, each by the view of the
-    /// whole image from which it was rendered; `None` if nothing is there. All but the last have as many rows: those of
-    /// the image divided by the number of strips, rounded up. Views have the depth planes and encoding of the target.
-    /// Strips after the first [`Strips::MAX`] are ignored.
+    /// Returns the relation of a target to the strips of a history, in the order of their rows, from row 0 on. Each
+    /// strip is given by the view of the whole image that it was rendered with; `None` for an empty strip. All strips
+    /// but the last have the same number of rows: the image's rows divided by the number of strips, rounded up. Views
+    /// have the target's depth planes and encoding. Strips after the first [`Strips::MAX`] are ignored.
     pub fn new(target: &View, strips: &[Option<View>]) -> Strips {
         let mut relation =
             Strips { history_strips: strips.len().clamp(1, Strips::MAX) as i32, ..Strips::NONE };
         let from_target = window(target).inverse();
         for (i, view) in strips.iter().enumerate().take(Strips::MAX) {
             let Some(view) = view else { continue };
-            // Differences of positions first: they are small where positions are large.
+            // Subtract the positions first: their difference is small even where positions are large.
             let moved = (target.pose.position.as_dvec3() - view.pose.position.as_dvec3()).extend(0.0);
             let turn = |v: &View| DMat4::from_quat(v.pose.orientation.as_dquat().normalize());
             let mut between = turn(view).transpose() * turn(target);
@@ -47,8 +47,8 @@ impl Strips {
         relation
     }
 
-    /// Returns the same relation for images whose rows are counted from the other end, given their heights in pixels:
-    /// what those graphics interfaces use inside whose row 0 is at the top. The order of the strips stays.
+    /// Returns the same relation for images whose rows are counted from the other end, with these heights in pixels,
+    /// for graphics interfaces with row 0 at the top. The order of the strips does not change.
     #[doc(hidden)]
     pub fn rows_turned(&self, target_height: u32, history_height: u32) -> Strips {
         let turn = |height: u32| {
@@ -60,15 +60,15 @@ impl Strips {
         Strips { to_history: self.to_history.map(turned), ..*self }
     }
 
-    /// Sets the uniforms that a program has, which must be current.
+    /// Sets those of its uniforms that a program has. The program must be current.
     #[cfg(feature = "gl")]
     pub fn set(&self, program: &yoro_gl::Program) {
         program.set("to_history", &self.to_history[..]).set("history_strips", self.history_strips);
     }
 }
 
-/// Returns the matrix from a view's local space to its pixels, rows from the bottom, and stored depth. w is the
-/// distance.
+/// Returns the matrix from a view's local space to its pixels, with rows from the bottom, and stored depth. The
+/// result's w is the distance.
 fn window(view: &View) -> DMat4 {
     let [width, height] = view.size.map(f64::from);
     let half = DVec3::new(0.5 * width, 0.5 * height, 0.5);

@@ -1,15 +1,15 @@
-//! Which compiled passes serve a kind of warp on a device.
+//! The compiled passes for a kind of warp and a device.
 
 use super::WarpKind;
 
-/// The compiled passes of a pipeline on Vulkan or wgpu.
+/// A pipeline's compiled passes on Vulkan or wgpu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassSet {
-    /// Between parallel eyes, written for CPU rasterizers.
+    /// Between parallel eyes, for CPU rasterizers.
     GatherOnCpu,
-    /// Between parallel eyes, written for GPUs.
+    /// Between parallel eyes, for GPUs.
     GatherOnGpu,
-    /// To any view, for both.
+    /// To any view, for CPU rasterizers and GPUs.
     AnyView,
 }
 
@@ -17,7 +17,7 @@ impl PassSet {
     /// The passes between parallel eyes.
     pub const GATHER: [PassSet; 2] = [PassSet::GatherOnCpu, PassSet::GatherOnGpu];
 
-    /// Returns the passes for a kind of warp on a device, which is a CPU rasterizer if `on_cpu`.
+    /// Returns the passes for a kind of warp, on a CPU rasterizer or a GPU.
     pub fn of<W: WarpKind>(on_cpu: bool) -> PassSet {
         match (W::ANY_VIEW, on_cpu) {
             (true, _) => PassSet::AnyView,

@@ -4,13 +4,13 @@ use crate::eyes::{Eye, Warp};
 
 /// The bit of a source map entry that marks a hole.
 pub const SOURCE_MAP_HOLE: u32 = 1 << 31;
-/// Units per pixel of the column in a source map entry.
+/// Units per pixel of a source map entry's column.
 pub const SOURCE_MAP_FIXED: f32 = 65536.0;
 
 /// A decoded entry of a source map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SourceMapEntry {
-    /// True if no source pixel is seen here: the colour was filled in.
+    /// True if the pixel shows nothing of the source: its colour was filled in.
     pub hole: bool,
     /// Column in the source image, from the left. 0 is the centre of the first pixel.
     pub column: f32,

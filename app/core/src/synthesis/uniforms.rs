@@ -6,7 +6,7 @@ use glam::{IVec2, Vec2, Vec4};
 use super::forward::ForwardLaw;
 use crate::eyes::{PoseWarp, Warp};
 
-/// Columns and rows of a tile; `include/source.glsl`.
+/// Columns and rows of a tile, as in `include/source.glsl`.
 const TILE: [u32; 2] = [16, 8];
 
 /// Returns the number of tiles of an image, in columns and rows.
@@ -62,19 +62,19 @@ uniforms! {
         near_displacement: f32 = "float",
         /// Texture coordinate of the source at forward column x: `columns.x * x + columns.y`.
         columns: Vec2 = "vec2",
-        /// Source column that lands at a fragment by the offset of the displacement alone:
+        /// Source column that the displacement's offset alone moves to a fragment:
         /// `origins.x * gl_FragCoord.x + origins.y`.
         origins: Vec2 = "vec2",
         /// Place of a fragment's span in the span map: `span_place.xy * gl_FragCoord.xy + span_place.zw`. A texture
-        /// coordinate; in tiles if the source is a part of its image.
+        /// coordinate, or a number of tiles if the source is a part of its image.
         span_place: Vec4 = "vec4",
         /// Texture coordinate of a fragment's source row: `rows.x * gl_FragCoord.y + rows.y`.
         rows: Vec2 = "vec2",
-        /// Middle of a fragment's source row: `gl_FragCoord.y - first_row`.
+        /// Centre of a fragment's source row: `gl_FragCoord.y - first_row`.
         first_row: f32 = "float",
         /// Displacement of the far plane beyond the law's offset, in pixels, plus a hundredth of a pixel for rounding.
         farthest: f32 = "float",
-        /// Corner of the source in its image, if it is a part of it.
+        /// Corner of the source in its image, if the source is a part of it.
         source_origin: IVec2 = "ivec2",
         /// One pixel of the source's image in texture coordinates, if the source is a part of it.
         texel: Vec2 = "vec2",
@@ -91,13 +91,13 @@ uniforms! {
         target_origin: IVec2 = "ivec2",
         /// First row of the homography from target to source, and first component of the epipole ([`PoseWarp`]).
         to_source_x: Vec4 = "vec4",
-        /// Second row, and second component.
+        /// Second row of the homography, and second component of the epipole.
         to_source_y: Vec4 = "vec4",
-        /// Third row, and third component.
+        /// Third row of the homography, and third component of the epipole.
         to_source_w: Vec4 = "vec4",
         /// The source's `1 / distance = source_law.x + source_law.y * depth`.
         source_law: Vec2 = "vec2",
-        /// The same of the target.
+        /// The same for the target.
         target_law: Vec2 = "vec2",
         /// Stored depth, in the source, of the nearest surface that the target may show.
         nearest: f32 = "float",
@@ -107,7 +107,7 @@ uniforms! {
         source_origin: IVec2 = "ivec2",
         /// One pixel of the source's image in texture coordinates.
         texel: Vec2 = "vec2",
-        /// Nothing: blocks have multiples of 16 bytes.
+        /// Unused: blocks have a size of a multiple of 16 bytes.
         padding: Vec2 = "vec2",
     }
 }
@@ -143,7 +143,7 @@ impl Uniforms {
     }
 
     /// Returns the uniforms for these places. Columns and rows are affine in `gl_FragCoord`. Their factors are computed
-    /// here and not by each fragment, and in f64, since they are differences of large numbers.
+    /// here rather than in each fragment, and in f64, since they are differences of large numbers.
     #[doc(hidden)]
     pub fn of_part(warp: &Warp, places: &Places) -> Uniforms {
         let law = ForwardLaw::new(warp);
@@ -163,7 +163,7 @@ impl Uniforms {
             (1.0, -left - 0.5)
         };
         let first_row = row + f64::from(warp.row_offset);
-        // Tiles are whole: the maps reach beyond the image.
+        // Maps consist of whole tiles, so they may extend beyond the image.
         let [across, up] = if places.part {
             TILE.map(f64::from)
         } else {
@@ -216,24 +216,24 @@ impl PoseUniforms {
     }
 }
 
-/// Returns the size of the map of spans, which tiles of the target have: in rows of the source between parallel eyes.
+/// Returns the size of the span map: the target's size in tiles, but with the source's rows between parallel eyes.
 #[doc(hidden)]
 pub fn span_tiles(any_view: bool, source_size: [u32; 2], target_size: [u32; 2]) -> [u32; 2] {
     tiles(if any_view { target_size } else { [target_size[0], source_size[1]] })
 }
 
-/// A kind of warp, and what the interfaces besides OpenGL need of it to record its passes.
+/// A kind of warp, with what Vulkan and wgpu need to record its passes.
 #[doc(hidden)]
 pub trait WarpKind: Copy {
-    /// The block of the passes' uniforms.
+    /// The uniform block of the passes.
     type Uniforms: Pod;
-    /// True for any view: the pipeline takes hard edges without a history.
+    /// True for warps to any view, whose pipelines take hard edges only, and no history.
     const ANY_VIEW: bool;
 
     /// Returns the width and height of the source and of the target in pixels.
     fn sizes(&self) -> [[u32; 2]; 2];
 
-    /// The uniforms for images whose rows are counted from the top.
+    /// Returns the uniforms for images whose rows are counted from the top.
     fn uniforms_from_top(&self, places: &Places) -> Self::Uniforms;
 }
 
@@ -267,7 +267,7 @@ impl WarpKind for PoseWarp {
 mod tests {
     use super::*;
 
-    /// Alignment and size of a type in std140 (OpenGL ES 3.2, section 7.6.2.2).
+    /// Returns the alignment and size of a type in std140 (OpenGL ES 3.2, section 7.6.2.2).
     fn std140(glsl: &str) -> [usize; 2] {
         match glsl {
             "bool" | "int" | "float" => [4, 4],
@@ -277,7 +277,7 @@ mod tests {
         }
     }
 
-    /// A block: the file that declares it, its layout and its size.
+    /// A uniform block: the file that declares it, its layout and its size.
     type Block = (&'static str, &'static [(&'static str, &'static str, usize)], usize);
 
     const BLOCKS: [Block; 2] = [
@@ -285,7 +285,7 @@ mod tests {
         ("include/any_view.glsl", PoseUniforms::LAYOUT, size_of::<PoseUniforms>()),
     ];
 
-    /// A block's members in the shader's text: type and name.
+    /// Returns the type and name of each member of a block in the shader's text.
     fn declared(file: &str) -> Vec<(String, String)> {
         let text = yoro_shaders::assemble(file, "310 es", &[]).unwrap().text;
         let members = text.lines().filter_map(|line| line.strip_prefix("UNIFORM ")?.strip_suffix(';'));
@@ -314,7 +314,7 @@ mod tests {
     #[test]
     fn the_guide_lists_the_layout() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
-        // Not in the published package.
+        // The published package does not contain this file.
         let Ok(document) = std::fs::read_to_string(path) else { return };
         for (name, glsl, offset) in BLOCKS.iter().flat_map(|(_, layout, _)| *layout) {
             let row = format!("| {offset} | `{name}` | {glsl} |");

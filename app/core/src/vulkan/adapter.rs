@@ -23,7 +23,7 @@ impl Adapter {
         Adapter { instance, physical_device, properties }
     }
 
-    /// True if it is a CPU rasterizer.
+    /// True if the device is a CPU rasterizer.
     pub(super) fn is_cpu(&self) -> bool {
         self.properties.device_type == vk::PhysicalDeviceType::CPU
     }
@@ -33,7 +33,7 @@ impl Adapter {
         unsafe { self.instance.get_physical_device_memory_properties(self.physical_device) }
     }
 
-    /// The properties of a queue family that draws.
+    /// Returns the properties of a queue family, which must support graphics.
     pub(super) fn graphics_family(&self, index: u32) -> Result<vk::QueueFamilyProperties, VulkanError> {
         // SAFETY: `Adapter::new` asks for a physical device of this instance.
         let families =
@@ -48,7 +48,7 @@ impl Adapter {
     pub(super) fn check_options(&self, options: &Options) -> Result<(), VulkanError> {
         self.check_image_size("a largest source", options.max_source_size)?;
         self.check_image_size("a largest target", options.max_target_size)?;
-        // Integers cannot be blended, which excludes them here.
+        // Integer formats cannot be blended, so this excludes them.
         let blended = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
         self.check_format(options.color_format, blended, "a target's colour")?;
         if let Some(format) = options.depth_format {

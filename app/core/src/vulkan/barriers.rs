@@ -1,4 +1,4 @@
-//! Image barriers between what writes and what reads.
+//! Image barriers between writers and readers.
 
 use ash::vk;
 
@@ -6,8 +6,8 @@ use super::commands::Commands;
 use super::formats::{aspects, range};
 use super::{ImageState, LayerImage};
 
-/// The most barriers of a frame: three source images, two of a history, two target images, and four intermediate
-/// images.
+/// The largest number of barriers in a frame: three source images, two of a history, two target images, and four
+/// intermediate images.
 const MAX: usize = 11;
 
 /// Barriers that are recorded with one command.
@@ -56,7 +56,8 @@ impl Barriers {
     pub(super) fn record(&self, commands: &Commands) {
         let (list, none) = (&self.list[..self.count], vk::DependencyFlags::empty());
         if !list.is_empty() {
-            // No stages are not allowed here; the first stage waits for nothing, and nothing waits for the last one.
+            // Stage masks must not be empty here: the first stage waits for nothing, and nothing waits for the last
+            // one.
             let or = |stages: vk::PipelineStageFlags, none| if stages.is_empty() { none } else { stages };
             let before = or(self.before, vk::PipelineStageFlags::TOP_OF_PIPE);
             let after = or(self.after, vk::PipelineStageFlags::BOTTOM_OF_PIPE);

@@ -8,7 +8,7 @@ use bytemuck::NoUninit;
 use super::Host;
 use crate::synthesis::Strips;
 
-/// The stages that have the uniforms.
+/// The stages that read the uniforms.
 pub(super) const UNIFORM_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
@@ -33,7 +33,7 @@ impl<'a> Commands<'a> {
         Commands { device, buffer, labels }
     }
 
-    /// Records what `body` records as a group that debuggers show.
+    /// Records what `body` records, as a group that debuggers show.
     pub(super) fn group(&self, name: &CStr, body: impl FnOnce()) {
         let Some(Labels(functions)) = self.labels else { return body() };
         let label = vk::DebugUtilsLabelEXT::default().label_name(name);
@@ -44,7 +44,7 @@ impl<'a> Commands<'a> {
         unsafe { functions.cmd_end_debug_utils_label(self.buffer) };
     }
 
-    /// Gives the following draws their textures and uniforms.
+    /// Binds the textures and uniforms for the following draws.
     pub(super) fn bind(
         &self,
         layout: vk::PipelineLayout,
@@ -60,8 +60,8 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Writes the block of a history's strips, which the passes of the frame before may still read. A call carries its
-    /// own block to the one buffer: there is nothing to keep until it is executed.
+    /// Writes the block of a history's strips, which the previous frame's passes may still be reading. The data is part
+    /// of the command buffer, so one buffer suffices and nothing has to be kept until execution.
     pub(super) fn write_strips(&self, buffer: vk::Buffer, strips: &Strips) {
         let read = (vk::PipelineStageFlags::FRAGMENT_SHADER, vk::AccessFlags::UNIFORM_READ);
         let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
@@ -85,7 +85,7 @@ impl<'a> Commands<'a> {
         barrier(written, read);
     }
 
-    /// Draws a triangle that covers `area`. Inside of a render pass or dynamic rendering.
+    /// Draws a triangle that covers `area`. Must be called inside a render pass or dynamic rendering.
     pub(super) fn draw(&self, pipeline: vk::Pipeline, area: vk::Rect2D) {
         let viewport = vk::Viewport {
             x: area.offset.x as f32,
@@ -110,7 +110,7 @@ impl<'a> Commands<'a> {
 pub(super) struct Labels(ext::debug_utils::Device);
 
 impl Labels {
-    /// None where the extension is not enabled.
+    /// Returns the commands, or `None` if the extension is not enabled.
     ///
     /// # Safety
     /// The host's handles are valid.
@@ -123,7 +123,7 @@ impl Labels {
     }
 }
 
-/// True if the device has a command. ash's functions panic for commands that are missing.
+/// True if the device has a command. ash's functions panic if a command is missing.
 ///
 /// # Safety
 /// The host's handles are valid.

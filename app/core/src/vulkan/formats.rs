@@ -4,15 +4,15 @@ use ash::vk;
 
 use super::{ImageState, LayerImage};
 
-/// Format of the layers, and of their tile map and span map. Every device samples it and renders to it.
+/// Format of the layers, and of their tile map and span map. Every device can sample it and render to it.
 pub(super) const MAP: vk::Format = vk::Format::R32_UINT;
-/// Format of the tile map and the span map of sources with hard edges. Every device samples it and renders to it.
+/// Format of the tile map and span map of sources with hard edges. Every device can sample it and render to it.
 pub(super) const LAW_MAP: vk::Format = vk::Format::R32G32B32A32_UINT;
 
-/// The format in which the colour behind a source's edges is stored.
+/// Returns the format that stores the colour behind a source's edges.
 ///
-/// It has the encoding of the source's colour, because unmixing is right in the space of the resolve. Its alpha holds
-/// the share of the front surface, for which ten-bit formats have no room.
+/// It has the encoding of the source's colour, because unmixing must happen in the colour space of the resolve. Its
+/// alpha holds the share of the front surface, for which ten-bit formats lack precision.
 pub(super) fn background(color: vk::Format) -> vk::Format {
     match color {
         vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32 => {
@@ -25,7 +25,7 @@ pub(super) fn background(color: vk::Format) -> vk::Format {
     }
 }
 
-/// Returns the bytes of a texel of [`MAP`], [`LAW_MAP`] or a [`background`] format.
+/// Returns the size in bytes of a texel of [`MAP`], [`LAW_MAP`] or a [`background`] format.
 pub(super) fn texel_bytes(format: vk::Format) -> u64 {
     match format {
         LAW_MAP => 16,
@@ -52,7 +52,7 @@ pub(super) fn is_depth(format: vk::Format) -> bool {
     aspects(format).contains(vk::ImageAspectFlags::DEPTH)
 }
 
-/// Mip level 0 of one layer.
+/// Returns mip level 0 of one layer.
 pub(super) fn range(aspects: vk::ImageAspectFlags, layer: u32) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {
         aspect_mask: aspects,
@@ -63,7 +63,7 @@ pub(super) fn range(aspects: vk::ImageAspectFlags, layer: u32) -> vk::ImageSubre
     }
 }
 
-/// The state in which a source's image is sampled: in its present layout if that can be sampled.
+/// Returns the state in which a source's image is sampled: in its current layout if that allows sampling.
 pub(super) fn sampled_state(image: &LayerImage) -> ImageState {
     let layout = match image.before.layout {
         layout @ (vk::ImageLayout::GENERAL

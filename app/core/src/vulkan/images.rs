@@ -13,7 +13,7 @@ use super::{
 };
 use crate::synthesis::Edges;
 
-/// A registered source: views and descriptors of its images.
+/// A registered source: its images' views and descriptors.
 pub(super) struct Source {
     pub(super) id: SourceId,
     pub(super) images: SourceImages,
@@ -21,7 +21,7 @@ pub(super) struct Source {
     _objects: Objects,
 }
 
-/// A registered target: views of its images, and a framebuffer for render passes.
+/// A registered target: its images' views, and a framebuffer for render passes.
 pub(super) struct Target {
     pub(super) id: TargetId,
     pub(super) images: TargetImages,
@@ -67,7 +67,7 @@ fn check_sampled(
     adapter.check_format(format, sampled, role)
 }
 
-/// Checks that a target has the formats of the options and a size that the device can draw.
+/// Checks that a target has the formats of the options, and a size that the device supports.
 pub(super) fn check_target(
     adapter: &Adapter,
     options: &Options,
@@ -86,7 +86,7 @@ pub(super) fn check_target(
 }
 
 impl Source {
-    /// Makes views and descriptors of images that [`check_source`] allows.
+    /// Creates views and descriptors of images that passed [`check_source`].
     pub(super) fn new(
         mut objects: Objects,
         id: SourceId,
@@ -109,7 +109,7 @@ impl Source {
         let samples = images.sample_color.as_ref().map(&mut sampled).transpose()?;
         let history = match &images.history {
             Some(history) => [sampled(&history.depth)?, sampled(&history.color)?],
-            // Nothing is looked up there.
+            // The shaders do not read these textures.
             None => [color; 2],
         };
         let pool = |ty, count| vk::DescriptorPoolSize { ty, descriptor_count: count as u32 };
@@ -121,7 +121,7 @@ impl Source {
         let intermediate =
             |attachments: &Attachments, i| texture(attachments.color(i), ImageState::SAMPLED.layout);
         let layers = |i| passes.layers().map(|layers| intermediate(&layers.attachments, i));
-        // The shaders of these passes read none of those that are None.
+        // Textures that are `None` are not read by the shaders of this pipeline's passes.
         let textures = [
             Some(depth),
             Some(color),
@@ -139,8 +139,8 @@ impl Source {
         Ok(Source { id, images: *images, textures: set, _objects: objects })
     }
 
-    /// The images in a call with these uses, or those of their registration, and the states in which the passes read
-    /// them.
+    /// Returns each image, with its uses in a call or else those of its registration, and the state in which the passes
+    /// read it.
     pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
         let SourceImages { color, depth, sample_color, history, .. } = self.images;
         let uses = uses.map(|uses| {
@@ -162,7 +162,7 @@ fn texture(view: vk::ImageView, layout: vk::ImageLayout) -> vk::DescriptorImageI
     vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
 }
 
-/// Writes the textures from a binding on of a set that no command uses yet.
+/// Writes textures from binding `first` on, to a set that no command uses yet.
 fn write_textures(
     device: &ash::Device,
     set: vk::DescriptorSet,
@@ -183,7 +183,7 @@ fn write_textures(
     unsafe { device.update_descriptor_sets(&writes, &[]) };
 }
 
-/// Writes the strips' block of a set that no command uses yet.
+/// Writes the block of strips to a set that no command uses yet.
 fn write_strips(device: &ash::Device, set: vk::DescriptorSet, binding: usize, strips: vk::Buffer) {
     let buffer = [vk::DescriptorBufferInfo::default().buffer(strips).range(vk::WHOLE_SIZE)];
     let write = vk::WriteDescriptorSet::default()
@@ -196,7 +196,7 @@ fn write_strips(device: &ash::Device, set: vk::DescriptorSet, binding: usize, st
 }
 
 impl Target {
-    /// Makes attachments of images that [`check_target`] allows.
+    /// Creates attachments of images that passed [`check_target`].
     pub(super) fn new(
         mut objects: Objects,
         id: TargetId,
@@ -213,8 +213,8 @@ impl Target {
         Ok(Target { id, images: *images, attachments, _objects: objects })
     }
 
-    /// The images in a call with these uses, or those of their registration, and the states in which the last pass
-    /// writes them.
+    /// Returns each image, with its uses in a call or else those of its registration, and the state in which the last
+    /// pass writes it.
     pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
         let color = used(self.images.color, uses.map(|uses| uses.target_color));
         let depth = self.images.depth.map(|depth| used(depth, uses.map(|uses| uses.target_depth)));
@@ -223,7 +223,7 @@ impl Target {
     }
 }
 
-/// Returns an image with other uses, if there are any.
+/// Returns the image with these uses, if given.
 fn used(image: LayerImage, other: Option<Use>) -> LayerImage {
     match other {
         Some(Use { before, after }) => LayerImage { before, after, ..image },

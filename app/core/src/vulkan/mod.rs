@@ -1,16 +1,16 @@
 //! Synthesis on Vulkan: recorded into the caller's command buffer.
 //!
-//! [`Gather`] has the passes of `synthesis::Gather` and, for anti-aliased sources, of `synthesis::Layers`, from the
-//! same shaders; [`AnyView`] those of `synthesis::AnyView`, with a [`PoseWarp`](crate::eyes::PoseWarp) in place of the
-//! warp. Both are a [`Pipeline`]. Everything is allocated and compiled in [`Pipeline::new`],
-//! [`Pipeline::register_source`] and [`Pipeline::register_target`]; [`Pipeline::record`] only records: it allocates
+//! [`Gather`] runs the passes of `synthesis::Gather` or, for anti-aliased sources, of `synthesis::Layers`, from the
+//! same shaders. [`AnyView`] runs those of `synthesis::AnyView`, with a [`PoseWarp`](crate::eyes::PoseWarp) instead of
+//! the warp. Both are a [`Pipeline`]. [`Pipeline::new`], [`Pipeline::register_source`] and
+//! [`Pipeline::register_target`] allocate and compile everything; [`Pipeline::record`] only records: it allocates
 //! nothing, submits nothing and waits for nothing.
 //!
-//! Source and target images have Vulkan's own orientation, row 0 at the top. Give the [`Warp`](crate::eyes::Warp) as
-//! [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the
-//! bottom, are turned inside. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in
-//! that orientation. [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is
-//! the place of the dominant eye's own image in it.
+//! Source and target images have Vulkan's own orientation, with row 0 at the top. Pass the [`Warp`](crate::eyes::Warp)
+//! as [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, counted from the
+//! bottom, are converted. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in this
+//! orientation. [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is the
+//! corner of the dominant eye's own image in it.
 //!
 //! ```no_run
 //! use yoro::eyes::SynthesisViews;
@@ -110,7 +110,7 @@ pub enum VulkanError {
     /// The queue family has no graphics.
     #[error("queue family {0} has no graphics; give the family of the queue that draws")]
     QueueFamily(u32),
-    /// [`Host::dynamic_rendering`] is set, but the device has no vkCmdBeginRendering.
+    /// [`Host::dynamic_rendering`] is set, but the device does not have vkCmdBeginRendering.
     #[error(
         "the device has no vkCmdBeginRendering; enable the feature dynamicRendering, or leave dynamic_rendering off"
     )]
@@ -125,22 +125,22 @@ pub enum VulkanError {
         what: &'static str,
         /// Width and height.
         size: [u32; 2],
-        /// The largest.
+        /// The largest width and height.
         limit: [u32; 2],
     },
     /// The number of depth samples is not 2 or 4, or the device cannot sample it.
     #[error("a source's depth of {0} samples cannot be used; give 2 or 4, whichever the device can sample")]
     Samples(u32),
-    /// A source has the colour of its samples, which only [`Edges::Multisample`] uses.
+    /// A source has an image of sample colours, which only [`Edges::Multisample`] uses.
     #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
     SampleColors,
-    /// A source has a history, but [`Options::history`] is off; or a frame has one, but its source was registered
-    /// without.
+    /// A source has a history, but [`Options::history`] is off; or a frame has a history, but its source was registered
+    /// without one.
     #[error(
         "a history is for pipelines made with one, of sources registered with its images; give both, or none"
     )]
     History,
-    /// [`AnyView`] was asked for other edges than [`Edges::Hard`], or for a history.
+    /// [`AnyView`] was given edges other than [`Edges::Hard`], or a history.
     #[error("any view is synthesized from hard edges, without a history; choose these")]
     AnyView,
     /// A rectangle reaches beyond its image.
@@ -158,7 +158,7 @@ pub enum VulkanError {
         /// Width and height of the image.
         image: [u32; 2],
     },
-    /// A [`SourceId`] or [`TargetId`] is not registered, or was released.
+    /// A [`SourceId`] or [`TargetId`] was never registered, or was released.
     #[error("these images are not registered; register them, and use the id until they are released")]
     NotRegistered,
 }
@@ -183,7 +183,7 @@ impl VulkanError {
     }
 }
 
-/// The device that the caller lends, of Vulkan 1.1 or later, and its enabled features.
+/// The device that the caller lends, of Vulkan 1.1 or later, and the features that are enabled on it.
 #[derive(Clone, Copy)]
 pub struct Host<'a> {
     /// The instance, with its entry points.
@@ -192,48 +192,48 @@ pub struct Host<'a> {
     pub physical_device: vk::PhysicalDevice,
     /// The device, with its entry points, which are copied.
     pub device: &'a ash::Device,
-    /// Family of the queue to which the command buffers are submitted; it has graphics.
+    /// The family of the queue to which the command buffers are submitted; it must support graphics.
     pub queue_family: u32,
-    /// True if the feature `dynamicRendering` of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled. Without it render
+    /// True if the feature `dynamicRendering` of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled. Otherwise render
     /// passes and framebuffers are used, with the same result.
     pub dynamic_rendering: bool,
-    /// True if VK_EXT_debug_utils is enabled in the instance: passes then have labels in debuggers. A device's entry
-    /// points do not tell, since validation layers return them without the extension.
+    /// True if VK_EXT_debug_utils is enabled in the instance: passes then have labels in debuggers. The device's entry
+    /// points do not show this, since validation layers return them even without the extension.
     pub debug_utils: bool,
 }
 
 /// The formats and sizes for which pipelines and buffers are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Format of the targets' colour, any that the device can render to.
+    /// Format of the targets' colour: any format that the device can render to.
     pub color_format: vk::Format,
-    /// Format of the targets' depth, which is written in the source's encoding; None for colour only.
+    /// Format of the targets' depth, which is written in the source's encoding; `None` for colour only.
     pub depth_format: Option<vk::Format>,
     /// The largest size of a source in pixels. Smaller sources need no new pipelines or buffers.
     pub max_source_size: [u32; 2],
     /// The largest size of a target in pixels.
     pub max_target_size: [u32; 2],
-    /// The kind of source images; docs/library.md says which to choose.
+    /// The kind of source images; docs/library.md explains the choice.
     pub edges: Edges,
     /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 2 or 4, in the standard positions.
     pub samples: u32,
     /// True if sources may have a history ([`SourceImages::history`]).
     pub history: bool,
-    /// The number of frames after which [`Pipeline::pass_times`] returns the times of one: at least the frames in
-    /// flight. 0 for no times.
+    /// The number of frames after which [`Pipeline::pass_times`] returns a frame's times: at least the number of frames
+    /// in flight. 0 disables timing.
     pub timed_frames: u32,
-    /// A pipeline cache, or null.
+    /// A pipeline cache, or a null handle.
     pub pipeline_cache: vk::PipelineCache,
 }
 
 impl Options {
-    /// Returns the bytes of the intermediate buffers' texels of a [`Gather`] with these options: to plan with before
-    /// there are pipelines. Drivers add padding.
+    /// Returns the size in bytes of the intermediate buffers of a [`Gather`] with these options, for planning before a
+    /// pipeline exists. Drivers add padding.
     pub fn buffer_bytes(&self) -> u64 {
         self.bytes(false)
     }
 
-    /// Returns the same of an [`AnyView`].
+    /// Returns the same size for an [`AnyView`].
     pub fn any_view_buffer_bytes(&self) -> u64 {
         self.bytes(true)
     }
@@ -260,19 +260,20 @@ impl Default for Options {
     }
 }
 
-/// A use of an image: one side of a barrier.
+/// The use of an image, as one side of a barrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageState {
     /// Its layout.
     pub layout: vk::ImageLayout,
-    /// The stages that use it. None: nothing is waited for before, or nothing waits afterwards, as with a semaphore.
+    /// The stages that use it. Empty if nothing needs to be waited for, or nothing waits, for example because of a
+    /// semaphore.
     pub stages: vk::PipelineStageFlags,
-    /// Their kinds of access.
+    /// The kinds of access by these stages.
     pub access: vk::AccessFlags,
 }
 
 impl ImageState {
-    /// Written as a colour attachment: COLOR_ATTACHMENT_OPTIMAL.
+    /// Written as a colour attachment, in COLOR_ATTACHMENT_OPTIMAL.
     pub const COLOR_ATTACHMENT: ImageState = ImageState {
         layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         stages: vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
@@ -281,7 +282,7 @@ impl ImageState {
                 | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw(),
         ),
     };
-    /// Tested and written as a depth attachment: DEPTH_STENCIL_ATTACHMENT_OPTIMAL.
+    /// Tested and written as a depth attachment, in DEPTH_STENCIL_ATTACHMENT_OPTIMAL.
     pub const DEPTH_ATTACHMENT: ImageState = ImageState {
         layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         stages: vk::PipelineStageFlags::from_raw(
@@ -293,19 +294,19 @@ impl ImageState {
                 | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
         ),
     };
-    /// Depth that a render pass resolved from samples into this image. Vulkan does that among the colour attachments'
-    /// writes, in whatever layout.
+    /// Depth that a render pass resolved from samples into this image. In Vulkan, resolves are writes of the colour
+    /// attachment stage, whatever the layout.
     pub const RESOLVED_DEPTH: ImageState = ImageState {
         layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         ..ImageState::COLOR_ATTACHMENT
     };
-    /// Sampled by fragment shaders: SHADER_READ_ONLY_OPTIMAL.
+    /// Sampled by fragment shaders, in SHADER_READ_ONLY_OPTIMAL.
     pub const SAMPLED: ImageState = ImageState {
         layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
         stages: vk::PipelineStageFlags::FRAGMENT_SHADER,
         access: vk::AccessFlags::SHADER_READ,
     };
-    /// Its contents are not needed: UNDEFINED, for a target that is overwritten entirely, and that was drawn to,
+    /// The contents are not needed, in UNDEFINED: for a target that is overwritten entirely, and that was drawn to,
     /// sampled or copied from before.
     pub const DISCARDED: ImageState = ImageState {
         layout: vk::ImageLayout::UNDEFINED,
@@ -316,58 +317,58 @@ impl ImageState {
     };
 }
 
-/// One layer of an image, mip level 0.
+/// One layer of an image, at mip level 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerImage {
     /// A 2-D image, without multisampling unless stated otherwise. Its usage includes SAMPLED for a source,
     /// COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
     pub image: vk::Image,
-    /// Format of its view: the image's, or a compatible one if the image is MUTABLE_FORMAT.
+    /// Format of the view: the image's own, or a compatible one if the image is MUTABLE_FORMAT.
     pub format: vk::Format,
-    /// The layer of the image, 0 for an image with one layer.
+    /// The layer of the image; 0 for an image with one layer.
     pub layer: u32,
-    /// Its use before [`Pipeline::record`].
+    /// The image's use before [`Pipeline::record`].
     pub before: ImageState,
-    /// Its use afterwards, for which it is made ready.
+    /// The image's use afterwards; a barrier makes it ready for this.
     pub after: ImageState,
 }
 
 /// Colour and depth of the rendered eye and its guard band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceImages {
-    /// Colour in any format that can be filtered: R8G8B8A8_UNORM or _SRGB, A2B10G10R10_UNORM, R16G16B16A16_SFLOAT and
-    /// others. All four channels are carried over. A source that is sampled as sRGB needs an sRGB target. Unless the
-    /// edges are [`Edges::Hard`] it is resolved, with values between 0 and 1.
+    /// Colour in any format that can be filtered, such as R8G8B8A8_UNORM or _SRGB, A2B10G10R10_UNORM or
+    /// R16G16B16A16_SFLOAT. All four channels are synthesized. A source that is sampled as sRGB needs an sRGB target.
+    /// Unless the edges are [`Edges::Hard`], colour is resolved, with values between 0 and 1.
     pub color: LayerImage,
     /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or R32_SFLOAT. The stencil aspect
     /// is not read. For [`Edges::Multisample`] it has [`Options::samples`] samples.
     pub depth: LayerImage,
-    /// For [`Edges::Multisample`], the image with as many samples that the colour was resolved from, if it still
-    /// exists.
+    /// For [`Edges::Multisample`], the multisample image that the colour was resolved from, with as many samples as the
+    /// depth, if it still exists.
     pub sample_color: Option<LayerImage>,
-    /// Width and height of the images in pixels; the source is a rectangle of them.
+    /// Width and height of the images in pixels; the source may be a part of them.
     pub size: [u32; 2],
-    /// What the other eye has seen, for pipelines with [`Options::history`].
+    /// Earlier renders of the other eye, for pipelines with [`Options::history`].
     pub history: Option<HistoryImages>,
 }
 
 impl SourceImages {
-    /// Returns a source of two images of this size, without the colours of samples or a history.
+    /// Returns a source of two images of this size, without sample colours or a history.
     pub fn new(color: LayerImage, depth: LayerImage, size: [u32; 2]) -> SourceImages {
         SourceImages { color, depth, sample_color: None, size, history: None }
     }
 }
 
-/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
+/// A rendered image of the synthesized eye, from this frame or earlier ones. It shows what is in disocclusions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HistoryImages {
-    /// Colour, in any format that can be filtered: what synthesis takes, so without what is drawn over both eyes
-    /// afterwards. In the encoding of the source's.
+    /// Colour in the encoding of the source's, in any format that can be filtered: the input of synthesis, without what
+    /// is drawn over both eyes afterwards.
     pub color: LayerImage,
-    /// Depth in one of the formats of [`SourceImages::depth`], one value a pixel, with the planes and encoding of the
+    /// Depth in one of the formats of [`SourceImages::depth`], one value per pixel, with the planes and encoding of the
     /// source's.
     pub depth: LayerImage,
-    /// Width and height of the images in pixels, any.
+    /// Width and height of the images in pixels, which may differ from the source's.
     pub size: [u32; 2],
 }
 
@@ -376,14 +377,14 @@ pub struct HistoryImages {
 pub struct TargetImages {
     /// Colour, in [`Options::color_format`].
     pub color: LayerImage,
-    /// Depth, in [`Options::depth_format`]. A stencil aspect stays as it is.
+    /// Depth, in [`Options::depth_format`]. A stencil aspect is not changed.
     pub depth: Option<LayerImage>,
-    /// Width and height of the images in pixels; the target is a rectangle of them.
+    /// Width and height of the images in pixels; the target may be a part of them.
     pub size: [u32; 2],
 }
 
 impl TargetImages {
-    /// Returns a target of an image of this size, without depth.
+    /// Returns a target that is an image of this size, without depth.
     pub fn new(color: LayerImage, size: [u32; 2]) -> TargetImages {
         TargetImages { color, depth: None, size }
     }
@@ -400,12 +401,13 @@ pub struct TargetId(u32);
 macro_rules! raw_ids {
     ($($id:ident),*) => {$(
         impl $id {
-            /// Returns the id as a number, which is never 0: for interfaces of other languages.
+            /// Returns the id as a number for interfaces in other languages. It is never 0.
             pub fn to_raw(self) -> u32 {
                 self.0
             }
 
-            /// Returns the id of a number. Using one that was never given out is [`VulkanError::NotRegistered`].
+            /// Returns the id with this number. An id that was never registered gives [`VulkanError::NotRegistered`]
+            /// when it is used.
             pub fn from_raw(raw: u32) -> $id {
                 $id(raw)
             }
@@ -415,67 +417,67 @@ macro_rules! raw_ids {
 
 raw_ids!(SourceId, TargetId);
 
-/// The images and places of one call of [`Pipeline::record`]. Sizes are those of the warp.
+/// The images and rectangles of one call of [`Pipeline::record`]. The rectangles have the sizes of the warp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The images to read.
     pub source: SourceId,
-    /// Upper left corner of the rendered rectangle in them, in pixels.
+    /// Upper left corner, in pixels, of the rectangle to read.
     pub source_origin: [u32; 2],
     /// The images to write.
     pub target: TargetId,
-    /// Upper left corner of the rectangle to write in them, in pixels. Pixels outside of it stay as they are.
+    /// Upper left corner, in pixels, of the rectangle to write. Pixels outside of it are not changed.
     pub target_origin: [u32; 2],
     /// The views of the strips of [`SourceImages::history`], from the top on, as [`Strips::new`] returns them: its
-    /// rows, which are counted from the bottom, are turned inside. None: nothing is looked up.
+    /// rows, counted from the bottom, are converted. `None` if no history is to be used.
     pub history: Option<Strips>,
 }
 
 impl Frame {
-    /// Returns a frame that begins at the upper left corner of source and target, and looks nothing up.
+    /// Returns a frame at the upper left corners of source and target, without a history.
     pub fn new(source: SourceId, target: TargetId) -> Frame {
         Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None }
     }
 }
 
-/// The uses of an image before and after one call, in place of those of its [`LayerImage`].
+/// The uses of an image before and after one call, which replace those of its [`LayerImage`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Use {
-    /// Its use before.
+    /// The use before the call.
     pub before: ImageState,
-    /// Its use afterwards.
+    /// The use afterwards.
     pub after: ImageState,
 }
 
-/// The uses of all images in one call ([`Pipeline::record_with_uses`]). Those of images that are not registered do not
-/// matter.
+/// The uses of all images in one call ([`Pipeline::record_with_uses`]). Those for images that are not registered are
+/// ignored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Uses {
-    /// Of [`SourceImages::color`].
+    /// The uses of [`SourceImages::color`].
     pub source_color: Use,
-    /// Of [`SourceImages::depth`].
+    /// The uses of [`SourceImages::depth`].
     pub source_depth: Use,
-    /// Of [`SourceImages::sample_color`].
+    /// The uses of [`SourceImages::sample_color`].
     pub source_sample_color: Use,
-    /// Of [`HistoryImages::color`].
+    /// The uses of [`HistoryImages::color`].
     pub history_color: Use,
-    /// Of [`HistoryImages::depth`].
+    /// The uses of [`HistoryImages::depth`].
     pub history_depth: Use,
-    /// Of [`TargetImages::color`].
+    /// The uses of [`TargetImages::color`].
     pub target_color: Use,
-    /// Of [`TargetImages::depth`].
+    /// The uses of [`TargetImages::depth`].
     pub target_depth: Use,
 }
 
-/// GPU times of one frame's passes ([`Pipeline::pass_times`]).
+/// The GPU times of one frame's passes ([`Pipeline::pass_times`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassTimes {
-    /// The split of the source into layers; 0 with [`Edges::Hard`].
+    /// Splitting the source into layers; 0 with [`Edges::Hard`].
     pub split: std::time::Duration,
-    /// The bounds of the displacements in each tile.
+    /// Finding the bounds of the displacements in each tile.
     pub tiles: std::time::Duration,
-    /// The part of the source to search for each tile of the target.
+    /// Finding the part of the source to search for each tile of the target.
     pub spans: std::time::Duration,
-    /// The search, which writes the target.
+    /// Searching, and writing the target.
     pub march: std::time::Duration,
 }

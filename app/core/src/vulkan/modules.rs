@@ -1,7 +1,6 @@
-//! The modules that are compiled beforehand, to SPIR-V here and to WGSL in yoro-wgpu: for the tests, which compile
-//! them.
+//! The list of precompiled shader modules, in SPIR-V here and in WGSL in yoro-wgpu, for the tests that compile them.
 
-/// The name of a compiled module, the file of `yoro-shaders` that it is made of, and the macros for that.
+/// The name of a compiled module, its file in `yoro-shaders`, and the macros it is compiled with.
 pub type Module = (&'static str, &'static str, &'static [&'static str]);
 
 const MARCH: &str = "synthesis/gather/march.frag";

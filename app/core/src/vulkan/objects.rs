@@ -8,8 +8,8 @@ use ash::vk;
 use super::VulkanError;
 use super::formats::range;
 
-/// Objects of one device in the order of their creation. They are destroyed in reverse order, also when a later
-/// creation fails.
+/// Objects of one device in the order of their creation. They are destroyed in reverse order, even if a later creation
+/// fails.
 pub(super) struct Objects {
     device: Arc<ash::Device>,
     made: Vec<Object>,
@@ -84,7 +84,7 @@ impl Objects {
         &self.device
     }
 
-    /// Owns the result of the Vulkan command `call`.
+    /// Takes ownership of the result of the Vulkan command `call`.
     fn keep<T: Copy>(
         &mut self,
         call: &'static str,
@@ -103,12 +103,12 @@ impl Objects {
     ) -> Result<vk::Pipeline, VulkanError> {
         // SAFETY: `Objects::new` asks for valid descriptions that name live objects of this device.
         let made = unsafe { self.device.create_graphics_pipelines(cache, &[info], None) };
-        // One description gives one pipeline.
+        // One description creates one pipeline.
         let made = made.map(|pipelines| pipelines[0]).map_err(|(_, result)| result);
         self.keep("vkCreateGraphicsPipelines", made, Object::Pipeline)
     }
 
-    /// Returns a shader module of SPIR-V that needs no capability but Shader.
+    /// Returns a module of SPIR-V code that needs no capability other than Shader.
     pub(super) fn create_shader(&mut self, spirv: &[u8]) -> Result<vk::ShaderModule, VulkanError> {
         let words = ash::util::read_spv(&mut Cursor::new(spirv))
             .map_err(|_| VulkanError::new("vkCreateShaderModule", vk::Result::ERROR_INVALID_SHADER_NV))?;
@@ -132,7 +132,7 @@ impl Objects {
         )
     }
 
-    /// Returns a colour image with memory of its own, to be rendered to and sampled.
+    /// Returns a colour image with its own memory, to be rendered to and sampled.
     pub(super) fn create_color_image(
         &mut self,
         memory: &vk::PhysicalDeviceMemoryProperties,
@@ -158,7 +158,7 @@ impl Objects {
         Ok(image)
     }
 
-    /// Returns a buffer of uniforms with memory of its own, to be written by commands.
+    /// Returns a uniform buffer with its own memory, to be written by commands.
     pub(super) fn create_uniform_buffer(
         &mut self,
         memory: &vk::PhysicalDeviceMemoryProperties,
@@ -175,7 +175,7 @@ impl Objects {
         Ok(buffer)
     }
 
-    /// Memory on the device, where there is a type of that.
+    /// Allocates memory, on the device if a suitable type exists.
     fn allocate(
         &mut self,
         memory: &vk::PhysicalDeviceMemoryProperties,
@@ -187,7 +187,7 @@ impl Objects {
         self.allocate_memory(&info)
     }
 
-    /// Returns a set of descriptors from a pool that holds one set.
+    /// Returns a descriptor set from a new pool for one set.
     pub(super) fn allocate_descriptor_set(
         &mut self,
         layout: vk::DescriptorSetLayout,
@@ -207,7 +207,7 @@ impl Objects {
     }
 }
 
-/// The first of the allowed memory types that is on the device, or the first allowed one.
+/// Returns the first allowed memory type that is on the device, or else the first allowed one.
 fn memory_type(memory: &vk::PhysicalDeviceMemoryProperties, allowed: u32) -> u32 {
     let local = |i: u32| {
         memory.memory_types[i as usize].property_flags.contains(vk::MemoryPropertyFlags::DEVICE_LOCAL)

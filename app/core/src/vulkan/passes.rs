@@ -17,7 +17,7 @@ use crate::synthesis::{Edges, PassSet, span_tiles, tiles};
 /// All passes.
 pub(super) struct Passes {
     pub(super) rendering: Rendering,
-    /// None for hard edges.
+    /// `None` for hard edges.
     pub(super) split: Option<SplitPass>,
     pub(super) tiles: TilesPass,
     pub(super) spans: SpansPass,
@@ -27,7 +27,7 @@ pub(super) struct Passes {
 /// Finds the one or two surfaces that each source pixel shows.
 pub(super) struct SplitPass {
     resolved: Pipelines,
-    /// For sources with the samples' colours.
+    /// For sources with sample colours.
     samples: Option<Pipelines>,
     pub(super) layers: Intermediate,
 }
@@ -38,25 +38,25 @@ pub(super) struct TilesPass {
     pub(super) map: Intermediate,
 }
 
-/// Finds the source columns that each tile of the target has to search.
+/// Finds the source columns to search for each tile of the target.
 pub(super) struct SpansPass {
     pipeline: vk::Pipeline,
     pub(super) map: Intermediate,
 }
 
-/// The kinds and sizes of the intermediate buffers that [`Passes::new`] makes.
+/// Returns the kinds and sizes of the intermediate buffers that [`Passes::new`] creates.
 pub(super) fn buffers(options: &Options, any_view: bool) -> impl Iterator<Item = (PassKind, [u32; 2])> {
     let layers = (options.edges != Edges::Hard).then_some((PassKind::Layers, options.max_source_size));
     let map = map_kind(options.edges);
     map_sizes(options, any_view).map(|size| (map, size)).into_iter().chain(layers)
 }
 
-/// The kind of the maps of tiles and of spans.
+/// Returns the kind of the tile map and the span map.
 fn map_kind(edges: Edges) -> PassKind {
     if edges == Edges::Hard { PassKind::LawMap } else { PassKind::Map }
 }
 
-/// The sizes of the maps of tiles and of spans.
+/// Returns the sizes of the tile map and the span map.
 fn map_sizes(options: &Options, any_view: bool) -> [[u32; 2]; 2] {
     let [source, target] = [options.max_source_size, options.max_target_size];
     [tiles(source), span_tiles(any_view, source, target)]
@@ -117,7 +117,7 @@ impl Passes {
         })
     }
 
-    /// The result of the first pass; None for hard edges.
+    /// Returns the result of the first pass; `None` for hard edges.
     pub(super) fn layers(&self) -> Option<&Intermediate> {
         self.split.as_ref().map(|split| &split.layers)
     }
@@ -127,12 +127,12 @@ impl Passes {
     }
 }
 
-/// The recording of one frame's passes.
+/// Records one frame's passes.
 pub(super) struct Recorder<'a> {
     pub(super) commands: Commands<'a>,
     pub(super) rendering: &'a Rendering,
     pub(super) timer: Option<&'a Timer>,
-    /// True unless the source fills its images and the intermediate buffers.
+    /// False if the source fills its images and the intermediate buffers.
     pub(super) part: bool,
 }
 
@@ -161,7 +161,7 @@ fn area([x, y]: [u32; 2], [width, height]: [u32; 2]) -> vk::Rect2D {
 }
 
 impl SplitPass {
-    /// `size` is the source's in pixels; `with_samples` is true for sources with the samples' colours.
+    /// `size` is the source's size in pixels; `with_samples` is true for sources with sample colours.
     pub(super) fn record(&self, recorder: &Recorder, size: [u32; 2], with_samples: bool) {
         let pipelines = self.samples.filter(|_| with_samples).unwrap_or(self.resolved);
         recorder.intermediate(c"yoro split", pipelines.get(recorder.part), &self.layers, size);
@@ -169,14 +169,14 @@ impl SplitPass {
 }
 
 impl TilesPass {
-    /// `size` is the source's in tiles.
+    /// `size` is the source's size in tiles.
     pub(super) fn record(&self, recorder: &Recorder, size: [u32; 2]) {
         recorder.intermediate(c"yoro tiles", self.pipelines.get(recorder.part), &self.map, size);
     }
 }
 
 impl SpansPass {
-    /// `size` is that of [`span_tiles`].
+    /// `size` is the size that [`span_tiles`] returns.
     pub(super) fn record(&self, recorder: &Recorder, size: [u32; 2]) {
         recorder.intermediate(c"yoro spans", self.pipeline, &self.map, size);
     }

@@ -21,45 +21,47 @@ use super::{
 use crate::eyes::{PoseWarp, Warp};
 use crate::synthesis::{Edges, PassSet, Places, Strips, WarpKind, span_tiles, tiles};
 
-/// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources those of
-/// `synthesis::Layers`, with the split into layers before them.
+/// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources, those of
+/// `synthesis::Layers`, which split the source into layers first.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of `synthesis::AnyView`: tile bounds, tile spans, march. It draws a view in any pose near the source's,
-/// of sources with [`Edges::Hard`] and without a history.
+/// The passes of `synthesis::AnyView`: tile bounds, tile spans, march. They draw a view in any pose near the source's,
+/// from sources with [`Edges::Hard`] and without a history.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// The passes of a kind of warp: [`Gather`] or [`AnyView`].
+/// The passes for a kind of warp: [`Gather`] or [`AnyView`].
 ///
-/// Call its methods from one thread at a time. All frames share the intermediate buffers, which barriers guard: the
-/// commands must be executed in the order of their recording, by queues of one family, one after the other.
+/// Call the methods from one thread at a time. All frames share the intermediate buffers, which are protected by
+/// barriers only: the commands must be executed in the order in which they were recorded, by queues of one family, one
+/// after the other.
 pub struct Pipeline<W> {
     adapter: Adapter,
     device: Arc<ash::Device>,
     options: Options,
     layouts: Layouts,
     passes: Passes,
-    /// The block of a history's strips.
+    /// The uniform buffer for a history's strips.
     strips: Option<vk::Buffer>,
     timer: Option<Timer>,
     labels: Option<Labels>,
     sources: Vec<Source>,
     targets: Vec<Target>,
-    /// The id that was given out last.
+    /// The id that was assigned last.
     last_id: u32,
     warp: PhantomData<W>,
-    // Last: destroyed after the objects of sources and targets.
+    // The last field, so that these objects are destroyed after those of sources and targets.
     _objects: Objects,
 }
 
 impl Gather {
-    /// Does what [`Gather::new`] does on another kind of device: for tests of shaders that this device would not use.
+    /// Does the same as [`Gather::new`], with the passes for any kind of device: for tests of shaders that this device
+    /// would not use.
     ///
     /// # Errors
-    /// As [`Gather::new`].
+    /// Those of [`Gather::new`].
     ///
     /// # Safety
-    /// As [`Gather::new`].
+    /// Those of [`Gather::new`].
     #[doc(hidden)]
     pub unsafe fn with_passes(
         host: &Host,
@@ -72,16 +74,16 @@ impl Gather {
 }
 
 impl<W: WarpKind> Pipeline<W> {
-    /// Makes everything that does not depend on the images: pipelines and intermediate buffers.
+    /// Creates everything that does not depend on the images: pipelines and intermediate buffers.
     ///
     /// # Errors
     /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::Samples`], [`VulkanError::QueueFamily`] and
-    /// [`VulkanError::DynamicRendering`] for what the device cannot do; [`VulkanError::AnyView`] for what [`AnyView`]
-    /// cannot; errors of Vulkan's commands.
+    /// [`VulkanError::DynamicRendering`] for what the device does not support; [`VulkanError::AnyView`] for what
+    /// [`AnyView`] does not support; errors of Vulkan's commands.
     ///
     /// # Safety
-    /// The host's handles are valid, belong together and outlive the returned value. When that is dropped, no command
-    /// that it has recorded is pending.
+    /// The host's handles are valid, belong together and outlive the returned value. When the value is dropped, no
+    /// command that it has recorded is pending.
     pub unsafe fn new(host: &Host, options: &Options) -> Result<Pipeline<W>, VulkanError> {
         // SAFETY: the caller's handles are valid and belong together.
         let adapter = unsafe { Adapter::new(host) };
@@ -91,7 +93,7 @@ impl<W: WarpKind> Pipeline<W> {
     }
 
     /// # Safety
-    /// As [`Pipeline::new`].
+    /// Those of [`Pipeline::new`].
     unsafe fn with_adapter(
         host: &Host,
         adapter: Adapter,
@@ -139,18 +141,18 @@ impl<W: WarpKind> Pipeline<W> {
         self.last_id.checked_add(1).unwrap_or(1)
     }
 
-    /// Makes views and descriptors of images to read from.
+    /// Creates views and descriptors of images to read from.
     ///
     /// # Errors
     /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::SampleColors`] and [`VulkanError::History`];
     /// errors of Vulkan's commands.
     ///
     /// # Safety
-    /// The images are as [`SourceImages`] and [`LayerImage`](super::LayerImage) say, and live until this id is released
-    /// or the pipeline is dropped.
+    /// The images are as [`SourceImages`] and [`LayerImage`](super::LayerImage) describe, and live until the id is
+    /// released or the pipeline is dropped.
     pub unsafe fn register_source(&mut self, images: &SourceImages) -> Result<SourceId, VulkanError> {
         images::check_source(&self.adapter, &self.options, images)?;
-        // SAFETY: the caller's images are live, and outlive the objects, which go when the id is released.
+        // SAFETY: the caller's images are live, and outlive the objects, which are destroyed when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
         let id = SourceId(self.next_id());
         let source = Source::new(objects, id, images, self.layouts.textures, &self.passes, self.strips)?;
@@ -159,17 +161,17 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(id)
     }
 
-    /// Makes views of images to write, and a framebuffer where render passes are used.
+    /// Creates views of images to write to, and a framebuffer if render passes are used.
     ///
     /// # Errors
     /// [`VulkanError::OtherFormat`] and [`VulkanError::Size`]; errors of Vulkan's commands.
     ///
     /// # Safety
-    /// The images are as [`TargetImages`] and [`LayerImage`](super::LayerImage) say, and live until this id is released
-    /// or the pipeline is dropped.
+    /// The images are as [`TargetImages`] and [`LayerImage`](super::LayerImage) describe, and live until the id is
+    /// released or the pipeline is dropped.
     pub unsafe fn register_target(&mut self, images: &TargetImages) -> Result<TargetId, VulkanError> {
         images::check_target(&self.adapter, &self.options, images)?;
-        // SAFETY: the caller's images are live, and outlive the objects, which go when the id is released.
+        // SAFETY: the caller's images are live, and outlive the objects, which are destroyed when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
         let id = TargetId(self.next_id());
         let target = Target::new(objects, id, images, &self.passes)?;
@@ -178,7 +180,7 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(id)
     }
 
-    /// Releases what was made for a source. Ignores an id that is not registered.
+    /// Releases the objects of a source. Ignores an id that is not registered.
     ///
     /// # Safety
     /// No command that was recorded with the id is pending.
@@ -186,7 +188,7 @@ impl<W: WarpKind> Pipeline<W> {
         self.sources.retain(|source| source.id != id);
     }
 
-    /// Releases what was made for a target. Ignores an id that is not registered.
+    /// Releases the objects of a target. Ignores an id that is not registered.
     ///
     /// # Safety
     /// No command that was recorded with the id is pending.
@@ -197,18 +199,18 @@ impl<W: WarpKind> Pipeline<W> {
     /// Records the passes.
     ///
     /// Barriers bring the images from [`LayerImage::before`](super::LayerImage::before) to the states that the passes
-    /// need, and on to [`LayerImage::after`](super::LayerImage::after). An image gets no barrier where its layout stays
-    /// and nothing was or will be written. Changes the pipeline, descriptor set 0, push constants, viewport and scissor
-    /// of the command buffer's graphics bind point.
+    /// need, and then to [`LayerImage::after`](super::LayerImage::after). An image gets no barrier if its layout stays
+    /// the same and neither side writes to it. Changes the pipeline, descriptor set 0, push constants, viewport and
+    /// scissor of the command buffer's graphics bind point.
     ///
     /// # Errors
-    /// [`VulkanError::NotRegistered`], [`VulkanError::Size`], [`VulkanError::Rectangle`] and [`VulkanError::History`];
-    /// nothing is recorded then.
+    /// [`VulkanError::NotRegistered`], [`VulkanError::Size`], [`VulkanError::Rectangle`] and [`VulkanError::History`].
+    /// Nothing is recorded in these cases.
     ///
     /// # Safety
-    /// The command buffer is of this device, in the recording state, outside of render passes and dynamic rendering,
-    /// and is submitted to the host's queue family. When it is executed, the images are in the state
-    /// [`LayerImage::before`](super::LayerImage::before), and conditional rendering is not active.
+    /// The command buffer belongs to this device, is in the recording state, outside of render passes and dynamic
+    /// rendering, and is submitted to the host's queue family. When it is executed, the images are in the state
+    /// [`LayerImage::before`](super::LayerImage::before), and conditional rendering is inactive.
     pub unsafe fn record(
         &mut self,
         commands: vk::CommandBuffer,
@@ -219,8 +221,8 @@ impl<W: WarpKind> Pipeline<W> {
         unsafe { self.record_passes(commands, frame, warp, None) }
     }
 
-    /// Does what [`Pipeline::record`] does for images whose uses before and after differ from frame to frame. A source
-    /// is still sampled in the layout that its [`LayerImage::before`](super::LayerImage::before) asks for.
+    /// Does the same as [`Pipeline::record`], for images whose uses before and after differ from frame to frame. A
+    /// source is still sampled in the layout that its [`LayerImage::before`](super::LayerImage::before) leads to.
     ///
     /// # Errors
     /// Those of [`Pipeline::record`].
@@ -239,7 +241,7 @@ impl<W: WarpKind> Pipeline<W> {
     }
 
     /// # Safety
-    /// As [`Pipeline::record_with_uses`], or [`Pipeline::record`].
+    /// Those of [`Pipeline::record_with_uses`], or of [`Pipeline::record`].
     unsafe fn record_passes(
         &mut self,
         commands: vk::CommandBuffer,
@@ -324,7 +326,7 @@ impl<W: WarpKind> Pipeline<W> {
         for (image, state) in source.images(uses).chain(target.images(uses)) {
             barriers.registered(&image, image.before, state);
         }
-        // The frame before has read the intermediate buffers; what they hold is not needed.
+        // The previous frame has read the intermediate buffers; their contents are not needed.
         let read = ImageState { layout: vk::ImageLayout::UNDEFINED, ..ImageState::SAMPLED };
         for &image in self.passes.intermediates().flat_map(|intermediate| &intermediate.images) {
             barriers.intermediate(image, read, ImageState::COLOR_ATTACHMENT);
@@ -332,15 +334,15 @@ impl<W: WarpKind> Pipeline<W> {
         barriers.record(commands);
     }
 
-    /// Returns the bytes of the intermediate buffers.
+    /// Returns the size of the intermediate buffers in bytes.
     pub fn buffer_bytes(&self) -> u64 {
         self.passes.intermediates().map(|intermediate| intermediate.bytes).sum()
     }
 
     /// Returns the times of the passes in the frame that was recorded [`Options::timed_frames`] calls of
-    /// [`Pipeline::record`] ago. Call it before the next frame takes that place. Does not wait.
+    /// [`Pipeline::record`] ago. Call it before recording the next frame, which reuses its queries. Does not wait.
     ///
-    /// None before there are so many frames, and where the queue family or the options give no times.
+    /// Returns `None` if fewer frames have been recorded, or if the queue family or the options provide no times.
     ///
     /// # Errors
     /// Those of vkGetQueryPoolResults, such as [`VulkanError::DeviceLost`].
@@ -354,7 +356,7 @@ impl<W: WarpKind> Pipeline<W> {
     }
 }
 
-/// Brings the caller's images to the states that follow.
+/// Brings the caller's images to the states they need afterwards.
 fn release_images(commands: &Commands, source: &Source, target: &Target, uses: Option<&Uses>) {
     let mut barriers = Barriers::new();
     for (image, state) in source.images(uses).chain(target.images(uses)) {

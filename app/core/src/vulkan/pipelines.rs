@@ -7,16 +7,17 @@ use super::objects::Objects;
 use super::targets::{PassKind, Rendering};
 use super::{Options, VulkanError, shaders};
 
-/// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map, layers
-/// and the colour behind them, colour of the samples. Hard edges have no layers, and resolved sources have no samples.
+/// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map, layers,
+/// the colour behind them, and sample colours. Hard edges have no layers, and resolved sources have no samples.
 pub(super) const TEXTURES: usize = 7;
-/// The binding of the source's colour, which is filtered. All others but a history's are fetched as they are.
+/// The binding of the source's colour, which is filtered. All others, except a history's colour, are fetched
+/// unfiltered.
 const COLOR: usize = 1;
-/// The first of three bindings with a history: its depth, its colour, which is filtered, and the block of its strips.
+/// The first of a history's three bindings: its depth, its colour, which is filtered, and the block of its strips.
 pub(super) const HISTORY: usize = 10;
 const HISTORY_COLOR: usize = HISTORY + 1;
 
-/// The layouts that all pipelines have.
+/// The layouts that all pipelines share.
 #[derive(Clone, Copy)]
 pub(super) struct Layouts {
     pub(super) textures: vk::DescriptorSetLayout,
@@ -24,11 +25,11 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Layouts for passes with so many bytes of uniforms.
+    /// Creates the layouts, for passes with this number of bytes of uniforms.
     pub(super) fn new(objects: &mut Objects, uniforms: usize, history: bool) -> Result<Layouts, VulkanError> {
         let textures = texture_layout(objects, history)?;
         let layouts = [textures];
-        // Every device has 128 bytes of push constants.
+        // Every device supports 128 bytes of push constants.
         let constants =
             [vk::PushConstantRange { stage_flags: UNIFORM_STAGES, offset: 0, size: uniforms as u32 }];
         let info =
@@ -75,7 +76,7 @@ fn sampler(filter: vk::Filter) -> vk::SamplerCreateInfo<'static> {
 /// The pipelines of a pass.
 #[derive(Clone, Copy)]
 pub(super) struct Pipelines {
-    /// For sources that fill their images and intermediate buffers.
+    /// For sources that fill their images and the intermediate buffers.
     whole: vk::Pipeline,
     /// For all others: `PART` in the shaders.
     part: vk::Pipeline,
@@ -90,7 +91,7 @@ impl Pipelines {
 /// Makes pipelines that differ in their fragment shaders and attachments.
 pub(super) struct PipelineFactory<'a> {
     pub(super) objects: &'a mut Objects,
-    /// The shader modules, which are not needed any more once the pipelines are made.
+    /// The shader modules, which are only needed until the pipelines are created.
     pub(super) shaders: Objects,
     pub(super) rendering: &'a Rendering,
     pub(super) layout: vk::PipelineLayout,
@@ -107,7 +108,7 @@ impl PipelineFactory<'_> {
         })
     }
 
-    /// Returns a pipeline that runs a fragment shader in the whole viewport.
+    /// Returns a pipeline that runs a fragment shader over the whole viewport.
     pub(super) fn pipeline(
         &mut self,
         fragment: &[u8],

@@ -1,12 +1,12 @@
-//! The shaders of the passes as SPIR-V, compiled beforehand from the files of `yoro-shaders`: `cargo tools spirv`.
+//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo tools spirv`.
 
 use crate::synthesis::{Edges, PassSet};
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
-/// The first pass for depth and colour of all samples.
+/// The first pass, for depth and colour of all samples.
 pub(super) const SPLIT_SAMPLES: &[u8] = include_bytes!("spirv/split-samples.spv");
 
-/// Returns the first pass for resolved colour; None for hard edges.
+/// Returns the first pass, for resolved colour; `None` for hard edges.
 pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
     match edges {
         Edges::Hard => None,
@@ -16,7 +16,7 @@ pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
     }
 }
 
-/// Returns the pass that finds the bounds of tiles.
+/// Returns the pass that finds the bounds of each tile.
 pub(super) fn tiles(edges: Edges, passes: PassSet) -> &'static [u8] {
     match (edges, passes) {
         (_, PassSet::AnyView) => include_bytes!("spirv/any-view-tiles.spv"),
@@ -26,7 +26,7 @@ pub(super) fn tiles(edges: Edges, passes: PassSet) -> &'static [u8] {
     }
 }
 
-/// Returns the pass that finds what each tile of the target has to search.
+/// Returns the pass that finds the source columns to search for each tile of the target.
 pub(super) fn spans(edges: Edges, passes: PassSet) -> &'static [u8] {
     match (edges, passes) {
         (_, PassSet::AnyView) => include_bytes!("spirv/any-view-spans.spv"),
@@ -43,9 +43,9 @@ pub(super) fn march_vertex(passes: PassSet) -> &'static [u8] {
     }
 }
 
-/// Returns the last pass, which writes depth or does not, and looks disocclusions up in a history or does not.
+/// Returns the last pass, with or without writing depth and using a history.
 pub(super) fn march(edges: Edges, passes: PassSet, depth: bool, history: bool) -> &'static [u8] {
-    /// The four modules of a source's kind.
+    /// Selects among the four modules for one kind of source.
     macro_rules! of {
         ($name:literal) => {
             match (depth, history) {
@@ -74,7 +74,7 @@ mod tests {
 
     use crate::vulkan::modules::{MODULES, Module};
 
-    /// Vulkan 1.0's SPIR-V, optimized for size, without names and lines.
+    /// SPIR-V for Vulkan 1.0, optimized for size, without names and line numbers.
     const ARGUMENTS: [&str; 3] = ["-V", "-Os", "-g0"];
 
     fn source((name, file, macros): &Module) -> Source {

@@ -1,4 +1,4 @@
-//! The render targets of the passes, by dynamic rendering or by render passes.
+//! The render targets of the passes, with dynamic rendering or render passes.
 
 use ash::{khr, vk};
 
@@ -13,7 +13,7 @@ use crate::synthesis::Edges;
 pub(super) enum PassKind {
     /// One 32-bit integer for each tile of layers.
     Map,
-    /// Four of them for each tile of a source with hard edges, whose tiles have laws.
+    /// Four 32-bit integers for each tile of a source with hard edges, whose tiles have laws.
     LawMap,
     /// Two colour attachments: the surfaces that each source pixel shows, and the colour behind them.
     Layers,
@@ -44,7 +44,7 @@ impl PassKind {
     }
 }
 
-/// The way in which passes begin and end.
+/// How passes begin and end.
 pub(super) enum Rendering {
     Dynamic { begin: vk::PFN_vkCmdBeginRendering, end: vk::PFN_vkCmdEndRendering },
     Passes(RenderPasses),
@@ -54,28 +54,28 @@ pub(super) enum Rendering {
 pub(super) struct RenderPasses {
     map: vk::RenderPass,
     law_map: vk::RenderPass,
-    /// Null for hard edges, which have no layers.
+    /// A null handle for hard edges, which have no layers.
     layers: vk::RenderPass,
     target: vk::RenderPass,
 }
 
-/// The views that a pass draws into. Render passes have a framebuffer of them.
+/// The views that a pass draws into, with a framebuffer of them for render passes.
 #[derive(Clone, Copy)]
 pub(super) struct Attachments {
     kind: PassKind,
-    /// The second one for [`PassKind::Layers`] only.
+    /// The second view is only used for [`PassKind::Layers`].
     colors: [vk::ImageView; 2],
     depth: Option<vk::ImageView>,
     framebuffer: vk::Framebuffer,
 }
 
-/// The result of one pass that later passes read.
+/// The result of a pass that later passes read.
 pub(super) struct Intermediate {
     pub(super) images: Vec<vk::Image>,
     pub(super) attachments: Attachments,
     /// Width and height in texels.
     pub(super) size: [u32; 2],
-    /// Memory of its texels.
+    /// The size of the texels in bytes.
     pub(super) bytes: u64,
 }
 
@@ -103,10 +103,10 @@ impl Rendering {
         }))
     }
 
-    /// The commands of VK_KHR_dynamic_rendering, or those of Vulkan 1.3.
+    /// Loads the commands of VK_KHR_dynamic_rendering, or those of Vulkan 1.3.
     ///
     /// # Safety
-    /// As [`Rendering::new`].
+    /// Those of [`Rendering::new`].
     unsafe fn dynamic(host: &Host) -> Result<Rendering, VulkanError> {
         // SAFETY: the caller's handles are valid.
         let has = |name| unsafe { has_command(host, name) };
@@ -122,7 +122,7 @@ impl Rendering {
         }
     }
 
-    /// The render pass of a kind; null for dynamic rendering.
+    /// Returns the render pass of a kind; a null handle for dynamic rendering.
     pub(super) fn render_pass(&self, kind: PassKind) -> vk::RenderPass {
         let Rendering::Passes(passes) = self else { return vk::RenderPass::null() };
         match kind {
@@ -133,7 +133,7 @@ impl Rendering {
         }
     }
 
-    /// Attachments of views that have the formats of the kind.
+    /// Returns attachments of views, which must have the formats of the kind.
     pub(super) fn attachments(
         &self,
         objects: &mut Objects,
@@ -160,7 +160,7 @@ impl Rendering {
         Ok(Attachments { kind, colors: [color(0), color(1)], depth, framebuffer })
     }
 
-    /// Draws over an area of the attachments, which are in the layouts of attachments.
+    /// Draws over an area of the attachments, whose images must be in attachment layouts.
     pub(super) fn draw(
         &self,
         commands: &Commands,
@@ -193,7 +193,7 @@ impl Rendering {
 }
 
 impl Attachments {
-    /// The view of a colour attachment.
+    /// Returns the view of a colour attachment.
     pub(super) fn color(&self, index: usize) -> vk::ImageView {
         self.colors[index]
     }
@@ -226,7 +226,7 @@ impl Attachments {
     }
 }
 
-/// Returns a render pass that changes no layouts and keeps stencil.
+/// Returns a render pass that changes no layouts and keeps the stencil contents.
 fn render_pass(
     objects: &mut Objects,
     kind: PassKind,

@@ -20,19 +20,19 @@ pub(super) enum Stamp {
 
 const STAMPS: u32 = Stamp::March as u32 + 1;
 
-/// A ring of timestamps, in which each frame takes the place of one that was recorded a round ago.
+/// A ring of timestamps, in which each frame replaces the one that was recorded `frames` frames ago.
 pub(super) struct Timer {
     pool: vk::QueryPool,
     frames: u32,
     recorded: u64,
-    /// Nanoseconds of a tick.
+    /// Nanoseconds per tick.
     period: f64,
-    /// The bits of a timestamp that count.
+    /// The valid bits of a timestamp.
     mask: u64,
 }
 
 impl Timer {
-    /// Returns a timer; `None` for `frames` 0, and for queue families without timestamps.
+    /// Returns a timer, or `None` if `frames` is 0 or the queue family has no timestamps.
     pub(super) fn new(
         objects: &mut Objects,
         frames: u32,
@@ -64,7 +64,7 @@ impl Timer {
         self.stamp(commands, Stamp::Begin);
     }
 
-    /// Takes the time when everything before is done, so that earlier work does not count as the passes'.
+    /// Takes the time when everything recorded before has finished, so that earlier work does not count as the pass's.
     pub(super) fn stamp(&self, commands: &Commands, stamp: Stamp) {
         let (stage, query) = (vk::PipelineStageFlags::BOTTOM_OF_PIPE, self.first_query() + stamp as u32);
         // SAFETY: `Commands::new` asks for a recording buffer; the query is in the pool and `begin` has reset it.
@@ -76,7 +76,7 @@ impl Timer {
         self.recorded += 1;
     }
 
-    /// The times of the frame whose place the next frame takes. None before there is one.
+    /// Returns the times of the frame whose place the next frame takes; `None` before there is one.
     ///
     /// # Safety
     /// The commands of that frame have been executed on `device`.

@@ -9,18 +9,18 @@ use yoro::synthesis::*;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, GlError, Profiling, RenderTarget, Texture};
 
-/// A view of `size`, and one moved and turned against it.
+/// Returns a view of `size`, and a moved and turned copy of it.
 fn views(size: [u32; 2], way: Vec3, turn: [f32; 3], convention: DepthConvention) -> [View; 2] {
     let source = pair(size, Eye::Left, 0.0, convention).view(Eye::Left);
     [source, moved(&source, (way, turn))]
 }
 
-/// The march in f64, over all samples of the segment: the colour of a target pixel, and its stored depth.
+/// Marches in f64 over all samples of the segment. Returns the colour of a target pixel, and its stored depth.
 fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64; 4], f64) {
     let size = warp.source_size.map(|n| n as usize);
     let [c, m] = warp.source_law;
     let ray = warp.homography * pixel.extend(1.0);
-    // The source pixel at an inverse distance from the source, by that from the target.
+    // Converts the inverse distance from the source to that from the target, and that to a source pixel.
     let from_target = |s: f64| s * ray.z / (1.0 - s * warp.epipole.z);
     let at = |depth: f64| warp.source_pixel(pixel, from_target(c + m * depth)) - 0.5;
     let (far_at, near_at) = (at(warp.far_depth), at(warp.nearest));
@@ -111,7 +111,7 @@ fn reference(rgba: &[u8], depth: &[f32], warp: &PoseWarp, pixel: DVec2) -> ([f64
     (seen, stored.clamp(0.0, 1.0))
 }
 
-/// The near plane is where surfaces are, or much nearer, so that spans pass over most of each segment.
+/// With the near plane at the surfaces, or much nearer, so that spans skip most of each segment.
 #[test]
 fn any_view_is_its_reference() {
     on_every_backend(|gl| {
@@ -132,13 +132,13 @@ fn any_view_is_its_reference() {
                     let i = (y * 90 + x) as usize;
                     let off =
                         got.rgba[i * 4..][..4].iter().zip(color).map(|(a, b)| (f64::from(*a) - b).abs());
-                    // Filters have 8 bits of fraction, for each of two directions.
+                    // Filters have 8 bits of fraction in each of two directions.
                     let same =
                         off.fold(0.0, f64::max) < 3.0 && (f64::from(got.depth[i]) - stored).abs() < 2e-5;
                     different += u32::from(!same);
                 }
             }
-            // Positions within rounding of a decision may go either way.
+            // Positions within rounding of a decision may differ.
             let what = format!("{way} {turn:?}, near plane at {near} m");
             assert!(different <= 90 * 75 / 500, "{what}: {different} pixels differ");
         }
@@ -160,12 +160,13 @@ fn the_same_view_is_the_identity() {
     });
 }
 
-/// A picture whose colours are smooth, by the place in a view's image plane.
+/// Returns a smoothly varying colour for a place in a view's image plane.
 fn smooth(at: DVec2) -> [f64; 4] {
     [at.x * 1.7, at.y * 1.3, (at.x * 0.11).sin() * 60.0 + (at.y * 0.07).cos() * 50.0 + 120.0, 255.0]
 }
 
-/// Depth of a plane that the source sees at inverse distance `s.x * x + s.y * y + s.z` at its pixel (x, y).
+/// Returns colour and depth of a plane whose inverse distance is `s.x * x + s.y * y + s.z` at the source's pixel (x,
+/// y).
 fn plane(view: &View, s: [f64; 3]) -> (Vec<u8>, Vec<f32>) {
     let (c, m) = view.depth.inverse_distance_law();
     let pixels = (0..view.size[0] * view.size[1])
@@ -190,7 +191,7 @@ fn a_plane_moves_exactly() {
                     let (h, e, s) = (warp.homography * pixel.extend(1.0), warp.epipole, glam::DVec3::from(s));
                     let k = s.dot(h) / (1.0 - s.dot(e));
                     let at = warp.source_pixel(pixel, k);
-                    // Samples beside it are in the image.
+                    // Samples beside it must be in the image, too.
                     if at.min_element() < 2.0 || at.x > 138.0 || at.y > 118.0 {
                         continue;
                     }
@@ -209,7 +210,7 @@ fn a_plane_moves_exactly() {
     });
 }
 
-/// To another view, and from that one's colour and depth back: where both see, the picture is the first one.
+/// Synthesizes another view, and from its colour and depth the first one again: where both see, it equals the original.
 #[test]
 fn forward_and_back_is_the_same_picture() {
     on_every_backend(|gl| {
@@ -219,7 +220,7 @@ fn forward_and_back_is_the_same_picture() {
             let there = run(gl, &rgba, &depth, &PoseWarp::new(&source, &target).unwrap(), None);
             let back = run(gl, &there.rgba, &there.depth, &PoseWarp::new(&target, &source).unwrap(), None);
             for i in 0..140 * 120usize {
-                // Off the borders, which the other view does not see.
+                // Away from the borders, which the other view does not see.
                 if (30..110).contains(&(i % 140)) && (30..90).contains(&(i / 140)) {
                     for c in 0..4 {
                         let (got, want) = (back.rgba[i * 4 + c], rgba[i * 4 + c]);
@@ -256,7 +257,7 @@ fn parallel_eyes_are_those_of_gather() {
                 .zip(want.chunks(4))
                 .map(|(a, b)| (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap())
                 .collect();
-            // Every pixel has a colour of its own: a step of colour is a 250th of a pixel.
+            // Every pixel has its own colour: one step of colour is a 250th of a pixel.
             let different = off.iter().filter(|&&off| off > 2).count();
             println!("case {seed}: {different} of {} pixels differ by more than 2 of 255", off.len());
             assert!(different * 1000 <= off.len(), "case {seed}: {different} of {}", off.len());
@@ -280,7 +281,7 @@ fn a_part_is_what_the_whole_would_be() {
                 depths[at..][..61].copy_from_slice(&depth[y * 61..][..61]);
             }
             let got = run(gl, &around, &depths, &warp, Some(part));
-            // A filter's fraction may round the other way.
+            // A filter's fraction may be rounded differently.
             assert!(got.rgba.iter().zip(&whole.rgba).all(|(a, b)| a.abs_diff(*b) <= 2), "{way} {turn:?}");
             assert_eq!(got.depth, whole.depth, "{way} {turn:?}");
         }
@@ -296,8 +297,8 @@ fn what_cannot_be_synthesized_is_refused() {
     });
 }
 
-/// Measures the passes of a head that has moved by 2 cm, with the near plane at three distances, whose surfaces stay
-/// where they are.
+/// Measures the passes for a head that has moved by 2 cm, with the near plane at three distances and surfaces that stay
+/// in place.
 #[test]
 #[ignore = "measures: cargo test -p yoro --test synthesis -- --ignored --nocapture cost_of_any_view"]
 fn cost_of_any_view() {
@@ -305,7 +306,7 @@ fn cost_of_any_view() {
     let gl = headless.gl();
     gl.set_profiling(Profiling::Finish);
     let [w, h] = [1024, 1024];
-    // A slanted wall, and boxes before it.
+    // A slanted wall, with boxes in front of it.
     let distance = |x: u32, y: u32| match (x / 128, y / 256) {
         (2, 1) => 0.6,
         (4, 0 | 1) => 1.0,

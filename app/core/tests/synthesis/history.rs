@@ -1,4 +1,4 @@
-//! Disocclusions that are looked up in a history: an f64 reference of the look-up, and its laws.
+//! Disocclusions that are taken from a history: an f64 reference of the look-up, and its laws.
 
 use std::rc::Rc;
 
@@ -12,7 +12,7 @@ use yoro::eyes::{DepthConvention, Eye, GuardBand, Pose, View, Warp};
 use yoro::synthesis::*;
 use yoro_gl::Context;
 
-/// A pipeline with textures of its own.
+/// A pipeline with its own textures.
 struct Bench(InMemory);
 
 impl Bench {
@@ -30,12 +30,12 @@ impl Bench {
     }
 }
 
-/// A picture as a history.
+/// Returns a picture as a history.
 fn former(picture: &Picture, size: [u32; 2], strips: Strips) -> Option<Former<'_>> {
     Some(Former { rgba: &picture.rgba, depth: &picture.depth, size, strips })
 }
 
-/// Runs a body for each pipeline, made by a function of the options.
+/// Runs a body for each pipeline, given a function that makes the pipeline from options.
 fn for_each_pipeline(body: impl Fn(&Rc<Context>, &str, &dyn Fn(&SynthesisOptions) -> Box<dyn Synthesis>)) {
     on_every_backend(|gl| {
         for variant in GatherVariant::ALL {
@@ -53,7 +53,7 @@ fn is_hole(entry: u32) -> bool {
     entry & SOURCE_MAP_HOLE != 0
 }
 
-/// Without a history, and with one of which no strip is there, the picture is that of a pipeline that knows of none.
+/// Without a history, or if all its strips are empty, the picture is that of a pipeline without histories.
 #[test]
 fn no_history_changes_no_bit() {
     for_each_pipeline(|gl, what, make| {
@@ -68,7 +68,7 @@ fn no_history_changes_no_bit() {
     });
 }
 
-/// Without a distance between the eyes nothing is uncovered, and nothing is taken from a history.
+/// Without a distance between the eyes nothing is uncovered, so nothing is taken from a history.
 #[test]
 fn without_a_distance_nothing_is_recalled() {
     for_each_pipeline(|gl, what, make| {
@@ -81,7 +81,7 @@ fn without_a_distance_nothing_is_recalled() {
     });
 }
 
-/// What is uncovered shows what is really there, if the history is this very frame's.
+/// Uncovered pixels show the real scene if the history is of the same frame.
 #[test]
 fn a_history_of_this_frame_is_the_truth() {
     for_each_pipeline(|gl, what, make| {
@@ -102,8 +102,8 @@ fn a_history_of_this_frame_is_the_truth() {
             let [before, after] =
                 [&plain, &rgba].map(|image| holes.iter().filter(|i| off(image, **i) <= 2).count());
             assert!(holes.len() > 300, "{what}: {} holes", holes.len());
-            // Beside a foreground, some show a silhouette that is blended over them; layers blend whatever covers a
-            // part.
+            // Next to a foreground, some pixels show a blended silhouette; layers blend everything that covers part of
+            // a pixel.
             let least = if what == "layers" { 13 } else { 17 };
             assert!(20 * after > least * holes.len(), "{what}: {after} of {}, {before} before", holes.len());
             let worse =
@@ -113,7 +113,7 @@ fn a_history_of_this_frame_is_the_truth() {
     });
 }
 
-/// A history that shows a sheet close before the eyes, and one of a room that is elsewhere, change nothing.
+/// A history with a sheet close to the eyes, or of a room elsewhere, changes nothing.
 #[test]
 fn a_history_of_another_scene_changes_nothing() {
     for_each_pipeline(|gl, what, make| {
@@ -124,14 +124,14 @@ fn a_history_of_another_scene_changes_nothing() {
         let mut recalling = Bench::new(gl, make, true);
         let near = render(&views.target, &[[-50.0, 50.0, -50.0, 50.0, -0.5]]);
         let strips = Strips::new(&views.target, &[Some(views.target)]);
-        // Beyond the borders of the source there is no foreground to be nearer than.
+        // Beyond the source's borders, there is no foreground to compare the history's distance with.
         let inner = |(rgba, map): &(Vec<u8>, Vec<u32>)| -> Vec<u8> {
             let beyond = |i: &usize| !is_hole(map[*i]) || (20..140).contains(&(i % SIZE[0] as usize));
             (0..map.len()).filter(beyond).flat_map(|i| rgba[i * 4..][..4].to_vec()).collect()
         };
         let got = recalling.run(&source, &views.warp, former(&near, SIZE, strips));
         assert!(inner(&got) == inner(&plain), "{what}: nearer than the foreground");
-        // Looking the other way.
+        // A view in the opposite direction.
         let back = Pose { orientation: Quat::from_rotation_y(3.0), ..Pose::IDENTITY };
         let strips = Strips::new(&views.target, &[Some(View { pose: back, ..views.target })]);
         let got = recalling.run(&source, &views.warp, former(&near, SIZE, strips));
@@ -139,7 +139,7 @@ fn a_history_of_another_scene_changes_nothing() {
     });
 }
 
-/// Returns the pixel of a view, its middle at + 0.5, that shows a point, and the point's distance along the axis.
+/// Returns the pixel of a view that shows a point, with centres at +0.5, and the point's distance along the axis.
 fn project(view: &View, world: DVec3) -> ([f64; 2], f64) {
     let (own, f) = (local(view, world), view.frustum);
     let z = -own.z;
@@ -147,8 +147,8 @@ fn project(view: &View, world: DVec3) -> ([f64; 2], f64) {
     ([at(own.x, f.left, f.width(), view.size[0]), at(own.y, f.bottom, f.height(), view.size[1])], z)
 }
 
-/// The look-up of a hole's pixel in f64: place in the history's image, fractional, where it shows the pixel's surface.
-/// `Err` within rounding of a decision.
+/// The look-up for a hole's pixel in f64: the fractional place in the history's image that shows the pixel's surface.
+/// `Err` if it is within rounding of a decision.
 struct Lookup<'a> {
     target: &'a View,
     strips: &'a [Option<View>],
@@ -177,8 +177,8 @@ impl Lookup<'_> {
         None
     }
 
-    /// Returns the surface's distance and its place, for a pixel whose background and foreground have these distances,
-    /// and `seen`, the nearest distance that the rendered eye sees where a surface of some distance would be.
+    /// Returns the surface's distance and its place, for a pixel whose background and foreground have these distances.
+    /// `seen` returns the nearest distance that the rendered eye sees where a surface of a given distance would be.
     fn recall(
         &self,
         pixel: [f64; 2],
@@ -191,7 +191,8 @@ impl Lookup<'_> {
         let texel = at[1] as usize * self.size[0] as usize + at[0] as usize;
         let view = self.strips[strip].as_ref()?;
         let stored = f64::from(view.depth.distance(self.picture.depth[texel]));
-        // Where the pixel's ray is at that distance from the strip's eye, which is linear along it.
+        // Find the point on the pixel's ray that is at that distance from the strip's eye; the distance is linear along
+        // the ray.
         let [first, second] = [1.0, 2.0].map(|z| project(view, unproject(self.target, pixel, z)).1);
         let here = 1.0 + (stored - first) / (second - first);
         let exact = project(view, unproject(self.target, pixel, here)).0;
@@ -220,7 +221,7 @@ fn the_lookup_is_its_reference() {
                 };
                 let views = at(Pose::IDENTITY);
                 let size = SIZE.map(|n| n / scale);
-                // One of five strips is missing.
+                // One of five strips is empty.
                 let strips: Vec<Option<View>> = (0..5)
                     .map(|i| (i != 3).then(|| View { size, ..at(moved(i as f32 - 6.0)).target }))
                     .collect();
@@ -280,7 +281,7 @@ fn is_its_reference(
                 None => [before; 2],
                 Some([x, y]) => {
                     served += 1;
-                    // One of the texels around it, or between them.
+                    // The colour of one of the surrounding texels, or between them.
                     let column = |x: f64| x.clamp(0.0, f64::from(lookup.size[0] - 1)) as usize;
                     let line = |y: f64| y.clamp(0.0, f64::from(lookup.size[1] - 1)) as usize;
                     let texel = |x: f64, y: f64| {
@@ -298,6 +299,6 @@ fn is_its_reference(
         }
     }
     assert!(holes > 300 && 4 * served > holes && served < holes, "{what}: {served} of {holes}");
-    // Within rounding of a decision.
+    // Pixels within rounding of a decision may differ.
     assert!(50 * wrong <= holes, "{what}: {wrong} of {holes} ({served} served) differ");
 }

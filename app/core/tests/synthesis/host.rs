@@ -1,4 +1,4 @@
-//! Hosts with habits of their own: deleted programs, pending errors, several viewports, the compatibility profile.
+//! Hosts with special state: deleted programs, pending errors, several viewports, the compatibility profile.
 
 use std::ffi::{CStr, c_void};
 use std::mem::transmute;
@@ -13,7 +13,7 @@ use yoro_gl::{Context, Format};
 
 const STATES: [GlState; 2] = [GlState::Leave, GlState::Preserve];
 
-/// True if the tests of desktop contexts are left out.
+/// True if the tests of desktop contexts are skipped.
 fn without_osmesa() -> bool {
     std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some()
 }
@@ -23,7 +23,7 @@ fn current_program(gl: &Context) -> Option<glow::Program> {
     unsafe { gl.raw().get_parameter_program(glow::CURRENT_PROGRAM) }
 }
 
-/// It goes when another one becomes current, as GL says, and nothing is left in its place.
+/// GL destroys it when another program becomes current; then no program is restored.
 #[test]
 fn a_program_that_was_deleted_while_current_is_not_restored() {
     on_every_backend(|gl| {
@@ -67,7 +67,7 @@ fn a_pending_error_of_the_host_stays() {
     on_every_backend(|gl| {
         let lent = Lent::new(gl, [48, 16], Format::Rgba8);
         for (options, gl_state) in ways().into_iter().flat_map(|way| STATES.map(|state| (way, state))) {
-            // SAFETY: GL refuses this number, which is no capability.
+            // SAFETY: GL refuses this number, which is not a capability.
             unsafe { gl.raw().enable(0x1234) };
             let mut synthesis = create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap();
             synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
@@ -108,7 +108,7 @@ fn the_state_of_other_viewports_is_not_touched() {
     for (options, gl_state) in ways().into_iter().flat_map(|way| STATES.map(|state| (way, state))) {
         // SAFETY: valid state of two viewports.
         unsafe {
-            // Mesa clamps the numbers where they are, so they must not be constants.
+            // Mesa clamps the numbers in place, so they must not be constants.
             let viewports = std::hint::black_box([[1.5, 2.25, 30.5, 20.0], [3.0, 4.5, 7.0, 9.0]]);
             raw.viewport_f32_slice(0, 2, &viewports);
             raw.depth_range_f64_slice(0, 2, &[[0.25, 0.75], [0.5, 1.0]]);
@@ -123,7 +123,7 @@ fn the_state_of_other_viewports_is_not_touched() {
     }
 }
 
-/// Alpha test and polygon stipple, which GLFW's and SDL's contexts have by default, and no other.
+/// Only the compatibility profile, GLFW's and SDL's default, has alpha test and polygon stipple.
 #[test]
 fn a_compatibility_profile_discards_no_fragments() {
     if without_osmesa() {

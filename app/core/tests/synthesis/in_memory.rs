@@ -6,10 +6,10 @@ use yoro::eyes::Warp;
 use yoro::synthesis::{History, Outputs, Source, Strips, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 
-/// The outputs of a pipeline that is run in memory.
+/// The outputs of the pipelines here.
 pub const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
 
-/// A pipeline with textures of its own. Rows of all arrays run from the bottom, as in GL.
+/// A pipeline with its own textures. Rows of all arrays run from the bottom, as in GL.
 pub struct InMemory {
     gl: Rc<Context>,
     pipeline: Box<dyn Synthesis>,
@@ -34,19 +34,19 @@ pub struct SynthesizedImage {
 }
 
 impl InMemory {
-    /// For a pipeline with [`OUTPUTS`].
+    /// Wraps a pipeline with [`OUTPUTS`].
     pub fn new(gl: &Rc<Context>, pipeline: Box<dyn Synthesis>) -> InMemory {
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         let target = RenderTarget::new(gl, [1, 1], &formats, None).unwrap();
         InMemory { gl: gl.clone(), pipeline, target }
     }
 
-    /// Synthesizes one image from 4 bytes and one depth per pixel.
+    /// Synthesizes one image from four colour bytes and one depth value per pixel.
     pub fn run(&mut self, rgba: &[u8], depth: &[f32], warp: &Warp) -> SynthesizedImage {
         self.recall(rgba, depth, warp, None)
     }
 
-    /// The same with a history, for a pipeline with that.
+    /// Does the same with a history, for a pipeline that takes one.
     pub fn recall(
         &mut self,
         rgba: &[u8],

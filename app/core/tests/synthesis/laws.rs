@@ -1,7 +1,6 @@
-//! The laws that every pipeline keeps, on every GL backend here; and pictures to try them with.
+//! The laws that every pipeline keeps, on every available GL backend, and pictures to test them with.
 //!
-//! [`laws!`](crate::laws!) makes a test of each. The pipeline of `yoro` and the paper's in `yoro-render` share this
-//! file.
+//! [`laws!`](crate::laws!) makes a test of each. yoro's pipeline and the paper's in `yoro-render` share this file.
 
 use std::fmt;
 use std::rc::Rc;
@@ -17,10 +16,10 @@ use yoro_gl::Context;
 /// A function that makes a pipeline.
 type Make = Box<dyn Fn(&Rc<Context>) -> Box<dyn Synthesis>>;
 
-/// A pipeline under test, by name.
+/// A pipeline under test, with its name.
 pub struct Subject {
     pub name: String,
-    /// Makes it with the outputs that [`InMemory`] wants.
+    /// Makes the pipeline with the outputs that [`InMemory`] needs.
     pub make: Make,
 }
 
@@ -36,7 +35,7 @@ impl fmt::Debug for Subject {
     }
 }
 
-/// A test of each law for the subjects that an expression gives.
+/// Defines a test of each law, for the subjects that an expression returns.
 #[macro_export]
 macro_rules! laws {
     ($subjects:expr) => {
@@ -60,7 +59,7 @@ macro_rules! laws {
 
 /// Runs a test body on EGL and on OSMesa.
 pub fn on_every_backend(body: impl Fn(&Rc<Context>)) {
-    // `cargo xtask test` says so on systems that have no OSMesa any more.
+    // `cargo xtask test` sets this on systems without OSMesa.
     let without_osmesa = std::env::var_os("YORO_TEST_WITHOUT_OSMESA").is_some();
     for backend in [Backend::Egl, Backend::Osmesa] {
         if backend == Backend::Osmesa && without_osmesa {
@@ -79,8 +78,8 @@ pub fn pair(size: [u32; 2], dominant: Eye, ipd: f32, convention: DepthConvention
     EyePair::parallel(Pose::IDENTITY, frustum, ipd, depth, size, dominant)
 }
 
-/// A slanted background, boxes at several distances and one-pixel wires, in metres; and a colour picture in
-/// which every pixel is different from its neighbours.
+/// Returns a colour picture in which every pixel differs from its neighbours, and the depth of a slanted background,
+/// boxes at several distances and one-pixel wires, in metres.
 pub fn scene(size: [u32; 2], range: DepthRange, seed: u64) -> (Vec<u8>, Vec<f32>) {
     let [w, h] = size.map(|n| n as usize);
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
@@ -108,10 +107,10 @@ pub fn row<T>(image: &[T], y: usize, width: usize) -> &[T] {
     &image[y * width..][..width]
 }
 
-/// Displaced positions of one source row in forward columns.
+/// Returns the displaced positions of one source row in forward columns.
 pub fn positions(depth_row: &[f32], warp: &Warp) -> Vec<f64> {
     let columns = depth_row.len();
-    // For the right eye columns count from the right, in source and target.
+    // For the right eye, columns are counted from the right in source and target.
     let mirrored = warp.target_eye == Eye::Right;
     (0..columns)
         .map(|x| {
@@ -144,7 +143,7 @@ pub fn a_plane_shifts_by_its_disparity(subjects: &[Subject]) {
     on_every_backend(|gl| {
         for subject in subjects {
             for dominant in Eye::BOTH {
-                // Depth such that f_px * IPD / z is 7 pixels exactly.
+                // The depth at which f_px * IPD / z is exactly 7 pixels.
                 let p = pair([128, 16], dominant, 0.063, DepthConvention::Reversed);
                 let z = p.focal_length_pixels() * 0.063 / 7.0;
                 let warp = p.synthesis_views(GuardBand::None).unwrap().warp;
@@ -156,7 +155,7 @@ pub fn a_plane_shifts_by_its_disparity(subjects: &[Subject]) {
                     for x in 8..120i32 {
                         let (got, want) = ((y * 128 + x) as usize * 4, (y * 128 + x - shift) as usize * 4);
                         for c in 0..4 {
-                            // A thousandth of a pixel may be left of the fraction.
+                            // A thousandth of a pixel may remain.
                             assert!(
                                 result.rgba[got + c].abs_diff(rgba[want + c]) <= 1,
                                 "{subject:?} {dominant:?} ({x}, {y})"
@@ -199,7 +198,7 @@ pub fn a_repeated_run_is_bit_identical(subjects: &[Subject]) {
             let (rgba, depth) = scene(p.size, p.depth, 12);
             let first = subject.in_memory(gl).run(&rgba, &depth, &warp);
             let mut again = subject.in_memory(gl);
-            // Buffers that hold another picture must not show through.
+            // Earlier contents of the buffers must not show through.
             let (other, other_depth) = scene(p.size, p.depth, 13);
             again.run(&other, &other_depth, &warp);
             assert_eq!(again.run(&rgba, &depth, &warp), first, "{subject:?}");
@@ -207,7 +206,7 @@ pub fn a_repeated_run_is_bit_identical(subjects: &[Subject]) {
     });
 }
 
-/// A near red square before a far blue wall: every pixel of the other eye is red or blue or between, and what is
+/// A near red square in front of a far blue wall: every pixel of the other eye is red, blue or between, and what is
 /// uncovered beside the square is blue.
 pub fn a_hole_takes_nothing_nearer_than_its_background(subjects: &[Subject]) {
     on_every_backend(|gl| {
@@ -246,10 +245,10 @@ pub fn a_hole_takes_nothing_nearer_than_its_background(subjects: &[Subject]) {
     });
 }
 
-/// Not for whole source columns, which the two round differently.
+/// Not for pipelines that move whole source columns, which would be rounded differently in the two views.
 pub fn asymmetric_frusta_agree_with_the_symmetric_view(subjects: &[Subject]) {
-    // The same eyes, once with a common wide frustum and once with mirrored asymmetric ones whose edges lie on the
-    // same pixel grid: where both see, the pictures are equal.
+    // The same eyes, once with a common wide frustum and once with mirrored asymmetric ones whose edges lie on the same
+    // pixel grid: where both see, the pictures are equal.
     on_every_backend(|gl| {
         for subject in subjects {
             let d = 0.01f32;
@@ -300,8 +299,8 @@ pub fn one_pixel_and_odd_sizes_work(subjects: &[Subject]) {
     });
 }
 
-/// Depth that is infinite or no number at all, as divisions by zero leave it: the search ends, and rows beside the
-/// damaged one are what they were.
+/// With infinite or NaN depth, as divisions by zero give, the search terminates, and rows away from the damaged one do
+/// not change.
 pub fn depth_that_is_no_number_ends(subjects: &[Subject]) {
     on_every_backend(|gl| {
         for subject in subjects {
@@ -316,7 +315,7 @@ pub fn depth_that_is_no_number_ends(subjects: &[Subject]) {
                     depth[8 * 96..16 * 96].iter_mut().skip(1).step_by(3).for_each(|d| *d = value);
                     depth[12 * 96..13 * 96].fill(value);
                     let got = pipeline.run(&rgba, &depth, &warp);
-                    // Fills reach six rows far.
+                    // Fills reach at most six rows.
                     assert_eq!(row(&got.rgba, 0, 96 * 4), row(&want.rgba, 0, 96 * 4), "{subject:?} {value}");
                     assert_eq!(
                         row(&got.rgba, 23, 96 * 4),

@@ -1,4 +1,4 @@
-//! The gather pipeline against its f64 reference, and the laws that it must keep, on every GL backend here.
+//! The gather pipeline against its f64 reference, and the laws that it must keep, on every available GL backend.
 
 mod any_view;
 mod history;
@@ -29,7 +29,7 @@ fn asymmetric_frusta_agree_with_the_symmetric_view() {
     laws::asymmetric_frusta_agree_with_the_symmetric_view(&variants());
 }
 
-/// The pipeline in each way that its shaders are written. Drivers choose among these, tests do not.
+/// Returns the pipeline in all variants of its shaders. Drivers select one of these; tests run them all.
 fn variants() -> Vec<Subject> {
     GatherVariant::ALL.map(variant).into()
 }
@@ -41,7 +41,7 @@ fn variant(variant: GatherVariant) -> Subject {
     }
 }
 
-/// Linear fetch of a row at a fractional forward column, in f64.
+/// Fetches from a row at a fractional forward column, with linear filtering, in f64.
 fn fetch(rgba: &[u8], source: f64, mirrored: bool) -> [f64; 4] {
     let last = (rgba.len() / 4 - 1) as f64;
     let column = if mirrored { last - source } else { source }.clamp(0.0, last);
@@ -54,8 +54,8 @@ fn fetch(rgba: &[u8], source: f64, mirrored: bool) -> [f64; 4] {
 
 type Reference = fn(&[f64], usize) -> Vec<Entry>;
 
-/// Largest distance in pixels of a source column from the reference's. Rounding, and an eighth of a pixel where a tile
-/// has a law: a sixteenth of the tiles' planes, and one of the law (`PLANAR` in `include/planes.glsl`).
+/// Returns the largest allowed distance in pixels of a source column from the reference's: rounding, and an eighth of a
+/// pixel in tiles with a law, half from the tiles' planes and half from the law (`PLANAR` in `include/planes.glsl`).
 fn bound(variant: GatherVariant) -> f64 {
     if variant == GatherVariant::ShortWay { 0.125 } else { 2e-3 }
 }
@@ -99,7 +99,7 @@ fn is_its_reference(
             let got = result.source_map[y * wt + x];
             let hole = got & SOURCE_MAP_HOLE != 0;
             let source = (got & !SOURCE_MAP_HOLE) as f64 / SOURCE_MAP_FIXED as f64;
-            // Positions within rounding of a decision (a pixel centre exactly on an edge) may go either way.
+            // Positions within rounding of a decision (a pixel centre exactly on an edge) may differ.
             if hole != entry.hole || (source - entry.source).abs() > bound {
                 different += 1;
                 continue;
@@ -117,7 +117,7 @@ fn is_its_reference(
     assert!(different * 1000 <= total, "{what}: {different} of {total} pixels differ");
 }
 
-/// Half a red pixel before blue: where a silhouette covers a share of a pixel, the colour is that mixture.
+/// A red square in front of blue: where a silhouette covers part of a pixel, the pixel is mixed in that proportion.
 #[test]
 fn gather_blends_silhouettes_by_coverage() {
     on_every_backend(|gl| {
@@ -131,7 +131,7 @@ fn blends_silhouettes_by_coverage(gl: &Rc<Context>, subject: &Subject) {
     let [w, h] = [64u32, 9];
     let mut seen = 0;
     for tenth in 0..10 {
-        // Displacement of the square: 4 pixels and some tenths; of the background: none.
+        // Displacement of the square: 4 pixels and some tenths. The background does not move.
         let scale = 4.0 + tenth as f64 / 10.0;
         let warp = Warp {
             source_size: [w, h],
@@ -147,7 +147,7 @@ fn blends_silhouettes_by_coverage(gl: &Rc<Context>, subject: &Subject) {
             (0..w * h).flat_map(|i| if square(i) { [255, 0, 0, 255] } else { [0, 0, 255, 255] }).collect();
         let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
         for x in 0..w {
-            // The first and the last red sample lie at these places; coverage falls to nothing within a pixel.
+            // The first and the last red sample land here; coverage falls to zero within a pixel.
             let (first, last) = (20.0 + scale, 39.0 + scale);
             let x_f = x as f64;
             let covered = (1.0 - (first - x_f).max(0.0)).min(1.0 - (x_f - last).max(0.0)).clamp(0.0, 1.0);
@@ -174,9 +174,8 @@ fn gather_is_its_reference() {
     });
 }
 
-/// Boxes as near as 5 cm before a far wall: the search passes over what lies between the tiles that land in a pixel,
-/// and finds what the reference finds that looks at every column, and to the pixel what the variant finds that does,
-/// too.
+/// Boxes as near as 5 cm in front of a far wall: the search skips what lies between the tiles that land in a pixel. It
+/// finds the same as the reference and the variant that examine every column.
 #[test]
 fn near_surfaces_are_found_in_few_steps() {
     let frustum = Frustum { left: -1.1, right: 1.1, bottom: -0.16, top: 0.16 };
@@ -199,7 +198,7 @@ fn near_surfaces_are_found_in_few_steps() {
                 let what = format!("{variant:?}, {boxes} boxes, {dominant:?} dominant, {convention:?}");
                 is_its_reference(result, reference::gather_row, &rgba, &depth, &warp, bound(*variant), &what);
                 let pairs = result.source_map.iter().zip(&every_column.source_map);
-                // Rounding of positions, where a pixel's middle lies on an edge.
+                // Positions are rounded, and a pixel's centre on an edge may go either way.
                 let off = (SOURCE_MAP_FIXED as f64 * bound(*variant).max(0.01)) as u32;
                 let different = pairs.filter(|(a, b)| a.abs_diff(**b) > off).count();
                 assert!(different <= 10, "{what}: {different} pixels are not those of all columns");
@@ -207,14 +206,14 @@ fn near_surfaces_are_found_in_few_steps() {
             let counting = Box::new(Gather::counting(gl).unwrap());
             let counts = InMemory::new(gl, counting).run(&rgba, &depth, &warp);
             let most = counts.rgba.chunks_exact(4).map(|pixel| pixel[1]).max().unwrap();
-            // A tile a step at most, and a step for each mark.
+            // At most one step per tile, and one step per mark.
             assert!(boxes > 1 || (1..=8 * 4).contains(&most), "{most} steps past a single box");
         }
     });
 }
 
-/// A floor and two walls that meet in a corner: many tiles have a law. Sizes are odd, and the target has rows beyond
-/// the source.
+/// A floor and two walls that meet in a corner: many tiles have a law. Sizes are odd, and the target has rows outside
+/// of the source.
 #[test]
 fn tiles_with_laws_are_their_reference() {
     on_every_backend(|gl| {
@@ -225,7 +224,7 @@ fn tiles_with_laws_are_their_reference() {
             let warp = p.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
             let warp = Warp { target_size: [203, 90], row_offset: 5, ..warp };
             let [w, h] = warp.source_size.map(|n| n as usize);
-            // In 1 / metres, which are affine on a plane.
+            // In 1 / metres, which is affine on a plane.
             let nearness = |x: f32, y: f32| (0.1 + 0.002 * (x - 97.3).abs()).max(0.5 - 0.012 * y);
             let depth: Vec<f32> =
                 (0..w * h).map(|i| p.depth.depth(1.0 / nearness((i % w) as f32, (i / w) as f32))).collect();
@@ -242,7 +241,7 @@ fn tiles_with_laws_are_their_reference() {
     });
 }
 
-/// Eyes 60 m apart: the nearest surfaces move by more pixels than tiles can say, and by more than the image is wide.
+/// Eyes 60 m apart: the nearest surfaces move by more pixels than tiles can store, and by more than the image's width.
 #[test]
 fn surfaces_that_move_beyond_the_image_hide_nothing() {
     on_every_backend(|gl| {
@@ -270,13 +269,14 @@ fn surfaces_that_move_beyond_the_image_hide_nothing() {
 fn near_boxes(size: [u32; 2], range: DepthRange, seed: u64, boxes: u32) -> (Vec<u8>, Vec<f32>) {
     let [w, h] = size.map(|n| n as usize);
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
-    // Reciprocals of metres. A slanted wall: of a flat one whole columns may be within rounding of a decision.
+    // In 1 / metres. The wall is slanted: with a flat one, whole columns might be within rounding of a decision.
     let mut nearness: Vec<f32> = (0..w * h).map(|i| 0.2 + 0.05 * (i % w) as f32 / w as f32).collect();
     for _ in 0..boxes {
-        // Off the borders: what lies beside a surface that is cut off there may be filled from elsewhere than the
-        // reference does.
+        // Away from the borders: beside a surface that is cut off at a border, the shaders may fill from elsewhere than
+        // the reference.
         let [x, wide] = [w / 4..w / 2, w / 20..w / 3].map(|range| rng.random_range(range));
-        // A single one from the lowest row to the topmost: the rows of a tile that has a box above walk like the box's.
+        // A single box spans all rows: in a tile that a box covers in part, the other rows take as many steps as the
+        // box's.
         let (y, high) = match boxes {
             1 => (0, h),
             _ => (rng.random_range(0..h), rng.random_range(h / 8..h / 2)),

@@ -1,4 +1,4 @@
-//! Sources that are parts of larger textures, or layers of arrays: the picture is that of textures of their own.
+//! Sources that are parts of larger textures or layers of arrays: the picture is the same as from separate textures.
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::synthesis::*;
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 
-/// The place of every source here in its textures.
+/// The corner of every source in its textures.
 const ORIGIN: [u32; 2] = [5, 3];
 const MARGIN: [u32; 2] = [9, 6];
 const LAYER: u32 = 1;
@@ -32,7 +32,7 @@ impl Picture {
     }
 }
 
-/// A colour and a depth texture, which are arrays of two layers or not, with noise around the source.
+/// A colour and a depth texture, optionally arrays of two layers, with noise around the source.
 struct Textures {
     gl: Rc<Context>,
     names: [glow::Texture; 2],
@@ -88,12 +88,12 @@ impl Textures {
 
 impl Drop for Textures {
     fn drop(&mut self) {
-        // SAFETY: made in `new`.
+        // SAFETY: created in `new`.
         unsafe { self.names.iter().for_each(|name| self.gl.raw().delete_texture(*name)) };
     }
 }
 
-/// The synthesized colour and source map.
+/// Returns the synthesized colour and source map.
 fn run(gl: &Rc<Context>, synthesis: &mut dyn Synthesis, source: Source, warp: &Warp) -> (Vec<u8>, Vec<u32>) {
     let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
     let target = RenderTarget::new(gl, warp.target_size, &formats, None).unwrap();
@@ -103,8 +103,8 @@ fn run(gl: &Rc<Context>, synthesis: &mut dyn Synthesis, source: Source, warp: &W
 
 const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
 
-/// Checks that a picture is another one but for a few pixels whose positions lie within rounding of a decision. `bound`
-/// is the largest difference of columns, in 1/65536 pixel.
+/// Checks that two pictures are equal, except for a few pixels whose positions lie within rounding of a decision.
+/// `bound` is the largest difference of columns, in 1/65536 pixel.
 fn assert_equal(got: &(Vec<u8>, Vec<u32>), want: &(Vec<u8>, Vec<u32>), bound: u32, what: &str) {
     let far = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
     let colors = got.0.chunks_exact(4).zip(want.0.chunks_exact(4)).filter(|&pair| far(pair)).count();
@@ -137,12 +137,12 @@ fn parts_and_layers_give_the_same_picture() {
                 let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
                 check(&mut *synthesis, 64, &format!("parts {parts}, layers {layers}"), parts, layers);
             }
-            // As other drivers would have it.
+            // Other drivers would select these variants.
             let options = SynthesisOptions { parts: true, array_textures: true, ..plain };
             for variant in [GatherVariant::Plain, GatherVariant::ShortWay] {
                 if edges == Edges::Hard {
                     let mut gather = Gather::with_variant_of(gl, OUTPUTS, variant, &options).unwrap();
-                    // Where a tile has a law, an eighth of a pixel.
+                    // In tiles with a law, an eighth of a pixel.
                     let bound = if variant == GatherVariant::ShortWay { 65536 / 8 } else { 64 };
                     check(&mut gather, bound, &format!("{variant:?}"), true, true);
                 }
@@ -151,7 +151,7 @@ fn parts_and_layers_give_the_same_picture() {
     });
 }
 
-/// After the largest size no frame allocates, whatever its size; and the memory is known before.
+/// After the largest size, no frame allocates, whatever its size; and the memory is known beforehand.
 #[test]
 fn buffers_of_parts_only_grow() {
     on_every_backend(|gl| {
@@ -195,7 +195,7 @@ fn the_hosts_array_textures_are_preserved() {
         }
         let before = snapshot(gl);
         let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-        // Depth is bound to unit 0, and colour to unit 1, where the host has the other one.
+        // Depth is bound to unit 0, and colour to unit 1; the host has them the other way round.
         synthesis.synthesize(source, &picture.warp, &Destination::whole(&target)).unwrap();
         assert_eq!(snapshot(gl), before);
     });

@@ -1,4 +1,4 @@
-//! Any view of images in memory on OpenGL: upload, run, read back colour and depth.
+//! Any view of images in memory on OpenGL: upload, run, and read back colour and depth.
 
 use std::rc::Rc;
 
@@ -8,15 +8,14 @@ use yoro::eyes::{Pose, PoseWarp, View};
 use yoro::synthesis::{AnyView, Outputs, Part, Source, SynthesisOptions};
 use yoro_gl::{Context, Destination, Filter, Format, Program, RenderTarget, ShaderSource, Texture};
 
-/// The synthesized view: RGBA, 8 bits each, and stored depth. Rows run from the bottom, as in GL.
+/// The synthesized view: RGBA with 8 bits each, and stored depth. Rows run from the bottom, as in GL.
 #[derive(Debug, PartialEq)]
 pub struct Image {
     pub rgba: Vec<u8>,
     pub depth: Vec<f32>,
 }
 
-/// Synthesizes from images in memory, the source being a part of larger textures if `part` has its corner and their
-/// size.
+/// Synthesizes from images in memory. If `part` is given, the source is at its corner in textures of its size.
 pub fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: Option<Part>) -> Image {
     let size = part.map_or(warp.source_size, |part| part.image_size);
     let texture = |format, bytes: &[u8]| {
@@ -31,13 +30,13 @@ pub fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: 
     let outputs = Outputs { depth: true, ..Outputs::default() };
     let mut pipeline = AnyView::new(gl, &options, outputs).unwrap();
     let formats = [(Format::Rgba8, Filter::Nearest)];
-    // Not in a corner, where all places would be equal.
+    // Not at the corner of the framebuffer, where all places would be the same.
     let size = warp.target_size;
     let target = RenderTarget::new(gl, size.map(|n| n + 7), &formats, Some(Format::Depth32F)).unwrap();
     let place = Destination { framebuffer: Some(target.raw()), origin: [3, 5], size };
     let source = Source { part, ..Source::new(color.raw(), depth.raw()) };
     pipeline.synthesize(source, warp, &place).unwrap();
-    // Depth is read back as a colour.
+    // Depth is copied to a colour texture to read it back.
     let copy = RenderTarget::new(gl, target.size(), &[(Format::Rgba32F, Filter::Nearest)], None).unwrap();
     let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
     copy.overwrite();
@@ -47,10 +46,10 @@ pub fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: 
     Image { rgba: target.read_rgba8(0, [3, 5], size), depth }
 }
 
-/// A motion of a head: metres, and yaw, pitch and roll in radians.
+/// A head's motion: translation in metres, and yaw, pitch and roll in radians.
 pub type Motion = (Vec3, [f32; 3]);
 
-/// To a side, up, askew, forwards, backwards, turned alone, everything at once.
+/// To a side, up, diagonally, forwards, backwards, turned only, and everything at once.
 pub const MOTIONS: [Motion; 7] = [
     (Vec3::new(0.06, 0.0, 0.0), [0.0; 3]),
     (Vec3::new(0.0, -0.05, 0.0), [0.0; 3]),
@@ -61,7 +60,7 @@ pub const MOTIONS: [Motion; 7] = [
     (Vec3::new(0.03, -0.02, -0.06), [-0.04, 0.02, -0.05]),
 ];
 
-/// The view after a motion, of one that is not turned.
+/// Returns a view, which must not be turned, after a motion.
 pub fn moved(view: &View, (way, [yaw, pitch, roll]): Motion) -> View {
     let orientation = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
     View { pose: Pose { position: view.pose.position + way, orientation }, ..*view }

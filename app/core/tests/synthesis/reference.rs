@@ -1,11 +1,11 @@
-//! A plain f64 version of the pipeline: what the shaders must compute, without tiles.
+//! A plain f64 version of the pipeline, without tiles: what the shaders must compute.
 
-/// One target pixel: a source column in forward columns, and whether it is a hole.
+/// One target pixel: its source column in forward columns, and whether it is a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
     pub hole: bool,
     pub source: f64,
-    /// A silhouette in front: its column, and how much of the pixel it covers.
+    /// A silhouette in front: its column, and the share of the pixel that it covers.
     pub rim: Option<(usize, f64)>,
 }
 
@@ -17,7 +17,7 @@ impl Entry {
 
 const MAX_STRETCH: f64 = 2.0;
 
-/// The gather pipeline's march over the whole row for each target pixel.
+/// Runs the gather pipeline's march for each target pixel, over the whole row.
 pub fn gather_row(p: &[f64], width: usize) -> Vec<Entry> {
     (0..width)
         .map(|t| {

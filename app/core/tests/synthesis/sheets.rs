@@ -1,4 +1,4 @@
-//! Rectangles before a wall, seen from any pose: colour and depth that are consistent between views.
+//! Rectangles in front of a wall, seen from any pose: colour and depth that are consistent between views.
 
 use glam::{DVec3, Quat, Vec3};
 
@@ -6,7 +6,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, Pose, View}
 
 pub const SIZE: [u32; 2] = [160, 48];
 
-/// An upright rectangle that faces along Z, in metres: left, right, bottom, top, z.
+/// An upright rectangle parallel to the X and Y axes, in metres: left, right, bottom, top, z.
 pub type Sheet = [f64; 5];
 
 const WALL: Sheet = [-50.0, 50.0, -50.0, 50.0, -6.0];
@@ -18,13 +18,13 @@ pub const SHEETS: [Sheet; 5] = [
     [-1.6, -0.9, -0.5, 0.1, -3.0],
 ];
 
-/// Colour and depth of a view, rows from the bottom.
+/// The colour and depth of a view, with rows from the bottom.
 pub struct Picture {
     pub rgba: Vec<u8>,
     pub depth: Vec<f32>,
 }
 
-/// Returns a point in the space of a view's eye.
+/// Converts a point in the world to the space of a view's eye.
 pub fn local(view: &View, world: DVec3) -> DVec3 {
     view.pose.orientation.as_dquat().inverse() * (world - view.pose.position.as_dvec3())
 }
@@ -38,7 +38,7 @@ pub fn unproject(view: &View, [x, y]: [f64; 2], z: f64) -> DVec3 {
     view.pose.position.as_dvec3() + view.pose.orientation.as_dquat() * (DVec3::new(x, y, -1.0) * z)
 }
 
-/// Casts a ray for each pixel. Colours vary slowly, so that resampling them changes them little.
+/// Renders by casting a ray for each pixel. Colours vary slowly, so that resampling changes them little.
 pub fn render(view: &View, sheets: &[Sheet]) -> Picture {
     let [w, h] = view.size;
     let mut picture = Picture { rgba: Vec::new(), depth: Vec::new() };
@@ -65,7 +65,7 @@ pub fn eyes(head: Pose, dominant: Eye, ipd: f32, convention: DepthConvention) ->
     EyePair::parallel(head, Frustum::symmetric(0.5, 10.0 / 3.0), ipd, depth, SIZE, dominant)
 }
 
-/// A head that has moved and turned by some frames' worth.
+/// Returns the pose of a head that has moved and turned for a number of frames.
 pub fn moved(frames: f32) -> Pose {
     Pose {
         position: frames * Vec3::new(0.008, -0.003, 0.01),
@@ -73,7 +73,7 @@ pub fn moved(frames: f32) -> Pose {
     }
 }
 
-/// A picture in strips from row 0 on, each of a view of its own; those that are `None` are of another view.
+/// Returns a picture in strips from row 0 on, each rendered from its own view, or from `other` if it is `None`.
 pub fn in_strips(strips: &[Option<View>], other: &View) -> Picture {
     let mut picture = Picture { rgba: Vec::new(), depth: Vec::new() };
     let [width, height] = other.size.map(|n| n as usize);

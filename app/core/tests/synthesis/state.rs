@@ -14,7 +14,7 @@ pub const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: fals
 /// GL_DEPTH_BOUNDS_TEST_EXT.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
-/// Both kinds of textures without samples, and a pipeline that takes histories.
+/// Returns options for both kinds of edges without multisample textures, and for a pipeline that takes histories.
 pub fn ways() -> [SynthesisOptions; 3] {
     [(Edges::Hard, false), (Edges::Nearest, false), (Edges::Hard, true)]
         .map(|(edges, history)| SynthesisOptions { edges, history, ..SynthesisOptions::default() })
@@ -25,8 +25,8 @@ pub fn warp(size: [u32; 2]) -> Warp {
     eyes.synthesis_views(GuardBand::Pixels(9)).unwrap().warp
 }
 
-/// The objects that an engine lends: textures without filters of their own use, one of them to be compared, and a
-/// target.
+/// The objects that an engine lends: textures with filters that synthesis must not use, one of them with a compare
+/// mode, and a target.
 pub struct Lent {
     color: Texture,
     depth: Texture,
@@ -71,7 +71,7 @@ impl Lent {
         Destination::whole(&self.target)
     }
 
-    /// Colour, source map, and depth, of which the first two channels of a readback are compared.
+    /// Returns colour, source map and depth, the last one as bits.
     pub fn picture(&self, gl: &Rc<Context>) -> (Vec<u8>, Vec<u32>, Vec<u32>) {
         let size = self.warp.target_size;
         let reader = DepthReader::new(gl, size);
@@ -83,7 +83,7 @@ impl Lent {
     }
 }
 
-/// Depth as bits, by a pass of its own: OpenGL ES cannot read depth back.
+/// Reads depth as bits, with its own pass: OpenGL ES cannot read depth back directly.
 struct DepthReader {
     program: glow::Program,
     vertex_array: glow::VertexArray,
@@ -106,7 +106,7 @@ impl DepthReader {
         }
     }
 
-    /// Leaves a state in which everything is drawn.
+    /// Reads depth. Leaves a state in which nothing keeps draws from being visible.
     fn read(self, gl: &Rc<Context>, depth: &Texture) -> Vec<u32> {
         let raw = gl.raw();
         clean(gl);
@@ -149,7 +149,7 @@ pub fn program(gl: &Context, vertex: &str, fragment: &str) -> glow::Program {
     }
 }
 
-/// Everything that `glEnable` turns on in this context and that keeps a pixel from being what a shader wrote.
+/// Returns all capabilities of this context for `glEnable` that keep a pixel from being what a shader wrote.
 fn switches(gl: &Context) -> Vec<u32> {
     let desktop = gl.capabilities().api == GlApi::Desktop;
     let has = |name: &str| gl.raw().supported_extensions().contains(name);
@@ -189,7 +189,7 @@ fn switches(gl: &Context) -> Vec<u32> {
     all
 }
 
-/// The initial state of a context, as far as [`Hostile`] changes it, and sRGB encoding off.
+/// Sets the state that [`Hostile`] changes to a context's initial state, with sRGB encoding off.
 pub fn clean(gl: &Context) {
     let raw = gl.raw();
     // SAFETY: state calls with valid enums.
@@ -207,7 +207,7 @@ pub fn clean(gl: &Context) {
     }
 }
 
-/// The objects of a host that leaves everything as wrong as it can.
+/// The objects of a host that leaves all state as wrong as possible.
 pub struct Hostile {
     sampler: glow::Sampler,
     buffer: glow::Buffer,
@@ -258,7 +258,7 @@ impl Hostile {
         let raw = gl.raw();
         let capabilities = gl.capabilities();
         let desktop = capabilities.api == GlApi::Desktop;
-        // SAFETY: live objects and valid enums; what a version does not have is left out.
+        // SAFETY: live objects and valid enums; what a version lacks is left out.
         unsafe {
             raw.color_mask(false, true, false, true);
             raw.depth_func(glow::NEVER);
@@ -339,7 +339,7 @@ impl Hostile {
     }
 }
 
-/// All state that can be asked for, as names and bits.
+/// Returns all state that can be queried, as names and bits.
 pub fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
     let raw = gl.raw();
     let capabilities = gl.capabilities();
@@ -473,7 +473,7 @@ fn pictures_do_not_depend_on_the_hosts_state() {
     });
 }
 
-/// Uploads and readbacks of images in memory, too.
+/// This includes uploads and readbacks of images in memory.
 #[test]
 fn images_in_memory_do_not_depend_on_the_hosts_state() {
     on_every_backend(|gl| {
@@ -511,7 +511,7 @@ fn the_hosts_state_is_preserved() {
                 assert_eq!(snapshot(gl), before, "{options:?}: create");
                 synthesis.prepare(&small.warp).unwrap();
                 assert_eq!(snapshot(gl), before, "{options:?}: prepare");
-                // The second one allocates, and the third does not.
+                // The second size allocates; the third call does not.
                 for lent in [&small, &large, &large] {
                     synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
                     assert_eq!(snapshot(gl), before, "{options:?}: synthesize");
@@ -520,7 +520,7 @@ fn the_hosts_state_is_preserved() {
                 assert!(synthesis.prepare(&beyond).is_err());
                 assert_eq!(snapshot(gl), before, "{options:?}: a call that fails");
             }
-            // The colour masks of single draw buffers, by what they let through.
+            // Colour masks of single draw buffers, tested by what they let through.
             let raw = gl.raw();
             let [target, _] = &hostile.targets;
             // SAFETY: a framebuffer with two colour attachments.
@@ -540,7 +540,7 @@ fn the_hosts_state_is_preserved() {
     });
 }
 
-/// The samples' values do not matter here.
+/// The values of the samples do not matter here.
 #[test]
 fn the_hosts_state_is_preserved_with_multisample_textures() {
     on_every_backend(|gl| {
@@ -594,8 +594,8 @@ fn no_sampler_is_left_behind() {
     });
 }
 
-/// An engine whose images are sRGB textures gets back what it gave, decoded and encoded on the way; without
-/// [`Outputs::srgb`] the decoded values are stored.
+/// An engine whose images are sRGB textures gets back its own values, decoded and encoded on the way. Without
+/// [`Outputs::srgb`], the decoded values are stored.
 #[test]
 fn srgb_is_encoded_where_asked_for() {
     on_every_backend(|gl| {
@@ -626,12 +626,12 @@ fn srgb_is_encoded_where_asked_for() {
     });
 }
 
-/// The cost of `GlState::Preserve`; docs/library.md has the figures.
+/// Measures the cost of `GlState::Preserve`; docs/library.md has the figures.
 #[test]
 #[ignore = "measures: cargo test -p yoro --test synthesis -- --ignored --nocapture cost"]
 fn cost_of_preserving_state() {
-    // Time that this thread had a CPU, which other load does not change much, in microseconds. Linux counts it in
-    // ticks of some milliseconds.
+    // The time in microseconds that this thread had a CPU, which other load hardly changes. Linux counts it in ticks of
+    // some milliseconds.
     let microseconds = |calls: u32, call: &mut dyn FnMut()| {
         let cpu = || {
             let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
@@ -642,7 +642,7 @@ fn cost_of_preserving_state() {
         (cpu() - start) as f64 / 1e3 / f64::from(calls)
     };
     on_every_backend(|gl| {
-        // So small an image that what remains is the calls.
+        // The image is so small that the calls dominate.
         let lent = Lent::new(gl, [8, 8], Format::Rgba8);
         for options in ways() {
             let [mut leave, mut preserve] = [GlState::Leave, GlState::Preserve]
@@ -656,7 +656,7 @@ fn cost_of_preserving_state() {
                     })
                 };
                 let calls = [synthesize(&mut leave), synthesize(&mut preserve)];
-                // With sizes that stay the same, what remains of `prepare` is to save and to restore.
+                // If sizes do not change, saving and restoring are all that `prepare` does.
                 let alone = microseconds(20_000, &mut || preserve.prepare(&lent.warp).unwrap());
                 for (best, time) in best.iter_mut().zip([calls[0], calls[1], alone]) {
                     *best = best.min(time);

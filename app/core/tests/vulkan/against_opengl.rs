@@ -1,5 +1,5 @@
-//! Pictures of the passes on another graphics interface against those of OpenGL. All rows are counted from the bottom,
-//! places in images from the top.
+//! Compares pictures of the passes on another graphics interface with those of OpenGL. All rows are counted from the
+//! bottom, places in images from the top.
 
 #[path = "../synthesis/in_memory.rs"]
 mod in_memory;
@@ -23,18 +23,18 @@ use yoro::synthesis::{
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
 
-/// The variants of the shaders that the others have, too.
+/// The variants of the shaders that other graphics interfaces have, too.
 const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
 
-/// A rendered eye, rows from the bottom.
+/// A rendered eye, with rows from the bottom.
 pub struct Picture<W = Warp> {
     pub warp: W,
     pub rgba: Vec<u8>,
     pub depth: Vec<f32>,
 }
 
-/// A slanted wall with boxes and wires before it, in colours that differ from pixel to pixel but smoothly enough for an
-/// error of position to be one of colour in the same measure.
+/// Returns a slanted wall with boxes and wires in front of it. Colours differ from pixel to pixel, but so smoothly that
+/// an error of position causes a proportional error of colour.
 pub fn picture<W: WarpKind>(warp: &W, range: DepthRange, seed: u64) -> Picture<W> {
     let [w, h] = warp.sizes()[0].map(|n| n as usize);
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
@@ -69,7 +69,7 @@ pub fn eyes(size: [u32; 2], dominant: Eye, range: DepthRange) -> EyePair {
     EyePair::parallel(Pose::IDENTITY, frustum, 0.063, range, size, dominant)
 }
 
-/// Standard, reversed, infinite, and reversed by swapped planes as in OpenXR.
+/// Returns standard, reversed and infinite depth ranges, and one reversed by swapped planes as in OpenXR.
 pub fn ranges() -> [DepthRange; 4] {
     let standard = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Standard };
     [
@@ -80,7 +80,7 @@ pub fn ranges() -> [DepthRange; 4] {
     ]
 }
 
-/// The rectangle of an image at a place counted from the top, all rows from the bottom.
+/// Returns a rectangle of an image, at a place counted from the top. All rows run from the bottom.
 pub fn cut<T: Copy>(all: &[T], image: [u32; 2], origin: [u32; 2], size: [u32; 2], channels: usize) -> Vec<T> {
     let [w, h] = image.map(|n| n as usize);
     let bottom = h - (origin[1] + size[1]) as usize;
@@ -89,7 +89,7 @@ pub fn cut<T: Copy>(all: &[T], image: [u32; 2], origin: [u32; 2], size: [u32; 2]
     (0..size[1] as usize).flat_map(row).copied().collect()
 }
 
-/// `all` with a rectangle of it replaced; places as in [`cut`].
+/// Returns `all` with a rectangle of it replaced; places are counted as in [`cut`].
 pub fn pasted<T: Copy>(
     mut all: Vec<T>,
     image: [u32; 2],
@@ -107,7 +107,7 @@ pub fn pasted<T: Copy>(
     all
 }
 
-/// The same on OpenGL ES.
+/// The pipelines on OpenGL ES.
 pub struct Gl {
     pub headless: Headless,
     offline: [RefCell<InMemory>; 2],
@@ -129,25 +129,26 @@ impl Gl {
     }
 }
 
-/// A rendered eye and a history of the other one, all rows from the bottom.
+/// A rendered eye and a history of the other eye. All rows run from the bottom.
 pub struct RecalledScene {
     pub what: String,
     pub source: Picture,
     pub target: View,
     pub former: sheets::Picture,
     pub former_size: [u32; 2],
-    /// From the bottom. There are as many from the top: they divide the rows.
+    /// The views of the strips from the bottom on. They divide the rows evenly, so the strips from the top on are the
+    /// same.
     pub strips: Vec<Option<View>>,
 }
 
 impl RecalledScene {
-    /// Of images whose row 0 is at the top.
+    /// Returns the strips for images with row 0 at the top.
     pub fn strips_from_top(&self) -> Strips {
         Strips::new(&self.target, &self.strips.iter().rev().copied().collect::<Vec<_>>())
     }
 }
 
-/// Histories of a moving head, one strip of four missing, of the whole size and of half.
+/// Returns histories of a moving head with one of four strips empty, at full and at half size.
 pub fn recalled_scenes() -> Vec<RecalledScene> {
     let of = |(dominant, convention, scale)| {
         let at =
@@ -176,7 +177,7 @@ pub fn recalled_scenes() -> Vec<RecalledScene> {
 }
 
 impl Gl {
-    /// A pipeline that may have a history.
+    /// Returns a pipeline that takes histories.
     pub fn recalling(&self, edges: Edges, variant: usize) -> InMemory {
         let gl = self.headless.gl();
         let options = SynthesisOptions { edges, history: true, ..SynthesisOptions::default() };
@@ -192,7 +193,7 @@ impl Gl {
 }
 
 impl InMemory {
-    /// The other eye of a scene with its history, and without.
+    /// Returns the other eye of a scene, with its history and without.
     pub fn both(&mut self, scene: &RecalledScene) -> [Vec<u8>; 2] {
         let RecalledScene { source: Picture { warp, rgba, depth }, former, former_size, .. } = scene;
         let strips = Strips::new(&scene.target, &scene.strips);
@@ -201,7 +202,7 @@ impl InMemory {
     }
 }
 
-/// Warps to poses of a moving head, in all depth ranges, with targets of another size than the source.
+/// Returns warps to poses of a moving head, in all depth ranges, with targets of other sizes than the source.
 pub fn pose_warps() -> Vec<(PoseWarp, DepthRange)> {
     let ranges = ranges().into_iter().cycle();
     let of = |(motion, range)| {
@@ -213,24 +214,24 @@ pub fn pose_warps() -> Vec<(PoseWarp, DepthRange)> {
 }
 
 impl Gl {
-    /// Any view on OpenGL ES, with its depth.
+    /// Synthesizes any view on OpenGL ES, with its depth.
     pub fn any_view(&self, picture: &Picture<PoseWarp>) -> posed::Image {
         posed::run(self.headless.gl(), &picture.rgba, &picture.depth, &picture.warp, None)
     }
 }
 
-/// Checks that stored depth is as good as equal, as [`assert_equal`] does for colours.
+/// Checks that stored depths are nearly equal, as [`assert_equal`] does for colours.
 pub fn assert_depth_equal(got: &[f32], want: &[f32], what: &str) {
     assert_eq!(got.len(), want.len());
     let different = got.iter().zip(want).filter(|(a, b)| (**a - **b).abs() > 4e-5).count();
     assert!(different * 4000 <= got.len(), "{what}: depth of {different} of {} pixels differs", got.len());
 }
 
-/// The largest difference of a channel, by the number of a variant. The two APIs count rows from opposite ends, so that
-/// tiles and their laws are others: an eighth of a pixel, in noise of 255 levels.
+/// The largest difference of a channel for each variant. The interfaces count rows from opposite ends, so tiles and
+/// their laws differ: by an eighth of a pixel, in noise of 255 levels.
 pub const TOLERANCES: [u8; 2] = [1, 32];
 
-/// Checks that every channel is as good as equal, but for a few pixels whose positions lie within rounding of a
+/// Checks that all channels are nearly equal, except for a few pixels whose positions lie within rounding of a
 /// decision.
 pub fn assert_equal(got: &[u8], want: &[u8], channels: usize, number: usize, what: &str) {
     assert_eq!(got.len(), want.len());
@@ -241,7 +242,7 @@ pub fn assert_equal(got: &[u8], want: &[u8], channels: usize, number: usize, wha
     assert!(different * 4000 <= got.len() / 4, "{what}: {different} of {} pixels differ", got.len() / 4);
 }
 
-/// Warps of both eyes, in all depth ranges, with targets that lie higher and lower than their sources, and beyond them.
+/// Returns warps for both eyes, in all depth ranges, with targets that are higher, lower and larger than their sources.
 pub fn warps() -> Vec<(Warp, DepthRange)> {
     let mut warps = Vec::new();
     for (i, range) in ranges().into_iter().enumerate() {
@@ -259,7 +260,7 @@ pub fn warps() -> Vec<(Warp, DepthRange)> {
     warps
 }
 
-/// Sizes, law and place of a synthesis; margins are what lies around the source and the target in their images.
+/// The sizes, law and places of a synthesis. Margins surround the source and the target in their images.
 #[derive(Debug)]
 pub struct RandomCase {
     pub warp: Warp,
@@ -273,15 +274,15 @@ pub struct RandomCase {
 pub const RANDOM_RANGE: DepthRange =
     DepthRange { near: 0.4, far: 20.0, convention: DepthConvention::Reversed };
 
-/// Any sizes, rectangles, eyes and laws of up to 96 x 70 pixels. The last two displace by 300 pixels, one of them a
-/// part of an image.
+/// Returns random sizes, rectangles, eyes and laws of up to 96 x 70 pixels. The last two displace by 300 pixels, one of
+/// them in a part of an image.
 pub fn random_cases() -> Vec<RandomCase> {
     let warp = |source_size, target_size, row_offset, offset, scale: f64| Warp {
         source_size,
         target_size,
         law: DisparityLaw { offset, scale },
         row_offset,
-        // Nearer surfaces lie farther along in forward columns, or there is no law.
+        // Nearer surfaces must move towards larger forward columns.
         target_eye: Eye::BOTH[usize::from(scale < 0.0)],
         convention: RANDOM_RANGE.convention,
     };
@@ -306,7 +307,7 @@ pub fn random_cases() -> Vec<RandomCase> {
     small.chain(wide).collect()
 }
 
-/// The expected depth of a target, from the columns that OpenGL has written.
+/// Returns the expected depth of a target, from the columns that OpenGL has written.
 pub fn expected_depth(picture: &Picture, source_map: &[u32]) -> Vec<f32> {
     let warp = &picture.warp;
     let [width, height] = warp.source_size.map(|n| n as i32);
@@ -321,7 +322,7 @@ pub fn expected_depth(picture: &Picture, source_map: &[u32]) -> Vec<f32> {
     entries.collect()
 }
 
-/// Colour and depth as textures, and a target of the colour's format.
+/// Returns colour and depth as textures, and a target of the colour's format.
 pub fn gl_images(gl: &Rc<Context>, picture: &Picture, format: gl::Format) -> ([Texture; 2], RenderTarget) {
     let Picture { warp, rgba, depth } = picture;
     let color = Texture::new(gl, warp.source_size, format, Filter::Linear).unwrap();

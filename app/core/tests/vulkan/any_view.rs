@@ -1,4 +1,4 @@
-//! Any view: the pictures and depth of OpenGL.
+//! Any view on Vulkan: the same pictures and depth as on OpenGL.
 
 use crate::against_opengl::{Gl, assert_depth_equal, assert_equal, picture, pose_warps};
 use crate::harness::{Rendering, with_gpu};
@@ -14,7 +14,7 @@ fn any_view_is_that_of_opengl() {
             for (i, (warp, range)) in pose_warps().into_iter().enumerate() {
                 let picture = picture(&warp, range, i as u64);
                 let setup = Setup { target_depth: Some(vk::Format::D32_SFLOAT), ..Setup::PLAIN };
-                // SAFETY: the device outlives it, and everything is executed.
+                // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
                 let mut any_view = unsafe { AnyView::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
                 let got = synthesize(gpu, &mut any_view, &setup, &picture);
                 let want = gl.any_view(&picture);
@@ -26,7 +26,7 @@ fn any_view_is_that_of_opengl() {
     }
 }
 
-/// Parts of larger images and layers of arrays, one pipeline for several sizes, times and other formats.
+/// Parts of larger images and layers of arrays, with one pipeline for several sizes, pass times and other formats.
 #[test]
 fn any_view_of_parts_and_layers() {
     let gl = Gl::new();
@@ -51,7 +51,7 @@ fn any_view_of_parts_and_layers() {
             timed_frames: 1,
             ..setups[0].options(&[pose_warps()[0].0])
         };
-        // SAFETY: the device outlives it, and everything is executed.
+        // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
         let mut any_view = unsafe { AnyView::new(&gpu.host(), &limits).unwrap() };
         for (i, (warp, range)) in pose_warps().into_iter().enumerate() {
             let picture = picture(&warp, range, 50 + i as u64);

@@ -1,4 +1,4 @@
-//! Vulkan commands that fail: memory runs out, the device is lost.
+//! Failing Vulkan commands: memory runs out, the device is lost.
 
 use std::ffi::{CStr, c_void};
 use std::sync::OnceLock;
@@ -20,7 +20,7 @@ static LEFT: AtomicUsize = AtomicUsize::new(usize::MAX);
 /// The error of the failing call.
 static FAILURE: AtomicI32 = AtomicI32::new(0);
 
-/// True if this call is the failing one.
+/// True if this call is the one that fails.
 fn fails() -> bool {
     LEFT.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |left| left.checked_sub(1)).is_err()
 }
@@ -33,7 +33,7 @@ macro_rules! failing {
 
             $(pub unsafe extern "system" fn $field($($argument: $ty),*) -> vk::Result {
                 if fails() {
-                    // One failure for each run.
+                    // Only one call fails per run.
                     LEFT.store(usize::MAX, Ordering::SeqCst);
                     return vk::Result::from_raw(FAILURE.swap(0, Ordering::SeqCst));
                 }
@@ -113,7 +113,7 @@ failing! {
     );
 }
 
-/// Calls everything that calls Vulkan once.
+/// Calls everything that calls Vulkan, once.
 fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     let (warp, setup) = (warps()[0].0, Setup::PLAIN);
     let color = gpu.image(setup.color, warp.source_size, 1);
@@ -124,7 +124,7 @@ fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     let target = gpu.image(setup.target, warp.target_size, 1);
     let (before, after) = (ImageState::DISCARDED, ImageState::SAMPLED);
     let options = Options { timed_frames: 1, edges, history: true, ..setup.options(&[warp]) };
-    // SAFETY: valid handles; everything is executed before it is dropped.
+    // SAFETY: the handles are valid, and all commands are executed before the pipeline is dropped.
     unsafe {
         let mut gather = Gather::new(host, &options)?;
         let layer = |image: &Image| image.layer(0, before, after);
@@ -142,8 +142,8 @@ fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
     Ok(())
 }
 
-/// Each call of each command fails once with each error. The error is returned, and no object is left behind: the
-/// validation layer would report it when the device is destroyed.
+/// Each call of each command fails once with each error. The error is returned, and no object is left: the validation
+/// layer would report it when the device is destroyed.
 #[test]
 fn every_failure_comes_back_as_an_error() {
     with_gpu(Rendering::RenderPasses, |gpu| {
@@ -158,7 +158,7 @@ fn every_failure_comes_back_as_an_error() {
             ash::Device::load_with(load, real.handle())
         };
         let host = Host { device: &device, ..host };
-        // Anti-aliased sources take the same ways, some of them more often.
+        // Anti-aliased sources take the same paths, some of them more often.
         let failures = [
             (vk::Result::ERROR_OUT_OF_DEVICE_MEMORY, Edges::Multisample),
             (vk::Result::ERROR_OUT_OF_HOST_MEMORY, Edges::Hard),
@@ -191,7 +191,7 @@ fn every_failure_comes_back_as_an_error() {
 /// The instance's own commands.
 static INSTANCE: OnceLock<ash::Instance> = OnceLock::new();
 
-/// The properties of a device without D24S8, of which there are many.
+/// Returns the properties of a device without D24S8, like many devices.
 unsafe extern "system" fn properties_without_d24s8(
     physical_device: vk::PhysicalDevice,
     format: vk::Format,

@@ -1,6 +1,6 @@
 //! A Vulkan device without a window, under Khronos's validation layer, and pictures in its images.
 //!
-//! Arrays have their rows from the bottom, as everywhere; images have them from the top, as Vulkan does.
+//! Rows of arrays run from the bottom, as everywhere; those of images run from the top, as in Vulkan.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;
@@ -11,10 +11,10 @@ use yoro::vulkan::{Host, ImageState, LayerImage};
 
 const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// How passes begin, and what is enabled of the device for it.
+/// How passes begin, and which features of the device are enabled for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rendering {
-    /// Vulkan 1.1, nothing enabled.
+    /// Vulkan 1.1 without further features.
     RenderPasses,
     /// Vulkan 1.1 with VK_KHR_dynamic_rendering.
     Extension,
@@ -26,7 +26,7 @@ impl Rendering {
     pub const ALL: [Rendering; 3] = [Rendering::RenderPasses, Rendering::Extension, Rendering::Core];
 }
 
-/// A device of its own instance. When it is dropped the validation layer must have said nothing.
+/// A device with its own instance. When it is dropped, the validation layer must not have reported anything.
 pub struct Gpu {
     entry: ash::Entry,
     instance: ash::Instance,
@@ -56,12 +56,13 @@ unsafe extern "system" fn note(
     vk::FALSE
 }
 
-/// Runs a test body on a device, unless tests are to do without.
+/// Runs a test body on a device, unless tests of Vulkan are disabled.
 pub fn with_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
     with(rendering, true, body);
 }
 
-/// The same without the validation layer, which keeps something of every submission: for what must not grow.
+/// Does the same without the validation layer, which keeps memory for every submission: for tests that memory does not
+/// grow.
 #[allow(dead_code, reason = "for the layer's tests, which share this")]
 pub fn with_unwatched_gpu(rendering: Rendering, body: impl FnOnce(&Gpu)) {
     with(rendering, false, body);
@@ -108,7 +109,7 @@ impl Gpu {
                     .pfn_user_callback(Some(note))
                     .user_data((&raw const *messages).cast_mut().cast())
             };
-            // Watches the making and the destruction of the instance itself.
+            // Watches the creation and destruction of the instance itself.
             let mut early = messenger();
             let info = vk::InstanceCreateInfo::default()
                 .application_info(&application)
@@ -121,7 +122,7 @@ impl Gpu {
             let debug = ash::ext::debug_utils::Instance::new(&entry, &instance);
             let messenger = debug.create_debug_utils_messenger(&messenger(), None).unwrap();
             let physical_devices = instance.enumerate_physical_devices().unwrap_or_default();
-            // A CPU's pictures are the same everywhere.
+            // A CPU rasterizer renders the same everywhere.
             let is_cpu = |device: &&vk::PhysicalDevice| {
                 instance.get_physical_device_properties(**device).device_type == vk::PhysicalDeviceType::CPU
             };
@@ -139,7 +140,7 @@ impl Gpu {
                 [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
             let extensions: [*const c_char; 4] = [
                 ash::khr::dynamic_rendering::NAME.as_ptr(),
-                // What that one needs in Vulkan 1.1.
+                // The preceding extension needs these in Vulkan 1.1.
                 ash::khr::depth_stencil_resolve::NAME.as_ptr(),
                 ash::khr::create_renderpass2::NAME.as_ptr(),
                 ash::khr::get_physical_device_properties2::NAME.as_ptr(),
@@ -184,7 +185,7 @@ impl Gpu {
         }
     }
 
-    /// The instance with other entry points in place of some.
+    /// Returns the instance with some of its entry points replaced.
     pub fn instance_with(&self, other: impl Fn(&CStr) -> Option<*const c_void>) -> ash::Instance {
         let handle = self.instance.handle();
         let load = |name: &CStr| {
@@ -192,7 +193,7 @@ impl Gpu {
             let own = unsafe { self.entry.get_instance_proc_addr(handle, name.as_ptr()) };
             other(name).unwrap_or(own.map_or(std::ptr::null(), |own| own as *const c_void))
         };
-        // SAFETY: the instance's own entry points, or such as the caller has of the same signatures.
+        // SAFETY: the instance's own entry points, or the caller's with the same signatures.
         unsafe { ash::Instance::load_with(load, handle) }
     }
 
@@ -202,7 +203,7 @@ impl Gpu {
         properties.device_name_as_c_str().unwrap().to_string_lossy().into_owned()
     }
 
-    /// True if images of this format allow this usage.
+    /// True if images of this format have these features.
     pub fn has(&self, format: vk::Format, features: vk::FormatFeatureFlags) -> bool {
         // SAFETY: a valid device.
         let properties =
@@ -220,12 +221,12 @@ impl Gpu {
         resolve.supported_depth_resolve_modes.contains(mode)
     }
 
-    /// The validation layer's messages so far.
+    /// Returns the validation layer's messages so far, and removes them.
     pub fn messages(&self) -> Vec<String> {
         std::mem::take(&mut *self.messages.lock().unwrap())
     }
 
-    /// Records, submits and waits.
+    /// Records and submits commands, and waits for them.
     pub fn run<R>(&self, record: impl FnOnce(vk::CommandBuffer) -> R) -> R {
         // SAFETY: one command buffer, which has been executed when it is freed.
         unsafe {
@@ -260,7 +261,7 @@ impl Gpu {
         unsafe { self.device.allocate_memory(&info, None).unwrap() }
     }
 
-    /// Calls `body` with a buffer of this content, and gives back what it holds then.
+    /// Calls `body` with a buffer of this content, and returns its content afterwards.
     fn with_buffer(&self, mut bytes: Vec<u8>, body: impl FnOnce(vk::Buffer)) -> Vec<u8> {
         let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
         let info = vk::BufferCreateInfo::default().size(bytes.len() as u64).usage(usage);
@@ -281,13 +282,13 @@ impl Gpu {
         bytes
     }
 
-    /// An image that can be rendered to, sampled and copied.
+    /// Creates an image that can be rendered to, sampled and copied.
     pub fn image(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Image<'_> {
         let copied = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
         self.image_of(format, size, layers, vk::SampleCountFlags::TYPE_1, copied)
     }
 
-    /// An image of several samples, that can be rendered to and sampled.
+    /// Creates an image of several samples, which can be rendered to and sampled.
     pub fn multisampled(&self, format: vk::Format, size: [u32; 2], samples: u32) -> Image<'_> {
         let samples = vk::SampleCountFlags::from_raw(samples);
         self.image_of(format, size, 1, samples, vk::ImageUsageFlags::empty())
@@ -330,7 +331,7 @@ impl Gpu {
 
 impl Drop for Gpu {
     fn drop(&mut self) {
-        // SAFETY: everything was executed, and nothing else is left of the device.
+        // SAFETY: everything was executed, and no other object of the device is left.
         unsafe {
             self.device.destroy_command_pool(self.pool, None);
             self.device.destroy_device(None);
@@ -372,12 +373,12 @@ impl Image<'_> {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// In the state that the pipeline expects.
+    /// Returns a layer, with its uses before and after a call.
     pub fn layer(&self, layer: u32, before: ImageState, after: ImageState) -> LayerImage {
         LayerImage { image: self.raw, format: self.format, layer, before, after }
     }
 
-    /// All that the format has.
+    /// Returns all aspects of the format.
     fn aspects(&self) -> vk::ImageAspectFlags {
         let stencil = matches!(self.format, vk::Format::D24_UNORM_S8_UINT | vk::Format::D32_SFLOAT_S8_UINT);
         match (is_depth(self.format), stencil) {
@@ -387,21 +388,21 @@ impl Image<'_> {
         }
     }
 
-    /// The copied aspect: colour, or depth alone.
+    /// Returns the aspect to copy: colour, or depth alone.
     fn copied(&self, layer: u32) -> vk::ImageSubresourceLayers {
         let aspect_mask =
             if is_depth(self.format) { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };
         vk::ImageSubresourceLayers { aspect_mask, mip_level: 0, base_array_layer: layer, layer_count: 1 }
     }
 
-    /// All of it, as a copy to or from a buffer.
+    /// Describes the copy of a whole layer to or from a buffer.
     fn whole(&self, layer: u32) -> [vk::BufferImageCopy; 1] {
         let [width, height] = self.size;
         let extent = vk::Extent3D { width, height, depth: 1 };
         [vk::BufferImageCopy::default().image_subresource(self.copied(layer)).image_extent(extent)]
     }
 
-    /// A barrier between two uses.
+    /// Records a barrier between two uses.
     pub fn barrier(&self, commands: vk::CommandBuffer, layer: u32, from: ImageState, to: ImageState) {
         let range = vk::ImageSubresourceRange {
             aspect_mask: self.aspects(),
@@ -418,11 +419,11 @@ impl Image<'_> {
             .image(self.raw)
             .subresource_range(range)];
         let (from, to, none) = (from.stages, to.stages, vk::DependencyFlags::empty());
-        // SAFETY: a live image in the state that the caller tells.
+        // SAFETY: a live image in the state that the caller gives.
         unsafe { self.gpu.device.cmd_pipeline_barrier(commands, from, to, none, &[], &[], &barrier) };
     }
 
-    /// Writes all of a layer, in the format's own encoding, and leaves it ready for `after`.
+    /// Writes a whole layer, in the format's own encoding, and leaves it ready for `after`.
     pub fn upload(&self, layer: u32, bytes: &[u8], after: ImageState) {
         self.gpu.with_buffer(bytes.to_vec(), |buffer| {
             self.gpu.run(|commands| {
@@ -437,7 +438,7 @@ impl Image<'_> {
         });
     }
 
-    /// All of a layer in the format's own encoding; leaves it as it is found.
+    /// Reads a whole layer, in the format's own encoding, and restores its state.
     pub fn read(&self, layer: u32, state: ImageState, bytes_per_pixel: usize) -> Vec<u8> {
         self.gpu.with_buffer(vec![0; self.pixels() * bytes_per_pixel], |buffer| {
             self.gpu.run(|commands| {
@@ -452,7 +453,7 @@ impl Image<'_> {
         })
     }
 
-    /// Converts between formats, pixel for pixel.
+    /// Copies a layer of another image, converting between formats.
     fn blit_from(&self, layer: u32, from: &Image, from_layer: u32, [before, after]: [ImageState; 2]) {
         self.gpu.run(|commands| {
             from.barrier(commands, from_layer, before, READ);
@@ -483,7 +484,7 @@ impl Image<'_> {
         });
     }
 
-    /// Fills a layer of colour with bytes of RGBA, rows from the bottom. sRGB takes them as they are.
+    /// Fills a colour layer with RGBA bytes, with rows from the bottom. sRGB images store them unchanged.
     pub fn upload_rgba8(&self, layer: u32, rgba: &[u8], after: ImageState) {
         let bytes = flipped(rgba, self.size[0] as usize * 4);
         if is_rgba8(self.format) {
@@ -494,7 +495,7 @@ impl Image<'_> {
         self.blit_from(layer, &plain, 0, [READ, after]);
     }
 
-    /// A layer of colour as bytes of RGBA, rows from the bottom.
+    /// Reads a colour layer as RGBA bytes, with rows from the bottom.
     pub fn read_rgba8(&self, layer: u32, state: ImageState) -> Vec<u8> {
         if is_rgba8(self.format) {
             return flipped(&self.read(layer, state, 4), self.size[0] as usize * 4);
@@ -504,7 +505,7 @@ impl Image<'_> {
         flipped(&plain.read(0, READ, 4), self.size[0] as usize * 4)
     }
 
-    /// Fills a layer of depth, rows from the bottom.
+    /// Fills a depth layer, with rows from the bottom.
     pub fn upload_depth(&self, layer: u32, depth: &[f32], after: ImageState) {
         let texel = |depth: &f32| -> Vec<u8> {
             match self.format {
@@ -522,7 +523,7 @@ impl Image<'_> {
         self.upload(layer, &flipped(&bytes, self.size[0] as usize * bytes_per_pixel), after);
     }
 
-    /// A layer of depth, rows from the bottom.
+    /// Reads a depth layer, with rows from the bottom.
     pub fn read_depth(&self, layer: u32, state: ImageState) -> Vec<f32> {
         let size = if self.format == vk::Format::D16_UNORM { 2 } else { 4 };
         let bytes = flipped(&self.read(layer, state, size), self.size[0] as usize * size);
@@ -558,12 +559,12 @@ pub const READ: ImageState = ImageState {
     access: vk::AccessFlags::TRANSFER_READ,
 };
 
-/// The rows in the opposite order.
+/// Reverses the order of the rows.
 pub fn flipped(bytes: &[u8], row: usize) -> Vec<u8> {
     bytes.chunks_exact(row).rev().flatten().copied().collect()
 }
 
-/// The largest sizes of several warps.
+/// Returns the largest source and target sizes of several warps.
 pub fn largest(warps: &[impl WarpKind]) -> [[u32; 2]; 2] {
     let most =
         |image: usize| [0, 1].map(|i| warps.iter().map(|warp| warp.sizes()[image][i]).max().unwrap_or(1));

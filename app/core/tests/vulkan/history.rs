@@ -1,4 +1,4 @@
-//! Disocclusions that are looked up in a history: the pictures of OpenGL.
+//! Disocclusions that are taken from a history: the same pictures as on OpenGL.
 
 use crate::against_opengl::{Gl, RecalledScene, assert_equal, recalled_scenes};
 use crate::harness::{Gpu, READ, Rendering, WRITTEN, with_gpu};
@@ -21,7 +21,7 @@ fn what_is_recalled_is_what_opengl_recalls() {
         with_gpu(rendering, |gpu| {
             let mut opengl = gl.recalling(edges, number);
             let options = Options { edges, history: true, ..Setup::PLAIN.options(&warps) };
-            // SAFETY: valid handles; everything is executed before it is dropped.
+            // SAFETY: the handles are valid, and all commands are executed before the pipeline is dropped.
             let mut gather =
                 unsafe { Gather::with_passes(&gpu.host(), &options, PassSet::GATHER[number]).unwrap() };
             for scene in &scenes {
@@ -37,7 +37,7 @@ fn what_is_recalled_is_what_opengl_recalls() {
     }
 }
 
-/// The other eye with the scene's history, and of a frame without, recorded one after the other.
+/// Returns the other eye with the scene's history, and that of a frame without, recorded one after the other.
 fn synthesize(gpu: &Gpu, gather: &mut Gather, scene: &RecalledScene) -> [Vec<u8>; 2] {
     let warp = &scene.source.warp;
     let upload = |rgba: &[u8], depth: &[f32], depth_format, size| {
@@ -51,7 +51,7 @@ fn synthesize(gpu: &Gpu, gather: &mut Gather, scene: &RecalledScene) -> [Vec<u8>
     let former = upload(&scene.former.rgba, &scene.former.depth, vk::Format::D32_SFLOAT, scene.former_size);
     let targets = [0; 2].map(|_| gpu.image(vk::Format::R8G8B8A8_UNORM, warp.target_size, 1));
     let sampled = ImageState::SAMPLED;
-    // SAFETY: images that live until everything is executed, in the states that are told.
+    // SAFETY: the images live until all commands have been executed, and are in the given states.
     unsafe {
         let source = |before| {
             let [former_color, former_depth] = former.each_ref().map(|image| image.layer(0, before, sampled));

@@ -59,13 +59,13 @@ fn allocations() -> usize {
 struct Setup {
     color: vk::Format,
     depth: vk::Format,
-    /// Formats of the target.
+    /// Formats of the target's colour and depth.
     target: vk::Format,
     target_depth: Option<vk::Format>,
-    /// Upper left corners and what lies beyond the lower right ones.
+    /// Margins before the upper left and after the lower right corners.
     source_margins: [[u32; 2]; 2],
     target_margins: [[u32; 2]; 2],
-    /// Of two.
+    /// Which of two layers is used.
     source_layer: u32,
     target_layer: u32,
     /// Uses of the source's images around the call.
@@ -104,7 +104,7 @@ struct Result {
     depth: Option<Vec<f32>>,
 }
 
-/// Synthesizes a picture with images around it that hold something else.
+/// Synthesizes a picture in images that hold other data around it.
 fn synthesize<W: WarpKind>(
     gpu: &Gpu,
     pipeline: &mut Pipeline<W>,
@@ -122,7 +122,7 @@ fn synthesize<W: WarpKind>(
 
     let color = gpu.image(setup.color, source_image, 2);
     let depth = gpu.image(setup.depth, source_image, 2);
-    // Near and far at random, which would show.
+    // Random depth around the source would show.
     let mut rng = rand_pcg::Pcg32::seed_from_u64(99);
     let junk: Vec<u8> = (0..pixels(source_image) * 4).map(|_| rng.random()).collect();
     let junk_depth: Vec<f32> = (0..pixels(source_image)).map(|_| rng.random_range(0.0..=1.0)).collect();
@@ -144,12 +144,12 @@ fn synthesize<W: WarpKind>(
     let target = gpu.image(setup.target, target_image, 2);
     let before: Vec<u8> = (0..pixels(target_image) * 4).map(|_| rng.random()).collect();
     (0..2).for_each(|layer| target.upload_rgba8(layer, &before, setup.target_before));
-    // Whatever conversions there are between, what is read back unharmed is this.
+    // The target's old content, after conversions between formats; what is not written must stay the same.
     let before = target.read_rgba8(setup.target_layer, setup.target_before);
     let target_depth = setup.target_depth.map(|format| gpu.image(format, target_image, 2));
     let image = |image: &Image, layer, [before, after]: [ImageState; 2]| image.layer(layer, before, after);
 
-    // SAFETY: images that live until everything is executed, in the states that are told.
+    // SAFETY: the images live until all commands have been executed, and are in the given states.
     unsafe {
         let source_color = image(&color, setup.source_layer, setup.states[0]);
         let source_depth = image(&depth, setup.source_layer, setup.states[1]);
@@ -172,7 +172,7 @@ fn synthesize<W: WarpKind>(
     let width = target_size[0] as usize;
     let outside = pasted(before, target_image, target_origin, &rgba, width);
     assert!(outside == after, "pixels outside of the target's rectangle have changed: {setup:?}");
-    // The layout is what was asked for: the validation layer looks.
+    // The validation layer checks that the layout is the requested one.
     for (image, states) in [(&color, setup.states[0]), (&depth, setup.states[1])] {
         gpu.run(|commands| image.barrier(commands, setup.source_layer, states[1], READ));
     }
@@ -192,7 +192,7 @@ fn pictures_equal_those_of_opengl() {
                 for (i, (warp, range)) in warps().into_iter().enumerate() {
                     let picture = picture(&warp, range, i as u64);
                     let setup = Setup::PLAIN;
-                    // SAFETY: the device outlives it, and everything is executed.
+                    // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
                     let mut gather =
                         unsafe { Gather::with_passes(&gpu.host(), &setup.options(&[warp]), passes).unwrap() };
                     let got = synthesize(gpu, &mut gather, &setup, &picture);
@@ -210,7 +210,7 @@ fn pictures_equal_those_of_opengl() {
     }
 }
 
-/// Parts of larger images and layers of arrays, one pipeline for several sizes, all layouts.
+/// Parts of larger images and layers of arrays, with one pipeline for several sizes, in all layouts.
 #[test]
 fn parts_and_layers_are_found() {
     let gl = Gl::new();
@@ -237,7 +237,7 @@ fn parts_and_layers_are_found() {
         ];
         for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
             let all: Vec<Warp> = warps.iter().map(|(warp, _)| *warp).collect();
-            // SAFETY: the device outlives it, and everything is executed.
+            // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
             let mut gather =
                 unsafe { Gather::with_passes(&gpu.host(), &setup.options(&all), passes).unwrap() };
             for (i, (warp, range)) in warps.iter().enumerate() {
@@ -289,11 +289,11 @@ fn every_format_is_taken() {
                     target_margins: [[0, 1], [1, 0]],
                     ..Setup::PLAIN
                 };
-                // SAFETY: the device outlives it, and everything is executed.
+                // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
                 let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
                 let got = synthesize(gpu, &mut gather, &setup, &picture);
                 let want = gl.run(0, &picture);
-                // Ten bits have two of alpha.
+                // Formats with ten bits have only two of alpha.
                 assert_equal(&got.rgba, &want.rgba, 3, 0, &format!("{rendering:?}, {setup:?}"));
                 let expected = expected_depth(&picture, &want.source_map);
                 let error =
@@ -304,7 +304,7 @@ fn every_format_is_taken() {
     }
 }
 
-/// sRGB is decoded, filtered and encoded: by Vulkan as by OpenGL.
+/// sRGB is decoded, filtered and encoded by Vulkan as by OpenGL.
 #[test]
 fn srgb_is_filtered_in_linear_light() {
     let gl = Gl::new();
@@ -313,7 +313,7 @@ fn srgb_is_filtered_in_linear_light() {
         let picture = picture(&warp, range, 80);
         let srgb = vk::Format::R8G8B8A8_SRGB;
         let setup = Setup { color: srgb, target: srgb, ..Setup::PLAIN };
-        // SAFETY: the device outlives it, and everything is executed.
+        // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
         let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
         let got = synthesize(gpu, &mut gather, &setup, &picture);
         let want = gl_srgb(gl.headless.gl(), &picture);
@@ -322,14 +322,14 @@ fn srgb_is_filtered_in_linear_light() {
     });
 }
 
-/// Any sizes, rectangles, eyes and laws; displacements of up to 300 pixels, where the search passes over tiles.
+/// Random sizes, rectangles, eyes and laws, with displacements of up to 300 pixels, where the search skips tiles.
 #[test]
 fn sizes_and_rectangles_at_random() {
     let gl = Gl::new();
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [540, 70], max_target_size: [540, 70], ..Options::default() };
         for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
-            // SAFETY: the device outlives it, and everything is executed.
+            // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
             let mut gather = unsafe { Gather::with_passes(&gpu.host(), &limits, passes).unwrap() };
             for (case, seed) in random_cases().into_iter().zip(3..) {
                 let picture = picture(&case.warp, RANDOM_RANGE, seed);
@@ -348,7 +348,7 @@ fn sizes_and_rectangles_at_random() {
     });
 }
 
-/// No frame overwrites what an earlier one still reads or writes (the validation layer checks it), and recording
+/// No frame overwrites what an earlier one still reads or writes (the validation layer checks this), and recording
 /// allocates nothing.
 #[test]
 fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
@@ -359,7 +359,7 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
             let pictures = [1, 2].map(|seed| picture(&warp, range, seed));
             let options = Options { timed_frames: 2, ..Setup::PLAIN.options(&[warp]) };
             let (sampled, drawn) = (ImageState::SAMPLED, ImageState::COLOR_ATTACHMENT);
-            // SAFETY: images that live until everything is executed, in the states that are told.
+            // SAFETY: the images live until all commands have been executed, and are in the given states.
             unsafe {
                 let mut gather = Gather::new(&gpu.host(), &options).unwrap();
                 let images = pictures.each_ref().map(|picture| {
@@ -379,7 +379,7 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
                 });
                 gpu.run(|commands| {
                     let allocated = allocations();
-                    // The second picture over the first, and the first again.
+                    // The second picture over the first one, then the first one elsewhere, and the second one again.
                     for (source, target) in [(0, 0), (1, 0), (0, 1), (1, 0)] {
                         let (source, target) = (ids[source].0, ids[target].1);
                         gather.record(commands, &Frame::new(source, target), &warp).unwrap();
@@ -395,8 +395,8 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
     }
 }
 
-/// Frames whose images come from other passes and go to others, and a wait that is a semaphore's: no stages. The
-/// validation layer looks.
+/// Images that other passes use before and after, with uses that differ from frame to frame, and empty stages, as with
+/// a semaphore. The validation layer checks them.
 #[test]
 fn uses_differ_from_frame_to_frame() {
     let gl = Gl::new();
@@ -415,10 +415,10 @@ fn uses_differ_from_frame_to_frame() {
         color.upload_rgba8(0, &picture.rgba, WRITTEN);
         depth.upload_depth(0, &picture.depth, WRITTEN);
         target.upload_rgba8(0, &vec![0; target.pixels() * 4], WRITTEN);
-        // SAFETY: images that live until everything is executed, in the states that are told.
+        // SAFETY: the images live until all commands have been executed, and are in the given states.
         unsafe {
             let mut gather = Gather::new(&gpu.host(), &Setup::PLAIN.options(&[warp])).unwrap();
-            // In no frame is one of them in the state of its registration.
+            // In no frame is any of them in its registered state.
             let [color, depth] = [&color, &depth].map(|image| image.layer(0, sampled, sampled));
             let source = SourceImages::new(color, depth, warp.source_size);
             let targets = TargetImages::new(target.layer(0, drawn, drawn), warp.target_size);
@@ -456,28 +456,28 @@ fn the_memory_is_known_before() {
                 let (max_source_size, max_target_size) = sizes;
                 let options =
                     Options { edges, color_format, max_source_size, max_target_size, ..Options::default() };
-                // SAFETY: the device outlives it.
+                // SAFETY: the device outlives the pipeline.
                 let gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
                 assert_eq!(options.buffer_bytes(), gather.buffer_bytes(), "{options:?}");
             }
         }
         let (max_source_size, max_target_size) = sizes;
         let options = Options { max_source_size, max_target_size, ..Options::default() };
-        // SAFETY: the device outlives it.
+        // SAFETY: the device outlives the pipeline.
         let any_view = unsafe { AnyView::new(&gpu.host(), &options).unwrap() };
         assert_eq!(options.any_view_buffer_bytes(), 16 * (19 * 25 + 8 * 24));
         assert_eq!(any_view.buffer_bytes(), options.any_view_buffer_bytes());
     });
 }
 
-/// A caller's mistake is one error, and nothing is recorded.
+/// A caller's mistake gives an error, and nothing is recorded.
 #[test]
 fn mistakes_are_refused() {
     with_gpu(Rendering::RenderPasses, |gpu| {
         let (warp, _) = warps()[0];
         let setup = Setup::PLAIN;
         let options = setup.options(&[warp]);
-        // SAFETY: valid handles; what is made of them is dropped before the device, unused.
+        // SAFETY: valid handles; whatever is created from them is dropped before the device, unused.
         unsafe {
             let make = |options: &Options| Gather::new(&gpu.host(), options).err();
             let none = Options { max_source_size: [0, 4], ..options };
@@ -545,7 +545,7 @@ fn mistakes_are_refused() {
     });
 }
 
-/// Times come as many frames later as the options say.
+/// Times arrive as many frames later as the options say.
 #[test]
 fn passes_are_timed() {
     with_gpu(Rendering::Core, |gpu| {
@@ -553,7 +553,7 @@ fn passes_are_timed() {
         let picture = picture(&warp, range, 90);
         for timed_frames in [0, 1, 3] {
             let options = Options { timed_frames, ..Setup::PLAIN.options(&[warp]) };
-            // SAFETY: the device outlives it, and everything is executed.
+            // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
             unsafe {
                 let mut gather = Gather::new(&gpu.host(), &options).unwrap();
                 for frame in 0..7 {
@@ -580,7 +580,7 @@ fn cost_of_the_passes() {
         let picture = picture(&warp, range, 1);
         let options = Options { timed_frames: 1, ..Setup::PLAIN.options(&[warp]) };
         let mut times: [Vec<[f64; 3]>; 2] = Default::default();
-        // SAFETY: the device outlives it, and everything is executed.
+        // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
         let mut gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
         let (source, target) = gl_images(context, &picture, gl::Format::Rgba8);
         let textures = synthesis::Source::new(source[0].raw(), source[1].raw());
@@ -591,7 +591,7 @@ fn cost_of_the_passes() {
             let passes = context.take_pass_times();
             times[0].push(std::array::from_fn(|i| passes[i].time.as_secs_f64() * 1e3));
             drop(synthesize(gpu, &mut gather, &Setup::PLAIN, &picture));
-            // SAFETY: it was submitted.
+            // SAFETY: the frame's commands have been executed.
             let passes = unsafe { gather.pass_times() }.unwrap().expect("finished");
             times[1].push([passes.tiles, passes.spans, passes.march].map(|time| time.as_secs_f64() * 1e3));
         }

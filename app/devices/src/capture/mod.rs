@@ -1,9 +1,12 @@
 //! Captures: the record of one run on a device, a folder with `run.json`, `log.txt` and `samples.csv`.
 //!
-//! `run.json` is a [`RunInfo`]; `log.txt` holds the raw lines of logcat as they came; `samples.csv` one [`Sample`] a
-//! row, under the column names of the OVR Metrics Tool where that has the quantity in a documented unit. An empty cell
-//! is a value that the device does not give. While a run lasts, `log.txt` and `samples.csv` grow line by line; `run.json` is replaced as a
-//! whole whenever there is news, and says until the end that the run was cut off.
+//! - `run.json` is a [`RunInfo`].
+//! - `log.txt` holds the lines of logcat as they came.
+//! - `samples.csv` has one [`Sample`] per row. Its columns have the names that the OVR Metrics Tool uses, if that tool
+//!   has the quantity in a documented unit. A cell is empty if the device does not give the value.
+//!
+//! During a run, `log.txt` and `samples.csv` grow line by line. `run.json` is replaced after each change; until the run
+//! ends it describes the run as interrupted.
 
 mod sample;
 #[cfg(test)]
@@ -23,14 +26,14 @@ pub use writer::Writer;
 
 /// Version of the folder's format.
 pub const VERSION: u32 = 1;
-/// File with the description of the run and its outcome.
+/// The file that describes the run and its outcome.
 pub const RUN_FILE: &str = "run.json";
-/// The raw lines of logcat.
+/// The file with the lines of logcat.
 pub const LOG_FILE: &str = "log.txt";
-/// The samples.
+/// The file with the samples.
 pub const SAMPLES_FILE: &str = "samples.csv";
 
-/// The error when a capture cannot be read or written: one sentence.
+/// The error of reading or writing a capture: one sentence.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaptureError {
@@ -46,30 +49,30 @@ pub enum CaptureError {
     /// None of the folders holds a run.
     #[error("there is no capture in {folders}: name folders that yoro device has written")]
     None {
-        /// The folders, with commas.
+        /// The folders, separated by commas.
         folders: String,
     },
-    /// The folder holds a run already.
+    /// The folder already holds a run.
     #[error("{} holds a run already: name another folder", folder.display())]
     Exists {
         /// The folder.
         folder: PathBuf,
     },
-    /// An unrelated file has the name of one of the capture's files.
+    /// A file that is not the capture's has the name of one of its files.
     #[error("{} is there already, and the capture would replace it: name another folder", path.display())]
     Occupied {
         /// The file.
         path: PathBuf,
     },
-    /// Written by another version.
+    /// The capture has another version of the format.
     #[error(
         "{} has version {version} of the capture format and this yoro reads version {VERSION}: use the yoro that wrote it",
         path.display()
     )]
     Version {
-        /// Its `run.json`.
+        /// The capture's `run.json`.
         path: PathBuf,
-        /// The version that it names.
+        /// The version in it.
         version: u64,
     },
     /// `run.json` is damaged.
@@ -88,18 +91,18 @@ pub enum CaptureError {
     Row {
         /// The file.
         path: PathBuf,
-        /// Counted from 1.
+        /// The line, counted from 1.
         line: u64,
         /// The mistake.
         what: String,
     },
 }
 
-/// The device that a run was made on.
+/// The device of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviceInfo {
-    /// Serial number; adb's name of the device if it has none.
+    /// Serial number, or adb's name of the device if it has none.
     pub serial: String,
     /// Manufacturer.
     pub manufacturer: String,
@@ -107,9 +110,9 @@ pub struct DeviceInfo {
     pub model: String,
     /// Android's version, such as `14`.
     pub android: String,
-    /// Nominal capacity of the battery in milliampere-hours, if the device tells.
+    /// Nominal capacity of the battery in milliampere-hours, if the device reports it.
     pub capacity_mah: Option<f64>,
-    /// True if this is a replay of logs and not a device. All results of it are marked.
+    /// True for a replay of logs. All of its results are marked as simulated.
     pub simulated: bool,
 }
 
@@ -119,49 +122,49 @@ pub struct DeviceInfo {
 pub enum Outcome {
     /// The run lasted for its planned time.
     Complete,
-    /// The run is not over, or was cut off: by Ctrl-C, or by a device that did not come back.
+    /// The run has not ended, or was cut short by Ctrl-C or by a device that did not come back.
     Interrupted {
-        /// One sentence.
+        /// The reason in one sentence.
         reason: String,
     },
-    /// The run could not be made, or is worthless.
+    /// The run could not be made, or its results are useless.
     Failed {
-        /// One sentence.
+        /// The reason in one sentence.
         reason: String,
     },
 }
 
-/// Kinds of faults that do not end a run.
+/// The kinds of faults that do not end a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FaultKind {
     /// The device was lost and found again.
     Disconnected,
-    /// A charger was plugged in: the battery's current is not the device's.
+    /// A charger was plugged in, so the battery's current is not the device's.
     PluggedIn,
     /// The device does not give the battery's current.
     NoCurrent,
-    /// The device gives milliamperes in place of microamperes; the figures are corrected.
+    /// The device gives the current in milliamperes instead of microamperes. The figures are corrected.
     CurrentInMilliamperes,
-    /// The device's current is positive while it discharges; the figures are corrected.
+    /// The device gives a positive current while discharging. The figures are corrected.
     CurrentSign,
     /// The device's clock jumped.
     ClockJump,
     /// Lines of the log were cut or damaged.
     DamagedLines,
-    /// Lines that should be there, one a second, are missing.
+    /// Lines, one of which is expected each second, are missing.
     MissingLines,
     /// The device was restarted.
     Rebooted,
     /// The application ended, or crashed, and was started again.
     Restarted,
-    /// The device throttled, or was too warm at the start.
+    /// The device throttled, or was too warm when the run began.
     TooWarm,
     /// The device gives the voltage in whole volts.
     VoltageInVolts,
-    /// No device has such a power: one of its factors is wrong.
+    /// The power is outside the plausible range, so its current or voltage is wrong.
     ImplausiblePower,
-    /// The device did not let a value be held fixed.
+    /// The device refused to hold a value fixed.
     NotPinned,
     /// The display did not keep the requested refresh rate.
     RefreshRate,
@@ -185,27 +188,27 @@ pub struct Fault {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunInfo {
-    /// [`VERSION`].
+    /// [`VERSION`] of the format.
     pub version: u32,
     /// The device.
     pub device: DeviceInfo,
-    /// Name of the experiment that it is part of.
+    /// The experiment that the run belongs to.
     pub experiment: Option<String>,
-    /// Name of the method in tables: a stereo method, or what the experiment calls its settings.
+    /// The method's name in tables: a stereo method, or the experiment's name for its settings.
     pub method: String,
     /// Scene.
     pub scene: String,
-    /// Number of the repetition, from 1: runs of the same number, scene and device are paired.
+    /// Number of the repetition, from 1. Runs with the same number, scene and device are paired.
     pub repetition: u32,
     /// Place in the order of the experiment, from 1.
     pub order: u32,
-    /// Settings of the viewer other than the defaults.
+    /// Viewer settings that differ from the defaults.
     pub settings: BTreeMap<String, String>,
     /// Start in seconds since 1970 by this computer's clock.
     pub started_unix_s: f64,
-    /// Planned length without warm-up, in seconds.
+    /// Planned length in seconds, without the warm-up.
     pub duration_s: f64,
-    /// Warm-up in seconds, which is discarded.
+    /// Length of the warm-up in seconds. Its samples are discarded.
     pub warm_up_s: f64,
     /// Temperature of the battery at the start in degrees Celsius.
     pub start_celsius: Option<f64>,
@@ -213,20 +216,20 @@ pub struct RunInfo {
     pub application: Option<String>,
     /// The outcome.
     pub outcome: Outcome,
-    /// Faults on the way.
+    /// The faults that occurred.
     pub faults: Vec<Fault>,
 }
 
-/// One run as it lies on disk.
+/// A capture that was read from its folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Capture {
     /// Description of the run.
     pub info: RunInfo,
-    /// Second by second, warm-up included, in order of time.
+    /// The samples of all seconds in order of time, warm-up included.
     pub samples: Vec<Sample>,
 }
 
-/// Reads the run in `folder`. A last row that was cut off in writing is left out.
+/// Reads the run in `folder`. Ignores a last row that is incomplete.
 pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let info = read_info(folder)?;
     let path = folder.join(SAMPLES_FILE);
@@ -264,10 +267,10 @@ pub fn read_info(folder: &Path) -> Result<RunInfo, CaptureError> {
     }
 }
 
-/// The folders of all runs in `folders` and below, sorted, each once. Links to folders are not followed.
+/// Returns the folders of all runs in and below `folders`, sorted and without duplicates. Does not follow links.
 ///
 /// # Errors
-/// [`CaptureError`]: also where a folder does not exist, or there is no run at all.
+/// [`CaptureError`], also if a folder does not exist or no run was found.
 pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
     let mut found = Vec::new();
     for folder in folders {
@@ -286,10 +289,10 @@ pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CaptureError> {
     Ok(found)
 }
 
-/// Reads all runs in `folders` and below, in order of their paths.
+/// Reads all runs in `folders` and their subfolders, in order of their paths.
 ///
 /// # Errors
-/// The first that [`find`] or [`read`] gives.
+/// The first error of [`find`] or [`read`].
 pub fn read_all(folders: &[PathBuf]) -> Result<Vec<Capture>, CaptureError> {
     find(folders)?.iter().map(|folder| read(folder)).collect()
 }

@@ -1,20 +1,20 @@
-//! A second of a run, and the columns of `samples.csv`.
+//! The samples of a run, and the columns of `samples.csv`.
 
 use std::collections::BTreeMap;
 
 use crate::table::csv_text;
 use yoro_protocol::telemetry::{LINE_KEYS, Line};
 
-/// One second of a run. `None` is a value that the device does not give.
+/// One second of a run. A value is `None` if the device does not give it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// Seconds since the run began, without jumps: by the device's monotonic clock where the log has it.
+    /// Seconds since the run began, without jumps. Taken from the device's monotonic clock if the log has it.
     pub time_s: f64,
     /// Frames per second.
     pub fps: Option<f64>,
     /// Refresh rate of the display in Hz.
     pub refresh_hz: Option<f64>,
-    /// Refreshes in this second that showed an old frame again.
+    /// Refreshes in this second that repeated an old frame.
     pub stale: Option<f64>,
     /// Mean time between frames in milliseconds.
     pub frame_ms: Option<f64>,
@@ -26,7 +26,7 @@ pub struct Sample {
     pub cpu_percent: Option<f64>,
     /// Resident memory in MB (10^6 bytes).
     pub rss_mb: Option<f64>,
-    /// Battery current as the device gave it.
+    /// Battery current as the device reported it.
     pub current_raw: Option<i64>,
     /// Battery current in milliamperes, negative while discharging.
     pub current_ma: Option<f64>,
@@ -36,7 +36,7 @@ pub struct Sample {
     pub level_percent: Option<f64>,
     /// Remaining charge in microampere-hours.
     pub charge_uah: Option<f64>,
-    /// Sources of power, 0 for none.
+    /// Sum of the connected power sources as in Android's `EXTRA_PLUGGED`, 0 if there are none.
     pub plugged: Option<i32>,
     /// Battery temperature in degrees Celsius.
     pub battery_celsius: Option<f64>,
@@ -44,12 +44,12 @@ pub struct Sample {
     pub skin_celsius: Option<f64>,
     /// Thermal status, 0 to 6.
     pub thermal_status: Option<i32>,
-    /// All other values of the log, by key; keys of `VrApi` begin with `VrApi.`.
+    /// All other values of the log, by key. Keys from the `VrApi` line begin with `VrApi.`.
     pub other: BTreeMap<String, String>,
 }
 
-/// A number of a [`Sample`]: its column in `samples.csv`, the factor to the unit of that column, and its key in the log
-/// line. The OVR Metrics Tool has voltage and wattage, too, but does not document their units.
+/// A number of a [`Sample`]: its column in `samples.csv`, the factor to that column's unit, and its key in the log
+/// line. The OVR Metrics Tool also has columns for voltage and power, but does not document their units.
 pub(super) struct Column {
     name: &'static str,
     /// A key of [`LINE_KEYS`].
@@ -106,7 +106,7 @@ pub(super) const COLUMNS: &[Column] = &[
 ];
 
 impl Sample {
-    /// Returns the numbers of a line, without [`Sample::other`].
+    /// Returns the sample of a log line, without [`Sample::other`].
     pub fn of(line: &Line) -> Sample {
         let mut sample = Sample::default();
         for column in COLUMNS {
@@ -118,17 +118,17 @@ impl Sample {
         sample
     }
 
-    /// True if a key of the line has a field of its own in a sample.
+    /// True if samples have a field for this key of the log line.
     pub fn has_field(key: &str) -> bool {
         COLUMNS.iter().any(|column| column.key == key)
     }
 
-    /// Returns the header of `samples.csv`, with a column for each of the `others`.
+    /// Returns the header of `samples.csv`, with one more column for each of `others`.
     pub(super) fn header(others: &[String]) -> String {
         row_of(COLUMNS.iter().map(|column| column.name.to_owned()).chain(others.iter().cloned()))
     }
 
-    /// Returns the sample as a row of `samples.csv`; a value that is not finite leaves its cell empty.
+    /// Returns the sample as a row of `samples.csv`. Cells of values that are not finite are empty.
     pub(super) fn row(&self, others: &[String]) -> String {
         let numbers = COLUMNS.iter().map(|column| {
             let value = (column.get)(self).filter(|value| value.is_finite());
@@ -137,7 +137,7 @@ impl Sample {
         row_of(numbers.chain(others.iter().map(|key| self.other.get(key).cloned().unwrap_or_default())))
     }
 
-    /// Reads a row of `samples.csv`; the error names the mistake.
+    /// Parses a row of `samples.csv`. The error describes the mistake.
     pub(super) fn read(header: &csv::StringRecord, row: &csv::StringRecord) -> Result<Sample, String> {
         let mut sample = Sample::default();
         let mut has_time = false;
@@ -155,13 +155,13 @@ impl Sample {
     }
 }
 
-/// Formats a number without needless zeros; microseconds, microvolts and the like are kept.
+/// Formats a number with up to six decimals and without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns cells as a row of a CSV table, which is one line: line breaks become spaces.
+/// Joins cells to one line of CSV. Line breaks inside cells become spaces.
 fn row_of(cells: impl Iterator<Item = String>) -> String {
     csv_text([cells.map(|cell| cell.replace(['\n', '\r'], " "))])
 }

@@ -69,7 +69,7 @@ fn a_run_is_readable_at_any_time() {
     assert_eq!(read(&folder).unwrap().info, done);
     assert_eq!(fs::read_to_string(folder.join(LOG_FILE)).unwrap(), "one\n");
     assert!(matches!(Writer::create(&folder, info()), Err(CaptureError::Exists { .. })));
-    // A row that was cut off while it was written does not count.
+    // A last row that is incomplete is ignored.
     let path = folder.join(SAMPLES_FILE);
     let mut text = fs::read_to_string(&path).unwrap();
     assert!(text.starts_with("Time Stamp,average_frame_rate,display_refresh_rate,stale_frame_count,"));
@@ -77,14 +77,14 @@ fn a_run_is_readable_at_any_time() {
     fs::write(&path, &text).unwrap();
     assert_eq!(read(&folder).unwrap().samples, [first, second, third]);
     assert_eq!(find(&[dir.path().into(), folder.clone()]).unwrap(), [folder]);
-    // A cell that is not a number is read as `None`.
+    // A cell for a value that is not finite is read as `None`.
     let odd = dir.path().join("odd");
     let mut writer = Writer::create(&odd, info()).unwrap();
     writer.sample(&Sample { fps: Some(f64::NAN), stale: Some(f64::INFINITY), ..Sample::default() }).unwrap();
     assert_eq!(read(&odd).unwrap().samples, [Sample::default()]);
 }
 
-/// Column names and cells are read by other programs.
+/// Other programs read these column names and cells.
 #[test]
 fn a_sample_row_has_every_column() {
     let line = "v=1,t=12.5s,method=yoro,pipeline=gather,scene=prototype,FPS=59.9/60,Stale=3,frame=16.68ms,p99=17.02ms,App=6.10ms(march=1.250),CPU=41.0%,RSS=212.4MB,mA_raw=-512000,mA=-512.0,mV=3921,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=33.5C,thermal=1,headroom=0.42,scale=1.00,imbuffer=na,frames=60,status=discharging,run=a";

@@ -1,4 +1,4 @@
-//! Writes a run while it lasts.
+//! Writes a capture during a run.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write as _};
@@ -7,22 +7,22 @@ use std::path::{Path, PathBuf};
 use super::{CaptureError, Fault, LOG_FILE, Outcome, RUN_FILE, RunInfo, SAMPLES_FILE, Sample};
 use yoro_files::{self as files, FileError};
 
-/// Writes a run while it lasts.
+/// Writes a capture during a run.
 #[derive(Debug)]
 pub struct Writer {
     folder: PathBuf,
     info: RunInfo,
     log: File,
     samples: File,
-    /// Keys of [`Sample::other`] that have a column.
+    /// The keys of [`Sample::other`] that have a column.
     others: Vec<String>,
 }
 
 impl Writer {
-    /// Creates the folder and begins a run in it. Until [`Writer::finish`], the run counts as cut off.
+    /// Creates the folder and starts a capture in it. Until [`Writer::finish`], the run counts as interrupted.
     ///
     /// # Errors
-    /// [`CaptureError`]: also where the folder holds a run already, or a file of one of its names.
+    /// [`CaptureError`], also if the folder already holds a run or a file with the name of one of the capture's files.
     pub fn create(folder: &Path, info: RunInfo) -> Result<Writer, CaptureError> {
         files::create_folder(folder)?;
         if folder.join(RUN_FILE).exists() {
@@ -38,7 +38,7 @@ impl Writer {
         begun
     }
 
-    /// Begins a run in new files, of which each is added to `created`.
+    /// Starts a capture in new files and adds their paths to `created`.
     fn begin(folder: &Path, mut info: RunInfo, created: &mut Vec<PathBuf>) -> Result<Writer, CaptureError> {
         info.outcome = Outcome::Interrupted { reason: "the program that captured it was ended".into() };
         let mut new = |name: &str| {
@@ -62,22 +62,22 @@ impl Writer {
         Ok(writer)
     }
 
-    /// Returns the description of the run so far.
+    /// Returns the current description of the run.
     pub fn info(&self) -> &RunInfo {
         &self.info
     }
 
-    /// Returns the folder of the run.
+    /// Returns the capture's folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Adds bytes of the log, as they came.
+    /// Appends bytes of the log.
     pub fn log(&mut self, bytes: &[u8]) -> Result<(), CaptureError> {
         self.append(&self.log, LOG_FILE, bytes)
     }
 
-    /// Adds a sample. A key that no sample had before becomes a column of the whole table.
+    /// Appends a sample. A new key of [`Sample::other`] becomes a column of the whole table.
     pub fn sample(&mut self, sample: &Sample) -> Result<(), CaptureError> {
         let before = self.others.len();
         for key in sample.other.keys() {
@@ -91,13 +91,13 @@ impl Writer {
         self.append(&self.samples, SAMPLES_FILE, sample.row(&self.others).as_bytes())
     }
 
-    /// Adds a fault.
+    /// Adds a fault to the description.
     pub fn fault(&mut self, fault: Fault) -> Result<(), CaptureError> {
         self.info.faults.push(fault);
         self.renew()
     }
 
-    /// Ends the run.
+    /// Ends the capture with an outcome.
     pub fn finish(mut self, outcome: Outcome) -> Result<RunInfo, CaptureError> {
         self.info.outcome = outcome;
         self.renew()?;
@@ -117,13 +117,13 @@ impl Writer {
         })?)
     }
 
-    /// Appends a row in one write: a reader never sees half a line.
+    /// Appends a row in a single write, so that readers do not see half a line.
     fn append(&self, mut file: &File, name: &str, row: &[u8]) -> Result<(), CaptureError> {
         let failed = |source| FileError::Write { path: self.folder.join(name), source };
         Ok(file.write_all(row).map_err(failed)?)
     }
 
-    /// Rewrites the table, with empty cells in the new columns; before, there were `before` columns of the others.
+    /// Rewrites the table with empty cells in the new columns. There were `before` columns for [`Sample::other`].
     fn widen(&mut self, before: usize) -> Result<(), CaptureError> {
         let path = self.folder.join(SAMPLES_FILE);
         let text = String::from_utf8_lossy(&files::read(&path)?).into_owned();

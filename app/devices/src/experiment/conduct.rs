@@ -1,4 +1,4 @@
-//! Making the runs of an experiment on a device, with pauses between them.
+//! Makes the runs of an experiment on a device, with pauses between them.
 
 use std::fmt;
 use std::fs;
@@ -15,19 +15,19 @@ use crate::phone::{self, Battery};
 use crate::run::{self, Found, LOST_TIMEOUT_S, Plan};
 use yoro_files::{FileError, interrupt};
 
-/// Interval at which a cooling device is asked for its temperature.
+/// Interval at which the temperature of a cooling device is read.
 const COOLING: Duration = Duration::from_secs(5);
 
-/// Progress of an experiment on a device.
+/// The progress of an experiment on a device.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Runs in the plan.
+    /// Number of runs in the plan.
     pub planned: usize,
-    /// Runs that were complete before.
+    /// Number of runs that were complete before this call.
     pub before: usize,
-    /// Runs made by this call.
+    /// Number of runs made by this call.
     pub made: usize,
-    /// Runs that failed or were left out: folder and reason.
+    /// Runs that failed or were skipped: folder and reason.
     pub failed: Vec<(PathBuf, String)>,
 }
 
@@ -44,12 +44,11 @@ impl fmt::Display for Progress {
     }
 }
 
-/// Makes the missing runs of a device, each into a folder of its own below `out`. Settings that it changes on the
-/// device are restored, also after Ctrl-C. Runs that were cut off or failed are made again; the earlier captures are
-/// kept beside them.
+/// Makes the missing runs on a device, each in its own folder below `out`. Restores the device's settings afterwards,
+/// even after Ctrl-C. Repeats runs that were interrupted or failed, and keeps their earlier captures.
 ///
 /// # Errors
-/// [`DeviceError`]; the same call goes on later.
+/// [`DeviceError`]. A later call continues where this one stopped.
 pub fn conduct(
     device: &dyn Device,
     experiment: &Experiment,
@@ -57,7 +56,7 @@ pub fn conduct(
     bar: &ProgressBar,
 ) -> Result<Progress, DeviceError> {
     let found = run::look(device, phone::PACKAGE)?;
-    // The device may be unlocked now, but a restart locks it again and nobody is there to unlock it.
+    // Even if the device is unlocked now, a restart would lock it again with nobody there to unlock it.
     if phone::keyguard(device)?.secure {
         return Err(DeviceError::Locked(device.serial().into()));
     }
@@ -68,7 +67,7 @@ pub fn conduct(
     let mut held = HeldSettings::new(device, &found.info, &wanted)?;
     let folder = out.join(file_name(&found.info.serial));
     let made = Conductor { device, experiment, found: &found, held: &mut held, folder: &folder, bar }.all();
-    // Restored also after Ctrl-C and errors. A second error after the first adds no information.
+    // Restore after errors and Ctrl-C, too. If both fail, the first error is returned.
     match (made, held.restore(device)) {
         (Ok(_), Err(error)) => Err(error),
         (Err(first), Err(error)) => {
@@ -147,13 +146,13 @@ impl Conductor<'_> {
         }
         let mut made = run::capture(self.device, self.found, plan, self.held, folder, self.bar);
         if made.as_ref().is_err_and(DeviceError::is_lost) && !interrupt::requested() {
-            // The device was lost before its log could be followed: waits once, as between runs.
+            // The device was lost before its log could be followed. Wait once, as between runs, and try again.
             set_aside(folder)?;
             self.cool_down(plan)?;
             made = run::capture(self.device, self.found, plan, self.held, folder, self.bar);
         }
         match made {
-            // The capture says so; the other runs may be possible.
+            // The capture names the reason, and other runs may succeed.
             Err(DeviceError::Refused { .. }) if folder.join(RUN_FILE).exists() => {
                 Ok(capture::read_info(folder)?)
             }
@@ -161,7 +160,7 @@ impl Conductor<'_> {
         }
     }
 
-    /// Waits for rest, charge and temperature. Returns the temperature if it stayed too high.
+    /// Waits for the pause, the charge and the temperature. Returns the temperature if it is still too high.
     fn cool_down(&self, plan: &Plan) -> Result<Option<f64>, DeviceError> {
         let mut begin = self.device.now();
         let mut lost_at = None;
@@ -189,7 +188,7 @@ impl Conductor<'_> {
             };
             lost_at = None;
             if self.experiment.power && self.must_charge(&battery, &mut charging)? {
-                // Charging warms the battery: the time to cool down begins when charging ends.
+                // Charging warms the battery, so the time to cool down starts when charging ends.
                 begin = self.device.now();
                 self.device.sleep(COOLING);
                 continue;
@@ -211,8 +210,9 @@ impl Conductor<'_> {
         }
     }
 
-    /// True while the experiment waits for the charger to be plugged in or taken off. `charging` is `None` outside of
-    /// such a pause; inside, it is true once a charger was seen: taking it off early means to go on.
+    /// True while the experiment waits for somebody to plug in or unplug the charger. `charging` is `None` when it does
+    /// not wait, otherwise whether a charger has been plugged in during this wait. Unplugging it before the battery has
+    /// reached `charge_level` continues the experiment if the level is at least `min_level`.
     fn must_charge(&self, battery: &Battery, charging: &mut Option<bool>) -> Result<bool, DeviceError> {
         let Experiment { min_level, charge_level, .. } = *self.experiment;
         let Some(level) = battery.level_percent else { return Ok(false) };
@@ -247,7 +247,7 @@ impl Conductor<'_> {
         Ok(true)
     }
 
-    /// Writes a capture for a run that was not made.
+    /// Writes a capture for a run that was skipped because the device is too warm.
     fn leave_out(
         &self,
         plan: &Plan,
@@ -263,14 +263,14 @@ impl Conductor<'_> {
     }
 }
 
-/// True if the folder holds this run and it is complete.
+/// True if the folder holds this run and the run is complete.
 fn is_complete(folder: &Path, plan: &Plan) -> Result<bool, DeviceError> {
     if !folder.join(RUN_FILE).exists() {
         return Ok(false);
     }
     let info = match capture::read_info(folder) {
         Ok(info) => info,
-        // Damaged while it was written: treated as cut off.
+        // The file was damaged while it was written. Treat the run as interrupted.
         Err(CaptureError::Damaged { .. }) => return Ok(false),
         Err(error) => return Err(error.into()),
     };

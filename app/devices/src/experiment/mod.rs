@@ -40,52 +40,52 @@ use yoro_protocol::{Method, MethodChoice, Settings, SettingsError};
 
 pub use conduct::{Progress, conduct};
 
-/// Name of the experiment's own file in the folder of its runs.
+/// The name under which the experiment is kept in the folder of its runs.
 pub const FILE: &str = "experiment.toml";
-/// Seconds that a start takes, for the estimate of a plan's length.
+/// Estimated seconds to start the application, for the length of a plan.
 const START_S: f64 = 5.0;
-/// Settings that the file may not set.
+/// Settings that an experiment's file may not contain.
 const RESERVED: &[&str] = &["scene", "duration", "auto-exit", "run"];
-/// Most runs of an experiment on a device: two weeks of two minutes each.
+/// Maximum number of runs on a device: two weeks of two minutes each.
 const MAX_RUNS: usize = 10_000;
 
 /// The order of the runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Order {
-    /// The rows of a balanced Latin square (Williams 1949): over its rows, each method comes equally often in each
-    /// place, and equally often after each other one. Scenes are shuffled.
+    /// The rows of a balanced Latin square (Williams 1949): over all rows, each method comes equally often in each
+    /// place, and equally often after each other method. Scenes are shuffled.
     #[default]
     Balanced,
     /// Methods and scenes are shuffled.
     Random,
-    /// The order of the file.
+    /// The order in the file.
     Listed,
 }
 
-/// The treatment of a run whose device does not cool down in time.
+/// What happens to a run if the device does not cool down in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhenTooWarm {
-    /// The run is made, with a fault that it began too warm.
+    /// The run is made, with the fault that it began too warm.
     #[default]
     Start,
-    /// The run is left out, with the reason.
+    /// The run is skipped, and the reason is recorded.
     Skip,
-    /// The experiment ends here; the same command goes on later.
+    /// The experiment stops. The same command continues it later.
     Stop,
 }
 
-/// Waiting before each run.
+/// Cooling down before each run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CoolDown {
     /// Highest temperature of the battery at the start of a run in degrees Celsius.
     pub celsius: f64,
-    /// Longest wait for it in seconds.
+    /// Maximum time to wait for this in seconds.
     #[serde(default = "CoolDown::default_max")]
     pub max_seconds: f64,
-    /// The treatment of a run whose device is still too warm after that wait.
+    /// What happens if the device is still too warm after this time.
     #[serde(default)]
     pub otherwise: WhenTooWarm,
 }
@@ -96,13 +96,13 @@ impl CoolDown {
     }
 }
 
-/// A method as the experiment compares it: settings with a name.
+/// A method of an experiment: a name and settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MethodEntry {
-    /// Name in tables; where the settings have no `method`, the stereo method itself.
+    /// Name in tables. Also the stereo method, if the settings have no `method`.
     pub name: String,
-    /// Settings of the viewer.
+    /// Viewer settings.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub settings: Table,
 }
@@ -111,11 +111,11 @@ pub struct MethodEntry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Experiment {
-    /// Its name in captures and reports.
+    /// The name in captures and reports.
     pub name: String,
-    /// Length of a run without warm-up.
+    /// Length of a run, without the warm-up.
     pub seconds: f64,
-    /// Warm-up at the beginning of a run, which is discarded.
+    /// Warm-up at the beginning of a run. Its samples are discarded.
     #[serde(default = "Experiment::default_warm_up")]
     pub warm_up_seconds: f64,
     /// Number of runs of each method in each scene.
@@ -124,42 +124,42 @@ pub struct Experiment {
     /// The order of the runs.
     #[serde(default)]
     pub order: Order,
-    /// Seed of the order; each device has its own order from it.
+    /// Seed of the order, from which each device gets its own order.
     #[serde(default)]
     pub seed: u64,
-    /// Pause before each run, at least.
+    /// Minimum pause before each run.
     #[serde(default)]
     pub rest_seconds: f64,
-    /// Scenes, as the viewer's setting `scene` takes them.
+    /// Scenes, as in the viewer's setting `scene`.
     pub scenes: Vec<String>,
     /// Brightness to hold the screen at, 0 to 255.
     pub brightness: Option<u8>,
     /// Refresh rate to hold the display at, in Hz.
     pub refresh_hz: Option<f64>,
-    /// True if power is measured: a device that is plugged in is refused.
+    /// True to measure power. A device that is plugged in is refused.
     #[serde(default = "Experiment::about_power")]
     pub power: bool,
-    /// Lowest battery level in percent at which a power measurement begins; below it, the experiment waits until the
-    /// device is charged.
+    /// Minimum battery level in percent at the start of a power measurement. Below it, the experiment waits until the
+    /// device has been charged.
     #[serde(default = "Experiment::default_min_level")]
     pub min_level: f64,
-    /// Battery level in percent at which such charging ends.
+    /// Battery level in percent up to which the device is then charged.
     #[serde(default = "Experiment::default_charge_level")]
     pub charge_level: f64,
-    /// Waiting for a temperature before each run.
+    /// The temperature to wait for before each run.
     pub cool_down: Option<CoolDown>,
-    /// Settings of the viewer for all methods.
+    /// Viewer settings for all methods.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub settings: Table,
     /// The methods.
     pub method: Vec<MethodEntry>,
 }
 
-/// The error when an experiment cannot be made.
+/// The error of planning or claiming an experiment.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// The file cannot be read, or the folder not written.
+    /// The file cannot be read, or the folder cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
     /// The file is not a valid experiment.
@@ -180,21 +180,21 @@ pub enum ExperimentError {
     },
 }
 
-/// The right to make runs in a folder, which one process has at a time.
+/// The exclusive right of one process to make runs in a folder.
 #[derive(Debug)]
 #[expect(dead_code, reason = "the file is locked while it is open")]
 pub struct Claim(File);
 
-/// A run in the plan.
+/// A planned run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
     /// The run's plan.
     pub plan: Plan,
-    /// Name of its folder.
+    /// The name of the run's folder.
     pub folder: String,
 }
 
-/// Formats a length for people: `1 h 5 min`.
+/// Formats a duration for people, such as `1 h 5 min`.
 pub fn length(seconds: f64) -> String {
     let minutes = (seconds / 60.0).round() as u64;
     match (minutes / 60, minutes % 60) {
@@ -225,7 +225,7 @@ impl Experiment {
         true
     }
 
-    /// Reads and checks a file.
+    /// Reads and checks an experiment's file.
     pub fn read(path: &Path) -> Result<Experiment, ExperimentError> {
         let text = String::from_utf8_lossy(&files::read(path)?).into_owned();
         let format = |what: String| ExperimentError::Format { path: path.into(), what };
@@ -284,7 +284,7 @@ impl Experiment {
         Ok(())
     }
 
-    /// Returns the settings of a method in a scene.
+    /// Returns the viewer settings of a method in a scene.
     fn viewer_settings(&self, entry: &MethodEntry, scene: &str) -> Result<Settings, SettingsError> {
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         let pairs = |table: &Table| table.iter().map(|(k, v)| format!("{k}={}", text(v))).collect::<Vec<_>>();
@@ -294,7 +294,7 @@ impl Experiment {
         Settings::resolve(None, first.chain(pairs(&self.settings)).chain(pairs(&entry.settings)))
     }
 
-    /// Returns all runs on a device, in their order.
+    /// Returns all runs on the device with this serial number, in order.
     pub fn plan(&self, serial: &str) -> Vec<Planned> {
         let own = serial
             .bytes()
@@ -333,7 +333,7 @@ impl Experiment {
 
     fn planned(&self, order: u32, repetition: u32, scene: usize, method: usize) -> Planned {
         let (scene, entry) = (&self.scenes[scene], &self.method[method]);
-        // Checked when the file was read.
+        // Does not fail: `read` has checked the settings.
         let settings = self.viewer_settings(entry, scene).unwrap_or_default();
         let plan = Plan {
             other: None,
@@ -352,15 +352,15 @@ impl Experiment {
         Planned { plan, folder }
     }
 
-    /// Returns the shortest and longest time for this number of runs in seconds.
+    /// Returns the shortest and the longest duration of this number of runs in seconds.
     pub fn length(&self, runs: usize) -> [f64; 2] {
         let run = self.warm_up_seconds + self.seconds + START_S;
         let cooling = self.cool_down.map_or(0.0, |cool_down| cool_down.max_seconds).max(self.rest_seconds);
         [run + self.rest_seconds, run + cooling].map(|seconds| seconds * runs as f64)
     }
 
-    /// Writes the experiment into its folder, or checks that the folder already belongs to it. Keeps other processes
-    /// from the folder until what is returned is dropped.
+    /// Writes the experiment into its folder, or checks that the folder belongs to it. Other processes cannot claim the
+    /// folder until the result is dropped.
     pub fn claim(&self, folder: &Path, path: &Path) -> Result<Claim, ExperimentError> {
         let file = folder.join(FILE);
         let mut claimed = files::append(&file)?;
@@ -379,7 +379,7 @@ impl Experiment {
     }
 }
 
-/// Returns a name as part of a file name.
+/// Turns a name into part of a file name.
 pub fn file_name(text: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-._".contains(c) { c } else { '-' };
     let name: String = text.chars().map(plain).collect();
@@ -387,7 +387,7 @@ pub fn file_name(text: &str) -> String {
     if name.is_empty() { "unnamed".into() } else { name.into() }
 }
 
-/// Returns the stereo method that the settings name, for a table of the plan.
+/// Returns the stereo method in the settings, for a table of the plan.
 pub fn method_name(plan: &Plan) -> String {
     match plan.settings.method {
         MethodChoice::Named(Method::Yoro) => format!("yoro, {}", plan.settings.pipeline.name()),

@@ -90,7 +90,7 @@ fn the_repositorys_experiments_are_valid() {
         assert!(experiment.length(runs)[0] < hours * 3600.0, "{name}");
     }
     let paper = Experiment::read(&folder.join("paper.toml")).unwrap();
-    // Its simulated devices are charged before the plan waits for that.
+    // The simulated devices are charged before the plan has to wait for it.
     let simulated = Script::read(&folder.join("simulated.toml")).unwrap();
     let is_charged = |phone: &Phone| phone.charged_below.is_some_and(|percent| percent >= paper.min_level);
     assert!(simulated.device.iter().all(is_charged));

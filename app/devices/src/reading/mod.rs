@@ -1,4 +1,4 @@
-//! Samples and faults from the lines of a log.
+//! Turns the lines of a log into samples and faults.
 
 #[cfg(test)]
 mod tests;
@@ -10,16 +10,16 @@ use crate::log::{self, Entry, Kind, VRAPI_TAG};
 use crate::phone::LEAST_MILLIVOLTS;
 use yoro_protocol::telemetry::{BatteryStatus, LOG_TAG, Line, fields};
 
-/// Clock difference in seconds beyond which a line counts as a clock jump: the device's clock against the session's,
-/// between two lines of a session. Lines are logged some frames after their second ends.
+/// A line is a clock jump if the device's clock and the session's time have advanced by amounts that differ by more
+/// than this many seconds. Lines are logged some frames after their second ends.
 const JUMP_S: f64 = 2.0;
-/// Distance in seconds between two lines of a session beyond which lines are missing between them.
+/// Lines are missing between two lines of a session that are further apart than this many seconds.
 const GAP_S: f64 = 1.8;
 /// Lowest thermal status of Android at which the device throttles (`THERMAL_STATUS_MODERATE`).
 const THROTTLED: i32 = 2;
-/// Longest time in seconds between the last line of a session and the first of the next.
+/// Maximum plausible time in seconds between the last line of a session and the first line of the next.
 const LONGEST_PAUSE_S: f64 = 3600.0;
-/// Values of the battery's current that mean no value: those of Meta's tools, and the ends of an integer's range.
+/// Values of the current that stand for a missing one: those of Meta's tools, and the limits of integer types.
 const PLACEHOLDERS: [i64; 5] = [9_999, 9_999_000, i32::MIN as i64, i32::MAX as i64, i64::MIN];
 
 /// The content of a line.
@@ -29,13 +29,13 @@ pub enum LineContent {
     Sample(Box<Sample>),
     /// The summary at the end of a session.
     Summary,
-    /// A line that cannot be read, and the reason.
+    /// A line that cannot be parsed, and the reason.
     Damaged(String),
-    /// A line without measurements: another message, another tag, another run.
+    /// A line without measurements, or one of another tag or run.
     Other,
 }
 
-/// A counter, with the time of the first occurrence.
+/// A counter, and the time of the first occurrence.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     times: u64,
@@ -51,43 +51,43 @@ impl Count {
     }
 }
 
-/// One start of the application.
+/// One start of the application and its lines.
 #[derive(Clone, Copy, Debug)]
 struct Session {
     pid: Option<u32>,
-    /// Offset in seconds from the session's time to that of the run.
+    /// Offset in seconds from the session's time to the run's time.
     offset_s: f64,
     /// The session's own time at its last line.
     last_s: f64,
-    /// The device's clock at its last line.
+    /// The device's clock at the session's last line.
     clock_s: Option<f64>,
 }
 
-/// Reads a log, line by line. Time starts with the first frame of the first session.
+/// Reads a log line by line. Time 0 is the first frame of the first session.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
-    /// The run whose lines count; `None` for all lines.
+    /// The run whose lines are read, or `None` for all lines.
     run: Option<String>,
     session: Option<Session>,
-    /// Values of the runtime since the last sample. They become a sample of their own if the application logs nothing.
+    /// Values of Meta's runtime since the last sample. They become a sample if the application logs nothing itself.
     runtime: Option<Sample>,
-    /// The clock at the first line of a log that has only the runtime's lines.
+    /// The device's clock at the first line of a log that has only the runtime's lines.
     runtime_begin: Option<f64>,
     /// Time of the last sample.
     time_s: f64,
     methods: Vec<(String, String)>,
-    /// True if the lines are bare messages; `None` until one was recognised.
+    /// True if the log consists of bare messages. `None` until a line has been recognised.
     is_raw: Option<bool>,
-    /// Lines before that: damaged lines, or other words in a raw log.
+    /// Lines before that: damaged ones, or other messages of a raw log.
     unknown: u64,
 
     seconds: u64,
     damaged: Count,
-    /// Damaged lines since the last good one: their seconds are not missing on top.
+    /// Damaged lines since the last good line. They are not counted as missing again.
     damaged_now: u64,
     missing: Count,
     plugged: Count,
-    /// Seconds with values of the battery, those with a current, and those whose current is a placeholder.
+    /// Seconds with battery values, seconds with a current, and seconds with a current of 0.
     judged: u64,
     with_current: u64,
     zero: u64,
@@ -101,7 +101,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Creates a reader of the lines with the name of this run, or of all lines.
+    /// Creates a reader of the lines of this run, or of all lines.
     pub fn new(run: Option<String>) -> Reading {
         Reading { run, ..Reading::default() }
     }
@@ -116,7 +116,7 @@ impl Reading {
         self.seconds
     }
 
-    /// True if any line was one of logcat's.
+    /// True if a line of the log has been recognised.
     pub fn has_read(&self) -> bool {
         self.is_raw.is_some()
     }
@@ -126,18 +126,18 @@ impl Reading {
         self.damaged.times
     }
 
-    /// True if the voltage came in whole volts, and is left out of the samples.
+    /// True if the device gave the voltage in whole volts, which samples leave out.
     pub fn has_whole_volts(&self) -> bool {
         self.volts.times > 0
     }
 
-    /// Returns the methods and scenes that the lines name, in the order of their first lines.
+    /// Returns the methods and scenes in the log, in order of their first lines.
     pub fn methods(&self) -> &[(String, String)] {
         &self.methods
     }
 
     /// Reads a line of logcat. `passed_s` is the time since the line before it by this computer's clock, if known. It
-    /// replaces the device's clock where that makes no sense.
+    /// is used where the device's clock is implausible.
     pub fn line(&mut self, line: &str, passed_s: Option<f64>) -> LineContent {
         let kind = log::parse(line);
         if let (None, Kind::Entry(entry)) = (self.is_raw, &kind) {
@@ -185,7 +185,7 @@ impl Reading {
             match line.run.as_deref() {
                 Some(name) if name == run => {}
                 Some(name) if !run.starts_with(name) => return LineContent::Other,
-                // The name is the last of the keys.
+                // The run's name is the last key of a line.
                 _ => return self.damage("the line has lost its end: it is cut".into()),
             }
         }
@@ -200,12 +200,12 @@ impl Reading {
         LineContent::Sample(Box::new(self.sample(line, message, time_s)))
     }
 
-    /// Returns the time of a line in the run. Records restarts, gaps, and jumps of the clock.
+    /// Returns a line's time in the run. Records restarts, gaps and clock jumps.
     fn place(&mut self, line: &Line, entry: &Entry, passed_s: Option<f64>) -> f64 {
         let clock_s = entry.time_s;
         let damaged = std::mem::take(&mut self.damaged_now);
         let Some(session) = &mut self.session else {
-            // Nothing is missing before the first line: a log may begin anywhere.
+            // A log may begin anywhere, so nothing is missing before the first line.
             self.session = Some(Session { pid: entry.pid, offset_s: 0.0, last_s: line.time_s, clock_s });
             return line.time_s;
         };
@@ -241,7 +241,7 @@ impl Reading {
         time_s
     }
 
-    /// Counts the oddities of a second; only the battery of a line is judged.
+    /// Counts the anomalies of a second, from the battery values and thermal status of its line.
     pub(crate) fn judge(&mut self, line: &Line, at_s: f64) {
         self.judged += 1;
         let is_idle = matches!(line.status, Some(BatteryStatus::NotCharging));
@@ -266,7 +266,7 @@ impl Reading {
     fn sample(&mut self, line: Line, message: &str, time_s: f64) -> Sample {
         let numbers = Sample::of(&line);
         let mut other = self.runtime.take().map(|runtime| runtime.other).unwrap_or_default();
-        // Values in the run's description need no column.
+        // Values that the run's description has need no column.
         let is_known = |key: &str| Sample::has_field(key) || ["v", "run", "method", "scene"].contains(&key);
         for field in fields(message).filter(|field| !is_known(field.key)) {
             if let Some(value) = field.value.filter(|value| *value != "na" && !value.is_empty()) {
@@ -289,9 +289,9 @@ impl Reading {
         }
     }
 
-    /// Reads a line of Meta's runtime. Only those that begin with a frame rate are statistics; a second one with App
-    /// SpaceWarp begins with `ASW=`. It is merged into the application's next line; alone it is a sample only in a log
-    /// without such lines, that of another application.
+    /// Reads a line of Meta's runtime. Only lines that begin with the frame rate are used; with App SpaceWarp there is
+    /// a second line, which begins with `ASW=`. The values are merged into the application's next line. They make a
+    /// sample of their own only if the application logs no lines, as other applications do not.
     fn runtime(&mut self, entry: &Entry) -> LineContent {
         if !entry.message.starts_with("FPS=") {
             return LineContent::Other;
@@ -308,7 +308,7 @@ impl Reading {
             };
         }
         let value = |key: &str| found.get(&format!("VrApi.{key}")).map(String::as_str);
-        // Until 2020 without the display's rate; then at least the line must not end there.
+        // Until 2020 the display's rate was missing. In this case the line must at least have more values.
         let rates = value("FPS").unwrap_or_default();
         let (fps, refresh) = match rates.split_once('/') {
             Some((fps, refresh)) => (fps.parse::<f64>(), Some(refresh.parse::<f64>())),
@@ -322,7 +322,7 @@ impl Reading {
         }
         let number = |text: Option<&str>, unit: &str| text?.strip_suffix(unit)?.parse::<f64>().ok();
         let begin = entry.time_s.map(|clock| *self.runtime_begin.get_or_insert(clock));
-        // A log without times has at least a line a second.
+        // If the log has no times, assume a line per second.
         let count = self.runtime.as_ref().map_or(0.0, |before| before.time_s + 1.0);
         let time_s = entry.time_s.zip(begin).map_or(count, |(clock, begin)| clock - begin);
         let celsius = value("Temp").and_then(|text| text.split('/').next());
@@ -337,7 +337,7 @@ impl Reading {
             ..Sample::default()
         };
         let before = self.runtime.replace(sample);
-        // Beside the application's own lines, two between two of them are one too many.
+        // In a log with lines of the application, the runtime's lines make no samples of their own.
         if self.session.is_some() || self.run.is_some() {
             return LineContent::Other;
         }
@@ -350,13 +350,14 @@ impl Reading {
         sample
     }
 
-    /// Returns the last sample of a log that has only the runtime's lines: each waits for a line of the application.
+    /// Returns the last sample of a log that has only the runtime's lines. Each of them is held back in case a line of
+    /// the application follows.
     pub fn end(&mut self) -> Option<Sample> {
         let last = self.runtime.take()?;
         (self.session.is_none() && self.run.is_none()).then(|| self.alone(last))
     }
 
-    /// Returns the faults so far, in the order of [`FaultKind`].
+    /// Returns the faults found so far, in the order of [`FaultKind`].
     pub fn faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         let mut add = |kind, at_s, detail| faults.push(Fault { kind, at_s, detail });
@@ -364,7 +365,7 @@ impl Reading {
         if self.plugged.times > 0 {
             add(FaultKind::PluggedIn, self.plugged.first_s, format!("plugged in for {}", of(self.plugged)));
         }
-        // A log of the runtime alone says nothing of the battery.
+        // A log with only the runtime's lines has no battery values.
         let without = self.judged - self.with_current;
         if without > 0 {
             let at_s = (self.with_current > 0).then_some(0.0);
@@ -416,7 +417,7 @@ impl Reading {
     }
 }
 
-/// True if a current is a placeholder for none.
+/// True if a current is a placeholder for a missing value.
 fn is_placeholder(raw: i64) -> bool {
     PLACEHOLDERS.contains(&raw) || PLACEHOLDERS.contains(&raw.saturating_neg())
 }

@@ -107,12 +107,12 @@ fn placeholders_of_the_battery_are_left_out() {
         (last, faults.iter().map(|fault| (fault.kind, fault.detail.clone())).collect::<Vec<_>>())
     };
     use FaultKind::{NoCurrent, PluggedIn, VoltageInVolts};
-    // Phones that give EXTRA_VOLTAGE in whole volts (PlusPlusBattery issue 5, home-assistant/android 4286).
+    // Some phones give EXTRA_VOLTAGE in whole volts (PlusPlusBattery issue 5, home-assistant/android 4286).
     let (volts, faults) = read(|line| line.voltage_mv = Some(4));
     assert_eq!((volts.voltage_mv, faults.len(), faults[0].0), (None, 1, VoltageInVolts));
     let (_, faults) = read(|line| (line.current_raw, line.current_ma) = (Some(0), None));
     assert!(faults.len() == 1 && faults[0].0 == NoCurrent && faults[0].1.contains("is 0"), "{faults:?}");
-    // OVR Metrics Tool's placeholder, and Integer.MIN_VALUE (home-assistant/android 4977).
+    // The OVR Metrics Tool's placeholder, and Integer.MIN_VALUE (home-assistant/android 4977).
     for raw in [9999, -9999, -2_147_483_648] {
         let mut reading = Reading::default();
         let line = Line { current_raw: Some(raw), current_ma: Some(raw as f64), ..line(1.0) };
@@ -152,13 +152,13 @@ fn each_fault_is_detected_and_named() {
     let mut reading = Reading::new(Some("r1".into()));
     let mut put = |clock: f64, pid: u32, line: &Line| reading.line(&logged(1e9 + clock, pid, line), None);
     put(1.0, 7, &line(1.0));
-    // The clock goes back an hour, the session does not.
+    // The clock goes back by an hour, but the session's time does not.
     put(2.0 - 3600.0, 7, &line(2.0));
     let cut = logged(1e9 + 3.0 - 3600.0, 7, &line(3.0));
     put(4.0 - 3600.0, 7, &Line { plugged: Some(2), ..line(4.0) });
     put(7.0 - 3600.0, 7, &Line { current_raw: Some(512), ..line(7.0) });
     put(8.0 - 3600.0, 7, &Line { current_raw: None, current_ma: None, thermal_status: Some(3), ..line(8.0) });
-    // A new session after twenty seconds.
+    // A new session begins twenty seconds later.
     let again = put(28.0 - 3600.0, 8, &line(1.0));
     assert_eq!(sample(again).time_s, 28.0);
     let run = cut.find("run=").unwrap();
@@ -194,7 +194,7 @@ fn raw_logs_may_contain_other_words() {
         lines.iter().for_each(|line| drop(reading.line(line, None)));
         (reading.samples(), reading.damaged())
     };
-    // Only messages: other words are messages, too.
+    // In a log of bare messages, other words are messages as well.
     assert_eq!(of(&["yoro 0.1.0 starts", &text, "rating,v=1", &text[..50]]), (1, 1));
     let full = logged(1e9, 7, &text);
     assert_eq!(of(&["00I YORO    : v=1", &full, "10000000"]), (1, 2));
@@ -228,7 +228,7 @@ proptest! {
             let mut text = logged(1e9 + i as f64, 7, &line(i as f64));
             let at = (*at).min(text.len());
             if *cut { text.truncate(at) } else { text.insert_str(at, with) }
-            // Each line is a sample, or damaged, or says nothing.
+            // Each line is a sample, is damaged, or has no data.
             seen += match reading.line(&text, None) { LineContent::Sample(_) => 1, _ => 0 };
         }
         prop_assert_eq!(reading.samples(), seen);

@@ -1,7 +1,7 @@
-//! Simulated devices, for tests and for people without a phone: scripted, in virtual time, so that ten minutes
-//! pass in a moment. All results of them are marked as simulated.
+//! Simulated devices, for tests and for people without a phone. They run a script in virtual time, so that ten minutes
+//! pass in a moment. All of their results are marked as simulated.
 //!
-//! A device plays recorded logs, or generates its own from a seed and made-up figures; its script lists the faults.
+//! A device plays recorded logs, or generates a log from a seed and made-up values. The script lists the faults.
 
 mod device;
 mod script;
@@ -29,12 +29,12 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Reads a script, or a folder of captures to play again.
+    /// Reads a script, or a folder of captures whose logs are replayed.
     pub fn read(path: &Path) -> Result<Replay, DeviceError> {
         Ok(Replay::new(path, Script::read(path)?))
     }
 
-    /// Plays a script that comes from `path`.
+    /// Makes the devices of a script that was read from `path`.
     pub fn new(path: &Path, script: Script) -> Replay {
         let (seed, speed) = (script.seed, script.speed);
         let device = |phone: Phone| {

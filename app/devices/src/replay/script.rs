@@ -1,4 +1,4 @@
-//! Scripts of replays, as TOML. Unknown keys are refused.
+//! Scripts of replays, in TOML. Unknown keys are errors.
 //!
 //! ```toml
 //! seed = 1
@@ -33,10 +33,10 @@ pub struct Script {
     /// Seed of everything that is generated.
     #[serde(default)]
     pub seed: u64,
-    /// Seconds of the replay in a real second; as fast as it goes if there is none.
+    /// Simulated seconds per real second. `None` means as fast as possible.
     pub speed: Option<f64>,
     /// A folder, relative to the script, in which the devices keep settings, properties and files from one replay to
-    /// the next; each replay is the first if there is none.
+    /// the next. With `None`, every replay starts from the initial state.
     pub state: Option<PathBuf>,
     /// The devices.
     #[serde(default)]
@@ -55,62 +55,62 @@ pub struct Phone {
     pub model: String,
     /// Android's version.
     pub android: String,
-    /// State in adb's word: `device`, `unauthorized`, `offline`.
+    /// State in adb's words: `device`, `unauthorized`, `offline`.
     pub state: String,
-    /// True if the application is installed from the beginning.
+    /// True if the application is installed at the start.
     pub installed: bool,
-    /// The application runs from the beginning, with these settings.
+    /// The settings of the application if it runs at the start.
     pub running: Option<BTreeMap<String, String>>,
-    /// True if there is no room to install anything.
+    /// True if there is no storage left to install anything.
     pub storage_full: bool,
-    /// Capacity of the battery in mAh; 0 if the device does not tell: its level stays the same then.
+    /// Capacity of the battery in mAh. 0 if the device does not report it; then the level never changes.
     pub capacity_mah: f64,
     /// Level of the battery in percent.
     pub level_percent: f64,
-    /// Its temperature in degrees Celsius.
+    /// Temperature of the battery in degrees Celsius.
     pub celsius: f64,
-    /// Temperature around it in degrees Celsius.
+    /// Temperature of the surroundings in degrees Celsius.
     pub ambient_celsius: f64,
-    /// True if a charger is plugged in from the beginning.
+    /// True if a charger is plugged in at the start.
     pub plugged: bool,
-    /// The form of the battery's current.
+    /// How the device reports the battery's current.
     pub current: Current,
-    /// True if its current is positive while the battery discharges.
+    /// True if the device reports a positive current while discharging.
     pub positive: bool,
-    /// The form of the battery's voltage.
+    /// How the device reports the battery's voltage.
     pub voltage: Voltage,
     /// True if the shell may read the kernel's current and voltage.
     pub kernel_battery: bool,
     /// True if the values of `dumpsys battery` were set by hand.
     pub battery_held: bool,
-    /// Somebody plugs a charger in where no application runs and the level is below this percentage, and takes it off
-    /// at 95 %; nobody does without it.
+    /// Somebody plugs in a charger while no application runs and the level is below this percentage, and unplugs it at
+    /// 95 %. Nobody does if this is `None`.
     pub charged_below: Option<f64>,
     /// True if the screen lock asks for a PIN.
     pub secure_lock: bool,
     /// Refresh rate of the display in Hz.
     pub refresh_hz: f64,
-    /// True if it logs a line of Meta's runtime each second, too.
+    /// True if the device also logs a line of Meta's runtime each second.
     pub vr_api: bool,
-    /// Other applications on it, by package. While one runs, Meta's runtime logs a line each second for it, and one for
-    /// another process.
+    /// Packages of other applications on the device. While one of them runs, Meta's runtime logs one line per second
+    /// for it, and one for another process.
     pub others: Vec<String>,
-    /// The one of them that runs from the beginning.
+    /// The other application that runs at the start.
     pub foreground: Option<String>,
-    /// Android's settings, by name; those of other tables than `system` as `global/low_power`.
+    /// Android's settings by name. Names outside the table `system` have the form `global/low_power`.
     pub settings: BTreeMap<String, String>,
-    /// Those of them that cannot be changed.
+    /// Names of the settings that cannot be changed.
     pub fixed_settings: Vec<String>,
     /// System properties.
     pub properties: BTreeMap<String, String>,
-    /// Files on it.
+    /// Files on the device by path.
     pub files: BTreeMap<String, String>,
-    /// Recorded logs, relative to the script. With them nothing of a log is generated: a method and scene that none of
-    /// them has does not start.
+    /// Recorded logs, relative to the script. If there are any, no lines are generated, and the application does not
+    /// start with a method and scene that is in none of them.
     pub logs: Vec<PathBuf>,
-    /// Made-up costs of methods, by name, for a generated log.
+    /// Made-up costs for a generated log, by method.
     pub load: BTreeMap<String, Load>,
-    /// Faults.
+    /// Faults that occur.
     pub fault: Vec<Fault>,
 }
 
@@ -155,27 +155,27 @@ impl Default for Phone {
     }
 }
 
-/// The form in which a device gives the battery's current.
+/// How a device reports the battery's current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Current {
-    /// The unit that Android specifies.
+    /// In microamperes, as Android specifies.
     Microamperes,
-    /// The unit of some devices.
+    /// In milliamperes, as some devices do.
     Milliamperes,
     /// Always 0.
     Zero,
-    /// No value.
+    /// Not at all.
     Missing,
 }
 
-/// The form in which a device gives the battery's voltage.
+/// How a device reports the battery's voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Voltage {
-    /// The unit that Android specifies.
+    /// In millivolts, as Android specifies.
     Millivolts,
-    /// The unit of some devices.
+    /// In volts, as some devices do.
     Volts,
 }
 
@@ -195,19 +195,19 @@ impl Default for Load {
     }
 }
 
-/// Faults.
+/// The kinds of faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FaultKind {
     /// The connection is lost.
     Disconnect,
-    /// The connection is lost, and when it is back the device must be told again to trust this computer.
+    /// The connection is lost. Afterwards the device must be told again to trust this computer.
     Unauthorized,
     /// The device restarts.
     Reboot,
     /// The application crashes.
     Crash,
-    /// Only adb's reader of the log ends.
+    /// The log ends for adb, with the connection intact.
     LogEnds,
     /// The charger is plugged in.
     Plug,
@@ -217,11 +217,11 @@ pub enum FaultKind {
     Truncate,
     /// Lines of the log are not written.
     Silence,
-    /// The log forgets all that it has.
+    /// The log loses all of its lines.
     Rotate,
     /// The device throttles.
     Throttle,
-    /// Somebody taps: the next method is shown.
+    /// Somebody taps, which shows the next method.
     Tap,
 }
 
@@ -231,14 +231,14 @@ pub enum FaultKind {
 pub struct Fault {
     /// What goes wrong.
     pub kind: FaultKind,
-    /// The start of the application, from 1, in which it happens.
+    /// Number of the application's start, from 1, in which the fault occurs.
     #[serde(default = "first")]
     pub start: u32,
-    /// Seconds after its first frame.
+    /// Time after the first frame of that start, in seconds.
     pub at: f64,
-    /// Duration in seconds; for ever without one.
+    /// Duration in seconds. `None` means for ever.
     pub seconds: Option<f64>,
-    /// Seconds by which a clock jumps.
+    /// Seconds by which the clock jumps.
     #[serde(default)]
     pub by: f64,
 }
@@ -248,7 +248,7 @@ fn first() -> u32 {
 }
 
 impl Phone {
-    /// Returns what is wrong with a number: time and power must add up to something.
+    /// Returns a sentence on a number that is out of range. Within the ranges, time and power stay finite.
     fn mistake(&self) -> Option<String> {
         let numbers = [
             ("capacity-mah", self.capacity_mah, 0.0..=1e6),
@@ -272,7 +272,7 @@ impl Phone {
 }
 
 impl Script {
-    /// Reads a script; or makes one of the captures in a folder, whose logs are played again.
+    /// Reads a script, or makes one from the captures in a folder, whose logs are replayed.
     pub fn read(path: &Path) -> Result<Script, DeviceError> {
         let script = if path.is_dir() { Script::of_captures(path)? } else { Script::of_file(path)? };
         let refuse = |reason: &str| Err(DeviceError::Replay { path: path.into(), reason: reason.into() });

@@ -1,4 +1,4 @@
-//! Means of methods, and their comparison with the baseline.
+//! Means of methods, and their comparisons with the baseline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use super::run::{Quantity, Run};
 use super::{CONFIDENCE, Device};
 use yoro_figures::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
 
-/// A method on a scene: all its runs that count.
+/// The mean of a method in a scene over all runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mean {
     /// Device.
@@ -19,34 +19,34 @@ pub struct Mean {
     pub method: String,
     /// Quantity.
     pub quantity: Quantity,
-    /// Mean of the runs, their number and standard deviation.
+    /// Mean, standard deviation and number of the runs.
     #[serde(flatten)]
     pub sample: Sample,
-    /// Interval of the mean, by Student's t over the repetitions; `None` for a single run.
+    /// Confidence interval of the mean, by Student's t over the repetitions. `None` for a single run.
     pub interval: Option<Interval>,
 }
 
-/// A method against the baseline, by pairs of runs of the same device, scene and repetition.
+/// The comparison of a method with the baseline, by pairs of runs of the same device, scene and repetition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// Device; none for the mean of the devices.
+    /// Device, or `None` for the mean of all devices.
     pub device: Option<String>,
-    /// Scene; none for the mean of the scenes.
+    /// Scene, or `None` for the mean of all scenes.
     pub scene: Option<String>,
     /// Method.
     pub method: String,
     /// Quantity.
     pub quantity: Quantity,
-    /// Pairs of runs.
+    /// Number of pairs.
     pub pairs: usize,
     /// Mean of the method over the pairs of each scene, then over the scenes.
     pub ours: f64,
-    /// Mean of the baseline, likewise.
+    /// Mean of the baseline, computed likewise.
     pub baseline: f64,
-    /// Change in percent of the baseline, by the geometric mean of the ratios; for quantities without a ratio, the mean
-    /// difference in their unit.
+    /// Change in percent, from the geometric mean of the pairs' ratios. For quantities that are not compared by ratios,
+    /// the mean difference in the quantity's unit.
     pub change: f64,
-    /// Interval of the change; `None` if nothing was repeated.
+    /// Confidence interval of the change. `None` if nothing was repeated.
     pub interval: Option<BlockInterval>,
 }
 
@@ -57,7 +57,7 @@ impl Difference {
     }
 }
 
-/// Returns the means of all methods and scenes of a device.
+/// Returns the means of all methods and scenes on a device.
 pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
     let mut means = Vec::new();
     for scene in &device.scenes {
@@ -82,14 +82,14 @@ pub fn means(runs: &[Run], device: &Device) -> Vec<Mean> {
     means
 }
 
-/// The key that two runs of a pair share.
+/// What the two runs of a pair have in common.
 type Key<'a> = (usize, Option<&'a str>, &'a str, u32);
 
 fn key(run: &Run) -> Key<'_> {
     (run.set, run.experiment.as_deref(), &run.scene, run.repetition)
 }
 
-/// Returns the runs without a partner of the baseline.
+/// Returns the runs that have no run of the baseline to be paired with.
 pub fn without_partner<'a>(runs: &'a [Run], device: &Device, baseline: &str) -> Vec<&'a Run> {
     let of =
         || runs.iter().filter(|run| run.device == device.name && run.exclusions.iter().all(|e| e.power_only));
@@ -97,7 +97,7 @@ pub fn without_partner<'a>(runs: &'a [Run], device: &Device, baseline: &str) -> 
     of().filter(|run| run.method != baseline && !partners.contains(&key(run))).collect()
 }
 
-/// Returns all methods against the baseline on a device: for each scene, then over the scenes.
+/// Compares all methods on a device with the baseline, for each scene and then over the scenes.
 pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Difference> {
     let mut differences = Vec::new();
     for method in device.methods.iter().filter(|method| *method != baseline) {
@@ -143,7 +143,7 @@ pub fn differences(runs: &[Run], device: &Device, baseline: &str) -> Vec<Differe
     differences
 }
 
-/// Returns the mean of the devices, each by its own mean over the scenes; the interval rests on the devices.
+/// Returns the means over devices of their means over scenes. The intervals are based on the scatter of the devices.
 pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Difference> {
     let mut found = Vec::new();
     let of_devices = differences.iter().filter(|difference| {
@@ -177,7 +177,7 @@ pub fn over_devices(differences: &[Difference], devices: &[&Device]) -> Vec<Diff
     found
 }
 
-/// Returns the change over blocks of pairs and its interval.
+/// Returns the mean change over blocks of pairs, and its interval.
 fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Option<BlockInterval>)> {
     let value = |(ours, baseline): &(f64, f64)| {
         if !quantity.is_ratio() {
@@ -195,7 +195,7 @@ fn change(quantity: Quantity, blocks: &[&Vec<(f64, f64)>]) -> Option<(f64, Optio
     Some((back(blocks.mean), interval))
 }
 
-/// Returns the value of a change that is averaged: of ratios the logarithm, so that half and double cancel out.
+/// Returns the value of a change that is averaged: for ratios the logarithm, so that half and double cancel out.
 fn scale(quantity: Quantity, change: f64) -> f64 {
     if quantity.is_ratio() { (change / 100.0).ln_1p() } else { change }
 }

@@ -1,10 +1,10 @@
-//! Reports of captures: power, frame rate, temperature and the rest, per method and scene, against the baseline.
+//! Reports on captures: power, frame rate, temperature and others by method and scene, compared with a baseline.
 //!
-//! The seconds of a run depend on each other, so intervals rest on repetitions: a run is one value. Two methods are
-//! compared by pairs of runs of the same device, scene and repetition; a change in percent is the geometric mean of
-//! the pairs' ratios and its interval Student's t of their logarithms. Over scenes, scenes are fixed blocks and the
-//! scatter of the repetitions around them is pooled; where every scene was measured once, the interval rests on the
-//! scatter of the scenes, and is marked. A single pair has no interval.
+//! The seconds of a run are not independent, so intervals are computed from repetitions, and each run counts as one
+//! value. Two methods are compared by pairs of runs of the same device, scene and repetition. A change in percent is
+//! the geometric mean of the pairs' ratios; its interval is Student's t on their logarithms. For the mean over scenes,
+//! the scenes are fixed blocks, and the scatter of the repetitions around them is pooled. If every scene was measured
+//! only once, the interval is computed from the scatter of the scenes and is marked. A single pair has no interval.
 
 mod compare;
 mod page;
@@ -31,39 +31,39 @@ pub const CONFIDENCE: f64 = 0.95;
 /// A device that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Device {
-    /// Name in tables; ends in `(simulated)` for a simulated device.
+    /// Name in tables. Ends in `(simulated)` for a simulated device.
     pub name: String,
     /// Version of Android.
     pub android: String,
-    /// Capacity of its battery in milliampere-hours.
+    /// Capacity of the battery in milliampere-hours.
     pub capacity_mah: Option<f64>,
     /// Number of battery cells, if the device reports the current of one cell; otherwise 1.
     pub cells: u32,
-    /// True if replayed, not measured.
+    /// True for a replay.
     pub simulated: bool,
-    /// Versions of the application that ran.
+    /// Versions of the application in the runs.
     pub applications: BTreeSet<String>,
     /// Scenes, in the order of tables.
     pub scenes: Vec<String>,
-    /// Methods, in the order of tables: the baseline first, then this project's.
+    /// Methods in the order of tables: the baseline, then this project's.
     pub methods: Vec<String>,
 }
 
-/// Something that the reader of the figures must know.
+/// Something that readers of the figures must know.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Note {
     /// A short name.
     pub name: &'static str,
-    /// The run or other subject.
+    /// The run or other subject that it is about.
     pub of: String,
     /// One sentence.
     pub detail: String,
 }
 
-/// The figures of a number of captures.
+/// The figures of several captures.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceReport {
-    /// True if some of it was replayed, not measured.
+    /// True if any of the runs was replayed rather than measured.
     pub simulated: bool,
     /// The method that the others are compared with.
     pub baseline: String,
@@ -73,33 +73,33 @@ pub struct DeviceReport {
     pub made_by: String,
     /// All devices.
     pub devices: Vec<Device>,
-    /// Each method against the baseline.
+    /// Comparisons of the methods with the baseline.
     pub differences: Vec<Difference>,
-    /// Each method on each scene.
+    /// Means by device, scene and method.
     pub means: Vec<Mean>,
-    /// Excluded runs, and the reasons.
+    /// Excluded runs, with the reasons.
     pub left_out: Vec<Note>,
-    /// Faults that did not make a run worthless.
+    /// Faults that did not exclude a run.
     pub faults: Vec<Note>,
-    /// Run by run.
+    /// The figures of all runs.
     pub runs: Vec<Run>,
 }
 
 /// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// The page.
+    /// The HTML page.
     pub page: PathBuf,
     /// The tables as Markdown.
     pub markdown: PathBuf,
-    /// All figures.
+    /// All figures as JSON.
     pub json: PathBuf,
 }
 
 impl DeviceReport {
-    /// Puts the runs of several folders together, each with its path. The same run given twice counts once; the same
-    /// repetition in another folder counts as another one. `cells` names the devices, by serial number, that give the
-    /// current of one of so many cells.
+    /// Combines the runs of several folders, each with its path. A run that is given twice counts once; the same
+    /// repetition in another folder counts as a further one. `cells` gives the number of battery cells, by serial
+    /// number, of devices that report the current of a single cell.
     pub fn new(
         sets: &[Vec<(PathBuf, Capture)>],
         baseline: &str,
@@ -134,7 +134,7 @@ impl DeviceReport {
         let means = devices.iter().flat_map(|device| compare::means(&runs, device)).collect();
         let mut differences: Vec<Difference> =
             devices.iter().flat_map(|device| compare::differences(&runs, device, baseline)).collect();
-        // Replayed and measured runs are never averaged.
+        // Replayed and measured runs are never averaged together.
         for simulated in [false, true] {
             let alike: Vec<&Device> = devices.iter().filter(|d| d.simulated == simulated).collect();
             differences.extend(compare::over_devices(&differences, &alike));
@@ -162,10 +162,10 @@ impl DeviceReport {
         report
     }
 
-    /// Returns the self-contained page.
+    /// Returns the report as a self-contained HTML page.
     ///
     /// # Errors
-    /// [`ReportError`] when a figure cannot be drawn.
+    /// [`ReportError`] if a figure cannot be drawn.
     pub fn to_html(&self) -> Result<String, ReportError> {
         page::html(self)
     }
@@ -188,7 +188,7 @@ impl DeviceReport {
     /// Writes `report.html`, `report.md` and `report.json` into `folder`.
     ///
     /// # Errors
-    /// [`ReportError`]; everything is made before anything is written.
+    /// [`ReportError`]. All three are made before the first one is written.
     pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
         let written = Written {
             page: folder.join("report.html"),
@@ -203,12 +203,12 @@ impl DeviceReport {
     }
 }
 
-/// Returns the key that tells devices apart.
+/// Returns the key that distinguishes devices: the serial number, and whether the device is simulated.
 fn device_key(capture: &Capture) -> (String, bool) {
     (capture.info.device.serial.clone(), capture.info.device.simulated)
 }
 
-/// Returns manufacturer and model; with the serial number where two have the same.
+/// Returns the devices' names in tables: manufacturer and model, with the serial number if two devices share them.
 fn device_names<'a>(captures: impl Iterator<Item = &'a Capture>) -> BTreeMap<(String, bool), String> {
     let mut names: BTreeMap<(String, bool), String> = BTreeMap::new();
     for capture in captures {
@@ -273,7 +273,7 @@ fn devices<'a>(
     devices
 }
 
-/// Leaves out all but the last run of a repetition that was measured again.
+/// Excludes all but the last run of a repetition that was made more than once.
 fn leave_out_repeated(runs: &mut [Run]) {
     let key = |run: &Run| {
         let place = (run.set, run.experiment.clone(), run.scene.clone(), run.method.clone(), run.repetition);

@@ -1,4 +1,4 @@
-//! The figures of one run, and the reasons to exclude them.
+//! The figures of one run, and the reasons for excluding it.
 
 use std::collections::BTreeMap;
 
@@ -8,21 +8,21 @@ use crate::capture::{Capture, Fault, FaultKind, Outcome, Sample};
 use crate::phone::LEAST_MILLIVOLTS;
 use yoro_figures::stats::median;
 
-/// Voltage by which the paper turns battery percent into energy.
+/// Voltage that the paper uses to compute energy from battery percent.
 pub const PAPER_VOLTS: f64 = 3.7;
-/// Least share of its planned time for which a run must have frame rates.
+/// Minimum fraction of the planned time for which a run must have frame rates.
 pub const LEAST_COVERED: f64 = 0.8;
-/// Largest relative difference of current x voltage and charge counter that is not reported.
+/// Maximum relative difference between current x voltage and the charge counter that is not reported.
 pub const COUNTER_TOLERANCE: f64 = 0.1;
 /// Factor from milliampere-hours to microampere-hours.
 pub(super) const MILLI: f64 = 1e3;
-/// Least charge of a full battery in microampere-hours; a smaller counter is in milliampere-hours.
+/// Minimum charge of a full battery in microampere-hours. If the counter implies less, it counts milliampere-hours.
 const LEAST_FULL_UAH: f64 = 100_000.0;
-/// Tolerance, as a share, for a counter of one cell: the battery's capacity divided by the number of cells.
+/// Relative tolerance for recognising the counter of one cell by the battery's capacity divided by the number of cells.
 const CELL_TOLERANCE: f64 = 0.25;
-/// Ratio of another measure of the power to current x voltage if the current is that of one of two cells.
+/// Ratio of another power estimate to current x voltage that suggests the current of one of two cells.
 const TWICE: std::ops::Range<f64> = 1.6..2.6;
-/// Distance of two samples, as a multiple of the usual one, beyond which they enclose a gap, which is not bridged.
+/// Two samples enclose a gap, which is not bridged, if their distance exceeds the usual one by this factor.
 const GAP: f64 = 2.5;
 
 /// A measured quantity.
@@ -39,7 +39,7 @@ pub enum Quantity {
     FrameTimeP99,
     /// GPU time per frame.
     GpuTime,
-    /// Refreshes that showed an old frame again.
+    /// Refreshes that repeated an old frame.
     Stale,
     /// Battery temperature.
     Temperature,
@@ -52,7 +52,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All, in the order of tables.
+    /// All quantities in the order of tables.
     pub const ALL: [Quantity; 10] = [
         Quantity::Power,
         Quantity::Fps,
@@ -66,7 +66,7 @@ impl Quantity {
         Quantity::Memory,
     ];
 
-    /// Returns name and unit in tables, digits after the point, and whether two values are compared as a ratio.
+    /// Returns name and unit in tables, number of decimals, and whether two values are compared by their ratio.
     fn row(self) -> (&'static str, &'static str, usize, bool) {
         match self {
             Quantity::Power => ("power", "mW", 0, true),
@@ -82,54 +82,54 @@ impl Quantity {
         }
     }
 
-    /// Returns its name in tables.
+    /// Returns the quantity's name in tables.
     pub fn name(self) -> &'static str {
         self.row().0
     }
 
-    /// Returns its unit in tables.
+    /// Returns the quantity's unit in tables.
     pub fn unit(self) -> &'static str {
         self.row().1
     }
 
-    /// Returns the number of digits after the point.
+    /// Returns the number of decimals in tables.
     pub fn decimals(self) -> usize {
         self.row().2
     }
 
-    /// True if two values are compared as a ratio. Temperatures have no zero to divide by, and stale frames may be
-    /// none: they are compared as differences.
+    /// True if two values are compared by their ratio. Temperatures, whose zero is arbitrary, and stale frames, which
+    /// may be 0, are compared by their difference.
     pub fn is_ratio(self) -> bool {
         self.row().3
     }
 }
 
-/// Energy by current times voltage.
+/// Power integrated from current x voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Integrated {
     /// Mean power in milliwatts.
     pub milliwatts: f64,
-    /// Seconds over which it was integrated.
+    /// Integrated time in seconds.
     pub seconds: f64,
 }
 
-/// Power by the battery's charge counter.
+/// Power from the battery's charge counter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Counted {
-    /// Change of charge x mean voltage / time, between the counter's first and last step, in milliwatts.
+    /// Change of charge x mean voltage / time between the counter's first and last step, in milliwatts.
     pub milliwatts: f64,
     /// Current x voltage over the same time, in milliwatts.
     pub integrated_milliwatts: f64,
     /// Time between the counter's first and last step in seconds.
     pub seconds: f64,
-    /// Number of its changes.
+    /// Number of steps of the counter.
     pub steps: usize,
-    /// Factor from its values to microampere-hours of the whole battery.
+    /// Factor from the counter's values to microampere-hours of the whole battery.
     pub scale: f64,
 }
 
 impl Counted {
-    /// Returns the share by which the counter exceeds current x voltage; 0.1 is 10 %.
+    /// Returns by which fraction the counter's power exceeds current x voltage: 0.1 is 10 %.
     pub fn disagreement(&self) -> f64 {
         self.milliwatts / self.integrated_milliwatts - 1.0
     }
@@ -140,14 +140,14 @@ impl Counted {
 pub struct ByLevel {
     /// Mean power in milliwatts.
     pub milliwatts: f64,
-    /// Power of one percent of the battery over this time in milliwatts: the resolution of the method.
+    /// The method's resolution: the power, in milliwatts, that uses one percent of the battery in this time.
     pub step_milliwatts: f64,
 }
 
 /// An exclusion and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Exclusion {
-    /// True if only the power is excluded; else the whole run is.
+    /// True if only the run's power is excluded, false if the whole run is.
     pub power_only: bool,
     /// A short name.
     pub name: &'static str,
@@ -155,27 +155,27 @@ pub struct Exclusion {
     pub reason: String,
 }
 
-/// Values over time, for plots.
+/// Values over time for plots, as pairs of time and value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Traces {
-    /// Seconds and milliwatts.
+    /// Time in seconds, and power in milliwatts.
     pub power: Vec<(f64, f64)>,
-    /// Seconds and frames per second.
+    /// Time in seconds, and frames per second.
     pub fps: Vec<(f64, f64)>,
-    /// Seconds and degrees Celsius.
+    /// Time in seconds, and temperature in degrees Celsius.
     pub temperature: Vec<(f64, f64)>,
 }
 
-/// One run in figures.
+/// The figures of one run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
     /// Folder of the run.
     pub folder: String,
-    /// Index of the given folder in which it was found. The same repetition in another folder counts as another one.
+    /// Index of the given folder that contains the run. The same repetition in another folder counts as a further one.
     pub set: usize,
     /// The device's name in tables.
     pub device: String,
-    /// True if replayed, not measured.
+    /// True for a replay.
     pub simulated: bool,
     /// Experiment.
     pub experiment: Option<String>,
@@ -185,37 +185,37 @@ pub struct Run {
     pub scene: String,
     /// Repetition, from 1.
     pub repetition: u32,
-    /// When it began, in seconds since 1970.
+    /// Start in seconds since 1970.
     pub started_unix_s: f64,
-    /// Number of battery cells, if the device reports the current of one cell: current x voltage is multiplied by it.
+    /// Factor on current x voltage: the number of battery cells if the device reports the current of one, otherwise 1.
     pub cells: u32,
-    /// Seconds that it should last, and that were measured.
+    /// Planned length without warm-up, in seconds.
     pub planned_s: f64,
-    /// Seconds with samples close enough to each other.
+    /// Time in seconds for which samples are close enough to each other.
     pub covered_s: f64,
-    /// Gaps between samples that were not bridged.
+    /// Number of gaps between samples, which were not bridged.
     pub gaps: usize,
     /// Means over the run.
     pub values: BTreeMap<Quantity, f64>,
-    /// Standard deviation over the seconds of the run, where a quantity has a value each second. Seconds are not
-    /// independent of each other: no interval is made of it.
+    /// Standard deviation over the run's seconds, for quantities with a value per second. Seconds are not independent,
+    /// so no interval is computed from it.
     pub std_over_seconds: BTreeMap<Quantity, f64>,
-    /// Current x voltage.
+    /// Power from current x voltage.
     pub integrated: Option<Integrated>,
-    /// Power by the charge counter.
+    /// Power from the charge counter.
     pub counted: Option<Counted>,
     /// Power by the paper's method.
     pub by_level: Option<ByLevel>,
-    /// Faults on the way.
+    /// The faults that occurred.
     pub faults: Vec<Fault>,
-    /// Reasons for which the run, or its power, does not count.
+    /// Reasons for which the run, or only its power, is excluded.
     pub exclusions: Vec<Exclusion>,
     #[serde(skip)]
     pub(super) traces: Traces,
 }
 
 impl Run {
-    /// Reads the figures off a capture; `cells` is 1 where the device gives the current of its whole battery.
+    /// Computes the figures of a capture. `cells` is 1 if the device reports the current of the whole battery.
     pub fn of(capture: &Capture, folder: String, set: usize, device: String, cells: u32) -> Run {
         let info = &capture.info;
         let window = info.warm_up_s..=info.warm_up_s + info.duration_s;
@@ -231,7 +231,7 @@ impl Run {
         charge.iter_mut().for_each(|(_, charge)| *charge *= scale);
         let fps = series(|s| s.fps);
         let temperature = series(|s| s.battery_celsius);
-        // Other values may have continued while the application drew nothing.
+        // By frame rates, since other values may have continued while the application drew nothing.
         let (covered_s, gaps) = coverage(&fps, longest_step);
         let integrated = integrate(&power, longest_step);
 
@@ -275,7 +275,7 @@ impl Run {
             return run;
         }
         run.set(Quantity::Fps, &fps, mean(&fps));
-        // Means over frames: a second of slow frames has fewer of them.
+        // Weighted by frames, since a second of slow frames has fewer of them.
         for (quantity, value) in [
             (Quantity::FrameTime, (|s: &Sample| s.frame_ms) as fn(&Sample) -> Option<f64>),
             (Quantity::GpuTime, |s| s.gpu_ms),
@@ -297,24 +297,25 @@ impl Run {
         run
     }
 
-    /// True if its value of a quantity counts.
+    /// True if the run's value of this quantity counts.
     pub fn counts(&self, quantity: Quantity) -> bool {
         self.exclusions.iter().all(|exclusion| exclusion.power_only && quantity != Quantity::Power)
     }
 
-    /// Returns a name in sentences.
+    /// Returns the run's name in sentences.
     pub fn name(&self) -> String {
         format!("{}, {}, {}, repetition {}", self.device, self.scene, self.method, self.repetition)
     }
 
-    /// Returns another measure that is twice current x voltage, as if the current were that of one of two cells.
+    /// Returns the name of another power estimate that is about twice current x voltage, which suggests that the
+    /// current is that of one of two cells.
     pub(super) fn twice_by(&self) -> Option<&'static str> {
         let integrated = self.integrated?.milliwatts;
         let counted = self.counted.map(|c| c.milliwatts / c.integrated_milliwatts);
         if counted.is_some_and(|ratio| TWICE.contains(&ratio)) {
             return Some("the charge counter");
         }
-        // A level in whole percents may be wrong by one of them.
+        // The level is in whole percents, so it may be off by one.
         let by_level = self.by_level?;
         let step = by_level.step_milliwatts;
         let is_sure = (by_level.milliwatts - step) / integrated > TWICE.start / 1.1;
@@ -340,7 +341,7 @@ impl Run {
         self.faults.iter().find(|fault| fault.kind == kind)
     }
 
-    /// Returns why nothing of the run counts: the first reason, from which others would follow.
+    /// Returns why the whole run is excluded. This is the first reason found, since further ones may follow from it.
     fn worthless(&self, capture: &Capture) -> Option<(&'static str, String)> {
         match &capture.info.outcome {
             Outcome::Complete => {}
@@ -350,7 +351,7 @@ impl Run {
         if let Some(fault) = self.find(FaultKind::Rebooted) {
             return Some(("rebooted", fault.detail.clone()));
         }
-        // Faults in the warm-up are over when the measurement begins.
+        // Faults in the warm-up do not affect the measurement.
         let late = |fault: &&Fault| fault.at_s.is_none_or(|at| at >= capture.info.warm_up_s);
         if let Some(fault) = self.find(FaultKind::Restarted).filter(late) {
             return Some(("application restarted", fault.detail.clone()));
@@ -360,7 +361,7 @@ impl Run {
             .then(|| ("too short", format!("{covered:.0} s of {planned:.0} s have frame rates")))
     }
 
-    /// Returns why the run's power does not count.
+    /// Returns why the run's power is excluded.
     fn without_power(&self, capture: &Capture, samples: &[&Sample]) -> Option<(&'static str, String)> {
         let plugged =
             capture.samples.iter().filter(|s| s.plugged.is_some_and(|plugged| plugged != 0)).count();
@@ -390,18 +391,18 @@ impl Run {
     }
 }
 
-/// Returns the power taken from the battery.
+/// Returns the power taken from the battery in milliwatts.
 fn milliwatts(sample: &Sample) -> Option<f64> {
     Some(-sample.current_ma? * voltage(sample)? / 1e3)
 }
 
-/// Returns the voltage in millivolts; whole volts are too coarse.
+/// Returns the voltage in millivolts. Whole volts are ignored as too coarse.
 fn voltage(sample: &Sample) -> Option<f64> {
     sample.voltage_mv.filter(|voltage| *voltage >= LEAST_MILLIVOLTS)
 }
 
 /// Returns the factor from the charge counter to microampere-hours of the whole battery. The counter divided by the
-/// level is the charge of a full battery, which reveals milliampere-hours, and one cell of several.
+/// level is the charge of a full battery, which reveals a counter in milliampere-hours or of a single cell.
 fn counter_scale(samples: &[&Sample], capacity_mah: Option<f64>, cells: u32) -> f64 {
     let full = |s: &&Sample| Some(s.charge_uah? / (s.level_percent.filter(|level| *level > 0.0)? / 100.0));
     let full: Vec<f64> = samples.iter().filter_map(full).collect();
@@ -417,20 +418,20 @@ fn usual_step(samples: &[&Sample]) -> Option<f64> {
     median(&steps).filter(|step| *step > 0.0)
 }
 
-/// Pairs of neighbours without a gap between them.
+/// Returns all pairs of neighbours with no gap between them.
 fn steps(series: &[(f64, f64)], longest: f64) -> impl Iterator<Item = ((f64, f64), (f64, f64))> + Clone + '_ {
     let pairs = series.windows(2).map(|pair| (pair[0], pair[1]));
     pairs.filter(move |(a, b)| b.0 > a.0 && b.0 - a.0 <= longest)
 }
 
-/// Returns the seconds without gaps, and the number of gaps.
+/// Returns the time covered without gaps in seconds, and the number of gaps.
 fn coverage(series: &[(f64, f64)], longest: f64) -> (f64, usize) {
     let covered = steps(series, longest).map(|(a, b)| b.0 - a.0).sum();
     let gaps = series.windows(2).filter(|pair| pair[1].0 - pair[0].0 > longest).count();
     (covered, gaps)
 }
 
-/// Integrates by trapezoids over the times as they are.
+/// Integrates power by trapezoids over the samples' actual times.
 fn integrate(power: &[(f64, f64)], longest: f64) -> Option<Integrated> {
     let steps = steps(power, longest);
     let seconds: f64 = steps.clone().map(|(a, b)| b.0 - a.0).sum();
@@ -438,8 +439,7 @@ fn integrate(power: &[(f64, f64)], longest: f64) -> Option<Integrated> {
     (seconds > 0.0).then(|| Integrated { milliwatts: millijoules / seconds, seconds })
 }
 
-/// Measures power between the counter's first and last step, where its value is exact. Steps inside a gap have no known
-/// time.
+/// Computes power between the counter's first and last step, where it is exact. Ignores steps of unknown time in gaps.
 fn count(
     charge: &[(f64, f64)],
     voltage: &[(f64, f64)],
@@ -480,17 +480,17 @@ fn mean(series: &[(f64, f64)]) -> Option<f64> {
     (!series.is_empty()).then(|| sum / series.len() as f64)
 }
 
-/// Returns the mean over seconds, which weigh by their frames.
+/// Returns the mean over the seconds, weighted by their frames.
 fn mean_over_frames(samples: &[&Sample], value: fn(&Sample) -> Option<f64>) -> Option<f64> {
     let pairs = samples.iter().filter_map(|sample| Some((sample.fps?, value(sample)?)));
     let (frames, sum) = pairs.fold((0.0, 0.0), |(frames, sum), (fps, v)| (frames + fps, sum + fps * v));
     (frames > 0.0).then(|| sum / frames)
 }
 
-/// Most points of a curve; a figure cannot show more.
+/// Maximum number of points in a curve. More would not be visible in a figure.
 const TRACE_POINTS: usize = 240;
 
-/// Means of neighbours, with a point that is not finite at each gap.
+/// Returns means of neighbouring points, with a point that is not finite at each gap.
 fn thinned(series: &[(f64, f64)], longest: f64) -> Vec<(f64, f64)> {
     let width = series.len().div_ceil(TRACE_POINTS).max(1);
     let mut points = Vec::new();

@@ -11,7 +11,7 @@ const WARM_UP: u32 = 10;
 const DURATION: u32 = 100;
 const MILLIVOLTS: f64 = 4000.0;
 
-/// A run made up second by second; power in milliwatts as a function of the time.
+/// Makes up a run with a sample per second. Power is a function of time, in milliwatts.
 fn made_up(method: &str, scene: &str, repetition: u32, power: impl Fn(f64) -> f64) -> Capture {
     let info = RunInfo {
         version: VERSION,
@@ -29,7 +29,7 @@ fn made_up(method: &str, scene: &str, repetition: u32, power: impl Fn(f64) -> f6
         repetition,
         order: 1,
         settings: BTreeMap::new(),
-        // Tells the runs apart.
+        // Distinguishes the runs.
         started_unix_s: (1_000 * repetition as usize + 10 * scene.len() + method.len()) as f64,
         duration_s: f64::from(DURATION),
         warm_up_s: f64::from(WARM_UP),
@@ -84,7 +84,7 @@ fn near(ours: f64, expected: f64, within: f64) {
 
 #[test]
 fn power_is_integrated_over_the_times_without_warm_up() {
-    // Rising by 2 mW a second from 110 mW at the end of warm-up: trapezoids are exact.
+    // From 110 mW at the end of the warm-up, power rises by 2 mW per second. Trapezoids integrate this exactly.
     let run = run_of(&made_up("yoro", "street", 1, |t| if t < 10.0 { 9000.0 } else { 90.0 + 2.0 * t }));
     let integrated = run.integrated.unwrap();
     near(integrated.seconds, 100.0, 1e-9);
@@ -94,20 +94,20 @@ fn power_is_integrated_over_the_times_without_warm_up() {
     near(run.values[&Quantity::Temperature], 30.6, 1e-9);
     near(run.values[&Quantity::Rise], 1.0, 1e-9);
     assert_eq!(run.exclusions, []);
-    // Uneven times: a second sample of the same power half a second later changes nothing.
+    // Irregular times: a second sample of the same power half a second later changes nothing.
     let mut uneven = made_up("yoro", "street", 1, |_| 400.0);
     let mut extra = uneven.samples[50].clone();
     extra.time_s += 0.5;
     extra.current_ma = Some(-300.0);
     uneven.samples.insert(51, extra);
-    // 400 mW but for a triangle of 800 mW over one second.
+    // 400 mW, plus a triangle up to 800 mW that lasts one second.
     near(run_of(&uneven).integrated.unwrap().milliwatts, 404.0, 1e-9);
 }
 
 #[test]
 fn gaps_are_not_bridged() {
     let mut capture = made_up("yoro", "street", 1, |_| 400.0);
-    // The sample after the gap would count half of it, were it bridged.
+    // Half of the gap would count with the power of the sample after it, if the gap were bridged.
     capture.samples.retain(|s| !(30.5..45.5).contains(&s.time_s));
     capture.samples.iter_mut().filter(|s| s.time_s == 46.0).for_each(|s| s.current_ma = Some(-1000.0));
     let run = run_of(&capture);
@@ -136,7 +136,7 @@ fn frame_times_are_means_over_frames() {
 
 #[test]
 fn the_charge_counter_agrees_or_is_named() {
-    // A counter that moves in steps of 1 mAh: 72 seconds at 50 mA.
+    // The counter moves in steps of 1 mAh, one per 72 seconds at 50 mA.
     let coarse = |factor: f64| {
         let mut capture = made_up("yoro", "street", 1, |_| 2000.0);
         for sample in &mut capture.samples {
@@ -153,13 +153,13 @@ fn the_charge_counter_agrees_or_is_named() {
     let notes = report(vec![wrong]).faults;
     assert_eq!(notes.iter().filter(|note| note.name == "counter disagrees").count(), 1, "{notes:?}");
     assert!(report(vec![coarse(1.0)]).faults.is_empty());
-    // One step has no duration.
+    // A single step has no duration.
     let mut still = coarse(1.0);
     still.samples.iter_mut().for_each(|s| s.charge_uah = Some(if s.time_s < 50.0 { 2e6 } else { 1.999e6 }));
     assert_eq!(run_of(&still).counted, None);
 }
 
-/// Counters of phones by HONOR and Xiaomi are in milliampere-hours (amply pull request 80).
+/// Phones by HONOR and Xiaomi count milliampere-hours (amply pull request 80).
 #[test]
 fn the_level_reveals_a_counter_in_milliampere_hours() {
     let mut capture = made_up("yoro", "street", 1, |_| 20_000.0);
@@ -179,7 +179,7 @@ fn the_current_of_one_of_two_cells_doubles_power() {
         DeviceReport::new(&[set], "conventional", cells, String::new())
     };
     let names = |report: &DeviceReport| report.faults.iter().map(|note| note.name).collect::<Vec<_>>();
-    // The counter is the whole battery's.
+    // The counter is that of the whole battery.
     let mut half = made_up("yoro", "street", 1, |_| 4000.0);
     half.samples.iter_mut().for_each(|s| s.current_ma = s.current_ma.map(|current| current / 2.0));
     assert_eq!(names(&report_of(&half, &BTreeMap::new())), ["two cells?"]);
@@ -190,7 +190,7 @@ fn the_current_of_one_of_two_cells_doubles_power() {
         "{:?}",
         whole.faults
     );
-    // The counter is one cell's, too: the level tells.
+    // The counter is also that of one cell, which the level reveals.
     let mut cell = made_up("yoro", "street", 1, |_| 40_000.0);
     for sample in &mut cell.samples {
         sample.current_ma = sample.current_ma.map(|current| current / 2.0);
@@ -204,7 +204,7 @@ fn the_current_of_one_of_two_cells_doubles_power() {
 
 #[test]
 fn implausible_power_is_named() {
-    // A power of 3 W with a voltage of 4, and with a current 1000 times too large.
+    // A power of 3 W, once with a voltage of 4, once with a current that is 1000 times too large.
     let mut volts = made_up("yoro", "street", 1, |_| 3000.0);
     volts.samples.iter_mut().for_each(|s| s.voltage_mv = Some(4.0));
     volts.info.faults.push(Fault {
@@ -313,7 +313,7 @@ fn worthless_runs_are_left_out_with_the_reason() {
     }
 }
 
-/// Five pairs of runs with the powers of `tests/vectors/inference.json`: SciPy's interval of the ratio comes out.
+/// Five pairs of runs with the powers in `tests/vectors/inference.json`. The ratio's interval must be SciPy's.
 #[test]
 fn changes_agree_with_scipy() {
     #[derive(Deserialize)]
@@ -354,7 +354,7 @@ fn changes_agree_with_scipy() {
         let same = difference(&report, None, Quantity::Fps);
         assert_eq!((same.change, same.ours), (0.0, 60.0));
     }
-    // Scenes as fixed blocks, as statsmodels has them; the third vector's numbers are logarithms of ratios here.
+    // Scenes are fixed blocks, as in statsmodels. The third vector's numbers are used as logarithms of ratios.
     for v in vectors.blocks {
         let mut captures = Vec::new();
         for (scene, logs) in ["street", "atrium", "conference"].iter().zip(&v.groups) {
@@ -410,11 +410,11 @@ fn pairs_need_a_partner_and_the_last_repetition_counts() {
     near(power.change, -40.0, 1e-9);
     let names: Vec<&str> = report.left_out.iter().map(|note| note.name).collect();
     assert_eq!(names, ["measured again", "no partner"]);
-    // The mean has the run without a partner, too.
+    // The mean includes the run without a partner.
     let mean = report.means.iter().find(|m| m.method == "yoro" && m.quantity == Quantity::Power).unwrap();
     assert_eq!((mean.sample.n, mean.sample.mean), (2, 350.0));
 
-    // The same folder twice adds nothing; another one with the same numbers is another repetition.
+    // The same folder given twice adds nothing. Another folder with the same numbers has further repetitions.
     let set =
         |captures: &[Capture]| captures.iter().cloned().map(|c| (PathBuf::new(), c)).collect::<Vec<_>>();
     let pair = &captures[..2];
@@ -467,7 +467,7 @@ fn simulated_results_are_marked() {
             assert!(part.contains("simulated"), "{start}{part}");
         }
     }
-    // Each figure says so itself, too: it may be cut out.
+    // Each figure is marked as well, since it may be used on its own.
     let figures: Vec<&str> =
         html.split("<svg").skip(1).map(|part| part.split("</svg>").next().unwrap()).collect();
     assert!(figures.len() >= 6 && figures.iter().all(|svg| svg.contains("simulated")), "{}", figures.len());
@@ -511,7 +511,7 @@ fn markdown_rows_have_as_many_cells_as_columns() {
         assert!(bars == 0 || cells == 0 || bars == cells, "{line}");
         cells = bars;
     }
-    // The paper's power on Bistro, which the street stands for, and its mean over the scenes.
+    // The paper's change of power in Bistro, which corresponds to the street, and its mean over the scenes.
     assert!(markdown.contains("*-26.7 %*") && markdown.contains("*-26.9 %*"), "{markdown}");
     assert!(markdown.contains("*+149.6 %*") && markdown.contains("Meta Quest 3, the paper's"));
 }

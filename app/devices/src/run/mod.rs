@@ -1,4 +1,4 @@
-//! One run on a device: started, captured to its end over whatever happens, and stopped.
+//! One run on a device: it is started, captured to its end despite lost connections and restarts, and stopped.
 
 mod session;
 
@@ -13,21 +13,21 @@ use yoro_protocol::Settings;
 pub(crate) use session::LOST_TIMEOUT_S;
 pub use session::capture;
 
-/// Another application than this project's.
+/// Another application that is measured in place of this project's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Other {
-    /// Its package and process.
+    /// The application's package and process.
     pub subject: Subject,
-    /// Its activity.
+    /// The application's activity.
     pub activity: String,
 }
 
 /// The plan of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The application that runs in place of this project's; of the settings only the scene's name counts then.
+    /// The application that runs in place of this project's. If set, only the scene's name is used of the settings.
     pub other: Option<Other>,
-    /// The experiment that it is part of.
+    /// The experiment that the run belongs to.
     pub experiment: Option<String>,
     /// Name of the method in tables.
     pub method: String,
@@ -37,11 +37,11 @@ pub struct Plan {
     pub repetition: u32,
     /// Place in the experiment, from 1.
     pub order: u32,
-    /// Seconds without warm-up.
+    /// Length in seconds, without the warm-up.
     pub duration_s: f64,
-    /// Seconds at the begin that count for nothing.
+    /// Length of the warm-up in seconds.
     pub warm_up_s: f64,
-    /// Warmest that the battery should be at the start, in degrees Celsius.
+    /// Maximum temperature of the battery at the start, in degrees Celsius.
     pub warmest_celsius: Option<f64>,
     /// Refresh rate that the display is held at, in Hz.
     pub refresh_hz: Option<f64>,
@@ -50,17 +50,17 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The package of the application.
+    /// Returns the package of the application.
     pub fn package(&self) -> &str {
         self.other.as_ref().map_or(PACKAGE, |other| &other.subject.package)
     }
 
-    /// Returns the seconds from the first frame to the end.
+    /// Returns the seconds from the first frame to the end of the run.
     pub fn seconds(&self) -> f64 {
         self.warm_up_s + self.duration_s
     }
 
-    /// The settings other than the defaults, without those that each run has.
+    /// Returns the settings that differ from the defaults, without those that every run has.
     pub fn own_settings(&self) -> BTreeMap<String, String> {
         if let Some(other) = &self.other {
             return BTreeMap::from([("package".into(), other.subject.package.clone())]);
@@ -71,7 +71,7 @@ impl Plan {
         pairs.filter(|pair| !defaults.contains(pair) && !of_each.contains(&pair.0.as_str())).collect()
     }
 
-    /// Returns the description of the run for a capture that begins.
+    /// Returns the description of the run for a new capture.
     pub fn info(&self, found: &Found, started_unix_s: f64, start_celsius: Option<f64>) -> RunInfo {
         RunInfo {
             version: VERSION,
@@ -93,20 +93,20 @@ impl Plan {
     }
 }
 
-/// The device that runs are made on, as it was found.
+/// The device on which runs are made.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// Description of the device.
     pub info: DeviceInfo,
-    /// Version of the application on it.
+    /// Version of the application on the device.
     pub application: String,
 }
 
-/// Looks whether runs of an application can be made on a device.
+/// Checks whether runs of an application can be made on a device.
 ///
 /// # Errors
-/// [`DeviceError`]: also where the application is not there, the battery saver is on, or the screen is locked so that
-/// only its owner can unlock it.
+/// [`DeviceError`], also if the application is not installed, the battery saver is on, or the screen has a lock that
+/// only its owner can open.
 pub fn look(device: &dyn Device, package: &str) -> Result<Found, DeviceError> {
     let serial = || device.serial().to_owned();
     let application = phone::version(device, package)?.ok_or_else(|| match package {
@@ -123,10 +123,10 @@ pub fn look(device: &dyn Device, package: &str) -> Result<Found, DeviceError> {
     Ok(Found { info: phone::info(device)?, application })
 }
 
-/// Refuses a device whose battery does not show the device's power: it is plugged in, or its values were set by hand.
+/// Refuses a device whose battery values are not the device's power, because it is plugged in or they were set by hand.
 ///
 /// # Errors
-/// [`DeviceError::PluggedIn`] and [`DeviceError::BatteryHeld`] with the way out.
+/// [`DeviceError::PluggedIn`] and [`DeviceError::BatteryHeld`], which name the remedy.
 pub fn refuse_charger(device: &dyn Device) -> Result<(), DeviceError> {
     let battery = phone::battery(device)?;
     let serial = device.serial().to_owned();

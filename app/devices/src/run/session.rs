@@ -1,4 +1,4 @@
-//! One run while it is captured.
+//! A run while it is captured.
 
 use std::path::Path;
 use std::time::Duration;
@@ -18,30 +18,30 @@ use yoro_files::interrupt;
 use yoro_protocol::Settings;
 use yoro_scenes::BUILTINS;
 
-/// Seconds that the application may take to load a scene and show it.
+/// Maximum seconds that the application may take to load a scene and show it.
 const START_TIMEOUT_S: f64 = 180.0;
-/// Seconds without a line after which the session checks that the application still runs.
+/// Seconds without a line after which the session checks whether the application still runs.
 const SILENCE_S: f64 = 15.0;
-/// Seconds that a lost device may stay away, in a run and between runs.
+/// Maximum seconds for which a device may be lost, during a run and between runs.
 pub(crate) const LOST_TIMEOUT_S: f64 = 300.0;
-/// Seconds that Android may take to start.
+/// Maximum seconds that Android may take to start.
 const BOOT_TIMEOUT_S: f64 = 180.0;
-/// Number of times that the application is started again in one run.
+/// Maximum number of times that the application is started again in a run.
 const RESTARTS: u32 = 3;
-/// Seconds for which the application continues, so that the last second has its line.
+/// Seconds for which the application runs longer than the run, so that the last second is logged.
 const MARGIN_S: f64 = 1.5;
-/// Interval in seconds at which the kernel is asked for the voltage where the application has it in whole volts only.
+/// Interval in seconds at which the kernel's voltage is read, if the application gives it in whole volts only.
 const VOLTAGE_PERIOD_S: f64 = 5.0;
-/// The display's refresh rate may differ from the one that it is held at by this many Hz: 59.94 is 60.
+/// Tolerance in Hz between the display's refresh rate and the one it is held at, since 60 may be 59.94.
 const REFRESH_TOLERANCE_HZ: f64 = 1.0;
 /// Interval at which waits check for interrupts and silence.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Makes a run and captures it into a folder. The bar's position is set to the seconds of the run, its message to what
-/// happens. A run that fails is a capture, too: its outcome says so.
+/// Makes a run and captures it into a folder. Sets the bar's position to the seconds of the run, and its message to
+/// what is happening. A failed run leaves a capture as well, whose outcome says so.
 ///
 /// # Errors
-/// [`DeviceError`], where there is no capture, or no use in going on.
+/// [`DeviceError`] if there is no capture, or if further runs would be useless.
 pub fn capture(
     device: &dyn Device,
     found: &Found,
@@ -93,7 +93,7 @@ pub fn capture(
         session.fault(FaultKind::TooWarm, 0.0, detail)?;
     }
     let outcome = match session.start() {
-        // Its log ends, too, and when it is back the application is started again.
+        // A lost device also ends the log. The application is started again when the device is back.
         Err(error) if !error.is_lost() => Err(error),
         _ => session.follow(),
     };
@@ -103,7 +103,7 @@ pub fn capture(
         Ok(outcome) => {
             session.renew_faults()?;
             let info = session.writer.finish(outcome)?;
-            // A device that has gone at the end has nothing that could run on.
+            // If the device is gone, nothing can keep running on it.
             if let Err(error) = stopped {
                 log::debug!("{error}");
             }
@@ -116,7 +116,7 @@ pub fn capture(
                 }
                 _ => Outcome::Interrupted { reason: error.to_string() },
             };
-            // The first error of a full disk is reported, not the errors that follow it.
+            // Report the first error of a full disk, not those that follow from it.
             let noted = session.renew_faults().and_then(|()| Ok(session.writer.finish(outcome)?));
             if let Err(again) = noted {
                 log::debug!("{again}");
@@ -132,20 +132,20 @@ struct Session<'a> {
     bar: &'a ProgressBar,
     follower: Follower<'a>,
     reading: Reading,
-    /// Log lines and battery of another application.
+    /// Log lines and battery of another application, if one is measured.
     foreign: Option<Foreign<'a>>,
     label: String,
     writer: Writer,
-    /// Faults between this computer and the device; the others come from the log.
+    /// Faults of the connection. The other faults come from the log.
     own_faults: Vec<Fault>,
     restarts: u32,
     /// Time of the last sample.
     heard_s: f64,
-    /// Start of the present silence: the last sample or the last start.
+    /// Start of the current silence: the last sample or the last start of the application.
     silent_since_s: f64,
-    /// Time since which all lines were those of other processes.
+    /// Time since which all lines have come from other processes.
     others_since_s: Option<f64>,
-    /// Delay in seconds of lines that the device kept while it was gone.
+    /// Delay in seconds of the lines that the device kept while it was lost.
     delay_s: f64,
     /// True once the application has logged its summary.
     has_ended: bool,
@@ -154,11 +154,11 @@ struct Session<'a> {
     refresh_is_told: bool,
 }
 
-/// The voltage as the kernel has it, for a device that gives it in whole volts.
+/// The voltage from the kernel, for devices that otherwise give whole volts.
 #[derive(Clone, Copy, Debug)]
 struct KernelVoltage {
     millivolts: Option<f64>,
-    /// Time of the last question.
+    /// Time of the last query.
     asked_s: f64,
     is_told: bool,
 }
@@ -170,9 +170,9 @@ impl Default for KernelVoltage {
 }
 
 impl Session<'_> {
-    /// Starts the application for what is left of the run.
+    /// Starts the application for the rest of the run.
     fn start(&mut self) -> Result<(), DeviceError> {
-        // Time goes on while the application does not run.
+        // The run's time continues while the application does not run.
         let passed_s = match self.reading.samples() {
             0 => 0.0,
             _ => self.reading.time_s() + self.device.now() - self.heard_s,
@@ -206,7 +206,7 @@ impl Session<'_> {
                     if let Some(outcome) = self.line(&line)? {
                         return Ok(outcome);
                     }
-                    // The log is never quiet while other applications write to it.
+                    // With other applications writing to it, the log is never quiet.
                     let alone =
                         self.others_since_s.is_some_and(|since| self.device.now() - since >= SILENCE_S);
                     if alone && let Some(outcome) = self.quiet()? {
@@ -268,7 +268,7 @@ impl Session<'_> {
         Ok(outcome.or_else(|| (is_over && has_ended).then_some(Outcome::Complete)))
     }
 
-    /// Takes the kernel's voltage in place of one in whole volts.
+    /// Uses the kernel's voltage if the application gives whole volts.
     fn complete(&mut self, sample: &mut Sample) -> Result<(), DeviceError> {
         if sample.voltage_mv.is_some() || !self.reading.has_whole_volts() {
             return Ok(());
@@ -278,7 +278,7 @@ impl Session<'_> {
             self.kernel.asked_s = now;
             match phone::kernel_battery(self.device) {
                 Ok(battery) => self.kernel.millivolts = battery.voltage_mv,
-                // The log says so, too.
+                // The log reports this as well.
                 Err(error) if error.is_lost() => {}
                 Err(error) => return Err(error),
             }
@@ -294,7 +294,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Compares the display's rate with the one that was asked for: settings that are accepted need not have an effect.
+    /// Compares the display's refresh rate with the requested one: a setting may be accepted without having an effect.
     fn compare_refresh(&mut self, sample: &Sample) -> Result<(), DeviceError> {
         let (Some(wanted), Some(hz)) = (self.plan.refresh_hz, sample.refresh_hz) else { return Ok(()) };
         let is_wrong = (hz - wanted).abs() > REFRESH_TOLERANCE_HZ && sample.time_s >= self.plan.warm_up_s;
@@ -305,7 +305,7 @@ impl Session<'_> {
         self.fault(FaultKind::RefreshRate, sample.time_s, detail)
     }
 
-    /// Returns a failure if the device shows something else than was asked for, by a tap or because it cannot.
+    /// Returns a failure if the device shows another method or scene than requested, by a tap or for lack of support.
     fn stranger(&self, sample: &Sample) -> Option<Outcome> {
         let settings = &self.plan.settings;
         let (method, scene) = self.reading.methods().last()?;
@@ -347,7 +347,7 @@ impl Session<'_> {
         self.renew_faults()
     }
 
-    /// Decides what to do when nothing has come for a while.
+    /// Decides what to do after a silence.
     fn quiet(&mut self) -> Result<Option<Outcome>, DeviceError> {
         if let Some(seconds) = self.follower.lost_for() {
             let reason =
@@ -359,7 +359,7 @@ impl Session<'_> {
             return Ok(None);
         }
         let running = match phone::processes(self.device, self.plan.package()) {
-            // Mostly the log ends, too; but adb may wait for the device without a word.
+            // Usually the log ends too, but adb may also wait for the device silently.
             Err(error) if error.is_lost() => {
                 let outcome = Outcome::Interrupted { reason: error.to_string() };
                 return Ok((silent_s > LOST_TIMEOUT_S).then_some(outcome));
@@ -376,7 +376,7 @@ impl Session<'_> {
             };
             return Ok((silent_s > START_TIMEOUT_S).then_some(Outcome::Failed { reason }));
         }
-        // The application is gone, and with it what it might have said.
+        // The application has ended, and whether it would have logged more is unknown.
         if self.reading.time_s() >= self.plan.seconds() - MARGIN_S {
             return Ok(Some(Outcome::Complete));
         }

@@ -1,4 +1,4 @@
-//! Analysis of ratings: for each question each method against the baseline.
+//! Analysis of ratings: for each question, each method is compared with the baseline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,20 +20,20 @@ pub struct Options {
     pub baseline: String,
     /// Lowest and highest rating.
     pub scale: Scale,
-    /// Equivalence margin of the mean, in units of the scale.
+    /// Equivalence margin of the mean difference, in units of the scale.
     pub bound: f64,
-    /// Level of all tests.
+    /// Significance level of all tests.
     pub alpha: f64,
     /// Power for which the sample size is computed.
     pub power: f64,
 }
 
-/// A participant who is not part of a comparison.
+/// A participant who was left out of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Excluded {
     /// Participant.
     pub participant: String,
-    /// The missing ratings.
+    /// Which ratings are missing.
     pub reason: String,
 }
 
@@ -41,28 +41,28 @@ pub struct Excluded {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// No difference was shown, and any difference was shown to be smaller than the bound.
+    /// No difference was shown, and it was shown that any difference is smaller than the bound.
     Equivalent,
-    /// Shown to differ, and shown to differ by less than the bound.
+    /// A difference was shown, and it was shown to be smaller than the bound.
     SmallDifference,
-    /// Shown to differ, and not shown to differ by less than the bound.
+    /// A difference was shown, and it was not shown to be smaller than the bound.
     Different,
-    /// Neither shown.
+    /// Neither was shown.
     Undecided,
-    /// There is nothing to test with.
+    /// There is no data to test.
     Untestable,
 }
 
-/// One question about one method.
+/// The comparison of a method with the baseline by one question.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Question {
-    /// Its name.
+    /// The question's name.
     pub question: String,
     /// The method that was rated.
     pub method: String,
-    /// Scenes that each participant has rated.
+    /// Scenes that each participant of the comparison has rated.
     pub scenes: Vec<String>,
-    /// Mean over the scenes: participant, method, baseline.
+    /// Each participant with the mean ratings of the method and of the baseline over the scenes.
     pub participants: Vec<(String, f64, f64)>,
     /// Participants left out of this comparison, with the reason.
     pub excluded: Vec<Excluded>,
@@ -70,27 +70,27 @@ pub struct Question {
     pub ours: Sample,
     /// Ratings of the baseline.
     pub baseline: Sample,
-    /// Method minus baseline, participant by participant.
+    /// Method minus baseline, by participant.
     pub difference: Sample,
-    /// Interval of the mean difference, at confidence 1 - alpha.
+    /// Confidence interval of the mean difference, at 1 - alpha.
     pub interval: Option<Interval>,
-    /// Statistic of the paired t-test; `None` where all differences are equal.
+    /// Statistic of the paired t-test. `None` if all differences are equal.
     pub t: Option<f64>,
-    /// Two-sided.
+    /// Two-sided p-value.
     pub p: Option<f64>,
     /// Cohen's d_z.
     pub d_z: Option<f64>,
-    /// Interval of d_z, at confidence 1 - alpha.
+    /// Confidence interval of d_z, at 1 - alpha.
     pub d_z_interval: Option<Interval>,
-    /// Post hoc: what the test's power would be if the true effect were the one found.
+    /// Post hoc power of the test: its power if the true effect were the one found.
     pub power: Option<f64>,
-    /// Participants that it takes to find a true difference as large as the bound with the power asked for.
+    /// Number of participants needed to find a true difference as large as the bound with the requested power.
     pub needed: Option<usize>,
-    /// Two one-sided tests.
+    /// Result of the two one-sided tests (TOST).
     pub equivalence: Option<Equivalence>,
-    /// The verdict in a word.
+    /// The verdict.
     pub verdict: Verdict,
-    /// The verdict in a sentence.
+    /// The verdict as a sentence.
     pub words: String,
 }
 
@@ -99,13 +99,13 @@ pub struct Question {
 pub struct Study {
     /// The options.
     pub options: Options,
-    /// Program, version and command.
+    /// Program, version and command that made the analysis.
     pub made_by: String,
-    /// All participants.
+    /// Number of participants.
     pub participants: usize,
-    /// Results by question, then method.
+    /// Comparisons by question, then by method.
     pub questions: Vec<Question>,
-    /// Comparisons without a complete answer: question, method.
+    /// Question and method of the comparisons for which nobody has answered completely.
     pub unanswered: Vec<(String, String)>,
 }
 
@@ -113,7 +113,7 @@ impl Study {
     /// Analyses ratings.
     ///
     /// # Errors
-    /// [`StudyError::Nothing`] without the baseline, or without anything else; [`StudyError::Interrupted`].
+    /// [`StudyError::Nothing`] if the baseline or any other method is missing; [`StudyError::Interrupted`].
     pub fn new(ratings: &Ratings, options: Options, made_by: String) -> Result<Study, StudyError> {
         let methods: BTreeSet<&str> = ratings.rows.iter().map(|row| row.method.as_str()).collect();
         let nothing = |what: String| StudyError::Nothing { path: ratings.path.clone(), what };
@@ -147,7 +147,8 @@ impl Study {
     }
 }
 
-/// Returns a method against the baseline by the answers to one question; `None` if nobody has rated both on all scenes.
+/// Compares a method with the baseline by the answers to one question. Returns `None` if nobody rated both in all
+/// scenes.
 fn compare(ratings: &Ratings, question: &str, method: &str, options: &Options) -> Option<Question> {
     let rows = || ratings.rows.iter().filter(|row| row.question == question);
     let of_pair = || rows().filter(|row| row.method == method || row.method == options.baseline);
@@ -273,7 +274,7 @@ mod tests {
         Options { baseline: "conventional".into(), scale: [1.0, 5.0], bound: 0.5, alpha: 0.05, power: 0.8 }
     }
 
-    /// Ratings that a test makes up: for each participant the differences of two scenes around a base.
+    /// Makes up ratings: for each participant two scenes, whose differences lie around the given one.
     fn made_up(differences: &[f64]) -> Vec<Row> {
         let mut rows = Vec::new();
         for (i, difference) in differences.iter().enumerate() {
@@ -307,7 +308,7 @@ mod tests {
         assert_eq!(verdict(&[0.25, 0.25, 0.25]), Verdict::Untestable);
     }
 
-    /// SciPy 1.17.1: ttest_1samp of these differences, its interval, and of -0.5 and 0.5 one-sided.
+    /// From SciPy 1.17.1: ttest_1samp of these differences, its interval, and one-sided of -0.5 and 0.5.
     #[test]
     fn figures_agree_with_scipy() {
         let study = study(made_up(&[0.2, -0.1, 0.4, 0.1, -0.3, 0.25]));
@@ -354,7 +355,7 @@ mod tests {
         assert_eq!(image.participants.len(), 2);
         assert_eq!(named(image)[0], ("P02".into(), "has not rated yoro on street".into()));
         assert_eq!(named(image)[1], ("P04".into(), "has not answered this question".into()));
-        // Whoever lacks one question counts in another.
+        // A participant without answers to one question still counts for another.
         assert_eq!(study.questions[1].participants[0].0, "P04");
         assert_eq!(study.questions[1].verdict, Verdict::Untestable);
     }

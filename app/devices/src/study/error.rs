@@ -1,11 +1,11 @@
-//! Errors of planning and analysing studies.
+//! The error of planning and analysing studies.
 
 use std::path::PathBuf;
 
 use yoro_files::FileError;
 use yoro_files::interrupt::Interrupted;
 
-/// The error when a study cannot be planned or analysed: one sentence.
+/// The error of planning or analysing a study: one sentence.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -25,7 +25,7 @@ pub enum StudyError {
     Row {
         /// The file.
         path: PathBuf,
-        /// Counted from 1.
+        /// The line, counted from 1.
         line: u64,
         /// The mistake and the remedy.
         what: String,
@@ -35,15 +35,15 @@ pub enum StudyError {
     Nothing {
         /// The file.
         path: PathBuf,
-        /// The missing part and the remedy.
+        /// What is missing, and the remedy.
         what: String,
     },
-    /// No line of the logs is a rating.
+    /// The logs contain no rating.
     #[error(
         "there is no rating in {0}: ratings are lines of the viewer's log that begin with rating,v=1, and name a participant"
     )]
     NoRating(String),
-    /// The user has asked for the end.
+    /// The user has interrupted the program.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
 }

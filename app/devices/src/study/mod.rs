@@ -23,11 +23,11 @@ pub use ratings::{Collected, Ratings, Row};
 /// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// The page.
+    /// The HTML page.
     pub page: PathBuf,
     /// The tables as Markdown.
     pub markdown: PathBuf,
-    /// All figures.
+    /// All figures as JSON.
     pub json: PathBuf,
 }
 
@@ -43,20 +43,20 @@ impl Written {
 }
 
 impl Study {
-    /// The self-contained page.
+    /// Returns the analysis as a self-contained HTML page.
     ///
     /// # Errors
-    /// [`ReportError`] when a figure cannot be drawn.
+    /// [`ReportError`] if a figure cannot be drawn.
     pub fn to_html(&self) -> Result<String, ReportError> {
         page::html(self)
     }
 
-    /// Verdicts and tables.
+    /// Returns the verdicts and all tables as Markdown.
     pub fn to_markdown(&self) -> String {
         page::markdown(self)
     }
 
-    /// Returns the verdicts, for a terminal.
+    /// Returns the verdicts for a terminal.
     pub fn to_text(&self) -> String {
         page::text(self)
     }
@@ -64,7 +64,7 @@ impl Study {
     /// Writes `study.html`, `study.md` and `study.json` into `folder`.
     ///
     /// # Errors
-    /// [`ReportError`]; everything is made before anything is written.
+    /// [`ReportError`]. All three are made before the first one is written.
     pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
         let written = Written::of(folder);
         let (page, json) = (self.to_html()?, serde_json::to_string_pretty(self)?);

@@ -90,7 +90,7 @@ fn means_in_words(question: &Question) -> String {
     )
 }
 
-/// Formats a p-value, small ones as powers of ten.
+/// Formats a p-value. Values below 0.001 are in scientific notation.
 fn p_value(p: Option<f64>) -> Option<String> {
     p.map(|p| if p < 1e-3 { format!("{p:.2e}") } else { format!("{p:.4}") })
 }
@@ -152,7 +152,7 @@ fn tables(study: &Study) -> Vec<Table> {
     tables
 }
 
-/// The rows of the paper's own study.
+/// Adds the rows of the paper's study.
 fn push_papers(tests: &mut Table) {
     let mut first = true;
     for printed in paper::STUDY {
@@ -178,7 +178,7 @@ fn push_papers(tests: &mut Table) {
     }
 }
 
-/// Returns the participants that are not part of a comparison, with the reason.
+/// Returns a table of the participants who were left out of a comparison, with the reason.
 fn left_out(study: &Study) -> Table {
     let mut left_out = Table::new("Participants left out", &["<question", "<method", "<participant", "<why"]);
     for q in &study.questions {

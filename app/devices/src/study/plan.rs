@@ -13,19 +13,19 @@ use crate::latin_square::balanced_square;
 use crate::table::csv_text;
 use yoro_files as files;
 
-/// A method as the study calls it.
+/// A method of a study: a name and settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Condition {
-    /// Its name.
+    /// The method's name.
     pub name: String,
-    /// Settings of the viewer that make it, `scene` left out.
+    /// Viewer settings of the method, without `scene`.
     pub settings: BTreeMap<String, String>,
 }
 
-/// One thing that a participant looks at and rates.
+/// One stimulus that a participant looks at and rates.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Trial {
-    /// `P01` and so on.
+    /// The participant, `P01` and so on.
     pub participant: String,
     /// Place in the participant's order, from 1.
     pub trial: u32,
@@ -33,31 +33,31 @@ pub struct Trial {
     pub scene: String,
     /// Method.
     pub method: String,
-    /// Settings of the viewer.
+    /// Viewer settings of the trial.
     pub settings: BTreeMap<String, String>,
 }
 
 /// The orders of all participants.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Plan {
-    /// Seed: the same one gives the same plan.
+    /// The seed that reproduces the plan.
     pub seed: u64,
-    /// Trials by participant, then in order.
+    /// Trials by participant, in the participant's order.
     pub trials: Vec<Trial>,
-    /// Every scene follows every other equally often, and every method is equally often at each place, when the number
-    /// of participants is a multiple of this.
+    /// Number of participants per balanced block. If the number of participants is a multiple of it, every scene
+    /// follows every other scene equally often, and every method is equally often in each place.
     pub balanced_at: usize,
 }
 
 impl Plan {
-    /// Plans a study in which each participant sees each scene by each method, all methods of a scene one after the
-    /// other: what is compared lies close together in time.
+    /// Plans a study in which each participant sees each scene with each method. All methods of a scene follow one
+    /// another, so that the things to compare are close in time.
     ///
-    /// Scenes are in the order of a balanced Latin square (Williams 1949), and so are the methods inside a scene; which
-    /// scene, method and participant gets which row is drawn from the seed. The rows of the methods shift from scene to
-    /// scene, so that no participant has one method first all the time.
+    /// The order of scenes is a balanced Latin square (Williams 1949), and so is the order of methods within a scene.
+    /// Which scene, method and participant gets which row is drawn from the seed. The rows of the methods shift from
+    /// scene to scene, so that no participant always starts with the same method.
     ///
-    /// The settings of a trial name participant and trial for the log, hide the HUD, which shows the method, and have
+    /// The settings of a trial name participant and trial for the log, hide the HUD, which shows the method, and make
     /// the viewer ask the `questions`, if there are any.
     pub fn new(
         participants: usize,
@@ -74,7 +74,7 @@ impl Plan {
         };
         let (scene_square, method_square) = (balanced_square(scenes.len()), balanced_square(methods.len()));
         let (scene_names, method_names) = (shuffled(scenes.len()), shuffled(methods.len()));
-        // Drawn apart from each other, or a scene's place would decide which of its methods comes first.
+        // Drawn independently. Otherwise a scene's place would decide which of its methods comes first.
         let (scene_rows, method_rows) = (shuffled(participants), shuffled(participants));
         let shifts = shuffled(scenes.len());
 
@@ -109,8 +109,7 @@ impl Plan {
         Plan { seed, trials, balanced_at }
     }
 
-    /// Returns the CSV table `participant,trial,scene,method,settings`, the settings as `key=value` with spaces
-    /// between.
+    /// Returns the CSV table `participant,trial,scene,method,settings`. Settings are `key=value`, separated by spaces.
     pub fn to_csv(&self) -> String {
         let head = ["participant", "trial", "scene", "method", "settings"].map(str::to_owned);
         let rows = self.trials.iter().map(|trial| {
@@ -123,13 +122,13 @@ impl Plan {
     }
 }
 
-/// Scene and method by participant and number of the trial.
+/// Scene and method, by participant and number of the trial.
 pub type Trials = BTreeMap<(String, u32), (String, String)>;
 
-/// The trials of a plan that lies there as a table.
+/// Reads the trials of a plan from its CSV table.
 ///
 /// # Errors
-/// [`StudyError`]: also for a column that is not there, and a row that is damaged.
+/// [`StudyError`], also if a column is missing or a row is damaged.
 pub fn read_trials(path: &Path) -> Result<Trials, StudyError> {
     let bytes = files::read(path)?;
     let damaged = |line: u64| StudyError::Row {
@@ -176,7 +175,7 @@ mod tests {
         names("m", n).into_iter().map(condition).collect()
     }
 
-    /// Counts each key.
+    /// Counts how often each key occurs.
     fn counts<K: Ord>(keys: impl Iterator<Item = K>) -> BTreeMap<K, usize> {
         let mut counts = BTreeMap::new();
         for key in keys {

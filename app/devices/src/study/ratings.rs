@@ -10,7 +10,7 @@ use crate::table::{csv_mistake, csv_text};
 use yoro_files as files;
 use yoro_protocol::telemetry::{LOG_TAG, Rating};
 
-/// Columns of a table of ratings; others are left alone.
+/// The columns of a table of ratings. Others are ignored.
 const COLUMNS: [&str; 5] = ["participant", "method", "scene", "question", "rating"];
 
 /// One answer.
@@ -33,18 +33,18 @@ pub struct Row {
 pub struct Ratings {
     /// The file.
     pub path: PathBuf,
-    /// Each participant, method, scene and question once.
+    /// The ratings, at most one per participant, method, scene and question.
     pub rows: Vec<Row>,
 }
 
 impl Ratings {
-    /// Reads a CSV table with a header; columns are found by their names.
+    /// Reads a CSV table with a header. The order of the columns does not matter.
     ///
     /// # Errors
-    /// [`StudyError`]: also for a rating that is not a number or lies outside `scale`, and for one that is there twice.
+    /// [`StudyError`], also if a rating is not a number, lies outside `scale`, or occurs twice.
     pub fn read(path: &Path, scale: [f64; 2]) -> Result<Ratings, StudyError> {
         let bytes = files::read(path)?;
-        // Byte order mark that Excel writes first.
+        // Excel starts files with a byte order mark.
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
         let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
         let row_error = |line: u64, what: String| StudyError::Row { path: path.into(), line, what };
@@ -101,16 +101,16 @@ impl Ratings {
 /// Ratings found in logs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Collected {
-    /// The last rating of each participant, trial and question. All name a participant.
+    /// The last rating of each participant, trial and question. All have a participant.
     pub ratings: Vec<Rating>,
-    /// Ratings that a later one has replaced.
+    /// Number of ratings that were replaced by later ones.
     pub replaced: usize,
-    /// Name of the log, line from 1, and what is wrong with it.
+    /// Name of the log, line number from 1, and what is wrong with the line.
     pub damaged: Vec<(String, usize, String)>,
 }
 
 impl Collected {
-    /// Adds the ratings of a log; lines of other things are passed over. With the trials of a plan (see
+    /// Adds the ratings in a log and ignores all other lines. If the trials of a plan are given (see
     /// [`read_trials`](super::read_trials)), methods get the plan's names.
     pub fn add(&mut self, name: &str, log: &str, plan: Option<&Trials>) {
         for (index, line) in log.lines().enumerate() {
@@ -136,8 +136,8 @@ impl Collected {
         }
     }
 
-    /// Returns the table that [`Ratings::read`] takes, with the trials. A method that was rated with several pipelines
-    /// is several methods.
+    /// Returns the table that [`Ratings::read`] reads, with the trials as a further column. A method that was rated
+    /// with several pipelines becomes several methods.
     pub fn to_csv(&self) -> String {
         let mut pipelines: BTreeMap<&str, BTreeSet<Option<&str>>> = BTreeMap::new();
         for rating in &self.ratings {
@@ -159,7 +159,7 @@ impl Collected {
     }
 }
 
-/// Returns a rating under the plan's names; the error is the reason why it is not part of the study.
+/// Returns a rating with the plan's names. The error is the reason why it is not part of the study.
 fn planned(rating: Rating, plan: Option<&Trials>) -> Result<Rating, String> {
     let Some(participant) = rating.participant.clone() else {
         return Err("the rating names no participant: set participant in the viewer".into());

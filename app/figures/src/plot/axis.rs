@@ -46,7 +46,7 @@ impl Range {
         }
     }
 
-    /// Returns the value as it is drawn: on logarithmic axes the power of ten.
+    /// Returns the coordinate at which a value is drawn: on logarithmic axes its decimal logarithm.
     pub fn drawn(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value,
@@ -59,13 +59,13 @@ impl Range {
     }
 }
 
-/// Returns 1, 2 or 5 times a power of ten: three to eight steps in `range`.
+/// Returns 1, 2 or 5 times a power of ten, such that `range` holds three to eight steps.
 pub(super) fn tick_step(range: f64) -> f64 {
     let power = 10f64.powf((range / 3.0).log10().floor());
     [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|step| range / step >= 3.0).unwrap_or(power)
 }
 
-/// Returns the shortest label that differs from its neighbours'.
+/// Returns the shortest label that differs from those of its neighbours.
 pub(super) fn tick_label(value: f64, ticks: &[f64], scale: Scale) -> String {
     let decimals = |step: f64| (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize;
     let label = match (scale, ticks) {

@@ -1,4 +1,4 @@
-//! Drawing by plotters.
+//! Drawing with plotters.
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
@@ -14,7 +14,7 @@ use crate::stats::percentile;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type DrawingResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// Width of all figures in SVG units: two to a CSS pixel at natural size, since plotters rounds to whole units.
+/// Width of all figures in SVG units: two per CSS pixel at natural size, because plotters rounds to whole units.
 const WIDTH: i32 = 1200;
 const EM: i32 = 26;
 pub(super) const LINE: i32 = 38;
@@ -22,9 +22,9 @@ const MARK: i32 = 9;
 pub(super) const MARGIN: i32 = 24;
 pub(super) const CURVES_HEIGHT: i32 = 560;
 const ROW_HEIGHT: i32 = 50;
-/// Between the marks of one row that have intervals.
+/// Distance between the marks of one row that have intervals.
 pub(super) const LANE: i32 = 26;
-/// Characters that fit to the left of a dot plot.
+/// Number of characters that fit to the left of a dot plot.
 const LABEL: usize = 20;
 
 /// Draws a figure as an SVG document.
@@ -68,7 +68,7 @@ fn rgb(color: u32) -> RGBColor {
 }
 
 fn text(size: i32, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
-    // The backend divides by 1.24.
+    // The backend divides font sizes by 1.24.
     let style: TextStyle = ("sans-serif", f64::from(size) * 1.24).into_text_style(&(0, 0));
     let color = rgb(palette::TEXT.0).to_backend_color();
     TextStyle { color, ..style }.pos(Pos::new(horizontal, vertical))
@@ -110,7 +110,7 @@ fn draw_legend(root: &Area, lines: &[Vec<(i32, LegendEntry)>], marks: bool) -> D
     Ok(())
 }
 
-/// Draws a line of a method; dashed for the paper's.
+/// Draws the line of a method, dashed for the paper's figures.
 fn stroke(root: &Area, points: Vec<(i32, i32)>, look: &Look, papers: bool) -> DrawingResult {
     let style = rgb(look.light).stroke_width(4);
     if papers {
@@ -120,7 +120,7 @@ fn stroke(root: &Area, points: Vec<(i32, i32)>, look: &Look, papers: bool) -> Dr
     }
 }
 
-/// Draws a mark of a method; hollow for the paper's.
+/// Draws the mark of a method, hollow for the paper's figures.
 fn mark(root: &Area, (x, y): (i32, i32), look: &Look, papers: bool) -> DrawingResult {
     let hollow = papers || look.hollow;
     let (color, background) = (rgb(look.light), rgb(palette::BACKGROUND.0));
@@ -243,7 +243,7 @@ fn draw_curves(
     Ok(())
 }
 
-/// Marks with intervals do not lie over each other.
+/// Returns the height of a row, in which marks with intervals lie below each other.
 fn row_height(row: &DotRow) -> i32 {
     let lanes = row.marks.iter().filter(|mark| mark.interval.is_some()).count() as i32;
     ROW_HEIGHT.max((lanes + 1) * LANE)

@@ -1,5 +1,5 @@
-//! Figures, drawn as SVG by plotters. Colours are those of the light page; the page's style sheet exchanges them
-//! for the dark one's.
+//! Figures, drawn as SVG by plotters in the colours of the light page. The page's style sheet replaces them by those of
+//! the dark one.
 
 mod axis;
 mod draw;
@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use crate::inference::Interval;
 
-/// Method, whether it is the paper's, and label.
+/// A method, whether the figures are the paper's, and the label.
 type LegendEntry = (String, bool, String);
 
 /// The error when a figure cannot be drawn.
@@ -24,7 +24,7 @@ pub struct PlotError {
 /// One figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Name of its file, and its anchor on the page.
+    /// The name of its file, and its anchor on the page.
     pub id: String,
     /// Its heading.
     pub title: String,
@@ -37,38 +37,38 @@ pub struct Figure {
 /// The kinds of plots.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Panel {
-    /// A value over another.
+    /// One quantity over another.
     Curves {
         /// Horizontal axis.
         x: Axis,
         /// Vertical axis.
         y: Axis,
-        /// One after the other, the last on top.
+        /// The curves in the order of drawing, the last on top.
         series: Vec<Series>,
     },
-    /// Values over time, close together: thin lines without marks, broken where a point is not finite.
+    /// Values over time that lie close together: thin lines without marks, interrupted where a value is not finite.
     Traces {
         /// Horizontal axis.
         x: Axis,
         /// Vertical axis.
         y: Axis,
-        /// One after the other, the last on top; of equal labels one is in the legend.
+        /// The curves in the order of drawing, the last on top. Curves with equal labels share one entry of the legend.
         series: Vec<Series>,
     },
-    /// Values of the same persons under several methods: a box for each method, and a thin line for each person.
+    /// Values of the same persons with several methods: a box for each method, and a thin line for each person.
     Paired {
         /// Vertical axis.
         value: Axis,
-        /// Methods, from left to right.
+        /// The methods, from left to right.
         methods: Vec<String>,
         /// The values of each person, one for each method.
         persons: Vec<Vec<f64>>,
     },
-    /// A line for each category with a mark for each method.
+    /// A row for each category, with a mark for each method.
     Dots {
         /// Horizontal axis.
         value: Axis,
-        /// Rows, from top to bottom.
+        /// The rows, from top to bottom.
         rows: Vec<DotRow>,
     },
 }
@@ -86,23 +86,23 @@ pub enum Scale {
 /// An axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Axis {
-    /// Quantity and unit.
+    /// The quantity and its unit.
     pub name: String,
-    /// The scale of an axis.
+    /// The scale.
     pub scale: Scale,
-    /// The axis reaches at least to these.
+    /// Values that the axis includes in any case.
     pub include: Vec<f64>,
-    /// Lines for a baseline, or for bounds.
+    /// Values at which a line marks a baseline or a bound.
     pub lines_at: Vec<f64>,
 }
 
 impl Axis {
-    /// A linear axis that fits the values.
+    /// Returns a linear axis that fits the values.
     pub fn new(name: impl Into<String>) -> Axis {
         Axis { name: name.into(), ..Axis::default() }
     }
 
-    /// Reaches at least to zero.
+    /// Returns the axis extended to zero.
     pub fn from_zero(self) -> Axis {
         Axis { include: vec![0.0], ..self }
     }
@@ -112,12 +112,12 @@ impl Axis {
         Axis { scale: Scale::Logarithmic, ..self }
     }
 
-    /// Returns the axis with a line for a baseline, and from zero.
+    /// Returns the axis with a line at a baseline, extended to zero.
     pub fn baseline(self, value: f64) -> Axis {
         self.from_zero().lines(&[value])
     }
 
-    /// Returns the axis with lines at these values, and reaching at least to them.
+    /// Returns the axis with lines at these values, extended to them.
     pub fn lines(mut self, values: &[f64]) -> Axis {
         self.lines_at.extend(values);
         self.include.extend(values);
@@ -128,57 +128,57 @@ impl Axis {
 /// A curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// The method whose colour and mark it has.
+    /// The method that determines colour and mark.
     pub method: String,
-    /// The paper's figures: dashed, marks hollow.
+    /// True for the paper's figures: dashed, with hollow marks.
     pub papers: bool,
-    /// Label in the legend.
+    /// The label in the legend.
     pub label: String,
-    /// Points in the order of x.
+    /// The points, ordered by x.
     pub points: Vec<(f64, f64)>,
 }
 
-/// A line of a dot plot.
+/// A row of a dot plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DotRow {
     /// The category.
     pub label: String,
-    /// Marks in the order of drawing.
+    /// The marks in the order of drawing.
     pub marks: Vec<Mark>,
 }
 
 /// A mark of a dot plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// The method whose colour and mark it has.
+    /// The method that determines colour and mark.
     pub method: String,
-    /// The paper's figure: hollow.
+    /// True for the paper's figures: hollow.
     pub papers: bool,
-    /// Label in the legend.
+    /// The label in the legend.
     pub label: String,
-    /// Value on the axis; not drawn if it is not finite.
+    /// The value on the axis. If it is not finite, the mark is not drawn.
     pub value: f64,
-    /// Drawn as a bar, and makes room for itself on its line.
+    /// The interval, drawn as a bar; such a mark gets a lane of its own in its row.
     pub interval: Option<Interval>,
 }
 
 impl Mark {
-    /// A figure of ours.
+    /// Returns a mark for one of our figures.
     pub fn new(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
         Mark { method: method.into(), papers: false, label: label.into(), value, interval: None }
     }
 
-    /// A figure of the paper's.
+    /// Returns a mark for one of the paper's figures.
     pub fn papers(method: impl Into<String>, label: impl Into<String>, value: f64) -> Mark {
         Mark { papers: true, ..Mark::new(method, label, value) }
     }
 }
 
 impl Figure {
-    /// The figure as an SVG document.
+    /// Returns the figure as an SVG document.
     ///
     /// # Errors
-    /// [`PlotError`] when plotters refuses.
+    /// [`PlotError`] if plotters refuses.
     pub fn svg(&self) -> Result<String, PlotError> {
         let mut svg = String::new();
         draw::draw(self, &mut svg)
@@ -191,7 +191,7 @@ impl Figure {
         self.legend().is_empty()
     }
 
-    /// Returns every method once: ours first, then the paper's. What is drawn last, on top, is named first.
+    /// Returns every method once, ours before the paper's. Whatever is drawn last, on top, is listed first.
     fn legend(&self) -> Vec<LegendEntry> {
         let all: Vec<LegendEntry> = match &self.panel {
             Panel::Curves { series, .. } | Panel::Traces { series, .. } => {

@@ -24,7 +24,7 @@ fn curves_have_axes_legend_and_correct_points() {
         assert!(svg.contains(needed), "{needed}: {svg}");
     }
     assert!(!svg.contains("NaN") && svg.trim_end().ends_with("</svg>"));
-    // From the middle of the frame, 20 ms, up to its top, 40 ms; the first line is the legend's.
+    // The curve runs from the middle of the frame, 20 ms, to its top, 40 ms. The first line belongs to the legend.
     let mut lines = svg.lines().filter(|l| l.starts_with("<polyline") && l.contains("#3D3F44"));
     let points = lines.next_back().unwrap().split("points=\"").nth(1).unwrap();
     let heights: Vec<i32> = points.split(' ').filter_map(|p| p.split(',').nth(1)?.parse().ok()).collect();
@@ -66,7 +66,7 @@ fn intervals_get_a_lane_each_and_bounds_a_line() {
         let lines = svg.lines().filter(|l| l.starts_with("<polyline") && l.contains(color));
         lines.map(|l| l.split("points=\"").nth(1).unwrap().to_owned()).collect::<Vec<_>>()
     };
-    // One in the legend, one on the row; on the row the bars have different heights.
+    // One mark is in the legend and one in the row, where the bars have different heights.
     let height =
         |line: &str| line.split(',').nth(1).unwrap().split(' ').next().unwrap().parse::<i32>().unwrap();
     let (hybrid, mono) = (bars("#009E73"), bars("#777A80"));

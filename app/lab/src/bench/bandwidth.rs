@@ -1,19 +1,19 @@
-//! The suite `bandwidth`: what it takes to send two eyes, as H.264.
+//! The suite `bandwidth`: the bit rate of sending two eyes as H.264.
 //!
 //! The paper sends "a four-channel buffer (one RGB image plus depth)" instead of six channels ("Immersive Content
-//! Streaming") and compares bit rates alone. Here the receiver's eyes are measured too, so that rates can be held
-//! against each other at equal quality:
+//! Streaming") and compares bit rates alone. This suite also measures the receiver's eyes, so that rates can be
+//! compared at equal quality:
 //!
 //! | stream | what is encoded | the other eye |
 //! |---|---|---|
 //! | [`STEREO_RGB`] | both eyes side by side | as decoded |
-//! | [`RGB_DEPTH`] | the dominant eye with its guard band, and its depth as the luma of a second stream | synthesized from both, as decoded |
+//! | [`RGB_DEPTH`] | the dominant eye with guard band; its depth as luma of a second stream | synthesized from both |
 //! | [`RGB_DEPTH_PACKED`] | the same with depth beside the colour in one picture | likewise |
 //! | [`MONO_RGB`] | the dominant eye alone | the same image: the baseline |
 //!
-//! Colour is 4:2:0, BT.601 in full range. Depth is 8 bits, uniform in 1/z between the nearest and the farthest that
-//! the sequence shows (two numbers beside the stream), so that a step is the same disparity everywhere. Pictures are
-//! finished when they are encoded: anti-aliased, transparent objects drawn.
+//! Colour is 4:2:0, BT.601 in full range. Depth is 8 bits, uniform in 1/z between the nearest and the farthest distance
+//! in the sequence (two numbers beside the stream), so that a step is the same disparity everywhere. Pictures are
+//! encoded in their final form: anti-aliased and with transparent objects.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -37,49 +37,49 @@ pub const STEREO_RGB: &str = "stereo-rgb";
 pub const RGB_DEPTH: &str = "rgb-depth";
 /// The dominant eye and its depth, side by side.
 pub const RGB_DEPTH_PACKED: &str = "rgb-depth-packed";
-/// The dominant eye, for both.
+/// The dominant eye, shown to both eyes.
 pub const MONO_RGB: &str = "mono-rgb";
 
 /// Names of the metrics. Each has one value for each quantizer: the mean over the frames.
 pub mod metric {
     /// The quantizer (QP of H.264) of colour.
     pub const QP: &str = "qp";
-    /// Bit rate in kbit/s (1000 bits) at [`super::FRAME_RATE`], the first, intra frame included.
+    /// Bit rate in kbit/s (1000 bits) at [`super::FRAME_RATE`], including the first, intra frame.
     pub const KBIT_S: &str = "kbit_s";
-    /// The depth stream's part of the rate, where depth is a stream of its own.
+    /// The part of the bit rate that a separate depth stream takes.
     pub const KBIT_S_DEPTH: &str = "kbit_s_depth";
-    /// PSNR (RGB) of the dominant eye after decoding, in dB. Where colours are saturated and details fine, 4:2:0
-    /// bounds it, whatever the quantizer.
+    /// PSNR (RGB) of the dominant eye after decoding, in dB. Where colours are saturated and details fine, 4:2:0 limits
+    /// it whatever the quantizer.
     pub const PSNR_DOMINANT: &str = "psnr_dominant";
-    /// PSNR (RGB) of the other eye after decoding and, where that is so, synthesis, in dB.
+    /// PSNR (RGB) of the other eye after decoding and, in streams with depth, synthesis, in dB.
     pub const PSNR_OTHER: &str = "psnr_other";
-    /// PSNR of luma of the dominant eye, in dB: video encoding's usual measure.
+    /// PSNR of luma of the dominant eye, in dB: the usual measure of video encoding.
     pub const PSNR_LUMA_DOMINANT: &str = "psnr_luma_dominant";
     /// PSNR of luma of the other eye, in dB.
     pub const PSNR_LUMA_OTHER: &str = "psnr_luma_other";
     /// SSIM (gaussian, RGB) of the dominant eye, over every [`super::SSIM_EVERY`]th frame.
     pub const SSIM_DOMINANT: &str = "ssim_dominant";
-    /// SSIM (gaussian, RGB) of the other eye, likewise.
+    /// SSIM (gaussian, RGB) of the other eye, over the same frames.
     pub const SSIM_OTHER: &str = "ssim_other";
 }
 
-/// Frames a second.
+/// Frames per second.
 pub const FRAME_RATE: f32 = 30.0;
-/// SSIM takes ten times as long as PSNR.
+/// SSIM is measured on every sixth frame only, because it takes ten times as long as PSNR.
 pub const SSIM_EVERY: usize = 6;
 
-/// The quantizers of a sequence.
+/// The quantizers of an encoded sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandwidthOptions {
     /// Quantizers of colour, 12 to 51; four or more for a rate-distortion curve.
     pub quantizers: Vec<u8>,
-    /// Quantizer of the depth stream less that of colour.
+    /// Quantizer of the depth stream minus that of colour.
     pub depth_offset: i8,
 }
 
 impl Default for BandwidthOptions {
     fn default() -> BandwidthOptions {
-        // Depth as fine as colour, as it is where both are one picture.
+        // Depth gets the quantizer of colour, as when both are in one picture.
         BandwidthOptions { quantizers: vec![20, 26, 32, 38, 44], depth_offset: 0 }
     }
 }
@@ -87,12 +87,12 @@ impl Default for BandwidthOptions {
 /// Values by metric, as in a [measurement](super::Measurement).
 pub type Values = BTreeMap<String, Vec<Option<f64>>>;
 
-/// Renders a sequence, encodes and decodes it by every stream at every quantizer, and measures both eyes. `pairs` are
-/// the eyes of consecutive frames. `step` is called after each frame of work; an error from it ends the run. The
-/// names are those of the streams.
+/// Renders a sequence, encodes and decodes it as every stream at every quantizer, and measures both eyes. `pairs` are
+/// the eyes of consecutive frames. `step` is called after each frame of work; an error from it ends the run. Returns
+/// the values by name of the stream.
 ///
 /// # Errors
-/// One sentence when the eyes cannot be synthesized, GL refuses, or the encoder does.
+/// One sentence if the eyes cannot be synthesized, or GL or the encoder refuses.
 pub fn run(
     gl: &Rc<Context>,
     prepared: &mut PreparedScene,
@@ -121,7 +121,7 @@ pub fn steps(frames: usize, options: &BandwidthOptions) -> u64 {
     (frames * (1 + 3 * options.quantizers.len())) as u64
 }
 
-/// The layout of pictures in streams.
+/// The layout of a stream's pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Layout {
     Stereo,
@@ -129,7 +129,7 @@ enum Layout {
     Packed,
 }
 
-/// An encoder with the decoder at the other end.
+/// An encoder with the decoder at the receiving end.
 struct Codec {
     encoder: Encoder,
     decoder: Decoder,
@@ -149,10 +149,10 @@ impl Codec {
     }
 }
 
-/// A rendered sequence, as it goes into the encoder.
+/// A rendered sequence, ready to be encoded.
 struct Sequence {
     frames: Vec<Frame>,
-    /// Nearness (0 far plane, 1 near plane) that the smallest and the largest depth sample stand for.
+    /// The nearness (0 far plane, 1 near plane) of the smallest and of the largest depth sample.
     range: [f32; 2],
 }
 
@@ -200,7 +200,7 @@ impl Sequence {
         Ok(Sequence { frames: rendered.into_iter().map(frame).collect(), range })
     }
 
-    /// Encodes and decodes all frames and measures both eyes of each stream that comes of it.
+    /// Encodes and decodes all frames, and measures both eyes of each resulting stream.
     fn encode(
         &self,
         layout: Layout,
@@ -261,7 +261,7 @@ impl Sequence {
         Ok(stats)
     }
 
-    /// Synthesizes the other eye from a decoded picture, as a receiver does.
+    /// Synthesizes the other eye from a decoded picture, as a receiver would.
     fn synthesize(
         &self,
         views: &SynthesisViews,
@@ -289,13 +289,13 @@ impl Sequence {
     }
 }
 
-/// The part of a source image that is the dominant eye's own. `origin` counts rows from the bottom.
+/// Returns the part of a source image that the dominant eye shows. `origin` counts rows from the bottom.
 fn crop(image: &RgbImage, origin: [u32; 2], [width, height]: [u32; 2]) -> RgbImage {
     let top = image.height() - origin[1] - height;
     image::imageops::crop_imm(image, origin[0], top, width, height).to_image()
 }
 
-/// Returns nearness: 0 at the far plane, 1 at the near plane; affine in 1/z, and so in disparity.
+/// Returns nearness: 0 at the far plane, 1 at the near plane. It is affine in 1/z and therefore in disparity.
 fn nearness(depth: &DepthImage, convention: DepthConvention) -> DepthImage {
     DepthImage::from_fn(depth.width(), depth.height(), |x, y| {
         let value = depth.get_pixel(x, y).0[0];
@@ -321,7 +321,7 @@ struct StreamStats {
     bytes: usize,
     depth_bytes: Option<usize>,
     frames: usize,
-    /// Dominant and other eye, one value for each frame that is not identical to its reference.
+    /// Dominant and other eye: one value for each frame that differs from its reference.
     psnr: [Vec<f64>; 2],
     psnr_luma: [Vec<f64>; 2],
     ssim: [Vec<f64>; 2],

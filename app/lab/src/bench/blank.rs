@@ -1,4 +1,4 @@
-//! Views in which there is nothing to measure.
+//! Finding views that show nothing to measure.
 
 use std::rc::Rc;
 
@@ -9,10 +9,10 @@ use yoro::eyes::EyePair;
 use yoro_gl::{Context, GlError};
 use yoro_render::{PreparedScene, Selection, ViewTargets};
 
-/// Longest edge in pixels of the image that is looked at: what is smaller on the screen is as good as not there.
+/// The longest edge in pixels of the image that is examined. Whatever is smaller on the screen is negligible.
 const EDGE: u32 = 256;
 
-/// Finds views that show the sky alone: every method is perfect there.
+/// Finds views that show only the sky, in which every method is perfect.
 pub struct BlankFinder {
     targets: ViewTargets,
     depth: DepthReader,
@@ -27,10 +27,10 @@ impl BlankFinder {
         Ok(BlankFinder { targets: ViewTargets::default(), depth: DepthReader::new(gl)? })
     }
 
-    /// Refuses a scene of which a view shows nothing. `views` are the views' names and eyes.
+    /// Refuses a scene if one of its `views`, given by name and eyes, shows nothing.
     ///
     /// # Errors
-    /// One sentence with the remedy; [`GlError`] when the driver has no memory for the targets.
+    /// One sentence with the remedy; [`GlError`] if the driver has no memory for the targets.
     pub fn refuse_blank<'v>(
         &mut self,
         prepared: &mut PreparedScene,
@@ -46,8 +46,8 @@ impl BlankFinder {
         Ok(())
     }
 
-    /// True if the dominant eye sees no surface. Transparent ones, which have no depth, do not count: synthesis does
-    /// nothing for them.
+    /// True if the dominant eye sees no surface. Transparent surfaces do not count: they have no depth, so that
+    /// synthesis does nothing for them.
     ///
     /// # Errors
     /// [`GlError`] when the driver has no memory for the targets.

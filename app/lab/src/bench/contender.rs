@@ -1,4 +1,4 @@
-//! Contenders: whatever is measured against one another.
+//! Contenders: everything that is measured against each other.
 
 use std::fmt;
 
@@ -7,14 +7,14 @@ use yoro::eyes::GuardBand;
 use yoro::synthesis::Edges;
 use yoro_render::stereo::{History, Method, Pipeline, StereoOptions};
 
-/// A stereo method, for synthesis with its pipeline, or a patcher.
+/// A stereo method, synthesis with one of its pipelines, or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contender {
-    /// A method without synthesis pipelines.
+    /// A method other than synthesis.
     Method(Method),
-    /// The dominant eye rendered, the other synthesized by this pipeline.
+    /// Synthesis of the other eye by this pipeline.
     Yoro(Pipeline),
-    /// The pipeline gather, told these of the rendered eye's edges.
+    /// The pipeline gather with this information about the rendered eye's edges.
     Edges(Edges),
     /// The pipeline gather with this guard band.
     Band(Band),
@@ -22,9 +22,9 @@ pub enum Contender {
     History(History),
     /// The paper's pipeline without interpolation between ImBuffer entries.
     PaperNearest,
-    /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as its text says.
+    /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as in its text.
     PaperStrict,
-    /// A patcher on the reprojected image that all patchers get.
+    /// A patcher, on the reprojected image that all patchers share.
     Patcher(PatcherKind),
 }
 
@@ -42,7 +42,7 @@ pub enum Band {
 }
 
 impl Band {
-    /// All of them.
+    /// All guard bands.
     pub const ALL: [Band; 4] = [Band::None, Band::OneMetre, Band::HalfMetre, Band::Auto];
 
     fn name(self) -> &'static str {
@@ -54,7 +54,7 @@ impl Band {
         }
     }
 
-    /// The band.
+    /// Returns the guard band.
     pub fn guard_band(self) -> GuardBand {
         match self {
             Band::None => GuardBand::None,
@@ -66,19 +66,19 @@ impl Band {
 }
 
 impl Contender {
-    /// The ground truth of quality and the baseline of cost.
+    /// The ground truth for quality and the baseline for cost.
     pub const CONVENTIONAL: Contender = Contender::Method(Method::Conventional);
-    /// The baseline of quality: the same image to both eyes.
+    /// The baseline for quality: the same image for both eyes.
     pub const MONO: Contender = Contender::Method(Method::Mono);
 
-    /// Returns every contender, in the order of tables.
+    /// Returns every contender in the order of tables.
     pub fn all() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
         let told = Contender::edges().into_iter().chain(Contender::bands()).chain(Contender::histories());
         Contender::methods().into_iter().chain(variants).chain(told).chain(Contender::patchers()).collect()
     }
 
-    /// Returns synthesis with everything that it can be told of the rendered eye's edges.
+    /// Returns synthesis with each kind of information about the rendered eye's edges.
     pub fn edges() -> Vec<Contender> {
         Edges::ALL.map(Contender::Edges).to_vec()
     }
@@ -88,12 +88,12 @@ impl Contender {
         Band::ALL.map(Contender::Band).to_vec()
     }
 
-    /// Returns synthesis without a history and with each.
+    /// Returns synthesis without a history and with each kind of history.
     pub fn histories() -> Vec<Contender> {
         History::ALL.map(Contender::History).to_vec()
     }
 
-    /// The stereo methods, synthesis with each of its pipelines.
+    /// Returns the stereo methods, with synthesis once for each of its pipelines.
     pub fn methods() -> Vec<Contender> {
         let others = Method::ALL.into_iter().filter(|method| *method != Method::Yoro);
         others.map(Contender::Method).chain(Contender::pipelines()).collect()
@@ -104,12 +104,12 @@ impl Contender {
         Pipeline::ALL.map(Contender::Yoro).to_vec()
     }
 
-    /// The patchers.
+    /// Returns the patchers.
     pub fn patchers() -> Vec<Contender> {
         PatcherKind::ALL.map(Contender::Patcher).to_vec()
     }
 
-    /// Returns its name in files and on the command line, which stays: `conventional`, `yoro-gather`,
+    /// Returns the name in files and on the command line, which never changes: `conventional`, `yoro-gather`,
     /// `yoro-paper-nearest`, `patcher-telea`.
     pub fn name(self) -> String {
         match self {
@@ -124,13 +124,13 @@ impl Contender {
         }
     }
 
-    /// The contender of this name.
+    /// Returns the contender with this name.
     pub fn find(name: &str) -> Option<Contender> {
         Contender::all().into_iter().find(|contender| contender.name() == name)
     }
 
-    /// The stereo method and its options: the pipeline's own defaults, without the switch to two renders of near
-    /// frames, so that what is measured is what the name says. `None` for a patcher.
+    /// Returns the stereo method and its options; `None` for a patcher. The options are the pipeline's defaults, except
+    /// that near frames are not rendered twice: what is measured is what the name says.
     pub fn method(self) -> Option<(Method, StereoOptions)> {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
@@ -159,7 +159,7 @@ impl Contender {
     }
 }
 
-/// Its [name](Contender::name).
+/// Writes the [name](Contender::name).
 impl fmt::Display for Contender {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(&self.name())

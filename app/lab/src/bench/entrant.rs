@@ -11,11 +11,11 @@ use yoro_render::stereo::{
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
-/// A stereo method with its programs and targets, to be measured.
+/// A stereo method with its programs and targets, ready to be measured.
 pub struct Entrant {
     gl: Rc<Context>,
     method: Box<dyn StereoMethod>,
-    /// Frames at a new place until the method has settled there.
+    /// The number of frames that the method needs to settle at a new place.
     unsettled: u32,
 }
 
@@ -29,7 +29,7 @@ pub struct FrameTime {
 }
 
 impl Entrant {
-    /// Compiles the method.
+    /// Compiles the method's programs.
     pub fn new(
         gl: &Rc<Context>,
         method: Method,
@@ -42,7 +42,7 @@ impl Entrant {
         Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)?, unsettled })
     }
 
-    /// Renders a frame at a new place, once the method has settled there, and waits for it.
+    /// Renders a frame at a new place after the method has settled there, and waits for it.
     pub fn render_settled(
         &mut self,
         prepared: &mut PreparedScene,
@@ -88,9 +88,9 @@ impl Entrant {
         self.method.history()
     }
 
-    /// Renders a frame, settled, with a timer around each pass: names in the order in which they first ran, and
-    /// milliseconds; a pass that runs more than once in a frame counts as one. Empty where the driver cannot tell
-    /// ([`Context::take_pass_times`]).
+    /// Renders a frame after settling, with a timer around each pass. Returns the passes' names in the order of their
+    /// first run, and milliseconds. The runs of a pass within a frame are added up. Empty if the driver cannot measure
+    /// passes ([`Context::take_pass_times`]).
     pub fn pass_times(
         &mut self,
         prepared: &mut PreparedScene,

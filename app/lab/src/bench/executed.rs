@@ -1,8 +1,8 @@
-//! Estimate of the synthesis's execution on GPUs that are not here.
+//! Estimates what the synthesis executes on GPUs that are not available here.
 //!
-//! The parts of `gather` are counted where they run, in its own shaders on real frames. Each GPU runs a part as often
-//! as the slowest pixel of a wave; the sizes of the parts are those that Mesa's compilers make of the same text
-//! (`docs/shader-cost.csv`). Rates of GPUs are assumptions: [`DEVICES`].
+//! The runs of the parts of `gather` are counted by its own shaders on real frames. A GPU runs a part as often as the
+//! slowest pixel of a wave does. The sizes of the parts are those that Mesa's compilers make of the same source
+//! (`docs/shader-cost.csv`). The rates of GPUs are assumptions: [`DEVICES`].
 
 use std::rc::Rc;
 
@@ -15,33 +15,33 @@ use yoro::synthesis::{Gather, Synthesis, Uniforms};
 use yoro_gl::{Context, Filter, Format, RenderTarget};
 use yoro_render::{PreparedScene, ViewTargets};
 
-/// Costs of the passes' parts on each GPU, by name; written by `cargo tools shader-cost --bless`.
+/// The costs of the passes' parts on each GPU, by name; written by `cargo tools shader-cost --bless`.
 const COSTS: &str = include_str!("gather-cost.csv");
-/// Pixels of a tile, one fragment of the first two passes.
+/// The size of a tile in pixels. The first two passes draw one fragment per tile.
 pub(super) const TILE: [u32; 2] = [16, 8];
-/// Row pairs of a tile: trips of its loop.
+/// The number of row pairs of a tile, and thus of trips of its loop.
 const TILE_TRIPS: f64 = TILE[1] as f64 / 2.0;
-/// Bytes that are read and written for each pixel, every texel once: depth for the tiles, colour, target, and both
+/// Bytes read and written for each pixel, counting every texel once: depth for the tiles, colour, target, and both
 /// maps.
 const BYTES: f64 = 4.0 + 4.0 + 4.0 + 2.0 * 2.0 * 16.0 / (TILE[0] * TILE[1]) as f64;
-/// The march's depth, where a tile has no law.
+/// Bytes of depth that the march reads for a pixel whose tile has no law.
 const DEPTH_BYTES: f64 = 4.0;
 
-/// A GPU, and the size of an eye on the device that has it. The rates are assumptions from public figures, one issue
-/// slot for each lane and clock.
+/// A GPU, and the size of an eye on a device with it. The rates are assumptions from public figures: one issue slot per
+/// lane and clock cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Device {
-    /// Name in results.
+    /// The name in results.
     pub name: &'static str,
-    /// Name of the GPU in tables of costs.
+    /// The GPU's name in tables of costs.
     pub gpu: &'static str,
-    /// Pixels of an eye.
+    /// The size of an eye in pixels.
     pub size: [u32; 2],
-    /// Lanes times clock, per second.
+    /// Issue slots per second: lanes times clock.
     pub slots: f64,
     /// Texture instructions per second.
     pub fetches: f64,
-    /// Bytes of memory per second.
+    /// Bytes of memory traffic per second.
     pub bytes: f64,
 }
 
@@ -51,26 +51,26 @@ pub const DEVICES: [Device; 3] = [
     Device { name: "quest-2", gpu: "a650", size: [1832, 1920], slots: 0.384e12, fetches: 12e9, bytes: 40e9 },
     // Adreno 740.
     Device { name: "quest-3", gpu: "a740", size: [1680, 1760], slots: 1.0e12, fetches: 28.8e9, bytes: 60e9 },
-    // Mali-G57 MC2 at 0.95 GHz: 32 lanes and 4 texels in each of two cores.
+    // Mali-G57 MC2 at 0.95 GHz: two cores with 32 lanes and 4 texels each.
     Device { name: "mali-g57", gpu: "g57", size: [1200, 1080], slots: 0.061e12, fetches: 7.6e9, bytes: 17e9 },
 ];
 
-/// Source tiles that a law may be made of, at most (`LAW_TILES` in `include/laws.glsl`).
+/// The largest number of source tiles that a law is made of (`LAW_TILES` in `include/laws.glsl`).
 const LAW_TILES: f64 = 4.0;
 
-/// Runs of the march's parts, from [`Gather::counting`]: of one pixel, or the most of a wave's pixels.
+/// How often the march's parts run, from [`Gather::counting`]: for one pixel, or the maximum over a wave's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Trips {
-    /// 1 where a pixel's tile has a law.
+    /// 1 if the pixel's tile has a law.
     law: f64,
-    /// 1 where it has none.
+    /// 1 if the pixel's tile has no law.
     searches: f64,
     short: f64,
-    /// 1 where a pixel goes the long way.
+    /// 1 if the pixel goes the long way.
     goes_on: f64,
     segments: f64,
     events: f64,
-    /// Steps to a segment's crossing.
+    /// Steps to the crossing of a segment.
     crossings: f64,
     holes: f64,
 }
@@ -117,9 +117,9 @@ impl Work {
     }
 }
 
-/// The costs of the parts of gather's passes on a GPU.
+/// The costs of the parts of gather's passes on one GPU.
 struct Costs {
-    /// Pixels of a wave of the march.
+    /// The number of pixels in a wave of the march.
     lanes: u32,
     parts: Vec<(&'static str, Work)>,
 }
@@ -128,7 +128,7 @@ impl Costs {
     /// Reads the costs on a GPU.
     ///
     /// # Errors
-    /// When [`COSTS`] has none of this GPU, or a row of it cannot be read.
+    /// If [`COSTS`] has no entry for this GPU, or one of its rows cannot be read.
     fn of(gpu: &str) -> anyhow::Result<Costs> {
         let mut costs = Costs { lanes: 0, parts: Vec::new() };
         for line in COSTS.lines() {
@@ -144,13 +144,13 @@ impl Costs {
         Ok(costs)
     }
 
-    /// Returns what a part executes once.
+    /// Returns the cost of running a part once.
     fn part(&self, name: &str) -> Work {
         let found = self.parts.iter().find(|(part, _)| *part == name);
         found.unwrap_or_else(|| panic!("gather-cost.csv has no part {name}")).1
     }
 
-    /// Returns columns and rows of the pixels of a wave.
+    /// Returns the columns and rows of pixels in a wave.
     fn wave_size(&self) -> [u32; 2] {
         match self.lanes {
             128 => [16, 8],
@@ -160,8 +160,8 @@ impl Costs {
         }
     }
 
-    /// Returns what a wave executes for each of its pixels at least: of each part as much as the pixel that runs it
-    /// most often. Lanes that run parts at different times wait for each other, too.
+    /// Returns a lower bound of what a wave executes for each of its pixels: each part as often as the pixel that runs
+    /// it most often. Lanes that run parts at different times also wait for each other, which is not counted.
     fn march(&self, trips: Trips) -> Work {
         let runs = [
             ("march: law", trips.law),
@@ -177,14 +177,14 @@ impl Costs {
     }
 }
 
-/// Columns and rows of an image of counts.
+/// An image of counts, four bytes per pixel.
 struct Counts<'a> {
     pixels: &'a [u8],
     size: [u32; 2],
 }
 
 impl Counts<'_> {
-    /// The largest counts of each wave.
+    /// Returns the largest counts in each wave.
     fn waves(&self, wave: [u32; 2]) -> Vec<Trips> {
         let [width, height] = self.size;
         let across = width.div_ceil(wave[0]) as usize;
@@ -198,8 +198,8 @@ impl Counts<'_> {
     }
 }
 
-/// Returns the mean over the columns of tiles of the target: trips of the loop of the second pass
-/// (`synthesis/gather/spans.frag`).
+/// Returns the trips of the loop of the second pass (`synthesis/gather/spans.frag`), as the mean over the target's
+/// columns of tiles.
 pub(super) fn span_trips(views: &SynthesisViews) -> f64 {
     let warp = &views.warp;
     let Uniforms { near_displacement, far_displacement, .. } = Uniforms::new(warp, [0, 0]);
@@ -221,7 +221,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
-/// A synthesis that writes counts in place of colours, and the views that it counts on.
+/// A synthesis that writes counts instead of colours, with the targets that it needs.
 pub(super) struct Counting<S> {
     synthesis: S,
     targets: ViewTargets,
@@ -234,10 +234,10 @@ impl<S: Synthesis> Counting<S> {
         Ok(Counting { synthesis, targets: ViewTargets::default(), counts })
     }
 
-    /// Returns the views of one frame with a guard band from 1 m, and the counts of the synthesized eye's pixels.
+    /// Returns the views of one frame with a guard band from 1 m, and the counts at the synthesized eye's pixels.
     ///
     /// # Errors
-    /// When the eyes cannot be synthesized, or GL refuses.
+    /// If the eyes cannot be synthesized, or GL refuses.
     pub fn count(
         &mut self,
         prepared: &mut PreparedScene,
@@ -257,10 +257,10 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Compiles the pipeline that counts.
+    /// Compiles the counting pipeline.
     ///
     /// # Errors
-    /// When the driver refuses it, or has no OpenGL ES 3.1; when the table lacks a program.
+    /// If the driver refuses it or has no OpenGL ES 3.1, or if the table lacks a program.
     pub fn new(gl: &Rc<Context>, device: Device) -> anyhow::Result<Meter> {
         Ok(Meter {
             device,
@@ -269,10 +269,10 @@ impl Meter {
         })
     }
 
-    /// Returns values of one frame, by metric.
+    /// Returns the values of one frame, by metric.
     ///
     /// # Errors
-    /// When the eyes cannot be synthesized, or GL refuses.
+    /// If the eyes cannot be synthesized, or GL refuses.
     pub fn measure(
         &mut self,
         prepared: &mut PreparedScene,
@@ -282,7 +282,7 @@ impl Meter {
         Ok(self.values(&views, &pixels, pair.size))
     }
 
-    /// Returns the counts of one frame, from which [`Meter::values`] of any device follow.
+    /// Returns the counts of one frame, from which [`Meter::values`] of any device are computed.
     ///
     /// # Errors
     /// Those of [`Meter::measure`].
@@ -294,7 +294,7 @@ impl Meter {
         self.counting.count(prepared, pair)
     }
 
-    /// Returns the values of counted frames whose eyes have this size, by metric.
+    /// Returns the values of a counted frame whose eyes have this size, by metric.
     pub fn values(&self, views: &SynthesisViews, pixels: &[u8], size: [u32; 2]) -> Vec<(&'static str, f64)> {
         let counts = Counts { pixels, size };
         let Meter { device, costs, .. } = self;
@@ -366,7 +366,7 @@ mod tests {
         let mut set = |x: usize, y: usize, counts: [u8; 4]| {
             pixels[(y * 6 + x) * 4..][..4].copy_from_slice(&counts);
         };
-        // A law everywhere, but for three pixels.
+        // All tiles have a law, except at three pixels.
         for y in 0..3 {
             (0..6).for_each(|x| set(x, y, [32, 0, 0, 0]));
         }

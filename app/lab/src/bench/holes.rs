@@ -9,8 +9,8 @@ use yoro_gl::{Context, Filter, Format, GlError, RenderTarget};
 use yoro_render::stereo::StereoError;
 use yoro_render::{PreparedScene, ViewTargets};
 
-/// Finds holes from the depth of the dominant eye's own image, without a guard band: one mask for all contenders,
-/// whatever they do about holes. The outer border is part of it.
+/// Finds holes from the depth of the dominant eye's own image, without a guard band. The mask is the same for all
+/// contenders, whatever they do about holes. It includes the outer border.
 pub struct HoleFinder {
     targets: ViewTargets,
     synthesis: Box<dyn Synthesis>,
@@ -32,10 +32,10 @@ impl HoleFinder {
         })
     }
 
-    /// The holes of the eye that is not dominant, row by row from the top.
+    /// Returns the holes of the eye that is not dominant, row by row from the top.
     ///
     /// # Errors
-    /// [`StereoError`] for eyes that cannot be synthesized, or when GL refuses.
+    /// [`StereoError`] for eyes that cannot be synthesized, or if GL refuses.
     pub fn find(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> Result<Vec<bool>, StereoError> {
         let views = pair.synthesis_views(GuardBand::None)?;
         synthesize(&mut *self.synthesis, &mut self.targets, prepared, &views, &mut self.map)?;

@@ -1,4 +1,4 @@
-//! The metrics of a comparison, as a measurement records them.
+//! Conversion of a comparison's metrics into those of a measurement.
 
 use super::record::{Measurement, Setting, metric};
 use crate::metrics::{Comparison, Flicker, PartQuality};

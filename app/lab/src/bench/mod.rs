@@ -1,9 +1,9 @@
-//! `yoro bench`: every method, patcher and knob of the paper, measured side by side.
+//! `yoro bench`: every method, patcher and parameter of the paper, measured side by side.
 //!
-//! A [`Suite`] is a list of [jobs](Job): a scene, and where something is swept, one point of the sweep. In each round
-//! of a job every [`Contender`] takes its turn, and the round is appended to a file of [records](record) when it
-//! is over. Quality is always held against the same eye really rendered, with "the same image to both eyes"
-//! ([`Contender::MONO`]) beside it; cost against two full renders ([`Contender::CONVENTIONAL`]).
+//! A [`Suite`] is a list of [jobs](Job): each is a scene and, in a sweep, one point of it. In each round of a job every
+//! [`Contender`] takes its turn, and the finished round is appended to a file of [records](record). Quality is always
+//! measured against a real render of the same eye, and shown beside "the same image to both eyes"
+//! ([`Contender::MONO`]); cost is compared with two full renders ([`Contender::CONVENTIONAL`]).
 
 pub mod bandwidth;
 mod blank;

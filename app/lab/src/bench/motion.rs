@@ -1,4 +1,4 @@
-//! How a head moves in sequences.
+//! The motion of the head in sequences.
 
 use glam::{Quat, Vec3};
 
@@ -7,21 +7,21 @@ use yoro::eyes::Pose;
 /// The motion of a head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// Sitting still: 2 mm and a third of a degree to either side, once in two seconds.
+    /// Sitting still: 2 mm and a third of a degree to either side, with a period of two seconds.
     Still,
-    /// Seated: 3.2 cm and 9.5 degrees to either side, once in two seconds.
+    /// Swaying while seated: 3.2 cm and 9.5 degrees to either side, with a period of two seconds.
     Sway,
-    /// Walking along the camera path, 1.35 m/s.
+    /// Walking along the camera path at 1.35 m/s.
     Walk,
-    /// Turning by 120 degrees a second.
+    /// Turning at 120 degrees per second.
     Turn,
 }
 
 impl Motion {
-    /// All of them.
+    /// All motions.
     pub const ALL: [Motion; 4] = [Motion::Still, Motion::Sway, Motion::Walk, Motion::Turn];
 
-    /// Returns its name in results.
+    /// Returns the name in results.
     pub fn name(self) -> &'static str {
         match self {
             Motion::Still => "still",
@@ -31,7 +31,7 @@ impl Motion {
         }
     }
 
-    /// Returns the pose after a time in seconds of a head that was at rest before; None for one that walks.
+    /// Returns the pose after a time in seconds of a head that was at rest before; `None` for a walking head.
     pub(super) fn pose(self, from: Pose, seconds: f32) -> Option<Pose> {
         let wave = (std::f32::consts::PI * seconds).sin();
         let (aside, degrees) = match self {

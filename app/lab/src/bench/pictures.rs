@@ -10,8 +10,8 @@ pub fn pictures_beside(results: &Path) -> PathBuf {
     results.with_extension("pictures")
 }
 
-/// Returns the folder for the pictures of a setting, beside the file `results`: `RUN.pictures/SUITE/SCENE` with
-/// `.LABEL` or `.POINT`, and in there `dominant.png`, `truth.png` and `CONTENDER.png`.
+/// Returns the folder for the pictures of a setting, beside the file `results`: `RUN.pictures/SUITE/SCENE`, with
+/// `.LABEL` or `.POINT` appended. It contains `dominant.png`, `truth.png` and `CONTENDER.png`.
 pub fn picture_folder(results: &Path, setting: &Setting) -> PathBuf {
     let mut name = slug(&setting.scene);
     if let Some(label) = &setting.label {

@@ -1,4 +1,4 @@
-//! CPU time and memory of this process, from the operating system.
+//! CPU time and memory of this process, as reported by the operating system.
 
 use std::fs;
 use std::time::Duration;
@@ -11,17 +11,17 @@ pub fn cpu_time() -> Duration {
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
-/// Returns the resident memory in MiB now; `None` where `/proc` has no such figure.
+/// Returns the current resident memory in MiB; `None` if `/proc` does not report it.
 pub fn resident_mib() -> Option<f64> {
     kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "VmRSS:")
 }
 
-/// Returns the memory of the system in MiB that can be had without swapping.
+/// Returns the system's memory in MiB that is available without swapping; `None` if `/proc` does not report it.
 pub fn available_mib() -> Option<f64> {
     kilobytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// The figure in kB behind a key, in MiB.
+/// Returns the figure in kB after a key, in MiB.
 fn kilobytes(text: &str, key: &str) -> Option<f64> {
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()? / 1024.0)

@@ -1,4 +1,4 @@
-//! Scenes that suites make for themselves: an object at a distance, and a swarm of them.
+//! Scenes that suites build themselves: an object at a distance, and a swarm of objects.
 
 use std::cell::LazyCell;
 use std::path::Path;
@@ -11,22 +11,22 @@ use yoro_scenes::paint::{self, hash, unit};
 use yoro_scenes::props::textured;
 use yoro_scenes::sculpt::Clay;
 
-/// An object that is made when a suite asks for it.
+/// An object that is built when a suite first needs it.
 pub type LazyObject = LazyCell<Object, Box<dyn FnOnce() -> Object>>;
 
 /// Height of the eyes in metres.
 const EYE_HEIGHT: f32 = 1.6;
 
-/// An object of irregular shape, centred at the origin and 1 m from it to its farthest vertex.
+/// An object of irregular shape, centred at the origin, with its farthest vertex at 1 m.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Name: `hare`, or the file's stem.
+    /// The name: `hare`, or the stem of the file's name.
     pub name: String,
     model: Model,
 }
 
 impl Object {
-    /// The built-in one: a sitting hare of marble, with about as many triangles as the Stanford bunny.
+    /// Returns the built-in object: a sitting hare of marble with about as many triangles as the Stanford bunny.
     pub fn hare() -> Object {
         let mut clay = Clay::new(0.06);
         clay.ball(vec3(0.0, 0.42, -0.1), vec3(0.34, 0.4, 0.42))
@@ -55,7 +55,7 @@ impl Object {
         Object::new("hare".into(), b.finish())
     }
 
-    /// Returns an object from a file.
+    /// Loads an object from a file.
     pub fn load(path: &Path) -> Result<Object, SceneError> {
         let scene = scene::load(path)?;
         Ok(Object::new(scene.name, scene.model))
@@ -68,13 +68,13 @@ impl Object {
         Object { name, model }
     }
 
-    /// Returns its number of triangles.
+    /// Returns the number of triangles.
     pub fn triangles(&self) -> usize {
         self.model.triangle_count()
     }
 
-    /// The object in a room, seen from `distance` metres, as large on the screen from any distance. The
-    /// viewpoints stand on an arc around it.
+    /// Returns a scene with the object in a room, seen from `distance` metres. Its size on the screen is the same at
+    /// any distance. The viewpoints are on an arc around it.
     pub fn at_distance(&self, distance: f32) -> Scene {
         let mut model = room();
         let first_material = take_materials(&mut model, &self.model);
@@ -102,8 +102,8 @@ impl Object {
         }
     }
 
-    /// Returns `copies` of the object before a wall, all in view and equally large on the screen, near and far.
-    /// `places` is the number there will be at most: those of a smaller swarm stand where they do in a larger one.
+    /// Returns a scene with `copies` of the object in front of a wall, near and far, all visible and equally large on
+    /// the screen. `places` is the largest number of copies: those of smaller swarms stand at the same places.
     pub fn swarm(&self, copies: usize, places: usize) -> Scene {
         let mut b = SceneBuilder::new();
         let bricks = paint::bricks("wall", 512, 3, vec3(0.55, 0.42, 0.36), vec3(0.7, 0.68, 0.64), [8, 16]);
@@ -118,7 +118,7 @@ impl Object {
         let first_material = take_materials(&mut model, &self.model);
         let side = (places.max(1) as f32).sqrt().ceil() as usize;
         for copy in 0..copies {
-            // A step that shares no factor with the number of places reaches each of them once, in no order.
+            // A step that has no common factor with the number of places reaches each of them once, in irregular order.
             let cells = side * side;
             let cell = copy * coprime_step(cells) % cells;
             let at = |i: usize| ((i as f32 + 0.5) / side as f32 - 0.5) * 1.1;
@@ -150,13 +150,13 @@ impl Object {
         }
     }
 
-    /// Returns the number of triangles of a [`Object::swarm`] of so many copies.
+    /// Returns the number of triangles of [`Object::swarm`] with this many copies.
     pub fn swarm_triangles(&self, copies: usize) -> usize {
         copies * self.triangles() + 2
     }
 }
 
-/// The smallest step from about the golden section of `cells` on that shares no factor with it.
+/// Returns the smallest step from about the golden section of `cells` on that has no common factor with it.
 fn coprime_step(cells: usize) -> usize {
     let common = |mut a: usize, mut b: usize| {
         while b != 0 {
@@ -187,7 +187,7 @@ fn room() -> Model {
     b.finish()
 }
 
-/// Adds the materials and pictures of `from`; returns the index of the first material.
+/// Adds the materials and pictures of `from`, and returns the index of the first material.
 fn take_materials(to: &mut Model, from: &Model) -> usize {
     let (first_material, first_texture) = (to.materials.len(), to.textures.len());
     to.textures.extend(from.textures.iter().cloned());
@@ -205,10 +205,10 @@ fn take_materials(to: &mut Model, from: &Model) -> usize {
     first_material
 }
 
-/// Adds the triangles of `from`, moved; its materials are there from `first_material` on.
+/// Adds the triangles of `from`, transformed. Its materials start at index `first_material`.
 fn append(to: &mut Model, from: &Model, first_material: usize, transform: Affine3A) {
     let (first_vertex, first_index) = (to.vertices.len() as u32, to.indices.len());
-    // Turned and evenly scaled: normals need no inverse.
+    // The transform rotates and scales evenly, so that normals need no inverse.
     let turn = Mat3::from(transform.matrix3);
     to.vertices.extend(from.vertices.iter().map(|v| {
         let mut moved = *v;

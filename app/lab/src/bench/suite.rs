@@ -1,4 +1,4 @@
-//! The experiments, as lists of settings to be measured.
+//! The suites: experiments as lists of settings to be measured.
 
 use std::path::PathBuf;
 
@@ -78,37 +78,37 @@ suites! {
 pub enum Measure {
     /// Frames at viewpoints.
     Frames {
-        /// Frame times, pass times, CPU time, memory.
+        /// Frame times, pass times, CPU time and memory.
         cost: bool,
-        /// Likeness to the ground truth.
+        /// The similarity to the ground truth.
         quality: bool,
     },
-    /// Flicker along a piece of the camera path.
+    /// Flicker along a part of the camera path.
     Flicker,
-    /// Use of the guard band along a piece of the camera path.
+    /// Use of the guard band along a part of the camera path.
     GuardBand,
     /// Frames of a moving head.
     History(Motion),
     /// Patchers on reprojected images.
     Patchers,
-    /// One render shown at other poses.
+    /// One render shown at another pose.
     Reprojection(Displaced),
-    /// Encoded sequences along a piece of the camera path.
+    /// Encoded sequences along a part of the camera path.
     Bandwidth,
-    /// A stream whose frames are shown a number of frames later, at 72 frames a second.
+    /// A stream whose frames are shown this number of frames later, at 72 frames per second.
     Stream(usize),
-    /// Instructions that `gather` executes: an estimate for a GPU that need not be here.
+    /// Instructions that `gather` executes: an estimate for a GPU that is not available here.
     Executed(Device),
-    /// The same of whole frames, for several.
+    /// The cost of whole frames: an estimate for several GPUs.
     WholeFrames,
 }
 
 /// The pose at which a render is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Displaced {
-    /// That of the same eye a number of frames later, at 72 frames a second.
+    /// The pose of the same eye this number of frames later, at 72 frames per second.
     Late(Motion, usize),
-    /// That of the other one of two canted eyes.
+    /// The pose of the other of two canted eyes.
     Canted,
 }
 
@@ -117,48 +117,48 @@ pub enum Displaced {
 pub enum Source {
     /// A built-in scene or a file.
     Named(String),
-    /// [`super::Object::swarm`].
+    /// The scene of [`super::Object::swarm`].
     Swarm {
-        /// Number of objects.
+        /// The number of objects.
         copies: usize,
-        /// Number of the largest swarm of the suite.
+        /// The number of objects in the largest swarm of the suite.
         places: usize,
     },
-    /// [`super::Object::at_distance`], in metres.
+    /// The scene of [`super::Object::at_distance`], with the distance in metres.
     Object(f32),
 }
 
-/// One setting: all that is needed to measure it.
+/// One setting with everything that is needed to measure it.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// Its name in the results.
+    /// The name in the results.
     pub setting: Setting,
-    /// Its scene.
+    /// The source of the scene.
     pub source: Source,
-    /// Another style than the scene's own.
+    /// A style that replaces the scene's own.
     pub style: Option<ShadingStyle>,
-    /// Renderer's settings.
+    /// The renderer's settings.
     pub render: RenderSettings,
     /// The eyes.
     pub eyes: EyeOptions,
-    /// When all contenders anti-alias; `None` leaves it to each method.
+    /// The anti-aliasing of all contenders; `None` leaves it to each method.
     pub anti_aliasing: Option<AntiAliasing>,
-    /// Divisor of the ImBuffer's resolution.
+    /// The divisor of the ImBuffer's resolution.
     pub imbuffer: u32,
-    /// Quantizers of encoded sequences.
+    /// The quantizers of encoded sequences.
     pub bandwidth: BandwidthOptions,
     /// The kind of measurement.
     pub measure: Measure,
-    /// The contenders; the conventional method first where frames are measured.
+    /// The contenders. If frames are measured, the conventional method is the first.
     pub contenders: Vec<Contender>,
-    /// Number of rounds.
+    /// The number of rounds.
     pub rounds: u32,
-    /// Number of frames: viewpoints spread over the camera path, or frames along it.
+    /// The number of frames: viewpoints spread over the camera path, or frames along it.
     pub frames: usize,
 }
 
 impl Job {
-    /// Returns the number of steps of progress: each contender's frames in each round, and getting ready.
+    /// Returns the number of steps of progress: the preparation, and each contender's frames in each round.
     pub fn steps(&self) -> u64 {
         if self.measure == Measure::Bandwidth {
             return bandwidth::steps(self.frames, &self.bandwidth);
@@ -179,69 +179,69 @@ impl Job {
 /// The user's choices for all suites.
 #[derive(Clone, Debug)]
 pub struct Choices {
-    /// The short form.
+    /// True for the short form.
     pub quick: bool,
-    /// The eyes, as the suites do not vary them.
+    /// The eyes, except where a suite varies them.
     pub eyes: EyeOptions,
-    /// The renderer's settings, as the suites do not vary them.
+    /// The renderer's settings, except where a suite varies them.
     pub render: RenderSettings,
-    /// `shader-cost`: whole frames in place of the synthesis alone.
+    /// True if `shader-cost` estimates whole frames instead of the synthesis alone.
     pub whole_frames: bool,
-    /// Timed rounds.
+    /// The number of timed rounds.
     pub rounds: u32,
-    /// Viewpoints per scene.
+    /// The number of viewpoints per scene.
     pub viewpoints: usize,
-    /// Frames of the sequences of `bandwidth`.
+    /// The number of frames in the sequences of `bandwidth`.
     pub sequence: usize,
-    /// Scenes instead of the suites' own.
+    /// Scenes that replace the suites' own.
     pub scenes: Vec<String>,
-    /// Contenders instead of the suites' own.
+    /// Contenders that replace the suites' own.
     pub contenders: Vec<Contender>,
-    /// Seed of the built-in scenes.
+    /// The seed of the built-in scenes.
     pub seed: u64,
-    /// File of the object of `distance` and `complexity`; the built-in one if none.
+    /// The file with the object of `distance` and `complexity`; `None` for the built-in one.
     pub object: Option<PathBuf>,
-    /// Largest scene of `complexity`.
+    /// The number of triangles of the largest scene of `complexity`.
     pub max_triangles: usize,
 }
 
-/// Scenes of the suites that vary something else: one of each shading style.
+/// The scenes of suites that vary something else: one for each shading style.
 const VARIED_SCENES: [&str; 5] = ["atrium", "voxel", "prototype", "talk", "stage"];
-/// The one scene of such a suite in the short form.
+/// The one scene of these suites in the short form.
 const QUICK_SCENES: [&str; 1] = ["prototype"];
-/// Number of sizes of the complexity suite, as in the paper, and in the short form.
+/// The number of sizes of the suite `complexity`: as in the paper, and in the short form.
 const SIZES: [usize; 2] = [9, 5];
-/// Lights of the suite `lights`: the paper has fewer than five.
+/// The number of lights of the suite `lights`: the paper has fewer than five.
 const FEW_LIGHTS: usize = 4;
-/// Settings of the suite `anti-aliasing`.
+/// The settings of the suite `anti-aliasing`.
 const SMOOTHING: [(&str, RendererKind, AntiAliasing); 3] = [
     ("one sample", RendererKind::Deferred, AntiAliasing::Off),
     ("FXAA", RendererKind::Deferred, AntiAliasing::After),
     ("MSAA", RendererKind::Forward, AntiAliasing::After),
 ];
-/// Frames of the suite `flicker`.
+/// The number of frames of the suite `flicker`, and in the short form.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
-/// Scenes of the suite `history`: those with the most to uncover, near and far.
+/// The scenes of the suite `history`: those in which the most is uncovered, near and far.
 const HISTORY_SCENES: [&str; 6] = ["talk", "street", "stage", "conference", "atrium", "voxel"];
-/// Frames of the suite `history`.
+/// The number of frames of the suite `history`, and in the short form.
 const HISTORY_FRAMES: [usize; 2] = [24, 4];
-/// Scenes of the suite `stream`.
+/// The scenes of the suite `stream`.
 const STREAM_SCENES: [&str; 3] = ["talk", "street", "atrium"];
-/// Frames by which it shows frames late, at 72 a second: at rest, and after 28 and 69 ms.
+/// The numbers of frames by which the suite `stream` shows frames late, at 72 per second: at once, after 28 and 69 ms.
 const STREAM_DELAYS: [usize; 3] = [0, 2, 5];
-/// H.264's quantizers in it.
+/// H.264's quantizers in the suite `stream`.
 pub(super) const STREAM_QUANTIZERS: [u8; 3] = [20, 26, 32];
-/// Frames of the suite `stream`.
+/// The number of frames of the suite `stream`, and in the short form.
 const STREAM_FRAMES: [usize; 2] = [8, 3];
-/// Frames of the suite `guard-band`.
+/// The number of frames of the suite `guard-band`, and in the short form.
 const GUARD_BAND_FRAMES: [usize; 2] = [36, 6];
 
 impl Choices {
-    /// The settings of a suite, in the order in which they are measured: those that share a scene follow each
-    /// other. `object` is the object of `distance` and `complexity`.
+    /// Returns the settings of a suite in the order of measurement: those that share a scene follow each other.
+    /// `object` is the object of `distance` and `complexity`.
     ///
     /// # Errors
-    /// One sentence when the choices leave nothing to measure.
+    /// One sentence if the choices leave nothing to measure.
     pub fn jobs(&self, suite: Suite, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
         let time = Measure::Frames { cost: true, quality: false };
         let quality = Measure::Frames { cost: false, quality: true };
@@ -288,7 +288,7 @@ impl Choices {
                 self.anti_aliasing(plan(both, [baselines, Contender::edges()].concat()), &every)
             }
             Suite::Flicker => {
-                // With samples at the edges, flicker depends on how the synthesis reads them: one pipeline only.
+                // With samples at the edges, flicker depends on how the synthesis reads them: one pipeline is enough.
                 let edges = || [vec![Contender::MONO], Contender::edges()].concat();
                 let contenders = if self.render.is_forward() { edges() } else { synthesis() };
                 plan(Measure::Flicker, contenders).over(self.varied(), [()], |job, ()| {
@@ -322,7 +322,7 @@ impl Choices {
     }
 
     fn complexity(&self, plan: Plan, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
-        // Sizes grow in even steps, the first being one step: a slope is seen only where all else is equal.
+        // Sizes grow in even steps, the first of which is one step. Slopes are measurable only if all else is equal.
         let sizes = SIZES[usize::from(self.quick)];
         let step = (self.max_triangles / sizes / object.triangles()).max(1);
         let places = step * sizes;
@@ -364,7 +364,7 @@ impl Choices {
             job.setting.label = Some(label.to_owned());
             job.render.renderer = renderer;
             job.anti_aliasing = Some(anti_aliasing);
-            // Without samples there is one thing to say of edges.
+            // Without multisampling, only hard edges are measured.
             let says_more = |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
             job.contenders.retain(|c| renderer == RendererKind::Forward || !says_more(c));
         })
@@ -384,7 +384,7 @@ impl Choices {
         let poses = [vec![Displaced::Canted], late(Motion::Sway).into(), late(Motion::Walk).into()];
         let scenes = if self.quick { &QUICK_SCENES[..] } else { &VARIED_SCENES };
         plan.over(self.scenes(scenes), poses.concat(), |job, displaced| {
-            // Ways to show a render take part, not methods.
+            // Ways of showing a render take part, not methods.
             job.contenders.clear();
             job.measure = Measure::Reprojection(displaced);
             job.setting.label = Some(match displaced {
@@ -430,7 +430,7 @@ impl Choices {
             // GPUs take part, not methods.
             job.contenders.clear();
             job.measure = Measure::Executed(device);
-            // Depth is all that counts.
+            // Only depth matters.
             job.render =
                 RenderSettings { ssao: false, bloom: false, shadow_map_size: 0, ..job.render.clone() };
             job.eyes.size = device.size;
@@ -450,7 +450,7 @@ impl Choices {
         self.scenes(if self.quick { &QUICK_SCENES } else { &VARIED_SCENES })
     }
 
-    /// Returns everything that has an influence on the figures, to be printed and compared.
+    /// Returns everything that influences the figures, to be printed and compared.
     pub fn parameters(&self) -> Vec<Parameter> {
         let eyes = &self.eyes;
         let list = |names: Vec<String>| {
@@ -480,7 +480,7 @@ impl Choices {
     }
 }
 
-/// A suite about to be unfolded into its settings.
+/// A suite that is about to be expanded into its settings.
 struct Plan<'a> {
     choices: &'a Choices,
     suite: Suite,
@@ -506,7 +506,7 @@ impl Plan<'_> {
                 self.suite.name()
             );
         }
-        // Every figure stands beside its baseline, whoever was chosen.
+        // Every figure is shown beside its baseline, whatever contenders were chosen.
         let quality = !matches!(self.measure, Measure::Frames { quality: false, .. });
         if quality && !contenders.contains(&Contender::MONO) {
             contenders.insert(0, Contender::MONO);
@@ -546,7 +546,7 @@ impl Plan<'_> {
     }
 }
 
-/// Returns a built-in scene's name, or a file's stem.
+/// Returns the name of a built-in scene, or the stem of a file's name.
 fn scene_name(scene: &str) -> String {
     if BUILTINS.iter().any(|b| b.name == scene) {
         return scene.to_owned();

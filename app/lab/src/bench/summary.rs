@@ -1,4 +1,4 @@
-//! A short table of a file of results, for the terminal.
+//! A short table of a file of results for the terminal.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -8,7 +8,7 @@ use super::contender::Contender;
 use super::record::{Measurement, Results, Setting, metric};
 use yoro_figures::stats::{self, median, unique};
 
-/// A column: heading, metric, decimals, how its values become one.
+/// A column: heading, metric, number of decimals, and the function that combines its values.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
 const COLUMNS: [Column; 19] = [
@@ -37,7 +37,7 @@ fn mean(values: &[f64]) -> Option<f64> {
     stats::mean(values.iter().copied())
 }
 
-/// Returns one block for each setting, one line for each contender; then who could not take part.
+/// Returns a block for each setting with a line for each contender, then the contenders that could not take part.
 pub fn text(results: &Results) -> String {
     let mut out = String::new();
     for facts in results.scenes() {

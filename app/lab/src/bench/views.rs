@@ -13,22 +13,22 @@ use yoro_render::{PreparedScene, Selection, ViewTargets};
 use yoro_scene::CameraPath;
 use yoro_scenes::BUILTINS;
 
-/// Distance in metres between the frames of a sequence: walking pace, 30 frames a second.
+/// The distance in metres between the frames of a sequence: walking pace at 30 frames per second.
 pub(super) const STEP: f32 = 0.045;
-/// Frames a second of a sequence with [`STEP`].
+/// The frame rate in Hz of a sequence with [`STEP`].
 pub(super) const STEP_RATE: f64 = 30.0;
-/// The same distance at [`HEADSET_RATE`].
+/// The distance between frames at the same pace and [`HEADSET_RATE`].
 pub(super) const HEADSET_STEP: f32 = 0.01875;
-/// Frames a second of a headset.
+/// The frame rate of a headset in Hz.
 pub(super) const HEADSET_RATE: f64 = 72.0;
 
-/// Frames before the measured ones of a moving head: the history is filled by then.
+/// The number of frames before the measured ones of a moving head, after which the history is filled.
 const SETTLING: usize = 12;
 
-/// Renders the source of some views and synthesizes the other eye into `to`, which gets that eye's size.
+/// Renders the source of some views and synthesizes the other eye into `to`, which is resized to that eye.
 ///
 /// # Errors
-/// [`StereoError`] when GL refuses.
+/// [`StereoError`] if GL refuses.
 pub(super) fn synthesize(
     pipeline: &mut dyn Synthesis,
     targets: &mut ViewTargets,
@@ -43,7 +43,7 @@ pub(super) fn synthesize(
     Ok(pipeline.synthesize(source, &views.warp, &Destination::whole(to))?)
 }
 
-/// Returns `wanted` of `count` indices, evenly spread from the first.
+/// Returns `wanted` of `count` indices, evenly spread and starting from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
     let wanted = wanted.min(count);
     (0..wanted).map(|i| i * count / wanted).collect()
@@ -57,14 +57,14 @@ pub(super) struct Views {
 }
 
 impl Views {
-    /// Returns viewpoints of the scene, evenly spread from the first.
+    /// Returns viewpoints of the scene, evenly spread and starting from the first.
     pub fn spread(job: &Job, prepared: &PreparedScene) -> anyhow::Result<Views> {
         let viewpoints = &prepared.scene.viewpoints;
         let keys = spread(viewpoints.len(), job.frames);
         Views::new(job, keys.into_iter().map(|k| (format!("viewpoint {k}"), viewpoints[k].pose())).collect())
     }
 
-    /// Returns frames from the middle of the camera path on, `step` metres apart.
+    /// Returns frames that start in the middle of the camera path and are `step` metres apart.
     pub fn along_path(job: &Job, prepared: &PreparedScene, step: f32) -> anyhow::Result<Views> {
         let path = CameraPath::new(&prepared.scene.viewpoints);
         if path.keys().len() < 2 {
@@ -81,7 +81,7 @@ impl Views {
         Views::new(job, (0..job.frames).map(pose).collect())
     }
 
-    /// Returns frames of a moving head from the middle of the camera path on: the job's, and some before them.
+    /// Returns frames of a moving head that start in the middle of the camera path: the job's, after some for settling.
     pub fn of_motion(job: &Job, prepared: &PreparedScene, motion: Motion) -> anyhow::Result<Views> {
         let frames = SETTLING + job.frames;
         let walk = Views::along_path(&Job { frames, ..job.clone() }, prepared, HEADSET_STEP)?;
@@ -91,7 +91,7 @@ impl Views {
         heads.map_or(Ok(walk), |heads| Views::new(job, heads))
     }
 
-    /// Splits the last `count` frames off.
+    /// Splits off the last `count` frames.
     pub fn split_at_last(self, count: usize) -> [Views; 2] {
         let Views { mut names, mut pairs } = self;
         let at = names.len().saturating_sub(count);
@@ -105,7 +105,7 @@ impl Views {
         Ok(Views { names, pairs: poses.into_iter().map(|pose| job.eyes.pair(pose)).collect() })
     }
 
-    /// The first frame alone.
+    /// Returns the first frame alone.
     pub fn first(mut self) -> Views {
         self.names.truncate(1);
         self.pairs.truncate(1);
@@ -144,7 +144,7 @@ mod tests {
             let widest = poses.iter().map(|p| p.position.distance(poses[36].position)).fold(0.0, f32::max);
             assert!((widest - metres).abs() < 1e-4, "{motion:?}: {widest} m");
             let turned: f32 = poses.windows(2).map(|p| p[0].forward().distance(p[1].forward())).sum();
-            // To both sides and back.
+            // The head turns to both sides and back.
             let there = if motion == Motion::Turn { turned } else { turned / 2.0 };
             let level = from.forward().with_y(0.0).length();
             let expected = level * degrees.to_radians();

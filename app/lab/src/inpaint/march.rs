@@ -1,8 +1,8 @@
-//! Telea's and the Navier-Stokes patcher: a front marches from the border of a hole inwards at unit speed, and each
-//! pixel that it reaches becomes a weighted mean of the known pixels around.
+//! Telea's and the Navier-Stokes patcher: a front marches inwards from the border of a hole at unit speed, and each
+//! pixel that it reaches becomes a weighted mean of the known pixels around it.
 //!
-//! Where holes are so far apart that no pixel is read for both, each is filled on its own thread; the result is the
-//! same as in one piece.
+//! Holes that are so far apart that no pixel is read for both are filled on separate threads. The result is the same as
+//! on one thread.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -13,27 +13,27 @@ use rayon::prelude::*;
 
 use super::patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, Reprojected};
 
-/// Pixels up to this distance are averaged.
+/// The radius in pixels within which known pixels are averaged.
 const RADIUS: i32 = 3;
-/// Cosine or projection below which a direction counts for nothing.
+/// The cosine or projection below which a direction does not count.
 const SIDEWAYS: f64 = 0.01;
-/// The weight of such a direction instead, so that there is always a mean.
+/// The weight that such a direction gets instead, so that the mean is always defined.
 const LEAST_WEIGHT: f64 = 1e-6;
 
-/// The weighting of the pixels around.
+/// The weighting of the surrounding pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
-    /// A. Telea, "An image inpainting technique based on the fast marching method", 2004, equations 3 and 4: by
-    /// direction of the front, distance, and distance from the hole's border. The gradient term of equation 2 is left
-    /// out: it amplifies noise, and OpenCV limits it to 1.4 grey levels.
+    /// A. Telea, "An image inpainting technique based on the fast marching method", 2004, equations 3 and 4: by the
+    /// front's direction, the distance, and the distance from the hole's border. The gradient term of equation 2 is
+    /// left out, because it amplifies noise, and OpenCV limits it to 1.4 grey levels.
     Telea,
     /// M. Bertalmio, A. Bertozzi, G. Sapiro, "Navier-Stokes, fluid dynamics, and image and video inpainting", 2001, as
-    /// it is commonly run, in the order of the fast marching method: a pixel weighs as much as the isophote through it
-    /// points to the pixel to be filled.
+    /// commonly implemented in the order of the fast marching method: the weight of a pixel grows with how well the
+    /// isophote through it points to the pixel to be filled.
     NavierStokes,
 }
 
-/// A patcher of one of the two rules.
+/// A patcher with one of the two rules.
 pub(super) struct March {
     rule: Rule,
 }
@@ -61,10 +61,10 @@ impl Patcher for March {
     }
 }
 
-/// The pixels of all holes, in groups of which no two influence each other; row by row in each.
+/// Returns the pixels of all holes in groups that do not influence each other, row by row in each.
 pub(super) fn regions(image: &Reprojected) -> Vec<Vec<[u32; 2]>> {
     let [width, height] = image.size().map(|n| n as usize);
-    // A fill reads RADIUS pixels around, and their neighbours.
+    // Filling reads the pixels within RADIUS and their neighbours.
     let near = near_holes(image, RADIUS as usize + 1);
     const UNSEEN: u32 = u32::MAX;
     let mut labels = vec![UNSEEN; near.len()];
@@ -99,7 +99,7 @@ pub(super) fn regions(image: &Reprojected) -> Vec<Vec<[u32; 2]>> {
     regions
 }
 
-/// True if a hole is within `reach` pixels along both axes.
+/// Returns for each pixel whether a hole is within `reach` pixels along both axes.
 fn near_holes(image: &Reprojected, reach: usize) -> Vec<bool> {
     let [width, height] = image.size().map(|n| n as usize);
     let mut along_rows = vec![false; width * height];
@@ -120,19 +120,19 @@ fn near_holes(image: &Reprojected, reach: usize) -> Vec<bool> {
 
 /// A window of the image around one region.
 struct Window {
-    /// Column and row of its first pixel in the image.
+    /// The column and row of its first pixel in the image.
     origin: [i32; 2],
     width: i32,
     height: i32,
-    /// Distance from the border of the holes: 0 on the valid pixels beside them, positive in holes, negative outside,
+    /// Distance from the border of the holes: 0 on the valid pixels next to them, positive in holes, negative outside,
     /// infinite where the front has not been.
     distance: Vec<f64>,
-    /// Valid or filled.
+    /// True for pixels that are valid or filled.
     known: Vec<bool>,
     color: Vec<[f64; 3]>,
 }
 
-/// Fills one region and returns its colours.
+/// Fills one region and returns the colours of its pixels.
 pub(super) fn fill(image: &Reprojected, region: &[[u32; 2]], rule: Rule) -> Vec<Rgb<u8>> {
     let mut window = Window::around(image, region);
     let holes: Vec<usize> = region.iter().map(|&[x, y]| window.index(x as i32, y as i32)).collect();
@@ -144,7 +144,7 @@ pub(super) fn fill(image: &Reprojected, region: &[[u32; 2]], rule: Rule) -> Vec<
         window.distance[i] = 0.0;
     }
     if rule == Rule::Telea {
-        // Distances outside of the holes: on a copy, since the front runs towards larger values.
+        // Distances outside of the holes are computed on a copy, because the front moves towards larger values.
         let outside = window.known.clone();
         let limit = f64::from(RADIUS) + 1.0;
         window.march(&border, |window, i| outside[i] && window.distance[i].is_infinite(), limit, |_, _| {});
@@ -190,12 +190,12 @@ impl Window {
         }
     }
 
-    /// Returns the index of an image's pixel.
+    /// Returns the index in the window of a pixel of the image.
     fn index(&self, x: i32, y: i32) -> usize {
         ((y - self.origin[1]) * self.width + x - self.origin[0]) as usize
     }
 
-    /// The pixel `dx`, `dy` away, if it is in the window.
+    /// Returns the pixel at the offset `dx`, `dy`, if it is inside the window.
     fn offset(&self, i: usize, dx: i32, dy: i32) -> Option<usize> {
         let (x, y) = (i as i32 % self.width + dx, i as i32 / self.width + dy);
         let inside = (0..self.width).contains(&x) && (0..self.height).contains(&y);
@@ -206,8 +206,8 @@ impl Window {
         [(0, -1), (-1, 0), (0, 1), (1, 0)].map(|(dx, dy)| self.offset(i, dx, dy))
     }
 
-    /// Lets the front run from `border` over the pixels that are `open`, up to distance `limit`; `reach` is called once
-    /// for each, when the front touches it.
+    /// Moves the front from `border` over the `open` pixels up to the distance `limit`. `reach` is called once for each
+    /// pixel, when the front reaches it.
     fn march(
         &mut self,
         border: &[usize],
@@ -215,7 +215,7 @@ impl Window {
         limit: f64,
         mut reach: impl FnMut(&mut Window, usize),
     ) {
-        // Distances are positive, so their bits are ordered as they are; equal ones go in the order of arrival.
+        // Distances are positive, so their bits sort in the same order. Equal ones keep the order of arrival.
         let mut arrivals = 0u64..;
         let mut front: BinaryHeap<Reverse<(u64, u64, usize)>> = BinaryHeap::new();
         let mut push = |front: &mut BinaryHeap<_>, distance: f64, i: usize| {
@@ -248,7 +248,7 @@ impl Window {
         if (a - b).abs() < 1.0 { 0.5 * (a + b + (2.0 - (a - b) * (a - b)).sqrt()) } else { a.min(b) + 1.0 }
     }
 
-    /// The derivative of `value` along one axis from the known neighbours: central, one-sided, or 0.
+    /// Returns the derivative of `value` along one axis from the known neighbours: central, one-sided, or 0.
     fn derivative(&self, i: usize, axis: [i32; 2], value: impl Fn(usize) -> f64) -> f64 {
         let known = |sign: i32| self.offset(i, sign * axis[0], sign * axis[1]).filter(|&j| self.known[j]);
         match (known(-1), known(1)) {
@@ -259,7 +259,7 @@ impl Window {
         }
     }
 
-    /// The known pixels within [`RADIUS`] of pixel `i`, with the way from them to it.
+    /// Returns the known pixels within [`RADIUS`] of pixel `i`, each with the vector from it to pixel `i`.
     fn around_known(&self, i: usize) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
         let offsets = (-RADIUS..=RADIUS).flat_map(|dy| (-RADIUS..=RADIUS).map(move |dx| (dx, dy)));
         offsets.filter(|(dx, dy)| dx * dx + dy * dy <= RADIUS * RADIUS).filter_map(move |(dx, dy)| {
@@ -298,7 +298,7 @@ impl Window {
             for (j, way) in self.around_known(i) {
                 let squared = way[0] * way[0] + way[1] * way[1];
                 let gradient = [self.derivative(j, [1, 0], value), self.derivative(j, [0, 1], value)];
-                // The isophote is the gradient turned by a right angle.
+                // The isophote is perpendicular to the gradient.
                 let along = (way[1] * gradient[0] - way[0] * gradient[1]).abs();
                 let lengths = (squared * (gradient[0] * gradient[0] + gradient[1] * gradient[1])).sqrt();
                 let direction = if along <= SIDEWAYS { LEAST_WEIGHT } else { along / lengths };

@@ -1,7 +1,7 @@
-//! Patchers: what fills the holes of a reprojected image, side by side.
+//! Patchers, which fill the holes of a reprojected image.
 //!
-//! A synthesis pipeline fills its own holes; these fill any reprojected image, so that they can be compared on the
-//! same one. A patcher fills every hole and changes no other pixel.
+//! A synthesis pipeline fills its own holes. Patchers fill those of any reprojected image, so that they can be compared
+//! on the same one. A patcher fills every hole and changes no other pixel.
 //!
 //! | patcher | after | runs on |
 //! |---|---|---|
@@ -30,17 +30,17 @@ use yoro_gl::Context;
 
 pub use patcher::{HOLE, InpaintError, PatchTime, Patched, Patcher, PatcherKind, Reprojected, VALID};
 
-/// Settings of all patchers.
+/// The options of all patchers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PatcherOptions {
-    /// ONNX file of the neural patcher; the built-in model without one.
+    /// The ONNX file of the neural patcher; `None` for the built-in model.
     pub model: Option<PathBuf>,
 }
 
-/// Makes a patcher: compiles its shaders or loads its model.
+/// Creates a patcher: compiles its shaders or loads its model.
 ///
 /// # Errors
-/// [`InpaintError`] when the driver refuses a shader or the model does not fit.
+/// [`InpaintError`] if the driver refuses a shader or the model is unsuitable.
 pub fn create(
     gl: &Rc<Context>,
     kind: PatcherKind,

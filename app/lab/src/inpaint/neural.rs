@@ -1,9 +1,9 @@
 //! The neural patcher: a fully convolutional generator from an ONNX file, run by rten.
 //!
-//! The model (`training/train.py`) takes `[1, 5, height, width]`: RGB from 0 to 1 with holes filled roughly, 1 in holes
-//! and 0 elsewhere, disparity from 0 (far plane) to 1 (the nearest pixel), also filled. It gives
-//! `[1, 3, height, width]`, RGB. Rows run from the top, columns forward: a disocclusion's background is on its left.
-//! Both sizes are multiples of [`MULTIPLE`].
+//! The model (`training/train.py`) takes `[1, 5, height, width]`: RGB from 0 to 1 with roughly filled holes, a mask
+//! with 1 in holes and 0 elsewhere, and disparity from 0 (far plane) to 1 (the nearest pixel), with filled holes. It
+//! returns `[1, 3, height, width]`, RGB. Rows run from the top. Columns are forward columns, in which a disocclusion's
+//! background is on its left. Width and height are multiples of [`MULTIPLE`].
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -17,23 +17,23 @@ use super::patcher::{InpaintError, PatchTime, Patched, Patcher, Reprojected, nea
 use yoro::eyes::Eye;
 use yoro_files as files;
 
-/// Made by `training/train.py`; `training/README.md` says from what.
+/// The built-in model, made by `training/train.py`; `training/README.md` describes its data.
 static MODEL: &[u8] = include_bytes!("../../models/patcher.onnx");
 
-/// Channels of the model's input and output.
+/// The numbers of channels of the model's input and output.
 const CHANNELS: [usize; 2] = [5, 3];
 
-/// The generator halves its input four times.
+/// Sizes are multiples of this, because the generator halves its input four times.
 const MULTIPLE: usize = 16;
 
 pub(super) struct Neural {
     model: Model,
-    /// Name for messages: the file, or that it is the built-in one.
+    /// The name for messages: the file, or "the built-in model".
     name: String,
 }
 
 impl Neural {
-    /// Loads the model of a file, or the built-in one.
+    /// Loads the model from a file, or the built-in one.
     pub(super) fn new(file: Option<&Path>) -> Result<Neural, InpaintError> {
         let name = file.map_or("the built-in model".to_owned(), |file| file.display().to_string());
         let fault = |reason: String| InpaintError::Model { model: name.clone(), reason };
@@ -109,7 +109,7 @@ impl Patcher for Neural {
     }
 }
 
-/// Returns the forward column of an image's column, or the other way round.
+/// Converts an image's column into a forward column, or back.
 fn forward(image: &Reprojected, x: u32, width: u32) -> u32 {
     match image.eye {
         Eye::Left => x,
@@ -117,7 +117,7 @@ fn forward(image: &Reprojected, x: u32, width: u32) -> u32 {
     }
 }
 
-/// The model's input, padded on the right and at the bottom by repetition.
+/// Returns the model's input, padded by repetition on the right and at the bottom.
 fn model_input(image: &Reprojected) -> NdTensor<f32, 4> {
     let [width, height] = image.size();
     let (color, disparity) = rough_fill(image);
@@ -134,8 +134,8 @@ fn model_input(image: &Reprojected) -> NdTensor<f32, 4> {
     })
 }
 
-/// Each hole takes colour and disparity of the farther of its two ends in the row, the one behind in forward columns
-/// when they are equally far. Rows without a valid pixel repeat the nearest row that has one.
+/// Fills each hole with colour and disparity of the farther of its two ends in the row, or of the one behind it in
+/// forward columns if both are equally far. Rows without a valid pixel repeat the nearest row that has one.
 fn rough_fill(image: &Reprojected) -> (RgbImage, Vec<f32>) {
     let [width, height] = image.size();
     let mut color = image.color.clone();
@@ -182,7 +182,7 @@ fn shape_text(shape: &[Dimension]) -> String {
     format!("[{}]", sizes.collect::<Vec<_>>().join(", "))
 }
 
-/// Returns a library's message as part of a sentence.
+/// Returns a library's message in one line, for use in a sentence.
 fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }

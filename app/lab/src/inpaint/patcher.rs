@@ -11,9 +11,9 @@ use yoro_files::FileError;
 use yoro_gl::GlError;
 use yoro_render::stereo::SynthesizedImage;
 
-/// Value of a mask where nothing of the source is seen.
+/// The mask's value where nothing of the source is visible.
 pub const HOLE: u8 = 0;
-/// Value of a mask everywhere else.
+/// The mask's value everywhere else.
 pub const VALID: u8 = 255;
 
 /// The error when holes cannot be filled.
@@ -33,25 +33,25 @@ pub enum InpaintError {
         /// Size of the disparity in pixels.
         disparity: [u32; 2],
     },
-    /// No valid pixel.
+    /// There is no valid pixel.
     #[error(
         "all pixels are holes, nothing is there to fill them from: check the depth, or leave the image out"
     )]
     NothingValid,
-    /// The model's file could not be read.
+    /// The file of the model could not be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The model is not what the neural patcher can run.
+    /// The neural patcher cannot run the model.
     #[error(
         "{model} is not a model for this patcher ({reason}): give an ONNX file made by training/train.py"
     )]
     Model {
         /// The file, or "the built-in model".
         model: String,
-        /// The mistake in it.
+        /// The reason.
         reason: String,
     },
-    /// The neural patcher is a feature of the build.
+    /// This build does not contain the neural patcher.
     #[error("this build has no neural patcher: build with the feature neural, or choose another patcher")]
     NotBuilt,
     /// GL refused.
@@ -59,23 +59,23 @@ pub enum InpaintError {
     Gl(#[from] GlError),
 }
 
-/// The patchers.
+/// The kinds of patchers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PatcherKind {
-    /// Algorithm 3 of the paper, as corrected
+    /// Algorithm 3 of the paper, as corrected.
     Paper,
-    /// The fill of the pipeline gather: five rows of the background's edge
+    /// The fill of the pipeline gather: five rows of the background's edge.
     Gather,
-    /// Median of the valid ones of 5x5 neighbours (Noori et al.)
+    /// Median of the valid neighbours in 5x5 pixels (Noori et al.).
     Median,
-    /// Background filter of 29x29 pixels (Xiao et al. 2022)
+    /// Background filter of 29x29 pixels (Xiao et al. 2022).
     Xiao,
-    /// Fast marching (Telea 2004), on the CPU
+    /// Fast marching (Telea 2004), on the CPU.
     Telea,
-    /// Isophotes carried on (Bertalmio et al. 2001), on the CPU
+    /// Continued isophotes (Bertalmio et al. 2001), on the CPU.
     NavierStokes,
-    /// A small neural network from an ONNX file, on the CPU
+    /// A small neural network from an ONNX file, on the CPU.
     Neural,
 }
 
@@ -91,7 +91,7 @@ impl PatcherKind {
         PatcherKind::Neural,
     ];
 
-    /// Returns its name on the command line.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             PatcherKind::Paper => "paper",
@@ -105,7 +105,7 @@ impl PatcherKind {
     }
 }
 
-/// An image of one eye made from the other, with holes where nothing is known. Row 0 is the top.
+/// An image of one eye made from the other, with holes where nothing is known. Row 0 is at the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reprojected {
     pub(super) color: RgbImage,
@@ -115,12 +115,12 @@ pub struct Reprojected {
 }
 
 impl Reprojected {
-    /// Makes an image of display-referred colour, a mask ([`HOLE`] and [`VALID`]; anything but 0 is valid), and
-    /// disparity in pixels, larger for nearer surfaces, all as seen from `eye`. What colour and disparity say in holes
-    /// is thrown away: both are 0 there afterwards.
+    /// Creates an image from display-referred colour, a mask ([`HOLE`] and [`VALID`]; anything but 0 is valid), and
+    /// disparity in pixels, larger for nearer surfaces, all as seen by `eye`. Colour and disparity are set to 0 in
+    /// holes.
     ///
     /// # Errors
-    /// [`InpaintError::SizesDiffer`]; [`InpaintError::NothingValid`] when nothing but holes is given.
+    /// [`InpaintError::SizesDiffer`]; [`InpaintError::NothingValid`] if all pixels are holes.
     pub fn new(
         mut color: RgbImage,
         mut mask: GrayImage,
@@ -146,11 +146,11 @@ impl Reprojected {
         Ok(Reprojected { color, mask, disparity, eye })
     }
 
-    /// Makes an image of the output of a synthesis pipeline, without what it has filled in. Disparity is 0 at the far
-    /// plane.
+    /// Creates an image from the output of a synthesis pipeline, without the pixels that the pipeline has filled.
+    /// Disparity is 0 at the far plane.
     ///
     /// # Errors
-    /// [`InpaintError::NothingValid`] when the source is not seen at all.
+    /// [`InpaintError::NothingValid`] if nothing of the source is visible.
     pub fn from_synthesis(result: &SynthesizedImage, warp: &Warp) -> Result<Reprojected, InpaintError> {
         let [width, height] = warp.target_size;
         let entry = |x: u32, y: u32| {
@@ -174,23 +174,23 @@ impl Reprojected {
         &self.color
     }
 
-    /// Returns the mask, [`HOLE`] or [`VALID`].
+    /// Returns the mask, with [`HOLE`] and [`VALID`].
     pub fn mask(&self) -> &GrayImage {
         &self.mask
     }
 
-    /// Returns disparity in pixels, larger for nearer surfaces; affine in inverse depth. 0 in holes, where it means
-    /// nothing.
+    /// Returns the disparity in pixels, larger for nearer surfaces and affine in inverse depth; 0 in holes, where it
+    /// has no meaning.
     pub fn disparity(&self) -> &DepthImage {
         &self.disparity
     }
 
-    /// The eye that it shows.
+    /// Returns the eye that the image shows.
     pub fn eye(&self) -> Eye {
         self.eye
     }
 
-    /// Returns width and height in pixels.
+    /// Returns the width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.color.dimensions().into()
     }
@@ -200,20 +200,21 @@ impl Reprojected {
         self.mask.get_pixel(x, y).0[0] == HOLE
     }
 
-    /// Returns the share of the pixels that are holes.
+    /// Returns the share of the pixels that are holes, 0 to 1.
     pub fn hole_share(&self) -> f64 {
         let holes = self.mask.pixels().filter(|m| m.0[0] == HOLE).count();
         holes as f64 / self.mask.len() as f64
     }
 }
 
-/// The time that patching took, by the wall clock.
+/// The wall-clock time of patching.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PatchTime {
-    /// Filling the holes of an image that lies where the patcher works: in textures, with the GPU drained before
-    /// and after, or in memory.
+    /// The time for filling the holes of an image that is where the patcher works: in textures, with the GPU idle
+    /// before and after, or in memory.
     pub patching: Duration,
-    /// Upload and readback; none on the CPU. In a frame it would be the CPU patchers that have to pay for it.
+    /// The time for upload and readback; 0 on the CPU. In a real frame, CPU patchers would be the ones to need
+    /// transfers.
     pub transfer: Duration,
 }
 
@@ -222,7 +223,7 @@ pub struct PatchTime {
 pub struct Patched {
     /// The reprojected image with its holes filled.
     pub image: RgbImage,
-    /// The time that it took.
+    /// The time that patching took.
     pub time: PatchTime,
 }
 
@@ -236,8 +237,7 @@ pub trait Patcher {
     fn patch(&mut self, image: &Reprojected) -> Result<Patched, InpaintError>;
 }
 
-/// Returns for each row itself if it is `known`, or else the nearest known row; the upper one when two are equally
-/// near.
+/// Returns for each row the nearest row that is `known`, which may be itself; the upper one if two are equally near.
 pub(super) fn nearest_rows(height: u32, known: impl Fn(u32) -> bool) -> Vec<u32> {
     let nearest = |y: u32| {
         let around = |d: u32| [y.checked_sub(d), (y + d < height).then_some(y + d)];

@@ -1,9 +1,9 @@
-//! Plain f64 versions of the patchers that are shaders, for tests.
+//! Plain f64 versions, for tests, of the patchers that are shaders.
 
 use super::Reprojected;
 use yoro::eyes::Eye;
 
-/// An image with holes in forward columns, as the shaders see it.
+/// An image with holes in forward columns, in the form that the shaders see.
 #[derive(Clone)]
 pub(super) struct Field {
     pub width: i32,
@@ -28,12 +28,12 @@ impl Field {
                 disparity: f64::from(image.disparity().get_pixel(x, y).0[0]),
             })
         };
-        // Rows from the bottom, as in GL: the paper's kernel takes the row below first.
+        // Rows run from the bottom, as in GL: the paper's kernel takes the row below first.
         let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| pixel(x, y))).collect();
         Field { width: width as i32, height: height as i32, pixels }
     }
 
-    /// The colour at column and row of the image that the field was made from.
+    /// Returns the colour at a column and row of the image that the field was made from.
     pub fn color(&self, image: &Reprojected, x: u32, y: u32) -> Option<[f64; 3]> {
         let x = if image.eye() == Eye::Right { self.width - 1 - x as i32 } else { x as i32 };
         self.at(x, self.height - 1 - y as i32).map(|pixel| pixel.color)
@@ -58,7 +58,7 @@ impl Field {
         Field { pixels, ..*self }
     }
 
-    /// Rows without a valid pixel repeat the nearest row that has one, the upper one when both are equally near.
+    /// Fills rows without a valid pixel with the nearest row that has one, the upper one if both are equally near.
     fn repeat_rows(&self) -> Field {
         let known = |y: i32| (0..self.height).contains(&y) && self.at(0, y).is_some();
         let source = |y: i32| {
@@ -67,7 +67,7 @@ impl Field {
         self.each_hole(|x, y| self.at(x, source(y)))
     }
 
-    /// Algorithm 3 as corrected, kernel height 3.
+    /// Returns the field filled by Algorithm 3 as corrected, with kernel height 3.
     pub fn paper(&self) -> Field {
         let filled = self.each_hole(|x, y| {
             let (left, right) = (self.left(x, y), self.right(x, y));
@@ -81,7 +81,7 @@ impl Field {
             let b = 0.5 + 0.3 * f64::from((x - edge.0).abs()) / f64::from(width);
             let (mut sum, mut remaining) = ([0.0; 3], 1.0);
             for column in (0..width.min(10)).map(|j| edge.0 + direction * j) {
-                // Less than this is not worth another column.
+                // The rest is too small to be worth another column.
                 if remaining <= 0.001 {
                     break;
                 }
@@ -99,7 +99,7 @@ impl Field {
         filled.repeat_rows()
     }
 
-    /// Returns five rows of the farther end.
+    /// Returns the field filled from five rows at the farther end.
     pub fn gather(&self) -> Field {
         let filled = self.each_hole(|x, y| {
             let (edge, end) = match (self.left(x, y), self.right(x, y)) {
@@ -127,7 +127,7 @@ impl Field {
         offsets.filter_map(pixel).collect()
     }
 
-    /// Fills what has valid pixels around, until nothing is left to fill.
+    /// Fills the holes that have valid pixels around them, until no hole is left.
     fn until_closed(mut self, fill: impl Fn(&[(f64, Pixel)]) -> Pixel, radius: i32) -> Field {
         while self.pixels.iter().any(Option::is_none) {
             self = self.each_hole(|x, y| {
@@ -138,7 +138,7 @@ impl Field {
         self
     }
 
-    /// Returns the lower median of the valid ones of 5x5 neighbours.
+    /// Returns the field filled by the lower median of the valid neighbours in 5x5 pixels.
     pub fn median(&self) -> Field {
         let fill = |near: &[(f64, Pixel)]| {
             let middle = |c: usize| {
@@ -151,7 +151,7 @@ impl Field {
         self.clone().until_closed(fill, 2)
     }
 
-    /// The far half of a window of 29x29 pixels.
+    /// Returns the field filled from the far half of a window of 29x29 pixels.
     pub fn xiao(&self) -> Field {
         let fill = |near: &[(f64, Pixel)]| {
             let disparities = || near.iter().map(|(_, pixel)| pixel.disparity);
@@ -164,7 +164,7 @@ impl Field {
                 let sum: f64 = kept().map(|(squared, pixel)| weight(*squared) * value(pixel)).sum();
                 sum / kept().map(|(squared, _)| weight(*squared)).sum::<f64>()
             };
-            // Colours are 8 bits between the passes.
+            // Colours have 8 bits between the passes.
             let color = std::array::from_fn(|c| mean(&|pixel| pixel.color[c]).round());
             Pixel { color, disparity: mean(&|pixel| pixel.disparity) }
         };

@@ -12,14 +12,14 @@ use super::patcher::{
 use yoro::eyes::Eye;
 use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture};
 
-/// One fragment shader, drawn once or until the holes are closed, on textures of its own.
+/// A fragment shader that is drawn once, or until the holes are closed, on textures of its own.
 pub(super) struct Screen {
     gl: Rc<Context>,
     name: &'static str,
     program: Program,
-    /// Pixels by which a hole closes in one pass; `None` closes it at once.
+    /// The number of pixels by which a hole shrinks in one pass; `None` if one pass closes it.
     reach: Option<u32>,
-    /// True if a pass gives filled pixels a disparity, for the next pass.
+    /// True if a pass also gives filled pixels a disparity, for the next pass.
     carries_disparity: bool,
     input: Option<Input>,
     targets: [RenderTarget; 2],
@@ -120,8 +120,8 @@ impl Patcher for Screen {
     }
 }
 
-/// The result as an image. A row without any valid pixel, which a patcher of rows cannot fill (alpha is still 0),
-/// repeats the nearest row that has one.
+/// Returns the result as an image. A row without any valid pixel, which row-based patchers cannot fill (its alpha is
+/// still 0), repeats the nearest row that has one.
 fn filled(rgba: &[u8], size: [u32; 2]) -> RgbImage {
     let rows: Vec<&[u8]> = rgba.chunks_exact(size[0] as usize * 4).rev().collect();
     let source = nearest_rows(size[1], |y| rows[y as usize][3] == VALID);
@@ -131,13 +131,13 @@ fn filled(rgba: &[u8], size: [u32; 2]) -> RgbImage {
     })
 }
 
-/// The largest distance in pixels of a hole's pixel to the nearest valid one, diagonal steps counting 1; 0 without
-/// holes.
+/// Returns the largest distance in pixels of a hole's pixel from the nearest valid one, with diagonal steps counting 1;
+/// 0 without holes.
 pub(super) fn hole_depth(mask: &GrayImage) -> u32 {
     let [width, height] = [mask.width() as usize, mask.height() as usize];
     let mut distance: Vec<u32> =
         mask.pixels().map(|m| if m.0[0] == HOLE { u32::MAX - 1 } else { 0 }).collect();
-    // Forward and backward sweep: each pixel from the four neighbours that the sweep has seen.
+    // A forward and a backward sweep. Each takes the four neighbours that it has already visited.
     for y in 0..height {
         for x in 0..width {
             let row = y * width;

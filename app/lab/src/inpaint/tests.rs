@@ -1,4 +1,4 @@
-//! The patchers against f64 references and OpenCV's results, and the laws that all of them keep.
+//! The patchers against f64 references and OpenCV's results, and the rules that all of them obey.
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -27,13 +27,13 @@ fn patch(gl: &Rc<Context>, kind: PatcherKind, image: &Reprojected) -> RgbImage {
     patcher.patch(image).unwrap().image
 }
 
-/// Random colours from 30 to 220 on layers of several disparities; holes of all kinds: thin, wide, at borders, with
-/// single valid pixels in them, whole rows.
+/// Returns random colours from 30 to 220 on layers of several disparities, with holes of all kinds: thin, wide, at
+/// borders, with single valid pixels in them, whole rows.
 fn scattered(eye: Eye, seed: u64) -> Reprojected {
     let [w, h] = SIZE;
     let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
     let color = RgbImage::from_fn(w, h, |_, _| Rgb(std::array::from_fn(|_| rng.random_range(30..=220))));
-    // Not a plane: its pixels would lie exactly halfway between the nearest and the farthest.
+    // The disparity is noisy: on a plane, pixels would lie exactly halfway between the nearest and the farthest.
     let mut disparity = DepthImage::from_fn(w, h, |x, y| {
         Luma([2.0 + x as f32 * 0.03 + y as f32 * 0.01 + rng.random_range(0.0..0.3)])
     });
@@ -63,8 +63,8 @@ fn scattered(eye: Eye, seed: u64) -> Reprojected {
     Reprojected::new(color, mask, disparity, eye).unwrap()
 }
 
-/// Background on the left and right of a nearer box, whose disocclusion lies on its left (left eye) or right. Colours:
-/// blue behind, red in front.
+/// Returns an image of a nearer red box in front of a blue background, whose disocclusion is on the box's left (left
+/// eye) or right.
 fn box_before_wall(eye: Eye) -> Reprojected {
     let [w, h] = [64u32, 48];
     let forward = |x: u32| if eye == Eye::Right { w - 1 - x } else { x };
@@ -120,7 +120,7 @@ fn every_hole_is_filled_and_nothing_else_changes() {
                 let patched = patch(gl, kind, &image);
                 for (x, y, pixel) in patched.enumerate_pixels() {
                     if image.is_hole(x, y) {
-                        // Black is what a hole is, and no valid pixel is black.
+                        // Holes are black, and no valid pixel is.
                         assert_ne!(pixel.0, [0; 3], "{kind:?}: a hole is left at {x}, {y}");
                     } else {
                         assert_eq!(pixel, image.color.get_pixel(x, y), "{kind:?} at {x}, {y}");
@@ -253,7 +253,7 @@ fn stored_case(name: &str) -> Reprojected {
     Reprojected::new(color, mask, disparity, Eye::Left).unwrap()
 }
 
-/// Root mean square of the differences in holes, in grey levels.
+/// Returns the root mean square of the differences in holes, in grey levels.
 fn distance_in_holes(a: &RgbImage, b: &RgbImage, holes: &Reprojected) -> f64 {
     let squares = |x: u32, y: u32| {
         let (a, b) = (a.get_pixel(x, y).0, b.get_pixel(x, y).0);
@@ -279,8 +279,8 @@ fn telea_and_navier_stokes_are_near_opencv() {
             let apart = distance_in_holes(&ours, &theirs, &image);
             let (our_error, their_error) =
                 (distance_in_holes(&ours, &truth, &image), distance_in_holes(&theirs, &truth, &image));
-            // Half a level more than found: the methods leave open in which order pixels are filled that the front
-            // reaches at the same time, and the derivative where neighbours are missing.
+            // The limit is half a level above the measured value: the methods define neither the order of pixels that
+            // the front reaches at the same time, nor the derivative where neighbours are missing.
             let limit = match (name, rule) {
                 ("talk", Rule::NavierStokes) => 6.1,
                 _ => 2.4,
@@ -296,7 +296,7 @@ fn telea_and_navier_stokes_are_near_opencv() {
 
 #[test]
 fn regions_in_parallel_are_the_whole_in_one_piece() {
-    // Two lines of holes; the upper one has a gap just wide enough to be filled apart, and one a column too narrow.
+    // Two rows of holes. The upper one has a gap just wide enough for separate filling, and one a column too narrow.
     let apart = scattered(Eye::Left, 10);
     let hole = |x: u32, y: u32| match y {
         10..13 => !(30..39).contains(&x) && !(60..68).contains(&x),

@@ -22,7 +22,7 @@ pub enum ReportError {
     /// A figure could not be drawn.
     #[error(transparent)]
     Plot(#[from] yoro_figures::plot::PlotError),
-    /// A file of results has nothing to report.
+    /// A file of results holds no finished round.
     #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
     Empty {
         /// The file.
@@ -31,7 +31,7 @@ pub enum ReportError {
     /// A picture that a run saved cannot be used.
     #[error(transparent)]
     PictureFile(#[from] PictureError),
-    /// The pictures of a setting do not go together.
+    /// The pictures of a setting do not have the same size.
     #[error("the pictures in {} do not go together ({source}): measure again, or remove the folder", path.display())]
     Sizes {
         /// The folder.

@@ -1,7 +1,7 @@
 //! The reports of `yoro run` and `yoro bench`: self-contained pages, JSON, Markdown tables and a table for the
 //! terminal. This file has the report of `run`; [`mod@bench`] has that of `bench`.
 //!
-//! Every figure stands beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
+//! Every figure is shown beside its baseline: quality beside "same image to both eyes" (which costs nothing), cost
 //! beside two full renders. The paper's figures are marked as the paper's.
 
 pub mod bench;
@@ -23,11 +23,11 @@ pub use run::{
     Viewpoint,
 };
 
-/// The files of a [`RunReport`]: the page, all figures, and the table.
+/// The names of a [`RunReport`]'s files: the page, all figures, and the table.
 pub const FILES: [&str; 3] = ["report.html", "report.json", "report.md"];
 
 impl RunReport {
-    /// Returns all figures, without the pictures.
+    /// Returns all figures as JSON, without the pictures.
     pub fn to_json(&self) -> Result<String, ReportError> {
         #[derive(Serialize)]
         struct Json<'a> {
@@ -47,7 +47,7 @@ impl RunReport {
         })?)
     }
 
-    /// The self-contained page.
+    /// Returns the self-contained page.
     pub fn to_html(&self) -> Result<String, ReportError> {
         page::render(self)
     }
@@ -95,7 +95,7 @@ pub(crate) mod tests {
         Cost { frame_ms: Summary::of(&samples).unwrap(), passes }
     }
 
-    /// A report on images made by formulas; `size` in pixels.
+    /// Returns a report on images made from formulas; `size` is in pixels.
     pub(crate) fn synthetic(size: u32, scenes: usize) -> RunReport {
         let names = ["street <b>&\"café\"</b>", "atrium | columns", "voxel landscape", "stage"];
         let scene = |index: usize| {

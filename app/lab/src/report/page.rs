@@ -1,4 +1,4 @@
-//! Pages: what the templates need, with pictures embedded.
+//! Pages: the data for the templates, with embedded pictures.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -18,13 +18,13 @@ use yoro_figures::text::short_count;
 
 const TEMPLATE: Template = Template { name: "run.html.j2", text: include_str!("templates/run.html.j2") };
 
-/// The most bytes that all pictures of a page may take, encoded in base64.
+/// The largest number of bytes, in base64, of all pictures on a page.
 pub(super) const PICTURE_BUDGET: usize = 14 << 20;
 
-/// Tried in order until the pictures fit: JPEG quality, and how many times photographs are halved.
+/// Encodings that are tried in order until the pictures fit: JPEG quality, and how often photographs are halved.
 const LADDER: [(u8, u32); 7] = [(90, 0), (84, 0), (76, 0), (66, 0), (80, 1), (66, 1), (66, 2)];
 
-/// Error maps are blurred by SSIM's window: half the size shows as much.
+/// Error maps are blurred by SSIM's window, so that half the size shows as much.
 const MAP_HALVINGS: u32 = 1;
 
 pub(super) fn render(report: &RunReport) -> Result<String, ReportError> {
@@ -111,13 +111,13 @@ fn row_text(row: &Row) -> minijinja::Value {
     }
 }
 
-/// A picture in the flick switch.
+/// A picture that the page's flick switch shows.
 #[derive(Serialize)]
 struct View {
     label: String,
-    /// `truth`, `method`, `same` or `map`.
+    /// One of `truth`, `method`, `same` and `map`.
     kind: &'static str,
-    /// Likeness to the ground truth; none for the ground truth itself.
+    /// The similarity to the ground truth; `None` for the ground truth itself.
     quality: Option<QualityText>,
     src: String,
 }
@@ -127,7 +127,7 @@ pub(super) struct ViewpointPictures {
     name: String,
     dominant_eye: &'static str,
     other_eye: &'static str,
-    /// Size of the views as rendered, in pixels.
+    /// The size in pixels of the views as rendered.
     width: u32,
     height: u32,
     views: Vec<View>,
@@ -140,11 +140,11 @@ pub(super) struct Pictures {
     pub note: String,
 }
 
-/// Viewpoints of each scene whose pictures are on the page: more would have to be shrunk to keep it small.
+/// The number of viewpoints per scene with pictures on the page. More would have to be shrunk to keep the page small.
 const PICTURED_VIEWPOINTS: usize = 1;
 
 impl Pictures {
-    /// The viewpoints of each scene, within a budget of bytes for all.
+    /// Encodes the pictures of each scene's viewpoints, within a budget of bytes for all.
     pub fn encode(scenes: &[&[Viewpoint]], budget: usize) -> Result<Pictures, ReportError> {
         let mut fitting = None;
         for (quality, halvings) in LADDER {
@@ -233,7 +233,7 @@ fn data_uri(image: &RgbImage, quality: u8, halvings: u32) -> Result<String, imag
     Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)))
 }
 
-/// The passes of two full renders and of each method, with bars on one scale.
+/// Returns the passes of two full renders and of each method, with bars on one scale.
 fn pass_columns(scene: &SceneReport) -> Vec<minijinja::Value> {
     let conventional = std::iter::once(("two full renders", &scene.conventional));
     let methods = scene.methods.iter().map(|method| (method.method.as_str(), &method.cost));
@@ -262,7 +262,7 @@ fn pass_columns(scene: &SceneReport) -> Vec<minijinja::Value> {
         .collect()
 }
 
-/// A quantity of the rows, as a plot shows it.
+/// A quantity of the rows that is plotted.
 struct Quantity {
     id: &'static str,
     title: &'static str,
@@ -270,7 +270,7 @@ struct Quantity {
     ours: fn(&Row) -> f64,
     baseline: fn(&Row) -> Option<f64>,
     papers: fn(&paper::PaperScene) -> f64,
-    /// The baseline, if it is the same in all rows.
+    /// The baseline, if all rows have the same one.
     line_at: Option<f64>,
 }
 
@@ -327,7 +327,7 @@ fn dot_row(scene: &SceneReport, quantity: &Quantity) -> DotRow {
         marks.extend(paper.map(|value| Mark::papers("paper", "the paper's", value)));
         marks.extend((quantity.baseline)(row).map(|value| Mark::new("same image", "same image", value)));
     }
-    // The first method stays on top of others with equal figures.
+    // The first method is drawn on top of others with equal figures.
     let ours = rows.iter().rev();
     marks.extend(ours.map(|row| Mark::new(&row.method, &row.method, (quantity.ours)(row))));
     DotRow { label: scene.name.clone(), marks }
@@ -381,7 +381,7 @@ mod tests {
         for foreign in ["http://", "https://", "<link", "url(", "@import", " src=\"/", "<script src"] {
             assert!(!html.contains(foreign), "{foreign}");
         }
-        // One of two viewpoints, with the truth, two methods, the same image and three error maps.
+        // One of two viewpoints: the truth, two methods, the same image, and three error maps.
         assert_eq!(html.matches("src=\"data:image/jpeg;base64,").count(), 7);
     }
 

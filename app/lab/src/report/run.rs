@@ -9,63 +9,63 @@ use yoro::eyes::Eye;
 use yoro_figures::paper::{self, PaperScene};
 use yoro_figures::stats::{Summary, geometric_mean, unique};
 
-/// The method behind the quality figures, printed wherever they are.
+/// Explains how quality is measured; printed wherever it is shown.
 pub const QUALITY_METHOD: &str = "PSNR in dB over red, green and blue, data range 255. SSIM as the mean of red, \
 green and blue: gaussian window 11x11, sigma 1.5 (Wang et al. 2004), and uniform window 7x7 (scikit-image's \
 default). The reference is the same eye, really rendered. Error maps show 1 - SSIM (gaussian) from 0, black, to \
 1, pale yellow.";
 
-/// All that one run measured.
+/// Everything that a run measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunReport {
-    /// Heading of the page.
+    /// The heading of the page.
     pub title: String,
     /// Machine, date and command.
     pub machine: Machine,
-    /// The resolved configuration, in the order to be printed.
+    /// The configuration with defaults filled in, in the order of printing.
     pub parameters: Vec<Parameter>,
-    /// The method behind the frame times: rounds, warm-up, interleaving, what a frame includes.
+    /// Explains how frame times are measured: rounds, warm-up, interleaving, what a frame includes.
     pub timing_method: String,
-    /// Scenes in the order of printing.
+    /// The scenes in the order of printing.
     pub scenes: Vec<SceneReport>,
 }
 
-/// One scene: pictures and figures.
+/// The pictures and figures of one scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneReport {
     /// The scene's name.
     pub name: String,
-    /// The scene of the paper that it stands for, by the paper's name; empty if for none.
+    /// The paper's name of the scene that it corresponds to, or empty.
     pub stands_for: String,
-    /// Triangles in the whole scene.
+    /// The number of triangles in the whole scene.
     pub triangles: u64,
     /// Two full renders.
     pub conventional: Cost,
     /// The methods that synthesize an eye.
     pub methods: Vec<MethodCost>,
-    /// Viewpoints, at least one; each with one view for each method.
+    /// The viewpoints, at least one, each with one view per method.
     pub viewpoints: Vec<Viewpoint>,
 }
 
 /// The cost of a stereo frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cost {
-    /// Time of a whole stereo frame in milliseconds.
+    /// The time of a whole stereo frame in milliseconds.
     pub frame_ms: Summary,
-    /// Its passes in order.
+    /// The passes in the order in which they run.
     pub passes: Vec<PassTime>,
 }
 
-/// Time of one pass.
+/// The time of one pass.
 #[derive(Clone, Debug, Serialize)]
 pub struct PassTime {
-    /// The pass's name, as in the timers.
+    /// The name of the pass, as in the timers.
     pub name: String,
-    /// Median in milliseconds.
+    /// The median time in milliseconds.
     pub ms: f64,
 }
 
-/// The cost of a stereo frame by one method.
+/// The cost of a stereo frame with one method.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodCost {
     /// The method's name.
@@ -75,7 +75,7 @@ pub struct MethodCost {
     pub cost: Cost,
 }
 
-/// One camera pose: the pictures and their quality. Pictures are not part of the JSON.
+/// One camera pose, with its pictures and their quality. The JSON does not contain the pictures.
 #[derive(Clone, Debug, Serialize)]
 pub struct Viewpoint {
     /// A short name, such as `pose 3`.
@@ -85,15 +85,15 @@ pub struct Viewpoint {
     /// The image of that eye.
     #[serde(skip)]
     pub dominant: RgbImage,
-    /// The other eye, really rendered.
+    /// A real render of the other eye.
     #[serde(skip)]
     pub ground_truth: RgbImage,
-    /// Likeness of the dominant eye's image to the ground truth: what showing it to both eyes would score.
+    /// The similarity of the dominant eye's image to the ground truth, which is the score of showing it to both eyes.
     pub same_image: Quality,
-    /// Error map of the same.
+    /// The error map of the dominant eye's image.
     #[serde(skip)]
     pub same_image_error: RgbImage,
-    /// The other eye as each method makes it.
+    /// The other eye as made by each method.
     pub views: Vec<MethodView>,
 }
 
@@ -108,13 +108,13 @@ pub struct MethodView {
     /// Its error map.
     #[serde(skip)]
     pub error: RgbImage,
-    /// Its likeness to the ground truth.
+    /// The similarity to the ground truth.
     pub quality: Quality,
 }
 
 impl Viewpoint {
-    /// Measures the images of one pose. All have one size and row 0 at the top; `synthesized` is the other eye as
-    /// each method (by name) makes it.
+    /// Measures the images of one pose. All have the same size, with row 0 at the top. `synthesized` is the other eye
+    /// as made by each method, by name.
     pub fn measure(
         name: impl Into<String>,
         dominant_eye: Eye,
@@ -140,7 +140,7 @@ impl Viewpoint {
     }
 }
 
-/// The figures of one method on one scene, means over its viewpoints, with their baselines.
+/// The figures of one method in one scene, as means over its viewpoints, with their baselines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// The scene's name.
@@ -151,15 +151,15 @@ pub struct Row {
     pub method: String,
     /// Quality of the synthesized eye.
     pub quality: Quality,
-    /// Baseline of the quality: the same image to both eyes.
+    /// The baseline for quality: the same image for both eyes.
     pub same_image: Quality,
-    /// Median time of a stereo frame in milliseconds.
+    /// The median time of a stereo frame in milliseconds.
     pub frame_ms: f64,
-    /// Baseline of the cost: median time of two full renders in milliseconds.
+    /// The baseline for cost: the median time of two full renders in milliseconds.
     pub conventional_ms: f64,
     /// `frame_ms / conventional_ms`.
     pub cost_ratio: f64,
-    /// The paper's figures of the scene that this one stands for.
+    /// The paper's figures for the scene that this one corresponds to.
     pub paper: Option<PaperScene>,
 }
 
@@ -168,24 +168,24 @@ pub struct Row {
 pub struct MethodMean {
     /// The method's name.
     pub method: String,
-    /// Scenes that it ran on.
+    /// The number of scenes with results of the method.
     pub scenes: usize,
-    /// Mean over the scenes.
+    /// The mean quality over the scenes.
     pub quality: Quality,
-    /// Baseline: the same image to both eyes, mean over the same scenes.
+    /// The baseline: the mean over the same scenes of showing the same image to both eyes.
     pub same_image: Quality,
-    /// Geometric mean over the scenes of the frame time over two full renders.
+    /// The geometric mean over the scenes of the frame time divided by that of two full renders.
     pub cost_ratio: f64,
 }
 
 impl RunReport {
-    /// Returns one row for each method on each scene, in the report's order. A method without any view of a scene has
-    /// no row there.
+    /// Returns one row for each method in each scene, in the order of the report. A method without a view of a scene
+    /// has no row for it.
     pub fn rows(&self) -> Vec<Row> {
         self.scenes.iter().flat_map(SceneReport::rows).collect()
     }
 
-    /// The means of the rows, in the order in which the methods first occur.
+    /// Returns the means of the rows, with the methods in the order of first occurrence.
     pub fn means(&self) -> Vec<MethodMean> {
         let rows = self.rows();
         let methods = unique(rows.iter().map(|row| row.method.as_str()));

@@ -11,7 +11,7 @@ fn pair(quality: &Quality) -> String {
     format!("{} / {:.4}", quality.psnr, quality.ssim_gaussian)
 }
 
-/// Returns one row for each scene and method, then the means.
+/// Returns the table in Markdown: one row for each scene and method, then the means.
 pub(super) fn markdown(report: &RunReport) -> String {
     let mut out = String::from(
         "| Scene | Triangles | Method | PSNR / SSIM | Same image to both eyes | SSIM 7x7 | Frame, ms | Two renders, ms | Ratio | The paper's PSNR / SSIM |\n\
@@ -60,7 +60,7 @@ pub(super) fn markdown(report: &RunReport) -> String {
     out
 }
 
-/// Returns one line for each scene and method, then the means.
+/// Returns the table as plain text: one line for each scene and method, then the means.
 pub(super) fn text(report: &RunReport) -> String {
     let (rows, means) = (report.rows(), report.means());
     let label = |scenes: usize| format!("mean of {scenes}");

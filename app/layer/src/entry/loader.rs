@@ -1,4 +1,4 @@
-//! The loader's interface, and the life of an instance.
+//! The functions for the OpenXR loader, and the creation and destruction of instances.
 
 use std::ffi::{CStr, c_char};
 
@@ -14,10 +14,10 @@ const DEPTH: &CStr = c"XR_KHR_composition_layer_depth";
 const GRAPHICS: [&CStr; 4] =
     [c"XR_KHR_vulkan_enable", c"XR_KHR_vulkan_enable2", c"XR_KHR_opengl_enable", c"XR_KHR_opengl_es_enable"];
 
-/// Negotiates the interface. It is the first function that a loader calls.
+/// Negotiates the interface version. It is the first function that a loader calls.
 ///
 /// # Safety
-/// `info` and `request` are null or point to structures of the sizes that they say.
+/// `info` and `request` are null or point to structures of the sizes that they state.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn xrNegotiateLoaderApiLayerInterface(
     info: *const sys::NegotiateLoaderInfo,
@@ -63,7 +63,7 @@ unsafe fn create_instance(
     layer: &sys::ApiLayerCreateInfo,
     handle: *mut sys::Instance,
 ) -> XrResult<sys::Result> {
-    // SAFETY: the loader's structures; names of extensions end in zero.
+    // SAFETY: the loader's structures; names of extensions are null-terminated.
     unsafe {
         let own = layer.next_info.as_ref().ok_or(sys::Result::ERROR_INITIALIZATION_FAILED)?;
         let functions = own.next_create_api_layer_instance.zip(own.next_get_instance_proc_addr);
@@ -80,7 +80,7 @@ unsafe fn create_instance(
         let mut takes_depth = enables(DEPTH);
         if result == sys::Result::ERROR_EXTENSION_NOT_PRESENT && takes_depth {
             takes_depth = false;
-            // The runtime lacks the extension. The layer takes the depth in its place.
+            // The runtime lacks the extension, so the layer accepts the depth instead.
             let rest: Vec<*const c_char> =
                 extensions.iter().copied().filter(|&extension| !is(extension, DEPTH)).collect();
             let info = sys::InstanceCreateInfo {
@@ -111,7 +111,7 @@ unsafe fn create_instance(
     }
 }
 
-/// xrDestroyInstance: also destroys the sessions that the application has left.
+/// Implements xrDestroyInstance. Also destroys the sessions that the application has not destroyed.
 pub unsafe extern "system" fn destroy_instance(handle: sys::Instance) -> sys::Result {
     without_panic(|| {
         let instance = objects::instance(handle).ok_or(sys::Result::ERROR_HANDLE_INVALID)?;

@@ -1,7 +1,7 @@
-//! The functions that loader and application call: a table of what is intercepted, and the work by trade.
+//! The functions that the loader and the application call: a table of the intercepted ones, and modules by topic.
 //!
-//! No panic leaves them. Calls with handles that the layer does not know, such as swapchains that an extension has
-//! created, pass on to the runtime as they are.
+//! No panic leaves them. Calls with handles that the layer does not know, such as swapchains created by an extension,
+//! are passed to the runtime unchanged.
 
 mod loader;
 mod sessions;
@@ -20,7 +20,7 @@ use crate::objects;
 
 pub use loader::xrNegotiateLoaderApiLayerInterface;
 
-/// Runs the work of a C function. A panic becomes ERROR_RUNTIME_FAILURE.
+/// Runs the body of a C function. A panic becomes ERROR_RUNTIME_FAILURE.
 fn without_panic(work: impl FnOnce() -> XrResult<sys::Result>) -> sys::Result {
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(result) | Err(result)) => result,
@@ -28,8 +28,8 @@ fn without_panic(work: impl FnOnce() -> XrResult<sys::Result>) -> sys::Result {
     }
 }
 
-/// Makes a C function for each line, and finds it by its name. Its first parameter is the handle of an instance, a
-/// session or a swapchain; the work gets the known object in its place.
+/// Defines a C function for each line, and a lookup by name. The first parameter is the handle of an instance, a
+/// session or a swapchain. The implementation receives the known object instead.
 macro_rules! intercept {
     ($($name:literal $function:ident: $kind:ident($handle:ident: $type:ty $(, $parameter:ident: $other:ty)*) => $work:path;)*) => {
         $(unsafe extern "system" fn $function($handle: $type $(, $parameter: $other)*) -> sys::Result {
@@ -44,11 +44,11 @@ macro_rules! intercept {
             })
         })*
 
-        /// Returns the layer's function of a name, if it intercepts it.
+        /// Returns the layer's function of a name, if the layer intercepts it.
         fn intercepted(name: &CStr) -> Option<pfn::VoidFunction> {
             $(if name == $name {
                 let function: pfn::$kind = $function;
-                // SAFETY: whoever asks for this name calls it as this type.
+                // SAFETY: the caller that asks for this name calls the function as this type.
                 return Some(unsafe { std::mem::transmute::<pfn::$kind, pfn::VoidFunction>(function) });
             })*
             None
@@ -121,14 +121,14 @@ unsafe extern "system" fn get_instance_proc_addr(
     function: *mut Option<pfn::VoidFunction>,
 ) -> sys::Result {
     without_panic(|| {
-        // SAFETY: the caller gives a string, and a place for a function.
+        // SAFETY: the caller passes a string, and a place for a function.
         let (name, function) = unsafe { (CStr::from_ptr(name), &mut *function) };
         *function = None;
         let instance = objects::instance(handle).ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
         // SAFETY: a live instance, and the same string.
         let result =
             check(unsafe { (instance.next.get_instance_proc_addr)(handle, name.as_ptr(), function) })?;
-        // The layer answers only for functions that the next one has for this instance.
+        // The layer only returns functions that the next layer has for this instance.
         if let Some(own) = own_function(name, &instance) {
             *function = Some(own);
         }
@@ -138,7 +138,7 @@ unsafe extern "system" fn get_instance_proc_addr(
 
 /// Returns the layer's function of a name, if it has one for this instance.
 fn own_function(name: &CStr, instance: &Instance) -> Option<pfn::VoidFunction> {
-    // SAFETY: whoever asks for these names calls them as these types.
+    // SAFETY: the caller that asks for these names calls the functions as these types.
     unsafe {
         if name == c"xrGetInstanceProcAddr" {
             let function: pfn::GetInstanceProcAddr = get_instance_proc_addr;

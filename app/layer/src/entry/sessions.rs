@@ -1,4 +1,4 @@
-//! Sessions and their frames. Each function is called as the specification says of the one of OpenXR.
+//! Sessions and their frames. Each function has the contract of its OpenXR counterpart.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -18,7 +18,7 @@ pub unsafe fn create(
     info: *const sys::SessionCreateInfo,
     created: *mut sys::Session,
 ) -> XrResult<sys::Result> {
-    // SAFETY: the application's arguments; the runtime has read and written them when it succeeds.
+    // SAFETY: the application's arguments. After a success, the runtime has read and written them.
     unsafe {
         let result = check((instance.next.create_session)(instance.handle, info, created))?;
         let binding = Binding::of(&*info);
@@ -27,7 +27,7 @@ pub unsafe fn create(
     }
 }
 
-/// Drops all that was made for a session, before the runtime destroys it.
+/// Drops everything that was created for a session, before the runtime destroys it.
 pub fn forget(live: &LiveSession) {
     lock(&live.frames).end(&live.session);
     objects::remove_session(live.session.handle);

@@ -1,4 +1,4 @@
-//! Swapchains and their images. Each function is called as the specification says of the one of OpenXR.
+//! Swapchains and their images. Each function has the contract of its OpenXR counterpart.
 
 use std::sync::Arc;
 
@@ -11,10 +11,10 @@ use crate::objects::{self, LiveSession};
 use crate::structures;
 use crate::swapchain::{Content, Swapchain};
 
-/// True if the images are subsampled: they can be read only by a sampler that was made for that.
+/// True if the images are subsampled. They can be read only with a special sampler.
 ///
 /// # Safety
-/// The structure of a call of xrCreateSwapchain.
+/// `info` is the structure of a call of xrCreateSwapchain.
 unsafe fn is_subsampled(info: &sys::SwapchainCreateInfo) -> bool {
     let ty = sys::VulkanSwapchainCreateInfoMETA::TYPE;
     // SAFETY: the structure's chain, and the structure of this type.
@@ -23,8 +23,8 @@ unsafe fn is_subsampled(info: &sys::SwapchainCreateInfo) -> bool {
     more.is_some_and(|more| more.additional_create_flags & u64::from(subsampled) != 0)
 }
 
-/// Creates a swapchain whose images the layer can read. If the runtime refuses that, it is created as the application
-/// wants it.
+/// Creates a swapchain whose images the layer can read. If the runtime refuses that, creates it as the application
+/// requests.
 pub unsafe fn create(
     live: &LiveSession,
     info: *const sys::SwapchainCreateInfo,

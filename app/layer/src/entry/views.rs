@@ -1,4 +1,4 @@
-//! View configurations and views. Each function is called as the specification says of the one of OpenXR.
+//! View configurations and views. Each function has the contract of its OpenXR counterpart.
 
 use std::ptr;
 
@@ -11,17 +11,17 @@ use crate::geometry::{xr_fov, xr_pose};
 use crate::instance::Instance;
 use crate::objects::{self, LiveSession};
 
-/// Answers a call for an array: its length, or, if there is room, its elements.
+/// Answers a call that asks for an array: writes its length and, if the capacity is not 0, its elements.
 ///
 /// # Safety
-/// `count` can be written, and `place` has room for `capacity` elements.
+/// `count` is writable, and `place` has room for `capacity` elements.
 unsafe fn answer<T: Copy>(
     list: &[T],
     capacity: u32,
     count: *mut u32,
     place: *mut T,
 ) -> XrResult<sys::Result> {
-    // SAFETY: the application's arguments, with as much room as it says.
+    // SAFETY: the application's arguments, with as much room as it states.
     unsafe {
         *count.as_mut().ok_or(sys::Result::ERROR_VALIDATION_FAILURE)? = list.len() as u32;
         match capacity {
@@ -73,7 +73,7 @@ pub unsafe fn enumerate_views(
 ) -> XrResult<sys::Result> {
     // SAFETY: the application's arguments.
     unsafe {
-        // The runtime fills what the application has chained to its views.
+        // The runtime fills in what the application has chained to its views.
         let room = if views.is_null() { 0 } else { capacity as usize };
         let chains = |count: usize| {
             [0, 1].map(|i| if room < count || i >= count { ptr::null_mut() } else { (*views.add(i)).next })
@@ -128,9 +128,9 @@ pub unsafe fn enumerate_reprojection_modes(
     Ok(unsafe { next(instance.handle, system, kind, capacity, count, modes) })
 }
 
-/// An event that names one of the runtime's two views names the offered one.
+/// Implements xrPollEvent. An event about one of the runtime's two views becomes one about the offered view.
 pub unsafe fn poll_event(instance: &Instance, event: *mut sys::EventDataBuffer) -> XrResult<sys::Result> {
-    // SAFETY: the application's own call; the event is of the type that it says.
+    // SAFETY: the application's own call. The event has the type that it states.
     unsafe {
         let result = check((instance.next.poll_event)(instance.handle, event))?;
         if result == sys::Result::SUCCESS && (*event).ty == sys::EventDataVisibilityMaskChangedKHR::TYPE {
@@ -144,7 +144,8 @@ pub unsafe fn poll_event(instance: &Instance, event: *mut sys::EventDataBuffer) 
     }
 }
 
-/// The runtime gets two views in place of one. What it recommends for an eye is enlarged as the offered view is.
+/// Implements xrGetRecommendedLayerResolutionMETA. The runtime receives two views instead of one. Its recommendation
+/// for an eye is enlarged to the offered view.
 pub unsafe fn recommended_layer_resolution(
     live: &LiveSession,
     info: *const sys::RecommendedLayerResolutionGetInfoMETA,
@@ -188,7 +189,7 @@ pub unsafe fn visibility_mask(
             ViewsOf::PRIMARY_STEREO if session.shrinks() && view == dominant => {}
             _ => return Ok(next(session.handle, kind, view, mask_kind, mask)),
         }
-        // One eye may see what is hidden from the other: nothing is hidden in the one view.
+        // One eye may see what is hidden from the other, so nothing is hidden in the one view.
         (*mask).vertex_count_output = 0;
         (*mask).index_count_output = 0;
     }
@@ -214,7 +215,7 @@ pub unsafe fn locate(
             let result = check(next(session.handle, &asked, state, capacity, count, views))?;
             let stereo = asked.view_configuration_type == ViewsOf::PRIMARY_STEREO;
             if stereo && session.views() == 2 && capacity >= 2 && !views.is_null() {
-                // The dominant view sees what both eyes see.
+                // The dominant view contains what both eyes see.
                 let (pose, frustum) = session.offer(&[*views, *views.add(1)]);
                 let own = &mut *views.add(settings.dominant.index());
                 (own.pose, own.fov) = (xr_pose(pose), xr_fov(frustum));
@@ -230,8 +231,8 @@ pub unsafe fn locate(
     }
 }
 
-/// xrCreateReferenceSpace in a world that stands still. Where LOCAL is depends on the moment at which a session begins;
-/// STAGE is always at the same place.
+/// Implements xrCreateReferenceSpace in a world that stands still. The origin of LOCAL depends on when the session
+/// begins, while that of STAGE is fixed.
 #[cfg(feature = "capture")]
 pub unsafe extern "system" fn create_reference_space(
     session: sys::Session,
@@ -251,7 +252,7 @@ pub unsafe extern "system" fn create_reference_space(
     })
 }
 
-/// xrLocateSpace at the time that the settings for tests name.
+/// Implements xrLocateSpace at the time that the settings for tests name.
 #[cfg(feature = "capture")]
 pub unsafe extern "system" fn locate_space(
     space: sys::Space,
@@ -260,7 +261,7 @@ pub unsafe extern "system" fn locate_space(
     location: *mut sys::SpaceLocation,
 ) -> sys::Result {
     super::without_panic(|| {
-        // The layer does not keep spaces; a test has one instance.
+        // The layer does not keep spaces, but a test has only one instance.
         let instance = objects::any_instance().ok_or(sys::Result::ERROR_HANDLE_INVALID)?;
         let time = instance.settings.time(time);
         // SAFETY: the application's own arguments.

@@ -1,4 +1,4 @@
-//! Pictures of what the runtime gets in one frame. For tests.
+//! Pictures of what the runtime receives in one frame. For tests.
 
 use std::sync::Arc;
 
@@ -11,10 +11,10 @@ use crate::session::Session;
 use crate::swapchain::Swapchain;
 use crate::synthesizer::{Image, Synthesizer};
 
-/// The frame of a session of which pictures are taken.
+/// The number of the frame, counted in each session, of which pictures are taken.
 pub const FRAME: u64 = 20;
 
-/// Writes a part of an image to a PNG of this name, if the settings name a folder for pictures.
+/// Writes a part of an image to a PNG file of this name, if the settings name a folder for pictures.
 ///
 /// # Safety
 /// As for [`Synthesizer::read`].
@@ -27,7 +27,7 @@ pub unsafe fn write(
 ) {
     let Some(folder) = &session.instance.settings.capture else { return };
     let path = folder.join(format!("{name}.png"));
-    // SAFETY: the caller's obligation is the same.
+    // SAFETY: same contract.
     let written = unsafe { synthesizer.read(image, part) }
         .and_then(|bytes| encode(part.size, &bytes).map_err(|error| error.to_string()))
         .and_then(|png| yoro_files::write(&path, &png).map_err(|error| error.to_string()));
@@ -42,7 +42,7 @@ pub unsafe fn write(
 /// The layers are those of a call of xrEndFrame.
 pub unsafe fn write_stereo(session: &Session, swapchains: &[Arc<Swapchain>], layers: Layers) {
     let Some(binding) = session.binding else { return };
-    // SAFETY: layers of the application's.
+    // SAFETY: the application's layers.
     let layer = layers.iter().find_map(|&layer| unsafe { projection(layer, 2) });
     let Some(layer) = layer else { return };
     // SAFETY: a layer of two views.
@@ -53,12 +53,12 @@ pub unsafe fn write_stereo(session: &Session, swapchains: &[Arc<Swapchain>], lay
         let Ok((content, image)) = held(swapchains, view.sub_image.swapchain, "colour") else { continue };
         let Ok(part) = rectangle(&view.sub_image, content) else { continue };
         let image = content.image(image, view.sub_image.image_array_index);
-        // SAFETY: the release of the image is held back; in xrEndFrame nobody else uses the queue or the context.
+        // SAFETY: the release of the image is held back. During xrEndFrame nobody else uses the queue or the context.
         unsafe { write(session, synthesizer.as_mut(), eye.name(), image, part) };
     }
 }
 
-/// Encodes red, green and blue, from the top.
+/// Encodes pixels of red, green and blue, with rows from the top.
 fn encode([width, height]: [u32; 2], bytes: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);

@@ -1,4 +1,4 @@
-//! Reading the structures that the application submits.
+//! Reads the structures that the application submits.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::swapchain::{Content, Swapchain};
 /// The application's layers of a frame.
 pub type Layers<'a> = &'a [*const sys::CompositionLayerBaseHeader];
 
-/// Returns the layers of a frame; none if the pointer to them is null.
+/// Returns the layers of a frame, or none if the pointer to them is null.
 ///
 /// # Safety
 /// `info` is the structure of a call of xrEndFrame.
@@ -20,18 +20,18 @@ pub unsafe fn layers(info: &sys::FrameEndInfo) -> Layers<'_> {
     if info.layers.is_null() {
         return &[];
     }
-    // SAFETY: an application gives as many layers as it counts.
+    // SAFETY: the application passes as many layers as it counts.
     unsafe { std::slice::from_raw_parts(info.layers, info.layer_count as usize) }
 }
 
 /// Returns a layer if it is a projection layer.
 ///
 /// # Safety
-/// The pointer is null, or to a structure of the type that it says.
+/// The pointer is null, or points to a structure of the type that it states.
 unsafe fn any_projection<'a>(
     layer: *const sys::CompositionLayerBaseHeader,
 ) -> Option<&'a sys::CompositionLayerProjection> {
-    // SAFETY: every layer begins with this header, and its type says what it is.
+    // SAFETY: every layer begins with this header, and its type tells what it is.
     unsafe {
         let is_one = layer.as_ref()?.ty == sys::CompositionLayerProjection::TYPE;
         is_one.then(|| &*layer.cast::<sys::CompositionLayerProjection>())
@@ -41,12 +41,12 @@ unsafe fn any_projection<'a>(
 /// Returns a layer if it is a projection layer with this number of views.
 ///
 /// # Safety
-/// The pointer is null, or to a structure of the type that it says.
+/// The pointer is null, or points to a structure of the type that it states.
 pub unsafe fn projection<'a>(
     layer: *const sys::CompositionLayerBaseHeader,
     views: usize,
 ) -> Option<&'a sys::CompositionLayerProjection> {
-    // SAFETY: the caller's obligation is the same.
+    // SAFETY: same contract.
     let layer = unsafe { any_projection(layer) }?;
     (layer.view_count as usize == views && !layer.views.is_null()).then_some(layer)
 }
@@ -56,17 +56,17 @@ pub unsafe fn projection<'a>(
 /// # Safety
 /// The layers are those of a call of xrEndFrame.
 pub unsafe fn all_have(layers: Layers, views: usize) -> bool {
-    // SAFETY: layers of the application's.
+    // SAFETY: the application's layers.
     layers
         .iter()
         .filter_map(|&layer| unsafe { any_projection(layer) })
         .all(|layer| layer.view_count as usize == views)
 }
 
-/// Returns the depth of a view, if its chain has it.
+/// Returns the depth of a view, if its chain contains it.
 ///
 /// # Safety
-/// The view is one of a submitted layer.
+/// The view belongs to a submitted layer.
 pub unsafe fn depth_of(
     view: &sys::CompositionLayerProjectionView,
 ) -> Option<&sys::CompositionLayerDepthInfoKHR> {
@@ -74,10 +74,10 @@ pub unsafe fn depth_of(
     unsafe { structures::find(view.next, sys::CompositionLayerDepthInfoKHR::TYPE) }
 }
 
-/// True if the rows of a layer's images are in the opposite order (XR_FB_composition_layer_image_layout).
+/// True if the images of a layer are vertically flipped (XR_FB_composition_layer_image_layout).
 ///
 /// # Safety
-/// The layer is a submitted one.
+/// The layer was submitted.
 pub unsafe fn is_upside_down(layer: &sys::CompositionLayerProjection) -> bool {
     let ty = sys::CompositionLayerImageLayoutFB::TYPE;
     // SAFETY: the layer's chain, and the structure of this type.
@@ -85,10 +85,10 @@ pub unsafe fn is_upside_down(layer: &sys::CompositionLayerProjection) -> bool {
     layout.is_some_and(|layout| layout.flags.contains(sys::CompositionLayerImageLayoutFlagsFB::VERTICAL_FLIP))
 }
 
-/// Returns the images of a swapchain and the one that the application has released last. `what` is colour or depth.
+/// Returns the images of a swapchain and the one that the application released last. `what` is colour or depth.
 ///
 /// # Errors
-/// [`Reason::Unreadable`], and [`Reason::Old`] if the runtime has the image already.
+/// [`Reason::Unreadable`], and [`Reason::Old`] if the runtime already owns the image.
 pub fn held<'a>(
     swapchains: &'a [Arc<Swapchain>],
     handle: sys::Swapchain,
@@ -102,7 +102,7 @@ pub fn held<'a>(
 /// Returns the rectangle of a sub-image.
 ///
 /// # Errors
-/// [`Reason::Beyond`] if it does not lie in the swapchain.
+/// [`Reason::Beyond`] if it does not lie inside the swapchain.
 pub fn rectangle(sub_image: &sys::SwapchainSubImage, content: &Content) -> Result<Rectangle, Reason> {
     let (offset, extent) = (sub_image.image_rect.offset, sub_image.image_rect.extent);
     let inside = |offset: i32, extent: i32, size: u32| {
@@ -119,7 +119,7 @@ pub fn rectangle(sub_image: &sys::SwapchainSubImage, content: &Content) -> Resul
     }
 }
 
-/// Returns the sub-image of a rectangle in a layer of a swapchain.
+/// Returns the sub-image for a rectangle in a layer of a swapchain.
 pub fn sub_image(swapchain: sys::Swapchain, part: Rectangle, layer: u32) -> sys::SwapchainSubImage {
     let [x, y] = part.origin.map(|pixels| pixels as i32);
     let [width, height] = part.size.map(|pixels| pixels as i32);

@@ -1,4 +1,4 @@
-//! xrEndFrame: a projection layer of one view becomes one of two.
+//! xrEndFrame: turns a projection layer of one view into one of two.
 
 #[cfg(feature = "capture")]
 mod capture;
@@ -38,37 +38,37 @@ const DEPTH: usize = 1;
 const ATTACHMENTS: [sys::SwapchainUsageFlags; 2] =
     [sys::SwapchainUsageFlags::COLOR_ATTACHMENT, sys::SwapchainUsageFlags::DEPTH_STENCIL_ATTACHMENT];
 
-/// The state that xrEndFrame keeps from frame to frame.
+/// The state that xrEndFrame keeps between frames.
 #[derive(Default)]
 pub struct Frames {
-    /// Created in the first frame that needs it; an error is final.
+    /// Created in the first frame that needs it. An error is final, except [`Reason::NotCurrent`].
     synthesizer: Option<Result<Box<dyn Synthesizer>, Reason>>,
-    /// Colour of the other eye, and its depth for runtimes that take depth.
+    /// Colour of the other eye, and its depth if the runtime accepts depth.
     targets: [Option<Target>; 2],
-    /// Formats of depth for which no target can be made.
+    /// Depth formats for which no target can be created.
     without_depth: Vec<i64>,
     /// The last synthesized view, while the targets still show it.
     last: Option<Synthesized>,
-    /// Kinds of reasons that are in the log.
+    /// The kinds of reasons that have been logged.
     told: HashSet<Discriminant<Reason>>,
     statistics: Statistics,
     report: Report,
 }
 
-/// A view that the application has submitted, with the images of its swapchains.
+/// A view that the application submitted, with the images of its swapchains.
 struct Source<'a> {
     view: &'a sys::CompositionLayerProjectionView,
     info: &'a sys::CompositionLayerDepthInfoKHR,
     /// Colour and depth.
     contents: [&'a Content; 2],
     images: [Image; 2],
-    /// The same rectangle in both images.
+    /// The rectangle, which is the same in both images.
     part: Rectangle,
     /// True if the rows of both images are in the opposite order.
     upside_down: bool,
 }
 
-/// xrEndFrame. `swapchains` are all of the session.
+/// Implements xrEndFrame. `swapchains` are all swapchains of the session.
 ///
 /// # Errors
 /// The result of the runtime's xrEndFrame, or of a release that was held back.
@@ -85,8 +85,8 @@ pub unsafe fn end_frame(
     let (views, next) = (session.views(), session.instance.next.end_frame);
     // SAFETY: the application's structure.
     let layers = unsafe { chain::layers(info) };
-    // The runtime has begun with two views: it would take what the application must not submit.
-    // SAFETY: the application's layers.
+    // The runtime has begun the session with two views, so it would accept layers of two views, which the application
+    // must not submit.
     if views == 1 && !unsafe { chain::all_have(layers, 1) } {
         return Err(sys::Result::ERROR_VALIDATION_FAILURE);
     }
@@ -96,8 +96,7 @@ pub unsafe fn end_frame(
         let mut frames = lock(frames);
         frames.statistics.frames += 1;
         frames.statistics.application += begun.map_or(Duration::ZERO, |begun| start.duration_since(begun));
-        // The runtime's xrEndFrame must find the context that the application has left.
-        // SAFETY: the session is live.
+        // The runtime's xrEndFrame must find the same current context that the application left.
         let _current =
             session.binding.filter(|_| session.reads_images()).and_then(|binding| unsafe { binding.hold() });
         // SAFETY: the application's layers, which live as long as `info`.
@@ -108,7 +107,7 @@ pub unsafe fn end_frame(
         (synthesized, released)
     };
     if let Err(failed) = released {
-        // What was not released cannot be shown, but the frame must end. The application gets now what
+        // An image that was not released cannot be shown, but the frame must end. The application now receives what
         // xrReleaseSwapchainImage would have returned.
         let empty = sys::FrameEndInfo { layer_count: 0, layers: std::ptr::null(), ..*info };
         // SAFETY: the application's call, without its layers.
@@ -120,7 +119,7 @@ pub unsafe fn end_frame(
         return Ok(unsafe { next(session.handle, info) });
     }
     let end = |rewritten: &mut Rewritten| {
-        // SAFETY: the application's layers, or ones like them, which live until the call returns.
+        // SAFETY: the application's layers, or copies of them, which live until the call returns.
         unsafe {
             let layers = rewritten.link(layers, views);
             let rewritten = sys::FrameEndInfo { layers: layers.as_ptr(), ..*info };
@@ -143,7 +142,7 @@ pub unsafe fn end_frame(
     Ok(result)
 }
 
-/// True for errors that xrEndFrame returns before anything has happened, so that it can be called again.
+/// True for errors that xrEndFrame returns before anything has happened, after which it can be called again.
 fn is_about_layers(result: sys::Result) -> bool {
     [
         sys::Result::ERROR_LAYER_INVALID,
@@ -154,7 +153,7 @@ fn is_about_layers(result: sys::Result) -> bool {
     .contains(&result)
 }
 
-/// Returns the layers to rewrite, each with its one view, or with the one of two that is not tiny.
+/// Returns the layers to rewrite. Each comes with its one view, or with the one of its two views that is not tiny.
 ///
 /// # Safety
 /// The layers are those of a call of xrEndFrame.
@@ -165,7 +164,7 @@ unsafe fn one_view_layers<'a>(
     let views = session.views();
     let index = if views == 2 { session.instance.settings.dominant.index() } else { 0 };
     layers.iter().filter_map(move |&layer| {
-        // SAFETY: layers of the application's; those of no views are none of a session that is rewritten.
+        // SAFETY: the application's layers. `views` is not 0 in a session that is rewritten.
         unsafe {
             let layer = projection(layer, views)?;
             Some((layer, &*layer.views.add(index)))
@@ -193,7 +192,7 @@ fn source<'a>(
     Ok(Source { view, info, contents: [color, depth], images, part, upside_down })
 }
 
-/// Returns the two eyes of a submitted view.
+/// Splits a submitted view into two eyes.
 fn split_source(offer: &Offer, source: &Source) -> Result<Split, Reason> {
     let Source { view, info, part, upside_down, .. } = source;
     let depth =
@@ -203,7 +202,7 @@ fn split_source(offer: &Offer, source: &Source) -> Result<Split, Reason> {
 }
 
 impl Frames {
-    /// Fills `rewritten` with two views for each layer of one. Returns true if one was synthesized.
+    /// Adds two views to `rewritten` for each layer to rewrite. Returns true if one was synthesized.
     ///
     /// # Safety
     /// The layers are those of a call of xrEndFrame.
@@ -248,10 +247,10 @@ impl Frames {
         done
     }
 
-    /// Returns the two views in place of one.
+    /// Returns the two views that replace one.
     ///
     /// # Safety
-    /// The view is one of this submitted layer.
+    /// The view belongs to this submitted layer.
     unsafe fn synthesize(
         &mut self,
         session: &Session,
@@ -288,7 +287,7 @@ impl Frames {
         #[cfg(feature = "capture")]
         let captures = self.statistics.frames == capture::FRAME;
         let synthesizer = self.synthesizer(binding)?;
-        // SAFETY: the runtime has none of these images: those of the source are held back, those of the target were
+        // SAFETY: the runtime owns none of these images: releases of the source's are held back, the target's were
         // acquired. In xrEndFrame the application lets nobody else use the queue (XR_KHR_vulkan_enable) or the context.
         let result = unsafe { synthesizer.synthesize(&job) };
         #[cfg(feature = "capture")]
@@ -302,14 +301,14 @@ impl Frames {
                 capture::write(session, synthesizer, dominant.other().name(), job.target, whole);
             }
         }
-        // Released also after an error: it is not shown then. A target that cannot be released is of no use any more.
+        // The images are released even after an error, and then not shown. A target that cannot be released is useless.
         let released = depth.map_or(Ok(()), |depth| depth.release(session));
         if let Err(reason) = color.release(session).and(released) {
             self.drop_target(session, COLOR);
             self.drop_target(session, DEPTH);
             return Err(reason);
         }
-        // The driver may be unable to write this format as depth.
+        // The driver may not be able to write this format as depth.
         if let (Err(reason @ (Reason::Gl(_) | Reason::Synthesis(_))), Some(_)) = (&result, depth) {
             self.give_up_depth(session, source.contents[DEPTH].format, reason);
         }
@@ -323,20 +322,20 @@ impl Frames {
         Ok(eyes)
     }
 
-    /// Returns the pipeline, after creating it if there is none yet.
+    /// Returns the pipeline, and creates it if necessary.
     fn synthesizer(&mut self, binding: Binding) -> Result<&mut dyn Synthesizer, Reason> {
-        // The context may be free in the next frame.
+        // The context may have become free.
         self.synthesizer.take_if(|made| matches!(made, Err(Reason::NotCurrent)));
-        // SAFETY: the application keeps its device or context until the session is destroyed, and `end` drops this
-        // before.
+        // SAFETY: the application keeps its device or context until the session is destroyed, and `end` drops the
+        // pipeline before that.
         match self.synthesizer.get_or_insert_with(|| unsafe { binding.synthesizer() }) {
             Ok(synthesizer) => Ok(synthesizer.as_mut()),
             Err(reason) => Err(reason.clone()),
         }
     }
 
-    /// Acquires images for the other eye, in swapchains like the application's: colour, and depth if the runtime takes
-    /// it.
+    /// Acquires images for the other eye, in swapchains like the application's: colour, and depth if the runtime
+    /// accepts it.
     fn acquire(
         &mut self,
         session: &Session,
@@ -367,7 +366,7 @@ impl Frames {
         Ok(acquired)
     }
 
-    /// Creates a target like the application's swapchain, unless there is one that fits.
+    /// Creates a target like the application's swapchain, unless the existing one fits.
     fn fit(
         &mut self,
         session: &Session,
@@ -382,7 +381,7 @@ impl Frames {
         Ok(())
     }
 
-    /// Stops submitting depth of a format to the runtime. The layer still needs the application's.
+    /// Stops submitting depth of a format to the runtime. The layer still needs the application's depth.
     fn give_up_depth(&mut self, session: &Session, format: i64, reason: &Reason) {
         self.without_depth.push(format);
         self.drop_target(session, DEPTH);
@@ -397,7 +396,7 @@ impl Frames {
         }
     }
 
-    /// Counts a layer that is shown to both eyes as it is. The log gets each kind of reason once.
+    /// Counts a layer that is shown unchanged to both eyes. Logs each kind of reason once.
     fn fall_back(&mut self, session: &Session, reason: Reason) {
         self.statistics.fallbacks += 1;
         if self.told.insert(std::mem::discriminant(&reason)) {
@@ -405,7 +404,7 @@ impl Frames {
         }
     }
 
-    /// Counts a synthesized layer that the runtime has refused.
+    /// Counts a synthesized layer that the runtime refused.
     fn refused(&mut self, session: &Session, reason: Reason) {
         self.last = None;
         self.statistics.synthesized -= 1;

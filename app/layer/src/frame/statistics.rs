@@ -10,20 +10,20 @@ use crate::say;
 pub struct Statistics {
     /// Calls of xrEndFrame.
     pub frames: u64,
-    /// Layers that became two views by synthesis.
+    /// Layers whose second view was synthesized.
     pub synthesized: u64,
-    /// Layers that were shown to both eyes as they are.
+    /// Layers that were shown unchanged to both eyes.
     pub fallbacks: u64,
     /// The application's time from xrBeginFrame to xrEndFrame.
     pub application: Duration,
-    /// The layer's time in xrEndFrame, without the runtime's own.
+    /// The layer's time in xrEndFrame, without the runtime's.
     pub layer: Duration,
     /// The GPU time of the synthesis of `timed` frames.
     pub gpu: Duration,
     pub timed: u64,
 }
 
-/// The mean of a number of times, in milliseconds; `na` if there are none.
+/// The mean of a number of times, in milliseconds. Displayed as `na` if there are none.
 struct Mean {
     sum: Duration,
     count: u64,
@@ -41,12 +41,12 @@ impl fmt::Display for Mean {
 /// Writes a line to the log once a second.
 #[derive(Default)]
 pub struct Report {
-    /// The time and the statistics of the last line.
+    /// The time of the last line, and the statistics at that time.
     last: Option<(Instant, Statistics)>,
 }
 
 impl Report {
-    /// Writes the line of the last second, if it is over.
+    /// Writes the line for the last second, if it is over.
     pub fn update(&mut self, now: &Statistics, application: &str) {
         let time = Instant::now();
         let (start, last) = *self.last.get_or_insert((time, *now));

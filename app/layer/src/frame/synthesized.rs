@@ -11,12 +11,12 @@ use super::target::Acquired;
 use crate::geometry::{Rectangle, Split, pose, xr_fov, xr_pose};
 use crate::swapchain::Swapchain;
 
-/// The inputs of the synthesized image, except for the pose.
+/// The inputs of a synthesized image, except for the pose.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Key {
-    /// Swapchain, layer and rectangle of colour and of depth.
+    /// Swapchain, array layer and rectangle of colour and of depth.
     parts: [(sys::Swapchain, u32, [i32; 4]); 2],
-    /// Number of releases of their images: the images are unchanged while it is.
+    /// The number of releases of their images. The images are unchanged while it stays the same.
     releases: [u64; 2],
     fov: [f32; 4],
     planes: [f32; 4],
@@ -46,7 +46,7 @@ impl Key {
     }
 }
 
-/// A synthesized view, while the targets hold it.
+/// A synthesized view that the targets still hold.
 pub struct Synthesized {
     pub key: Key,
     pub split: Split,
@@ -59,7 +59,7 @@ pub struct Synthesized {
 }
 
 impl Synthesized {
-    /// Returns the views again at the pose of this view, for which the key is still the same.
+    /// Returns the views for the pose of this view, whose key is the same.
     pub fn again(
         &self,
         view: &sys::CompositionLayerProjectionView,
@@ -74,8 +74,8 @@ impl Synthesized {
         Synthesized { split, ..*self }.eyes(view, info)
     }
 
-    /// Returns the views of both eyes: the dominant one's is a part of the application's image, the other one's is in
-    /// the targets.
+    /// Returns the views of both eyes. The dominant eye's view is a part of the application's image, and the other
+    /// eye's is in the targets.
     pub fn eyes(
         &self,
         view: &sys::CompositionLayerProjectionView,

@@ -10,11 +10,11 @@ use crate::session::Session;
 use crate::swapchain::Content;
 use crate::synthesizer::{Image, TIMEOUT};
 
-/// A swapchain of the other eye. It must be destroyed by [`Target::destroy`], unless its session is.
+/// A swapchain for the other eye. It must be destroyed with [`Target::destroy`], unless its session is destroyed.
 pub struct Target {
     pub handle: sys::Swapchain,
     pub content: Content,
-    /// An image that was acquired, but for which the runtime was late.
+    /// An image that was acquired, but that the runtime did not make available in time.
     acquired: Option<u32>,
 }
 
@@ -50,20 +50,20 @@ impl Target {
         match Content::new(next, binding, handle, &info) {
             Ok(content) => Ok(Target { handle, content, acquired: None }),
             Err(result) => {
-                // SAFETY: made above, and not used any more.
+                // SAFETY: made above, and no longer used.
                 unsafe { (next.destroy_swapchain)(handle) };
                 Err(Reason::Runtime("xrEnumerateSwapchainImages", result))
             }
         }
     }
 
-    /// True if it can stand for a swapchain of the application's.
+    /// True if this can replace a target like this swapchain of the application.
     pub fn fits(&self, like: &Content) -> bool {
         let Content { format, size, .. } = self.content;
         format == like.format && size[0] >= like.size[0] && size[1] >= like.size[1]
     }
 
-    /// Acquires an image to write to, and waits until the runtime is ready.
+    /// Acquires an image to write to, and waits until the runtime makes it available.
     ///
     /// # Errors
     /// [`Reason::Late`] after [`TIMEOUT`], and [`Reason::Runtime`].
@@ -94,14 +94,14 @@ impl Target {
         Ok(Acquired { swapchain: self.handle, image: self.content.image(*image, 0) })
     }
 
-    /// Destroys it. No command uses its images any more.
+    /// Destroys the swapchain. No command may still use its images.
     pub fn destroy(self, session: &Session) {
-        // SAFETY: the layer's own swapchain, which nothing refers to any more.
+        // SAFETY: the layer's own swapchain, which nothing refers to any longer.
         unsafe { (session.instance.next.destroy_swapchain)(self.handle) };
     }
 }
 
-/// An image of a [`Target`] that can be written.
+/// An image of a [`Target`] that can be written to.
 #[derive(Clone, Copy)]
 pub struct Acquired {
     pub swapchain: sys::Swapchain,
@@ -109,7 +109,7 @@ pub struct Acquired {
 }
 
 impl Acquired {
-    /// Gives the image to the runtime.
+    /// Releases the image to the runtime.
     ///
     /// # Errors
     /// [`Reason::Runtime`].

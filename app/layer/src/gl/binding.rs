@@ -1,4 +1,4 @@
-//! Contexts of the application, from EGL or GLX.
+//! The application's contexts, created with EGL or GLX.
 
 #[cfg(not(target_os = "android"))]
 use std::ffi::c_ulong;
@@ -10,7 +10,7 @@ use openxr_sys as sys;
 
 use crate::reason::Reason;
 
-/// Returns an entry point of GL, EGL or GLX by its name.
+/// A function that returns an entry point of GL, EGL or GLX by its name.
 type Load = unsafe extern "system" fn(*const c_char) -> *const c_void;
 
 const EGL_OPENGL_API: c_uint = 0x30A2;
@@ -18,13 +18,13 @@ const EGL_CONTEXT_CLIENT_TYPE: c_int = 0x3097;
 const EGL_DRAW: c_int = 0x3059;
 const EGL_READ: c_int = 0x305A;
 
-/// The libraries that may have the function that finds all others, and its name, if the application does not give it.
+/// The libraries that may have the function that finds all others, and its name, if the application does not pass it.
 #[cfg(target_os = "android")]
 const SYSTEM_LOADER: (&[&str], &[u8]) = (&["libEGL.so"], b"eglGetProcAddress\0");
 #[cfg(not(target_os = "android"))]
 const SYSTEM_LOADER: (&[&str], &[u8]) = (&["libGLX.so.0", "libGL.so.1"], b"glXGetProcAddressARB\0");
 
-/// The context of a session. Its pointers are only handed to EGL or GLX.
+/// The context of a session. Its pointers are only passed to EGL or GLX.
 #[derive(Clone, Copy)]
 pub enum Binding {
     Egl(Egl),
@@ -32,25 +32,25 @@ pub enum Binding {
     Glx(Glx),
 }
 
-// SAFETY: handles and functions, which EGL and GLX let any thread use.
+// SAFETY: handles and functions, which EGL and GLX allow any thread to use.
 unsafe impl Send for Binding {}
 // SAFETY: as above.
 unsafe impl Sync for Binding {}
 
 impl Binding {
-    /// Returns the context that a structure in the chain of XrSessionCreateInfo names; None for other structures, and
-    /// if EGL or GLX cannot be found.
+    /// Returns the context that a structure in the chain of XrSessionCreateInfo names, or `None` for other structures
+    /// and if EGL or GLX cannot be found.
     ///
     /// # Safety
-    /// The structure is of its type, and was given to a call of xrCreateSession that has succeeded.
+    /// The structure has the type that it states, and was passed to a successful call of xrCreateSession.
     pub unsafe fn of(header: &sys::BaseInStructure) -> Option<Binding> {
         let structure = std::ptr::from_ref(header);
-        // SAFETY: the type says what the structure is, and the runtime has accepted it.
+        // SAFETY: the type tells which structure it is, and the runtime has accepted it.
         unsafe {
             match header.ty {
                 sys::GraphicsBindingEGLMNDX::TYPE => {
                     let info = &*structure.cast::<sys::GraphicsBindingEGLMNDX>();
-                    // Both types are functions, or null, that return a function, or null.
+                    // Both types are nullable functions that return a nullable function.
                     let load = std::mem::transmute::<Option<sys::pfn::EglGetProcAddressMNDX>, Option<Load>>(
                         info.get_proc_address,
                     );
@@ -79,21 +79,21 @@ impl Binding {
         }
     }
 
-    /// Returns an entry point of GL; null if it does not exist.
+    /// Returns an entry point of GL, or null if it does not exist.
     pub fn load(&self, name: &CStr) -> *const c_void {
         let load = match self {
             Binding::Egl(egl) => egl.load,
             #[cfg(not(target_os = "android"))]
             Binding::Glx(glx) => glx.load,
         };
-        // SAFETY: a name that ends in zero.
+        // SAFETY: a null-terminated name.
         unsafe { load(name.as_ptr()) }
     }
 
-    /// Makes the context current on this thread, until the result is dropped.
+    /// Makes the context current on this thread until the result is dropped.
     ///
     /// # Errors
-    /// [`Reason::NotCurrent`]; the context may be current on another thread.
+    /// [`Reason::NotCurrent`], for example if the context is current on another thread.
     ///
     /// # Safety
     /// The context exists.
@@ -110,7 +110,7 @@ impl Binding {
     }
 }
 
-/// The context that was current before. It is current again when this is dropped, whoever has changed it.
+/// The context that was current before. Dropping this makes it current again, whatever is current by then.
 pub enum Current {
     Egl(Egl, EglState),
     #[cfg(not(target_os = "android"))]
@@ -119,7 +119,8 @@ pub enum Current {
 
 impl Drop for Current {
     fn drop(&mut self) {
-        // SAFETY: the state of this thread at `make_current`. A call that fails here fails for the application, too.
+        // SAFETY: the state of this thread at `make_current`. A call that fails here would also fail for the
+        // application.
         unsafe {
             match self {
                 Current::Egl(egl, state) => egl.restore(state),
@@ -134,7 +135,7 @@ impl Drop for Current {
 fn system_loader() -> Option<Load> {
     let (libraries, name) = SYSTEM_LOADER;
     static LIBRARY: OnceLock<Option<Library>> = OnceLock::new();
-    // SAFETY: the system's library, which the application has loaded before.
+    // SAFETY: a system library, which the application has already loaded.
     let open = || libraries.iter().find_map(|library| unsafe { Library::new(library).ok() });
     let library = LIBRARY.get_or_init(open).as_ref()?;
     // SAFETY: a function of this name has this type.
@@ -152,10 +153,10 @@ macro_rules! functions {
 
             $(#[$attribute])+
             impl $table {
-                /// Loads all functions; None if one is missing.
+                /// Loads all functions. Returns `None` if one is missing.
                 ///
                 /// # Safety
-                /// `load` returns the functions that are known by these names.
+                /// `load` returns the functions that have these names.
                 unsafe fn new(load: Load) -> Option<$table> {
                     // SAFETY: functions of these names have these types; null is `None`.
                     unsafe {
@@ -205,9 +206,9 @@ pub struct Egl {
     functions: EglFunctions,
 }
 
-/// The current state of EGL on a thread.
+/// EGL's current state on a thread.
 pub struct EglState {
-    /// The chosen interface; the fields below belong to [`Egl::api`].
+    /// The current API. The fields below belong to [`Egl::api`].
     api: c_uint,
     display: *mut c_void,
     draw: *mut c_void,
@@ -278,7 +279,7 @@ pub struct Glx {
     functions: GlxFunctions,
 }
 
-/// The current state of GLX on a thread.
+/// GLX's current state on a thread.
 #[cfg(not(target_os = "android"))]
 pub struct GlxState {
     display: *mut c_void,

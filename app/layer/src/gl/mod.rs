@@ -1,4 +1,4 @@
-//! Synthesis in the application's context of OpenGL or OpenGL ES. The context's state is set back afterwards.
+//! Synthesis in the application's OpenGL or OpenGL ES context, whose state is restored afterwards.
 
 mod binding;
 #[cfg(feature = "capture")]
@@ -28,26 +28,26 @@ pub struct Synthesizer {
     objects: ManuallyDrop<Objects>,
 }
 
-/// The objects in the context, which are used only while it is current.
+/// The objects in the context. They are used only while it is current.
 struct Objects {
     context: Rc<Context>,
     pipeline: Option<(Outputs, Box<dyn Synthesis>)>,
     /// Framebuffers by the colour and depth that are attached to them.
     targets: Vec<([Option<Image>; 2], glow::Framebuffer)>,
-    /// Copies of colour and depth, if only a part of an image is submitted.
+    /// Copies of colour and depth, used if only a part of an image is submitted.
     copies: [Option<Copy>; 2],
     timer: Option<Timer>,
 }
 
-/// A texture of a format and a size.
+/// A texture, its format and its size.
 struct Copy {
     texture: glow::Texture,
     format: i64,
     size: [u32; 2],
 }
 
-// SAFETY: objects of a context are used only while it is current, on one thread at a time, and so are the reference
-// counts beside them: `Frames` is locked meanwhile.
+// SAFETY: the objects of a context are used only while it is current, on one thread at a time, and so are the reference
+// counts next to them: `Frames` is locked meanwhile.
 unsafe impl Send for Synthesizer {}
 
 impl Synthesizer {
@@ -70,8 +70,8 @@ impl Synthesizer {
 
 impl Drop for Synthesizer {
     fn drop(&mut self) {
-        // SAFETY: the context exists, and its objects are not used any more. If it is current elsewhere, they stay
-        // until it is destroyed.
+        // SAFETY: the context exists, and its objects are no longer used. If it is current elsewhere, they remain until
+        // it is destroyed.
         unsafe {
             if let Ok(_current) = self.binding.make_current() {
                 self.objects.delete();
@@ -96,13 +96,13 @@ impl synthesizer::Synthesizer for Synthesizer {
         if !self.objects.targets.iter().any(|(target, _)| attached(target)) {
             return;
         }
-        // SAFETY: the context exists. If it is current elsewhere, the framebuffers stay until it is destroyed.
+        // SAFETY: the context exists. If it is current elsewhere, the framebuffers remain until it is destroyed.
         let current = unsafe { self.binding.make_current() };
         let Objects { context, targets, .. } = &mut *self.objects;
         targets.retain(|(target, framebuffer)| {
             let keep = !attached(target);
             if !keep && current.is_ok() {
-                // SAFETY: made here, and not used any more.
+                // SAFETY: made here, and no longer used.
                 unsafe { context.raw().delete_framebuffer(*framebuffer) };
             }
             keep
@@ -111,7 +111,7 @@ impl synthesizer::Synthesizer for Synthesizer {
 
     #[cfg(feature = "capture")]
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
-        // SAFETY: the caller's obligation is the same.
+        // SAFETY: same contract.
         unsafe { self.read_rgb(image, part) }
     }
 }
@@ -141,7 +141,7 @@ impl Objects {
         let context = Rc::clone(&self.context);
         let context = &*context;
         let _silence = Silence::begin(context);
-        // SAFETY: the context is current, and the images are textures of it.
+        // SAFETY: the context is current, and the images are its textures.
         let (source, framebuffer) = unsafe {
             let color = self.source(0, job.color, job.source)?;
             let depth = self.source(1, job.depth, job.source)?;
@@ -168,7 +168,7 @@ impl Objects {
         Ok(self.timer.as_mut().and_then(|timer| timer.time(context)))
     }
 
-    /// Returns a texture of this part of an image: the image itself, or a copy.
+    /// Returns a texture of this part of an image: the image itself, or a copy of the part.
     unsafe fn source(
         &mut self,
         which: usize,
@@ -186,7 +186,7 @@ impl Objects {
         }
         let gl = self.context.raw();
         let fits = |copy: &Copy| copy.format == image.format && copy.size == part.size;
-        // SAFETY: textures of this context; the rectangle lies in the image, and what is bound is bound again.
+        // SAFETY: textures of this context; the rectangle lies in the image, and bindings are restored.
         unsafe {
             let copy = match &mut self.copies[which] {
                 Some(copy) if fits(copy) => copy,
@@ -214,13 +214,13 @@ impl Objects {
         }
     }
 
-    /// Returns a framebuffer of an image of colour and perhaps of depth. It stays until one of them is forgotten.
+    /// Returns a framebuffer of colour and, if given, depth. It is kept until one of the images is forgotten.
     unsafe fn framebuffer(&mut self, images: [Option<Image>; 2]) -> Result<glow::Framebuffer, Reason> {
         if let Some((_, framebuffer)) = self.targets.iter().find(|(known, _)| *known == images) {
             return Ok(*framebuffer);
         }
         let gl = self.context.raw();
-        // SAFETY: textures of this context; what is bound is bound again.
+        // SAFETY: textures of this context; bindings are restored.
         unsafe {
             let made = gl.create_framebuffer();
             let framebuffer =
@@ -249,10 +249,10 @@ impl Objects {
         }
     }
 
-    /// Deletes the objects that do not delete themselves. Called before the drop.
+    /// Deletes the objects that do not delete themselves. Called before they are dropped.
     fn delete(&mut self) {
         let gl = self.context.raw();
-        // SAFETY: made here, and not used any more.
+        // SAFETY: made here, and no longer used.
         unsafe {
             for (_, framebuffer) in self.targets.drain(..) {
                 gl.delete_framebuffer(framebuffer);
@@ -267,13 +267,13 @@ impl Objects {
     }
 }
 
-/// Keeps the layer's debug messages, such as names of passes, out of the application's log of its context.
+/// Keeps the layer's debug messages, such as names of passes, out of the application's debug output.
 struct Silence<'a>(Option<&'a Context>);
 
 impl Silence<'_> {
     fn begin(context: &Context) -> Silence<'_> {
         let gl = context.raw();
-        // SAFETY: a capability that is there with debug groups.
+        // SAFETY: a capability that exists if debug groups do.
         let loud = context.capabilities().debug_groups && unsafe { gl.is_enabled(glow::DEBUG_OUTPUT) };
         if loud {
             // SAFETY: as above.

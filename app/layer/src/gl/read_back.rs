@@ -12,17 +12,17 @@ impl Synthesizer {
     /// Reads a rectangle of a colour image as red, green and blue.
     ///
     /// # Errors
-    /// If the format has not four bytes a pixel, or the context cannot be made current.
+    /// Fails if the format does not have four bytes per pixel, or the context cannot be made current.
     ///
     /// # Safety
     /// As for [`crate::synthesizer::Synthesizer::read`].
     pub(super) unsafe fn read_rgb(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
-        // OpenGL ES reads others in their own type.
+        // OpenGL ES reads other formats in their own type.
         let bytes = [glow::RGBA8, glow::SRGB8_ALPHA8].map(i64::from).contains(&image.format);
         if !bytes && self.objects.context.capabilities().api == GlApi::Es {
             return Err(format!("0x{:x} is no format of four bytes", image.format));
         }
-        // SAFETY: the caller's obligation is the same.
+        // SAFETY: same contract.
         let rows = unsafe {
             let _current = self.binding.make_current().map_err(|reason| reason.to_string())?;
             self.objects.read(image, part).map_err(|reason| reason.to_string())?
@@ -35,13 +35,13 @@ impl Synthesizer {
 }
 
 impl Objects {
-    /// Returns four bytes a pixel, rows from the bottom.
+    /// Returns four bytes per pixel, with rows from the bottom.
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
-        // SAFETY: the caller's obligation is the same.
+        // SAFETY: same contract.
         let framebuffer = unsafe { self.framebuffer([Some(image), None])? };
         let gl = self.context.raw();
         let before = bound_framebuffers(gl);
-        // SAFETY: state of the current context, which is set back.
+        // SAFETY: state of the current context, which is restored.
         unsafe {
             let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
             let stores =

@@ -19,7 +19,7 @@ use crate::geometry::Rectangle;
 use crate::reason::Reason;
 use crate::synthesizer::{self, Image, Job, TIMEOUT};
 
-/// The number of frames whose commands may be pending at the same time.
+/// The number of frames whose commands may be pending at once.
 const FRAMES: usize = 3;
 
 /// The device and the queue of a session.
@@ -48,7 +48,7 @@ impl Binding {
 
 /// Command buffers and the pipeline, for one session.
 pub struct Synthesizer {
-    // Before the device's other objects: it is dropped first.
+    // Declared before the other objects of the device, because it must be dropped first.
     gather: Option<(Gather, Options)>,
     sources: Vec<([Image; 2], SourceId)>,
     targets: Vec<([Option<Image>; 2], TargetId)>,
@@ -64,11 +64,11 @@ pub struct Synthesizer {
 #[derive(Clone, Copy, Default)]
 struct Slot {
     commands: vk::CommandBuffer,
-    /// Signalled when `commands` are not pending.
+    /// Signalled when `commands` is not pending.
     fence: vk::Fence,
 }
 
-/// Returns Vulkan's loader, which the application has loaded, too.
+/// Returns Vulkan's loader, which the application has loaded as well.
 fn entry() -> Option<&'static ash::Entry> {
     static ENTRY: OnceLock<Option<ash::Entry>> = OnceLock::new();
     // SAFETY: the system's library, which is never unloaded.
@@ -88,7 +88,7 @@ impl Synthesizer {
             let device = ash::Device::load(instance.fp_v1_0(), binding.device);
             (instance, device)
         };
-        // SAFETY: all objects are this device's.
+        // SAFETY: all objects belong to this device.
         unsafe {
             let queue = device.get_device_queue(binding.queue_family, binding.queue);
             let info = vk::CommandPoolCreateInfo::default()
@@ -122,7 +122,7 @@ impl Synthesizer {
         }
     }
 
-    /// Creates a pipeline for the formats and sizes of a job, unless there is one.
+    /// Creates a pipeline for the formats and sizes of a job, unless the existing one fits.
     unsafe fn make_gather(&mut self, job: &Job) -> Result<(), Reason> {
         let [source, target] = [job.color.size, job.target.size];
         let fits = |limit: [u32; 2], size: [u32; 2]| limit[0] >= size[0] && limit[1] >= size[1];
@@ -151,7 +151,7 @@ impl Synthesizer {
             physical_device: self.binding.physical_device,
             device: &self.device,
             queue_family: self.binding.queue_family,
-            // The layer does not know if the application has enabled them.
+            // The layer does not know whether the application has enabled them.
             dynamic_rendering: false,
             debug_utils: false,
         };
@@ -210,7 +210,7 @@ impl Synthesizer {
 
     unsafe fn begin(&self, slot: Slot) -> Result<(), Reason> {
         let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: commands of this device that are not pending. An error may have left them in the middle of recording.
+        // SAFETY: commands of this device that are not pending. An error may have left them being recorded.
         unsafe {
             let device = &self.device;
             device
@@ -223,7 +223,7 @@ impl Synthesizer {
     unsafe fn submit(&mut self, slot: Slot) -> Result<(), Reason> {
         let commands = [slot.commands];
         let submits = [vk::SubmitInfo::default().command_buffers(&commands)];
-        // SAFETY: recorded commands of this device, and a fence that nothing waits for any more.
+        // SAFETY: recorded commands of this device, and a fence that nothing is waiting for.
         unsafe {
             self.device.reset_fences(&[slot.fence]).map_err(Reason::Vulkan)?;
             if let Err(error) = self.device.queue_submit(self.queue, &submits, slot.fence) {
@@ -239,7 +239,7 @@ impl Synthesizer {
     unsafe fn renew_fence(&mut self) {
         let slot = &mut self.slots[self.frame % FRAMES];
         let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
-        // SAFETY: this device's fence, which nothing waits for.
+        // SAFETY: this device's fence, which nothing is waiting for.
         unsafe {
             if let Ok(fence) = self.device.create_fence(&signalled, None) {
                 self.device.destroy_fence(slot.fence, None);
@@ -250,7 +250,7 @@ impl Synthesizer {
 
     fn wait_for_all(&self) {
         for slot in self.slots.iter().filter(|slot| !slot.fence.is_null()) {
-            // SAFETY: this device's fence. On a device that is lost or hangs nothing is worth waiting for.
+            // SAFETY: this device's fence. Errors are ignored, since waiting for a lost or hanging device is pointless.
             unsafe {
                 self.device
                     .wait_for_fences(&[slot.fence], true, Duration::from_secs(5).as_nanos() as u64)
@@ -274,7 +274,7 @@ impl synthesizer::Synthesizer for Synthesizer {
             gather.record(slot.commands, &frame, job.warp).map_err(Reason::Synthesis)?;
             self.device.end_command_buffer(slot.commands).map_err(Reason::Vulkan)?;
             self.submit(slot)?;
-            // An error here only means that there are no times.
+            // An error here only means that no times are known.
             let times = made(&mut self.gather)?.pass_times().ok().flatten();
             Ok(times.map(|times| times.tiles + times.spans + times.march))
         }
@@ -309,12 +309,12 @@ impl synthesizer::Synthesizer for Synthesizer {
 
     #[cfg(feature = "capture")]
     unsafe fn read(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, String> {
-        // SAFETY: the caller's obligation is the same.
+        // SAFETY: same contract.
         unsafe { self.read_rgb(image, part) }
     }
 }
 
-/// Returns the pipeline, which was made before.
+/// Returns the pipeline, which must have been created.
 fn made(gather: &mut Option<(Gather, Options)>) -> Result<&mut Gather, Reason> {
     gather.as_mut().map(|(gather, _)| gather).ok_or(Reason::Panic)
 }
@@ -335,7 +335,7 @@ impl Drop for Synthesizer {
     fn drop(&mut self) {
         self.wait_for_all();
         self.gather = None;
-        // SAFETY: this device's objects, which no command uses any more.
+        // SAFETY: this device's objects, which no command uses.
         unsafe {
             for slot in &self.slots {
                 self.device.destroy_fence(slot.fence, None);

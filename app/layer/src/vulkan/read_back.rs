@@ -12,7 +12,7 @@ impl Synthesizer {
     /// Reads a rectangle of a colour image as red, green and blue.
     ///
     /// # Errors
-    /// If the format has not four bytes a pixel, or the device fails.
+    /// Fails if the format does not have four bytes per pixel, or the device fails.
     ///
     /// # Safety
     /// As for [`crate::synthesizer::Synthesizer::read`].
@@ -22,13 +22,13 @@ impl Synthesizer {
             vk::Format::B8G8R8A8_SRGB | vk::Format::B8G8R8A8_UNORM => [2, 1, 0],
             format => return Err(format!("{format:?} is no format of four bytes")),
         };
-        // SAFETY: the caller's obligation is the same.
+        // SAFETY: same contract.
         let bytes = unsafe { self.read_back(image, part) }.map_err(|reason| reason.to_string())?;
         Ok(bytes.chunks_exact(4).flat_map(|pixel| places.map(|place| pixel[place])).collect())
     }
 
-    /// Copies a rectangle of an image that is in the layout of a colour attachment, and waits for it. Returns four
-    /// bytes a pixel.
+    /// Copies a rectangle of an image that is in the layout of a colour attachment, and waits for the copy. Returns
+    /// four bytes per pixel.
     unsafe fn read_back(&mut self, image: Image, part: Rectangle) -> Result<Vec<u8>, Reason> {
         let slot = self.slots[self.frame % FRAMES];
         let bytes = u64::from(part.size[0]) * u64::from(part.size[1]) * 4;
@@ -117,7 +117,7 @@ impl Staging {
             memory: vk::DeviceMemory::null(),
             size,
         };
-        // SAFETY: a live device; what is made before an error is destroyed with the struct.
+        // SAFETY: a live device. What was created before an error is destroyed with the struct.
         unsafe {
             let info = vk::BufferCreateInfo::default().size(size).usage(vk::BufferUsageFlags::TRANSFER_DST);
             staging.buffer = device.create_buffer(&info, None).map_err(Reason::Vulkan)?;
@@ -137,7 +137,7 @@ impl Staging {
     }
 
     unsafe fn bytes(&self) -> Result<Vec<u8>, Reason> {
-        // SAFETY: host-visible memory of this size, which nothing writes any more.
+        // SAFETY: host-visible memory of this size, to which nothing is writing.
         unsafe {
             let flags = vk::MemoryMapFlags::empty();
             let start = self.device.map_memory(self.memory, 0, self.size, flags).map_err(Reason::Vulkan)?;
@@ -150,7 +150,7 @@ impl Staging {
 
 impl Drop for Staging {
     fn drop(&mut self) {
-        // SAFETY: this device's objects, which no command uses any more.
+        // SAFETY: this device's objects, which no command uses.
         unsafe {
             self.device.destroy_buffer(self.buffer, None);
             self.device.free_memory(self.memory, None);

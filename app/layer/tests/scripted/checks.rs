@@ -1,4 +1,4 @@
-//! Checks of what the runtime gets, against references.
+//! Compares what the runtime receives with references.
 
 use yoro::eyes::{DepthRange, EyePair, Frustum, GuardBand, Pose};
 use yoro::vulkan::{Frame, Gather, ImageState, Options, SourceImages, TargetImages};
@@ -37,13 +37,13 @@ pub fn psnr(a: &[u8], b: &[u8]) -> f64 {
     10.0 * (255f64.powi(2) * a.len() as f64 * 0.75 / squares.sum::<f64>()).log10()
 }
 
-/// Renders the reference of a view that was submitted to the runtime.
+/// Renders the reference for a view that was submitted to the runtime.
 pub fn truth(view: &log::View, samples: u32) -> Vec<u8> {
     let [.., width, height] = view.image.rect.map(|n| n as u32);
     scene::render(pose_of(view), frustum_of(view), [width, height], samples).rgba
 }
 
-/// Both eyes' images must be like the references at the submitted poses.
+/// Checks that both eyes' images are like the references at the submitted poses.
 pub fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
     let views = seen.views();
     assert_eq!(views.len(), 2, "{what}");
@@ -54,19 +54,19 @@ pub fn assert_seen(seen: &Seen, habits: &Habits, what: &str) {
     assert!(other > 31.0, "{what}: the other eye's image is none of that eye: {other} dB");
 }
 
-/// The runtime must find nothing wrong, and each session must have so many synthesized and other frames.
+/// Checks that the runtime found no violation, and that each session has these numbers of synthesized and other frames.
 pub fn assert_counts(seen: &Seen, counts: &[[u64; 2]], what: &str) {
     assert!(seen.violations().is_empty(), "{what}: {:?}", seen.violations());
     assert_eq!(seen.counts(), counts, "{what}: {}", seen.said);
 }
 
-/// The checks of [`assert_counts`], and of the last images those of [`assert_seen`].
+/// Does the checks of [`assert_counts`], and those of [`assert_seen`] for the last images.
 pub fn assert_sessions(seen: &Seen, habits: &Habits, counts: &[[u64; 2]], what: &str) {
     assert_counts(seen, counts, what);
     assert_seen(seen, habits, what);
 }
 
-/// The runtime must have both eyes' depth: in the rectangles of their colour, and like the references.
+/// Checks that the runtime has both eyes' depth, in the rectangles of their colour, and that it is like the references.
 pub fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
     let Planes { near, far, min, max } = habits.planes;
     for (eye, view) in seen.views().iter().enumerate() {
@@ -81,7 +81,7 @@ pub fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
         let truth = scene::render(pose_of(view), frustum_of(view), [width, height], 1).distance;
         let close = |(stored, distance): (&f32, &f32)| {
             let error = (stored - habits.planes.stored(*distance)).abs();
-            // The difference of neighbouring pixels, away from silhouettes.
+            // The difference between neighbouring pixels, away from silhouettes.
             error < 0.02 * (max - min) * (habits.planes.stored(0.8) - habits.planes.stored(6.0)).abs()
         };
         let got = seen.depth(eye);
@@ -93,7 +93,7 @@ pub fn assert_depth(seen: &Seen, habits: &Habits, what: &str) {
     }
 }
 
-/// The synthesized eye must be what the core synthesizes from the same source for the submitted views.
+/// Checks that the synthesized eye is what the core synthesizes from the same source for the submitted views.
 pub fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habits, what: &str) {
     let views = seen.views();
     let painted = client.painted.as_ref().unwrap();
@@ -132,14 +132,14 @@ pub fn assert_synthesized(gpu: &Gpu, seen: &Seen, client: &Client, habits: &Habi
     assert!(different * 200 <= want.len() / 4, "{what}: {different} pixels are not the core's");
 }
 
-/// The views' poses and fields of view must be the runtime's own eyes.
+/// Checks that the views' poses and fields of view are those of the runtime's own eyes.
 pub fn assert_own_eyes(seen: &Seen, script: &Script, pixels: f32, what: &str) {
     for (i, view) in seen.views().iter().enumerate() {
         let side = [-1.0, 1.0][i];
         let distance = (pose_of(view).position - glam::Vec3::X * side * 0.0315).length();
         assert!(distance < 1e-4, "{what}: eye {i} is at {:?}", view.position);
         for (got, want) in view.fov_degrees.iter().zip(script.eyes[i].fov_degrees) {
-            // Compared as tangents; a pixel of the headset is about 0.017.
+            // The angles are compared as tangents. A pixel of the headset is about 0.017.
             let error = got.to_radians().tan() - want.to_radians().tan();
             assert!(error.abs() < 1e-3 + 0.02 * pixels, "{what}: eye {i} sees {:?}", view.fov_degrees);
         }

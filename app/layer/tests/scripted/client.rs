@@ -1,4 +1,4 @@
-//! A scripted OpenXR application on the layer, with the simulated runtime below.
+//! A scripted OpenXR application above the layer, with the simulated runtime below it.
 
 use std::ffi::CStr;
 use std::ptr;
@@ -33,14 +33,14 @@ fn check(call: &'static str, result: sys::Result) -> Outcome<sys::Result> {
 
 macro_rules! functions {
     ($($field:ident: $kind:ident = $name:literal,)*) => {
-        /// The functions of OpenXR that an application gets.
+        /// The OpenXR functions that an application uses.
         struct Functions { $($field: pfn::$kind,)* }
 
         impl Functions {
             /// Finds all functions.
             ///
             /// # Safety
-            /// `get` is the xrGetInstanceProcAddr of this live instance.
+            /// `get` is the xrGetInstanceProcAddr for this live instance.
             unsafe fn new(get: pfn::GetInstanceProcAddr, instance: sys::Instance) -> Functions {
                 Functions { $($field: {
                     let mut function = None;
@@ -78,7 +78,7 @@ functions! {
     release_swapchain_image: ReleaseSwapchainImage = c"xrReleaseSwapchainImage",
 }
 
-/// Creates the runtime's instance: the end of the chain of layers, as a loader has it.
+/// Creates the runtime's instance, at the end of the chain of layers, as a loader does.
 unsafe extern "system" fn create_runtime_instance(
     info: *const sys::InstanceCreateInfo,
     _: *const sys::ApiLayerCreateInfo,
@@ -136,7 +136,7 @@ fn layer() -> sys::NegotiateApiLayerRequest {
     request
 }
 
-/// A swapchain, and its images.
+/// A swapchain and its images.
 pub struct Chain {
     pub handle: sys::Swapchain,
     /// VkImages, or names of textures.
@@ -167,7 +167,7 @@ impl Part {
     }
 }
 
-/// The meaning of depth: the distances in metres that are stored as `min` and as `max`.
+/// The meaning of the depth values: the distances in metres that are stored as `min` and as `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planes {
     pub near: f32,
@@ -194,7 +194,7 @@ pub struct View {
 }
 
 impl View {
-    /// Returns the view flipped to the sides, upside down, or both.
+    /// Returns the view flipped sideways, upside down, or both.
     pub fn flipped(self, [sides, upside_down]: [bool; 2]) -> View {
         let mut view = self;
         let (frustum, fov) = (&mut view.frustum, &mut view.raw.1);
@@ -254,7 +254,7 @@ pub struct Painted<'a> {
     planes: Planes,
     formats: [vk::Format; 2],
     pub picture: Picture,
-    /// Its depth in the form in which it is stored.
+    /// Its depth, as it is stored.
     stored: Vec<f32>,
     /// Colour and depth on Vulkan.
     images: Option<[harness::Image<'a>; 2]>,
@@ -283,9 +283,9 @@ pub struct Client<'a> {
     running: bool,
     pub over: bool,
     pub painted: Option<Painted<'a>>,
-    /// True if its images are upside down, and its layers say so.
+    /// True if the images are upside down, and the layers say so.
     pub upside_down: bool,
-    /// The view configurations and views of the events that told of another visibility mask.
+    /// The view configurations and views in events about a changed visibility mask.
     pub masks: Vec<(ViewsOf, u32)>,
 }
 
@@ -295,7 +295,7 @@ const IDENTITY: sys::Posef = sys::Posef {
 };
 
 impl<'a> Client<'a> {
-    /// Creates an instance with these extensions and those of its graphics, and finds the headset.
+    /// Creates an instance with these extensions and those for its graphics, and finds the headset.
     pub fn new(drawing: impl Into<Drawing<'a>>, name: &str, extensions: &[&CStr]) -> Outcome<Client<'a>> {
         let (drawing, layer) = (drawing.into(), layer());
         let mut next = sys::ApiLayerNextInfo {
@@ -342,7 +342,7 @@ impl<'a> Client<'a> {
         // SAFETY: complete structures.
         check("xrCreateInstance", unsafe { create(&info, &chain, &mut instance) })?;
         let get = layer.get_instance_proc_addr.unwrap();
-        // SAFETY: the instance was just made.
+        // SAFETY: the instance was just created.
         let xr = unsafe { Functions::new(get, instance) };
         let mut client = Client {
             drawing,
@@ -373,7 +373,7 @@ impl<'a> Client<'a> {
     pub fn configurations(&self) -> Outcome<Vec<ViewsOf>> {
         let (mut list, mut count) = ([ViewsOf::PRIMARY_MONO; 8], 0);
         let call = self.xr.enumerate_view_configurations;
-        // SAFETY: room for as many as is said.
+        // SAFETY: room for as many elements as stated.
         let result = unsafe { call(self.instance, self.system, 8, &mut count, list.as_mut_ptr()) };
         check("xrEnumerateViewConfigurations", result)?;
         Ok(list[..count as usize].to_vec())
@@ -386,7 +386,7 @@ impl<'a> Client<'a> {
         let mut views = [sys::ViewConfigurationView { ty: sys::ViewConfigurationView::TYPE, ..empty }; 2];
         let mut count = 0;
         let call = self.xr.enumerate_view_configuration_views;
-        // SAFETY: room for as many as is said.
+        // SAFETY: room for as many elements as stated.
         let result =
             unsafe { call(self.instance, self.system, self.views, 2, &mut count, views.as_mut_ptr()) };
         check("xrEnumerateViewConfigurationViews", result)?;
@@ -428,7 +428,7 @@ impl<'a> Client<'a> {
         Ok(())
     }
 
-    /// Takes the runtime's events, and begins and ends the session accordingly.
+    /// Handles the runtime's events, and begins and ends the session accordingly.
     pub fn poll(&mut self) -> Outcome<()> {
         loop {
             // SAFETY: plain data.
@@ -440,7 +440,7 @@ impl<'a> Client<'a> {
                 return Ok(());
             }
             if event.ty == sys::EventDataVisibilityMaskChangedKHR::TYPE {
-                // SAFETY: of this type.
+                // SAFETY: the event has this type.
                 let event = unsafe { *(&raw const event).cast::<sys::EventDataVisibilityMaskChangedKHR>() };
                 assert_eq!(event.session, self.session);
                 self.masks.push((event.view_configuration_type, event.view_index));
@@ -448,7 +448,7 @@ impl<'a> Client<'a> {
             if event.ty != sys::EventDataSessionStateChanged::TYPE {
                 continue;
             }
-            // SAFETY: of this type.
+            // SAFETY: the event has this type.
             let state = unsafe { (*(&raw const event).cast::<sys::EventDataSessionStateChanged>()).state };
             match state {
                 sys::SessionState::READY => {
@@ -514,7 +514,7 @@ impl<'a> Client<'a> {
 
     /// Creates a swapchain that the layer does not know, as functions of extensions do.
     pub fn chain_below_the_layer(&self) -> Outcome<Chain> {
-        // SAFETY: a live instance of the runtime's, too.
+        // SAFETY: the instance is also a live instance of the runtime.
         let xr = unsafe { Functions::new(runtime(), self.instance) };
         let info = self.chain_info(vk::Format::R8G8B8A8_SRGB, [64; 2], 1);
         let mut handle = sys::Swapchain::NULL;
@@ -529,12 +529,12 @@ impl<'a> Client<'a> {
     /// Returns a function that destroys a swapchain on any thread.
     pub fn destroyer(&self, chain: Chain) -> impl Fn() -> sys::Result + Send + Sync + 'static {
         let destroy = self.xr.destroy_swapchain;
-        // SAFETY: called once, and not used any more.
+        // SAFETY: called once, and no longer used.
         move || unsafe { destroy(chain.handle) }
     }
 
     pub fn destroy_chain(&self, chain: Chain) -> Outcome<()> {
-        // SAFETY: not used any more.
+        // SAFETY: no longer used.
         check("xrDestroySwapchain", unsafe { (self.xr.destroy_swapchain)(chain.handle) }).map(|_| ())
     }
 
@@ -563,7 +563,7 @@ impl<'a> Client<'a> {
         check("xrBeginFrame", unsafe { (self.xr.begin_frame)(self.session, ptr::null()) }).map(|_| ())
     }
 
-    /// Locates the views of a frame: as many as the configuration has.
+    /// Locates the views of a frame, as many as the configuration has.
     pub fn locate(&mut self, frame: Frame) -> Outcome<[Option<View>; 2]> {
         let fov = sys::Fovf { angle_left: 0.0, angle_right: 0.0, angle_up: 0.0, angle_down: 0.0 };
         let mut views = [sys::View { ty: sys::View::TYPE, next: ptr::null_mut(), pose: IDENTITY, fov }; 2];
@@ -598,7 +598,7 @@ impl<'a> Client<'a> {
             view_state_flags: sys::ViewStateFlags::EMPTY,
         };
         let (call, room, mut count) = (self.xr.locate_views, views.len() as u32, 0);
-        // SAFETY: complete structures, and room for as many as is said.
+        // SAFETY: complete structures, and room for as many elements as stated.
         let result = unsafe { call(self.session, &info, &mut state, room, &mut count, views.as_mut_ptr()) };
         check("xrLocateViews", result)?;
         Ok(count as usize)
@@ -635,7 +635,7 @@ impl<'a> Client<'a> {
         check("xrReleaseSwapchainImage", result).map(|_| ())
     }
 
-    /// Renders what a view sees, unless it was rendered last.
+    /// Renders what a view sees, unless this was rendered last.
     pub fn paint(
         &mut self,
         view: View,
@@ -677,7 +677,7 @@ impl<'a> Client<'a> {
         }
     }
 
-    /// Copies the painted depth.
+    /// Copies the painted depth to a part of a swapchain's image.
     pub fn copy_depth(&self, to: u64, part: Part) {
         let painted = self.painted.as_ref().unwrap();
         match self.drawing {
@@ -785,14 +785,14 @@ impl<'a> Client<'a> {
 
     pub fn destroy_session(&mut self) -> Outcome<()> {
         self.running = false;
-        // SAFETY: not used any more.
+        // SAFETY: no longer used.
         let result =
             unsafe { (self.xr.destroy_session)(std::mem::replace(&mut self.session, sys::Session::NULL)) };
         check("xrDestroySession", result).map(|_| ())
     }
 }
 
-/// Copies an image to a part of a swapchain's.
+/// Copies an image to a part of a swapchain's image.
 fn copy(gpu: &Gpu, from: &harness::Image, to: vk::Image, part: Part) {
     let depth = harness::is_depth(from.format);
     let (state, aspect_mask) = if depth {
@@ -848,7 +848,7 @@ fn copy(gpu: &Gpu, from: &harness::Image, to: vk::Image, part: Part) {
 
 impl Drop for Client<'_> {
     fn drop(&mut self) {
-        // SAFETY: not used any more. Whatever is left is destroyed with it.
+        // SAFETY: no longer used. Everything that is left is destroyed with it.
         unsafe { (self.xr.destroy_instance)(self.instance) };
     }
 }

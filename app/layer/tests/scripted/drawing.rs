@@ -1,4 +1,4 @@
-//! The application's graphics: Vulkan, or OpenGL ES in a context of EGL.
+//! The application's graphics: Vulkan, or OpenGL ES in an EGL context.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
@@ -37,7 +37,7 @@ pub fn with_gles(body: impl FnOnce(&Gles)) {
 }
 
 impl Gles<'_> {
-    /// Counts the objects of each kind. Drivers number them in turn.
+    /// Counts the objects of each kind. Drivers number objects consecutively.
     fn objects(&self) -> Vec<(&'static CStr, usize)> {
         const KINDS: [&CStr; 9] = [
             c"glIsBuffer",
@@ -52,7 +52,7 @@ impl Gles<'_> {
         ];
         const NAMES: std::ops::Range<u32> = 1..10_000;
         let count = |kind: &CStr| {
-            // SAFETY: EGL's function, and questions of this type; the context is current.
+            // SAFETY: EGL's function, and queries of this type; the context is current.
             unsafe {
                 type Load = unsafe extern "C" fn(*const c_char) -> Option<unsafe extern "C" fn(u32) -> u8>;
                 let load = std::mem::transmute::<*const c_void, Load>(self.binding.get_proc_address);
@@ -60,18 +60,18 @@ impl Gles<'_> {
                 NAMES.filter(|name| is(*name) != 0).count()
             }
         };
-        // Without a current context there would be none.
+        // Without a current context the counts would be 0.
         assert!(count(c"glIsTexture") > 0);
         KINDS.into_iter().map(|kind| (kind, count(kind))).collect()
     }
 
-    /// Fills a part of a texture. With a layer other than the first, the texture is an array.
+    /// Fills a part of a texture. If the layer is not the first, the texture is an array.
     fn upload(&self, texture: u64, part: Part, [format, kind]: [u32; 2], bytes: &[u8]) {
         let texture = u32::try_from(texture).ok().and_then(std::num::NonZeroU32::new);
         let ([x, y], [width, height]) = (part.origin.map(|n| n as i32), part.size.map(|n| n as i32));
         let (gl, layer) = (self.gl.raw(), part.layer as i32);
         let target = if layer == 0 { glow::TEXTURE_2D } else { glow::TEXTURE_2D_ARRAY };
-        // SAFETY: the application's own context, a texture of it, and bytes for all of the part.
+        // SAFETY: the application's own context, one of its textures, and bytes for the whole part.
         unsafe {
             gl.bind_texture(target, texture.map(glow::NativeTexture));
             let pixels = glow::PixelUnpackData::Slice(Some(bytes));
@@ -106,7 +106,7 @@ impl<'a> From<&'a Gles<'a>> for Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Counts objects of OpenGL.
+    /// Counts OpenGL objects.
     pub fn objects(self) -> Vec<(&'static CStr, usize)> {
         match self {
             Drawing::Vulkan(_) => Vec::new(),
@@ -121,7 +121,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Makes the call that must come before a session. Returns its name and its result.
+    /// Makes the call that is required before a session is created. Returns its name and its result.
     pub fn ask_requirements(
         self,
         get: pfn::GetInstanceProcAddr,
@@ -175,7 +175,7 @@ impl Drawing<'_> {
                 let binding = sys::GraphicsBindingEGLMNDX {
                     ty: sys::GraphicsBindingEGLMNDX::TYPE,
                     next: ptr::null(),
-                    // SAFETY: eglGetProcAddress is of this type.
+                    // SAFETY: eglGetProcAddress has this type.
                     get_proc_address: unsafe {
                         std::mem::transmute::<*const c_void, Option<pfn::EglGetProcAddressMNDX>>(
                             binding.get_proc_address,
@@ -190,7 +190,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Returns the number of a format in XrSwapchainCreateInfo.
+    /// Returns the number of a format, as in XrSwapchainCreateInfo.
     pub fn format(self, format: vk::Format) -> i64 {
         match self {
             Drawing::Vulkan(_) => format.as_raw().into(),
@@ -208,7 +208,7 @@ impl Drawing<'_> {
         const MOST: usize = 8;
         let mut count = 0;
         let ask = |images: *mut sys::SwapchainImageBaseHeader, count: &mut u32| {
-            // SAFETY: room for as many as is said.
+            // SAFETY: room for as many elements as stated.
             unsafe { enumerate(swapchain, MOST as u32, count, images) }
         };
         match self {

@@ -1,4 +1,4 @@
-//! Faults and losses of the runtime.
+//! Faults of the runtime, and lost sessions and instances.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
@@ -14,15 +14,15 @@ use crate::client::{Client, DEPTH, Failure, Outcome};
 use crate::habits::{Chains, Habits, SRGB, begin_session, frames, run, until_over, with_session};
 use crate::world::{faulty, script, watched, with_gpu};
 
-/// When a function of the runtime fails, once or from then on, the application's call of the same name may fail, as
-/// without the layer, and no other one. After a single failure everything is synthesized again.
+/// When a function of the runtime fails, once or from then on, only the application's call of the same name may fail,
+/// as without the layer. After a single failure everything is synthesized again.
 #[test]
 fn no_fault_of_the_runtime_fails_another_call() {
     with_gpu(|gpu| {
         let habits = Habits { frames: 2, ..Habits::PLAIN };
         let quiet = |faults| Script { faults, pictures: None, ..script() };
         let all = watched(quiet(vec![]), || drop(run(gpu, &habits).unwrap())).calls();
-        // Functions that the layer does not intercept, or that come before it.
+        // Functions that the layer does not intercept, or that are called before it exists.
         let not = [
             "xrCreateInstance",
             "xrDestroyInstance",
@@ -55,7 +55,7 @@ fn no_fault_of_the_runtime_fails_another_call() {
                         let counts = seen.counts();
                         assert_eq!(counts.iter().flatten().sum::<u64>(), 4, "{what}: {}", seen.said);
                         let synthesized = seen.views()[0].image != seen.views()[1].image;
-                        // Swapchains that the layer could not create readable stay so.
+                        // Swapchains that the layer could not create in a readable form remain unreadable.
                         let lasts = and_later || making.contains(&call.as_str());
                         assert!(synthesized || lasts, "{what}: {}", seen.said);
                         assert_eq!(
@@ -74,15 +74,15 @@ fn no_fault_of_the_runtime_fails_another_call() {
     });
 }
 
-/// Views that the runtime refuses are submitted again as the application has rendered them; a late runtime is not
-/// waited for.
+/// If the runtime refuses the two views, the layers are submitted again as the application rendered them. A late
+/// runtime is not waited for.
 #[test]
 fn a_refused_or_late_runtime_costs_one_frame() {
     with_gpu(|gpu| {
         let cases = [
             ("xrEndFrame", 3, sys::Result::ERROR_LAYER_INVALID, "xrEndFrame fails with ERROR_LAYER_INVALID"),
             ("xrEndFrame", 3, sys::Result::ERROR_POSE_INVALID, "xrEndFrame fails with ERROR_POSE_INVALID"),
-            // Each frame, the application waits for colour and depth, then the layer does.
+            // In each frame, the application waits for colour and depth, and then the layer does.
             ("xrWaitSwapchainImage", 7, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
             ("xrWaitSwapchainImage", 8, sys::Result::TIMEOUT_EXPIRED, "the GPU or the runtime is late"),
         ];
@@ -96,7 +96,7 @@ fn a_refused_or_late_runtime_costs_one_frame() {
     });
 }
 
-/// The application goes on with a new session.
+/// The application continues with a new session.
 #[test]
 fn sessions_and_instances_can_be_lost_in_every_state() {
     with_gpu(|gpu| {
@@ -104,7 +104,7 @@ fn sessions_and_instances_can_be_lost_in_every_state() {
         let ends =
             [What::LoseSession, What::LoseInstance, What::SessionLossPending, What::Exit, What::TakeOff(2)];
         for (state, end) in states.iter().flat_map(|state| ends.iter().map(move |end| (*state, end))) {
-            // An application that is to begin and to end at the same time cannot do right.
+            // An application that has to begin and to end at the same time cannot do both correctly.
             if matches!(end, What::Exit | What::TakeOff(_)) && state < State::Synchronized {
                 continue;
             }
@@ -134,7 +134,7 @@ fn sessions_and_instances_can_be_lost_in_every_state() {
     });
 }
 
-/// A session that will be lost soon says so in every call; these succeed.
+/// If a session will be lost soon, every call says so and succeeds.
 #[test]
 fn a_session_stays_stereo_until_it_is_lost() {
     with_gpu(|gpu| {
@@ -147,7 +147,7 @@ fn a_session_stays_stereo_until_it_is_lost() {
     });
 }
 
-/// A release that the layer has held back fails in xrEndFrame. The frame ends, and the image is released later.
+/// A release that the layer held back fails in xrEndFrame. The frame ends, and the image is released later.
 #[test]
 fn a_release_that_fails_late_costs_one_frame() {
     with_gpu(|gpu| {

@@ -15,22 +15,22 @@ pub const D32: vk::Format = vk::Format::D32_SFLOAT;
 /// The rendering habits of an application.
 #[derive(Clone, Copy, Debug)]
 pub struct Habits {
-    /// The name that it gives itself.
+    /// The name that the application states.
     pub name: &'static str,
-    /// The size of its images in recommended sizes.
+    /// The size of its images, as a multiple of the recommended size.
     pub scale: f32,
-    /// Pixels of the swapchains on each side of the rendered rectangle.
+    /// Extra pixels of the swapchains on each side of the rendered rectangle.
     pub margin: [u32; 2],
-    /// The number of layers of the swapchains, and the rendered one.
+    /// The number of layers of the swapchains, and the index of the rendered layer.
     pub layers: [u32; 2],
     pub formats: [vk::Format; 2],
     pub planes: Planes,
-    /// Samples along one side of a pixel.
+    /// The number of samples along one side of a pixel.
     pub samples: u32,
     pub submits_depth: bool,
-    /// True if its field of view is flipped to the sides, and upside down.
+    /// True if the field of view is flipped sideways, and upside down.
     pub flips: [bool; 2],
-    /// True if its images are upside down, and its layers say so.
+    /// True if the images are upside down, and the layers say so.
     pub upside_down: bool,
     pub frames: u32,
 }
@@ -78,7 +78,7 @@ impl Chains {
     }
 }
 
-/// Renders a view to the swapchains. Returns what is to be submitted.
+/// Renders a view to the swapchains. Returns what to submit.
 pub fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View) -> Outcome<Submitted> {
     client.paint(view, chains.part.size, habits.samples, habits.formats, habits.planes);
     let image = client.acquire(&chains.color)?;
@@ -94,21 +94,21 @@ pub fn render(client: &mut Client, chains: &Chains, habits: &Habits, view: View)
     Ok(Submitted { view, color: chains.part, depth })
 }
 
-/// Begins a session, and makes its swapchains.
+/// Begins a session, and creates its swapchains.
 pub fn begin_session(client: &mut Client, habits: &Habits) -> Outcome<Chains> {
     client.create_session()?;
     client.poll()?;
     Chains::new(client, habits)
 }
 
-/// Begins a frame and renders its view. Returns what is to be submitted.
+/// Begins a frame and renders its view. Returns what to submit.
 pub fn begin_rendered(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<(Frame, Submitted)> {
     let frame = client.begin_frame()?;
     let view = client.locate(frame)?[0].unwrap().flipped(habits.flips);
     Ok((frame, render(client, chains, habits, view)?))
 }
 
-/// Runs one frame. Returns true if it was to be rendered.
+/// Runs one frame. Returns true if it should be rendered.
 pub fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<bool> {
     client.poll()?;
     let frame = client.begin_frame()?;
@@ -122,7 +122,7 @@ pub fn frame(client: &mut Client, chains: &Chains, habits: &Habits) -> Outcome<b
     Ok(true)
 }
 
-/// Runs frames until `count` were rendered.
+/// Runs frames until `count` have been rendered.
 pub fn frames(client: &mut Client, chains: &Chains, habits: &Habits, count: u32) -> Outcome<()> {
     let mut rendered = 0;
     while rendered < count {
@@ -142,7 +142,7 @@ pub fn run<'a>(drawing: impl Into<Drawing<'a>>, habits: &Habits) -> Outcome<Clie
     Ok(client)
 }
 
-/// Runs an application with a session and swapchains; `work` is what it does with them.
+/// Runs an application with a session and swapchains, which `work` uses.
 pub fn with_session<'a>(
     drawing: impl Into<Drawing<'a>>,
     habits: &Habits,
@@ -155,7 +155,7 @@ pub fn with_session<'a>(
     client.destroy_session()
 }
 
-/// Runs frames until the session is over or lost, `most` at most.
+/// Runs at most `most` frames, until the session is over or lost.
 pub fn until_over(client: &mut Client, chains: &Chains, habits: &Habits, most: u32) -> Outcome<()> {
     for _ in 0..most {
         client.poll()?;

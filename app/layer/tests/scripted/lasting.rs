@@ -1,4 +1,4 @@
-//! Tests of objects that stay after frames, sessions and instances.
+//! What remains after frames, sessions and instances.
 
 use yoro_openxr_stub::script::Script;
 
@@ -9,7 +9,7 @@ use crate::habits::{Chains, Habits, begin_rendered, begin_session, frames, run, 
 use crate::harness::Gpu;
 use crate::world::{allocations, faulty, script, uncounted, watched, with_gpu, with_unwatched_gpu};
 
-/// Some programs look for a headset with a first instance, and then create another one.
+/// Some programs look for a headset with one instance, and then create another.
 #[test]
 fn the_log_outlives_an_instance_but_not_its_descriptor() {
     with_gpu(|gpu| {
@@ -29,8 +29,8 @@ fn the_log_outlives_an_instance_but_not_its_descriptor() {
     });
 }
 
-/// The recommended size must not change while there is an instance, but the fields of view that it depends on are known
-/// only in a session. So the first start has an estimate, and the next one the size.
+/// The recommended size must not change during an instance, but the fields of view that it depends on are known only in
+/// a session. So the first start uses an estimate, and the next start the exact size.
 #[test]
 fn the_recommended_size_stays_in_an_instance_and_is_right_in_the_next() {
     with_gpu(|gpu| {
@@ -61,13 +61,13 @@ fn the_recommended_size_stays_in_an_instance_and_is_right_in_the_next() {
             exact = client.sizes().unwrap()[0];
         });
         assert_ne!(exact, [160, 128]);
-        // The layer locates views when a session is created; some runtimes fail until it begins.
+        // The layer locates views when a session is created. Some runtimes fail until it begins.
         let late = faulty("xrLocateViews", 1, openxr_sys::Result::ERROR_SESSION_NOT_RUNNING);
         for script in [script(), late] {
             forget();
             assert_eq!(asked(script.clone()), [160, 128], "1.25 times an eye's width");
             assert_eq!(asked(script.clone()), exact);
-            // Another eye renders another view.
+            // An application that renders the other eye renders another view.
             assert_eq!(watched_size(gpu, script, "left"), [160, 128], "another view");
         }
         forget();
@@ -96,7 +96,7 @@ fn one_session_follows_another() {
     });
 }
 
-/// Returns the number of open files, of threads, and the memory in bytes of this process.
+/// Returns this process's number of open files, its number of threads, and its memory in bytes.
 fn resources() -> [usize; 3] {
     let count = |folder: &str| std::fs::read_dir(folder).unwrap().count();
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
@@ -104,7 +104,7 @@ fn resources() -> [usize; 3] {
     [count("/proc/self/fd"), count("/proc/self/task"), resident * 4096]
 }
 
-/// After a hundred frames, `count` more leave nothing behind, and the layer allocates nothing for them.
+/// Checks that `count` frames after a hundred others leave nothing behind, and that the layer allocates nothing.
 fn steady(drawing: Drawing, script: Script, habits: &Habits, count: u32) {
     let (mut most, mut grown) = (0, 0);
     let seen = watched(Script { pictures: None, log: None, ..script }, || {
@@ -130,7 +130,7 @@ fn steady(drawing: Drawing, script: Script, habits: &Habits, count: u32) {
     assert_eq!(seen.counts(), [[u64::from(count) + 100, 0]], "{}", seen.said);
     println!("{count} frames: {most} allocations in the layer in one of them, {grown} bytes more");
     assert_eq!(most, 0, "the layer allocates in a frame");
-    // Less than an image or a line for each frame.
+    // Less than an image, or a line per frame.
     assert!(grown < 1 << 20, "{grown} bytes more");
 }
 
@@ -146,7 +146,7 @@ fn ten_thousand_frames_leave_nothing_behind() {
     with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 10_000));
 }
 
-/// OpenGL ES: whole images are read in place; a part of an image in an array is copied first.
+/// On OpenGL ES, whole images are read in place, while a part of an image in an array is copied first.
 #[test]
 fn frames_on_opengl_es_leave_nothing_behind() {
     with_gles(|gles| {

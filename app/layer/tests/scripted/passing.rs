@@ -10,7 +10,7 @@ use crate::client::{Client, DEPTH, Failure, Layer};
 use crate::habits::{Chains, Habits, begin_rendered, begin_session, frames, render, run, with_session};
 use crate::world::{faulty, script, watched, with_gpu};
 
-/// An application that renders both views gets the runtime's own; its layers and depth arrive unchanged.
+/// An application that renders both views gets the runtime's own. Its layers and depth arrive unchanged.
 #[test]
 fn stereo_passes_through() {
     with_gpu(|gpu| {
@@ -50,7 +50,8 @@ fn stereo_passes_through() {
     });
 }
 
-/// The setting `offer` says where. It replaces a runtime's own; a runtime without two views offers its own alone.
+/// The setting `offer` gives the position of the one view in the list. It replaces the runtime's own configuration with
+/// one view. If the runtime does not have two views, only its own configurations are offered.
 #[test]
 fn one_view_is_offered_where_the_runtime_has_two() {
     use ViewsOf as V;
@@ -68,7 +69,7 @@ fn one_view_is_offered_where_the_runtime_has_two() {
                     let client = Client::new(gpu, name, &[DEPTH]).unwrap();
                     assert_eq!(client.configurations().unwrap(), want);
                     if want.contains(&V::PRIMARY_MONO) {
-                        // The layer's is as wide as both eyes, the runtime's own as one.
+                        // The layer's view is as wide as both eyes, and the runtime's own is as wide as one.
                         assert_eq!(client.sizes().unwrap()[0][0] > 128, stereo, "{name}");
                     }
                 });
@@ -99,7 +100,7 @@ fn the_runtime_fills_what_is_chained_to_views() {
     });
 }
 
-/// A handheld system, for example, has one view alone.
+/// Some systems, such as handheld ones, have only one view.
 #[test]
 fn a_system_with_one_view_passes_through() {
     with_gpu(|gpu| {
@@ -113,7 +114,7 @@ fn a_system_with_one_view_passes_through() {
     });
 }
 
-/// Functions of extensions create swapchains that the layer does not see, such as those of Android surfaces.
+/// Functions of extensions create swapchains that the layer does not see, such as those for Android surfaces.
 #[test]
 fn calls_with_unknown_swapchains_reach_the_runtime() {
     with_gpu(|gpu| {
@@ -140,7 +141,7 @@ fn waiting_for_an_image_releases_no_other_one() {
                 client.acquire_only(&chains.color)?;
                 client.acquire_only(&chains.color)?;
                 client.wait_image(&chains.color)?;
-                // The runtime's error shows where it was called.
+                // The runtime's error shows in which call the release was passed on.
                 let released = client.release(&chains.color);
                 assert_eq!(released, Err(Failure { call: "xrReleaseSwapchainImage", result: failed }));
                 client.release(&chains.color)?;
@@ -182,7 +183,7 @@ fn a_runtime_without_depth_gets_two_views() {
         let habits = Habits::PLAIN;
         let missing_extensions = vec![DEPTH.to_str().unwrap().to_owned()];
         let seen = watched(Script { missing_extensions, ..script() }, || drop(run(gpu, &habits).unwrap()));
-        // The runtime's only complaint is the extension that it lacks.
+        // The runtime only complains about the extension that it lacks.
         assert!(
             matches!(&seen.violations()[..], [log::Entry::Violation { call, .. }] if call == "xrCreateInstance"),
             "{:?}",
@@ -194,8 +195,8 @@ fn a_runtime_without_depth_gets_two_views() {
     });
 }
 
-/// An application with the wrong number of views learns it from xrEndFrame, as without the layer, and can end the frame
-/// with the right one.
+/// An application that submits the wrong number of views gets the error from xrEndFrame, as without the layer, and can
+/// end the frame with the right number.
 #[test]
 fn a_layer_of_two_views_is_refused_in_a_session_of_one() {
     with_gpu(|gpu| {
@@ -214,7 +215,7 @@ fn a_layer_of_two_views_is_refused_in_a_session_of_one() {
     });
 }
 
-/// Once a session has begun in stereo, one view is what the runtime says it is.
+/// Once a session has begun in stereo, calls for one view get the runtime's answer.
 #[test]
 fn one_view_cannot_be_located_in_stereo() {
     with_gpu(|gpu| {
@@ -228,7 +229,7 @@ fn one_view_cannot_be_located_in_stereo() {
                 client.views = ViewsOf::PRIMARY_MONO;
                 let located = client.locate(frame);
                 if mono {
-                    // The runtime's own has the left eye's field of view.
+                    // The runtime's own view has the left eye's field of view.
                     let [left, right, ..] =
                         script().eyes[0].fov_degrees.map(|angle| angle.to_radians().tan());
                     let frustum = located.unwrap()[0].unwrap().frustum;
@@ -243,8 +244,8 @@ fn one_view_cannot_be_located_in_stereo() {
     });
 }
 
-/// `offer = "off"` leaves an application alone, whatever the other settings say: the runtime gets its own calls and no
-/// others.
+/// With `offer = "off"` an application is left alone, whatever the other settings are: the runtime receives the
+/// application's calls and no others.
 #[test]
 fn an_application_can_be_left_alone() {
     with_gpu(|gpu| {
@@ -271,7 +272,7 @@ fn an_application_can_be_left_alone() {
     });
 }
 
-/// Functions and events of extensions that name a view configuration or a layer of views.
+/// Functions and events of extensions that refer to a view configuration or to a layer of views.
 #[test]
 fn extensions_know_the_offered_view() {
     with_gpu(|gpu| {

@@ -1,9 +1,9 @@
-//! A room with two balls, rendered by casting rays: the reference for any eye at any place.
+//! A room with two balls, rendered by ray casting: the reference for any eye at any position.
 
 use glam::Vec3;
 use yoro::eyes::{Frustum, Pose};
 
-/// A rendered view, rows from the bottom.
+/// A rendered view, with rows from the bottom.
 pub struct Picture {
     pub size: [u32; 2],
     pub rgba: Vec<u8>,
@@ -14,7 +14,7 @@ pub struct Picture {
 const ROOM: Vec3 = Vec3::new(4.0, 3.0, 4.0);
 const BALLS: [(Vec3, f32); 2] = [(Vec3::new(0.2, -0.1, -1.1), 0.3), (Vec3::new(-0.6, 0.2, -2.0), 0.4)];
 
-/// Returns the distance of the first surface along a ray, and its colour.
+/// Returns the distance to the first surface along a ray, and its colour.
 fn meet(origin: Vec3, ray: Vec3) -> (f32, Vec3) {
     let wall = ((ROOM * ray.signum() - origin) / ray).min_element();
     let mut met = (wall, 0.0);
@@ -29,14 +29,14 @@ fn meet(origin: Vec3, ray: Vec3) -> (f32, Vec3) {
         }
     }
     let (distance, number) = met;
-    // Smooth enough for a picture of few pixels.
+    // Smooth enough for a picture with few pixels.
     let place = (origin + ray * distance) * (4.0 + 3.0 * number);
     let waves = Vec3::new((place.x + number).sin(), (place.y + place.z).sin(), (place.x - place.y).cos());
     (distance, Vec3::splat(0.5) + 0.4 * waves)
 }
 
-/// Renders a view. Colour is the mean of `samples` times `samples` samples, as an application with MSAA resolves it;
-/// distance is that of the pixel's centre.
+/// Renders a view. The colour is the mean of `samples` times `samples` samples, like that of an application that
+/// resolves MSAA. The distance is that of the pixel's centre.
 pub fn render(pose: Pose, frustum: Frustum, size: [u32; 2], samples: u32) -> Picture {
     let [width, height] = size.map(|n| n as f32);
     let at = |x: f32, y: f32| {

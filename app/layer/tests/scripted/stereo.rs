@@ -1,4 +1,4 @@
-//! Two views of one.
+//! Two views made from one.
 
 use openxr_sys as sys;
 use sys::{Handle as _, ViewConfigurationType as ViewsOf};
@@ -55,7 +55,7 @@ fn one_view_becomes_the_two_views_of_the_runtime() {
     });
 }
 
-/// Eyes of headsets may be turned outwards, and have frusta of different heights.
+/// Eyes of headsets may be canted outwards, and have frusta of different heights.
 #[test]
 fn canted_and_unlike_eyes_are_served_by_parallel_ones() {
     with_gpu(|gpu| {
@@ -106,7 +106,7 @@ fn other_layers_stay_as_they_are_and_in_order() {
                 Layer::Quad(part(0)),
                 Layer::Projection(vec![submitted]),
                 Layer::Quad(part(8)),
-                // This one is not synthesized, but shown.
+                // This layer is not synthesized, but shown.
                 Layer::Projection(vec![Submitted { depth: None, ..submitted }]),
                 Layer::Quad(part(16)),
             ];
@@ -133,7 +133,7 @@ fn other_layers_stay_as_they_are_and_in_order() {
     });
 }
 
-/// An application that begins in stereo renders one tiny view with `shrink`.
+/// With `shrink`, an application that begins in stereo renders one tiny view.
 #[test]
 fn shrink_replaces_the_tiny_view() {
     with_gpu(|gpu| {
@@ -251,7 +251,7 @@ fn overlapping_frames_are_synthesized() {
     });
 }
 
-/// When the application acquires the next image before the frame ends, the runtime gets the last one, and the layer
+/// If the application acquires the next image before the frame ends, the runtime receives the last one, and the layer
 /// cannot read it.
 #[test]
 fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
@@ -276,7 +276,7 @@ fn an_image_that_the_runtime_has_is_shown_to_both_eyes() {
     });
 }
 
-/// Applications at half the display's rate, and those with static images, submit an image more than once.
+/// Applications that run at half the display's rate, and those with static images, submit an image more than once.
 #[test]
 fn an_image_that_is_shown_again_stays_stereo() {
     with_gpu(|gpu| {
@@ -298,7 +298,7 @@ fn an_image_that_is_shown_again_stays_stereo() {
                     let moved =
                         Submitted { view: submitted.view.at(glam::Vec3::new(0.5, 0.25, 1.0)), ..submitted };
                     client.show(begun, moved)?;
-                    // Other planes make it another view.
+                    // Different planes make it a different view.
                     let begun = client.begin_frame()?;
                     let planes = Planes { near: 0.2, ..Planes::PLAIN };
                     let depth = submitted.depth.map(|(part, _)| (part, planes));
@@ -361,7 +361,7 @@ fn flipped(drawing: Drawing, script: &Script, name: &'static str) {
     ] {
         let what = format!("{name}, {what}");
         let mut script = script.clone();
-        // The vertical part of the view is not the same up and down.
+        // The field of view is not vertically symmetric.
         script.eyes.iter_mut().for_each(|eye| eye.fov_degrees[2] = 35.0);
         let seen = watched(script, || drop(run(drawing, &habits).unwrap()));
         assert_counts(&seen, &[[3, 0]], &what);
@@ -376,14 +376,14 @@ fn flipped(drawing: Drawing, script: &Script, name: &'static str) {
     }
 }
 
-/// A field of view whose left is to the right of its right, or whose bottom is above its top, flips the image; so does
-/// an extension.
+/// A field of view whose left edge is to the right of its right edge, or whose lower edge is above its upper edge,
+/// flips the image, and so does an extension.
 #[test]
 fn flipped_views_are_synthesized() {
     with_gpu(|gpu| ["left", "right"].into_iter().for_each(|name| flipped(gpu.into(), &script(), name)));
 }
 
-/// In OpenGL, rows count from the bottom.
+/// In OpenGL, rows are counted from the bottom.
 #[test]
 fn flipped_views_are_synthesized_on_opengl_es() {
     let script = Script { formats: Script::default().formats, ..script() };
@@ -410,12 +410,12 @@ fn a_frame_that_is_ended_again_is_still_stereo() {
     });
 }
 
-/// Depth that one format of swapchains cannot have goes on in others.
+/// If depth is impossible in one swapchain format, it still works in others.
 #[test]
 fn depth_that_fails_in_one_format_goes_on_in_another() {
     with_gpu(|gpu| {
         let habits = Habits::PLAIN;
-        // The application makes two, then the layer one for colour and one for depth.
+        // The application creates two swapchains, then the layer creates one for colour and one for depth.
         let refused = faulty("xrCreateSwapchain", 4, sys::Result::ERROR_RUNTIME_FAILURE);
         let seen = watched(refused, || {
             let work = |client: &mut Client, chains: &Chains| {
@@ -435,7 +435,7 @@ fn depth_that_fails_in_one_format_goes_on_in_another() {
     });
 }
 
-/// A subsampled image needs a sampler of its own kind.
+/// A subsampled image needs a special sampler.
 #[test]
 fn subsampled_images_are_shown_to_both_eyes() {
     with_gpu(|gpu| {

@@ -23,18 +23,18 @@ thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
 }
 
-// SAFETY: the system's allocator does it all.
+// SAFETY: every call is passed to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !yoro_openxr_stub::is_inside() {
             ALLOCATIONS.set(ALLOCATIONS.get() + 1);
         }
-        // SAFETY: the caller's promise.
+        // SAFETY: same contract.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promise.
+        // SAFETY: same contract.
         unsafe { System.dealloc(memory, layout) }
     }
 }
@@ -46,7 +46,7 @@ pub fn allocations() -> usize {
     ALLOCATIONS.get()
 }
 
-/// Runs code whose allocations do not count.
+/// Runs code whose allocations are not counted.
 pub fn uncounted<T>(work: impl FnOnce() -> T) -> T {
     let before = ALLOCATIONS.get();
     let result = work();
@@ -54,7 +54,7 @@ pub fn uncounted<T>(work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// The settings file, with sections by the names of applications.
+/// The settings file, with sections named after applications.
 const SETTINGS: &str = "guard_band = '16px'\n\
     [application.left]\ndominant = 'left'\n\
     [application.shrink]\nshrink = 'on'\n\
@@ -74,16 +74,16 @@ pub fn with_unwatched_gpu(body: impl FnOnce(&Gpu)) {
     harness::with_unwatched_gpu(Rendering::RenderPasses, body);
 }
 
-/// Puts settings and log into a folder of this process: each process begins the log anew.
+/// Puts the settings and the log into a folder of this process, so that each process begins a new log.
 pub fn settle() {
     static SETTLED: Once = Once::new();
     SETTLED.call_once(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("layer-settings-{}", process::id()));
-        // Of an earlier process of the same number.
+        // Left by an earlier process with the same number.
         fs::remove_dir_all(&folder).ok();
         fs::create_dir_all(folder.join("yoro")).unwrap();
         fs::write(folder.join("yoro/layer.toml"), SETTINGS).unwrap();
-        // SAFETY: drivers, which start threads that may look at the environment, are not loaded yet.
+        // SAFETY: the drivers are not loaded yet. They start threads that may read the environment.
         unsafe {
             std::env::set_var("XDG_CONFIG_HOME", &folder);
             std::env::set_var("XDG_STATE_HOME", &folder);
@@ -94,13 +94,13 @@ pub fn settle() {
 /// The formats of a runtime on Vulkan: R8G8B8A8_SRGB, _UNORM, B8G8R8A8_SRGB, _UNORM, and depth in 16, 32 and 32+8 bits.
 const FORMATS: [i64; 7] = [43, 37, 50, 44, 124, 126, 130];
 
-/// A headset with the frusta of current ones, on Vulkan.
+/// Returns a headset on Vulkan, with the frusta of current headsets.
 pub fn script() -> Script {
     let pictures = Some(Pictures { folder: "in each run's own".into(), from: 0 });
     Script { formats: FORMATS.into(), pictures, ..Script::default() }.asymmetric()
 }
 
-/// The same with a function of the runtime that fails in its nth call, from 1.
+/// Returns the same headset, with a function of the runtime that fails in its nth call, counted from 1.
 pub fn faulty(call: &str, nth: u32, result: openxr_sys::Result) -> Script {
     let fault = Fault { call: call.into(), nth, and_later: false, result: result.into_raw() };
     Script { faults: vec![fault], ..script() }
@@ -114,7 +114,7 @@ pub struct Seen {
     folder: TempDir,
 }
 
-/// Captures the standard error output.
+/// Captures standard error.
 struct Overheard {
     shown: OwnedFd,
     file: File,
@@ -123,7 +123,7 @@ struct Overheard {
 impl Overheard {
     fn begin() -> Overheard {
         let file = tempfile::tempfile().unwrap();
-        // SAFETY: plain calls on descriptors that are open; the copy is nobody else's.
+        // SAFETY: plain calls on open descriptors. Nobody else owns the copy.
         unsafe {
             let shown = libc::dup(2);
             assert!(shown >= 0 && libc::dup2(file.as_raw_fd(), 2) == 2);
@@ -186,21 +186,21 @@ impl Seen {
         views.next().expect("there is a projection layer")
     }
 
-    /// Returns the last picture that the runtime got for an eye, rows from the bottom.
+    /// Returns the last picture that the runtime received for an eye, with rows from the bottom.
     pub fn picture(&self, eye: usize) -> Vec<u8> {
         let path = self.folder.path().join(format!("view-{eye}.png"));
         let picture: RgbaImage = image::open(path).unwrap().into_rgba8();
         image::imageops::flip_vertical(&picture).into_raw()
     }
 
-    /// Returns the last depth that the runtime got for an eye, rows from the bottom.
+    /// Returns the last depth that the runtime received for an eye, with rows from the bottom.
     pub fn depth(&self, eye: usize) -> Vec<f32> {
         let bytes = fs::read(self.folder.path().join(format!("depth-{eye}"))).unwrap();
         bytes.chunks_exact(4).map(|four| f32::from_ne_bytes([four[0], four[1], four[2], four[3]])).collect()
     }
 
-    /// Returns what the specification forbids. Asking for functions of extensions that are not enabled does not count:
-    /// a layer cannot know them otherwise.
+    /// Returns the violations of the specification. Asking for functions of extensions that are not enabled does not
+    /// count, because a layer has no other way to find out about them.
     pub fn violations(&self) -> Vec<&Entry> {
         let is_one = |entry: &&Entry| matches!(entry, Entry::Violation { call, .. } if call != "xrGetInstanceProcAddr");
         self.log.iter().filter(is_one).collect()

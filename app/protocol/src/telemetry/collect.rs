@@ -1,4 +1,4 @@
-//! Collects frames and device states of a session, and makes a line a second.
+//! Collects frames and device states of a session, and makes a line every second.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use super::summary::{SessionSummary, Totals};
 
 /// Length of a period in nanoseconds.
 const PERIOD_NS: i64 = 1_000_000_000;
-/// Frames of the fastest display in a period, with room for a late line.
+/// The number of frames of the fastest display in a period, including a line that is late.
 const FRAMES: usize = 512;
 
 /// The viewer's own part of a line.
@@ -25,22 +25,22 @@ pub struct ViewerState {
     pub scene: String,
     /// Render scale per axis.
     pub render_scale: f32,
-    /// Divisor of the ImBuffer's resolution, for pipelines with one.
+    /// Divisor of the ImBuffer's resolution, for pipelines that have an ImBuffer.
     pub imbuffer: Option<u32>,
     /// The name of this run in the settings.
     pub run: Option<String>,
     /// [`Line::auto`].
     pub auto: Option<String>,
-    /// What came of a stream, if there is one.
+    /// Statistics of the stream, if one is shown.
     pub stream: Option<StreamFigures>,
 }
 
 /// The frames of a stream since the last line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StreamFigures {
-    /// Frames that came and were shown.
+    /// Number of frames that arrived and were shown.
     pub frames: u32,
-    /// The sum of their latencies in milliseconds, each from asking for a pose to showing its picture.
+    /// The sum of their latencies in milliseconds, each from requesting a pose to showing its picture.
     pub latency_ms: f64,
 }
 
@@ -51,7 +51,7 @@ struct Stage {
     nanoseconds: u64,
 }
 
-/// Use of the guard band by some frames.
+/// Use of the guard band, summed over frames.
 #[derive(Clone, Copy, Debug, Default)]
 struct GuardBandSum {
     frames: u32,
@@ -91,7 +91,7 @@ impl Default for Telemetry {
 }
 
 impl Telemetry {
-    /// Counts a finished frame. Returns how many refreshes it was late.
+    /// Counts a finished frame. Returns by how many refreshes it was late.
     pub fn frame(&mut self, now_ns: i64, refresh_hz: f32) -> u32 {
         self.begin_ns.get_or_insert(now_ns);
         if self.process_ns.is_none() {
@@ -102,7 +102,7 @@ impl Telemetry {
         self.second.add(now_ns, refresh_hz)
     }
 
-    /// Adds the GPU times of some frames.
+    /// Adds the GPU times of the passes of `frames` frames.
     pub fn gpu(&mut self, passes: impl IntoIterator<Item = (&'static str, Duration)>, frames: u32) {
         self.timed_frames += frames;
         for (name, time) in passes {
@@ -114,8 +114,8 @@ impl Telemetry {
         }
     }
 
-    /// Adds the columns that a frame drew of a guard band that sets its own width, and the pixels at the border that
-    /// were filled.
+    /// Adds a frame's use of a guard band with automatic width: the columns drawn, and the border pixels that were
+    /// filled instead of drawn.
     pub fn guard_band(&mut self, columns: u32, undrawn: u32) {
         let sum = self.guard_band.get_or_insert_default();
         sum.frames += 1;
@@ -123,7 +123,7 @@ impl Telemetry {
         sum.undrawn += u64::from(undrawn);
     }
 
-    /// Stops counting: the time until the next frame is left out.
+    /// Pauses counting: the time until the next frame does not count.
     pub fn pause(&mut self) {
         self.second.pause();
         self.totals.pause();
@@ -140,7 +140,7 @@ impl Telemetry {
         self.begin_ns.map_or(0.0, |begin| (now_ns - begin) as f64 * 1e-9)
     }
 
-    /// Ends a period and makes its line.
+    /// Ends a period and returns its line.
     pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
         let seconds = self.second.elapsed_ns(now_ns) as f64 * 1e-9;
         let frames = self.second.take();
@@ -196,7 +196,7 @@ impl Telemetry {
         }
     }
 
-    /// Returns the summary of the session so far, up to its last line.
+    /// Returns the summary of the session up to its last line.
     pub fn summary(&self, now_ns: i64) -> SessionSummary {
         self.totals.summary(self.seconds(now_ns))
     }
@@ -248,7 +248,7 @@ mod tests {
         assert!((line.fps.unwrap() - 60.0).abs() < 0.1);
         assert_eq!((line.stale, line.skin_celsius, line.gpu_ms), (Some(0), None, None));
         let summary = telemetry.summary(11_000_000_000);
-        // Ten intervals of a second between eleven lines.
+        // Ten intervals of one second between eleven lines.
         let energy = summary.energy.unwrap();
         assert!((energy.milliampere_hours - 600.0 * energy.seconds / 3600.0).abs() < 1e-9);
         assert!((energy.seconds - 10.0).abs() < 0.1);

@@ -2,7 +2,7 @@
 
 use crate::telemetry::stats;
 
-/// Intervals beyond this are pauses, not frames, in nanoseconds.
+/// Longer intervals are pauses, not frames, in nanoseconds.
 const LONGEST_NS: i64 = 1_000_000_000;
 
 /// Collects the times at which frames were handed to the display.
@@ -14,34 +14,34 @@ pub struct FrameStatistics {
     stale: u32,
 }
 
-/// Statistics of one second's frames, or of any period's.
+/// Statistics of the frames of one second, or of any other period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondStatistics {
     /// Frames per second.
     pub fps: f64,
-    /// Refreshes of the display that showed an old frame again.
+    /// Number of the display's refreshes that showed an old frame again.
     pub stale: u32,
     /// Mean time between frames in milliseconds.
     pub mean_ms: f64,
-    /// 99 % of the times between frames are below, in milliseconds.
+    /// The 99th percentile of the times between frames, in milliseconds.
     pub p99_ms: f64,
-    /// Number of times between frames.
+    /// Number of intervals between frames.
     pub frames: u32,
 }
 
 impl FrameStatistics {
-    /// Reserves room for the frames of a period, so that adding one does not allocate.
+    /// Creates statistics with room for the frames of a period, so that adding one does not allocate.
     pub fn with_capacity(frames: usize) -> FrameStatistics {
         FrameStatistics { intervals_ms: Vec::with_capacity(frames), ..FrameStatistics::default() }
     }
 
-    /// Counts a frame that was finished at `now_ns`. Returns how many refreshes it was late.
+    /// Counts a frame that was finished at `now_ns`. Returns by how many refreshes it was late.
     pub fn add(&mut self, now_ns: i64, refresh_hz: f32) -> u32 {
         self.begin_ns.get_or_insert(now_ns);
         let Some(last) = self.last_ns.replace(now_ns) else { return 0 };
         let interval = now_ns - last;
         if !(0..LONGEST_NS).contains(&interval) {
-            // The period starts over, or the pause would count as slowness.
+            // The period starts anew, or the pause would count as slowness.
             self.begin_ns = Some(now_ns);
             self.intervals_ms.clear();
             return 0;
@@ -56,17 +56,17 @@ impl FrameStatistics {
         late
     }
 
-    /// Begins a pause: the time until the next frame is not a frame time.
+    /// Starts a pause: the time until the next frame is not a frame time.
     pub fn pause(&mut self) {
         self.last_ns = None;
     }
 
-    /// Returns the time since the period began, in nanoseconds.
+    /// Returns the time since the beginning of the period, in nanoseconds.
     pub fn elapsed_ns(&self, now_ns: i64) -> i64 {
         self.begin_ns.map_or(0, |begin| now_ns - begin)
     }
 
-    /// The statistics of the period, which ends here; `None` without two frames.
+    /// Ends the period and returns its statistics; `None` if it has fewer than two frames.
     pub fn take(&mut self) -> Option<SecondStatistics> {
         let stale = std::mem::take(&mut self.stale);
         self.begin_ns = self.last_ns;

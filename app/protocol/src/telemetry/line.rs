@@ -1,7 +1,7 @@
 //! The log line: `v=1,t=12.0s,method=yoro,FPS=71.9/72,Stale=1,...`.
 //!
-//! [`LINE_KEYS`] is the one table of its keys, which writing and reading follow, here and wherever else the values of a
-//! line go. Keys and units are a promise to scripts: changing one needs another [`VERSION`]; new keys go to the end.
+//! [`LINE_KEYS`] is the one table of its keys. It is used for writing, for reading, and wherever else a line's values
+//! are used. Scripts rely on keys and units: changing one requires another [`VERSION`]; new keys are appended.
 
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
@@ -9,23 +9,23 @@ use std::str::FromStr;
 use super::power::BatteryStatus;
 use super::text::{LineError, MISSING, Reader, VERSION, word};
 
-/// The table's name of the second number of `FPS=a/b`, the refresh rate.
+/// The name in the table of the second number of `FPS=a/b`, the refresh rate.
 const REFRESH: &str = "FPS/";
-/// The key of the GPU time per frame, after which the stages' times stand in parentheses.
+/// The key of the GPU time per frame, which is followed by the stages' times in parentheses.
 const GPU: &str = "App";
-/// Characters of a name that may be missing; longer ones are cut.
+/// The most characters of an optional name; longer names are cut.
 const MOST_CHARACTERS: usize = 64;
 
-/// GPU time of one stage.
+/// The GPU time of one stage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageTime {
     /// Name of the pass; spaces become `-` in a line.
     pub name: String,
-    /// Milliseconds per frame, on average.
+    /// Mean milliseconds per frame.
     pub milliseconds: f64,
 }
 
-/// One second of telemetry. `None` is a value that the device does not give.
+/// One second of telemetry. Values that the device does not report are `None`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
     /// Seconds since the session began.
@@ -40,11 +40,11 @@ pub struct Line {
     pub fps: Option<f64>,
     /// Refresh rate of the display in Hz.
     pub refresh_hz: Option<f64>,
-    /// Refreshes that showed an old frame again.
+    /// Number of refreshes that showed an old frame again.
     pub stale: Option<u32>,
     /// Mean time between frames in milliseconds.
     pub frame_ms: Option<f64>,
-    /// 99 % of the times between frames are below, in milliseconds.
+    /// The 99th percentile of the times between frames, in milliseconds.
     pub p99_ms: Option<f64>,
     /// GPU time per frame in milliseconds.
     pub gpu_ms: Option<f64>,
@@ -54,7 +54,7 @@ pub struct Line {
     pub cpu_percent: Option<f64>,
     /// Resident memory in MB (10^6 bytes).
     pub rss_mb: Option<f64>,
-    /// Battery current as the device gave it.
+    /// Battery current as the device reports it.
     pub current_raw: Option<i64>,
     /// Battery current in milliamperes, negative while discharging.
     pub current_ma: Option<f64>,
@@ -72,13 +72,13 @@ pub struct Line {
     pub skin_celsius: Option<f64>,
     /// Thermal status, 0 to 6.
     pub thermal_status: Option<i32>,
-    /// Thermal headroom, 1 being severe.
+    /// Thermal headroom; 1 is severe throttling.
     pub thermal_headroom: Option<f64>,
     /// Render scale per axis; 1 is one rendered pixel per screen pixel at the lens's centre.
     pub render_scale: f64,
-    /// Divisor of the ImBuffer's resolution; missing without ImBuffer.
+    /// Divisor of the ImBuffer's resolution; missing without an ImBuffer.
     pub imbuffer: Option<u32>,
-    /// Times between frames in this second.
+    /// Number of intervals between frames in this second.
     pub frames: Option<u32>,
     /// The state of the battery.
     pub status: Option<BatteryStatus>,
@@ -86,31 +86,31 @@ pub struct Line {
     pub run: Option<String>,
     /// The performance modes in use: [`DeviceState::performance`](super::DeviceState::performance).
     pub performance: Option<String>,
-    /// Columns of the guard band that were drawn per frame; missing where it does not set its own width.
+    /// Columns of the guard band that were drawn per frame; missing if its width is not automatic.
     pub guard_columns: Option<f64>,
-    /// Pixels at the other eye's border that lay in the guard band but were not drawn, in this second; they were
+    /// Number of pixels in this second at the other eye's border that were in the guard band but not drawn; they were
     /// filled.
     pub undrawn: Option<u64>,
-    /// With `method=auto`: why [`Line::method`] is in use, such as `6.1/8.9ms`; missing for a method that was named.
+    /// With `method=auto`, the reason for [`Line::method`], such as `6.1/8.9ms`; missing for a named method.
     pub auto: Option<String>,
-    /// Frames of a stream that came and were shown, per second; missing without a stream.
+    /// Frames per second of a stream that arrived and were shown; missing without a stream.
     pub stream_fps: Option<f64>,
-    /// Mean time from asking for a pose to showing its picture, in milliseconds; missing without frames of a stream.
+    /// Mean time from requesting a pose to showing its picture, in milliseconds; missing without frames of a stream.
     pub latency_ms: Option<f64>,
 }
 
-/// One key of the line and the value that it stands for.
+/// One key of the line, and its value.
 pub struct LineKey {
-    /// The key in the line. The second number of `FPS=a/b`, the refresh rate, goes by the name `FPS/`.
+    /// The key in the line. The second number of `FPS=a/b`, the refresh rate, has the name `FPS/`.
     pub name: &'static str,
-    /// Digits of a number after the point.
+    /// Number of digits after a number's decimal point.
     pub decimals: usize,
     /// The unit after a number.
     pub unit: &'static str,
-    /// True if a line may lack it, as those of earlier versions of this program do.
+    /// True if the key may be absent from a line, as in lines of earlier versions of this program.
     may_be_absent: bool,
     get: fn(&Line) -> Value<'_>,
-    /// Takes a text without unit, nothing for a missing value; false if it does not fit.
+    /// Sets the value from a text without its unit, `None` for a missing value; returns false if it does not fit.
     set: fn(&mut Line, Option<&str>) -> bool,
 }
 
@@ -122,12 +122,12 @@ enum Value<'a> {
     Missing,
 }
 
-/// Returns a number or nothing, from a text or nothing; none if the text is not such a number.
+/// Parses an optional number; `None` if the text is not a number.
 fn number<T: FromStr>(text: Option<&str>) -> Option<Option<T>> {
     text.map(str::parse).transpose().ok()
 }
 
-/// The first characters of a name.
+/// Returns the first [`MOST_CHARACTERS`] of a name.
 fn short(name: &str) -> &str {
     name.char_indices().nth(MOST_CHARACTERS).map_or(name, |(end, _)| &name[..end])
 }
@@ -146,7 +146,7 @@ macro_rules! number {
     };
 }
 
-/// A number that every line has.
+/// A number that is in every line.
 macro_rules! always {
     ($name:literal, $field:ident, $decimals:literal, $unit:literal) => {
         LineKey {
@@ -160,7 +160,7 @@ macro_rules! always {
     };
 }
 
-/// A name that every line has.
+/// A name that is in every line.
 macro_rules! name {
     ($name:literal, $field:ident) => {
         LineKey {
@@ -194,7 +194,7 @@ macro_rules! optional_name {
     };
 }
 
-/// The keys of the line in order, but for the version, which stands first.
+/// The line's keys in order, except for the version, which comes first.
 pub const LINE_KEYS: &[LineKey] = &[
     always!("t", time_s, 1, "s"),
     name!("method", method),
@@ -242,7 +242,7 @@ pub const LINE_KEYS: &[LineKey] = &[
 ];
 
 impl LineKey {
-    /// Returns its value as a number; none for names and missing values.
+    /// Returns the value as a number; `None` for names and missing values.
     pub fn number(&self, line: &Line) -> Option<f64> {
         match (self.get)(line) {
             Value::Real(value) => Some(value),
@@ -260,7 +260,7 @@ impl LineKey {
         }
     }
 
-    /// Returns its text in a line that was split, with unit.
+    /// Returns the value's text in a line, with its unit.
     fn find<'a>(&self, reader: &Reader<'a>) -> Result<&'a str, LineError> {
         match self.name {
             "FPS" => Ok(rates(reader)?.0),
@@ -282,13 +282,13 @@ impl LineKey {
     }
 }
 
-/// The two numbers of `FPS=a/b`.
+/// Returns the two numbers of `FPS=a/b`.
 fn rates<'a>(reader: &Reader<'a>) -> Result<(&'a str, &'a str), LineError> {
     let text = reader.text("FPS")?;
     text.split_once('/').ok_or_else(|| LineError::Value { key: "FPS", value: text.into() })
 }
 
-/// The frame's GPU time, and the list of the stages' times if there is one.
+/// Returns the frame's GPU time, and the list of the stages' times if there is one.
 fn gpu_times<'a>(reader: &Reader<'a>) -> Result<(&'a str, Option<&'a str>), LineError> {
     let text = reader.text(GPU)?;
     match text.split_once('(') {
@@ -402,7 +402,7 @@ mod tests {
         assert_eq!(example().to_string().parse(), Ok(example()));
     }
 
-    /// Every value once, each with its own digits and unit: nothing of this may change without another version.
+    /// Each value once, with its own digits and unit. None of this may change without another version.
     #[test]
     fn a_line_with_every_value() {
         let line = Line {
@@ -530,7 +530,7 @@ mod tests {
     }
 
     proptest! {
-        /// No stage is named `na`, which is a missing value.
+        /// No stage is named `na`, which stands for a missing value.
         #[test]
         fn parameters_survive_a_round_trip(
             fps in rounded(1), frame in rounded(2), mah in rounded(1), headroom in rounded(2),

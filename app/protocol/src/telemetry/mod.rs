@@ -1,7 +1,7 @@
 //! Frame times, power and temperature of a device, once a second as one line of text.
 //!
-//! [`Telemetry`] collects frames and device states and makes the [`Line`]s and the [`SessionSummary`]. A value
-//! that a device does not give is missing ([`None`], `na` in text), never 0.
+//! [`Telemetry`] collects frames and device states and makes the [`Line`]s and the [`SessionSummary`]. A value that a
+//! device does not report is missing ([`None`], `na` in text), never 0.
 
 mod collect;
 mod device;

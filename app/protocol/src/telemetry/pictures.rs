@@ -1,7 +1,7 @@
-//! The line of a pipeline's pictures:
+//! The line about a pipeline's pictures:
 //! `pictures,v=1,pipeline=gather,rendered=48.20dB,synthesized=41.71dB,least=30.00dB,passed=true`.
 //!
-//! Like the keys of [`Line`](super::Line), these are a promise to scripts.
+//! Scripts rely on its keys, as on those of [`Line`](super::Line).
 
 use std::fmt::{self, Display};
 use std::str::FromStr;
@@ -11,26 +11,26 @@ use super::text::{LineError, Na, Reader, VERSION, word};
 /// The first field of every line.
 const BEGIN: &str = "pictures";
 
-/// A pipeline's pictures on a device against the stored ones.
+/// The comparison of a pipeline's pictures on a device with the stored ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pictures {
     /// Synthesis pipeline.
     pub pipeline: String,
-    /// PSNR of the rendered eye in dB; missing where the driver cannot run the pipeline.
+    /// PSNR of the rendered eye in dB; missing if the driver cannot run the pipeline.
     pub rendered_db: Option<f64>,
     /// PSNR of the synthesized eye in dB.
     pub synthesized_db: Option<f64>,
-    /// What both have to reach.
+    /// The least PSNR in dB that both eyes must have.
     pub least_db: f64,
 }
 
 impl Pictures {
-    /// True if a text begins as the line of pictures does.
+    /// True if the text begins like a line about pictures.
     pub fn is_line(text: &str) -> bool {
         text.trim_start().strip_prefix(BEGIN).is_some_and(|rest| rest.starts_with(",v="))
     }
 
-    /// True if both eyes are as they should be.
+    /// True if both eyes reach the least PSNR.
     pub fn passed(&self) -> bool {
         [self.rendered_db, self.synthesized_db].iter().all(|db| db.is_some_and(|db| db >= self.least_db))
     }
@@ -69,7 +69,7 @@ impl FromStr for Pictures {
             synthesized_db: decibels("synthesized")?,
             least_db: decibels("least")?.ok_or(LineError::Missing("least"))?,
         };
-        // It stands last: a line that was cut says nothing.
+        // This key is the last one, so that a truncated line is rejected.
         let passed = reader.text("passed")?;
         if passed != pictures.passed().to_string() {
             return Err(LineError::Value { key: "passed", value: passed.into() });

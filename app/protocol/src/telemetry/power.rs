@@ -1,9 +1,9 @@
-//! Battery current in milliamperes, from devices' own units and signs; energy over a session.
+//! Battery current in milliamperes, from devices' own units and signs, and energy over a session.
 //!
-//! By Android's specification the current is in microamperes and negative while the battery discharges. Some
-//! devices report milliamperes, and some are positive on discharge.
+//! By Android's specification the current is in microamperes and negative while the battery discharges. Some devices
+//! report milliamperes, and some report positive values while discharging.
 
-/// The state of the battery, as Android's `BATTERY_STATUS_*`.
+/// The state of the battery, as in Android's `BATTERY_STATUS_*`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatteryStatus {
     /// Charging (2).
@@ -17,7 +17,7 @@ pub enum BatteryStatus {
 }
 
 impl BatteryStatus {
-    /// Returns the state of Android's number; `None` for unknown (1) and everything else.
+    /// Returns the state for Android's number; `None` for unknown (1) and any other number.
     pub fn from_android(number: i32) -> Option<BatteryStatus> {
         Some(match number {
             2 => BatteryStatus::Charging,
@@ -28,7 +28,7 @@ impl BatteryStatus {
         })
     }
 
-    /// The name in the log line.
+    /// Returns the name in the log line.
     pub fn name(self) -> &'static str {
         match self {
             BatteryStatus::Charging => "charging",
@@ -38,7 +38,7 @@ impl BatteryStatus {
         }
     }
 
-    /// Returns the state of a name.
+    /// Returns the state with this name.
     pub fn from_name(name: &str) -> Option<BatteryStatus> {
         (2..=5).filter_map(BatteryStatus::from_android).find(|status| status.name() == name)
     }
@@ -54,7 +54,7 @@ pub enum CurrentUnit {
 }
 
 impl CurrentUnit {
-    /// `uA` or `mA`.
+    /// Returns `uA` or `mA`.
     pub fn name(self) -> &'static str {
         match self {
             CurrentUnit::Microamperes => "uA",
@@ -63,12 +63,12 @@ impl CurrentUnit {
     }
 }
 
-/// No phone's battery takes or gives 20 A: a larger number is in microamperes.
+/// No phone's battery supplies or takes 20 A, so a larger number is in microamperes.
 const LARGEST_MILLIAMPERES: u64 = 20_000;
-/// No device renders stereo from less than 20 mA: a smaller number says nothing about its unit.
+/// No device renders stereo on less than 20 mA, so a smaller number does not determine the unit.
 const SMALLEST_MILLIAMPERES: u64 = 20;
 
-/// Finds a device's unit and sign.
+/// Determines a device's unit and sign of the battery current.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CurrentNormalizer {
     largest: u64,
@@ -76,11 +76,11 @@ pub struct CurrentNormalizer {
 }
 
 impl CurrentNormalizer {
-    /// The current in milliamperes, negative while the battery discharges; `None` while the unit cannot be told.
+    /// Returns the current in milliamperes, negative while the battery discharges; `None` while the unit is unknown.
     ///
-    /// The unit is microamperes once any value was too large for milliamperes, and milliamperes if values while
-    /// discharging are such that microamperes would be too little to run a device on. The sign is that of the
-    /// battery's status; only where that leaves it open it is the device's own.
+    /// The unit is microamperes once any value was too large for milliamperes. Before that it is milliamperes if a
+    /// value while discharging would be enough to run a device in milliamperes: as microamperes, all values so far
+    /// would be too little. The sign is that of the battery's status, if known, or else the device's own.
     pub fn add(&mut self, raw: i64, status: Option<BatteryStatus>, plugged: Option<i32>) -> Option<f64> {
         let size = raw.unsigned_abs();
         let discharging = plugged == Some(0) || status == Some(BatteryStatus::Discharging);
@@ -100,7 +100,7 @@ impl CurrentNormalizer {
         Some(if negative { -milliamperes } else { milliamperes })
     }
 
-    /// The unit, if it is known by now.
+    /// Returns the unit, if it is known by now.
     pub fn unit(&self) -> Option<CurrentUnit> {
         if self.largest > LARGEST_MILLIAMPERES {
             Some(CurrentUnit::Microamperes)
@@ -112,22 +112,22 @@ impl CurrentNormalizer {
     }
 }
 
-/// A smaller voltage is no number of millivolts: some phones give it in whole volts, which is too coarse for energy.
+/// A smaller voltage is not in millivolts: some phones report whole volts, which is too coarse for energy.
 pub(super) const LEAST_MILLIVOLTS: f64 = 100.0;
 
 /// Energy taken from the battery, integrated over time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Charge in milliampere-hours, positive when taken from the battery.
+    /// Charge in milliampere-hours; positive if taken from the battery.
     pub milliampere_hours: f64,
-    /// Energy in milliwatt-hours, likewise.
+    /// Energy in milliwatt-hours; positive if taken from the battery.
     pub milliwatt_hours: f64,
     /// Seconds over which both were integrated.
     pub seconds: f64,
 }
 
 impl Energy {
-    /// Adds a time at constant current (negative while discharging) and voltage.
+    /// Adds an interval of constant current in milliamperes (negative while discharging) and voltage in millivolts.
     pub fn add(&mut self, milliamperes: f64, millivolts: f64, seconds: f64) {
         let charge = -milliamperes * seconds / 3600.0;
         self.milliampere_hours += charge;
@@ -146,7 +146,7 @@ mod tests {
         let mut current = CurrentNormalizer::default();
         assert_eq!(current.add(-512_000, Some(Discharging), Some(0)), Some(-512.0));
         assert_eq!(current.unit(), Some(CurrentUnit::Microamperes));
-        // Small values stay in the unit that was found.
+        // Small values keep the unit that was determined.
         assert_eq!(current.add(-3_000, Some(Discharging), Some(0)), Some(-3.0));
     }
 

@@ -8,14 +8,14 @@ const TICKS_PER_SECOND: f64 = 100.0;
 /// A sample of /proc/self.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProcessSample {
-    /// Time on all cores since the process began, in seconds.
+    /// Time on all cores since the process started, in seconds.
     pub cpu_seconds: Option<f64>,
     /// Resident memory in bytes.
     pub resident_bytes: Option<u64>,
 }
 
 impl ProcessSample {
-    /// Takes a sample; its values are `None` where there is no /proc.
+    /// Takes a sample; its values are `None` on systems without /proc.
     pub fn take() -> ProcessSample {
         ProcessSample {
             cpu_seconds: fs::read_to_string("/proc/self/stat").ok().and_then(|s| cpu_seconds(&s)),
@@ -24,13 +24,13 @@ impl ProcessSample {
     }
 }
 
-/// The load between two samples in percent of one core; 200 for two busy cores.
+/// Returns the load between two samples in percent of one core; 200 for two busy cores.
 pub fn cpu_load(before: &ProcessSample, after: &ProcessSample, seconds: f64) -> Option<f64> {
     let (before, after) = (before.cpu_seconds?, after.cpu_seconds?);
     (seconds > 0.0 && after >= before).then(|| (after - before) / seconds * 100.0)
 }
 
-/// Fields 14 and 15 of /proc/self/stat; the name in field 2 may contain spaces and parentheses.
+/// Sums fields 14 and 15 of /proc/self/stat, in seconds. The name in field 2 may contain spaces and `)`.
 fn cpu_seconds(stat: &str) -> Option<f64> {
     let (_, rest) = stat.rsplit_once(')')?;
     let mut fields = rest.split_whitespace().skip(11);

@@ -1,7 +1,7 @@
-//! The line of an answer: `rating,v=1,participant=P03,trial=4,method=yoro,...,question=image-quality,value=4.5`.
+//! The line with an answer: `rating,v=1,participant=P03,trial=4,method=yoro,...,question=image-quality,value=4.5`.
 //!
-//! Like the keys of [`Line`](super::Line), these are a promise to scripts. The answer stands last and has one decimal,
-//! so that a line that was cut is never taken for another answer.
+//! Scripts rely on its keys, as on those of [`Line`](super::Line). The answer comes last and has one decimal, so that a
+//! truncated line is never taken for another answer.
 
 use std::fmt::{self, Display};
 use std::str::FromStr;
@@ -26,12 +26,12 @@ pub struct Rating {
     pub scene: String,
     /// The question.
     pub question: String,
-    /// The answer, 1 for the worst.
+    /// The answer; 1 is the worst.
     pub rating: f64,
 }
 
 impl Rating {
-    /// True if a text begins as the line of an answer does.
+    /// True if the text begins like a line with an answer.
     pub fn is_line(text: &str) -> bool {
         text.trim_start().strip_prefix(BEGIN).is_some_and(|rest| rest.starts_with(','))
     }

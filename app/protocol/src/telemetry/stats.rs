@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The usual figures of a set of samples, in the samples' unit.
+/// Summary statistics of a set of samples, in the samples' unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Number of samples.
     pub count: usize,
     /// Arithmetic mean.
     pub mean: f64,
-    /// Half of the samples are below.
+    /// The median.
     pub median: f64,
     /// Sample standard deviation (divided by n - 1); 0 for a single sample.
     pub std: f64,
@@ -17,14 +17,14 @@ pub struct Summary {
     pub min: f64,
     /// The largest.
     pub max: f64,
-    /// 95 % of the samples are below.
+    /// The 95th percentile.
     pub p95: f64,
-    /// 99 % of the samples are below.
+    /// The 99th percentile.
     pub p99: f64,
 }
 
 impl Summary {
-    /// `None` without samples, or if one is not finite.
+    /// Summarizes the samples; `None` if there are none, or if one is not finite.
     pub fn of(samples: &[f64]) -> Option<Summary> {
         if samples.is_empty() || samples.iter().any(|v| !v.is_finite()) {
             return None;
@@ -47,13 +47,13 @@ impl Summary {
     }
 }
 
-/// The median; `None` without samples, or if one is not finite.
+/// Returns the median; `None` if there are no samples, or if one is not finite.
 pub fn median(samples: &[f64]) -> Option<f64> {
     percentile(samples, 50.0)
 }
 
-/// The value below which `percent` (0 to 100, clamped) of the samples are, interpolated linearly between
-/// neighbours as NumPy does by default; `None` without samples, or if one is not finite.
+/// Returns the value below which `percent` (0 to 100, clamped) of the samples are, interpolated linearly between
+/// neighbours as NumPy does by default; `None` if there are no samples, or if one is not finite.
 pub fn percentile(samples: &[f64], percent: f64) -> Option<f64> {
     if samples.is_empty() || samples.iter().any(|v| !v.is_finite()) {
         return None;

@@ -24,7 +24,7 @@ pub(super) struct Totals {
 }
 
 impl Totals {
-    /// Adds a second.
+    /// Adds one second.
     pub fn add(
         &mut self,
         now_ns: i64,
@@ -56,16 +56,16 @@ impl Totals {
         }
     }
 
-    /// Begins a pause: the time until the next line counts no energy.
+    /// Starts a pause: the time until the next line does not count for the energy.
     pub fn pause(&mut self) {
         self.last_line_ns = None;
     }
 
-    /// Returns the summary of the session so far, which is `seconds` long.
+    /// Returns the summary of the session so far, of `seconds` seconds.
     pub fn summary(&self, seconds: f64) -> SessionSummary {
         let some = |value: f64| (self.frames > 0).then_some(value);
         let mean_ms = self.frame_ms / self.frames as f64;
-        // A charging battery says nothing of what the device uses.
+        // The current of a charging battery does not show what the device uses.
         let trusted = self.plug_known && !self.was_plugged;
         let energy = Some(self.energy).filter(|e| trusted && e.seconds > 0.0);
         SessionSummary {
@@ -83,7 +83,7 @@ impl Totals {
     }
 }
 
-/// The summary of a session: one line at its end.
+/// The summary of a session, one line at its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SessionSummary {
     /// Length in seconds.
@@ -92,19 +92,19 @@ pub struct SessionSummary {
     pub frames: u64,
     /// Mean frames per second.
     pub fps: Option<f64>,
-    /// Refreshes that showed an old frame again.
+    /// Number of refreshes that showed an old frame again.
     pub stale: u64,
     /// Mean time between frames in milliseconds.
     pub frame_ms: Option<f64>,
     /// The largest of the seconds' 99th percentiles in milliseconds.
     pub worst_p99_ms: Option<f64>,
-    /// True if the device was plugged in at any time, which makes its power figures worthless.
+    /// True if the device was plugged in at any time, which invalidates its power figures.
     pub plugged: Option<bool>,
-    /// Charge and energy by integration; missing when plugged in or not measured.
+    /// Charge and energy by integration; missing if plugged in or not measured.
     pub energy: Option<Energy>,
-    /// Charge in milliampere-hours by the device's own counter, to check the integral with.
+    /// Charge in milliampere-hours by the device's own counter, for checking the integral.
     pub counter_mah: Option<f64>,
-    /// Change of the battery level in percent points.
+    /// Change of the battery level in percentage points.
     pub level_change: Option<i32>,
 }
 

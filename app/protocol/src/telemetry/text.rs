@@ -1,9 +1,9 @@
-//! The format of all log lines: fields `key=value` between commas, `na` for a missing value.
+//! The format of all log lines: `key=value` fields separated by commas, with `na` for a missing value.
 
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// The version of all lines, in the field `v`.
+/// The version of all lines, as in the field `v`.
 pub const VERSION: u32 = 1;
 /// The text of a missing value.
 pub(super) const MISSING: &str = "na";
@@ -12,7 +12,7 @@ pub(super) const MISSING: &str = "na";
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineError {
-    /// It does not start with `v=1`.
+    /// The line does not start with `v=1`.
     #[error(
         "the line does not start with v={VERSION}: it is not a telemetry line, or it is from another version of this program"
     )]
@@ -23,9 +23,9 @@ pub enum LineError {
     /// A value does not fit its key.
     #[error("the value \"{value}\" of the key \"{key}\" cannot be read: the line is damaged")]
     Value {
-        /// Key.
+        /// The key.
         key: &'static str,
-        /// Text found.
+        /// The text found.
         value: String,
     },
 }
@@ -42,23 +42,23 @@ impl<T: Display> Display for Na<T> {
     }
 }
 
-/// Returns a text without characters that could end its field.
+/// Replaces all characters that could end the text's field.
 pub(super) fn word(text: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "-._/".contains(c) { c } else { '-' };
     let word: String = text.chars().map(plain).collect();
     if word.is_empty() || word == MISSING { "-".into() } else { word }
 }
 
-/// One field of a line; `value` is `None` without a `=`.
+/// One field of a line; `value` is `None` if there is no `=`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field<'a> {
     /// The text before the first `=`.
     pub key: &'a str,
-    /// The text after it.
+    /// The text after the first `=`.
     pub value: Option<&'a str>,
 }
 
-/// Splits a line at the commas outside parentheses. Reads the lines of Meta's runtime (tag `VrApi`), too.
+/// Splits a line at the commas outside parentheses. This also reads the lines of Meta's runtime (tag `VrApi`).
 pub fn fields(line: &str) -> impl Iterator<Item = Field<'_>> {
     let mut depth = 0u32;
     line.trim()
@@ -84,7 +84,7 @@ impl<'a> Reader<'a> {
         Reader(fields(line).collect())
     }
 
-    /// Reads a line that starts with this field and the version.
+    /// Reads a line that starts with the field `begin` and the version.
     pub fn of(line: &'a str, begin: &str) -> Result<Reader<'a>, LineError> {
         let reader = Reader::new(line);
         let version = VERSION.to_string();
@@ -100,18 +100,18 @@ impl<'a> Reader<'a> {
         field.and_then(|field| field.value).ok_or(LineError::Missing(key))
     }
 
-    /// Returns text or nothing.
+    /// Returns a text; `None` if it is missing.
     pub fn word(&self, key: &'static str) -> Result<Option<&'a str>, LineError> {
         Ok(Some(self.text(key)?).filter(|text| *text != MISSING))
     }
 
-    /// Returns a number or nothing.
+    /// Returns a number; `None` if it is missing.
     pub fn number<T: FromStr>(&self, key: &'static str) -> Result<Option<T>, LineError> {
         let Some(text) = self.word(key)? else { return Ok(None) };
         text.parse().map(Some).map_err(|_| LineError::Value { key, value: text.into() })
     }
 
-    /// The first field.
+    /// Returns the first field.
     pub fn first(&self) -> Option<Field<'a>> {
         self.0.first().copied()
     }

@@ -23,7 +23,7 @@ fn level_size(size: [u32; 2], level: usize) -> [u32; 2] {
 }
 
 impl BloomTargets {
-    /// Makes targets, which are fitted to a view before they are drawn.
+    /// Makes targets of one pixel; call [`BloomTargets::resize`] before drawing into them.
     pub fn new(gl: &Rc<Context>, format: Format) -> Result<BloomTargets, GlError> {
         let level = || RenderTarget::new(gl, [1, 1], &[(format, Filter::Linear)], None);
         Ok(BloomTargets { levels: [level()?, level()?, level()?, level()?, level()?] })
@@ -34,16 +34,16 @@ impl BloomTargets {
         self.levels.iter_mut().enumerate().try_for_each(|(i, level)| level.resize(level_size(size, i)))
     }
 
-    /// The finished bloom, half the view's size.
+    /// Returns the finished bloom, half the view's size.
     pub fn result(&self) -> &Texture {
         self.levels[0].color(0)
     }
 }
 
-/// Spreads what is brighter than white over its surroundings.
+/// Spreads light that is brighter than white over its surroundings.
 ///
-/// Reads scene-referred colour, or with the define `DISPLAY_REFERRED` what tone mapping made of it; writes the pyramid,
-/// which is scene-referred.
+/// Reads scene-referred colour, or with the define `DISPLAY_REFERRED` tone-mapped colour. Writes the pyramid, which is
+/// scene-referred.
 pub struct BloomPass {
     gl: Rc<Context>,
     first: Program,
@@ -65,7 +65,7 @@ impl BloomPass {
         })
     }
 
-    /// Computes the bloom of columns `[first, end]` of `source`, whose filter must be linear; they are repeated beyond.
+    /// Computes the bloom of columns `[first, end]` of `source`, repeating the edge columns. The filter must be linear.
     pub fn run(&self, targets: &BloomTargets, source: &Texture, [first, end]: [u32; 2]) {
         let width = source.size()[0] as f32;
         let columns = Vec2::new(first as f32 + 0.5, end as f32 - 0.5) / width;
@@ -74,8 +74,8 @@ impl BloomPass {
         });
     }
 
-    /// Computes the bloom of a part of a display-referred source, to which `exposure` was applied. The part has the
-    /// lower left corner `origin` and this size in pixels, and in it only columns `[first, end]` count.
+    /// Computes the bloom of a part of a display-referred source that was exposed with `exposure`. The part has the
+    /// given size in pixels and the lower left corner `origin`; only its columns `[first, end]` count.
     pub fn run_display_referred(
         &self,
         targets: &BloomTargets,

@@ -8,11 +8,11 @@ use super::uniforms::eye_to_clip;
 use yoro::eyes::View;
 use yoro_scene::{Bounds, Model, Vertex};
 
-/// Floats of position, normal and uv of a [`Vertex`].
+/// Number of floats in the position, normal and uv of a [`Vertex`].
 pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
 /// A part with more triangles than this is split.
 const SPLIT_ABOVE: usize = 4096;
-/// Neighbouring parts are put into one cluster up to this many triangles.
+/// Neighbouring parts are gathered into one cluster up to this many triangles.
 const GATHER_UP_TO: usize = 512;
 
 /// A run of indices of one material that is compact in space.
@@ -31,17 +31,17 @@ pub struct Cluster {
 pub struct Batch {
     /// Index of the material.
     pub material: usize,
-    /// Its clusters, neighbours in space near each other in the list, without gaps in their indices.
+    /// Its clusters. Clusters that are close in space are close in the list, and their indices have no gaps.
     pub clusters: Range<usize>,
-    /// True if they move: their indices are those of the mesh that is rewritten.
+    /// True if its triangles move: the indices then refer to the mesh that is rewritten.
     pub moves: bool,
 }
 
-/// A model's triangles in clusters: the result of [`build`].
+/// A model's triangles in clusters, as made by [`build`].
 pub struct Clusters {
     /// All clusters, batch after batch.
     pub clusters: Vec<Cluster>,
-    /// One batch for each material that is used, ordered by material.
+    /// One batch for each material in use, ordered by material.
     pub batches: Vec<Batch>,
     /// The model's indices in the order of the clusters.
     pub indices: Vec<u32>,
@@ -53,15 +53,15 @@ struct Unit {
     triangles: Range<usize>,
 }
 
-/// Sorts a model's triangles by material and place. A cluster holds one piece of a part, or several small
-/// parts that lie together; it never holds pieces of two large parts.
+/// Sorts a model's triangles by material and place. A cluster holds one piece of a large part, or several small parts
+/// that are close together, but never pieces of two large parts.
 pub fn build(model: &Model) -> Clusters {
     let mut built = Clusters {
         clusters: Vec::new(),
         batches: Vec::new(),
         indices: Vec::with_capacity(model.indices.len()),
     };
-    // First indices of triangles, permuted part by part.
+    // First indices of triangles, sorted within each part.
     let mut triangles: Vec<u32> = Vec::new();
     let mut units = Vec::new();
     for material in 0..model.materials.len() {
@@ -105,7 +105,7 @@ fn split_triangles(model: &Model, triangles: &mut [u32], first: usize, units: &m
     split_triangles(model, triangles, first + middle, units);
 }
 
-/// Returns integers in the order of finite floats.
+/// Maps a finite float to an integer; the integers sort as the floats do.
 fn ordered(x: f32) -> i32 {
     let bits = x.to_bits() as i32;
     bits ^ (((bits >> 31) as u32) >> 1) as i32
@@ -132,7 +132,7 @@ fn gather_units(model: &Model, units: &mut [Unit], triangles: &[u32], built: &mu
     gather_units(model, high, triangles, built);
 }
 
-/// A choice of objects of a scene.
+/// A selection of a scene's objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Selection {
     /// All objects.
@@ -145,7 +145,7 @@ pub enum Selection {
         /// Metres.
         distance: f32,
     },
-    /// The other objects.
+    /// The complement of `Nearer`: all other objects.
     Farther {
         /// Usually the midpoint between the eyes.
         from: Vec3,
@@ -164,7 +164,7 @@ impl Selection {
     }
 }
 
-/// Decides what a view sees: the six planes of its clip volume and a selection.
+/// Decides what is drawn in a view: what lies in its clip volume and in a selection.
 #[derive(Clone, Copy, Debug)]
 pub struct Culler {
     planes: [Vec4; 6],
@@ -173,7 +173,7 @@ pub struct Culler {
 }
 
 impl Culler {
-    /// Makes a culler for all that a view shows.
+    /// Makes a culler for everything in a view.
     pub fn of_view(view: &View) -> Culler {
         Culler::selecting(view, Selection::All)
     }
@@ -196,7 +196,7 @@ impl Culler {
         self.planes.iter().all(|plane| {
             let normal = plane.truncate();
             let farthest = Vec3::select(normal.cmpgt(Vec3::ZERO), max, min);
-            // The slack covers the rounding of the planes, which far away is that of an infinite far plane.
+            // The slack covers the rounding of the planes; an infinite far plane is rounded most.
             let reach = normal.abs().dot(min.abs().max(max.abs())) + plane.w.abs();
             normal.dot(farthest) + plane.w >= -1e-5 * reach
         }) && self.selection.contains(bounds)

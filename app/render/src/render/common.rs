@@ -1,4 +1,4 @@
-//! The parts that renderers of both kinds share.
+//! What both kinds of renderer share.
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use super::transparent::TransparentPass;
 use yoro::eyes::View;
 use yoro_gl::{Context, GlError};
 
-/// A scene's shadow map and transparent surfaces, with the settings to render them.
+/// A scene's shadow map and transparent surfaces, and the settings to render them with.
 pub struct Common {
     pub(crate) gl: Rc<Context>,
     pub(super) settings: RenderSettings,
@@ -37,14 +37,14 @@ impl Common {
         })
     }
 
-    /// Draws again what depends on a scene that has moved.
+    /// Redraws what depends on the scene, after it has moved.
     pub(super) fn renew(&mut self, scene: &GpuScene) {
         if let Some(shadow) = &mut self.shadow {
             shadow.renew(&self.gl, scene);
         }
     }
 
-    /// Refuses another scene than the renderer was made for.
+    /// Returns an error unless this is the scene that the renderer was made for.
     pub fn check_scene(&self, scene: &GpuScene) -> Result<(), GlError> {
         if scene.id == self.scene_id {
             return Ok(());
@@ -55,9 +55,9 @@ impl Common {
         )))
     }
 
-    /// Returns the point lights of one view or of both eyes, relative to the first.
+    /// Returns the point lights of one view or of both eyes, with positions relative to the first view.
     pub(super) fn lights(&self, scene: &GpuScene, views: &[View]) -> Lights {
-        // One culler for each eye; that of a single view is there twice, and not used.
+        // One culler for each eye. A single view's culler is repeated, and the copy is not used.
         let cullers: [Culler; 2] =
             std::array::from_fn(|i| Culler::of_view(views.get(i).unwrap_or(&views[0])));
         let eye = views[0].pose.position;

@@ -19,11 +19,11 @@ use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::View;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
-/// Scene-referred colour of one view, and the images that it is made with.
+/// Scene-referred colour of one view, and the intermediate images it is made from.
 pub struct LightTargets {
     ssao: Option<SsaoTargets>,
     hdr: RenderTarget,
-    /// The columns that are lit; all if none.
+    /// The columns that are lit; all if `None`.
     columns: Option<Columns>,
 }
 
@@ -41,7 +41,7 @@ impl LightTargets {
         self.hdr.resize(size)
     }
 
-    /// The columns that are lit.
+    /// Returns the columns that are lit.
     fn lit_columns(&self) -> Columns {
         let all = [0, self.hdr.size()[0]];
         self.columns.unwrap_or(Columns { drawn: all, always: all })
@@ -53,7 +53,7 @@ impl LightTargets {
     }
 }
 
-/// Display-referred colour of one view, and the images that it is made with.
+/// Display-referred colour of one view, and the intermediate images it is made from.
 pub struct FinishTargets {
     bloom: Option<BloomTargets>,
     color: RenderTarget,
@@ -90,14 +90,14 @@ impl ViewImages for DeferredTargets {
         self.finish.color()
     }
 
-    /// 24 bits for standard depth, float for reversed depth.
+    /// Has 24 bits for standard depth, and floats for reversed depth.
     fn depth(&self) -> &Texture {
         self.g_buffer.target().depth()
     }
 }
 
-/// Returns the format of scene-referred colour. EXT_color_buffer_half_float alone has half floats, but no packed ones,
-/// so that the driver is tried.
+/// Returns the format of scene-referred colour. EXT_color_buffer_half_float alone allows half floats but not packed
+/// floats, so this asks the driver.
 pub fn hdr_format(gl: &Rc<Context>) -> Format {
     if !gl.capabilities().float_render_targets {
         return Format::Rgba8;
@@ -105,7 +105,7 @@ pub fn hdr_format(gl: &Rc<Context>) -> Format {
     first_renderable(gl, [Format::R11G11B10F, Format::Rgba16F])
 }
 
-/// Returns the first format that the driver renders to, or the last.
+/// Returns the first format that the driver can render to, or the last one if it can render to none.
 pub fn first_renderable<const N: usize>(gl: &Rc<Context>, formats: [Format; N]) -> Format {
     let renders = |f: &Format| RenderTarget::new(gl, [1, 1], &[(*f, Filter::Linear)], None).is_ok();
     formats.into_iter().find(renders).unwrap_or(formats[N - 1])
@@ -130,7 +130,7 @@ pub struct DeferredRenderer {
 }
 
 impl DeferredRenderer {
-    /// Compiles what single views need; [`DeferredRenderer::prepare`] does the rest.
+    /// Compiles the programs for single views; [`DeferredRenderer::prepare`] compiles the others.
     pub(crate) fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -140,7 +140,7 @@ impl DeferredRenderer {
         if !gl.capabilities().float_render_targets {
             hdr.push(("NO_FLOAT_TARGETS", String::new()));
         }
-        // Half a metre around a small object would darken all of it.
+        // Within half a metre of a small object lies all of it, which would darken it everywhere.
         let bounds = scene.bounds();
         let ssao_radius = settings.ssao_radius.min(0.1 * (bounds.max - bounds.min).length().max(1e-3));
         let bloom = settings.bloom.then(|| BloomPass::new(gl, &hdr)).transpose()?;
@@ -159,7 +159,7 @@ impl DeferredRenderer {
         Ok(renderer)
     }
 
-    /// Compiles what views of these kinds need, if it is not there already.
+    /// Compiles the programs for views of these kinds, unless they are compiled already.
     pub(crate) fn prepare(
         &mut self,
         scene: &GpuScene,
@@ -186,8 +186,8 @@ impl DeferredRenderer {
         Ok(())
     }
 
-    /// Clears a g-buffer and draws a part of the scene into it, in one view or in both eyes. `mark` may mark pixels
-    /// before that. The g-buffer fits the views, and its layout is prepared.
+    /// Clears a g-buffer and draws a part of the scene into it, for one view or both eyes. `mark` may mark pixels
+    /// between the two. The g-buffer must fit the views, and its layout must be prepared.
     pub(crate) fn draw(
         &self,
         g_buffer: &GBuffer,
@@ -211,8 +211,8 @@ impl DeferredRenderer {
         });
     }
 
-    /// Lights a view of a g-buffer: ambient occlusion and scene-referred colour. The targets fit the view, and its
-    /// role is prepared.
+    /// Lights a view of a g-buffer: computes ambient occlusion and scene-referred colour. The targets must fit the
+    /// view, and its role must be prepared.
     pub(crate) fn light(
         &self,
         targets: &LightTargets,
@@ -232,7 +232,7 @@ impl DeferredRenderer {
         passes.lighting.run(&targets.hdr, g_buffer, occlusion, shadow, scene, view, &lights, role);
     }
 
-    /// Makes display-referred colour of scene-referred colour: bloom and tone mapping.
+    /// Turns scene-referred colour into display-referred colour, by bloom and tone mapping.
     pub(crate) fn finish(&self, targets: &FinishTargets, light: &LightTargets) {
         let Columns { drawn, always } = light.lit_columns();
         let mut glow = None;
@@ -243,8 +243,8 @@ impl DeferredRenderer {
         self.tonemap.run(&targets.color, (light.hdr(), drawn), glow, self.common.settings.exposure);
     }
 
-    /// Draws the transparent part of a scene, if there is any, over a finished image of `view`, rendered or
-    /// synthesized. `depth` is its window depth.
+    /// Draws the transparent surfaces of a scene, if it has any, over a finished image of `view`, which may be rendered
+    /// or synthesized. `depth` is the image's window depth.
     pub(crate) fn draw_transparent(
         &self,
         to: &Destination,

@@ -1,4 +1,4 @@
-//! Depth for compositors that move images by it.
+//! Depth for compositors that reproject images with it.
 
 use std::rc::Rc;
 
@@ -8,11 +8,11 @@ use super::role::RoleKind;
 use super::transparent::DepthImage;
 use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource};
 
-/// Copies window depth into the depth attachment of a framebuffer of whatever depth format.
+/// Copies window depth into a framebuffer's depth attachment, which may have any depth format.
 pub struct DepthCopy {
     gl: Rc<Context>,
     program: Program,
-    /// Copies depth in layers of array textures, which only multiview has.
+    /// Copies depth from layers of array textures. `None` without multiview.
     layered: Option<Program>,
 }
 
@@ -30,7 +30,7 @@ impl DepthCopy {
         Ok(DepthCopy { gl: gl.clone(), program: compile(RoleKind::Whole)?, layered })
     }
 
-    /// Fills the destination's depth.
+    /// Writes the destination's depth.
     pub fn run(&self, from: DepthImage, to: &Destination) {
         let program = match (from.layer, &self.layered) {
             (Some(_), Some(layered)) => layered,

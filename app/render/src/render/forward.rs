@@ -1,7 +1,7 @@
-//! The forward renderer: surfaces are lit as they are drawn, with several samples in each pixel.
+//! The forward renderer: lights surfaces as it draws them, with several samples in each pixel.
 //!
-//! opaque surfaces -> sky -> (transparent surfaces) -> average of the samples, and their nearest depth where something
-//! reads it -> bloom and outlines. All before the average is one pass of a tile-based GPU.
+//! opaque surfaces -> sky -> (transparent surfaces) -> average of the samples, and their nearest depth if something
+//! reads it -> bloom and outlines. On a tile-based GPU everything before the average is one pass.
 
 use std::rc::Rc;
 
@@ -21,31 +21,31 @@ use yoro::eyes::{Eye, View};
 use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
 use yoro_scene::ShadingStyle;
 
-/// For images that are complete.
+/// For images that are complete, whose samples are no longer needed.
 const NO_SAMPLES: KeptSamples = KeptSamples { color: false, depth: false };
 
 /// The forward renderer of one scene: passes made for the scene's style and materials.
 pub struct ForwardRenderer {
     pub(super) common: Common,
-    /// True if there are outlines, which read all samples.
+    /// True if the style has outlines, which read all samples.
     pub(super) ink: bool,
     /// The defines of `render/forward.frag`.
     defines: Vec<(&'static str, String)>,
-    /// The opaque surfaces by [`Layout::index`].
+    /// The passes for opaque surfaces, by [`Layout::index`].
     pub(super) geometry: [Option<GeometryPass>; Layout::COUNT],
     pub(super) sky: Program,
     pub(super) load: Program,
-    /// If a pixel has several samples.
+    /// `None` with one sample in each pixel.
     pub(super) soften: Option<Program>,
-    /// If shaders can read samples.
+    /// `None` if shaders cannot read samples.
     pub(super) nearest: Option<Program>,
     pub(super) bloom: Option<BloomPass>,
-    /// If there are bloom or outlines.
+    /// `None` without bloom and outlines.
     pub(super) develop: Option<Program>,
 }
 
 impl ForwardRenderer {
-    /// Compiles what single views need; [`ForwardRenderer::prepare`] does the rest.
+    /// Compiles the programs for single views; [`ForwardRenderer::prepare`] compiles the others.
     pub(crate) fn new(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -54,7 +54,7 @@ impl ForwardRenderer {
         ForwardRenderer::build(gl, settings, scene, gl.capabilities().multisample_textures)
     }
 
-    /// Compiles it for targets whose samples are `readable` by shaders or not.
+    /// Compiles the programs for targets whose samples shaders can read (`readable`) or cannot.
     pub(super) fn build(
         gl: &Rc<Context>,
         settings: &RenderSettings,
@@ -98,7 +98,7 @@ impl ForwardRenderer {
         Ok(renderer)
     }
 
-    /// Compiles what views of a layout need, if it is not there already.
+    /// Compiles the programs for views of a layout, unless they are compiled already.
     pub(crate) fn prepare(&mut self, scene: &GpuScene, layout: Layout) -> Result<(), GlError> {
         let pass = &mut self.geometry[layout.index()];
         if pass.is_none() {
@@ -109,7 +109,7 @@ impl ForwardRenderer {
     }
 }
 
-/// Whole views, from empty targets.
+/// Renders whole views into empty targets.
 impl ViewRenderer for ForwardRenderer {
     type Targets = ForwardTargets;
 
@@ -160,13 +160,13 @@ impl ViewRenderer for ForwardRenderer {
     }
 }
 
-/// Views in parts.
+/// Renders views in parts.
 impl ForwardRenderer {
-    /// Fits targets to a view that is completed at once, so that no sample is needed afterwards; with `depth` that of
-    /// each pixel is.
+    /// Fits targets to a view that is completed at once, so that no sample is needed afterwards. With `depth`, each
+    /// pixel's depth is needed.
     fn fit_for_all(&self, targets: &mut ForwardTargets, view: &View, depth: bool) -> Result<(), GlError> {
         targets.request = ViewRequest::default();
-        // Outlines read the samples, and a tile's depth is lost: EXT_multisampled_render_to_texture2 discards it.
+        // Outlines read the samples; and depth is lost in tiles, since EXT_multisampled_render_to_texture2 discards it.
         targets.fit(view.size, self.develops(), !self.ink && !depth)
     }
 
@@ -175,8 +175,8 @@ impl ForwardRenderer {
         self.develop.is_some()
     }
 
-    /// Resumes drawing into the kept samples of a view, after synthesis: near objects and transparent surfaces.
-    /// Resolves colour again, and with `depth` the depth.
+    /// Resumes drawing into the kept samples of a view after synthesis: draws near objects and transparent surfaces,
+    /// then resolves colour again, and depth if `depth` is set.
     pub(crate) fn resume_samples(
         &self,
         targets: &ForwardTargets,
@@ -190,8 +190,8 @@ impl ForwardRenderer {
         self.develop(targets, view, Eye::Left, near.is_none());
     }
 
-    /// Does the same as [`ForwardRenderer::resume_samples`] with an image that was not rendered: 8-bit colour and float
-    /// depth, of the view's size. The targets must be no smaller than the view; their contents are gone afterwards.
+    /// Like [`ForwardRenderer::resume_samples`], but starts from an image: 8-bit colour and float depth, of the view's
+    /// size. The targets must be no smaller than the view, and lose their contents.
     pub(crate) fn resume_samples_with(
         &self,
         targets: &ForwardTargets,
@@ -228,8 +228,8 @@ impl ForwardRenderer {
         self.draw_transparent(targets, scene, views);
     }
 
-    /// Renders what lies in a slice (near and far plane in metres) and the sky behind it: the beginning of
-    /// [`ForwardRenderer::render_near`], without bloom and outlines.
+    /// Renders the surfaces in a slice (near and far plane in metres) and the sky behind it, without bloom and
+    /// outlines. [`ForwardRenderer::render_near`] completes the view.
     pub(crate) fn render_far(
         &self,
         targets: &mut ForwardTargets,
@@ -243,8 +243,8 @@ impl ForwardRenderer {
         Ok(())
     }
 
-    /// Renders what lies in a slice over the part of another view whose lower left corner is given, and transparent
-    /// surfaces over both. With `depth` the targets have that of opaque surfaces afterwards.
+    /// Renders the surfaces in a slice over a part of another view, given by its lower left corner, and transparent
+    /// surfaces over both. With `depth`, the targets then hold the depth of opaque surfaces.
     pub(crate) fn render_near(
         &self,
         targets: &mut ForwardTargets,
@@ -269,8 +269,8 @@ impl ForwardRenderer {
         Ok(())
     }
 
-    /// Renders both eyes at once: all of the scene, side by side in targets of such a layout. With `depth` these have
-    /// that of opaque surfaces afterwards. [`ForwardRenderer::develop`] ends each eye.
+    /// Renders the whole scene for both eyes at once, side by side in targets with that layout. With `depth`, the
+    /// targets then hold the depth of opaque surfaces. [`ForwardRenderer::develop`] finishes each eye.
     pub(crate) fn render_both(
         &self,
         targets: &mut ForwardTargets,

@@ -20,7 +20,7 @@ use super::view::ViewImages;
 use yoro::eyes::{Eye, View};
 use yoro_gl::{DepthTest, Program, RasterState, RenderTarget, Texture};
 
-/// The light in a frame's views.
+/// The light in the views of a frame.
 pub struct Illumination<'a> {
     pub scene: &'a GpuScene,
     pub shadow: Option<&'a ShadowMap>,
@@ -32,7 +32,7 @@ pub struct Illumination<'a> {
 }
 
 impl Illumination<'_> {
-    /// Sets the uniforms of `include/shade.glsl` in a program that is bound.
+    /// Sets the uniforms of `include/shade.glsl` in a bound program.
     fn set(&self, program: &Program) {
         program.set("exposure", self.exposure);
         if let Some(shadow) = self.shadow {
@@ -44,7 +44,7 @@ impl Illumination<'_> {
 }
 
 impl ForwardRenderer {
-    /// Returns the light of these views in an image of this layout, for positions relative to one of them.
+    /// Returns the light of the views in an image of this layout, for positions relative to the view `from`.
     pub(super) fn illuminate<'a>(
         &'a self,
         layout: Layout,
@@ -63,7 +63,7 @@ impl ForwardRenderer {
         }
     }
 
-    /// Empties the targets and draws a part of the scene, and the sky behind it.
+    /// Clears the targets, and draws a part of the scene and the sky behind it.
     pub(super) fn draw_on_sky(
         &self,
         targets: &ForwardTargets,
@@ -94,8 +94,8 @@ impl ForwardRenderer {
         }
     }
 
-    /// Fills the targets from an image and its depth: the rectangle of the view's size whose lower left corner is pixel
-    /// `crop`.
+    /// Fills the targets from the rectangle of an image and its depth that has the view's size and its lower left
+    /// corner at pixel `crop`.
     pub(super) fn load(
         &self,
         targets: &ForwardTargets,
@@ -108,8 +108,8 @@ impl ForwardRenderer {
         self.copy((color, depth), crop);
     }
 
-    /// Softens the edges of the depth that later surfaces are tested against, after [`ForwardRenderer::load`] of an
-    /// image whose own edges are soft.
+    /// Softens the edges of the depth that later surfaces are tested against. Called after [`ForwardRenderer::load`],
+    /// since the edges in the loaded image are soft.
     pub(super) fn soften(&self, targets: &ForwardTargets, depth: &Texture, view: &View) {
         let Some(program) = &self.soften else { return };
         targets.bind(view.size);
@@ -122,7 +122,7 @@ impl ForwardRenderer {
         self.common.gl.set_alpha_to_coverage(false);
     }
 
-    /// Fills the bound framebuffer from colour and depth of an image, from pixel `crop` on.
+    /// Fills the bound framebuffer from colour and depth of an image, starting at pixel `crop`.
     fn copy(&self, (color, depth): (&Texture, &Texture), crop: [u32; 2]) {
         self.common.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
         self.load
@@ -133,7 +133,7 @@ impl ForwardRenderer {
         self.common.gl.draw_screen();
     }
 
-    /// Draws opaque surfaces, lit, where nothing in the targets hides them.
+    /// Draws and lights the opaque surfaces that nothing in the targets hides.
     pub(super) fn draw(&self, targets: &ForwardTargets, light: &Illumination, views: &[View], part: &Part) {
         let (Some(pass), Some(view)) = (&self.geometry[targets.layout().index()], views.first()) else {
             return;
@@ -170,8 +170,8 @@ impl ForwardRenderer {
         self.common.gl.set_viewport(origin, view.size);
     }
 
-    /// Averages the samples, and takes their nearest depth if `depth` is wanted, or if outlines need it. Samples that
-    /// are not to be kept are given up.
+    /// Averages the samples, and takes their nearest depth if `depth` is set or outlines need it. Discards the samples
+    /// that `keep` does not name.
     pub(super) fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool, keep: KeptSamples) {
         let depth = depth || (self.ink && !targets.is_readable());
         if let Some(tile) = targets.tile() {
@@ -185,8 +185,8 @@ impl ForwardRenderer {
         }
     }
 
-    /// Does the same as [`ForwardRenderer::resolve`] into another image, which has the view's size, 8-bit colour and
-    /// float depth.
+    /// Like [`ForwardRenderer::resolve`], but into another image, which has the view's size, 8-bit colour and float
+    /// depth.
     pub(super) fn resolve_to(
         &self,
         targets: &ForwardTargets,
@@ -228,8 +228,8 @@ impl ForwardRenderer {
         }
     }
 
-    /// Adds bloom and outlines to an eye's image, where there are any. With `again` the bloom is that of the time
-    /// before. [`ViewImages::color`] is that eye's then, until another eye is developed.
+    /// Adds bloom and outlines, if there are any, to an eye's image. With `again` the previous bloom is used again.
+    /// Until another eye is developed, [`ViewImages::color`] is this eye's.
     pub(crate) fn develop(&self, targets: &ForwardTargets, view: &View, eye: Eye, again: bool) {
         let (Some(program), Some(to)) = (&self.develop, &targets.developed) else { return };
         let source = targets.resolved.color(0);

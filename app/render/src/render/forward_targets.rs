@@ -16,16 +16,16 @@ use yoro_gl::{
 
 /// The images of one view, or of both eyes side by side.
 ///
-/// A pixel costs 8 bytes for each sample, where they leave the tile, 8 bytes of resolved colour and depth, and with
-/// bloom or outlines 4 bytes of developed colour.
+/// A pixel costs 8 bytes for each sample that leaves the tile, 8 bytes of resolved colour and depth, and with bloom or
+/// outlines 4 bytes of developed colour.
 pub struct ForwardTargets {
     gl: Rc<Context>,
     layout: Layout,
-    /// The samples, where a pixel has several.
+    /// The samples outside tiles. `None` with one sample in each pixel.
     samples: Option<MultisampleTarget>,
-    /// The samples where they can stay in tiles.
+    /// The samples in tiles, if the driver can keep them there.
     tile: Option<TileTarget>,
-    /// True if samples stay in tiles in the present frame.
+    /// True if samples stay in tiles in the current frame.
     in_tile: bool,
     /// Average colour, nearest depth.
     pub(super) resolved: RenderTarget,
@@ -34,16 +34,16 @@ pub struct ForwardTargets {
     pub(super) developed: Option<RenderTarget>,
     /// The request that the view in the targets was rendered for.
     pub(super) request: ViewRequest,
-    /// True if the resolved depth is that of what was drawn.
+    /// True if the resolved depth belongs to what was drawn last.
     has_depth: Cell<bool>,
-    /// The samples that still hold what was drawn.
+    /// The samples that still hold what was drawn last.
     kept: Cell<KeptSamples>,
-    /// One column of colour, which is repeated beside the columns that are drawn.
+    /// One column of colour, copied into the columns beside those that are drawn.
     column: Option<RenderTarget>,
 }
 
 impl ForwardTargets {
-    /// Makes targets, which are fitted to the views that are rendered.
+    /// Makes targets, to be fitted to a view before they are drawn into.
     pub(crate) fn new(
         gl: &Rc<Context>,
         layout: Layout,
@@ -52,7 +52,7 @@ impl ForwardTargets {
         ForwardTargets::build(gl, layout, settings, gl.capabilities().multisample_textures)
     }
 
-    /// Makes targets whose samples are `readable` by shaders or not.
+    /// Makes targets whose samples shaders can read (`readable`) or cannot.
     pub(super) fn build(
         gl: &Rc<Context>,
         layout: Layout,
@@ -84,9 +84,8 @@ impl ForwardTargets {
         })
     }
 
-    /// Fits the targets to views of `size` pixels; nothing is done when they fit already. With `is_developed` there is
-    /// room for bloom and outlines. With `in_tile` no sample is needed once they are drawn, so that all may stay in
-    /// tiles.
+    /// Fits the targets to views of `size` pixels; does nothing if they already fit. `is_developed` makes room for
+    /// bloom and outlines. `in_tile` says that no sample is needed after drawing, so that all may stay in tiles.
     pub fn fit(&mut self, size: [u32; 2], is_developed: bool, in_tile: bool) -> Result<(), GlError> {
         let whole = self.layout.texture_size(size);
         self.resolved.resize(whole)?;
@@ -110,8 +109,8 @@ impl ForwardTargets {
         Ok(())
     }
 
-    /// Fills the resolved colour left of the columns `[first, end]` with the first of them, and right of them with the
-    /// last.
+    /// Fills the resolved colour to the left of columns `[first, end]` with the first of them, and to the right with
+    /// the last.
     pub fn repeat_columns(&mut self, [first, end]: [u32; 2]) -> Result<(), GlError> {
         let [width, height] = self.resolved.size();
         if self.column.is_none() {
@@ -129,7 +128,7 @@ impl ForwardTargets {
         self.gl.pass("repeat", || {
             for (from, to, columns) in [(first, 0, first), (end - 1, end, width - end)] {
                 if columns > 0 {
-                    // OpenGL ES copies nothing within one image.
+                    // OpenGL ES cannot copy within one image.
                     self.gl.copy(&part(from, 1), &column);
                     self.gl.copy(&column, &part(to, columns));
                 }
@@ -138,22 +137,22 @@ impl ForwardTargets {
         Ok(())
     }
 
-    /// The views that the targets hold.
+    /// Returns which views the targets hold.
     pub(crate) fn layout(&self) -> Layout {
         self.layout
     }
 
-    /// The lower left corner of an eye of `size` pixels in [`ViewImages::color`].
+    /// Returns the lower left corner of an eye of `size` pixels in [`ViewImages::color`].
     pub(crate) fn origin(&self, size: [u32; 2], eye: Eye) -> [u32; 2] {
         if self.developed.is_some() { [0, 0] } else { self.layout.origin(size, eye) }
     }
 
-    /// The tile's samples, if they stay in it.
+    /// Returns the samples in tiles, if they stay there in the current frame.
     pub(super) fn tile(&self) -> Option<&TileTarget> {
         self.tile.as_ref().filter(|_| self.in_tile)
     }
 
-    /// The samples that leave the tiles, if a pixel has several.
+    /// Returns the samples outside tiles, if a pixel has several.
     pub(super) fn samples(&self) -> Option<&MultisampleTarget> {
         self.samples.as_ref()
     }
@@ -163,23 +162,23 @@ impl ForwardTargets {
         self.samples.as_ref().is_some_and(|samples| samples.depth().is_some())
     }
 
-    /// Notes that depth is drawn: the resolved one is another until it is resolved again, if there are samples.
+    /// Notes that something is drawn. With several samples, the resolved depth is out of date until the next resolve.
     pub(super) fn draws_depth(&self) {
         self.has_depth.set(self.samples.is_none());
         self.kept.set(KeptSamples::default());
     }
 
-    /// Notes that the resolved depth is that of what was drawn.
+    /// Notes that the resolved depth is up to date.
     pub(super) fn has_resolved_depth(&self) {
         self.has_depth.set(true);
     }
 
-    /// Notes which samples still hold what was drawn.
+    /// Notes which samples still hold what was drawn last.
     pub(super) fn keeps(&self, samples: KeptSamples) {
         self.kept.set(samples);
     }
 
-    /// Binds what is drawn into, with a viewport for an image of `size` pixels.
+    /// Binds the image that is drawn into, with a viewport of `size` pixels.
     pub(super) fn bind(&self, size: [u32; 2]) {
         match (&self.samples, self.tile()) {
             (_, Some(tile)) => tile.bind(size),
@@ -190,13 +189,13 @@ impl ForwardTargets {
 }
 
 impl ViewImages for ForwardTargets {
-    /// Returns display-referred sRGB, filtered linearly. Alpha is luma; with several samples it is undefined where
-    /// materials are cut out.
+    /// Returns display-referred sRGB, filtered linearly. Alpha is luma; with several samples it is undefined where a
+    /// cut-out material is.
     fn color(&self) -> &RenderTarget {
         self.developed.as_ref().unwrap_or(&self.resolved)
     }
 
-    /// The nearest depth of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0).
+    /// Returns the nearest depth of each pixel's samples; without multisample textures (OpenGL ES 3.0) that of one.
     ///
     /// # Panics
     /// If it was not requested since the last surface was drawn.
@@ -209,7 +208,7 @@ impl ViewImages for ForwardTargets {
         self.samples().filter(|_| self.kept.get().depth)?.depth()
     }
 
-    /// The samples' colour, unless bloom or outlines are added to their average.
+    /// Returns the colour of the samples, unless bloom or outlines are added to their average.
     fn color_samples(&self) -> Option<glow::Texture> {
         self.samples().filter(|_| self.kept.get().color && self.developed.is_none())?.color()
     }

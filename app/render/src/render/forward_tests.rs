@@ -13,7 +13,7 @@ use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, V
 
 const SIZE: [u32; 2] = [96, 64];
 
-/// Without what only the deferred renderer has.
+/// Settings without the effects that only the deferred renderer has.
 fn with_samples(msaa: u32) -> RenderSettings {
     RenderSettings { renderer: RendererKind::Forward, msaa, bloom: false, ssao: false, ..settings() }
 }
@@ -37,7 +37,7 @@ fn forward(
     (scene, renderer, ForwardRenderer::targets(gl, settings).unwrap())
 }
 
-/// Surfaces of one colour each, whatever lights them, at rising distances: a wall that fills the view last.
+/// Surfaces of one colour each, independent of light, from near to far. The last is a wall that fills the view.
 fn flat(quads: &[(Vec3, Alpha, [Vec3; 3])]) -> Scene {
     let mut model = Model::default();
     for (i, &(emissive, alpha, [corner, across, up])) in quads.iter().enumerate() {
@@ -57,7 +57,7 @@ fn flat(quads: &[(Vec3, Alpha, [Vec3; 3])]) -> Scene {
 }
 
 const WALL: [Vec3; 3] = [Vec3::new(-20.0, -20.0, -9.0), Vec3::new(40.0, 0.0, 0.0), Vec3::new(0.0, 40.0, 0.0)];
-/// Covers the view's left part up to a slanted edge.
+/// Covers the left part of the view up to a slanted edge.
 const SLANTED: [Vec3; 3] = [Vec3::new(-9.0, -9.0, -4.0), Vec3::new(8.0, 0.0, 0.0), Vec3::new(2.2, 18.0, 0.0)];
 const BRIGHT: Vec3 = Vec3::new(0.9, 0.8, 0.7);
 const DARK: Vec3 = Vec3::new(0.02, 0.03, 0.04);
@@ -71,8 +71,8 @@ fn straight_on(convention: DepthConvention) -> View {
     }
 }
 
-/// The pixel's share of `b`, where it is a mix of `a` and `b` in display values; by the channel that tells them apart
-/// most.
+/// Returns the share of `b` in a pixel that is a mix of `a` and `b` in display values, by the channel in which they
+/// differ most.
 fn share(pixel: &[u8], a: &[u8], b: &[u8]) -> f32 {
     let channel = (0..3).max_by_key(|&i| a[i].abs_diff(b[i])).unwrap();
     let of = |p: &[u8]| f32::from(p[channel]);
@@ -83,8 +83,8 @@ fn pixel(picture: &[u8], x: u32, y: u32) -> &[u8] {
     &picture[((y * SIZE[0] + x) * 4) as usize..][..4]
 }
 
-/// The pictures differ by what the g-buffer and half floats round: 8 bits of the square root of albedo, 6 of a colour's
-/// mantissa.
+/// The pictures differ by the rounding of the g-buffer (8 bits for the square root of albedo) and of half floats (6
+/// bits of a colour's mantissa).
 #[test]
 fn forward_lights_as_deferred_does() {
     let head = open();
@@ -99,8 +99,8 @@ fn forward_lights_as_deferred_does() {
         let far_off =
             expected.chunks(4).zip(ours.chunks(4)).filter(|(a, b)| differences(&a[..3], &b[..3]) > 4);
         let share = far_off.count() as f64 / pixels as f64;
-        // Measured: none; cartoon 0.5 %, where rounding moves the border of a band; anime 4.2 %, where ink takes a
-        // share of the lit surface's colour instead of its albedo's.
+        // Measured: 0; cartoon 0.5 %, where rounding moves the border of a band; anime 4.2 %, where ink takes a share
+        // of the lit surface's colour instead of its albedo's.
         let bound = match style {
             ShadingStyle::Anime => 0.06,
             ShadingStyle::Cartoon => 0.01,
@@ -134,7 +134,7 @@ fn an_edge_is_the_mean_of_its_samples() {
             assert!((view.depth.distance(*depth) - distance).abs() < 1e-2, "the nearest sample's depth");
         }
         assert!(seen.iter().all(|count| *count > 5), "{seen:?}");
-        // The edge is a line through tangents: its mean over the view's rows is where it crosses the middle row.
+        // The edge is a straight line in tangents, so its mean over the view's rows is where it crosses the middle row.
         let tangent = (SLANTED[0].x + 8.0 + 2.2 * 0.5) / 4.0;
         let column = (tangent - view.frustum.left) / view.frustum.width() * SIZE[0] as f32;
         let mean = sum / SIZE[1] as f32;
@@ -143,7 +143,7 @@ fn an_edge_is_the_mean_of_its_samples() {
     assert_eq!(head.gl().take_errors(), None);
 }
 
-/// OpenGL ES 3.0: the samples are renderbuffers.
+/// In OpenGL ES 3.0 the samples are renderbuffers.
 #[test]
 fn without_multisample_textures_only_depth_at_edges_differs() {
     let head = open();
@@ -174,7 +174,7 @@ fn without_multisample_textures_only_depth_at_edges_differs() {
 fn transparent_surfaces_are_tested_per_sample() {
     let head = open();
     let gl = head.gl();
-    // A pane whose own edge is slanted, too, behind the slanted surface and before the wall.
+    // A pane with a slanted edge of its own, behind the slanted surface and in front of the wall.
     let pane = [Vec3::new(-9.0, -9.0, -6.0), Vec3::new(14.0, 0.0, 0.0), Vec3::new(-3.0, 18.0, 0.0)];
     let glass = Vec3::new(0.1, 0.5, 0.2);
     let scene = flat(&[
@@ -205,7 +205,7 @@ fn transparent_surfaces_are_tested_per_sample() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// What is complete keeps no samples: nobody reads them, and a tile-based GPU would write 32 bytes a pixel.
+/// Nobody reads the samples of a complete image, and a tile-based GPU would write 32 bytes a pixel.
 #[test]
 fn samples_are_given_up_once_drawing_has_resumed() {
     let head = open();
@@ -253,11 +253,11 @@ fn drawing_resumes_over_a_synthesized_eye() {
         image.bind();
         gl.clear(Some(1.0));
         gl.fill([0, 0], small.size, [0.2, 0.4, 0.6, 1.0]);
-        // Nothing to draw: the image stays as it is.
+        // Nothing is drawn, so the image stays as it is.
         let nothing = Some(Selection::Nearer { from: EYE_FAR, distance: 0.01 });
         renderer.resume_samples_with(&targets, &image, &scene, &small, nothing, true);
         assert!(image.read_rgba8(0, [0, 0], small.size).chunks(4).all(|p| p[..3] == [51, 102, 153]));
-        // All of it: opaque surfaces over the image.
+        // Everything is drawn: opaque surfaces over the image.
         renderer.resume_samples_with(&targets, &image, &scene, &small, Some(Selection::All), true);
         let drawn = image.read_rgba8(0, [0, 0], small.size);
         let kept = drawn.chunks(4).filter(|p| p[..3] == [51, 102, 153]).count();
@@ -266,7 +266,7 @@ fn drawing_resumes_over_a_synthesized_eye() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// An image has one depth in a pixel: at an edge half of the nearer pixel lets see what is drawn behind.
+/// An image has one depth in each pixel. At an edge, half of the nearer pixel lets surfaces behind it show.
 #[test]
 fn surfaces_over_a_loaded_image_have_soft_edges() {
     let head = open();
@@ -289,7 +289,7 @@ fn surfaces_over_a_loaded_image_have_soft_edges() {
         let after = image.resolved.read_rgba8(0, [0, 0], SIZE);
         let (bright, dark) = (pixel(&before, 2, 32).to_vec(), pixel(&before, 93, 32).to_vec());
         let through = pixel(&after, 93, 32);
-        // Half of what the pane, of display colour 2 through - dark, does to the bright surface.
+        // Half of what the pane does to the bright surface. The pane's display colour is 2 through - dark.
         let half = |i: usize| {
             let of = |p: &[u8]| f32::from(p[i]);
             0.75 * of(&bright) + 0.25 * (2.0 * of(through) - of(&dark))
@@ -311,7 +311,7 @@ fn surfaces_over_a_loaded_image_have_soft_edges() {
 
 const EYE_FAR: Vec3 = Vec3::splat(1e4);
 
-/// Posts of leaves: half of the picture's columns are cut out.
+/// A fence with alpha 0 in half of its columns.
 #[test]
 fn cut_out_edges_cover_samples_by_alpha() {
     let head = open();
@@ -334,7 +334,7 @@ fn cut_out_edges_cover_samples_by_alpha() {
     assert_eq!(head.gl().take_errors(), None);
 }
 
-/// Twenty lamps over a floor: tiles leave none out.
+/// Twenty lamps over a floor.
 #[test]
 fn light_tiles_leave_no_light_out() {
     let head = open();
@@ -386,7 +386,7 @@ fn targets_follow_the_renderers_kind_and_settings() {
     }
 }
 
-/// The case of OpenGL ES 3.0, where outlines read the resolved depth, even if it was not requested.
+/// Without readable samples (OpenGL ES 3.0), outlines read the resolved depth, even if it was not requested.
 #[test]
 fn outlines_work_without_readable_samples() {
     let head = open();

@@ -6,7 +6,7 @@ use glam::IVec2;
 
 use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
 
-/// Smooths edges (FXAA). Runs on one eye's image, after synthesis, so that no blended edge colour is moved.
+/// Smooths edges (FXAA). Runs on one eye's image after synthesis, so that synthesis never moves blended edge colours.
 ///
 /// Reads display-referred colour with luma in alpha and a linear filter; writes the same.
 pub struct Fxaa {
@@ -24,8 +24,8 @@ impl Fxaa {
         Ok(Fxaa { gl: gl.clone(), program })
     }
 
-    /// Writes `to` from the rectangle of its size whose lower left corner is pixel `crop` of `source`. Pixels
-    /// up to two beyond the rectangle's border are read where the source has them.
+    /// Writes `to` from the rectangle of its size in `source` whose lower left corner is pixel `crop`. Reads up to two
+    /// pixels beyond the rectangle's border where the source has them.
     pub fn run(&self, source: &Texture, crop: [u32; 2], to: &Destination) {
         self.gl.pass("fxaa", || {
             self.gl.set_raster_state(&RasterState::SCREEN);

@@ -10,7 +10,7 @@ use yoro_gl::{Context, Filter, Format, GlError, RenderTarget};
 /// Colour attachments of the g-buffer: albedo and roughness, normal and reflectance, emission and material.
 const COLOR_FORMATS: [(Format, Filter); 3] = [(Format::Rgba8, Filter::Nearest); 3];
 
-/// The views that a g-buffer holds, and the way they are drawn.
+/// Which views a g-buffer holds, and how they are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// One view.
@@ -21,12 +21,12 @@ pub enum Layout {
     Layered,
 }
 
-/// The way that an eye's triangles are kept out of the other half of a double-wide target.
+/// How an eye's triangles are kept out of the other half of a double-wide target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seam {
-    /// gl_ClipDistance.
+    /// `gl_ClipDistance`.
     ClipDistance,
-    /// `discard`, where the driver has no clip distances; it costs early depth tests.
+    /// `discard`, for drivers without clip distances. Costs early depth tests.
     Discard,
 }
 
@@ -44,7 +44,7 @@ impl Layout {
         }
     }
 
-    /// The defines of `render/geometry.vert` and `render/geometry.frag`.
+    /// Returns the defines of `render/geometry.vert` and `render/geometry.frag`.
     pub fn defines(self) -> &'static [&'static str] {
         match self {
             Layout::Single => &[],
@@ -54,7 +54,7 @@ impl Layout {
         }
     }
 
-    /// Instances of each draw call.
+    /// Returns the number of instances in each draw call.
     pub fn instances(self) -> usize {
         match self {
             Layout::DoubleWide(_) => 2,
@@ -62,8 +62,8 @@ impl Layout {
         }
     }
 
-    /// Returns the number of columns from the left edge of an eye's image to that of the next. Even, so that the 2x2
-    /// pixels that derivatives are taken of are the same as in a view by itself.
+    /// Returns the number of columns from the left edge of one eye's image to that of the next. It is even, so that
+    /// derivatives are taken over the same 2x2 pixels as in a single view.
     fn stride(width: u32) -> u32 {
         width.next_multiple_of(2)
     }
@@ -76,7 +76,7 @@ impl Layout {
         }
     }
 
-    /// Returns the lower left corner of an eye's image, of `size` pixels.
+    /// Returns the lower left corner of an eye's image of `size` pixels.
     pub fn origin(self, size: [u32; 2], eye: Eye) -> [u32; 2] {
         match self {
             Layout::DoubleWide(_) => [Layout::stride(size[0]) * eye.index() as u32, 0],
@@ -84,7 +84,7 @@ impl Layout {
         }
     }
 
-    /// Moves an eye's clip space to where its image is.
+    /// Returns the transform from an eye's clip space to its place in the texture.
     pub fn placement(self, size: [u32; 2], eye: Eye) -> Mat4 {
         let (whole, width) = (self.texture_size(size)[0] as f32, size[0] as f32);
         let left = self.origin(size, eye)[0] as f32;
@@ -94,7 +94,7 @@ impl Layout {
         placement
     }
 
-    /// The plane of an eye's clip volume that lies at the seam, for positions that `eye_to_clip` takes.
+    /// Returns the plane of an eye's clip volume at the seam, in the space that `eye_to_clip` transforms from.
     pub fn seam_plane(eye_to_clip: &Mat4, eye: Eye) -> Vec4 {
         let rows = eye_to_clip.transpose();
         match eye {
@@ -104,8 +104,8 @@ impl Layout {
     }
 }
 
-/// Albedo and roughness, normal and reflectance, emission and material, and depth: 24 bits for standard, float for
-/// reversed depth.
+/// Textures of albedo and roughness, normal and reflectance, emission and material, and depth: 24 bits for standard
+/// depth, float for reversed depth.
 pub struct GBuffer {
     gl: Rc<Context>,
     layout: Layout,
@@ -114,14 +114,14 @@ pub struct GBuffer {
 }
 
 impl GBuffer {
-    /// Makes a g-buffer, which is fitted to its views before they are drawn.
+    /// Makes a g-buffer, to be fitted to its views before they are drawn.
     pub fn new(gl: &Rc<Context>, layout: Layout) -> Result<GBuffer, GlError> {
         let convention = DepthConvention::Standard;
         let target = target(gl, layout, [1, 1], convention)?;
         Ok(GBuffer { gl: gl.clone(), layout, convention, target })
     }
 
-    /// Fits the textures to views of another size or convention; nothing is done when they fit already.
+    /// Fits the textures to the views' size and depth convention; does nothing if they already fit.
     pub fn fit(&mut self, size: [u32; 2], convention: DepthConvention) -> Result<(), GlError> {
         if convention != self.convention {
             self.target = target(&self.gl, self.layout, size, convention)?;
@@ -130,7 +130,7 @@ impl GBuffer {
         self.target.resize(self.layout.texture_size(size))
     }
 
-    /// The views that it holds.
+    /// Returns which views it holds.
     pub fn layout(&self) -> Layout {
         self.layout
     }

@@ -1,4 +1,4 @@
-//! The opaque triangles: into the g-buffer, or lit at once.
+//! Passes that draw the opaque triangles, into the g-buffer or lit at once.
 
 use std::rc::Rc;
 
@@ -14,13 +14,13 @@ use yoro_gl::{Blend, Context, GlError, Program, RasterState, ShaderSource};
 /// A part of the opaque triangles.
 #[derive(Clone, Copy)]
 pub enum Part<'a> {
-    /// Clusters that a culler lets through, in one view.
+    /// Clusters that a culler lets through, for one view.
     Selected(&'a Culler),
-    /// Surfaces between two distances in metres, with the depth that they have in the views.
+    /// Surfaces between two distances in metres, drawn at the same depth as in the whole view.
     Slice([f32; 2]),
 }
 
-/// Draws the opaque triangles of a scene into what is bound.
+/// Draws the opaque triangles of a scene into the bound framebuffer.
 ///
 /// Writes the g-buffer's three colour textures (12 bytes a pixel), or display-referred colour (4 bytes a sample), and
 /// depth; reads the material's maps.
@@ -34,13 +34,13 @@ pub struct GeometryPass {
 }
 
 impl GeometryPass {
-    /// Into the g-buffer: compiles the variants that the scene's materials need.
+    /// Makes a pass that draws into the g-buffer. Compiles the variants that the scene's materials need.
     pub fn deferred(gl: &Rc<Context>, scene: &GpuScene, layout: Layout) -> Result<GeometryPass, GlError> {
         GeometryPass::new(gl, scene, layout, "render/geometry.frag", &scene.style_defines(), false)
     }
 
-    /// Lit at once: compiles the variants that the scene's materials need, with the defines of `render/forward.frag`.
-    /// With `multisample`, cut-out materials cover samples by their alpha.
+    /// Makes a pass that lights surfaces as it draws them. Compiles the variants that the scene's materials need, with
+    /// the defines of `render/forward.frag`. With `multisample`, cut-out materials cover samples by their alpha.
     pub fn forward(
         gl: &Rc<Context>,
         scene: &GpuScene,
@@ -78,7 +78,7 @@ impl GeometryPass {
         self.programs.iter().flatten()
     }
 
-    /// Draws into a target of the pass's layout: one view, or both eyes, which are alike in size and depth.
+    /// Draws into a target of the pass's layout: one view, or both eyes, which must have the same size and depth range.
     pub fn draw(&self, scene: &GpuScene, views: &[View], part: &Part) {
         let Some(first) = views.first() else { return };
         match *part {
@@ -88,7 +88,7 @@ impl GeometryPass {
             }
             Part::Slice([near, far]) => {
                 let depth = DepthRange { near, far, ..first.depth };
-                // One of each for an eye; what a single view does not use repeats the first.
+                // One of each for each eye. For a single view the second repeats the first and is not used.
                 let sliced: [View; 2] =
                     std::array::from_fn(|i| View { depth, ..*views.get(i).unwrap_or(first) });
                 let (cullers, matrices) =
@@ -153,9 +153,9 @@ impl GeometryPass {
     }
 }
 
-/// Returns the part of the depth buffer that a slice (near and far plane in metres) of a depth range takes.
+/// Returns the part of the depth buffer that a slice (near and far plane in metres) of a depth range covers.
 fn window(range: &DepthRange, [near, far]: [f32; 2]) -> [f32; 2] {
-    // Exactly all of it, whatever the rounding.
+    // At the range's own planes the result is exact, free of rounding.
     let depth = |distance: f32, plane: f32, at_plane: f32| {
         if distance == plane { at_plane } else { range.depth(distance) }
     };

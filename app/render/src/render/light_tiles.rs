@@ -1,4 +1,4 @@
-//! The lights that reach each tile of an image, so that a surface is lit by nearby lights alone.
+//! Lists of the lights that reach each tile of an image, so that a surface is lit by nearby lights only.
 
 use glam::{IVec4, Vec2, Vec3};
 
@@ -7,14 +7,14 @@ use super::lights::Lights;
 use yoro::eyes::{Eye, Frustum, View};
 use yoro_gl::Program;
 
-/// Tiles of an image: columns and rows. One number for each, in uniforms, fits every driver and every size.
+/// Number of tiles across and down an image. A mask for each fits into every driver's uniforms, at every image size.
 const COLUMNS: usize = 16;
 const ROWS: usize = 8;
 const COUNT: usize = COLUMNS * ROWS;
 
-/// The lights that reach into each tile's part of the view, at any distance.
+/// For each tile, the lights that reach into its part of the view at any distance.
 pub struct LightTiles {
-    /// Bit `i` is light `i` of [`Lights`]; four tiles in each, row by row from the bottom.
+    /// Bit `i` stands for light `i` of [`Lights`]. Each vector holds four tiles, row by row from the bottom.
     masks: [IVec4; COUNT / 4],
     tiles_per_pixel: Vec2,
 }
@@ -25,7 +25,7 @@ impl LightTiles {
         [("LIGHT_TILES", COUNT.to_string()), ("LIGHT_TILE_COLUMNS", COLUMNS.to_string())]
     }
 
-    /// Creates the tiles for an image of this layout and the lights of its views; positions are relative to the first.
+    /// Creates the tiles for an image of this layout and the lights of its views, relative to the first view.
     pub fn new(lights: &Lights, layout: Layout, views: &[View]) -> LightTiles {
         let size = views.first().map_or([1, 1], |view| layout.texture_size(view.size)).map(|n| n as f32);
         let tile = [size[0] / COLUMNS as f32, size[1] / ROWS as f32];
@@ -56,7 +56,7 @@ impl LightTiles {
     }
 }
 
-/// A light's sphere as an eye sees it.
+/// The sphere that a light reaches, in an eye's axes.
 struct Reach {
     /// Centre in the eye's axes.
     center: Vec3,
@@ -65,22 +65,22 @@ struct Reach {
 }
 
 impl Reach {
-    /// True if the light reaches into a column of tiles. A tile is `width` of the view wide.
+    /// True if the light reaches into a column of tiles. `width` is a tile's share of the view's width.
     fn column(&self, column: usize, width: f32) -> bool {
         let tangent = |edge: usize| self.frustum.left + edge as f32 * width * self.frustum.width();
         self.is_between(self.center.x, tangent(column), tangent(column + 1))
     }
 
-    /// True if the light reaches into a row of tiles. A tile is `height` of the view high.
+    /// True if the light reaches into a row of tiles. `height` is a tile's share of the view's height.
     fn row(&self, row: usize, height: f32) -> bool {
         let tangent = |edge: usize| self.frustum.bottom + edge as f32 * height * self.frustum.height();
         self.is_between(self.center.y, tangent(row), tangent(row + 1))
     }
 
-    /// True if the light reaches between the planes through the eye at two tangents. `across` is its centre's
-    /// coordinate.
+    /// True if the light reaches between the planes through the eye at two tangents. `across` is the centre's
+    /// coordinate along the tangents' axis.
     fn is_between(&self, across: f32, low: f32, high: f32) -> bool {
-        // Distance of the centre from the plane, on the side of larger tangents.
+        // Distance of the centre from the plane, positive on the side of larger tangents.
         let beyond = |tangent: f32| (across + tangent * self.center.z) / (1.0 + tangent * tangent).sqrt();
         beyond(low) > -self.range && beyond(high) < self.range
     }
@@ -94,7 +94,7 @@ mod tests {
     use yoro::eyes::{DepthRange, Pose};
     use yoro_scene::PointLight;
 
-    /// Every point that a light reaches lies in a tile that lists it, and most tiles do not list it.
+    /// Every point that a light reaches must lie in a tile that lists it, and most tiles must not list it.
     #[test]
     fn tiles_list_the_lights_that_reach_them() {
         let pose = Pose { position: Vec3::new(2.0, 1.0, 5.0), orientation: Quat::from_rotation_y(0.7) };

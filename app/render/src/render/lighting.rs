@@ -59,7 +59,7 @@ impl LightingPass {
         Ok(LightingPass { gl: gl.clone(), program })
     }
 
-    /// Lights a g-buffer into `target`, as the role says.
+    /// Lights a view of a g-buffer into `target`, as its role says.
     #[allow(clippy::too_many_arguments, reason = "a pass names what it reads")]
     pub fn run(
         &self,

@@ -1,4 +1,4 @@
-//! The point lights that light a view.
+//! The point lights of a view.
 
 use glam::{Vec3, Vec4};
 
@@ -17,7 +17,7 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// Chooses the `limit` lights that are strongest at the eye, among those that reach into any of the views.
+    /// Chooses the `limit` lights that are strongest at the eye, of those that reach into any of the views.
     pub fn choose(lights: &[PointLight], eye: Vec3, cullers: &[Culler], limit: usize) -> Lights {
         let limit = limit.min(MAX_POINT_LIGHTS);
         let mut scores = [(0.0, 0); MAX_POINT_LIGHTS];
@@ -92,7 +92,7 @@ mod tests {
             color: Vec3::splat(strength),
             range: 4.0,
         };
-        // Behind the eye; far and weak; then forty that grow stronger.
+        // One light behind the eye, one far and weak, then forty of increasing strength.
         let mut lights = vec![light(20.0, 1000.0), light(-100.0, 1.0)];
         lights.extend((0..40).map(|i| light(-5.0, 1.0 + i as f32)));
         let chosen = Lights::choose(&lights, Vec3::ZERO, &[culler], 16);

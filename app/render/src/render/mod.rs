@@ -1,11 +1,11 @@
-//! One view of a scene: colour and depth, rendered the deferred way or the forward way.
+//! Renders one view of a scene to colour and depth, deferred or forward.
 //!
 //! Deferred: sun shadow map (once per scene, or whenever something moves) -> g-buffer -> ambient occlusion -> lighting
-//! -> bloom -> tone mapping. [`Fxaa`] and transparent surfaces ([`DeferredRenderer::draw_transparent`]) belong to the
-//! finished image of one eye, so that they come after synthesis.
+//! -> bloom -> tone mapping. [`Fxaa`] and transparent surfaces ([`DeferredRenderer::draw_transparent`]) are applied to
+//! the finished image of each eye, after synthesis.
 //!
 //! Forward, with several samples in each pixel: sun shadow map -> lit surfaces -> average of the samples -> bloom and
-//! outlines. After synthesis drawing resumes in the same samples ([`ForwardRenderer::resume_samples`]).
+//! outlines. After synthesis, drawing resumes in the same samples ([`ForwardRenderer::resume_samples`]).
 
 mod bloom;
 mod cluster;

@@ -1,4 +1,4 @@
-//! What moves in a scene, on the GPU.
+//! The moving parts of a scene, on the GPU.
 
 use std::rc::Rc;
 
@@ -6,14 +6,14 @@ use super::cluster::{Batch, Cluster, VERTEX_ATTRIBUTES};
 use yoro_gl::{Context, GlError, Mesh};
 use yoro_scene::{Model, Moment, Motion, Part};
 
-/// Vertices that are worked out on the CPU and rewritten whenever the time changes. Each part of the model that moves
-/// is a cluster with the bounds of the mesh that it belongs to.
+/// Vertices that are computed on the CPU and rewritten whenever the time changes. Each moving part of the model is a
+/// cluster with the bounds of the mesh it belongs to.
 pub struct Moving {
     pub motion: Motion,
     pub moment: Moment,
     pub mesh: Mesh,
     pieces: Vec<Piece>,
-    /// Index of the first piece's cluster; they follow one another.
+    /// Index of the first piece's cluster; the others follow it.
     first: usize,
     seconds: f64,
 }
@@ -29,7 +29,7 @@ struct Piece {
 }
 
 impl Moving {
-    /// Takes what moves out of a model. `None` if nothing does.
+    /// Takes the moving parts out of a model. `None` if nothing moves.
     pub fn take(gl: &Rc<Context>, model: &mut Model, motion: Motion) -> Result<Option<Moving>, GlError> {
         if motion.is_still() {
             return Ok(None);
@@ -45,7 +45,7 @@ impl Moving {
             model.parts.iter().filter_map(|part| Some((part.clone(), moved(part)?))).collect();
         parts.sort_by_key(|(part, _)| part.material);
         let still: Vec<Part> = model.parts.iter().filter(|part| moved(part).is_none()).cloned().collect();
-        // Of each range's vertices the first among all that move.
+        // For each range, the index of its first vertex among all moving vertices.
         let firsts: Vec<usize> =
             ranges.iter().scan(0, |next, range| Some(std::mem::replace(next, *next + range.len()))).collect();
         let (mut indices, mut pieces) = (Vec::new(), Vec::new());
@@ -61,7 +61,7 @@ impl Moving {
         Ok(Some(Moving { motion, moment, mesh, pieces, first: 0, seconds: 0.0 }))
     }
 
-    /// Adds what moves to a scene's clusters, batches of their own behind those that stand still.
+    /// Appends the moving parts to a scene's clusters, in batches of their own after those of the still parts.
     pub fn append(&mut self, clusters: &mut Vec<Cluster>, batches: &mut Vec<Batch>) {
         self.first = clusters.len();
         for pieces in self.pieces.chunk_by(|a, b| a.material == b.material) {
@@ -84,7 +84,7 @@ impl Moving {
         &clusters[self.first..self.first + self.pieces.len()]
     }
 
-    /// Moves everything to where it is at a time in seconds, and its clusters' bounds; false if it is there already.
+    /// Moves everything, and the clusters' bounds, to its place at a time in seconds. False if it is there already.
     pub fn set_time(&mut self, seconds: f64, clusters: &mut [Cluster]) -> bool {
         if seconds == self.seconds {
             return false;

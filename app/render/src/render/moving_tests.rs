@@ -16,8 +16,8 @@ fn track(values: &[f32]) -> Option<Track> {
     Some(Track { times: vec![0.0, 2.0], values: values.to_vec(), ..Track::default() })
 }
 
-/// The small scene, in which a cube comes from behind the eye, the fence turns, a pane of glass rises and a lamp goes
-/// by.
+/// The small scene, in which a cube comes from behind the eye, the fence turns, a pane of glass rises and a lamp
+/// passes.
 fn moving() -> Scene {
     let mut scene = scene(ShadingStyle::Realistic);
     let glass = scene.model.vertices.len();
@@ -54,8 +54,8 @@ fn picture(gl: &std::rc::Rc<yoro_gl::Context>, prepared: &mut PreparedScene) -> 
     picture
 }
 
-/// What has moved looks as if it had been there from the start: surfaces, shadows, light, glass, and what comes into
-/// view.
+/// What has moved must look as if it had been there from the start: surfaces, shadows, light, glass, and what comes
+/// into view.
 #[test]
 fn a_scene_that_moved_is_the_scene_as_it_stands() {
     let head = open();
@@ -65,7 +65,7 @@ fn a_scene_that_moved_is_the_scene_as_it_stands() {
         let settings = RenderSettings { renderer, msaa, ..settings() };
         let mut moved = PreparedScene::new(gl, moving(), &settings).unwrap();
         let mut pictures = Vec::new();
-        // Backwards and to the start too, and more often than there are buffers.
+        // Includes steps backwards and to the start, and more steps than there are buffers.
         for seconds in [0.0, 1.3, 0.4, 2.4, 1.9, 0.0, 1.3] {
             moved.set_time(seconds).unwrap();
             let picture_moved = picture(gl, &mut moved);
@@ -96,7 +96,7 @@ fn scenes_that_stand_still_cost_nothing() {
     let mut still = PreparedScene::new(gl, scene(ShadingStyle::Realistic), &settings()).unwrap();
     let [first, second] = [0.0, 1.5].map(|seconds| frame(&mut still, seconds));
     assert!(first[0].is_empty() && first == second && first[1].len() > 10);
-    // One that moves draws its shadow map whenever it has moved, and nothing else besides.
+    // A moving scene draws its shadow map whenever it has moved, and nothing else in addition.
     let mut moved = PreparedScene::new(gl, moving(), &settings()).unwrap();
     let shadow = |commands: &[Command]| {
         let mut draws = commands.iter().filter(|c| !matches!(c, Command::Clear(..)));

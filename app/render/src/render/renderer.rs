@@ -1,4 +1,4 @@
-//! A renderer of either kind, as the settings say.
+//! A renderer of either kind, chosen by the settings.
 
 use std::rc::Rc;
 
@@ -15,9 +15,8 @@ use yoro::eyes::View;
 use yoro_gl::{Context, GlError, RenderTarget, Texture};
 
 /// A renderer of one scene: programs for the scene's style and materials, and its shadow map.
-///
-/// Single views are ready after [`Renderer::new`]. A stereo method compiles the rest once, with its first frame of the
-/// scene or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
+/// After [`Renderer::new`] it is ready for single views. A stereo method compiles what else it needs once, in its first
+/// frame of the scene or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
 pub enum Renderer {
     /// [`RendererKind::Deferred`].
     Deferred(Box<DeferredRenderer>),
@@ -25,7 +24,7 @@ pub enum Renderer {
     Forward(Box<ForwardRenderer>),
 }
 
-/// A kind of renderer that a [`Renderer`] may be.
+/// A kind of renderer that a [`Renderer`] can be.
 pub(crate) trait RendererOfKind: ViewRenderer + 'static {
     /// Returns the renderer if it is of this kind.
     fn of(renderer: &mut Renderer) -> Option<&mut Self>;
@@ -49,8 +48,8 @@ impl RendererOfKind for ForwardRenderer {
     }
 }
 
-/// The images of one view for a renderer of either kind. They are made when a view is rendered, and used again for the
-/// next one.
+/// The images of one view, for a renderer of either kind. They are made when the first view is rendered, and reused for
+/// the next.
 #[derive(Default)]
 pub struct ViewTargets {
     deferred: Option<(RenderSettings, DeferredTargets)>,
@@ -63,9 +62,9 @@ pub struct RenderedView<'a> {
     /// Display-referred sRGB colour with luma in alpha, filtered linearly. With several samples in each pixel, alpha is
     /// undefined where something is cut out by a texture.
     pub color: &'a RenderTarget,
-    /// Window depth in the view's convention. Deferred: 24 bits for standard, float for reversed depth. Forward: float,
-    /// the nearest of each pixel's samples; that of one of them without multisample textures (OpenGL ES 3.0), and after
-    /// [`Renderer::render_all`] where samples stay in tiles.
+    /// Window depth in the view's convention. Deferred: 24 bits for standard depth, float for reversed depth. Forward:
+    /// float, the nearest of each pixel's samples; without multisample textures (OpenGL ES 3.0), and after
+    /// [`Renderer::render_all`] if samples stay in tiles, the depth of one of the samples.
     pub depth: &'a Texture,
 }
 
@@ -83,8 +82,8 @@ impl Renderer {
         })
     }
 
-    /// Moves everything in a scene to where it is at a time in seconds, and draws its shadow map again. A scene in
-    /// which nothing moves, or that is there already, costs nothing.
+    /// Moves everything in a scene to its place at a time in seconds, and redraws its shadow map. Costs nothing if the
+    /// scene does not move or is there already.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for another scene than the renderer was made for.
@@ -100,7 +99,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Renders the opaque part of a scene: colour and depth. Where nothing is drawn, depth keeps its far value and
+    /// Renders the opaque part of a scene to colour and depth. Where nothing is drawn, depth is the far value and
     /// colour is the sky.
     ///
     /// # Errors
@@ -115,7 +114,7 @@ impl Renderer {
         self.draw(targets, scene, view, Some(ViewRequest { selection, ..ViewRequest::default() }))
     }
 
-    /// Renders all of a scene, with transparent surfaces. Depth is that of opaque surfaces.
+    /// Renders all of a scene, including transparent surfaces. Depth is that of opaque surfaces.
     ///
     /// # Errors
     /// As [`Renderer::render`].
@@ -128,7 +127,7 @@ impl Renderer {
         self.draw(targets, scene, view, None)
     }
 
-    /// Renders the request, or all surfaces without one.
+    /// Renders the request, or all surfaces if it is `None`.
     fn draw<'a>(
         &self,
         targets: &'a mut ViewTargets,
@@ -145,7 +144,7 @@ impl Renderer {
     }
 }
 
-/// Renders into the targets that are there, or into new ones if those were made for other settings.
+/// Renders into the existing targets, or into new ones if those were made for other settings.
 fn draw_with<'a, R: ViewRenderer>(
     renderer: &R,
     made: &'a mut Option<(RenderSettings, R::Targets)>,

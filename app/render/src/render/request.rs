@@ -3,33 +3,32 @@
 use super::cluster::{Culler, Selection};
 use yoro::eyes::{Frustum, View};
 
-/// Columns of a view that is not needed as a whole: each `[first, end]`, counted from the left.
+/// Columns of a view of which only a part is needed. Each range is `[first, end]`, counted from the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
-    /// The columns to draw. In the others depth is the far plane's, and colour that of the nearest column that is
-    /// drawn.
+    /// The columns to draw. In the others, depth is the far plane's, and colour is that of the nearest drawn column.
     pub drawn: [u32; 2],
-    /// The columns that are drawn in every frame. Ambient occlusion and bloom do not reach into them from beside, so
-    /// that they do not depend on what is drawn there.
+    /// The columns that are drawn in every frame. Ambient occlusion and bloom do not reach into them from other
+    /// columns, so that they do not depend on what is drawn there.
     pub always: [u32; 2],
 }
 
-/// The depth that is read of a view once it is rendered.
+/// The depth that is read after a view is rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PixelDepth {
-    /// None: a renderer with several samples in each pixel spends nothing on it.
+    /// None. A renderer with several samples in each pixel then spends nothing on depth.
     Unread,
     /// The nearest of each pixel's samples.
     #[default]
     Nearest,
-    /// The depth of each pixel's first sample, as drivers resolve it: the only one without multisample textures. Not
-    /// with [`RenderSettings::depth_bits`](super::RenderSettings::depth_bits) of 16: drivers copy between equal
-    /// formats.
+    /// The depth of each pixel's first sample, as drivers resolve it; the only choice without multisample textures. Not
+    /// available with [`RenderSettings::depth_bits`](super::RenderSettings::depth_bits) of 16, because drivers copy
+    /// between equal formats only.
     FirstSample,
 }
 
-/// Samples that are still needed once a view is rendered, to be read or to draw into them. The others stay in
-/// the tiles of a tile-based GPU, if its driver can do that.
+/// The samples that are needed after a view is rendered, to be read or drawn into. The others stay in the tiles of a
+/// tile-based GPU, if its driver can do that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KeptSamples {
     /// The samples' colour.
@@ -38,22 +37,21 @@ pub struct KeptSamples {
     pub depth: bool,
 }
 
-/// The part of a scene that is drawn, and what is read of it afterwards. The default is all opaque surfaces, and their
-/// depth.
+/// The part of a scene to draw, and what is read of it afterwards. The default is all opaque surfaces and their depth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ViewRequest {
     /// The objects to draw.
     pub selection: Selection,
-    /// The columns to draw; all if none.
+    /// The columns to draw; all if `None`.
     pub columns: Option<Columns>,
-    /// The depth to make.
+    /// The depth to provide.
     pub depth: PixelDepth,
     /// The samples to keep.
     pub samples: KeptSamples,
 }
 
 impl ViewRequest {
-    /// Returns the columns to which drawing is bounded, or `None` for all columns of the view.
+    /// Returns the columns to which drawing is limited, or `None` for the whole view.
     pub(super) fn bounds(&self, view: &View) -> Option<[u32; 2]> {
         self.columns.map(|columns| columns.drawn).filter(|drawn| *drawn != [0, view.size[0]])
     }
@@ -64,7 +62,7 @@ impl ViewRequest {
     }
 }
 
-/// Returns the part of a view that its columns `[first, end]` show.
+/// Returns the part of a view that columns `[first, end]` show.
 pub(crate) fn of_columns(view: &View, [first, end]: [u32; 2]) -> View {
     let tangent = view.frustum.width() / view.size[0] as f32;
     let left = view.frustum.left + first as f32 * tangent;

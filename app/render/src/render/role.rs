@@ -1,4 +1,4 @@
-//! The part that a view plays in its frame: where its pixels lie, which are lit, and what the others show.
+//! The role of a view in its frame: where its pixels lie, which of them are lit, and what the others show.
 
 use glam::{IVec2, Vec2};
 
@@ -7,7 +7,7 @@ use super::scene::FREE_UNIT;
 use yoro::eyes::{DisparityLaw, Eye, View};
 use yoro_gl::{Program, Texture};
 
-/// First texture unit for what a role reads: behind g-buffer, occlusion and shadow map.
+/// First texture unit for the textures that a role reads: after g-buffer, occlusion and shadow map.
 const ROLE_UNIT: u32 = FREE_UNIT + 2;
 
 /// A kind of [`Role`]: a shader variant of ambient occlusion and lighting.
@@ -25,12 +25,12 @@ impl RoleKind {
     /// Number of kinds.
     pub const COUNT: usize = 6;
 
-    /// Returns the place among the kinds.
+    /// Returns the index among the kinds.
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// The define of `include/g_buffer.glsl` and `include/role.glsl`.
+    /// Returns the define of `include/g_buffer.glsl` and `include/role.glsl`.
     pub fn define(self) -> Option<(&'static str, String)> {
         let name = match self {
             RoleKind::Whole => return None,
@@ -44,34 +44,34 @@ impl RoleKind {
     }
 }
 
-/// The part that a view plays in its frame.
+/// The role of a view in its frame.
 #[derive(Clone, Copy)]
 pub enum Role<'a> {
-    /// A view by itself: what is drawn is lit, the rest is sky.
+    /// A view by itself: drawn pixels are lit, the others show the sky.
     Whole,
-    /// `Whole` in a part of the g-buffer, with its lower left corner here.
+    /// Like `Whole`, but in a part of the g-buffer with this lower left corner.
     Half([u32; 2]),
-    /// `Whole` in a layer of the g-buffer.
+    /// Like `Whole`, but in this layer of the g-buffer.
     Layer(u32),
-    /// The far field shows where nothing is drawn.
+    /// Pixels where nothing is drawn show the far field.
     NearField {
         /// Scene-referred colour of the far field.
         far: &'a Texture,
-        /// Pixel of the far field that belongs to the lower left pixel of the view.
+        /// Pixel of the far field that corresponds to the view's lower left pixel.
         crop: IVec2,
     },
-    /// Pixels with the near plane's depth are hidden and stay dark.
+    /// Pixels with the near plane's depth are hidden and stay black.
     FarField,
     /// Pixels that the dominant eye also sees take its colour.
     Reprojected(Reprojection<'a>),
 }
 
-/// The way from the second eye's pixels to those of the dominant eye.
+/// How the second eye's pixels map to those of the dominant eye.
 #[derive(Clone, Copy)]
 pub struct Reprojection<'a> {
     /// Scene-referred colour of the dominant eye, filtered linearly.
     pub color: &'a Texture,
-    /// Output of `stereo/disocclusion.frag`.
+    /// The output of `stereo/disocclusion.frag`.
     pub disocclusion: &'a Texture,
     /// Maps a column of the dominant eye to that of the second.
     pub law: DisparityLaw,
@@ -80,7 +80,7 @@ pub struct Reprojection<'a> {
 }
 
 impl Reprojection<'_> {
-    /// Sets what `include/reprojection.glsl` needs.
+    /// Sets the uniforms of `include/reprojection.glsl`.
     pub fn set_law(&self, program: &Program) {
         program
             .set("law", Vec2::new(self.law.offset as f32, self.law.scale as f32))
@@ -89,7 +89,7 @@ impl Reprojection<'_> {
 }
 
 impl Role<'_> {
-    /// The role of an eye in a g-buffer of this layout.
+    /// Returns the role of an eye in a g-buffer of this layout.
     pub fn of_eye(layout: Layout, size: [u32; 2], eye: Eye) -> Role<'static> {
         match layout {
             Layout::Single => Role::Whole,
@@ -110,7 +110,7 @@ impl Role<'_> {
         }
     }
 
-    /// Sets what `include/g_buffer.glsl` and `include/role.glsl` need.
+    /// Sets the uniforms and textures of `include/g_buffer.glsl` and `include/role.glsl`.
     pub fn set(&self, program: &Program, view: &View) {
         let vector = |v: [u32; 2]| IVec2::from(v.map(|n| n as i32));
         match *self {

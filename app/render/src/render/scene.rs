@@ -48,12 +48,12 @@ impl Features {
         self.0 as usize
     }
 
-    /// Returns the features that are in both.
+    /// Returns the features that both sets contain.
     pub fn and(self, other: Features) -> Features {
         Features(self.0 & other.0)
     }
 
-    /// Returns the features that are in either.
+    /// Returns the features that either set contains.
     pub fn or(self, other: Features) -> Features {
         Features(self.0 | other.0)
     }
@@ -69,7 +69,7 @@ impl Features {
     }
 }
 
-/// A material as shaders take it.
+/// A material in the form that shaders take.
 pub(super) struct GpuMaterial {
     pub features: Features,
     pub double_sided: bool,
@@ -81,7 +81,7 @@ pub(super) struct GpuMaterial {
     gloss: Vec3,
     /// Indices of diffuse, specular, emissive and normal map.
     maps: [Option<usize>; 4],
-    /// Tells neighbouring materials apart in 8 bits.
+    /// Distinguishes neighbouring materials in 8 bits.
     id: f32,
 }
 
@@ -91,7 +91,7 @@ fn linear(srgb: Vec3) -> Vec3 {
     Vec3::new(channel(srgb.x), channel(srgb.y), channel(srgb.z))
 }
 
-/// Reflectance of Ks = 1, which means a mirror in no MTL file. The usual 0.2 becomes about 0.01 less than glass.
+/// Reflectance of a Ks of 1, which no MTL file uses for a mirror. The usual Ks of 0.2 gives about 0.01 below glass.
 const REFLECTANCE_OF_WHITE: f32 = 0.35;
 
 impl GpuMaterial {
@@ -116,7 +116,7 @@ impl GpuMaterial {
     }
 }
 
-/// A scene whose triangles and pictures live on the GPU, in clusters that are culled one by one.
+/// A scene with its triangles and pictures on the GPU, in clusters that are culled one by one.
 pub struct GpuScene {
     /// Unique in this process.
     pub(super) id: u64,
@@ -152,11 +152,11 @@ impl GpuScene {
         self.id
     }
 
-    /// Uploads a scene as it stands at time 0, and sorts its triangles into clusters. Its memory is freed as soon as GL
-    /// has copied it.
+    /// Uploads a scene in its state at time 0 and sorts its triangles into clusters. Frees the scene's memory as soon
+    /// as GL has copied it.
     ///
     /// # Errors
-    /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::OutOfMemory`] without memory.
+    /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::OutOfMemory`] if memory runs out.
     pub fn upload(gl: &Rc<Context>, scene: Scene) -> Result<GpuScene, GlError> {
         static NEXT_ID: AtomicU64 = AtomicU64::new(0);
         let Scene { name, mut model, style, sky, lights, viewpoints, motion } = scene;
@@ -169,13 +169,13 @@ impl GpuScene {
         if let Some(moving) = &mut moving {
             moving.append(&mut clusters, &mut batches);
         }
-        // Cut-out materials come last: much of them is hidden by then, and `discard` defeats early depth tests.
+        // Cut-out materials come last: much of them is hidden by then, and `discard` disables early depth tests.
         batches.sort_by_key(|b| matches!(model.materials[b.material].alpha, Alpha::Cutout(_)));
         model.indices = Vec::new();
         let mesh = Mesh::new(gl, &VERTEX_ATTRIBUTES, &model.vertices, &indices)?;
         model.vertices = Vec::new();
         drop(indices);
-        // No texture of a voxel world is filtered, whichever file it comes from.
+        // Textures of voxel worlds are never filtered, whatever file they come from.
         let unfiltered = style == ShadingStyle::Voxel;
         let upload = |image: TextureImage| {
             upload_picture(gl, TextureImage { nearest: image.nearest || unfiltered, ..image })
@@ -201,7 +201,7 @@ impl GpuScene {
         })
     }
 
-    /// Returns the smallest box around all vertices, wherever they move.
+    /// Returns the smallest box around all vertices at all times.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
@@ -211,18 +211,18 @@ impl GpuScene {
         self.triangle_count
     }
 
-    /// True if something moves.
+    /// True if anything in the scene moves.
     pub fn moves(&self) -> bool {
         self.moving.is_some()
     }
 
-    /// Returns how often something has moved.
+    /// Returns how many times the scene has moved.
     pub(crate) fn times_moved(&self) -> u64 {
         self.times_moved
     }
 
-    /// Moves everything to where it is at a time in seconds; false if it is there already. A renderer's shadow map has
-    /// to be drawn again then.
+    /// Moves everything to its place at a time in seconds. False if it is there already; otherwise the renderer's
+    /// shadow map must be redrawn.
     pub(super) fn set_time(&mut self, seconds: f64) -> bool {
         let Some(moving) = &mut self.moving else { return false };
         let moved = moving.set_time(seconds, &mut self.clusters);
@@ -233,7 +233,7 @@ impl GpuScene {
         moved
     }
 
-    /// True if any triangle that moves may be seen in a view.
+    /// True if a moving triangle may be visible in a view.
     pub(crate) fn is_moving_in(&self, view: &View) -> bool {
         let culler = Culler::of_view(view);
         self.moving.as_ref().is_some_and(|m| m.of(&self.clusters).iter().any(|c| culler.sees(&c.bounds)))
@@ -248,17 +248,17 @@ impl GpuScene {
         mesh
     }
 
-    /// True if there is a sun.
+    /// True if the scene has a sun.
     pub fn has_sun(&self) -> bool {
         self.sky.sun_color.max_element() > 0.0
     }
 
-    /// True if anything is blended.
+    /// True if any surface is blended.
     pub fn has_transparent(&self) -> bool {
         self.blended().next().is_some()
     }
 
-    /// True if anything that is blended may be seen in a view.
+    /// True if a blended surface may be visible in a view.
     pub(crate) fn is_transparent_in(&self, view: &View) -> bool {
         let culler = Culler::of_view(view);
         self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]).any(|c| culler.sees(&c.bounds))
@@ -268,7 +268,7 @@ impl GpuScene {
         self.batches.iter().filter(|batch| self.materials[batch.material].blended)
     }
 
-    /// True if anything opaque may be seen in a slice of a view (near and far plane in metres).
+    /// True if an opaque surface may be visible in a slice of a view (near and far plane in metres).
     pub(crate) fn is_seen(&self, view: &View, [near, far]: [f32; 2]) -> bool {
         let culler = Culler::of_view(&View { depth: DepthRange { near, far, ..view.depth }, ..*view });
         self.opaque().any(|(_, _, clusters)| clusters.iter().any(|c| culler.sees(&c.bounds)))
@@ -290,7 +290,7 @@ impl GpuScene {
         defines
     }
 
-    /// Returns the batches of opaque triangles: the material, whether they move, and the clusters.
+    /// Returns the batches of opaque triangles: their material, whether they move, and their clusters.
     pub(super) fn opaque(&self) -> impl Iterator<Item = (&GpuMaterial, bool, &[Cluster])> {
         self.batches.iter().filter_map(|batch| {
             let material = &self.materials[batch.material];
@@ -323,7 +323,7 @@ fn upload_picture(gl: &Rc<Context>, mut image: TextureImage) -> Result<Texture, 
     Ok(texture)
 }
 
-/// Reverses the rows: pictures start at the top, GL at the bottom.
+/// Reverses the order of the rows: pictures start at the top, GL textures at the bottom.
 fn flip_rows(bytes: &mut [u8], row: usize) {
     let (mut low, mut high) = (0, bytes.len() / row.max(1));
     while low + 1 < high {

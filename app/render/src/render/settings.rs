@@ -4,8 +4,8 @@ use yoro_gl::{Capabilities, Format, GlError};
 use yoro_protocol::{DEPTH_BITS, Settings, Ssao};
 pub use yoro_protocol::{MAX_POINT_LIGHTS, MSAA, RendererKind};
 
-/// The format of each sample's depth in the forward renderer: float for both conventions, as synthesized images have
-/// it, whose depth is loaded. With 16 bits surfaces that lie close together would show through one another.
+/// The depth format of samples in the forward renderer. Float for both conventions, since synthesized images, whose
+/// depth is loaded, have float depth. With 16 bits, surfaces that lie close together would show through one another.
 pub(super) const SAMPLE_DEPTH: Format = Format::Depth32F;
 
 /// Settings of the renderer.
@@ -14,21 +14,21 @@ pub(super) const SAMPLE_DEPTH: Format = Format::Depth32F;
 pub struct RenderSettings {
     /// The kind of renderer.
     pub renderer: RendererKind,
-    /// Samples in each pixel of the forward renderer: 1, 2 or 4, if the driver has them. The deferred one has one.
+    /// Samples per pixel of the forward renderer: 1, 2 or 4, if the driver supports it. The deferred renderer has one.
     pub msaa: u32,
-    /// Bits of the one depth that the forward renderer makes of a pixel's samples: 16 or 32. The samples have 32.
+    /// Bits of each pixel's depth that the forward renderer resolves from the samples: 16 or 32. The samples have 32.
     pub depth_bits: u32,
-    /// Edge of the sun's shadow map in texels; 0 for no shadows.
+    /// Edge length of the sun's shadow map in texels; 0 disables shadows.
     pub shadow_map_size: u32,
-    /// Ambient occlusion; the forward renderer has none.
+    /// Ambient occlusion; deferred renderer only.
     pub ssao: bool,
     /// Ambient occlusion at half the resolution: a quarter of the cost, softer at edges.
     pub ssao_half_size: bool,
     /// Radius of ambient occlusion in metres; at most a tenth of the scene's diagonal is used.
     pub ssao_radius: f32,
-    /// Glow around what is brighter than white.
+    /// Glow around areas brighter than white.
     pub bloom: bool,
-    /// Number of point lights that light one view, at most [`MAX_POINT_LIGHTS`].
+    /// Maximum number of point lights in one view, at most [`MAX_POINT_LIGHTS`].
     pub point_lights: usize,
     /// Factor on scene-referred colour before the tone curve.
     pub exposure: f32,
@@ -52,7 +52,7 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// The renderer that the viewer's settings ask for.
+    /// Returns the renderer settings for the viewer's settings.
     pub fn of_settings(settings: &Settings) -> RenderSettings {
         RenderSettings {
             renderer: settings.renderer,
@@ -85,10 +85,10 @@ impl RenderSettings {
         }
     }
 
-    /// Checks that a driver has the number of samples.
+    /// Checks that the driver supports the number of samples.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] with the numbers that the driver has.
+    /// [`GlError::Unsupported`] with the numbers that the driver supports.
     pub fn supported(&self, capabilities: &Capabilities) -> Result<(), GlError> {
         let samples = self.samples();
         if !MSAA.contains(&samples) {
@@ -103,8 +103,8 @@ impl RenderSettings {
         capabilities.check_samples(samples)
     }
 
-    /// Returns the format of the one depth in each pixel of the forward renderer, where shaders can read the samples or
-    /// not. Drivers copy depth between equal formats only.
+    /// Returns the format of the resolved depth in the forward renderer, where shaders can read the samples
+    /// (`readable`) or cannot. Drivers copy depth between equal formats only.
     pub(super) fn depth_format(&self, readable: bool) -> Format {
         let is_coarse = self.depth_bits == 16 && self.samples() > 1 && readable;
         if is_coarse { Format::Depth16 } else { SAMPLE_DEPTH }

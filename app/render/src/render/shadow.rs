@@ -10,28 +10,28 @@ use yoro::eyes::Pose;
 use yoro_gl::{Blend, Context, DepthTest, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 use yoro_scene::{Bounds, Viewpoint};
 
-/// Metres around the viewpoints within which a large scene has shadows.
+/// Distance from the viewpoints, in metres, within which a large scene has shadows.
 const REACH: f32 = 60.0;
 
-/// Shadow map of a scene: drawn once, then only read, until something moves.
+/// Shadow map of a scene, drawn once, and again whenever something moves.
 ///
 /// Writes a depth texture of its own; reads diffuse maps for alpha.
 pub struct ShadowMap {
     target: RenderTarget,
-    /// World to 0..1.
+    /// Transform from world space to the cube from 0 to 1.
     matrix: Mat4,
     /// See `include/shade.glsl`.
     texel: Vec3,
-    /// Kept if the scene moves.
+    /// `None` if the scene never moves.
     programs: Option<Programs>,
 }
 
 /// The programs that draw casters.
 struct Programs {
     solid: Program,
-    /// Cut out by a colour's opacity.
+    /// For casters cut out by the opacity of their colour.
     colored: Program,
-    /// Cut out by a diffuse map.
+    /// For casters cut out by a diffuse map.
     mapped: Program,
 }
 
@@ -62,7 +62,7 @@ impl ShadowMap {
         Ok(map)
     }
 
-    /// Draws it again, for a scene that has moved.
+    /// Redraws the map of a scene that has moved.
     pub fn renew(&mut self, gl: &Context, scene: &GpuScene) {
         if let Some(programs) = self.programs.take() {
             self.draw(gl, scene, &programs);
@@ -88,7 +88,7 @@ impl ShadowMap {
                 } else {
                     &programs.colored
                 };
-                // Rooms are often shells that face inwards: the sun is to fall through their roofs.
+                // Rooms are often shells that face inwards; the sun should pass through their roofs.
                 let state =
                     RasterState { depth: DepthTest::Less, blend: Blend::Off, cull: !material.double_sided };
                 gl.set_raster_state(&state);
@@ -101,7 +101,7 @@ impl ShadowMap {
         let to_unit =
             Mat4::from_scale_rotation_translation(Vec3::splat(0.5), Quat::IDENTITY, Vec3::splat(0.5));
         self.matrix = to_unit * to_clip;
-        // Depth bias: a texel's height on a slope of 45 degrees.
+        // Depth bias: the height of one texel on a slope of 45 degrees.
         self.texel = Vec3::new(1.0 / size as f32, texel, texel / extent.z.max(1e-3));
     }
 
@@ -114,8 +114,8 @@ impl ShadowMap {
     }
 }
 
-/// Returns the orthographic projection along the sun's rays, and its box's extent in metres. It contains the scene, or
-/// the surroundings of the viewpoints of a large scene.
+/// Returns the orthographic projection along the sun's rays and the extent of its box in metres. The box contains the
+/// scene, or the surroundings of the viewpoints if the scene is large.
 fn light_box(scene: Bounds, viewpoints: &[Viewpoint], sun: Vec3) -> (Mat4, Vec3) {
     let sun = sun.normalize_or(Vec3::Y);
     let rotation = Pose::look_at(Vec3::ZERO, -sun).view_matrix();
@@ -126,11 +126,11 @@ fn light_box(scene: Bounds, viewpoints: &[Viewpoint], sun: Vec3) -> (Mat4, Vec3)
     };
     let whole = transformed(&rotation, if scene.is_empty() { near } else { scene });
     let lit = if near.min.cmple(near.max).all() { transformed(&rotation, near) } else { whole };
-    // Casters outside the lit surroundings still throw their shadows into it.
+    // Casters outside the lit surroundings still cast shadows into them.
     let min = Vec3::new(lit.min.x, lit.min.y, whole.min.z) - Vec3::splat(0.05);
     let max = Vec3::new(lit.max.x, lit.max.y, whole.max.z) + Vec3::splat(0.05);
     let extent = max - min;
-    // The sun is on the side of larger z, which is nearer.
+    // The sun is on the side of larger z, so larger z is nearer.
     let scale = Vec3::new(2.0, 2.0, -2.0) / extent;
     let to_clip = Mat4::from_scale_rotation_translation(scale, Quat::IDENTITY, -scale * 0.5 * (min + max));
     (to_clip * rotation, extent)

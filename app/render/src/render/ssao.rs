@@ -10,11 +10,11 @@ use super::uniforms::{pixel_rays, set_view};
 use yoro::eyes::View;
 use yoro_gl::{Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
-/// Samples per pixel; even.
+/// Samples per pixel; must be even.
 const SAMPLES: usize = 12;
-/// Texels that are computed on either side of the requested columns.
+/// Texels computed beyond the requested columns on either side.
 const BESIDE: u32 = 3;
-/// Turns of the spiral on which they lie, without a common divisor with their number.
+/// Turns of the spiral on which the samples lie; coprime to their number.
 const TURNS: f32 = 5.0;
 
 /// The two images of the pass.
@@ -25,7 +25,7 @@ pub struct SsaoTargets {
 }
 
 impl SsaoTargets {
-    /// Makes targets that are smaller by `scale` than the views they are fitted to.
+    /// Makes targets that are smaller by the factor `scale` than the views they are fitted to.
     pub fn new(gl: &Rc<Context>, scale: u32) -> Result<SsaoTargets, GlError> {
         let target = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None);
         Ok(SsaoTargets { raw: target()?, blurred: target()?, scale })
@@ -38,13 +38,13 @@ impl SsaoTargets {
         self.blurred.resize(size)
     }
 
-    /// The finished occlusion.
+    /// Returns the finished occlusion.
     pub fn result(&self) -> &RenderTarget {
         &self.blurred
     }
 }
 
-/// Ambient occlusion: 12 depth samples a pixel and a 4x4 blur that stays on a surface.
+/// Computes ambient occlusion from 12 depth samples a pixel and a 4x4 blur that stays on a surface.
 ///
 /// Reads the g-buffer's depth and normals, writes occlusion and distance (see `include/occlusion.glsl`).
 pub struct SsaoPass {
@@ -56,8 +56,8 @@ pub struct SsaoPass {
 }
 
 impl SsaoPass {
-    /// Compiles occlusion by surfaces within `radius` metres, at 1 / `scale` of the resolution (1 or 2), in views of a
-    /// role.
+    /// Compiles programs for occlusion by surfaces within `radius` metres, at 1 / `scale` of the resolution (1 or 2),
+    /// in views with a role.
     pub fn new(gl: &Rc<Context>, radius: f32, scale: u32, role: RoleKind) -> Result<SsaoPass, GlError> {
         let defines =
             [("SAMPLES", SAMPLES.to_string()), ("STRENGTH", "3.2".to_owned()), ("SCALE", scale.to_string())];
@@ -80,8 +80,8 @@ impl SsaoPass {
         })
     }
 
-    /// Computes the occlusion of the pixels that the role lights; that of others is undefined. Surfaces beside the
-    /// columns `[first, end]` that are always drawn occlude nothing in them.
+    /// Computes the occlusion of the pixels that the role lights; that of other pixels is undefined. In the columns
+    /// `[first, end]` that are always drawn, surfaces beside them cause no occlusion.
     pub fn run(
         &self,
         targets: &SsaoTargets,

@@ -1,4 +1,4 @@
-//! The renderer on a small scene.
+//! Tests of the renderer on a small scene.
 
 use std::rc::Rc;
 
@@ -35,7 +35,7 @@ pub fn picture(size: u32, srgb: bool, texel: impl Fn(u32, u32) -> [u8; 4]) -> Te
     TextureImage { name: format!("picture {size} {srgb}"), size: [size; 2], rgba, srgb, nearest: false }
 }
 
-/// Floor, cubes from one to twelve metres away, a row of fences, something that glows.
+/// A floor, cubes from one to twelve metres away, a row of fences, and something that glows.
 pub fn scene(style: ShadingStyle) -> Scene {
     let mut model = Model {
         textures: vec![
@@ -89,7 +89,7 @@ pub fn view(convention: DepthConvention) -> View {
     }
 }
 
-/// A small shadow map: tests run on CPU rasterizers.
+/// The shadow map is small because tests run on CPU rasterizers.
 pub fn settings() -> RenderSettings {
     RenderSettings { shadow_map_size: 512, ..RenderSettings::default() }
 }
@@ -116,7 +116,7 @@ impl Rig {
     }
 }
 
-/// Draws transparent surfaces over a view that the deferred renderer rendered, and reads it.
+/// Draws transparent surfaces over a view that the deferred renderer rendered, and reads it back.
 fn draw_transparent(rig: &mut Rig, view: &View) -> Vec<u8> {
     let rendered = rig.renderer.render(&mut rig.targets, &rig.scene, view, Selection::All).unwrap();
     let Renderer::Deferred(renderer) = &rig.renderer else { unreachable!() };
@@ -125,7 +125,7 @@ fn draw_transparent(rig: &mut Rig, view: &View) -> Vec<u8> {
     rendered.color.read_rgba8(0, [0, 0], view.size)
 }
 
-/// Window depth of each pixel.
+/// Returns the window depth of each pixel.
 pub fn depths(gl: &Rc<Context>, depth: &Texture, view: &View) -> Vec<f32> {
     let formats = [(Format::R32F, Filter::Nearest)];
     let copy = RenderTarget::new(gl, view.size, &formats, None).unwrap();
@@ -161,13 +161,13 @@ fn every_style_renders_its_own_picture() {
         }
         pictures.push(picture);
     }
-    // Low poly and voxel shade alike; this scene of flat faces looks as the realistic one in both.
+    // Low poly and voxel have the same shading. In both, this scene of flat faces looks as in the realistic style.
     for (i, j) in [(0, 1), (0, 4), (1, 4)] {
         assert!(largest_difference(&pictures[i], &pictures[j]) > 30);
     }
 }
 
-/// Drivers without float render targets compile these.
+/// The programs for drivers without float render targets.
 #[test]
 fn programs_without_float_targets_compile() {
     let head = open();
@@ -343,7 +343,7 @@ fn unknown_settings_are_refused() {
     assert_eq!(parsed, RenderSettings { bloom: false, ..RenderSettings::default() });
 }
 
-/// A GPU with EXT_color_buffer_half_float alone refuses packed floats. Here a depth format stands for them.
+/// A GPU with only EXT_color_buffer_half_float refuses packed floats. Here a depth format stands in for them.
 #[test]
 fn hdr_falls_back_to_a_renderable_format() {
     let headless = open();

@@ -22,7 +22,7 @@ impl TonemapPass {
         Ok(TonemapPass { gl: gl.clone(), program })
     }
 
-    /// Writes all of `target`. The source has columns `[first, end]` alone; the outermost are repeated beyond.
+    /// Writes all of `target`. Only columns `[first, end]` of the source are valid; the edge columns are repeated.
     pub fn run(
         &self,
         target: &RenderTarget,

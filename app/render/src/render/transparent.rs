@@ -17,34 +17,34 @@ use yoro_gl::{Blend, Context, DepthTest, Destination, GlError, Program, RasterSt
 
 /// Draws blended surfaces over an image, from back to front.
 ///
-/// Beside the deferred renderer it reads the window depth of what is there from a texture, so that it works on a
-/// rendered eye and on a synthesized one alike; beside the forward one it is tested against the depth of each sample.
-/// Blends into display-referred colour.
+/// With the deferred renderer it reads the window depth of the image from a texture, so that it works on rendered and
+/// synthesized eyes alike. With the forward renderer it is tested against the depth of each sample. Blends into
+/// display-referred colour.
 pub struct TransparentPass {
     gl: Rc<Context>,
-    /// Against depth in textures or in the depth buffer, as the renderer has it; and for depth in layers of array
-    /// textures, once that is asked for.
+    /// First the programs that test against depth in textures or in the depth buffer, depending on the renderer. Then,
+    /// once requested, those for depth in layers of array textures.
     programs: [Programs; 2],
-    /// (distance, batch, cluster) of the blended clusters; allocated once.
+    /// (distance, batch, cluster) of the blended clusters. Allocated once.
     order: RefCell<Vec<(f32, u32, u32)>>,
 }
 
-/// Programs by [`Features::index`]: those that the scene uses.
+/// Programs by [`Features::index`], for the combinations that the scene uses.
 type Programs = [Option<Program>; Features::COMBINATIONS];
 
 /// Window depth of an image.
 #[derive(Clone, Copy)]
 pub struct DepthImage<'a> {
-    /// A depth texture or one with a float channel, not filtered.
+    /// A depth texture, or a texture with a float channel, without filtering.
     pub texture: &'a Texture,
-    /// Pixel of the texture that belongs to the lower left pixel of the destination.
+    /// Pixel of the texture that corresponds to the destination's lower left pixel.
     pub origin: [u32; 2],
     /// The layer, if the texture is an array.
     pub layer: Option<u32>,
 }
 
 impl<'a> DepthImage<'a> {
-    /// Returns a texture that has the image's size.
+    /// Wraps a texture of the image's own size.
     pub fn whole(texture: &'a Texture) -> DepthImage<'a> {
         DepthImage { texture, origin: [0, 0], layer: None }
     }
@@ -55,11 +55,11 @@ impl<'a> DepthImage<'a> {
 pub enum Onto<'a> {
     /// An image whose depth is a texture.
     Image(&'a Destination, DepthImage<'a>),
-    /// The framebuffer that is bound, with its depth buffer.
+    /// The bound framebuffer with its depth buffer.
     Bound,
 }
 
-/// Compiles what the scene's blended materials need.
+/// Compiles the variants that the scene's blended materials need.
 fn compile(
     gl: &Rc<Context>,
     scene: &GpuScene,
@@ -99,7 +99,7 @@ impl TransparentPass {
         Ok(TransparentPass { gl: gl.clone(), programs, order: RefCell::new(Vec::with_capacity(count)) })
     }
 
-    /// Compiles the variants that read depth from layers; nothing is done when they are there.
+    /// Compiles the variants that read depth from layers, unless they are compiled already.
     pub fn prepare_layered(&mut self, scene: &GpuScene, settings: &RenderSettings) -> Result<(), GlError> {
         if scene.has_transparent() && self.programs[1].iter().all(Option::is_none) {
             self.programs[1] = compile(&self.gl, scene, settings, true)?;
@@ -107,8 +107,8 @@ impl TransparentPass {
         Ok(())
     }
 
-    /// Draws what `culler` lets through and nothing hides. `light` sets the uniforms of `include/shade.glsl`, for
-    /// positions relative to the view's.
+    /// Draws the surfaces that `culler` lets through and nothing hides. `light` sets the uniforms of
+    /// `include/shade.glsl`, for positions relative to the view's.
     pub fn run(&self, onto: Onto, scene: &GpuScene, view: &View, culler: &Culler, light: impl Fn(&Program)) {
         let eye = view.pose.position;
         let mut order = self.order.borrow_mut();
@@ -164,7 +164,7 @@ impl TransparentPass {
     }
 }
 
-/// Sets the depth that `render/transparent.frag` tests against.
+/// Sets the depth image that `render/transparent.frag` tests against.
 fn set_depth_image(program: &Program, to: &Destination, depth: DepthImage, view: &View) {
     let offset = IVec2::from(depth.origin.map(|n| n as i32)) - IVec2::from(to.origin.map(|n| n as i32));
     program
@@ -174,7 +174,7 @@ fn set_depth_image(program: &Program, to: &Destination, depth: DepthImage, view:
         .texture_of("depth_map", FREE_UNIT, depth.texture);
 }
 
-/// Sorts by distance, farthest first, without allocation.
+/// Sorts by distance, farthest first, without allocating.
 fn back_to_front(order: &mut [(f32, u32, u32)]) {
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
 }

@@ -1,4 +1,4 @@
-//! Uniforms that several passes share.
+//! Uniforms shared by several passes.
 
 use glam::{Mat3, Mat4, Vec2, Vec3};
 
@@ -18,7 +18,7 @@ pub fn depth_test(convention: DepthConvention) -> DepthTest {
     }
 }
 
-/// Returns a factor: a depth times it is smaller where it is nearer.
+/// Returns the sign, 1 or -1, by which depth is multiplied so that nearer surfaces have smaller values.
 pub fn nearer(convention: DepthConvention) -> f32 {
     match convention {
         DepthConvention::Standard => 1.0,

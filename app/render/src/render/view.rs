@@ -1,4 +1,4 @@
-//! One view, rendered by either kind of renderer.
+//! The interface of both kinds of renderer: rendering one view.
 
 use std::rc::Rc;
 
@@ -14,19 +14,19 @@ pub(crate) trait ViewRenderer: Sized {
     /// The images of one view.
     type Targets: ViewImages;
 
-    /// Returns what renderers of both kinds have.
+    /// Returns what both kinds of renderer share.
     fn common(&self) -> &Common;
 
-    /// Makes targets, which are fitted to each view that is rendered.
+    /// Makes targets, to be fitted to each view that is rendered.
     ///
     /// # Errors
     /// As [`RenderTarget::new`]; [`GlError::Unsupported`] if the driver lacks the settings' number of samples.
     fn targets(gl: &Rc<Context>, settings: &RenderSettings) -> Result<Self::Targets, GlError>;
 
-    /// Renders opaque surfaces. Where nothing is drawn, depth keeps its far value and colour is the sky.
+    /// Renders opaque surfaces. Where nothing is drawn, depth is the far value and colour is the sky.
     ///
     /// # Errors
-    /// As [`RenderTarget::new`] when the targets have to change their size.
+    /// As [`RenderTarget::new`], if the targets must change their size.
     fn render(
         &self,
         targets: &mut Self::Targets,
@@ -35,8 +35,8 @@ pub(crate) trait ViewRenderer: Sized {
         request: &ViewRequest,
     ) -> Result<(), GlError>;
 
-    /// Renders all of a scene, with transparent surfaces. With `depth` the targets have the depth of opaque surfaces
-    /// afterwards; without it, a renderer with several samples in each pixel spends nothing on depth.
+    /// Renders all of a scene, including transparent surfaces. With `depth`, the targets then hold the depth of opaque
+    /// surfaces. Without it, a renderer with several samples in each pixel spends nothing on depth.
     ///
     /// # Errors
     /// As [`ViewRenderer::render`].
@@ -49,7 +49,7 @@ pub(crate) trait ViewRenderer: Sized {
     ) -> Result<(), GlError>;
 }
 
-/// The images of a view that was rendered.
+/// The images of a rendered view.
 pub(crate) trait ViewImages {
     /// Returns display-referred sRGB colour with luma in alpha, filtered linearly.
     fn color(&self) -> &RenderTarget;
@@ -57,14 +57,14 @@ pub(crate) trait ViewImages {
     /// Returns window depth in the view's convention.
     fn depth(&self) -> &Texture;
 
-    /// The window depth of every sample: a float `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples. `None`
-    /// for one sample a pixel, for drivers without such textures, and if samples are not kept. It shows opaque surfaces
-    /// alone until drawing resumes.
+    /// Returns the window depth of every sample: a float `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples.
+    /// `None` with one sample per pixel, on drivers without such textures, and if samples are not kept. It covers only
+    /// opaque surfaces until drawing resumes.
     fn depth_samples(&self) -> Option<glow::Texture> {
         None
     }
 
-    /// The colour of every sample, under the same conditions.
+    /// Returns the colour of every sample, under the same conditions.
     fn color_samples(&self) -> Option<glow::Texture> {
         None
     }

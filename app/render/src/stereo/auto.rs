@@ -1,4 +1,4 @@
-//! The cheaper one of two methods: two renders, or one with synthesis. Both are measured while they are in use.
+//! The choice of the cheaper of two methods, two renders or one with synthesis, by measuring both in use.
 
 use std::fmt::{self, Display};
 use std::rc::Rc;
@@ -19,7 +19,7 @@ use yoro_gl::{Context, GlError};
 /// The methods by [`Way::index`].
 const METHODS: [Method; 2] = [Method::Conventional, Method::Yoro];
 
-/// A method that was named, or the cheaper one of two.
+/// A named method, or the cheaper of two.
 pub enum Chosen {
     /// Always this method.
     Named(Box<dyn StereoMethod>),
@@ -40,7 +40,7 @@ impl Chosen {
     ) -> Result<Chosen, GlError> {
         Ok(match choice {
             MethodChoice::Named(method) => Chosen::Named(super::create(gl, method, settings, options)?),
-            // Two renders have nothing to show again.
+            // Two renders cannot show a frame again.
             MethodChoice::Auto if options.render_rate.is_some() => {
                 Chosen::Named(super::create(gl, Method::Yoro, settings, options)?)
             }
@@ -73,20 +73,20 @@ impl Chosen {
     }
 }
 
-/// Conventional and yoro, of which a [`Chooser`] takes the cheaper one. Both stay ready, so that a change costs
+/// Conventional and yoro, of which a [`Chooser`] picks the cheaper one. Both stay ready, so that switching costs
 /// nothing.
 ///
-/// The cost of a frame is its GPU time where passes are timed ([`Context::times_passes`]). Elsewhere the GPU is waited
-/// for before and after the eyes of each frame while a choice is being made, and the clock gives CPU and GPU time
-/// together.
+/// The cost of a frame is its GPU time if passes are timed ([`Context::times_passes`]). Otherwise, while a choice is
+/// being made, each frame waits for the GPU before and after its eyes, and the cost is the CPU and GPU time together,
+/// by the clock.
 pub struct Auto {
     gl: Rc<Context>,
     methods: [Box<dyn StereoMethod>; 2],
     chooser: Chooser,
-    /// The way in which the last frame was rendered, and its time by the clock.
+    /// How the last frame was rendered, and its time by the clock.
     rendered: Option<Way>,
     clock_ms: Option<f32>,
-    /// No frame has been rendered yet.
+    /// True until the first frame is rendered.
     is_new: bool,
 }
 
@@ -103,7 +103,7 @@ impl Auto {
         })
     }
 
-    /// Returns the chosen method. While a choice is being made, every other turn is the other one's.
+    /// Returns the chosen method. While a choice is being made, the two methods take turns.
     pub fn method(&self) -> Method {
         METHODS[self.chooser.choice().way.index()]
     }
@@ -113,18 +113,18 @@ impl Auto {
         self.chooser.choice()
     }
 
-    /// True while a choice is being made. Keep the size of the images meanwhile.
+    /// True while a choice is being made. The size of the images should not change meanwhile.
     pub fn is_measuring(&self) -> bool {
         self.chooser.is_measuring()
     }
 
-    /// Chooses again: another place in the scene.
+    /// Starts a new choice, for another place in the scene.
     pub fn scene_changed(&mut self) {
         self.chooser.scene_changed();
     }
 
-    /// Ends a frame that was handed to the display at `now_ns`; `gpu` is the GPU time of a frame, if one is known by
-    /// now. [`FrameEnd`] describes them all.
+    /// Ends a frame that was handed to the display at `now_ns`. `gpu` is the GPU time of a recent frame, if known. See
+    /// [`FrameEnd`] for all parameters.
     pub fn end_frame(&mut self, now_ns: i64, refresh_hz: f32, gpu: Option<Cost>, heat: Option<f32>) {
         let (refresh_hz, cost) = match self.clock_ms.take() {
             Some(ms) => (0.0, Some(Cost { frames_ago: 0, ms })),
@@ -144,7 +144,7 @@ impl StereoMethod for Auto {
         self.methods[self.rendered?.index()].guard_band()
     }
 
-    /// Where neither eye can be synthesized from the other, renders both.
+    /// Renders both eyes if neither can be synthesized from the other.
     fn render_to(
         &mut self,
         renderer: &mut Renderer,
@@ -156,8 +156,8 @@ impl StereoMethod for Auto {
         let is_fit = Substitute::reason(Method::Yoro, pair).is_none();
         let way = if is_fit { wanted } else { Way::TwoViews };
         if std::mem::take(&mut self.is_new) && is_fit {
-            // Everything that the other method needs is made now, while the scene comes into view, and not in its first
-            // turn.
+            // Makes everything that the other method needs now, while the scene comes into view, rather than in its
+            // first turn.
             self.methods[way.other().index()].render_to(renderer, scene, pair, to)?;
         }
         let is_clocked = self.chooser.is_measuring() && !self.gl.times_passes();
@@ -177,7 +177,7 @@ impl StereoMethod for Auto {
     }
 }
 
-/// The reason for the choice in a word: `6.1/8.9ms` are the times of the chosen and the other method.
+/// Writes the reason for the choice in a word. In `6.1/8.9ms` the times are those of the chosen and the other method.
 impl Display for Auto {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Choice { way, reason, costs_ms } = self.choice();
@@ -202,7 +202,7 @@ mod tests {
 
     const FRAME_NS: i64 = 200_000_000;
 
-    /// Renders a measurement; `shows` checks each frame. Returns the choice, and the frames in each way.
+    /// Renders a measurement; `shows` checks each frame. Returns the choice, and the number of frames in each way.
     fn measure(
         rig: &mut Rig,
         auto: &mut Auto,

@@ -1,28 +1,28 @@
-//! The columns of a guard band that the other eye will see, from the surfaces that an earlier frame showed at its
-//! border and from the head's motion since.
+//! Predicts which columns of a guard band the other eye will see, from the surfaces that an earlier frame showed at its
+//! border and from the head's motion since then.
 
 use glam::Vec3;
 
 use yoro::eyes::{Eye, EyePair, Pose, SynthesisViews};
 use yoro::synthesis::Uniforms;
 
-/// Texels of a profile across the columns; `stereo/border_profile.frag`.
+/// Texels of a profile across the columns, as in `stereo/border_profile.frag`.
 pub(super) const CELLS: usize = 64;
 /// Texels of a profile down the rows.
 pub(super) const BANDS: usize = 16;
-/// Parts of a pixel in which disparity is measured.
+/// Units per pixel in which a profile stores disparity.
 const UNIT: f32 = 16.0;
-/// Columns that are drawn beyond those that are seen: the renderer's filters read so far to each side.
+/// Columns drawn beyond those that are seen, because the renderer's filters read this far to each side.
 const SPARE: u32 = 4;
-/// Number of last frames whose widest request holds.
+/// Number of recent frames of which the widest request counts.
 const HOLD: usize = 8;
-/// All of the band is drawn once in so many frames: nothing else finds near surfaces wholly outside of the drawn part.
+/// The whole band is drawn once in this many frames: only that finds near surfaces entirely outside the drawn part.
 const LOOK_EVERY: u32 = 30;
-/// One row in so many is measured.
+/// One row in this many is measured.
 const ROWS: u32 = 2;
-/// A head that moves by more than so many times the distance between the eyes was put elsewhere.
+/// A head that moves by more than this many times the distance between the eyes is taken as placed elsewhere.
 const LEAP: f32 = 2.0;
-/// Least factor on a surface's distance that is taken for its approach.
+/// Lower bound of the factor by which an approach changes a surface's distance.
 const APPROACH: f32 = 0.25;
 /// The empty range.
 const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
@@ -30,37 +30,37 @@ const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 /// The border at which the band lies, and the geometry of motion along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Border {
-    /// Columns that the band has at most.
+    /// Columns of the whole band.
     pub guard_columns: u32,
-    /// Disparity, in pixels and 0 at the far plane, at which a surface reaches the other eye's border from the band's
-    /// inner end. Nothing at infinity unless the frusta differ.
+    /// Disparity, in pixels and 0 at the far plane, at which a surface at the band's inner end lies at the other eye's
+    /// border. Measured against infinity it is 0 unless the frusta differ.
     pub beyond: f32,
     /// The rendered eye's pose.
     pose: Pose,
-    /// 1 where the band is on the right, -1 on the left.
+    /// 1 if the band is on the right, -1 if it is on the left.
     side: f32,
-    /// Tangents of the border's angles: outwards, down, up.
+    /// Tangents of the border's angles, measured outwards, down and up.
     outwards: f32,
     down: f32,
     up: f32,
     /// Focal length in pixels.
     focal_length: f32,
-    /// Disparity of the far plane against infinity, in pixels.
+    /// Disparity of the far plane relative to infinity, in pixels.
     far: f32,
     ipd: f32,
 }
 
-/// The motion of surfaces at the border from one frame to another, in columns outwards. Ranges are the least and the
-/// most of all rows of the border, as far out and in as the band is wide.
+/// The motion of surfaces at the border from one frame to another, in columns outwards. A range holds the least and the
+/// greatest over all rows of the border, up to a band's width outside and inside of it.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     /// Motion of surfaces at infinity.
     turned: [f32; 2],
-    /// Additional motion for each pixel of the disparity that they have now.
+    /// Additional motion for each pixel of current disparity.
     along: [f32; 2],
-    /// The factor on disparity by turning, at most.
+    /// The greatest factor by which turning changes disparity.
     turning: f32,
-    /// Approach: the relative growth of disparity, for each pixel of it.
+    /// The relative growth of disparity by approach, for each pixel of disparity.
     nearer: f32,
 }
 
@@ -86,14 +86,14 @@ impl Border {
         }
     }
 
-    /// True if both are of the same eyes, as exactly as poses give the distance between them.
+    /// True if both belong to the same eyes, as exactly as poses give the distance between them.
     fn is_of(&self, other: &Border) -> bool {
         let numbers = |b: &Border| [b.side, b.outwards, b.down, b.up, b.focal_length, b.far, b.ipd];
         let near = |(a, b): (f32, f32)| (a - b).abs() <= 0.01 * a.abs().max(b.abs());
         self.guard_columns == other.guard_columns && numbers(self).into_iter().zip(numbers(other)).all(near)
     }
 
-    /// Returns the motion since this frame, or `None` for other eyes and for a head that was put elsewhere.
+    /// Returns the motion since this frame, or `None` if the eyes differ or the head was placed elsewhere.
     fn motion_to(&self, now: &Border) -> Option<Motion> {
         if !self.is_of(now) {
             return None;
@@ -129,14 +129,14 @@ fn widen(range: &mut [f32; 2], by: f32) {
 }
 
 impl Motion {
-    /// Returns the least and the most columns that surfaces of at most this disparity have moved.
+    /// Returns the least and the greatest number of columns that surfaces of at most this disparity have moved.
     fn columns(&self, disparity: f32) -> [f32; 2] {
         let now = self.disparity(disparity);
         let along = self.along.map(|along| along * now);
         [self.turned[0] + along[0].min(0.0), self.turned[1] + along[1].max(0.0)]
     }
 
-    /// Returns the present value of an earlier disparity.
+    /// Returns the current value of an earlier disparity.
     fn disparity(&self, disparity: f32) -> f32 {
         self.turning * disparity / (1.0 - self.nearer * disparity).max(APPROACH)
     }
@@ -146,19 +146,19 @@ impl Motion {
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     pub border: Border,
-    /// Columns of the band that were drawn.
+    /// Number of the band's columns that were drawn.
     pub drawn: u32,
-    /// Pixels that were seen and not drawn: an estimate from the outermost column that was drawn.
+    /// Number of pixels that were seen but not drawn, estimated from the outermost drawn column.
     pub undrawn: u32,
     /// Columns per entry of `disparities`.
     step: u32,
-    /// Disparities of the nearest surfaces against infinity, from the outermost column that was drawn inwards.
+    /// Disparities of the nearest surfaces relative to infinity, from the outermost drawn column inwards.
     disparities: [f32; CELLS],
 }
 
 impl Profile {
-    /// Reads the texels of `stereo/border_profile.frag`. Returns `None` for the zeros of a driver that could not give
-    /// them.
+    /// Reads the texels of `stereo/border_profile.frag`. Returns `None` if they are the zeros of a driver that cannot
+    /// provide them.
     pub(super) fn read(texels: &[u8], border: Border, drawn: u32, step: u32) -> Option<Profile> {
         let mut profile = Profile { border, drawn, undrawn: 0, step, disparities: [0.0; CELLS] };
         for (i, texel) in texels.chunks_exact(4).enumerate() {
@@ -170,7 +170,7 @@ impl Profile {
         Some(profile)
     }
 
-    /// Returns the columns of the band that are seen from `now`, or `None` if this frame does not tell.
+    /// Returns the number of the band's columns that are seen from `now`, or `None` if this frame cannot tell.
     fn seen(&self, now: &Border) -> Option<u32> {
         let motion = self.border.motion_to(now)?;
         let (step, drawn) = (self.step as f32, self.drawn as f32);
@@ -189,7 +189,7 @@ impl Profile {
                 edge = edge.max(before);
             }
         }
-        // Surfaces that were not drawn are taken to be as near as those up to half a band's width beside them.
+        // Surfaces that were not drawn are assumed to be as near as those within half a band's width of them.
         let [unknown, _] = motion.columns(edge);
         if drawn + unknown < reach(edge).min(self.border.guard_columns as f32) {
             seen = seen.max(reach(edge));
@@ -198,16 +198,16 @@ impl Profile {
     }
 }
 
-/// The number of columns to draw.
+/// Decides how many columns to draw.
 #[derive(Debug, Default)]
 pub(super) struct Width {
-    /// The numbers that the last frames asked for, in no order.
+    /// The numbers that the last frames asked for, in no particular order.
     asked: [u32; HOLD],
     frames: u32,
 }
 
 impl Width {
-    /// Returns the number for a frame, from an earlier one's profile: at least `least`, and all if that does not tell.
+    /// Returns the number for a frame from an earlier profile: at least `least`, or all if the profile cannot tell.
     pub(super) fn next(&mut self, profile: Option<&Profile>, now: &Border, least: u32) -> u32 {
         let Some(seen) = profile.and_then(|profile| profile.seen(now)) else {
             *self = Width::default();
@@ -218,7 +218,7 @@ impl Width {
         if self.frames.is_multiple_of(LOOK_EVERY) {
             return now.guard_columns;
         }
-        // The band itself may have become narrower.
+        // The band itself may have become narrower in the meantime.
         self.asked.into_iter().fold(least, u32::max).min(now.guard_columns)
     }
 }
@@ -231,7 +231,7 @@ mod tests {
 
     const LEAST: u32 = 14;
 
-    /// The border of a right eye that is rendered with a band of 56 columns on its left; or of a left eye, mirrored.
+    /// The border of a right eye that is rendered with a band of 56 columns on its left, or of a left eye, mirrored.
     fn border(head: Pose, dominant: Eye) -> Border {
         let pair = EyeOptions { dominant, ..EyeOptions::default() }.pair(head);
         Border::new(&pair, &pair.synthesis_views(GuardBand::Distance(1.0)).unwrap())
@@ -249,13 +249,13 @@ mod tests {
         Pose { position: Vec3::new(x, 0.0, z), ..Pose::IDENTITY }
     }
 
-    /// A frame at rest: two columns per cell, disparities by the column outwards from the band's inner end.
+    /// A frame at rest, two columns per cell. `disparity` takes the column, outwards from the band's inner end.
     fn profile(drawn: u32, disparity: impl Fn(i32) -> f32) -> Profile {
         let disparities = std::array::from_fn(|i| disparity(drawn as i32 - 2 * i as i32));
         Profile { border: at(Pose::IDENTITY), drawn, undrawn: 0, step: 2, disparities }
     }
 
-    /// A surface in some columns, before a background that moves by three pixels.
+    /// A surface in some columns, in front of a background with a disparity of three pixels.
     fn post(columns: [i32; 2], disparity: f32) -> Profile {
         profile(56, |out| if out >= columns[0] && out <= columns[1] { disparity } else { 3.0 })
     }
@@ -293,21 +293,21 @@ mod tests {
 
     #[test]
     fn a_turn_moves_surfaces_to_the_border() {
-        // A degree at a border 30 degrees off the middle: 20.6 columns, and less at its ends.
+        // A turn of one degree at a border 30 degrees off the middle: 20.6 columns, and fewer at the border's ends.
         let motion = at(Pose::IDENTITY).motion_to(&at(turned(-1.0))).unwrap();
         let [least, most] = motion.turned;
         assert!((0.5 * (least + most) - 20.6).abs() < 0.4 && most - least < 4.0, "{motion:?}");
         let left = border(Pose::IDENTITY, Eye::Left).motion_to(&border(turned(1.0), Eye::Left)).unwrap();
         assert!((motion.turned[0] - left.turned[0]).abs() < 1e-2, "{left:?}");
-        // Seen ten columns within the picture, and outside of it after a turn to the other side.
+        // Seen ten columns inside the picture, and outside of it after a turn to the other side.
         let within = post([-12, -10], 25.0);
         assert_eq!(within.seen(&at(Pose::IDENTITY)), Some(4));
         let seen = within.seen(&at(turned(-1.0))).unwrap();
         assert!((10..=15).contains(&seen), "{seen}");
-        // And what was outside comes in.
+        // What was outside comes in.
         let seen = post([40, 44], 30.0).seen(&at(turned(1.0))).unwrap();
         assert!((23..=28).contains(&seen), "{seen}");
-        // A nod moves nothing much, and a roll the ends of the border.
+        // A nod moves little, and a roll moves the border's ends.
         let nod = Pose { orientation: Quat::from_rotation_x(0.02), ..Pose::IDENTITY };
         let motion = at(Pose::IDENTITY).motion_to(&at(nod)).unwrap();
         assert!(motion.turned[0] > -8.0 && motion.turned[1] < 8.0, "{motion:?}");
@@ -319,7 +319,7 @@ mod tests {
     #[test]
     fn near_surfaces_move_more() {
         let rest = at(Pose::IDENTITY);
-        // Half the distance between the eyes to the right: half a disparity to the left, which is outwards.
+        // The head moves right by half the distance between the eyes: half a disparity to the left, which is outwards.
         let motion = rest.motion_to(&at(moved(0.0315, 0.0))).unwrap();
         let half = |motion: Motion| motion.along.map(|along| (along * 1e3).round() / 1e3);
         assert!(half(motion) == [0.5; 2] && motion.turned[1].abs() < 1e-3, "{motion:?}");
@@ -340,7 +340,7 @@ mod tests {
         let rest = at(Pose::IDENTITY);
         assert_eq!(profile(14, |_| 9.0).seen(&rest), Some(10));
         assert_eq!(profile(14, |_| 40.0).seen(&rest), Some(41));
-        // Far within the picture it says nothing of what is outside.
+        // Far inside the picture, a surface says nothing about what is outside.
         assert_eq!(profile(14, |out| if out < -30 { 40.0 } else { 9.0 }).seen(&rest), Some(10));
         // A turn of a degree brings in twenty columns that no frame has shown.
         let turned = |disparity: f32| profile(14, |_| disparity).seen(&at(turned(1.0))).unwrap();
@@ -356,7 +356,7 @@ mod tests {
             assert_eq!(seen(at(far)), None, "{far:?}");
         }
         let up = Pose { position: Vec3::Y, ..Pose::IDENTITY };
-        // Along the border's own direction.
+        // Motion along the border's own direction.
         let slanting = Pose { position: Vec3::new(-0.577, 0.0, -1.0), ..Pose::IDENTITY };
         assert_eq!([up, slanting].map(|pose| seen(at(pose))), [None, None]);
         let mut width = Width::default();
@@ -372,7 +372,7 @@ mod tests {
         assert_eq!([20.0, 30.0, 20.0].map(&mut next), [24, 34, 34]);
         assert_eq!([(); HOLD].map(|()| next(20.0)), [34, 34, 34, 34, 34, 34, 24, 24]);
         assert_eq!(next(99.0), 56);
-        // A narrower band, of an earlier frame of its own.
+        // A narrower band, from an earlier frame with the same band.
         let narrow = Border { guard_columns: 40, ..rest };
         let other = Profile { border: narrow, ..profile(40, |_| 0.0) };
         assert_eq!(width.next(Some(&other), &narrow, LEAST), 40);

@@ -1,4 +1,4 @@
-//! Both eyes rendered, one after the other: the ground truth.
+//! The ground truth: renders both eyes, one after the other.
 
 use super::finish::{EyeImage, Finish};
 use super::frame::{Frame, FrameMethod, Setup};
@@ -19,8 +19,8 @@ impl<R: RendererOfKind> Conventional<R> {
         Ok(Conventional { targets: R::targets(setup.gl, setup.settings)?, finish: Finish::new(setup)? })
     }
 
-    /// Renders both eyes, the dominant one last. `rendered` is called after each one with its images, which have depth
-    /// if `reads_depth` says so.
+    /// Renders both eyes, the dominant one last. Calls `rendered` after each with its images, which have depth if
+    /// `reads_depth` returns true.
     pub(super) fn render_eyes(
         &mut self,
         frame: &Frame<R>,

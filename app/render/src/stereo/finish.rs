@@ -1,4 +1,4 @@
-//! The last step of an eye.
+//! The last step of an eye: anti-aliasing or a copy into its target.
 
 use std::rc::Rc;
 
@@ -8,25 +8,25 @@ use super::options::AntiAliasing;
 use crate::render::{DepthImage, Fxaa, ViewImages};
 use yoro_gl::{Context, Destination, GlError, RenderTarget};
 
-/// The image of an eye, ready but for anti-aliasing.
+/// The image of an eye, complete except for anti-aliasing.
 #[derive(Clone, Copy)]
 pub(super) struct EyeImage<'a> {
     pub(super) color: &'a RenderTarget,
-    /// Pixel of `color` that belongs to the lower left pixel of the eye.
+    /// Pixel of `color` that corresponds to the eye's lower left pixel.
     pub(super) origin: [u32; 2],
     /// Window depth, if the target has depth.
     pub(super) depth: Option<DepthImage<'a>>,
 }
 
 impl<'a> EyeImage<'a> {
-    /// The whole image of a rendered view, with its depth if that is wanted.
+    /// Returns the whole image of a rendered view, with its depth if `depth` is set.
     pub(super) fn whole(view: &'a impl ViewImages, depth: bool) -> EyeImage<'a> {
         let depth = depth.then(|| DepthImage::whole(view.depth()));
         EyeImage { color: view.color(), origin: [0, 0], depth }
     }
 }
 
-/// Anti-aliasing or a plain copy of an eye's image into its target.
+/// Writes an eye's image to its target, with anti-aliasing or as a plain copy.
 pub(super) struct Finish {
     gl: Rc<Context>,
     fxaa: Option<Fxaa>,
@@ -38,14 +38,14 @@ impl Finish {
         Finish::smoothing(setup, setup.options.anti_aliasing != AntiAliasing::Off)
     }
 
-    /// Creates it with or without anti-aliasing. Images whose edges are smooth already, by several samples in each
-    /// pixel, are always copied.
+    /// Creates it with or without anti-aliasing. Images with several samples in each pixel have smooth edges already
+    /// and are always copied.
     pub(super) fn smoothing(setup: &Setup, smooth: bool) -> Result<Finish, GlError> {
         let fxaa = smooth && setup.settings.samples() == 1;
         Ok(Finish { gl: setup.gl.clone(), fxaa: fxaa.then(|| Fxaa::new(setup.gl)).transpose()? })
     }
 
-    /// True if an eye's colour is copied as it is.
+    /// True if an eye's colour is copied without anti-aliasing.
     pub(super) fn is_copy(&self) -> bool {
         self.fxaa.is_none()
     }

@@ -1,4 +1,4 @@
-//! A frame as stereo methods see it: with a renderer of the kind that they were made for.
+//! A frame as stereo methods see it, with a renderer of the kind that they were made for.
 
 use std::rc::Rc;
 
@@ -46,7 +46,7 @@ pub(super) trait FrameMethod: Sized {
     /// The kind of renderer.
     type Renderer: RendererOfKind;
 
-    /// Compiles what the method needs for the materials of a scene; nothing is done for what is there already.
+    /// Compiles what the method needs for the materials of a scene, unless it is compiled already.
     fn compile(&mut self, _renderer: &mut Self::Renderer, _scene: &GpuScene) -> Result<(), GlError> {
         Ok(())
     }
@@ -75,7 +75,7 @@ pub(super) trait FrameMethod: Sized {
     }
 }
 
-/// Returns the renderer as one of the method's kind, checked for this scene.
+/// Returns the renderer as one of the method's kind, after checking that it was made for this scene.
 fn of_kind<'a, R: RendererOfKind>(
     renderer: &'a mut Renderer,
     scene: &GpuScene,

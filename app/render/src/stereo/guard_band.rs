@@ -10,16 +10,16 @@ use yoro::eyes::{Eye, EyePair, SynthesisViews};
 use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 
-/// Bytes of a profile; `stereo/border_profile.frag`.
+/// Size of a profile in bytes, as in `stereo/border_profile.frag`.
 const BYTES: usize = CELLS * BANDS * 4;
-/// This part of the band is drawn in every frame. Ambient occlusion and bloom, which reach far, stop there in all
-/// frames.
+/// The innermost 1 / `PART` of the band is drawn in every frame. Ambient occlusion and bloom, which reach far, stop at
+/// its edge in all frames.
 const PART: u32 = 4;
-/// Least columns of that part: a pixel depends on those that filters reach, ambient occlusion at half size (5) and FXAA
-/// (4).
+/// Lower bound of that part in columns. A pixel depends on as many as the filters reach: ambient occlusion at half size
+/// (5) and FXAA (4).
 const REACH: u32 = 10;
 
-/// Returns the columns of a band that are drawn in every frame.
+/// Returns how many columns of a band are drawn in every frame.
 fn least(guard_columns: u32) -> u32 {
     guard_columns.div_ceil(PART).max(REACH).min(guard_columns)
 }
@@ -35,7 +35,7 @@ pub(super) struct AutoGuardBand {
     last: Option<GuardBandUse>,
 }
 
-/// A frame to measure.
+/// A frame that is being measured.
 struct Frame {
     border: Border,
     drawn: u32,
@@ -55,8 +55,8 @@ impl AutoGuardBand {
         })
     }
 
-    /// Returns the columns of the source to draw in a frame of a scene. All are drawn where something moves in the band
-    /// or beside it: earlier frames do not tell where that is.
+    /// Returns the columns of the source to draw in a frame of a scene. Draws all of them if something moves in the
+    /// band or beside it, because earlier frames do not tell where it is now.
     pub(super) fn columns(&mut self, pair: &EyePair, views: &SynthesisViews, scene: &GpuScene) -> Columns {
         let border = Border::new(pair, views);
         let mut texels = [0u8; BYTES];
@@ -77,7 +77,7 @@ impl AutoGuardBand {
         if scene.is_moving_in(&of_columns(&views.source, around)) {
             drawn = guard;
         }
-        // Reaches as far into the picture as the band is wide: surfaces that turn out of it come from there.
+        // As far into the picture as the band is wide: surfaces that turn out of the picture come from there.
         self.frame = Some(Frame { border, drawn, step: (drawn + guard).div_ceil(CELLS as u32) });
         let without = |left_out: u32| match views.warp.target_eye {
             Eye::Left => [left_out, views.source.size[0]],
@@ -86,7 +86,7 @@ impl AutoGuardBand {
         Columns { drawn: without(guard - drawn), always: without(guard - least(guard)) }
     }
 
-    /// Starts to measure the frame that [`AutoGuardBand::columns`] was for.
+    /// Starts to measure the frame of the last [`AutoGuardBand::columns`].
     pub(super) fn measure(&mut self, depth: &Texture, views: &SynthesisViews) {
         let Some(frame) = self.frame.take().filter(|frame| frame.border.guard_columns > 0) else {
             self.readback.forget();
@@ -115,7 +115,7 @@ impl AutoGuardBand {
         self.last
     }
 
-    /// Forgets all measurements: a frame goes by without the band.
+    /// Forgets all measurements, for a frame that does not use the band.
     pub(super) fn interrupt(&mut self) {
         self.readback.forget();
         self.frame = None;

@@ -1,8 +1,8 @@
-//! The far field rendered once, from between the eyes, and shared; the near field rendered for both eyes.
+//! Renders the far field once, from between the eyes, for both eyes, and the near field for each eye.
 //!
 //! After Fink et al., "Hybrid Mono-Stereo Rendering in Virtual Reality" (IEEE VR 2019), from its description: beyond a
-//! distance the eyes' images differ by less than can be seen. The split is made per pixel, by the clip planes, and the
-//! images are put together before bloom and tone mapping.
+//! certain distance the eyes' images differ by less than can be seen. The clip planes split the scene per pixel, and
+//! the images are combined before bloom and tone mapping.
 
 use std::rc::Rc;
 
@@ -18,12 +18,12 @@ use crate::render::{
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Pose, View};
 use yoro_gl::{Context, Destination, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
-/// The far field starts this much nearer than the near field ends, so that no crack opens where a surface that is
-/// seen at an angle passes from one to the other.
+/// The far field starts at this fraction of the distance at which the near field ends, so that no crack opens where a
+/// slanted surface passes from one to the other.
 const OVERLAP: f32 = 0.95;
 
-/// Two renders of the near field, one of the far field. Where nothing is far, the frame is that of two full renders and
-/// costs as much.
+/// Renders the near field twice and the far field once. If nothing is far, the frame is the same as two full renders
+/// and costs as much.
 pub struct Hybrid<T> {
     threshold: f32,
     targets: T,
@@ -55,7 +55,7 @@ impl<T: FieldTargets> FrameMethod for Hybrid<T> {
     }
 }
 
-/// Near and far plane in metres of what is drawn for each eye and of what is drawn for both; `None` for nothing.
+/// Near and far plane in metres of the part drawn for each eye and of the part drawn for both; `None` if empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Split {
     near: Option<[f32; 2]>,
@@ -74,17 +74,17 @@ impl Split {
     }
 }
 
-/// The far field of a frame, and where each eye's image lies in it.
+/// The far field of a frame, and the position of each eye's image in it.
 pub(super) struct Fields {
     split: Split,
-    /// Both frusta, from between the eyes.
+    /// The view with both frusta from between the eyes.
     view: View,
-    /// Pixel of the far field that belongs to each eye's lower left pixel.
+    /// Pixel of the far field that corresponds to each eye's lower left pixel.
     crops: [IVec2; 2],
 }
 
 impl Fields {
-    /// Splits a frame, unless nothing of the scene is far: then all is near.
+    /// Splits a frame. If nothing in the scene is far, everything is near.
     fn new(pair: &EyePair, threshold: f32, scene: &GpuScene) -> Result<Fields, EyesError> {
         let union = pair.synthesis_views(GuardBand::None)?.source;
         let view = View { pose: Pose { position: pair.middle(), ..union.pose }, ..union };
@@ -96,14 +96,14 @@ impl Fields {
     }
 }
 
-/// Returns the pixel of the far field that belongs to each eye's lower left pixel. It is rounded: where frusta differ
-/// by a fraction, the far field is off by at most half a pixel, about as much as it leaves out anyway.
+/// Returns the pixel of the far field that corresponds to each eye's lower left pixel. Rounds to whole pixels: where
+/// frusta differ by a fraction, the far field is off by at most half a pixel, about as much as its lack of parallax.
 fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
     Eye::BOTH.map(|eye| {
         let (frustum, size) = (&pair.frusta[eye.index()], far.size.map(|n| n as f32));
         let x = (frustum.left - far.frustum.left) / far.frustum.width() * size[0];
         let y = (frustum.bottom - far.frustum.bottom) / far.frustum.height() * size[1];
-        // The union is rounded up to whole pixels, so that the eye's image always lies inside.
+        // The union is rounded up to whole pixels, so the eye's image always lies inside.
         let last = |whole: u32, part: u32| (whole - part.min(whole)) as i32;
         IVec2::new(
             (x.round() as i32).clamp(0, last(far.size[0], pair.size[0])),
@@ -124,7 +124,7 @@ pub(super) trait FieldTargets: Sized {
         Ok(())
     }
 
-    /// Draws what both eyes need: the far field, if there is one.
+    /// Draws what both eyes share: the far field, if there is one.
     fn draw(&mut self, frame: &Frame<Self::Renderer>, fields: &Fields) -> Result<(), GlError>;
 
     /// Completes the image of one eye, after [`FieldTargets::draw`].
@@ -136,10 +136,10 @@ pub(super) trait FieldTargets: Sized {
     ) -> Result<EyeImage<'_>, GlError>;
 }
 
-/// G-buffers of the near fields and of the far field.
+/// G-buffers of both near fields and of the far field.
 ///
-/// Before the far field is drawn, its pixels that the near field hides from both eyes are marked in its depth buffer:
-/// they are neither rasterized nor lit. Each eye's lighting skips the pixels that show the far field.
+/// Before the far field is drawn, the pixels that the near field hides from both eyes are marked in its depth buffer,
+/// so that they are neither rasterized nor lit. Each eye's lighting skips the pixels that show the far field.
 pub(super) struct DeferredFields {
     gl: Rc<Context>,
     /// G-buffers by [`Eye::index`].
@@ -154,7 +154,7 @@ pub(super) struct DeferredFields {
 }
 
 impl DeferredFields {
-    /// Marks the far field's pixels that the near field hides from both eyes.
+    /// Marks the pixels of the far field that the near field hides from both eyes.
     fn mark_hidden(&self, far: &RenderTarget, view: &View, crops: &[IVec2; 2]) {
         self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
         self.gl.mask_color();
@@ -169,7 +169,7 @@ impl DeferredFields {
         self.gl.set_raster_state(&RasterState::SCREEN);
     }
 
-    /// Completes an eye's depth by that of the far field, if the depth of the finished image is read.
+    /// Adds the far field's depth to an eye's depth, for a finished image whose depth is read.
     fn merge_depth(&self, eye: &RenderTarget, view: &View, crop: IVec2) {
         self.gl.pass("merge depth", || {
             let depth = depth_test(view.depth.convention);
@@ -254,8 +254,8 @@ impl FieldTargets for DeferredFields {
 
 /// The samples of an eye and of the far field.
 ///
-/// Each eye begins with its part of the far field, colour and depth; its near field is drawn over that, sample by
-/// sample, so that its edges are as smooth as any.
+/// Each eye starts from its part of the far field, colour and depth. Its near field is drawn over that sample by
+/// sample, so that its edges are as smooth as all others.
 pub(super) struct ForwardFields {
     eye: ForwardTargets,
     far: ForwardTargets,
@@ -332,7 +332,7 @@ mod tests {
             let far = views.source;
             let crops = crops(&pair, &far);
             assert_eq!(crops[dominant.index()].to_array(), views.dominant_crop.map(|n| n as i32));
-            // The union is rounded up: its other border may lie a pixel beyond the other eye's.
+            // The union is rounded up, so its other border may lie a pixel beyond the other eye's.
             let room = far.size[0] as i32 - 640;
             assert!((0..=1).contains(&crops[0].x) && (room - 1..=room).contains(&crops[1].x), "{crops:?}");
             assert_eq!([crops[0].y, crops[1].y], [0, 0]);

@@ -1,11 +1,11 @@
-//! The parts of methods that differ by the kind of renderer.
+//! The parts of methods that depend on the kind of renderer.
 
 use super::hybrid::{DeferredFields, FieldTargets, ForwardFields};
 use super::overlay::{DeferredOverlay, ForwardOverlay, Overlay};
 use super::single_pass::{DeferredPair, ForwardPair, PairTargets};
 use crate::render::{DeferredRenderer, ForwardRenderer, RendererOfKind};
 
-/// A kind of renderer with the parts of methods that are its own.
+/// A kind of renderer, with the parts of methods that are specific to it.
 pub(super) trait StereoRenderer: RendererOfKind {
     /// Both eyes in one set of draw calls.
     type Pair: PairTargets<Renderer = Self>;

@@ -13,7 +13,7 @@ pub enum StereoError {
     /// The pair of eyes does not fit the method.
     #[error(transparent)]
     Eyes(#[from] EyesError),
-    /// GL refused.
+    /// GL reported an error.
     #[error(transparent)]
     Gl(#[from] GlError),
 }
@@ -33,7 +33,7 @@ impl StereoFrame {
         Ok(StereoFrame { eyes: [eye()?, eye()?] })
     }
 
-    /// Resizes the images; nothing happens at the same size.
+    /// Resizes the images. Does nothing if they already have this size.
     ///
     /// # Errors
     /// As [`RenderTarget::resize`].
@@ -57,70 +57,69 @@ impl StereoFrame {
     }
 }
 
-/// The target of one eye of a frame. The rectangles have the pair's size.
+/// The target of one eye of a frame. Its rectangles have the size of the pair.
 #[derive(Clone, Copy)]
 pub struct EyeTarget<'a> {
-    /// Takes display-referred sRGB with luma in alpha, and stores it as it is written.
+    /// Receives display-referred sRGB with luma in alpha, and stores it as written.
     pub color: Destination,
-    /// Takes the eye's window depth; `None` if it is not needed.
+    /// Receives the eye's window depth; `None` if it is not needed.
     pub depth: Option<DepthTarget<'a>>,
 }
 
 /// The target of an eye's window depth.
 #[derive(Clone, Copy)]
 pub struct DepthTarget<'a> {
-    /// Framebuffer with a depth attachment and nothing else.
+    /// Framebuffer with only a depth attachment.
     pub to: Destination,
     /// The pass that writes it.
     pub copy: &'a DepthCopy,
 }
 
-/// The part of its guard band that a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
+/// How much of its guard band a method with [`yoro::eyes::GuardBand::Auto`] drew in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GuardBandUse {
     /// Columns that were drawn.
     pub columns: u32,
     /// Columns of the whole band.
     pub most: u32,
-    /// Pixels at the other eye's border that were filled because their surfaces lie in the part of the band that was
-    /// not drawn: an estimate from the outermost column that was drawn.
+    /// Pixels at the other eye's border that were filled because their surfaces lie in the undrawn part of the band.
+    /// Estimated from the outermost drawn column.
     pub undrawn: u32,
 }
 
-/// What a method with [`super::StereoOptions::history`] rendered of the other eye, and what that was for.
+/// What a method with [`super::StereoOptions::history`] rendered of the other eye, and how much it was needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HistoryUse {
-    /// Pixels of the other eye that were rendered besides in the last frame.
+    /// Pixels of the other eye that were rendered in addition in the last frame.
     pub rendered: u32,
-    /// Pixels that were uncovered two frames before, in the rows that are looked at: an estimate from the rendered eye.
+    /// Pixels that were uncovered two frames earlier, in the rows that are counted; an estimate from the rendered eye.
     pub uncovered: u32,
-    /// Those of them that the history did not show.
+    /// Those of the uncovered pixels that the history did not show.
     pub unknown: u32,
 }
 
 /// A method with its own programs and targets.
 pub trait StereoMethod {
-    /// Compiles what the method needs for the materials of a scene, so that its first frame of that scene does not
-    /// have to.
+    /// Compiles what the method needs for the materials of a scene, so that the first frame of that scene need not.
     ///
     /// # Errors
-    /// [`StereoError`] when GL refuses.
+    /// [`StereoError`] if GL refuses.
     fn prepare(&mut self, _renderer: &mut Renderer, _scene: &GpuScene) -> Result<(), StereoError> {
         Ok(())
     }
 
-    /// Returns the use of the guard band two frames before the last one, which is measured by now. `None` for methods
-    /// and settings that always draw all of it, and before anything was measured.
+    /// Returns the use of the guard band two frames before the last one, the newest that is measured. `None` for
+    /// methods and settings that always draw the whole band, and before the first measurement.
     fn guard_band(&self) -> Option<GuardBandUse> {
         None
     }
 
-    /// Returns the use of the history. `None` for methods and settings without one.
+    /// Returns the use of the history. `None` for methods and settings that have no history.
     fn history(&self) -> Option<HistoryUse> {
         None
     }
 
-    /// True if both eyes of the last frame were rendered in place of the method, as [`NearFieldPolicy`] says.
+    /// True if both eyes of the last frame were rendered instead of using the method, as [`NearFieldPolicy`] decides.
     ///
     /// [`NearFieldPolicy`]: super::NearFieldPolicy
     fn is_substituted(&self) -> bool {
@@ -130,7 +129,7 @@ pub trait StereoMethod {
     /// Renders both eyes of a frame into their targets, by [`Eye::index`].
     ///
     /// # Errors
-    /// [`StereoError`] for a pair of eyes that the method cannot do, or when GL refuses.
+    /// [`StereoError`] if the method does not support the pair of eyes, or GL refuses.
     fn render_to(
         &mut self,
         renderer: &mut Renderer,
@@ -139,8 +138,8 @@ pub trait StereoMethod {
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError>;
 
-    /// Shows the last frame's render once more, at the poses that the eyes have now. Returns false, with nothing drawn,
-    /// if the method cannot, or if the last render does not reach as far: render a frame then.
+    /// Shows the last render again at the eyes' current poses. Returns false and draws nothing if the method cannot do
+    /// that, or if the last render does not reach far enough; the caller must then render a frame.
     ///
     /// # Errors
     /// As [`StereoMethod::render_to`].

@@ -1,4 +1,4 @@
-//! The stereo methods: ways to make the two eyes of a frame.
+//! The stereo methods: ways to render the two eyes of a frame.
 
 mod auto;
 mod border;
@@ -50,10 +50,10 @@ pub use still::stills;
 pub use substitute::Substitute;
 use synthesized::Synthesized;
 
-/// Makes a method and compiles all that does not depend on the scene. [`StereoMethod::prepare`] does the rest.
+/// Makes a method and compiles what does not depend on the scene. [`StereoMethod::prepare`] compiles the rest.
 ///
 /// # Errors
-/// [`GlError`] when the driver cannot run it.
+/// [`GlError`] if the driver cannot run the method.
 pub fn create(
     gl: &Rc<Context>,
     method: Method,
@@ -72,7 +72,7 @@ fn create_for<R: StereoRenderer>(method: Method, setup: &Setup) -> Result<Box<dy
     Ok(match method {
         Method::Conventional => Box::new(Conventional::<R>::new(setup)?),
         Method::Instanced => Box::new(SinglePass::<R::Pair>::instanced(setup)?),
-        // The deferred renderer alone has these two: `RenderSettings::supports`.
+        // Only the deferred renderer has these two; see `RenderSettings::supports`.
         Method::Multiview => Box::new(SinglePass::<DeferredPair>::new(setup, Layout::Layered)?),
         Method::ShadingReprojection => Box::new(ShadingReprojection::new(setup)?),
         Method::Hybrid => Box::new(Hybrid::<R::Fields>::new(setup)?),

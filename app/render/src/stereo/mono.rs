@@ -7,8 +7,8 @@ use crate::render::{DepthImage, RendererOfKind, ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, EyePair, GuardBand, View};
 use yoro_gl::GlError;
 
-/// One render from where the dominant eye is, in the union of both frusta; each eye gets its own part of it, which is
-/// the same image where the frusta are the same.
+/// One render from the dominant eye's position, with the union of both frusta. Each eye shows its own part, which is
+/// the same image if the frusta are the same.
 pub struct Mono<R: ViewRenderer> {
     targets: R::Targets,
     finish: Finish,
@@ -49,7 +49,7 @@ impl<R: RendererOfKind> FrameMethod for Mono<R> {
     }
 }
 
-/// Returns the pixel of `whole` that is nearest to the lower left corner of `part`, a view from the same place.
+/// Returns the pixel of `whole` nearest to the lower left corner of `part`, a view from the same position.
 fn origin_in(whole: &View, part: &View) -> [u32; 2] {
     let pixels = |tangents: f32, size: u32, extent: f32| (tangents / extent * size as f32).round() as u32;
     [

@@ -1,26 +1,26 @@
-//! The switch from synthesis to two real renders while most of the view is too near.
+//! The switch from synthesis to two renders while most of the view is too near.
 
-/// The way that the two eyes of a frame are made.
+/// How the two eyes of a frame are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrameMode {
-    /// The second eye is synthesized (objects of the near field rendered for both eyes, if that is on).
+    /// The second eye is synthesized. Objects of the near field are rendered for both eyes, if that is enabled.
     #[default]
     Synthesized,
     /// Both eyes are rendered.
     BothRendered,
 }
 
-/// Switches whole frames to two real renders while much of the view is too near, with hysteresis so that the
-/// mode does not flicker.
+/// Switches whole frames to two renders while much of the view is too near, with hysteresis so that the mode does not
+/// flicker.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct NearFieldPolicy {
-    /// Surfaces nearer than this (metres) are too near.
+    /// Surfaces nearer than this, in metres, are too near.
     pub distance: f32,
-    /// Render both eyes when at least this fraction of the view is too near.
+    /// Both eyes are rendered once at least this fraction of the view is too near.
     pub switch_on: f32,
-    /// Synthesize again when less than this fraction is.
+    /// Synthesis resumes once less than this fraction is too near.
     pub switch_off: f32,
 }
 

@@ -8,29 +8,29 @@ use super::readback::Readback;
 use yoro::eyes::{DepthConvention, DepthRange};
 use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 
-/// Texels per side of the image that [`NearFraction`] reads back; `stereo/near_fraction.frag`.
+/// Texels per side of the image that [`NearFraction`] reads back, as in `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
 
 /// A depth image to measure.
 #[derive(Clone, Copy)]
 pub(super) enum DepthMap<'a> {
     Resolved(&'a Texture),
-    /// A `TEXTURE_2D_MULTISAMPLE`: the first sample of each pixel.
+    /// A `TEXTURE_2D_MULTISAMPLE`, of which the first sample of each pixel is measured.
     Samples(glow::Texture),
 }
 
-/// Measures the fraction of a view that is nearer than a distance. The result comes two frames late, so that nothing
-/// waits.
+/// Measures the fraction of a view that is nearer than a distance. The result is two frames late, so that nothing waits
+/// for it.
 pub(super) struct NearFraction {
     gl: Rc<Context>,
     resolved: Program,
-    /// If it was asked for.
+    /// Compiled on request.
     samples: Option<Program>,
     readback: Readback<()>,
 }
 
 impl NearFraction {
-    /// Compiles the pass for resolved depth; with `samples` also for the depth of all samples.
+    /// Compiles the pass for resolved depth, and with `samples` also the pass for the depth of all samples.
     pub(super) fn new(gl: &Rc<Context>, samples: bool) -> Result<NearFraction, GlError> {
         let program =
             |defines: &[_]| Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), defines);
@@ -39,7 +39,7 @@ impl NearFraction {
         Ok(NearFraction { gl: gl.clone(), resolved, samples, readback: Readback::new(gl, [GRID; 2])? })
     }
 
-    /// Starts to measure the part of a depth image at `origin` with `size` pixels.
+    /// Starts to measure the part of a depth image that has its lower left corner at `origin` and `size` pixels.
     pub(super) fn measure(
         &mut self,
         depth: DepthMap,
@@ -69,7 +69,7 @@ impl NearFraction {
         });
     }
 
-    /// Returns the result of the last [`NearFraction::measure`] but one, 0 to 1, once.
+    /// Returns the result of the last but one [`NearFraction::measure`], from 0 to 1. Returns each result once.
     pub(super) fn take(&mut self) -> Option<f32> {
         let mut cells = [0u8; (GRID * GRID * 4) as usize];
         self.readback.take(&mut cells)?;

@@ -7,8 +7,8 @@ use yoro::eyes::Warp;
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
-/// A pipeline with textures of its own. Rows of all arrays run from the bottom, as in GL. Whatever state the context is
-/// in, the result is the same.
+/// A pipeline with its own textures. In all arrays rows run from the bottom, as in GL. The result does not depend on
+/// the state of the context.
 pub struct Offline {
     gl: Rc<Context>,
     pipeline: Box<dyn Synthesis>,
@@ -43,8 +43,7 @@ impl Offline {
         })
     }
 
-    /// Synthesizes one image. `rgba` has 4 bytes and `depth` one value per pixel of
-    /// [`Warp::source_size`].
+    /// Synthesizes one image. `rgba` has 4 bytes and `depth` one value for each pixel of [`Warp::source_size`].
     ///
     /// # Errors
     /// [`GlError::TooLarge`] for images beyond the driver's limit.

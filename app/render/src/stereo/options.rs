@@ -15,7 +15,7 @@ pub use yoro_protocol::{AntiAliasing, History, Method, MethodChoice, Pipeline};
 fn lacking_forward(method: Method) -> Option<&'static str> {
     match method {
         Method::ShadingReprojection => Some("the g-buffer of both eyes"),
-        // Layers with several samples are EXT_multisampled_render_to_texture's, by
+        // Layers with several samples need EXT_multisampled_render_to_texture and
         // GL_OVR_multiview_multisampled_render_to_texture.
         Method::Multiview => Some("layers with one sample in each pixel"),
         _ => None,
@@ -23,11 +23,11 @@ fn lacking_forward(method: Method) -> Option<&'static str> {
 }
 
 impl RenderSettings {
-    /// Checks that a driver can run a method with this renderer. What a pipeline of [`Method::Yoro`] needs is its own
-    /// to check.
+    /// Checks that a driver can run a method with this renderer. The pipelines of [`Method::Yoro`] check their own
+    /// requirements.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] with what is missing and the remedy.
+    /// [`GlError::Unsupported`] with what is missing and what to do.
     pub fn supports(&self, method: Method, capabilities: &Capabilities) -> Result<(), GlError> {
         self.supported(capabilities)?;
         if self.is_forward()
@@ -48,23 +48,23 @@ impl RenderSettings {
     }
 }
 
-/// The pipeline, and the knobs of the paper's.
+/// The pipeline, and the options of the paper's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PipelineOptions {
     /// The pipeline that synthesizes.
     pub pipeline: Pipeline,
-    /// Knobs of [`Pipeline::Paper`].
+    /// Options of [`Pipeline::Paper`].
     pub paper: PaperOptions,
 }
 
 impl PipelineOptions {
-    /// Compiles the pipeline for a source with these edges, and with or without a history, which only
-    /// [`Pipeline::Gather`] has.
+    /// Compiles the pipeline for a source with these edges, with or without a history. Only [`Pipeline::Gather`] can
+    /// use a history.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] for [`Pipeline::Paper`] or [`Edges::Multisample`] without OpenGL ES 3.1, and for
-    /// [`Pipeline::Paper`] with other edges than hard ones; [`GlError::Shader`] when the driver refuses a shader.
+    /// [`Pipeline::Paper`] with other than hard edges; [`GlError::Shader`] if the driver refuses a shader.
     pub fn create(
         &self,
         gl: &Rc<Context>,
@@ -90,23 +90,23 @@ impl PipelineOptions {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StereoOptions {
-    /// Synthesis pipeline and its knobs.
+    /// The synthesis pipeline and its options.
     pub synthesis: PipelineOptions,
-    /// The meaning of the rendered eye's edges for the synthesis; `None` for that which fits the renderer
+    /// How synthesis interprets the rendered eye's edges; `None` for the interpretation that suits the renderer
     /// ([`StereoOptions::edges`]).
     pub edges: Option<Edges>,
-    /// The resolution of what the other eye has really seen, for disocclusions; not with [`Pipeline::Paper`].
+    /// The resolution of the rendered history of the other eye, for disocclusions. Not with [`Pipeline::Paper`].
     pub history: History,
-    /// The band by which the dominant eye is rendered wider.
+    /// How much wider the dominant eye is rendered.
     pub guard_band: GuardBand,
     /// When anti-aliasing runs.
     pub anti_aliasing: AntiAliasing,
-    /// Hybrid near field: objects nearer than this (metres) are rendered for both eyes.
+    /// Objects nearer than this, in metres, are rendered for both eyes.
     pub near_field: Option<f32>,
-    /// Render both eyes of frames that are mostly too near; `None` never does.
+    /// When to render both eyes of frames that are mostly too near; `None` for never.
     pub policy: Option<NearFieldPolicy>,
-    /// Renders a second; frames between two renders show the last one at the newest poses
-    /// ([`super::StereoMethod::show_again`]). `None` renders every frame. Such renders are taken with hard edges, and
+    /// Renders per second. Frames between two renders show the last one at the newest poses
+    /// ([`super::StereoMethod::show_again`]). `None` renders every frame. Such renders are taken as having hard edges,
     /// without near field, history and policy. Not with [`Pipeline::Paper`].
     pub render_rate: Option<f32>,
     /// [`Method::Hybrid`]: the far field starts where the disparity between the eyes is this many pixels, at
@@ -131,13 +131,13 @@ impl Default for StereoOptions {
 }
 
 impl StereoOptions {
-    /// Returns the meaning of edges for the synthesis. The default depends on the samples of a pixel: if shaders can
-    /// read them, their nearest depth is taken for that of a hard edge, which costs an eighth of what layers do
-    /// (docs/method.md). Else there is the first one's depth, which would leave outlines of objects where they were.
-    /// Pipelines other than gather know one surface a pixel.
+    /// Returns how synthesis interprets edges. The default depends on the samples of a pixel. If shaders can read them,
+    /// their nearest depth is taken as that of a hard edge, at an eighth of the cost of layers (docs/method.md).
+    /// Otherwise only the first sample's depth is available, which as a hard edge would leave outlines of objects in
+    /// place. Pipelines other than gather take one surface per pixel.
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for [`Edges::Multisample`] of one sample.
+    /// [`GlError::Unsupported`] for [`Edges::Multisample`] with one sample per pixel.
     pub fn edges(&self, settings: &RenderSettings, capabilities: &Capabilities) -> Result<Edges, GlError> {
         let single = settings.samples() == 1 || self.synthesis.pipeline != Pipeline::Gather;
         match self.edges {
@@ -151,8 +151,8 @@ impl StereoOptions {
         }
     }
 
-    /// The options that the viewer's settings ask for, with a pipeline that may be another one than that of the
-    /// settings where the driver cannot do that.
+    /// Returns the options for the viewer's settings. `pipeline` may differ from that of the settings if the driver
+    /// does not support the latter.
     pub fn of_settings(settings: &Settings, pipeline: Pipeline) -> StereoOptions {
         let options = StereoOptions::of_pipeline(pipeline);
         let paper = PaperOptions {
@@ -174,8 +174,8 @@ impl StereoOptions {
         }
     }
 
-    /// The default with another pipeline. The paper's pipeline comes as in the paper: no guard band,
-    /// anti-aliasing before synthesis.
+    /// Returns the defaults for a pipeline. The paper's has no guard band and anti-aliasing before synthesis, as in the
+    /// paper.
     pub fn of_pipeline(pipeline: Pipeline) -> StereoOptions {
         let synthesis = PipelineOptions { pipeline, ..PipelineOptions::default() };
         let options = StereoOptions { synthesis, ..StereoOptions::default() };
@@ -192,7 +192,7 @@ impl StereoOptions {
 mod tests {
     use super::*;
 
-    /// No option of the methods is out of the settings' reach.
+    /// Every option of the methods must have a setting.
     #[test]
     fn every_stereo_option_has_a_setting() {
         let changed = Settings::resolve(

@@ -25,21 +25,21 @@ impl Smooth {
         Ok(Smooth { fxaa: Fxaa::new(gl)?, image })
     }
 
-    /// Smooths an image of the same size.
+    /// Smooths an image of the same size into `image`.
     pub(super) fn run(&self, from: &RenderTarget) {
         self.fxaa.run(from.color(0), [0, 0], &Destination::whole(&self.image));
     }
 }
 
-/// The surfaces that are drawn over both eyes of a frame.
+/// What is drawn over both eyes of a frame.
 pub(super) struct Over {
-    /// Near objects, if they are left out of the synthesis.
+    /// The near objects, if they are left out of the synthesis.
     pub(super) near: Option<Selection>,
     pub(super) transparent: bool,
 }
 
 impl Over {
-    /// True if anything is drawn, tested against the depth of either eye.
+    /// True if anything is drawn. It is then tested against the depth of either eye.
     pub(super) fn is_any(&self) -> bool {
         self.transparent || self.near.is_some()
     }
@@ -48,21 +48,21 @@ impl Over {
 /// An eye to draw over.
 #[derive(Clone, Copy)]
 pub(super) enum EyeSource<'a> {
-    /// The rendered eye: what its targets hold, or that after anti-aliasing, as it was synthesized from.
+    /// The rendered eye: the contents of its targets, or the smoothed copy that the other eye was synthesized from.
     Rendered(Option<&'a Smooth>),
     /// The synthesized eye, with float depth if anything is drawn or its target has depth.
     Synthesized(&'a RenderTarget),
 }
 
-/// The way a kind of renderer draws over both eyes after synthesis.
+/// How a kind of renderer draws over both eyes after synthesis.
 pub(super) trait Overlay: Sized {
     /// The kind of renderer.
     type Renderer: RendererOfKind;
 
     fn new(setup: &Setup) -> Result<Self, GlError>;
 
-    /// Draws over one eye, and returns its part without the guard band. `targets` are those of the rendered eye, which
-    /// comes first: what they hold may be gone after the synthesized one.
+    /// Draws over one eye and returns its part without the guard band. `targets` are those of the rendered eye, which
+    /// must be drawn first: drawing over the synthesized eye may overwrite them.
     fn draw<'a>(
         &'a mut self,
         frame: &Frame<Self::Renderer>,
@@ -73,12 +73,12 @@ pub(super) trait Overlay: Sized {
     ) -> Result<EyeImage<'a>, GlError>;
 }
 
-/// Near objects have targets of their own, and are composited by depth; transparent surfaces are drawn over images.
+/// Draws near objects into targets of their own and composites them by depth. Draws transparent surfaces over images.
 pub(super) struct DeferredOverlay {
     near: Option<NearLayer>,
 }
 
-/// Targets for the near objects, and for what they are composited into.
+/// Targets for near objects, and for the composited images.
 struct NearLayer {
     targets: <DeferredRenderer as ViewRenderer>::Targets,
     composite: Composite,
@@ -130,8 +130,8 @@ impl Overlay for DeferredOverlay {
         }
         let depth = depth.map(|depth| DepthImage { origin, ..DepthImage::whole(depth) });
         if let Some(depth) = depth.filter(|_| over.transparent) {
-            // Depth is read in the shader, so only the colour of the layer may be attached. Nothing reads the guard
-            // band from here on.
+            // Depth is read in the shader, so only the layer's colour may be attached. Nothing reads the guard band
+            // after this.
             let onto = Destination { origin, size: pair.size, ..color.color_only() };
             renderer.draw_transparent(&onto, depth, scene, &pair.view(eye));
         }
@@ -151,7 +151,7 @@ impl Composite {
         Ok(Composite { gl: gl.clone(), program })
     }
 
-    /// Writes colour and depth of whichever layer is nearer. All images have the size of `to`.
+    /// Writes colour and depth of the nearer layer. All images have the size of `to`.
     fn run(
         &self,
         (far_color, far_depth): (&Texture, &Texture),
@@ -175,8 +175,8 @@ impl Composite {
     }
 }
 
-/// Drawing resumes in the samples of the rendered eye, then in those of the other eye, which begins as it was
-/// synthesized.
+/// Resumes drawing in the samples of the rendered eye, then in those of the other eye, starting from its synthesized
+/// image.
 pub(super) struct ForwardOverlay;
 
 impl Overlay for ForwardOverlay {
@@ -201,7 +201,7 @@ impl Overlay for ForwardOverlay {
                 if over.is_any() {
                     let depth = over.near.is_some() && wants_depth;
                     renderer.resume_samples(targets, scene, &views.source, over.near, depth);
-                    // The eye is rendered once more, so that it is smoothed again.
+                    // The eye has been drawn again, so it must be smoothed again.
                     if let Some(smooth) = smooth {
                         smooth.run(targets.color());
                     }

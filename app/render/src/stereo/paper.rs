@@ -1,4 +1,4 @@
-//! The paper's pipeline: Algorithms 1 to 3 with its knobs, in the corrected reading.
+//! The paper's pipeline: Algorithms 1 to 3 with its options, as corrected.
 
 use std::rc::Rc;
 
@@ -11,20 +11,20 @@ use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarg
 use yoro_protocol::MAX_KERNEL_HEIGHT;
 pub use yoro_protocol::{ImBufferSize, ParseImBufferSizeError};
 
-/// Rows per workgroup of Algorithm 2, one invocation each.
+/// Rows per workgroup of Algorithm 2, with one invocation for each row.
 const ROWS: u32 = 64;
 
-/// Knobs of the paper's pipeline.
+/// Options of the paper's pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PaperOptions {
     /// Resolution of the ImBuffer, section "(c) Resolution-Independent Intermediate Buffers".
     pub imbuffer: ImBufferSize,
-    /// Interpolate the shift between ImBuffer entries, section "(d) Linear Interpolation".
+    /// Interpolates the shift between ImBuffer entries, section "(d) Linear Interpolation".
     pub linear_interpolation: bool,
     /// Height of the patcher's kernel in rows, `h` of Algorithm 3.
     pub kernel_height: u32,
-    /// Store whole source columns and sample one depth per ImBuffer pixel, as Algorithm 2 says. Otherwise the
+    /// Stores whole source columns and samples one depth per ImBuffer pixel, as in Algorithm 2. Otherwise the
     /// fractional column is stored, and the nearest depth of the block is taken.
     pub strict: bool,
 }
@@ -40,9 +40,9 @@ impl Default for PaperOptions {
     }
 }
 
-/// Fragment shader, per-row compute shader, fragment shader. Algorithm 1 reads depth and writes 4 bytes per
-/// ImBuffer pixel; Algorithm 2 reads those and reads and writes 4 bytes per ImBuffer pixel, serially along
-/// each row; Algorithm 3 reads the ImBuffer and colour.
+/// A fragment shader, a compute shader for each row, and a fragment shader. Algorithm 1 reads depth and writes 4 bytes
+/// per ImBuffer pixel. Algorithm 2 reads those, and reads and writes 4 bytes per ImBuffer pixel, serially along each
+/// row. Algorithm 3 reads the ImBuffer and colour.
 pub struct Paper {
     gl: Rc<Context>,
     outputs: Outputs,
@@ -99,7 +99,7 @@ impl Synthesis for Paper {
             ImBufferSize::Fixed([w, h]) => Vec2::new(width / w.max(1) as f32, height / h.max(1) as f32),
         };
         let pixels = |n: u32, scale: f32| ((n as f32 / scale - 1e-3).ceil() as u32).max(1);
-        // Rows are the source's in both buffers.
+        // Both buffers have the source's rows.
         let rows = pixels(warp.source_size[1], self.scale.y);
         self.written_to.resize([pixels(warp.source_size[0], self.scale.x), rows])?;
         self.imbuffer.resize([pixels(warp.target_size[0], self.scale.x), rows])

@@ -1,5 +1,5 @@
-//! What the other eye has really seen: strips of it that are rendered besides, for the disocclusions of this frame and
-//! of later ones.
+//! The history: strips of the other eye that are rendered in addition, to fill disocclusions of this frame and of later
+//! ones.
 
 use std::rc::Rc;
 
@@ -14,22 +14,22 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
 
-/// Texels of the image of counts; `stereo/uncovered.frag`.
+/// Texels of the image of counts, as in `stereo/uncovered.frag`.
 const GRID: [u32; 2] = [32, 64];
-/// Rows that are rendered beyond either end of a strip, as far as ambient occlusion reaches at half size.
+/// Rows rendered beyond either end of a strip: as many as ambient occlusion reaches at half size.
 const MARGIN: u32 = 8;
-/// All strips are renewed when the unknown pixels have grown by this share of the uncovered ones.
+/// All strips are renewed once the unknown pixels have grown by this share of the uncovered ones.
 const GROWTH: f32 = 0.1;
-/// A strip is given up when the head has moved by so many metres from where it was rendered, or turned by so much.
+/// A strip is discarded once the head is this many metres, or this angle in radians, from where the strip was rendered.
 const LEAP: f32 = 0.5;
 const TURN: f32 = std::f32::consts::FRAC_PI_4;
-/// A strip is given up when the scene has moved so often since it was rendered, which it has not while rounds follow
-/// one another.
+/// A strip is discarded once the scene has moved this many times since it was rendered. While rounds follow one
+/// another, every strip is renewed before that.
 const MOVED: u64 = Strips::MAX as u64;
 
 /// The history of one method.
 pub(super) struct Past<R: StereoRenderer> {
-    /// Pixels of the eye to one of the history, in each direction.
+    /// Pixels of the eye per pixel of the history, along each axis.
     scale: u32,
     /// The strip that is being rendered.
     targets: R::Targets,
@@ -40,16 +40,16 @@ pub(super) struct Past<R: StereoRenderer> {
     eyes: Option<Eyes>,
     need: Need,
     rounds: Rounds,
-    /// Pixels that were rendered in the last frame.
+    /// Number of pixels that were rendered in the last frame.
     rendered: u32,
 }
 
-/// What a strip shows.
+/// The view that a strip shows.
 #[derive(Clone, Copy)]
 struct Strip {
-    /// The whole eye from where it was rendered.
+    /// The whole eye, from where the strip was rendered.
     view: View,
-    /// [`GpuScene::times_moved`](crate::GpuScene) then.
+    /// [`GpuScene::times_moved`](crate::GpuScene) when it was rendered.
     times_moved: u64,
 }
 
@@ -67,27 +67,27 @@ impl Eyes {
         Eyes { scene, target: views.target, dominant: pair.dominant, ipd: pair.ipd() }
     }
 
-    /// True if strips of other eyes are of no use to these. Poses are the strips' own.
+    /// True if strips of the eyes `other` are of no use to these. Poses are ignored: each strip has its own.
     fn replaces(&self, other: &Eyes) -> bool {
         let posed = Eyes { target: View { pose: self.target.pose, ..other.target }, ipd: self.ipd, ..*other };
-        // Rounding of poses.
+        // Allows for the rounding of poses.
         *self != posed || (self.ipd - other.ipd).abs() > 1e-3 * self.ipd.abs()
     }
 }
 
-/// Decides in which frames strips are rendered: a round of all of them, when the last one serves too little.
+/// Decides in which frames strips are rendered: a round of all strips, once the last round is of too little use.
 #[derive(Debug, Default, PartialEq)]
 struct Rounds {
-    /// Strips of this round that are still to be rendered.
+    /// Number of strips that are still to be rendered in this round.
     left: usize,
-    /// The number of this round.
+    /// The number of the current round, from 1.
     round: u32,
     /// The fewest unknown pixels since the last round.
     least: Option<u32>,
 }
 
 impl Rounds {
-    /// Takes note of a frame that was measured in a round, or after it.
+    /// Takes the counts of a frame, and the round that served it. Begins a new round if that is worthwhile.
     fn measured(&mut self, round: Option<u32>, use_: &HistoryUse) {
         if self.left > 0 || round != Some(self.round) {
             return;
@@ -105,20 +105,20 @@ impl Rounds {
         *self = Rounds { left: Strips::MAX, round: self.round + 1, least: None };
     }
 
-    /// All strips were replaced at once.
+    /// Notes that all strips were replaced at once.
     fn served(&mut self) {
         self.begin();
         self.left = 0;
     }
 
-    /// The number of the round that serves a frame, if it is complete.
+    /// Returns the number of the current round if it is complete.
     fn complete(&self) -> Option<u32> {
         (self.left == 0).then_some(self.round)
     }
 }
 
 impl<R: StereoRenderer> Past<R> {
-    /// Makes the targets, for a history at the eye's size divided by `scale`.
+    /// Makes the targets for a history of the eye's size divided by `scale`.
     pub(super) fn new(setup: &Setup, scale: u32) -> Result<Past<R>, GlError> {
         let gl = setup.gl;
         Ok(Past {
@@ -135,7 +135,7 @@ impl<R: StereoRenderer> Past<R> {
         })
     }
 
-    /// Begins anew if these are not the eyes that the strips are of.
+    /// Starts over if the strips belong to other eyes.
     fn fit(&mut self, frame: &Frame<R>, views: &SynthesisViews) -> Result<(), GlError> {
         let eyes = Eyes::new(frame.scene.id(), frame.pair, views);
         if self.eyes.is_none_or(|before| eyes.replaces(&before)) {
@@ -149,12 +149,12 @@ impl<R: StereoRenderer> Past<R> {
         Ok(())
     }
 
-    /// True if the history can be an image of the whole other eye: it has its size, and no glass is seen in it.
+    /// True if the history can be an image of the whole other eye: its size fits, and no glass is visible in it.
     pub(super) fn takes_whole(&self, frame: &Frame<R>, views: &SynthesisViews) -> bool {
         self.scale == 1 && !frame.scene.is_transparent_in(&views.target)
     }
 
-    /// Takes all strips from an image of the whole other eye with depth.
+    /// Replaces all strips with an image of the whole other eye, which must have depth.
     pub(super) fn take_whole(
         &mut self,
         frame: &Frame<R>,
@@ -169,7 +169,7 @@ impl<R: StereoRenderer> Past<R> {
         Ok(())
     }
 
-    /// Copies a part of a rendered image, from row `from` on, to row `first` of the history.
+    /// Copies a rendered image, from row `from` on, to row `first` of the history.
     fn keep(&self, targets: &R::Targets, from: u32, first: u32, size: [u32; 2]) {
         let to =
             |target: &RenderTarget| Destination { origin: [0, first], size, ..Destination::whole(target) };
@@ -178,7 +178,7 @@ impl<R: StereoRenderer> Past<R> {
         self.copy.run(depth, &to(&self.depth));
     }
 
-    /// Renders a strip, if one is needed, and returns what there is.
+    /// Renders a strip if one is needed, and returns the history.
     pub(super) fn history(
         &mut self,
         frame: &Frame<R>,
@@ -243,7 +243,7 @@ impl<R: StereoRenderer> Past<R> {
         }
         let row = whole.frustum.height() / height as f32;
         let bottom = whole.frustum.bottom + (first as f32 - MARGIN as f32) * row;
-        // As high for all strips, so that targets keep their size.
+        // All strips have the same height, so that the targets keep their size.
         let high = rows + 2 * MARGIN;
         let frustum = Frustum { bottom, top: bottom + high as f32 * row, ..whole.frustum };
         let view = View { frustum, size: [width, high], ..whole };
@@ -255,25 +255,25 @@ impl<R: StereoRenderer> Past<R> {
         Ok(())
     }
 
-    /// Starts to count what this frame uncovers, from the rendered eye's depth.
+    /// Starts to count the pixels that this frame uncovers, from the rendered eye's depth.
     pub(super) fn measure(&mut self, depth: &Texture, views: &SynthesisViews) {
         let history = self.relation(views);
         self.need.measure(depth, views, &history, self.rounds.complete());
     }
 
-    /// A frame goes by without synthesis.
+    /// Notes a frame without synthesis.
     pub(super) fn interrupt(&mut self) {
         self.need.readback.forget();
         self.rendered = 0;
     }
 
-    /// Returns what was rendered in the last frame, and what was counted two frames before it.
+    /// Returns what was rendered in the last frame, and the counts of two frames before it.
     pub(super) fn last(&self) -> HistoryUse {
         HistoryUse { rendered: self.rendered, ..self.need.last }
     }
 }
 
-/// Counts the pixels that a frame uncovers and those that the history does not know. The result comes two frames late.
+/// Counts the pixels that a frame uncovers, and how many the history does not show. Results are two frames late.
 struct Need {
     gl: Rc<Context>,
     program: Program,
@@ -313,7 +313,7 @@ impl Need {
         let round = self.readback.take(&mut texels)?;
         let mut counted = HistoryUse::default();
         for texel in texels.as_chunks::<4>().0 {
-            // A driver that could not give them.
+            // `None` if the driver could not provide the texels.
             counted.uncovered += u32::from(u16::from_le_bytes([texel[0], texel[1]]).checked_sub(1)?);
             counted.unknown += u32::from(u16::from_le_bytes([texel[2], texel[3]]));
         }
@@ -337,13 +337,13 @@ mod tests {
         assert_eq!(rounds, Rounds { least: Some(0), ..Rounds::default() }, "nothing is uncovered");
         rounds.measured(Some(0), &counted(500, 500));
         assert_eq!((rounds.left, rounds.round), (Strips::MAX, 1));
-        // Frames of the round itself, and of the time before it, tell nothing.
+        // Frames during the round, and before it, must not count.
         rounds.measured(Some(0), &counted(500, 500));
         rounds.left = 0;
         rounds.measured(Some(0), &counted(500, 500));
         rounds.measured(None, &counted(500, 400));
         assert_eq!(rounds, Rounds { round: 1, ..Rounds::default() });
-        // What no round serves does not begin one.
+        // Pixels that no round can serve do not begin one.
         for unknown in [100, 140, 90, 135] {
             rounds.measured(Some(1), &counted(500, unknown));
             assert_eq!(rounds.left, 0, "{unknown}");

@@ -4,12 +4,12 @@ use std::rc::Rc;
 
 use yoro_gl::{Context, Filter, Format, GlError, PixelBuffer, RenderTarget};
 
-/// An RGBA8 image that is drawn once a frame and read two frames later. By then the GPU is done with it, where the
-/// display paces it. A `T` says what was drawn.
+/// An RGBA8 image that is drawn once a frame and read two frames later. By then the GPU has finished it, if the display
+/// paces the frames. A `T` describes what was drawn.
 pub(super) struct Readback<T> {
     image: RenderTarget,
     buffers: [(PixelBuffer, Option<T>); 2],
-    /// The buffer that was filled first.
+    /// Index of the buffer that was filled first.
     first: usize,
 }
 
@@ -23,12 +23,12 @@ impl<T> Readback<T> {
         })
     }
 
-    /// The image to draw into before [`Readback::start`].
+    /// Returns the image, to be drawn into before [`Readback::start`].
     pub(super) fn image(&self) -> &RenderTarget {
         &self.image
     }
 
-    /// Starts to read what was drawn.
+    /// Starts to read what was drawn, described by `drawn`.
     pub(super) fn start(&mut self, drawn: T) {
         let (buffer, kept) = &mut self.buffers[self.first];
         self.image.read_into(buffer);
@@ -36,8 +36,8 @@ impl<T> Readback<T> {
         self.first ^= 1;
     }
 
-    /// Returns what was drawn two [`Readback::start`]s ago, once. Its texels come in `bytes`: zeros if the driver
-    /// cannot give them.
+    /// Returns the description of what was drawn at the last but one [`Readback::start`], once, and stores its texels
+    /// in `bytes`: zeros if the driver cannot provide them.
     pub(super) fn take(&mut self, bytes: &mut [u8]) -> Option<T> {
         let (buffer, kept) = &mut self.buffers[self.first];
         let drawn = kept.take()?;

@@ -11,30 +11,30 @@ use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, HeadMotion, PoseWarp, View}
 use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
-/// Degrees a second by which a head may turn before its borders are filled, if its render is shown for the whole time
-/// between two renders.
+/// Degrees per second that a head may turn before its borders are filled, if a render is shown for the whole time until
+/// the next.
 const DEGREES_PER_SECOND: f32 = 60.0;
-/// Metres a second by which it may move.
+/// Metres per second that it may move.
 const METRES_PER_SECOND: f32 = 1.0;
-/// Distance in metres of the nearest surfaces that a guard band without a distance is made for.
+/// Distance in metres of the nearest surfaces for which a guard band without a distance is sized.
 const NEAREST: f32 = 1.0;
 
-/// One render with a guard band on all four sides, and any number of frames that show it: each eye is synthesized from
-/// its colour and depth. Surfaces stand still meanwhile; transparent ones and highlights move with what is behind them.
+/// One render with a guard band on all four sides, shown in any number of frames: each eye is synthesized from its
+/// colour and depth. Surfaces stand still meanwhile; transparent ones and highlights move with what is behind them.
 pub struct Reprojected<R: ViewRenderer> {
     gl: Rc<Context>,
     guard_band: GuardBand,
-    /// The motion of a head between two renders.
+    /// The motion of a head between two renders that the guard band allows for.
     motion: HeadMotion,
     targets: R::Targets,
-    /// The view that the targets show, once there was a frame.
+    /// The view in the targets; `None` before the first frame.
     rendered: Option<View>,
-    /// Synthesis without and with depth, made when it is needed.
+    /// Synthesis without and with depth, each made when first needed.
     synthesis: [Option<Synthesizer>; 2],
     finish: Finish,
 }
 
-/// The synthesis, and what it writes: an eye before anti-aliasing.
+/// The synthesis, and the image it writes: an eye before anti-aliasing.
 struct Synthesizer {
     any_view: AnyView,
     image: RenderTarget,
@@ -52,7 +52,7 @@ impl Synthesizer {
 }
 
 impl<R: ViewRenderer> Reprojected<R> {
-    /// Makes the targets, for renders `rate` times a second. The paper's pipeline is [`GlError::Unsupported`].
+    /// Makes the targets for `rate` renders per second. For the paper's pipeline returns [`GlError::Unsupported`].
     pub(super) fn new(setup: &Setup, rate: f32) -> Result<Reprojected<R>, GlError> {
         if setup.options.synthesis.pipeline == Pipeline::Paper {
             let message = "the pipeline paper cannot show a render again: choose the pipeline gather, or no render rate";
@@ -72,7 +72,7 @@ impl<R: ViewRenderer> Reprojected<R> {
         })
     }
 
-    /// Returns the view to render: what both eyes show now, and what they show after the head's motion.
+    /// Returns the view to render: what both eyes see now, and what they will see after the head's motion.
     fn source_view(&self, pair: &EyePair) -> Result<View, EyesError> {
         let nearest = match self.guard_band {
             GuardBand::Distance(metres) | GuardBand::Auto(metres) => metres,
@@ -116,7 +116,7 @@ impl<R: RendererOfKind> FrameMethod for Reprojected<R> {
     fn show_last(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
         let Some(view) = self.rendered else { return Ok(false) };
         match self.show(&view, pair, to) {
-            // The head has turned away.
+            // The head has turned away from the render.
             Err(StereoError::Eyes(EyesError::Apart)) => Ok(false),
             shown => shown.map(|()| true),
         }
@@ -134,7 +134,7 @@ mod tests {
     use super::super::tests::{Rig, local, pair};
     use super::*;
 
-    /// Returns the eyes after a motion of the head.
+    /// Returns the eyes after the head has moved.
     fn moved(pair: &EyePair, by: Vec3, turn: Quat) -> EyePair {
         let poses = pair
             .poses

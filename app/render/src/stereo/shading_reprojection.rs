@@ -1,8 +1,8 @@
-//! The dominant eye's shading reprojected to the other eye's own geometry; only disocclusions are shaded.
+//! Reprojects the dominant eye's shading to the other eye's own geometry, and shades only the disocclusions.
 //!
 //! After Oculus, "Introducing Stereo Shading Reprojection for Unity" (2017): the second eye's geometry is drawn again,
-//! so each of its pixels knows its depth, and with it where to look in the dominant eye's image. There the depths are
-//! compared; pixels that the dominant eye does not see are shaded. Its price over synthesis is the second g-buffer.
+//! so the depth of its pixels is known, and with it their places in the dominant eye's image. Depths are compared
+//! there; pixels that the dominant eye does not see are shaded. The extra cost over synthesis is the second g-buffer.
 
 use std::rc::Rc;
 
@@ -20,11 +20,11 @@ use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
 };
 
-/// Two g-buffers; ambient occlusion and lighting once, and again for disocclusions.
+/// Draws two g-buffers, and runs ambient occlusion and lighting once, and again for disocclusions.
 ///
 /// Colours are taken before bloom and tone mapping, which run for each eye. Disocclusions are a mask that ambient
-/// occlusion and lighting look up, not a stencil: these passes have different framebuffers, ambient occlusion needs
-/// the mask's surroundings, too, and pixels that are left out return after one texel.
+/// occlusion and lighting look up, not a stencil: these passes have different framebuffers, ambient occlusion also
+/// needs the mask's surroundings, and skipped pixels return after one texel.
 pub struct ShadingReprojection {
     gl: Rc<Context>,
     /// Dominant, second.
@@ -73,7 +73,7 @@ impl ShadingReprojection {
         });
     }
 
-    /// The second eye's disocclusions in the last frame: 1 in the red channel.
+    /// Returns the second eye's disocclusions in the last frame: 1 in the red channel.
     #[cfg(test)]
     pub(super) fn disocclusion(&self) -> &RenderTarget {
         &self.disocclusion
@@ -89,7 +89,7 @@ impl FrameMethod for ShadingReprojection {
 
     fn render_frame(&mut self, frame: &Frame<DeferredRenderer>) -> Result<(), StereoError> {
         let Frame { renderer, scene, pair, .. } = frame;
-        // The law for the dominant eye's own image instead of one with both frusta: what is outside is shaded.
+        // The law for the dominant eye's own image instead of one with both frusta: pixels outside of it are shaded.
         let views = pair.synthesis_views(GuardBand::None)?;
         let [left, bottom] = views.dominant_crop;
         let law = DisparityLaw { offset: views.warp.law.offset + f64::from(left), ..views.warp.law };

@@ -1,5 +1,5 @@
-//! Both eyes in one set of draw calls: instancing into double-wide targets, or GL_OVR_multiview2 into a layered
-//! g-buffer. All later passes run for each eye.
+//! Draws both eyes in one set of draw calls: by instancing into double-wide targets, or by GL_OVR_multiview2 into a
+//! layered g-buffer. All later passes run for each eye.
 
 use super::finish::{EyeImage, Finish};
 use super::frame::{Frame, FrameMethod, Setup};
@@ -11,10 +11,10 @@ use crate::render::{
 use yoro::eyes::{Eye, View};
 use yoro_gl::{Destination, Filter, Format, GlError, RenderTarget};
 
-/// One culling and one draw call per visible range of triangles, for both eyes.
+/// Culls once, and issues one draw call per visible range of triangles, for both eyes.
 ///
-/// Against two renders it saves the CPU half of its draw calls and, with multiview where the hardware shares it, some
-/// vertex work; every pixel is still rasterized and shaded for each eye.
+/// Compared with two renders it saves half of the CPU's draw calls and, with multiview on hardware that shares it, some
+/// vertex work. Every pixel is still rasterized and shaded for each eye.
 pub struct SinglePass<T> {
     targets: T,
     finish: Finish,
@@ -33,19 +33,19 @@ pub(super) trait PairTargets: Sized {
     /// Draws the surfaces of both eyes.
     fn draw(&mut self, frame: &Frame<Self::Renderer>, views: &[View; 2]) -> Result<(), GlError>;
 
-    /// Ends the image of one eye, after [`PairTargets::draw`].
+    /// Completes the image of one eye, after [`PairTargets::draw`].
     fn eye(&mut self, frame: &Frame<Self::Renderer>, view: &View, eye: Eye) -> Result<EyeImage<'_>, GlError>;
 }
 
 impl<T: PairTargets> SinglePass<T> {
-    /// Single-pass stereo by instancing, with clip distances where the driver has them.
+    /// Makes single-pass stereo by instancing, with clip distances if the driver has them.
     pub(super) fn instanced(setup: &Setup) -> Result<SinglePass<T>, GlError> {
         let has_clip_distances = setup.gl.capabilities().clip_distances;
         let seam = if has_clip_distances { Seam::ClipDistance } else { Seam::Discard };
         SinglePass::new(setup, Layout::DoubleWide(seam))
     }
 
-    /// Makes the targets: [`Layout::Layered`] is single-pass stereo by multiview.
+    /// Makes the targets. [`Layout::Layered`] means single-pass stereo by multiview.
     pub(super) fn new(setup: &Setup, layout: Layout) -> Result<SinglePass<T>, GlError> {
         Ok(SinglePass { targets: T::new(setup, layout)?, finish: Finish::new(setup)? })
     }
@@ -128,7 +128,7 @@ impl PairTargets for DeferredPair {
 /// The samples of both eyes.
 pub(super) struct ForwardPair {
     targets: ForwardTargets,
-    /// An eye by itself, for anti-aliasing that looks beyond its border.
+    /// A copy of one eye, for anti-aliasing that reads beyond its border.
     alone: Option<RenderTarget>,
 }
 

@@ -1,4 +1,4 @@
-//! Both eyes of a scene at rest: what a driver's pictures are compared with stored ones by.
+//! Images of both eyes of a scene at rest, to compare a driver's pictures with stored ones.
 
 use std::rc::Rc;
 
@@ -8,12 +8,11 @@ use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro_gl::Context;
 use yoro_scene::Scene;
 
-/// Renders the right eye of a scene's first viewpoint, synthesizes the left one by each pipeline, and returns both,
-/// left first: RGBA with rows from the bottom, `size` squared pixels with 60 degrees to see. Every pipeline has the
-/// default settings.
+/// Renders the right eye of a scene's first viewpoint and synthesizes the left one with each pipeline at its default
+/// settings. Returns both images, left first: RGBA with rows from the bottom, `size` pixels square, 60 degrees wide.
 ///
 /// # Errors
-/// [`StereoError`]: the driver refuses the scene, a shader or an image.
+/// [`StereoError`] if the driver refuses the scene, a shader or an image.
 pub fn stills(
     gl: &Rc<Context>,
     scene: Scene,
@@ -28,7 +27,7 @@ pub fn stills(
     let mut renderer = Renderer::new(gl, &settings, &scene)?;
     let mut frame = StereoFrame::new(gl, size)?;
     let mut both = |&pipeline: &Pipeline| {
-        // Never two real renders, however near everything is.
+        // Never two renders, however near everything is.
         let options = StereoOptions { policy: None, ..StereoOptions::of_pipeline(pipeline) };
         let mut method = create(gl, Method::Yoro, &settings, &options)?;
         method.render(&mut renderer, &scene, &pair, &mut frame)?;

@@ -1,22 +1,21 @@
-//! Two real renders in place of a method that cannot use a pair of eyes.
+//! Two renders in place of a method that cannot use a pair of eyes.
 
 use super::method::StereoMethod;
 use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro_gl::GlError;
 use yoro_protocol::Method;
 
-/// Renders both eyes where neither can be synthesized from the other, as with canted eyes. Nothing is compiled before
-/// it is needed.
+/// Renders both eyes if neither can be synthesized from the other, as with canted eyes. Compiled when first needed.
 #[derive(Default)]
 pub struct Substitute(Option<Box<dyn StereoMethod>>);
 
 impl Substitute {
-    /// Returns the reason why a method cannot use a pair of eyes, if so.
+    /// Returns the reason why a method cannot use a pair of eyes, or `None` if it can.
     pub fn reason(method: Method, pair: &EyePair) -> Option<EyesError> {
         if method.needs_aligned_eyes() { pair.synthesis_views(GuardBand::None).err() } else { None }
     }
 
-    /// Returns the substitute, made by `create` if it is needed for the first time.
+    /// Returns the substitute, which `create` makes on the first call.
     ///
     /// # Errors
     /// Those of `create`.

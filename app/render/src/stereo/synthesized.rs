@@ -1,4 +1,4 @@
-//! The dominant eye rendered, the other one synthesized.
+//! Renders the dominant eye and synthesizes the other.
 
 use std::rc::Rc;
 
@@ -18,7 +18,7 @@ use yoro::eyes::{GuardBand, SynthesisViews};
 use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
-/// One render (with a guard band), one synthesis; near objects and mostly near frames as [`StereoOptions`] say.
+/// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects and near frames.
 pub struct Synthesized<R: StereoRenderer> {
     options: StereoOptions,
     edges: Edges,
@@ -26,14 +26,14 @@ pub struct Synthesized<R: StereoRenderer> {
     synthesizers: Synthesizers,
     auto_guard_band: Option<AutoGuardBand>,
     past: Option<Past<R>>,
-    /// Anti-aliasing before synthesis, if it comes there.
+    /// Anti-aliasing before synthesis, if the options ask for that.
     smooth: Option<Smooth>,
     overlay: R::Overlay,
     finish: Finish,
     switch: Option<Switch<R>>,
 }
 
-/// Pipelines without and with depth of the synthesized eye, made when they are needed.
+/// Pipelines without and with depth of the synthesized eye, each made when first needed.
 struct Synthesizers {
     gl: Rc<Context>,
     options: PipelineOptions,
@@ -43,13 +43,13 @@ struct Synthesizers {
     made: [Option<Synthesizer>; 2],
 }
 
-/// A pipeline, and what it writes: the synthesized eye before transparent objects and anti-aliasing.
+/// A pipeline, and the image it writes: the synthesized eye before transparent objects and anti-aliasing.
 struct Synthesizer {
     synthesis: Box<dyn Synthesis>,
     image: RenderTarget,
 }
 
-/// The automatic switch to two real renders.
+/// The automatic switch to two renders.
 struct Switch<R: StereoRenderer> {
     policy: NearFieldPolicy,
     mode: FrameMode,
@@ -58,7 +58,7 @@ struct Switch<R: StereoRenderer> {
 }
 
 impl Synthesizers {
-    /// Returns the pipeline with depth or without, which is made if there is none yet.
+    /// Returns the pipeline with or without depth, and makes it on the first call.
     fn get(&mut self, depth: bool) -> Result<&mut Synthesizer, GlError> {
         let slot = &mut self.made[usize::from(depth)];
         if let Some(made) = slot {
@@ -78,7 +78,7 @@ impl<R: StereoRenderer> Synthesized<R> {
     pub(super) fn new(setup: &Setup) -> Result<Synthesized<R>, GlError> {
         let Setup { gl, settings, options } = *setup;
         let edges = options.edges(settings, gl.capabilities())?;
-        // Drivers take the first sample's depth as it is.
+        // Drivers resolve the first sample's depth without conversion.
         let depth_bits = if edges == Edges::Sample { 32 } else { settings.depth_bits };
         let reads_samples = edges == Edges::Multisample && gl.capabilities().multisample_textures;
         let switch = options.policy.map(|policy| -> Result<_, GlError> {
@@ -120,7 +120,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         })
     }
 
-    /// Renders both eyes if the last frames were mostly too near; true if it did.
+    /// Renders both eyes if the last frames were mostly too near. Returns true if it did.
     fn render_both(&mut self, frame: &Frame<R>, views: &SynthesisViews) -> Result<bool, StereoError> {
         let Some(Switch { policy, mode, fraction, conventional }) = &mut self.switch else {
             return Ok(false);
@@ -138,7 +138,7 @@ impl<R: StereoRenderer> Synthesized<R> {
             past.interrupt();
         }
         let pair = frame.pair;
-        // What is not synthesized is not for the history.
+        // The history must not contain near objects, which are not synthesized.
         let all = self.options.near_field.is_none();
         let mut past = self.past.as_mut().filter(|past| all && past.takes_whole(frame, views));
         let takes = past.is_some();
@@ -158,7 +158,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         Ok(true)
     }
 
-    /// The objects that are synthesized.
+    /// Returns the objects that are synthesized.
     fn selection(&self, frame: &Frame<R>) -> Selection {
         let from = frame.pair.middle();
         self.options.near_field.map_or(Selection::All, |distance| Selection::Farther { from, distance })
@@ -173,7 +173,7 @@ impl<R: StereoRenderer> Synthesized<R> {
     ) -> Result<(), GlError> {
         let near_field = self.options.near_field;
         let multisample = self.edges == Edges::Multisample;
-        // Near objects are drawn after synthesis, and renew the depth that is handed on.
+        // Near objects are drawn after synthesis, and update the depth that is passed on.
         let hands_on = frame.wants_depth(frame.pair.dominant) && near_field.is_none();
         let measures = self.auto_guard_band.is_some() || self.past.is_some();
         let reads_depth = !multisample || measures || hands_on;
@@ -200,8 +200,8 @@ impl<R: StereoRenderer> Synthesized<R> {
         self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample)
     }
 
-    /// Starts to measure what later frames depend on: how wide the guard band must be, and how much of the view is
-    /// near.
+    /// Starts the measurements that later frames depend on: how wide the guard band must be, and how much of the view
+    /// is near.
     fn measure(&mut self, frame: &Frame<R>, views: &SynthesisViews) {
         let samples = self.depth_samples();
         if let Some(auto) = &mut self.auto_guard_band {
@@ -211,7 +211,7 @@ impl<R: StereoRenderer> Synthesized<R> {
             past.measure(self.targets.depth(), views);
         }
         if let Some(switch) = &mut self.switch {
-            // This is the far layer alone if near objects have their own: surfaces behind them are not too near.
+            // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
             let resolved = || DepthMap::Resolved(self.targets.depth());
             let depth = samples.map_or_else(resolved, DepthMap::Samples);
             let (pair, distance) = (frame.pair, switch.policy.distance);
@@ -249,10 +249,10 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
         let depth = depth_samples.unwrap_or_else(|| self.targets.depth().raw());
         let samples = self.targets.color_samples();
         let source = Source { samples, history, ..Source::new(color.color(0).raw(), depth) };
-        // Glass that comes into view changes neither the program nor its targets.
+        // Depends on the scene, not on the view: glass that comes into view then changes neither program nor targets.
         let has_glass = frame.scene.has_transparent();
         let reads_depth = over.is_any() || frame.wants_depth(other);
-        // An eye that is complete once it is synthesized is not copied.
+        // An eye that is complete after synthesis is not copied.
         let is_complete = !reads_depth && self.finish.is_copy();
         let Synthesizer { synthesis, image } = self.synthesizers.get(reads_depth || has_glass)?;
         if !is_complete || has_glass {

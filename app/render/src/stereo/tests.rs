@@ -1,4 +1,4 @@
-//! Tests of what is private: seams, the mask of disocclusions, requested depths, guard bands.
+//! Tests of private parts: seams, the mask of disocclusions, requested depths, guard bands.
 
 use std::rc::Rc;
 
@@ -20,7 +20,7 @@ use yoro_scene::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewp
 
 const SIZE: [u32; 2] = [160, 120];
 
-/// Posts before a wall on a floor, under a sky; wide enough to cross the border of every eye; glass.
+/// Posts in front of a wall on a floor, under a sky, wide enough to cross the border of every eye; and glass.
 fn scene() -> Scene {
     let color =
         |rgb: [f32; 3]| Material { diffuse: Vec3::from(rgb), double_sided: true, ..Material::default() };
@@ -50,7 +50,7 @@ fn scene() -> Scene {
     }
 }
 
-/// Lets the last quad of a scene go a metre to the right from 0.1 to 0.225 seconds; after 0.4 it begins again.
+/// Moves the last quad of a scene a metre to the right from 0.1 to 0.225 seconds. The motion repeats after 0.4 seconds.
 fn move_last_quad(scene: &mut Scene) {
     let end = scene.model.vertices.len();
     let vertices = end - 4..end;
@@ -65,7 +65,7 @@ fn move_last_quad(scene: &mut Scene) {
     scene.motion = Motion { loops: vec![0.4], nodes, meshes, ..Motion::default() };
 }
 
-/// Only what stays on its pixel: no ambient occlusion, no bloom.
+/// Settings without effects that reach beyond a pixel: no ambient occlusion, no bloom.
 pub(super) fn local() -> RenderSettings {
     RenderSettings { shadow_map_size: 256, ssao: false, bloom: false, ..RenderSettings::default() }
 }
@@ -98,7 +98,7 @@ impl Rig {
     }
 }
 
-/// Share of the pixels whose channels all differ by at most 1.
+/// Returns the share of pixels whose channels all differ by at most 1.
 fn equal_share(a: &[u8], b: &[u8]) -> f64 {
     assert_eq!(a.len(), b.len());
     let equal =
@@ -232,7 +232,7 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
     let plain = pair(Eye::Right, DepthConvention::Standard);
     let [left, right] = rig.render(&mut mono, &plain);
     assert!(left == right, "the same image where the frusta are the same");
-    // The right eye's frustum lies 32 pixels further right and 12 higher.
+    // The right eye's frustum lies 32 pixels further right and 12 further up.
     let frustum = plain.frusta[0];
     let [x, y] = [32.0 / SIZE[0] as f32 * frustum.width(), 12.0 / SIZE[1] as f32 * frustum.height()];
     let shifted = |x: f32, y: f32| Frustum {
@@ -253,7 +253,7 @@ fn mono_shows_each_eye_its_own_part_of_the_view() {
     }
 }
 
-/// A band that would be complete from 20 cm, of which the posts' scene needs a quarter.
+/// Options with a band that covers surfaces from 20 cm on. The scene of posts needs a quarter of it.
 fn auto_band() -> StereoOptions {
     StereoOptions { guard_band: GuardBand::Auto(0.2), ..StereoOptions::default() }
 }
@@ -262,7 +262,7 @@ fn auto_band() -> StereoOptions {
 fn an_automatic_band_gives_the_picture_of_a_whole_one() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    // Ambient occlusion and bloom are on, which reach far.
+    // Ambient occlusion and bloom, which reach far, are on.
     let deferred = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
     let forward = RenderSettings { renderer: RendererKind::Forward, ..deferred.clone() };
     for settings in [deferred, forward] {
@@ -273,7 +273,7 @@ fn an_automatic_band_gives_the_picture_of_a_whole_one() {
             asymmetric.frusta[1].right *= 1.2;
             for pair in [pair(dominant, DepthConvention::Standard), asymmetric.row_aligned()] {
                 let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
-                // A frame is measured two frames later.
+                // The result of a frame arrives two frames later.
                 let [whole, _, part] = [(); 3].map(|()| rig.render(&mut *method, &pair));
                 let looked = method.guard_band().unwrap();
                 assert!(looked.columns == looked.most && looked.most > 30, "{looked:?}");
@@ -301,7 +301,7 @@ fn an_automatic_band_keeps_up_with_a_moving_head() {
             [whole, auto_band()].map(|options| create(gl, Method::Yoro, &local(), &options).unwrap());
         let mut narrow = 0;
         for frame in 0..20 {
-            // 0.4 degrees and 3 mm a frame.
+            // 0.4 degrees and 3 mm per frame.
             let by = sense * frame as f32;
             let pose = Pose {
                 position: Vec3::new(0.003 * by, 0.0, -0.002 * frame as f32),
@@ -332,7 +332,7 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
     let mut far = scene();
     far.model.parts.truncate(2);
     let mut near = far.clone();
-    // A board at 40 cm, that reaches across the left border of both eyes.
+    // A board at 40 cm that crosses the left border of both eyes.
     let corner = Vec3::new(-0.6, -0.5, -0.4);
     quad(&mut near.model, 2, corner, Vec3::X * 0.5, Vec3::Y);
     for renderer in [RendererKind::Deferred, RendererKind::Forward] {
@@ -351,7 +351,7 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
         (0..2).for_each(|_| drop(rigs[1].render(&mut *method, &pair)));
         let used = method.guard_band().unwrap();
         assert!(used.columns >= 20 && used.undrawn == 0, "{renderer:?}: {used:?}");
-        // The board is continued to the border.
+        // The fill continues the board to the border.
         let share = equal_share(&filled, &drawn);
         assert!(share > 0.95, "{renderer:?}: {share} of the picture as it should be");
     }
@@ -364,7 +364,7 @@ fn what_moves_at_the_border_is_drawn_at_once() {
     let gl = head.gl();
     let mut scene = scene();
     scene.model.parts.truncate(2);
-    // A board at 40 cm comes in at the left border in an eighth of a second, and stays a while.
+    // A board at 40 cm comes in at the left border within an eighth of a second, and stays a while.
     quad(&mut scene.model, 2, Vec3::new(-1.6, -0.5, -0.4), Vec3::X * 0.5, Vec3::Y);
     move_last_quad(&mut scene);
     let mut rig = Rig::of(gl, &local(), scene);
@@ -392,7 +392,7 @@ fn forward() -> RenderSettings {
     RenderSettings { renderer: RendererKind::Forward, ..local() }
 }
 
-/// Counts the passes of this name in a frame. `wanted`: by [`Eye::index`], who wants its depth.
+/// Counts the passes with a name in a frame. `wanted` says, by [`Eye::index`], whose depth is wanted.
 fn count_passes(
     gl: &Rc<Context>,
     rig: &mut Rig,
@@ -403,7 +403,7 @@ fn count_passes(
     count_passes_of(gl, rig, method, &pair(Eye::Right, DepthConvention::Reversed), wanted, name)
 }
 
-/// Does the same for a pair of eyes.
+/// Like [`count_passes`], for a given pair of eyes.
 fn count_passes_of(
     gl: &Rc<Context>,
     rig: &mut Rig,
@@ -471,8 +471,8 @@ fn the_nearest_depth_is_resolved_only_where_it_is_read() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// A copy is 8 bytes a pixel. Glass is drawn over both eyes, and who wants an eye's depth gets it from the image beside
-/// it.
+/// A copy costs 8 bytes a pixel. Glass is drawn over both eyes, and the depth of an eye comes from the intermediate
+/// image, so both need the copy.
 #[test]
 fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
     let head = Headless::open(Backend::Egl).unwrap();
@@ -491,8 +491,8 @@ fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Looking around: samples are kept, and the other eye copied, where glass changes either eye, and hardly anywhere
-/// else.
+/// While the head looks around, samples are kept and the other eye is copied where glass changes either eye, and hardly
+/// anywhere else.
 #[test]
 fn glass_out_of_view_costs_nothing() {
     let head = Headless::open(Backend::Egl).unwrap();
@@ -581,19 +581,19 @@ fn first_and_nearest_samples_measure_the_same_near_fraction() {
         let samples = DepthMap::Samples(targets.depth_samples().unwrap());
         let mut fraction = NearFraction::new(gl, true).unwrap();
         let [first, nearest] = [samples, DepthMap::Resolved(targets.depth())].map(|depth| {
-            // A measurement is known after the next one.
+            // A measurement is available after the next one.
             (0..2).for_each(|_| fraction.measure(depth, [0, 0], SIZE, &view.depth, 3.0));
             fraction.take().unwrap()
         });
-        // Posts and the floor below.
+        // The posts, and the floor below them.
         assert!(first > 0.2 && first < 0.8, "{first}");
         assert!(first <= nearest && nearest - first < 0.05, "{first} and {nearest}");
     }
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Both eyes as [`Synthesized`] makes them of samples when only some columns are drawn: the rendered one, the other
-/// one.
+/// Returns both eyes, the rendered one first, as [`Synthesized`] makes them from samples when only some columns are
+/// drawn.
 fn of_columns(
     gl: &Rc<Context>,
     (renderer, scene): (&ForwardRenderer, &GpuScene),
@@ -620,13 +620,13 @@ fn of_columns(
     [rendered, other.read_rgba8(0, [0, 0], pair.size)]
 }
 
-/// Without bloom the synthesis reads the samples' colours, which are those of nothing in columns that are not drawn.
+/// Without bloom, synthesis reads the samples' colours, which are undefined in columns that are not drawn.
 #[test]
 fn undrawn_samples_are_seen_by_neither_eye() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut scene = scene();
-    // Glass across the borders of both eyes and their bands, before the wall.
+    // Glass across the borders of both eyes and their bands, in front of the wall.
     for x in [-4.5, 1.5] {
         quad(&mut scene.model, 3, Vec3::new(x, -0.5, -2.5), Vec3::X * 3.0, Vec3::Y);
     }
@@ -638,7 +638,7 @@ fn undrawn_samples_are_seen_by_neither_eye() {
             let views = pair.synthesis_views(GuardBand::Distance(0.2)).unwrap();
             let of = |columns| of_columns(gl, (&renderer, &scene), &pair, &views, columns);
             let whole = of(None);
-            // The columns that the nearest post may move in from beside, and a soft edge.
+            // The number of columns by which the nearest post may move in from the side, plus one for a soft edge.
             let seen = (pair.focal_length_pixels() * pair.ipd() / 1.4).ceil() as u32 + 1;
             assert!(2 * seen < views.guard_columns);
             for (band, expected) in [(2 * seen, 0), (0, seen)] {
@@ -662,7 +662,7 @@ fn undrawn_samples_are_seen_by_neither_eye() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Sums of squared errors of two images, over the pixels in which they differ.
+/// Returns the sums of squared errors of two images, over the pixels in which they differ.
 fn errors_where_different([a, b]: [&[u8]; 2], truth: &[u8]) -> [u64; 2] {
     let pixels = || a.chunks(4).zip(b.chunks(4)).zip(truth.chunks(4)).filter(|((a, b), _)| a != b);
     let error =
@@ -692,7 +692,7 @@ fn a_history_shows_what_is_uncovered_and_is_renewed_by_need() {
         let other = dominant.other().index();
         for history in [History::Full, History::Half] {
             let mut method = make(Method::Yoro, history);
-            // A nearly still head; then another one far away, and eyes further apart.
+            // A nearly still head; then another head far away; then eyes further apart.
             for (place, ipd) in [(0.0, 0.063), (0.8, 0.063), (0.8, 0.07)] {
                 let mut strips = Vec::new();
                 for frame in 0..16 {
@@ -709,13 +709,13 @@ fn a_history_shows_what_is_uncovered_and_is_renewed_by_need() {
                         let eyes = [&images[other][..], &plain[other][..]];
                         let [with, plain] = errors_where_different(eyes, &truth[other]);
                         let share = with as f64 / plain as f64;
-                        // At half the resolution, posts of seven pixels before a plain wall come out no better than
-                        // filled.
+                        // At half the resolution, posts of seven pixels in front of a plain wall are no better than
+                        // filled ones.
                         let is_better = share < 0.8 || history == History::Half;
                         assert!(is_better, "{what}: {share} of the error is left");
                     }
                 }
-                // Measured two frames later; then every strip once, and none while nothing more is uncovered.
+                // Measured two frames later; then each strip once, and none until more is uncovered.
                 let count = strips.iter().filter(|pixels| **pixels > 0).count();
                 assert_eq!(count, 8, "{what}, {history:?}: {strips:?}");
             }
@@ -729,14 +729,14 @@ fn a_history_shows_what_is_uncovered_and_is_renewed_by_need() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Returns in which of the eight strips two images of an eye differ.
+/// Returns the indices of those of eight strips in which two images of an eye differ.
 fn strips_that_differ(a: &[u8], b: &[u8]) -> Vec<usize> {
     let strip = a.len() / 8;
     let strips = a.chunks(strip).zip(b.chunks(strip)).enumerate();
     strips.filter(|(_, (a, b))| a != b).map(|(i, _)| i).collect()
 }
 
-/// A pane of glass moves in a corner; before the posts nothing does, so that an old strip would show.
+/// A pane of glass moves in a corner. Nothing moves in front of the posts, so an old strip would show.
 #[test]
 fn strips_of_a_moving_scene_are_given_up_when_it_has_moved_eight_times() {
     let head = Headless::open(Backend::Egl).unwrap();
@@ -776,7 +776,7 @@ fn strips_of_a_moving_scene_are_given_up_when_it_has_moved_eight_times() {
         rendered = method.history().unwrap().rendered;
     }
     assert_eq!(rendered, 0);
-    // Another method was in use for a while.
+    // As if another method had been in use for a while.
     moved(&mut rig, 7);
     assert_eq!(shown(&mut rig, &mut *method), all);
     moved(&mut rig, 7);
@@ -785,8 +785,8 @@ fn strips_of_a_moving_scene_are_given_up_when_it_has_moved_eight_times() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Both eyes are rendered while the head looks at the floor. What the other eye saw last fills the first frame that is
-/// synthesized, unless there was glass in it.
+/// Both eyes are rendered while the head looks at the floor. The other eye's last render fills the first synthesized
+/// frame, unless it had glass in it.
 #[test]
 fn the_switch_to_two_renders_fills_the_history() {
     let head = Headless::open(Backend::Egl).unwrap();
@@ -820,7 +820,7 @@ fn the_switch_to_two_renders_fills_the_history() {
         let plain_picture = rig.render(&mut *without, &ahead);
         let strips = strips_that_differ(&shown[0], &plain_picture[0]);
         assert_eq!(strips.len() > 3, fills, "{what:?}: strips {strips:?}");
-        // The same as strips show that were rendered here.
+        // The result is the same as with strips rendered from here.
         let by_need = StereoOptions { history: History::Full, ..plain };
         let mut by_need = create(gl, Method::Yoro, &settings, &by_need).unwrap();
         let (mut expected, mut pixels) = (plain_picture.clone(), 0);

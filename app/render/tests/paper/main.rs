@@ -1,4 +1,4 @@
-//! The paper's pipeline against its f64 reference, and the laws that every pipeline keeps, on every GL backend here.
+//! Tests the paper's pipeline against its f64 reference, and what every pipeline must fulfil, on all GL backends.
 
 #[path = "../../../core/tests/synthesis/in_memory.rs"]
 mod in_memory;
@@ -82,7 +82,7 @@ fn imbuffer_scales_cover_every_pixel_and_keep_a_plane() {
                 let depth = vec![p.depth.depth(z); (w * h) as usize];
                 let result = subject(paper).in_memory(gl).run(&rgba, &depth, &warp);
                 for y in 0..h {
-                    // The border is a hole, whose cells are as wide as the ImBuffer's pixels.
+                    // The border is a hole; its cells are as wide as the ImBuffer's pixels.
                     for x in 32..w {
                         let got = result.rgba[((y * w + x) * 4) as usize];
                         assert!(got.abs_diff((x - 6) as u8) <= 1, "{paper:?} ({x}, {y}): {got}");
@@ -100,8 +100,8 @@ enum ImBufferEntry {
     Disocclusion { left: i64, width: i64 },
 }
 
-/// Algorithm 2 at scale 1, as corrected: first writer wins in forward order, the tracker follows the running
-/// maximum, valid entries are never overwritten.
+/// Algorithm 2 at scale 1, as corrected: the first writer wins in forward order, the tracker follows the running
+/// maximum, and valid entries are never overwritten.
 fn paper_row(p: &[f64], width: usize, strict: bool) -> Vec<ImBufferEntry> {
     let mut entries: Vec<Option<ImBufferEntry>> = vec![None; width];
     let mut reached = -1i64;

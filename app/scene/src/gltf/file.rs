@@ -1,4 +1,4 @@
-//! The file: its JSON checked, and the bytes of its buffers.
+//! The glTF file: checks its JSON and reads its buffers.
 
 use std::io::Read;
 use std::path::Path;
@@ -10,7 +10,7 @@ use gltf::json::validation::{Checked, Error as Fault, Validate as _};
 use crate::error::{SceneError, file_size};
 use crate::textures::find_file;
 
-/// Largest buffer, in bytes.
+/// Maximum size of a buffer in bytes.
 const MAX_BUFFER: u64 = 4 << 30;
 
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
@@ -27,10 +27,10 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     Ok(bytes)
 }
 
-/// Refuses what cannot be read. Before everything else: what such an extension leaves out may look like a mistake.
+/// Refuses extensions that cannot be read. Must run first: what such an extension leaves out may look like a mistake.
 pub(super) fn check_extensions(path: &Path, document: &Document) -> Result<(), SceneError> {
     let root = document.as_json();
-    // Materials look plainer without their extensions; geometry cannot be read.
+    // Without their extensions, materials look plainer; geometry cannot be read at all.
     let readable = |e: &str| {
         e.starts_with("KHR_materials_")
             || [
@@ -51,11 +51,11 @@ pub(super) fn check_extensions(path: &Path, document: &Document) -> Result<(), S
     }
 }
 
-/// The crate's validation, except for extensions, and what it does not check but relies on.
+/// Runs the crate's validation, except for extensions, and checks what it relies on without checking it.
 pub(super) fn check(path: &Path, document: &Document) -> Result<(), SceneError> {
     let root = document.as_json();
     let mut fault = None;
-    // The validation itself indexes with these unseen.
+    // The validation itself indexes with these unchecked.
     let primitives =
         root.meshes.iter().enumerate().flat_map(|(i, m)| m.primitives.iter().map(move |p| (i, p)));
     for (i, p) in primitives {
@@ -68,8 +68,8 @@ pub(super) fn check(path: &Path, document: &Document) -> Result<(), SceneError> 
     }
     root.validate(root, gltf::json::Path::new, &mut |at, error| {
         let at = at().to_string();
-        // Bounds of positions, and positions themselves, may be left out: nothing here needs them. An accessor
-        // without a buffer view is all zeros.
+        // Bounds of positions, and positions themselves, may be missing: nothing here needs them. An accessor without a
+        // buffer view is all zeros.
         let needless = error == Fault::Missing
             && ([".min", ".max", "[\"POSITION\"]"].iter().any(|e| at.ends_with(e))
                 || at.starts_with("accessors[") && at.ends_with(".bufferView"));
@@ -82,7 +82,7 @@ pub(super) fn check(path: &Path, document: &Document) -> Result<(), SceneError> 
             fault = fault.or(Some(format!("images[{i}] has no data or no type")));
         }
     }
-    // The validation leaves out the targets of animations.
+    // The validation does not cover the targets of animations.
     for (i, animation) in root.animations.iter().enumerate() {
         for (k, target) in animation.channels.iter().map(|channel| &channel.target).enumerate() {
             if target.node.value() >= root.nodes.len() {
@@ -103,7 +103,7 @@ pub(super) fn check(path: &Path, document: &Document) -> Result<(), SceneError> 
     Ok(())
 }
 
-/// The bytes of all buffers.
+/// Returns the bytes of all buffers.
 pub(super) fn buffers(
     path: &Path,
     document: &Document,
@@ -142,7 +142,7 @@ pub(super) fn buffers(
         .collect()
 }
 
-/// The bytes of a `data:` URI, none inside if they are damaged; none for other URIs.
+/// Returns the bytes of a `data:` URI: `Some(None)` if they are damaged, `None` for other URIs.
 pub(super) fn data_uri(uri: &str) -> Option<Option<Vec<u8>>> {
     let (head, data) = uri.strip_prefix("data:")?.split_once(',')?;
     Some(if head.ends_with(";base64") {

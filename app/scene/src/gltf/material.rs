@@ -1,4 +1,4 @@
-//! Materials and the textures that they want.
+//! Materials, and the textures that they use.
 
 use glam::{Vec2, Vec3};
 use gltf::material::{PbrMetallicRoughness, PbrSpecularGlossiness};
@@ -17,14 +17,14 @@ pub(super) struct Wanted {
     specular: Option<usize>,
     emissive: Option<usize>,
     normal: Option<usize>,
-    /// The roughness at texture values 0 and 1, if the roughness is the mean of a texture.
+    /// The roughness at texture values 0 and 1, if it is computed as a texture's mean.
     roughness: Option<[f32; 2]>,
     blended: bool,
-    /// A sampler clamps or mirrors one of the textures.
+    /// True if a sampler clamps or mirrors one of the textures.
     pub(super) unrepeated: bool,
-    /// And texture coordinates show it.
+    /// True if texture coordinates make that visible.
     pub(super) wrapped: bool,
-    /// Set of texture coordinates and their transform; those of the base colour for all.
+    /// The set of texture coordinates and their transform. Those of the base colour are used for all textures.
     pub(super) set: u32,
     pub(super) placement: Option<[Vec2; 3]>,
 }
@@ -57,7 +57,7 @@ impl Wanted {
             material.roughness = (least + (most - least) * map.roughness).clamp(0.0, 1.0);
         }
         if let (true, Alpha::Blend(opacity)) = (self.blended && self.diffuse.is_some(), material.alpha) {
-            // Exporters mark as blended whatever has an alpha channel; leaves are better cut out.
+            // Exporters mark everything with an alpha channel as blended, but leaves look better cut out.
             material.alpha = match built.get(self.diffuse).map(|f| f.alpha) {
                 Some(AlphaUse::Mask) if opacity >= 1.0 => Alpha::Cutout(0.5),
                 Some(AlphaUse::Opaque) | None if opacity >= 1.0 => Alpha::Opaque,
@@ -70,11 +70,11 @@ impl Wanted {
 /// A picture and how it is sampled.
 struct Map {
     source: Source,
-    /// Unfiltered when magnified.
+    /// True if it is not filtered when magnified.
     nearest: bool,
 }
 
-/// A surface of either material model: colours in linear RGB, which are factors of the maps if there are any.
+/// A surface of either material model. Colours are linear RGB, and factors of the maps if there are any.
 struct Surface {
     diffuse: Vec3,
     specular: Vec3,
@@ -82,12 +82,12 @@ struct Surface {
     opacity: f32,
 }
 
-/// Returns a factor from 0 to 1; 1 if it is no number.
+/// Returns a factor clamped to 0..1, or 1 if it is not finite.
 pub(super) fn unit(v: f32) -> f32 {
     if v.is_finite() { v.clamp(0.0, 1.0) } else { 1.0 }
 }
 
-/// The textures of a material's colour, and of metalness and roughness or gloss.
+/// Returns the textures of a material's colour, and of its metalness and roughness or its gloss.
 pub(super) fn surface_textures<'a>(m: &gltf::Material<'a>) -> [Option<gltf::texture::Info<'a>>; 2] {
     match m.pbr_specular_glossiness() {
         Some(gloss) => [gloss.diffuse_texture(), gloss.specular_glossiness_texture()],
@@ -142,7 +142,7 @@ impl Reader<'_> {
         Ok(source)
     }
 
-    /// The picture of a texture with its sampler.
+    /// Returns the picture of a texture with its sampler.
     fn map(&mut self, texture: gltf::Texture, wanted: &mut Wanted) -> Result<Option<Map>, SceneError> {
         let sampler = texture.sampler();
         wanted.unrepeated |= [sampler.wrap_s(), sampler.wrap_t()].iter().any(|w| *w != WrappingMode::Repeat);
@@ -154,7 +154,7 @@ impl Reader<'_> {
         map.map(|map| self.textures.request_sampled(recipe(map.source), map.nearest))
     }
 
-    /// Returns a material, and the textures that it wants.
+    /// Returns a material, and the textures that it uses.
     pub(super) fn material(&mut self, m: &gltf::Material) -> Result<(Material, Wanted), SceneError> {
         let srgb = |v: Vec3| Vec3::from(v.to_array().map(to_srgb));
         let mut wanted = Wanted::default();

@@ -1,7 +1,7 @@
-//! glTF 2.0, text and binary.
+//! Reads glTF 2.0, text and binary.
 //!
-//! The `gltf` crate reads and validates the JSON; buffers, accessors and pictures are read here, every range
-//! checked: its own readers panic on damaged ones.
+//! The `gltf` crate reads and validates the JSON. Buffers, accessors and pictures are read here, with every range
+//! checked, because the crate's own readers panic on damaged ones.
 
 mod file;
 mod material;
@@ -28,31 +28,31 @@ use super::palette::{paint, palette};
 use super::repair::{RawMesh, assemble};
 use super::textures::{Built, TextureSet, to_srgb};
 
-/// The contents of a glTF file; sky and lights only if it states some.
+/// The contents of a glTF file. Sky and lights are present only if the file has some.
 #[derive(Debug)]
 pub struct GltfScene {
     /// Triangles, materials and pictures.
     pub model: Model,
     /// The cameras of the scene.
     pub cameras: Vec<Viewpoint>,
-    /// Its directional light as the sun.
+    /// Its first directional light, as the sun.
     pub sky: Option<Sky>,
     /// Its point and spot lights, without their cones.
     pub lights: Option<Vec<PointLight>>,
-    /// What moves. The rest is as it stands at time 0.
+    /// What moves. Everything else is in its state at time 0.
     pub motion: Motion,
 }
 
-/// Reads a `.gltf` or `.glb` file, with nodes, skins and morph targets as its animations begin.
+/// Reads a `.gltf` or `.glb` file, with nodes, skins and morph targets in their state at the start of the animations.
 ///
-/// Of several animations of the same node the first is taken, and each starts over where it ends. Cameras stand still.
+/// Of several animations of the same node, the first is used; each repeats from its end. Cameras stand still.
 ///
-/// Metallic-roughness materials become diffuse and specular colours; where a texture says what is metal, both are
-/// computed pixel by pixel, and the roughness is its mean. So do specular-glossiness materials, which go before the
-/// metallic-roughness that a file may state for readers that do not know them.
+/// Metallic-roughness materials become diffuse and specular colours. If a texture says what is metal, both are computed
+/// pixel by pixel, and the roughness is the texture's mean. Specular-glossiness materials are treated likewise, and
+/// take precedence over the metallic-roughness that a file may contain for readers without them.
 ///
-/// The colours of vertices are drawn where the material has no texture, one colour a triangle. They are left out where
-/// it has one, as are samplers that clamp or mirror a texture: with a warning that names the material.
+/// Vertex colours are drawn if the material has no texture, with one colour per triangle. They are ignored if it has
+/// one, as are samplers that clamp or mirror a texture, with a warning that names the material.
 ///
 /// # Errors
 /// [`SceneError`] for files that are damaged, incomplete or need extensions that change geometry (Draco, meshopt).
@@ -60,7 +60,7 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     let unusable = |what: String| SceneError::unusable(path, what);
     let damaged = |what: &str| unusable(format!("{what}; export the model again"));
     let bytes = read_file(path)?;
-    // The crate subtracts the header's size from this length unseen.
+    // The crate subtracts the header's size from this length unchecked.
     if bytes.starts_with(b"glTF")
         && bytes.get(8..12).is_none_or(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) < 20)
     {
@@ -85,7 +85,7 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
         materials.push(material);
         wanted.push(maps);
     }
-    // Behind the others: the one of primitives without.
+    // Last is the material of primitives without one.
     materials.push(Material::default());
     wanted.push(Wanted::default());
     let Nodes { mut meshes, colors, cameras, lamps, sun, mut motion, carried } =
@@ -129,7 +129,7 @@ struct Lamp {
     intensity: Vec3,
     /// Metres.
     range: Option<f32>,
-    /// The node of [`Motion`] that carries it, if it moves.
+    /// The node of [`Motion`] that carries the light, if it moves.
     mover: Option<usize>,
 }
 
@@ -137,14 +137,14 @@ struct Lamp {
 #[derive(Default)]
 struct Nodes {
     meshes: Vec<RawMesh>,
-    /// Vertex colours of each mesh; None if all vertices are white.
+    /// Vertex colours of each mesh; `None` if all vertices are white.
     colors: Vec<Option<Vec<Vec3>>>,
     cameras: Vec<Viewpoint>,
     lamps: Vec<Lamp>,
     /// Direction and colour of the first directional light, and the node of [`Motion`] that carries it, if it moves.
     sun: Option<(Vec3, Vec3, Option<usize>)>,
     motion: Motion,
-    /// By [`RawMesh::moving`].
+    /// What carries meshes, by [`RawMesh::moving`].
     carried: Vec<Carried>,
 }
 
@@ -177,8 +177,8 @@ fn placed(to_world: &Mat4) -> (Vec3, Vec3) {
     (to_world.w_axis.truncate(), forward)
 }
 
-/// Draws the colours of vertices as those of a palette, where materials have no texture that needs the texture
-/// coordinates, and warns of the others.
+/// Draws vertex colours from a palette, if the material has no texture that needs the texture coordinates, and warns
+/// about the others.
 fn paint_meshes(
     path: &Path,
     meshes: &mut [RawMesh],
@@ -219,9 +219,9 @@ fn paint_meshes(
     }
 }
 
-/// glTF states candela without saying how bright the picture is to be, and exporters disagree by orders of
-/// magnitude: the brightest light is made one that lights a room, the others in proportion. Brightest first; those
-/// that move go into the motion.
+/// Returns the lights, brightest first, and adds those that move to the motion. glTF gives candela without saying how
+/// bright the picture should be, and exporters disagree by orders of magnitude. So the brightest light is scaled to one
+/// that lights a room, and the others in proportion.
 fn lights(mut lamps: Vec<Lamp>, motion: &mut Motion) -> Vec<PointLight> {
     let brightest = lamps.iter().map(|l| l.intensity.max_element()).fold(1e-6, f32::max);
     lamps.sort_by(|a, b| b.intensity.max_element().total_cmp(&a.intensity.max_element()));
@@ -253,8 +253,8 @@ fn place(mesh: &mut RawMesh, placement: Option<[Vec2; 3]>) {
 }
 
 impl Reader<'_> {
-    /// The default scene's nodes, or all of a file without scenes. `wanted` is by material, last that of primitives
-    /// without one.
+    /// Returns the nodes of the default scene, or all nodes of a file without scenes. `wanted` is by material; the last
+    /// entry is for primitives without one.
     fn nodes(&self, document: &Document, wanted: &mut [Wanted]) -> Result<Nodes, SceneError> {
         let mut nodes = Nodes::default();
         let mut corners = 0;
@@ -266,7 +266,7 @@ impl Reader<'_> {
                 for primitive in mesh.primitives() {
                     let carried = self.carried(&mut moves, at, &mesh, &primitive)?;
                     let standing = match &carried {
-                        // Left in the frame of what carries it, and turned round if that mirrors it.
+                        // Left in the frame of what carries it, and reversed if that mirrors it.
                         Some(carried) => (Mat4::IDENTITY, carried.mirrored),
                         None => (to_world, to_world.determinant() < 0.0),
                     };

@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::motion::{self, Carrier, Influence, Interpolation, Morph, Motion, MovingMesh, Track};
 use crate::repair::Placed;
 
-/// A node as the animations begin.
+/// A node in its state at the start of the animations.
 #[derive(Clone)]
 pub(super) struct Standing<'a> {
     pub node: Node<'a>,
@@ -22,37 +22,37 @@ pub(super) struct Standing<'a> {
     pub mover: Option<usize>,
 }
 
-/// The nodes of a scene with their motion.
+/// The nodes of a scene and their motion.
 pub(super) struct Moves<'a> {
     /// All nodes, each after its parent.
     pub standing: Vec<Standing<'a>>,
-    /// Nodes and clocks.
+    /// The motion's nodes and clocks.
     pub motion: Motion,
     /// The weights of morph targets by node.
     weights: HashMap<usize, Track>,
     /// Indices into `standing` by node.
     places: HashMap<usize, usize>,
-    /// Nodes of `motion` for nodes that stand still.
+    /// Nodes of `motion` made for nodes that do not move, by node.
     still: HashMap<usize, usize>,
 }
 
-/// The triangles of a primitive that something carries.
+/// The triangles of a primitive that is carried by a node or by joints.
 pub(super) struct Carried {
     carrier: Carrier,
     morph: Option<Morph>,
     moves: bool,
-    /// True if it is mirrored as the animations begin.
+    /// True if it is mirrored at the start of the animations.
     pub mirrored: bool,
 }
 
-/// A node's property.
+/// A node and the number of one of its properties.
 type Target = (usize, u8);
 
 fn target(node: &Node, property: Property) -> Target {
     (node.index(), property as u8)
 }
 
-/// The tracks of the animations that are played, and their loops in seconds.
+/// The tracks of the animations that are used, and the lengths of their loops in seconds.
 #[derive(Default)]
 struct Tracks {
     loops: Vec<f32>,
@@ -60,7 +60,7 @@ struct Tracks {
 }
 
 impl<'a> Moves<'a> {
-    /// Returns the node of the motion that a node is, moving or not.
+    /// Returns the motion's node for a node, moving or not.
     fn node(&mut self, standing: usize) -> usize {
         let Standing { node, to_world, mover } = &self.standing[standing];
         let nodes = &mut self.motion.nodes;
@@ -73,7 +73,7 @@ impl<'a> Moves<'a> {
     }
 }
 
-/// Puts what is carried into the motion, and into the model as it stands at time 0. What never moves stays there.
+/// Adds what is carried to the motion if it ever moves, and to the model in its state at time 0.
 pub(super) fn place_carried(
     carried: &[Carried],
     placed: Vec<Placed>,
@@ -104,7 +104,7 @@ pub(super) fn place_carried(
 }
 
 impl Reader<'_> {
-    /// Returns the default scene's nodes, or all of a file without scenes, with the animations that move them.
+    /// Returns the nodes of the default scene, or all nodes of a file without scenes, and their animations.
     pub(super) fn moves<'a>(&self, document: &'a Document) -> Result<Moves<'a>, SceneError> {
         let Tracks { loops, mut tracks } = self.tracks(document)?;
         let mut motion = Motion { loops, ..Motion::default() };
@@ -118,7 +118,7 @@ impl Reader<'_> {
         open.reverse();
         let mut places = HashMap::new();
         while let Some((node, parent)) = open.pop() {
-            // A node has one parent; a damaged file may have circles.
+            // A node has one parent, but a damaged file may have cycles.
             if std::mem::replace(&mut visited[node.index()], true) {
                 continue;
             }
@@ -156,12 +156,12 @@ impl Reader<'_> {
                 *to_world = Mat4::from(start[mover]);
             }
         }
-        // Of nodes that are in the scene all else is taken.
+        // What is left of nodes in the scene are weights.
         let weights = tracks.into_iter().map(|((node, _), track)| (node, track)).collect();
         Ok(Moves { standing, motion, weights, places, still: HashMap::new() })
     }
 
-    /// Reads the animations. One that would move what an earlier one moves is left out.
+    /// Reads the animations. Skips an animation that would move something that an earlier one moves.
     fn tracks(&self, document: &Document) -> Result<Tracks, SceneError> {
         let mut played = Tracks::default();
         for animation in document.animations() {
@@ -238,7 +238,7 @@ impl Reader<'_> {
         Ok(played)
     }
 
-    /// Returns what carries a primitive of a node, `None` if it stands still and has its own shape.
+    /// Returns what carries a node's primitive; `None` if the node does not move and the primitive keeps its shape.
     pub(super) fn carried(
         &self,
         moves: &mut Moves,
@@ -249,7 +249,7 @@ impl Reader<'_> {
         let Standing { node, to_world, mover } = moves.standing[at].clone();
         let morph = self.morph(&node, mesh, primitive, moves.weights.get(&node.index()))?;
         let changes = morph.as_ref().is_some_and(|morph| morph.changes.is_some());
-        // A mesh with a skin and no joints stands where its node is.
+        // A mesh with a skin but no joints is placed by its node.
         let joints_named = |_: &gltf::Skin| primitive.get(&Semantic::Joints(0)).is_some();
         if let Some(skin) = node.skin().filter(joints_named) {
             let bound = self.joints(moves, &skin)?;
@@ -293,7 +293,7 @@ impl Reader<'_> {
         skin.joints().zip(&to_joints).map(joint).collect()
     }
 
-    /// Returns the joints of each vertex with their shares: of more than four the largest.
+    /// Returns the joints of each vertex with their shares; if there are more than four, the four largest.
     fn influences(
         &self,
         primitive: &Primitive,
@@ -340,7 +340,7 @@ impl Reader<'_> {
         all.into_iter().map(influence).collect()
     }
 
-    /// Refuses an accessor that has not one element for each of a primitive's vertices.
+    /// Refuses an accessor that does not have one element for each vertex of a primitive.
     fn per_vertex(&self, accessor: &gltf::Accessor, vertices: usize) -> Result<(), SceneError> {
         if accessor.count() == vertices {
             return Ok(());
@@ -353,7 +353,7 @@ impl Reader<'_> {
         Err(self.damaged(what))
     }
 
-    /// Returns a primitive's morph targets, if they change it at any time.
+    /// Returns a primitive's morph targets if they ever change its shape.
     fn morph(
         &self,
         node: &Node,

@@ -12,7 +12,7 @@ use crate::model::Vertex;
 use crate::repair::{NO_NORMAL, NO_UV, RawMesh};
 
 impl Reader<'_> {
-    /// The triangles of a primitive, transformed, and turned round to show their other sides if `turned`.
+    /// Returns the triangles of a primitive, transformed, and with their winding reversed if `turned`.
     pub(super) fn primitive(
         &self,
         primitive: &Primitive,
@@ -32,7 +32,7 @@ impl Reader<'_> {
             .transpose()?
             .unwrap_or_default();
         let linear = Mat3::from_mat4(to_world);
-        // Normals turn with the inverse transpose; the cofactors are that without the division.
+        // Normals transform with the inverse transpose, which is the matrix of cofactors without the division.
         let normal_matrix = Mat3::from_cols(
             linear.y_axis.cross(linear.z_axis),
             linear.z_axis.cross(linear.x_axis),
@@ -69,7 +69,7 @@ impl Reader<'_> {
         if turned {
             indices.chunks_exact_mut(3).for_each(|t| t.swap(1, 2));
         }
-        // The specification wants flat normals where none are given.
+        // The specification requires flat normals if none are given.
         Ok(Some(RawMesh { vertices, indices, flat: true, ..RawMesh::default() }))
     }
 
@@ -80,7 +80,7 @@ impl Reader<'_> {
             .map_or(0, |i| i.texture_transform().and_then(|t| t.tex_coord()).unwrap_or(i.tex_coord()))
     }
 
-    /// The colours of a primitive's vertices, linear RGB; none if there are none, or if all are white.
+    /// Returns the colours of a primitive's vertices, linear RGB; `None` if there are none, or if all are white.
     pub(super) fn colors(&self, primitive: &Primitive) -> Result<Option<Vec<Vec3>>, SceneError> {
         let Some(accessor) = primitive.get(&Semantic::Colors(0)) else { return Ok(None) };
         let colors = self.floats::<3>(&accessor, &[Dimensions::Vec3, Dimensions::Vec4])?;

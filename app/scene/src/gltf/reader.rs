@@ -1,4 +1,4 @@
-//! Numbers out of buffers, every range checked.
+//! Reads numbers from buffers, with every range checked.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -29,7 +29,7 @@ impl Reader<'_> {
         range.ok_or_else(|| self.damaged(format!("buffer view {} reaches beyond its buffer", view.index())))
     }
 
-    /// The bytes of `count` elements from `offset` in a view, with `stride` between their starts.
+    /// Returns the bytes of `count` elements from `offset` in a view, and the stride between their starts.
     fn stored(
         &self,
         accessor: &gltf::Accessor,
@@ -46,8 +46,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The bytes of an accessor's elements, one after the other with `stride` between their starts. Without a buffer
-    /// view all are zero; those of a sparse accessor are put in their places.
+    /// Returns the bytes of an accessor's elements, and the stride between their starts. Without a buffer view all
+    /// elements are zero; a sparse accessor replaces some of them.
     fn elements(&self, accessor: &gltf::Accessor) -> Result<(Cow<'_, [u8]>, usize), SceneError> {
         let (count, size) = (accessor.count(), accessor.size());
         let base = accessor
@@ -89,7 +89,7 @@ impl Reader<'_> {
         Ok((elements.into(), size))
     }
 
-    /// The first N components of vectors of one of the `wanted` kinds.
+    /// Returns the first N components of vectors of one of the `wanted` kinds.
     pub(super) fn floats<const N: usize>(
         &self,
         accessor: &gltf::Accessor,

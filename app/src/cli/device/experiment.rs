@@ -31,7 +31,7 @@ pub struct ExperimentArgs {
 
 impl Subcommand for ExperimentArgs {
     fn files(&self) -> anyhow::Result<Files> {
-        // Captures replace no file, and the experiment in their folder is the one that is read, or is refused.
+        // Captures replace no file. A folder that belongs to another experiment is refused.
         Ok(Files::default())
     }
 
@@ -65,12 +65,12 @@ impl Subcommand for ExperimentArgs {
     }
 }
 
-/// Power of a phone that renders stereo, in watts: a guess until it is measured, for the plan only.
+/// The power in watts of a phone that renders stereo. A guess that serves only the plan, until it is measured.
 const GUESSED_WATTS: f64 = 3.5;
-/// Energy of a phone's battery of 4500 mAh, in watt-hours.
+/// The energy in watt-hours of a usual phone's battery of 4500 mAh.
 const USUAL_WATT_HOURS: f64 = 17.0;
 
-/// Returns a sentence if a plan of so many seconds takes more than one charge of a battery.
+/// Returns a sentence if a plan of this many seconds needs more than one battery charge.
 fn charges(experiment: &Experiment, seconds: f64) -> Option<String> {
     let watt_hours = GUESSED_WATTS * seconds / 3600.0;
     let usable = |from: f64| USUAL_WATT_HOURS * (from - experiment.min_level) / 100.0;

@@ -8,7 +8,7 @@ use super::which::{WhichArgs, each};
 use crate::cli::Subcommand;
 use crate::cli::outputs::Files;
 
-/// APKs that `cargo xtask apk` makes, the release first.
+/// The APKs that `cargo xtask apk` makes, with the release first.
 const BUILT: [&str; 2] = ["target/apk/yoro.apk", "target/apk/yoro-debug.apk"];
 
 /// Install the application, over an earlier one
@@ -27,7 +27,7 @@ impl Subcommand for InstallArgs {
         Ok(Files::default())
     }
 
-    /// Installs it on each device.
+    /// Installs the APK on each device.
     fn run(&self) -> anyhow::Result<()> {
         let built = || BUILT.iter().map(Path::new).find(|path| path.is_file()).unwrap_or(Path::new(BUILT[0]));
         let apk = self.apk.as_deref().unwrap_or_else(built);

@@ -24,9 +24,9 @@ use yoro_devices::reading::{LineContent, Reading};
 use yoro_files::FileError;
 use yoro_files::interrupt;
 
-/// Rows after which the head of the table is repeated on a terminal.
+/// The number of rows after which the head of the table is repeated on a terminal.
 const ROWS: u64 = 24;
-/// Names of method and scene in a capture if the log has several, or does not say.
+/// The names of method and scene in a capture if the log has several, or none.
 const SEVERAL: &str = "several";
 const UNKNOWN: &str = "unknown";
 
@@ -67,11 +67,11 @@ pub struct LogcatArgs {
 
 impl Subcommand for LogcatArgs {
     fn files(&self) -> anyhow::Result<Files> {
-        // A capture replaces no file, and so no input.
+        // A capture replaces no file, and therefore no input.
         Ok(Files::default())
     }
 
-    /// Follows or reads, and prints the faults.
+    /// Follows or reads the log, and prints its faults.
     fn run(&self) -> anyhow::Result<()> {
         match &self.file {
             Some(file) => saved(self, file),
@@ -91,7 +91,7 @@ fn saved(args: &LogcatArgs, file: &Path) -> anyhow::Result<()> {
     let mut input: Box<dyn BufRead> = if is_stdin {
         Box::new(io::stdin().lock())
     } else {
-        // A pipe such as /dev/fd/63 is a file, too.
+        // A pipe such as /dev/fd/63 is accepted like a file.
         ensure!(!file.is_dir(), FileError::IsFolder { path: file.into() });
         let missing = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
         Box::new(BufReader::new(File::open(file).map_err(|source| {
@@ -142,7 +142,7 @@ fn live(args: &LogcatArgs) -> anyhow::Result<()> {
         table.foreign = Some(Foreign::new(device, subject)?);
     }
     let done = follow(args, device, &mut follower, &mut table, began);
-    // The capture records the reason of the end.
+    // The capture records why it ended.
     table.finish()?;
     done
 }
@@ -176,7 +176,7 @@ fn follow(
     Ok(())
 }
 
-/// Prints the samples of a log, and writes them if there is a folder.
+/// Prints the samples of a log, and writes them if a folder is given.
 struct Table<'a> {
     args: &'a LogcatArgs,
     reading: Reading,
@@ -355,7 +355,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// A row of cells that are wide enough for all that is usual.
+/// Formats a row of cells that are wide enough for all usual values.
 fn cells<const N: usize>(cells: [String; N]) -> String {
     cells.iter().map(|cell| format!("{cell:>8}")).collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! `yoro device report`: captures in, a page and tables out.
+//! `yoro device report`: turns captures into a page and tables.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -32,11 +32,11 @@ pub struct ReportArgs {
 
 impl Subcommand for ReportArgs {
     fn files(&self) -> anyhow::Result<Files> {
-        // The files of captures have other names than those of the report.
+        // The files of captures have different names than those of the report.
         Ok(Files::default())
     }
 
-    /// Reads the captures, writes the report and prints what matters.
+    /// Reads the captures, writes the report and prints the main figures.
     fn run(&self) -> anyhow::Result<()> {
         let mut sets = Vec::new();
         for folder in &self.folders {

@@ -71,7 +71,7 @@ pub struct RunArgs {
 
 impl Subcommand for RunArgs {
     fn files(&self) -> anyhow::Result<Files> {
-        // A capture replaces no file, and so no input.
+        // A capture replaces no file, and therefore no input.
         Ok(Files::default())
     }
 

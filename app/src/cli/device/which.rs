@@ -1,4 +1,4 @@
-//! The choice of devices, and work on all of them at the same time.
+//! Choosing devices, and working on all of them at the same time.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -48,17 +48,17 @@ pub struct WhichArgs {
 }
 
 impl WhichArgs {
-    /// The devices asked for.
+    /// Returns the chosen devices.
     ///
     /// # Errors
-    /// [`DeviceError`] when there is none, or more than one and none was named.
+    /// [`DeviceError`] if there is no device, or if there are several and none was named.
     pub fn choose(&self) -> Result<Vec<Box<dyn Device>>, DeviceError> {
         adb::choose(&*self.source.open()?, &self.serials, self.all)
     }
 }
 
-/// Runs `work` on all devices at the same time, each with its own progress bar, and prints the results. The failures of
-/// all devices are the error.
+/// Runs `work` on all devices at the same time, each with its own progress bar, and prints the results. The error
+/// contains the failures of all devices.
 pub fn each<F>(devices: Vec<Box<dyn Device>>, work: F) -> anyhow::Result<()>
 where
     F: Fn(&dyn Device, &ProgressBar) -> anyhow::Result<String> + Sync,
@@ -94,14 +94,14 @@ where
         (_, 1) => Err(failures.remove(0).1),
         _ if interrupt::requested() => Err(DeviceError::Interrupted.into()),
         (failures, count) => {
-            // Most of the sentences name the device.
+            // Most of the messages name their device.
             let all: Vec<String> = failures.iter().map(|(_, error)| message::sentence(error)).collect();
             bail!("{} of {count} devices: {}", failures.len(), all.join("; "))
         }
     }
 }
 
-/// Returns the folder for something of one of several devices.
+/// Returns the folder for the output of one device, which is `out` itself if there is only one device.
 pub fn folder_of(out: &Path, serial: &str, is_only: bool) -> PathBuf {
     if is_only { out.into() } else { out.join(yoro_devices::experiment::file_name(serial)) }
 }

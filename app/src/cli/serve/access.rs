@@ -1,5 +1,5 @@
-//! Who gets in: pages of this server that have the token, one at a time. Clients without the token are limited in the
-//! number of connections and in time.
+//! Access control: pages that have the token are served, one at a time. Clients without it are limited in the number of
+//! connections and in time.
 
 use std::collections::HashMap;
 use std::io::Write as _;
@@ -21,17 +21,17 @@ use super::session::{Client, SILENCE, Transport, listen};
 use yoro_files::http::{self, Request};
 use yoro_stream::{FromClient, FromServer, Refusal, Token, VERSION};
 
-/// The largest message of a client, in bytes.
+/// The largest message of a client in bytes.
 pub const MAX_MESSAGE_BYTES: usize = 1 << 12;
-/// The time for a handshake with its request and the hello after it.
+/// The time allowed for a handshake, its request and the following hello.
 pub const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
-/// The time for sending a file.
+/// The time allowed for sending a file.
 const FILE_TIMEOUT: Duration = Duration::from_secs(60);
-/// The number of connections that may wait to be let in, of all machines and of one. A browser opens six for a page's
-/// files.
+/// The number of connections that may wait for admission, from all machines and from one. A browser opens six for the
+/// files of a page.
 const MAX_PENDING: [usize; 2] = [64, 16];
 
-/// A client's connection, once it speaks WebSocket.
+/// A client's WebSocket connection.
 pub type Socket = WebSocket<Connection>;
 
 /// Admits clients.
@@ -39,14 +39,14 @@ pub struct Access {
     pub token: Token,
     /// `http` or `https`.
     pub scheme: &'static str,
-    /// The names of this server, as browsers call it.
+    /// The host names under which browsers reach this server.
     pub hosts: Vec<String>,
-    /// The origin of another server's page that may show the stream, too.
+    /// The origin of another server whose page may also show the stream.
     pub origin: Option<String>,
     pub folder: PathBuf,
-    /// The head's first pose.
+    /// The first message to an admitted client, such as the head's first pose.
     pub welcome: FromServer<'static>,
-    /// How connections are encrypted, if they are.
+    /// The encryption of connections, if any.
     pub tls: Option<Arc<ServerConfig>>,
     busy: AtomicBool,
     pending: Arc<PendingConnections>,
@@ -65,7 +65,7 @@ impl Access {
         Access { token, scheme, hosts, origin, folder, welcome, tls, busy, pending }
     }
 
-    /// Accepts connections for ever, and passes on those that are let in.
+    /// Accepts connections forever, and passes on the admitted clients.
     pub fn accept(self: &Arc<Self>, listener: &TcpListener, clients: &mpsc::Sender<Client>) {
         for (socket, address) in std::iter::repeat_with(|| listener.accept()).flatten() {
             let Some(place) = self.place(address.ip()) else {
@@ -73,7 +73,7 @@ impl Access {
                 continue;
             };
             let (access, clients) = (self.clone(), clients.clone());
-            // A browser keeps some connections open without asking for anything.
+            // Each connection has a thread, since a browser keeps some connections open without requesting anything.
             thread::spawn(move || {
                 if let Err(error) = access.answer(socket, &clients) {
                     log::info!("{address} is not served: {error}");
@@ -83,12 +83,12 @@ impl Access {
         }
     }
 
-    /// Returns a place among the connections that wait to be let in; none where there are too many.
+    /// Returns a place among the connections that wait for admission; `None` if there are too many.
     pub fn place(&self, address: IpAddr) -> Option<Place> {
         PendingConnections::enter(&self.pending, address)
     }
 
-    /// Answers a connection: with a file, or, for a page of this server with the token, by letting it in.
+    /// Answers a connection: sends a file, or admits a page of this server that has the token.
     fn answer(self: &Arc<Self>, socket: TcpStream, clients: &mpsc::Sender<Client>) -> anyhow::Result<()> {
         let connection = Connection::new(socket, self.tls.as_ref(), HELLO_TIMEOUT)?;
         let request = Request::read(connection.clone())?;
@@ -111,15 +111,15 @@ impl Access {
         Ok(())
     }
 
-    /// True if a page may connect: against other sites' pages and names that are made to lead here, the host that it
-    /// asks for must be this one, and its origin, too, or the one that was named.
+    /// True if a page may connect: the requested host must be this server's, and the origin this server or the allowed
+    /// one. This keeps out other sites' pages, even if their names are made to resolve to this machine.
     pub fn allows(&self, host: &str, origin: Option<&str>) -> bool {
         let is_own = || origin == Some(&format!("{}://{host}", self.scheme));
         let is_named = || origin.is_some() && origin == self.origin.as_deref();
         self.hosts.iter().any(|name| name == host) && (is_own() || is_named())
     }
 
-    /// Lets a page in that has the token.
+    /// Admits a page that has the token.
     fn admit(self: &Arc<Self>, connection: &Connection, request: &Request) -> anyhow::Result<Seat> {
         let mut connection = connection.clone();
         let allowed = self.allows(request.header("host").unwrap_or_default(), request.header("origin"));
@@ -140,16 +140,15 @@ impl Access {
         admitted
     }
 
-    /// Returns the answer to a first message, and, for one with the token while nobody else is served, the seat that
-    /// lets its sender in.
+    /// Returns the answer to a client's first message, and its seat if it has the token and no one else is served.
     ///
     /// # Errors
-    /// When it is no hello.
+    /// If the message is not a hello.
     pub fn answer_hello(self: &Arc<Self>, bytes: &[u8]) -> anyhow::Result<(Vec<u8>, anyhow::Result<Seat>)> {
         let Some(FromClient::Hello { version, token }) = FromClient::read(bytes) else {
             bail!("it does not say hello");
         };
-        // In constant time.
+        // The comparison takes constant time, so that it reveals nothing about the token.
         let differs = token.iter().zip(&self.token).fold(0, |differs, (a, b)| differs | (a ^ b));
         let refusal = if version != VERSION {
             Refusal::Version
@@ -164,7 +163,7 @@ impl Access {
     }
 }
 
-/// The right to be served: when it is dropped, another client may come.
+/// The right to be served. When it is dropped, another client may be admitted.
 pub struct Seat(Arc<Access>);
 
 impl Drop for Seat {
@@ -173,7 +172,7 @@ impl Drop for Seat {
     }
 }
 
-/// Speaks WebSocket on a connection whose handshake is done.
+/// Returns a WebSocket on a connection whose handshake is done.
 pub fn web_socket(connection: Connection) -> Socket {
     let limits = WebSocketConfig::default()
         .max_message_size(Some(MAX_MESSAGE_BYTES))
@@ -181,12 +180,12 @@ pub fn web_socket(connection: Connection) -> Socket {
     WebSocket::from_raw_socket(connection, Role::Server, Some(limits))
 }
 
-/// The number of connections that have not been let in, by the address that they come from: one machine must not keep
-/// others from connecting.
+/// The number of connections that wait for admission, by address, so that one machine cannot keep others from
+/// connecting.
 #[derive(Default)]
 struct PendingConnections(Mutex<HashMap<IpAddr, usize>>);
 
-/// One of these connections: it is counted until this is dropped.
+/// A place among the waiting connections, which is freed when it is dropped.
 pub struct Place(Arc<PendingConnections>, IpAddr);
 
 impl PendingConnections {

@@ -1,4 +1,4 @@
-//! A connection with a browser, encrypted or not, that never waits for ever.
+//! A connection with a browser, encrypted or not, on which no call waits forever.
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
@@ -7,22 +7,22 @@ use std::time::{Duration, Instant};
 
 use rustls::{ServerConfig, ServerConnection};
 
-/// A connection with a browser. Its clones are the same connection: one may read while another one writes.
+/// A connection with a browser. Clones share the connection, so that one can read while another one writes.
 #[derive(Clone)]
 pub struct Connection(Arc<Inner>);
 
 struct Inner {
     socket: TcpStream,
-    /// Held while bytes are sent: what two clones write does not mix.
+    /// Locked while bytes are sent, so that the output of two clones does not mix.
     sending: Mutex<()>,
     tls: Option<Tls>,
     timeout: Mutex<Timeout>,
 }
 
-/// The limit of the time that reading and writing take.
+/// The time limit of reading and writing.
 #[derive(Clone, Copy)]
 enum Timeout {
-    /// For all of it together.
+    /// For all calls together.
     Until(Instant),
     /// For each call.
     Each(Duration),
@@ -33,11 +33,10 @@ struct Tls {
 }
 
 impl Connection {
-    /// Takes a connection over, encrypted where there is a configuration. The timeout is for all that is read and
-    /// written together.
+    /// Takes over a connection, encrypted if `tls` is given. The timeout applies to all reading and writing together.
     ///
     /// # Errors
-    /// When the connection is lost.
+    /// If the connection is lost.
     pub fn new(
         socket: TcpStream,
         tls: Option<&Arc<ServerConfig>>,
@@ -47,7 +46,7 @@ impl Connection {
         let tls = tls.map(|config| ServerConnection::new(config.clone())).transpose();
         let tls = tls.map_err(io::Error::other)?;
         let tls = tls.map(|mut state| {
-            // A message is taken as a whole: another writer's does not get into it.
+            // Without a limit a message is always buffered as a whole, so that another writer's cannot get into it.
             state.set_buffer_limit(None);
             Tls { state: Mutex::new(state) }
         });
@@ -55,7 +54,7 @@ impl Connection {
         Ok(Connection(Arc::new(Inner { socket, sending: Mutex::new(()), tls, timeout })))
     }
 
-    /// Limits the time of all that is read and written from now on together.
+    /// Limits the total time of all reading and writing from now on.
     pub fn set_deadline(&self, time: Duration) {
         *lock(&self.0.timeout) = Timeout::Until(Instant::now() + time);
     }
@@ -65,11 +64,11 @@ impl Connection {
         *lock(&self.0.timeout) = Timeout::Each(time);
     }
 
-    /// Ends the connection: whoever waits for it is woken.
+    /// Closes the connection, which wakes up all waiting calls.
     pub fn close(&self) {
         if let Some(tls) = &self.0.tls {
             lock(&tls.state).send_close_notify();
-            // Nobody needs it of a connection that is lost.
+            // A lost connection needs no notification.
             let _ = self.flush_tls(tls);
         }
         let _ = self.0.socket.shutdown(Shutdown::Both);
@@ -105,7 +104,7 @@ impl Connection {
         Ok(())
     }
 
-    /// Sends the records that there are, in their order.
+    /// Sends all pending records in order.
     fn flush_tls(&self, tls: &Tls) -> io::Result<()> {
         let _sending = lock(&self.0.sending);
         let mut records = Vec::new();
@@ -117,7 +116,7 @@ impl Connection {
         self.transmit(&records)
     }
 
-    /// Processes records that have come, the handshake's among them, and sends TLS's own replies.
+    /// Processes received records, including those of the handshake, and sends TLS's own replies.
     fn process_tls(&self, tls: &Tls, mut records: &[u8]) -> io::Result<()> {
         let mut state = lock(&tls.state);
         let mut processed = Ok(());

@@ -1,4 +1,4 @@
-//! What it takes to be seen in the local network: an address, a certificate for it, and a code that a camera reads.
+//! Reachability in the local network: an address, a certificate for it, and a code for cameras.
 
 use std::fs::{self, DirBuilder};
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
@@ -20,37 +20,36 @@ use yoro_files::xdg;
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
 /// A kind of certificate.
 struct Kind {
-    /// The end of its file's name.
+    /// The suffix of its file's name.
     suffix: &'static str,
-    /// The days for which it is valid.
+    /// The number of days for which it is valid.
     valid: u32,
-    /// The days for which it is used.
+    /// The number of days for which it is used.
     used: u32,
 }
 
-/// For https: Apple's browsers refuse certificates that are valid for more than 825 days.
+/// For HTTPS. Apple's browsers refuse certificates that are valid for more than 825 days.
 const HTTPS: Kind = Kind { suffix: "pem", valid: 397, used: 365 };
-/// For WebTransport: browsers accept one by its hash if it is valid for at most 14 days, with a key on P-256.
+/// For WebTransport. Browsers accept a certificate by its hash if it is valid for at most 14 days and has a P-256 key.
 const QUIC: Kind = Kind { suffix: "quic.pem", valid: 14, used: 6 };
 
-/// Where and how a server is reached in the local network.
+/// The address and the encryption of a server in the local network.
 pub struct Lan {
     pub address: IpAddr,
     pub tls: Arc<ServerConfig>,
-    /// SHA-256 of the certificate, as browsers show it.
+    /// SHA-256 of the certificate, formatted as in browsers.
     pub fingerprint: String,
-    /// For WebTransport.
+    /// The configuration of WebTransport.
     pub quic: ServerConfig,
-    /// SHA-256 of WebTransport's certificate, in hexadecimal digits.
+    /// SHA-256 of WebTransport's certificate in hexadecimal digits.
     pub quic_hash: String,
 }
 
 impl Lan {
-    /// Takes the address that was named, or that of the default route, with the certificate that was made for it
-    /// before, or a new one.
+    /// Uses the given address, or else that of the default route, with an existing certificate for it or a new one.
     ///
     /// # Errors
-    /// A sentence: no such address, or nowhere to keep the certificate.
+    /// One sentence, if there is no such address, or no place to keep the certificate.
     pub fn new(named: Option<IpAddr>) -> anyhow::Result<Lan> {
         let address = match named {
             Some(address) => address,
@@ -77,16 +76,16 @@ impl Lan {
     }
 }
 
-/// Returns the address of the interface by which this machine reaches others. Nothing is sent for that.
+/// Returns the address of the interface through which this machine reaches others. This sends nothing.
 fn own_address() -> Option<IpAddr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
-    // An address that is reserved for documents.
+    // The address is reserved for documentation.
     socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
     Some(socket.local_addr().ok()?.ip()).filter(|address| !address.is_loopback())
 }
 
-/// True for addresses that the internet does not reach: of private networks, of one link, of this machine, and those
-/// that providers and private overlay networks share (100.64.0.0/10).
+/// True for addresses that cannot be reached from the internet: private, link-local and loopback addresses, and those
+/// that providers and overlay networks share (100.64.0.0/10).
 fn is_local(address: IpAddr) -> bool {
     match address {
         IpAddr::V4(v4) => {
@@ -97,9 +96,9 @@ fn is_local(address: IpAddr) -> bool {
     }
 }
 
-/// Returns key and certificate for an address: those that are kept in the folder, or new ones, which are kept.
+/// Returns key and certificate for an address: those kept in the folder, or new ones, which are stored there.
 fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Vec<u8>> {
-    // Others must not read the key.
+    // Only this user may read the key.
     let made = DirBuilder::new().recursive(true).mode(0o700).create(folder);
     made.and_then(|()| fs::set_permissions(folder, fs::Permissions::from_mode(0o700)))
         .with_context(|| format!("{} cannot be made", folder.display()))?;
@@ -117,7 +116,7 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
     params.subject_alt_names = vec![SanType::IpAddress(address)];
     params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ServerAuth];
     let now = SystemTime::now();
-    // Clocks differ.
+    // The certificate is valid from yesterday on, because clocks differ.
     params.not_before = (now - DAY).into();
     params.not_after = (now + (kind.valid - 1) * DAY).into();
     let pem = [key.serialize_pem(), params.self_signed(&key)?.pem()].concat().into_bytes();
@@ -125,8 +124,8 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
     Ok(pem)
 }
 
-/// Returns how connections of a protocol are encrypted with this key and certificate: by TLS 1.3, which each browser
-/// that decodes video for pages has.
+/// Returns the encryption of a protocol's connections with this key and certificate: TLS 1.3, which every browser
+/// supports that lets pages decode video.
 fn configure(pem: &[u8], protocol: &[u8]) -> anyhow::Result<ServerConfig> {
     let (Ok(key), Ok(certificate)) =
         (PrivateKeyDer::from_pem_slice(pem), CertificateDer::from_pem_slice(pem))
@@ -142,17 +141,17 @@ fn configure(pem: &[u8], protocol: &[u8]) -> anyhow::Result<ServerConfig> {
     Ok(config)
 }
 
-/// Returns the SHA-256 of a certificate, its bytes with a separator between them.
+/// Returns the SHA-256 of a certificate in hexadecimal, with a separator between the bytes.
 fn hash(pem: &[u8], separator: &str) -> anyhow::Result<String> {
     let certificate = CertificateDer::from_pem_slice(pem).context("the certificate cannot be read")?;
     let hash = ring::digest::digest(&ring::digest::SHA256, &certificate);
     Ok(hash.as_ref().iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(separator))
 }
 
-/// Returns a text as a QR code for a terminal: black on white, whatever its colours are.
+/// Returns a text as a QR code for terminals, black on white in any colour scheme.
 ///
 /// # Errors
-/// When the text is too long.
+/// If the text is too long.
 pub fn code(text: &str) -> anyhow::Result<String> {
     let code = QrCode::new(text)?.render::<Dense1x2>().build();
     Ok(code.lines().map(|line| format!("\x1b[30;107m{line}\x1b[0m\n")).collect())
@@ -194,7 +193,7 @@ mod tests {
         assert_eq!(certificate(&folder, here, &HTTPS).unwrap(), first);
         let other = certificate(&folder, there, &HTTPS).unwrap();
         assert_ne!(other, first);
-        // A key with another one's certificate is damage, too.
+        // A certificate with the key of another one counts as damage, too.
         let half = String::from_utf8(other).unwrap().find("-----BEGIN CERTIFICATE").unwrap();
         for damage in [
             &first[..first.len() / 2],
@@ -215,7 +214,7 @@ mod tests {
             .lines()
             .map(|line| line.trim_start_matches("\x1b[30;107m").trim_end_matches("\x1b[0m"))
             .collect();
-        // A letter shows two modules, one above the other.
+        // A character shows two modules, one above the other.
         let side = 4;
         let width = rows[0].chars().count() * side;
         let mut luma = Vec::new();

@@ -1,4 +1,4 @@
-//! `yoro serve`: a scene rendered here, or a video, seen in a browser.
+//! `yoro serve`: streams a scene that is rendered here, or a video, to a browser.
 
 mod access;
 mod connection;
@@ -113,7 +113,7 @@ impl EncoderArg {
     }
 }
 
-/// Most pixels of an eye's longer side with three parts beside each other: hardware decodes no more than 4096 columns.
+/// The longest side of an eye in pixels if three parts are side by side: hardware decodes at most 4096 columns.
 const MOST_OF_THREE: u16 = 1024;
 
 impl Subcommand for ServeArgs {
@@ -136,7 +136,7 @@ impl Subcommand for ServeArgs {
         let encoder = LiveEncoder::new(self.encoder.kind(), self.frame_rate.into())
             .context("choose another encoder with --encoder")?;
         let lan = self.lan.map(Lan::new).transpose()?;
-        // It is dropped after what was made in it.
+        // The context is declared first, so that it is dropped after everything created in it.
         let headless;
         let (source, welcome) = if is_video(&self.scene) {
             ensure!(self.mode == ModeArg::Depth, "a video has the depth of one eye: leave --mode out");
@@ -205,7 +205,7 @@ fn random_token() -> anyhow::Result<Token> {
     Ok(token)
 }
 
-/// Reads the origin of a page, as browsers tell it.
+/// Parses the origin of a page, in the form that browsers send.
 fn origin(text: &str) -> Result<String, String> {
     let host = text.strip_prefix("https://").or(text.strip_prefix("http://")).unwrap_or_default();
     let is_host = !host.is_empty() && host.chars().all(|c| c.is_ascii_alphanumeric() || "-.:[]".contains(c));
@@ -216,7 +216,7 @@ fn origin(text: &str) -> Result<String, String> {
     }
 }
 
-/// True if a name is a video's.
+/// True if the name is that of a video file.
 fn is_video(name: &str) -> bool {
     let extension = Path::new(name).extension();
     extension.is_some_and(|extension| {
@@ -224,7 +224,7 @@ fn is_video(name: &str) -> bool {
     })
 }
 
-/// Prepares a scene. Returns with it what a page is told that shows it.
+/// Prepares a scene. Returns it with the first message to a page that shows it.
 fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServer<'static>)> {
     let mode = match args.mode {
         ModeArg::Depth => Mode::Depth,
@@ -244,7 +244,7 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
     Ok((Source::Scene { prepared, renderer }, FromServer::Welcome(home)))
 }
 
-/// Says where the stream is seen, and what encodes it.
+/// Prints where the stream can be seen, and which encoder is used.
 fn announce(links: &[String], port: u16, lan: Option<&Lan>, encoder: &str) -> anyhow::Result<()> {
     for link in links {
         println!("open {link}");

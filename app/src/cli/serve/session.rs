@@ -1,4 +1,4 @@
-//! A client's session: what it says, and the frames that it gets.
+//! A client's session: the messages that it sends, and the frames that it gets.
 
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -13,11 +13,11 @@ use yoro_files::interrupt;
 use yoro_stream::{FrameHeader, FromClient, FromServer, RateControl, ViewRequest};
 use yoro_video::{LiveEncoder, LivePicture};
 
-/// A client that says nothing for so long is gone.
+/// A client that sends nothing for this long is considered gone.
 pub const SILENCE: Duration = Duration::from_secs(3);
 
-/// Passes on a client's messages with the time, until a timeout, a lost connection or an invalid message. It has a
-/// thread of its own, so that messages are read while a frame is rendered.
+/// Passes on a client's messages with their times of arrival, until a timeout, a lost connection or an invalid message.
+/// It runs on a thread of its own, so that messages are read while a frame is rendered.
 pub fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromClient, Instant)>) {
     while let Ok(message) = socket.read() {
         let Some(message) = FromClient::read(&message.into_data()) else { return };
@@ -27,21 +27,21 @@ pub fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromClient, Instant)>) {
     }
 }
 
-/// A client that was let in.
+/// An admitted client.
 pub struct Client {
-    /// What it says, until it is gone.
+    /// Its messages, until it is gone.
     pub heard: Receiver<(FromClient, Instant)>,
-    /// How it gets frames.
+    /// The connection on which it gets frames.
     pub transport: Transport,
-    /// Held while it is served.
+    /// The seat, held while it is served.
     pub seat: Seat,
 }
 
 /// How frames are sent.
 pub enum Transport {
-    /// All in order.
+    /// All frames in order.
     WebSocket(Box<Socket>),
-    /// Each on its own.
+    /// Each frame on a stream of its own.
     WebTransport(Frames),
 }
 
@@ -61,7 +61,7 @@ impl Transport {
         Ok(())
     }
 
-    /// Ends the connection: its listener ends, too.
+    /// Closes the connection, which also ends its listener.
     fn close(&self) {
         match self {
             Transport::WebSocket(socket) => socket.get_ref().close(),
@@ -70,7 +70,7 @@ impl Transport {
     }
 }
 
-/// Renders, encodes and sends.
+/// Renders, encodes and sends frames.
 pub struct Server {
     pub source: Source,
     pub encoder: LiveEncoder,
@@ -84,7 +84,7 @@ pub struct Limits {
     pub quantizer: u8,
     /// The largest frame rate in Hz.
     pub frame_rate: f32,
-    /// The longer side of an eye in pixels, at most.
+    /// The largest longer side of an eye in pixels.
     pub size: u16,
 }
 
@@ -112,12 +112,12 @@ impl Server {
         Ok(())
     }
 
-    /// Serves a client until it is gone, which is no error.
+    /// Serves a client until it is gone, which is not an error.
     fn session(&mut self, client: &mut Client) -> anyhow::Result<()> {
         let Client { heard, transport, .. } = client;
         let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate);
         let mut request: Option<ViewRequest> = None;
-        // The time of the request that was answered last.
+        // The time of the last answered request.
         let mut answered: Option<f64> = None;
         let mut number = 0u32;
         let mut statistics = Statistics::new(0);
@@ -176,7 +176,7 @@ impl Server {
             if let Transport::WebTransport(frames) = transport
                 && is_intra
             {
-                // Nothing needs those before it.
+                // Frames before an intra frame are no longer needed.
                 frames.give_up(number);
             }
             transport.send(number, frame.to_bytes())?;
@@ -186,14 +186,14 @@ impl Server {
     }
 }
 
-/// Figures that are printed once a second.
+/// Statistics that are printed once a second.
 struct Statistics {
     since: Instant,
     frames: u32,
     bytes: usize,
     render_ms: f32,
     encode_ms: f32,
-    /// Frames that were lost before.
+    /// The number of lost frames at the last printing.
     lost: u32,
 }
 

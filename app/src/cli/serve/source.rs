@@ -1,4 +1,4 @@
-//! What is streamed: a scene, or an RGBD video.
+//! The source of a stream: a scene, or an RGBD video.
 
 use std::path::Path;
 use std::time::Duration;
@@ -10,19 +10,19 @@ use yoro_render::PreparedScene;
 use yoro_stream::{Content, EyeView, FromServer, ViewRequest};
 use yoro_video::Reader;
 
-/// A video that is later than this goes on from there.
+/// A video that is later than this continues from the current time, instead of catching up.
 const LATE: Duration = Duration::from_millis(100);
 
-/// Where pictures come from.
+/// The source of pictures.
 pub enum Source {
-    /// They are rendered.
+    /// A scene, which is rendered.
     Scene { prepared: Box<PreparedScene>, renderer: Box<FrameRenderer> },
-    /// They are decoded.
+    /// A video, which is decoded.
     Video(Box<Video>),
 }
 
 impl Source {
-    /// Returns the picture for a request at a time since the start; none if a video has no new one.
+    /// Returns the picture for a request at a time since the start; `None` if a video has no new picture.
     ///
     /// # Errors
     /// For eyes that cannot be rendered, and a video that cannot be read.
@@ -37,21 +37,21 @@ impl Source {
     }
 }
 
-/// An RGBD video that is played over and over.
+/// An RGBD video that is played in a loop.
 pub struct Video {
     reader: Reader,
     content: Content,
-    /// Width and height of its eye and of the depth.
+    /// The width and height of its eye and of the depth.
     size: [u16; 2],
-    /// When the next picture is due.
+    /// The time at which the next picture is due.
     due: Duration,
 }
 
 impl Video {
-    /// Opens a file. Returns with it what a page is told that shows it.
+    /// Opens a file. Returns the video with the first message to a page that shows it.
     ///
     /// # Errors
-    /// For a file that is no RGBD video.
+    /// For a file that is not an RGBD video.
     pub fn open(path: &Path) -> anyhow::Result<(Video, FromServer<'static>)> {
         let reader = Reader::open(path)?;
         let rgbd = reader.rgbd()?;

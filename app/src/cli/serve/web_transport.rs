@@ -1,4 +1,4 @@
-//! WebTransport, by QUIC: a stream for each frame to the client, and datagrams for what it says.
+//! WebTransport over QUIC: a stream for each frame to the client, and datagrams for the client's messages.
 
 use std::net::UdpSocket;
 use std::sync::{Arc, mpsc};
@@ -19,10 +19,10 @@ use super::access::{Access, HELLO_TIMEOUT, MAX_MESSAGE_BYTES, Seat};
 use super::session::{Client, SILENCE, Transport};
 use yoro_stream::FromClient;
 
-/// Accepts clients at a socket for ever, and passes on those that are let in.
+/// Accepts clients on a socket forever, and passes on those that are admitted.
 ///
 /// # Errors
-/// When the system refuses.
+/// If the system refuses.
 pub fn accept(
     access: Arc<Access>,
     socket: UdpSocket,
@@ -30,7 +30,7 @@ pub fn accept(
     clients: mpsc::Sender<Client>,
 ) -> anyhow::Result<()> {
     let runtime = Builder::new_current_thread().enable_all().build()?;
-    // Who is not let in yet must not fill the memory.
+    // Clients that are not admitted yet must not fill up the memory.
     let mut limits = QuicTransportConfig::default();
     limits
         .max_concurrent_bidi_streams(4u8.into())
@@ -54,7 +54,7 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, clients: 
         let incoming = endpoint.accept().await;
         let address = incoming.remote_address();
         if !incoming.remote_address_validated() {
-            // An address that the sender does not have must not take a place.
+            // A forged sender address must not occupy a place.
             incoming.retry();
             continue;
         }
@@ -71,7 +71,7 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, clients: 
                 Ok((connection, seat)) => {
                     let (tell, heard) = mpsc::channel();
                     let frames = Frames::new(connection.clone());
-                    // Without a receiver the program ends.
+                    // If there is no receiver, the program is about to end.
                     let _ = clients.send(Client { heard, transport: Transport::WebTransport(frames), seat });
                     listen(&connection, &tell).await;
                 }
@@ -81,7 +81,7 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, clients: 
     }
 }
 
-/// Lets a client in, as [`Access`] decides. Its hello and the answer are a stream of their own.
+/// Admits a client if [`Access`] allows it. Its hello and the answer have a stream of their own.
 async fn admit(incoming: IncomingSession, access: &Arc<Access>) -> anyhow::Result<(Connection, Seat)> {
     let request = incoming.await?;
     if request.path() != "/stream" || !access.allows(request.authority(), request.origin()) {
@@ -98,7 +98,7 @@ async fn admit(incoming: IncomingSession, access: &Arc<Access>) -> anyhow::Resul
     Ok((connection, seat?))
 }
 
-/// Passes on a client's messages with the time, until it is silent, lost or sends something else.
+/// Passes on a client's messages with their times of arrival, until it is silent or lost, or sends anything else.
 async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromClient, Instant)>) {
     while let Ok(Ok(datagram)) = timeout(SILENCE, connection.receive_datagram()).await {
         let Some(message) = FromClient::read(&datagram) else { break };
@@ -113,12 +113,12 @@ async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromClient, Insta
 pub struct Frames {
     runtime: Handle,
     connection: Connection,
-    /// The number of the oldest frame that is still of use.
+    /// The number of the oldest frame that is still needed.
     oldest: watch::Sender<u32>,
 }
 
 impl Frames {
-    /// Sends by a connection of the runtime that this is called in.
+    /// Creates a sender on a connection, using the runtime in which this is called.
     fn new(connection: Connection) -> Frames {
         Frames { runtime: Handle::current(), connection, oldest: watch::Sender::new(0) }
     }
@@ -133,18 +133,18 @@ impl Frames {
         });
     }
 
-    /// Stops sending frames before this one.
+    /// Stops sending the frames before this one.
     pub fn give_up(&self, number: u32) {
         self.oldest.send_replace(number);
     }
 
-    /// Ends the connection.
+    /// Closes the connection.
     pub fn close(&self) {
         self.connection.close(VarInt::from_u32(0), b"");
     }
 }
 
-/// Sends a frame, unless it is given up before all of it has arrived.
+/// Sends a frame, unless it is given up before it has arrived completely.
 async fn send(
     connection: &Connection,
     number: u32,
@@ -152,7 +152,7 @@ async fn send(
     mut oldest: watch::Receiver<u32>,
 ) -> anyhow::Result<()> {
     let mut stream = connection.open_uni().await?.await?;
-    // Those before it come first, as it refers to them.
+    // Earlier frames have priority, because this one refers to them.
     stream.set_priority(i32::MAX - (number % (1 << 30)) as i32);
     let sending = async {
         stream.write_all(bytes).await?;

@@ -20,16 +20,15 @@ use yoro_lenses::{Optics, Screen, flat_hit};
 use yoro_protocol::{Ipd, Settings, Timewarp};
 use yoro_render::stereo::StereoFrame;
 
-/// The pixels per inch of a screen that does not know its own.
+/// Pixels per inch assumed for a screen that does not report any.
 const USUAL_DPI: f32 = 400.0;
 
-/// A head held still, instead of the one that the sensors measure.
+/// A fixed head pose, used instead of the one that the sensors measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldHead {
     /// Rotation from head to world at which frames are rendered.
     pub rendered: Quat,
-    /// Rotation from head to world at which they are shown. If it differs from `rendered`, timewarp corrects the
-    /// difference.
+    /// Rotation from head to world at which frames are shown. Timewarp corrects the difference to `rendered`.
     pub displayed: Quat,
 }
 
@@ -38,11 +37,11 @@ struct Attached {
     gl: Rc<Context>,
     frame: StereoFrame,
     lens: LensPass,
-    /// A fence behind the last frame that was presented.
+    /// A fence after the last frame that was presented.
     presented: Fence,
-    /// Made while the settings ask for it.
+    /// Present only while the settings ask for positional timewarp.
     timewarp: Option<PositionalTimewarp>,
-    /// The last frame that was rendered: rotation from head to world, and its eyes.
+    /// The head's rotation to the world, and the eyes, of the last frame that was rendered.
     rendered: Option<(Quat, EyePair)>,
 }
 
@@ -62,11 +61,11 @@ pub struct Cardboard {
 }
 
 impl Cardboard {
-    /// Makes the application for this screen, and starts to load the scene in the background. `folders` are where scenes and
-    /// viewer files given by name are looked for.
+    /// Creates the application for this screen and starts to load the scene in the background. `folders` are searched
+    /// for scenes and viewer files given by name.
     ///
     /// # Errors
-    /// [`ViewerError::Params`] and [`ViewerError::NoScene`]: mistakes in the settings.
+    /// [`ViewerError::Params`] and [`ViewerError::NoScene`] for mistakes in the settings.
     pub fn new(settings: Settings, screen: Screen, folders: &[PathBuf]) -> Result<Cardboard, ViewerError> {
         let params = ViewerParams::find_in(&settings.viewer, folders)?;
         let mut viewer = Viewer::new(settings, folders)?;
@@ -84,12 +83,12 @@ impl Cardboard {
         })
     }
 
-    /// The application behind the lenses.
+    /// Returns the application behind the lenses.
     pub fn viewer(&self) -> &Viewer {
         &self.viewer
     }
 
-    /// The application behind the lenses, for what is not the display's own: telemetry, scenes.
+    /// Returns the application behind the lenses, for what does not depend on the display: telemetry and scenes.
     pub fn viewer_mut(&mut self) -> &mut Viewer {
         &mut self.viewer
     }
@@ -123,7 +122,7 @@ impl Cardboard {
         self.attached.is_some()
     }
 
-    /// Takes a screen of another size or rotation.
+    /// Adapts to a screen of another size or rotation.
     ///
     /// # Errors
     /// [`ViewerError::Gl`].
@@ -140,7 +139,7 @@ impl Cardboard {
         Ok(())
     }
 
-    /// Makes positional timewarp, if the settings ask for it.
+    /// Creates positional timewarp if the settings ask for it.
     fn positional_timewarp(&self, gl: &Rc<Context>) -> Result<Option<PositionalTimewarp>, GlError> {
         let is_wanted = self.viewer.settings().timewarp == Timewarp::Position;
         is_wanted.then(|| PositionalTimewarp::new(gl, self.eye_size())).transpose()
@@ -159,7 +158,7 @@ impl Cardboard {
     /// See [`Viewer::configure`].
     ///
     /// # Errors
-    /// See [`Viewer::configure`], and [`ViewerError::Params`]; the settings before stay.
+    /// Those of [`Viewer::configure`], and [`ViewerError::Params`]. The previous settings stay in effect.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         self.change(settings, folders, |viewer, settings| viewer.configure(settings, folders))
     }
@@ -200,18 +199,18 @@ impl Cardboard {
     /// See [`Viewer::event`].
     ///
     /// # Errors
-    /// See [`Viewer::event`].
+    /// Those of [`Viewer::event`].
     pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
         let action = self.viewer.event(event)?;
         self.follow(action)?;
         Ok(action)
     }
 
-    /// Takes a tap of a finger at a place in pixels from the window's upper left corner, or (`None`) of a key. Returns what
-    /// it does on the start screen or in a corner; elsewhere none, and it is an [`Event::Tap`].
+    /// Handles a tap of a finger at a position in pixels from the window's upper left corner, or of a key (`None`).
+    /// Returns its action on the start screen or in a corner; `None` elsewhere, where it is an [`Event::Tap`].
     ///
     /// # Errors
-    /// See [`Viewer::event`].
+    /// Those of [`Viewer::event`].
     pub fn touch(&mut self, at: Option<[f32; 2]>) -> Result<Option<Action>, ViewerError> {
         let side = self.corner() as f32;
         let width = self.screen.size[0] as f32;
@@ -229,7 +228,7 @@ impl Cardboard {
         Ok(Some(action))
     }
 
-    /// The edge in pixels of the corners that take touches: 48 of Android's density-independent pixels, 7.6 mm.
+    /// Returns the edge in pixels of the corners that take touches: 48 density-independent pixels, 7.6 mm.
     fn corner(&self) -> u32 {
         let dpi = self.screen.dpi[0];
         (0.3 * if dpi.is_finite() && dpi > 0.0 { dpi } else { USUAL_DPI }) as u32
@@ -238,13 +237,13 @@ impl Cardboard {
     /// See [`Viewer::choose_viewer`].
     ///
     /// # Errors
-    /// See [`Cardboard::configure`].
+    /// Those of [`Cardboard::configure`].
     pub fn choose_viewer(&mut self, viewer: &str) -> Result<(), ViewerError> {
         let action = self.viewer.choose_viewer(viewer);
         self.follow(action)
     }
 
-    /// Does the display's part of an action.
+    /// Performs the display's part of an action.
     fn follow(&mut self, action: Action) -> Result<(), ViewerError> {
         if matches!(action, Action::Recenter | Action::StartScreen(false)) {
             self.tracker.recenter();
@@ -258,17 +257,17 @@ impl Cardboard {
         Ok(())
     }
 
-    /// Takes a sample of a motion sensor with its own timestamp in nanoseconds.
+    /// Adds a sample of a motion sensor with its own timestamp in nanoseconds.
     pub fn sensor(&mut self, sample: MotionSample, timestamp_ns: i64) {
         self.tracker.add(sample, timestamp_ns);
     }
 
-    /// Holds the head still whatever the sensors measure, or (`None`) lets it go.
+    /// Holds the head in a fixed pose whatever the sensors measure; `None` releases it.
     pub fn hold_head(&mut self, head: Option<HeldHead>) {
         self.held = head;
     }
 
-    /// See [`Viewer::pause`]; the head stands still.
+    /// See [`Viewer::pause`]; head tracking pauses, too.
     pub fn pause(&mut self) {
         self.tracker.pause();
         self.viewer.pause();
@@ -288,11 +287,11 @@ impl Cardboard {
         self.present(window, timing)
     }
 
-    /// Renders both eyes for the head pose that is expected when the frame is seen. Until the scene is there,
-    /// that is a progress bar.
+    /// Renders both eyes for the head pose predicted for the time at which the frame is seen. Until the scene is
+    /// loaded, this is a progress bar.
     ///
     /// # Errors
-    /// See [`Viewer::render_eyes`].
+    /// Those of [`Viewer::render_eyes`].
     pub fn render(&mut self, timing: &FrameTiming) -> Result<(), ViewerError> {
         let up = self.tracker.head_from_world(0.0) * Vec3::Y;
         if self.viewer.tilt(up, self.screen.rotation, timing.now_ns) {
@@ -325,20 +324,20 @@ impl Cardboard {
         Ok(())
     }
 
-    /// Waits until the GPU has finished the frame that was presented before; meanwhile it begins with the one that was
-    /// rendered since. Without this, a GPU that is slower than the display works off a queue of frames, each of which shows
-    /// an old head pose. Waits for a quarter of a second at most.
+    /// Waits until the GPU has finished the frame that was presented last; meanwhile the GPU starts on the one that was
+    /// rendered since. Without this, a GPU slower than the display builds up a queue of frames, each showing an old
+    /// head pose. Waits for at most a quarter of a second.
     pub fn wait(&mut self) {
         if let Some(attached) = &mut self.attached {
             attached.presented.wait();
         }
     }
 
-    /// Puts the frame that was rendered last on the screen, through the lenses. Timewarp turns it to the head's newest
-    /// direction or moves it to its newest pose, as the settings say.
+    /// Draws the last rendered frame onto the screen, through the lenses. Depending on the settings, timewarp turns it
+    /// to the head's newest direction or moves it to the head's newest pose.
     ///
     /// # Errors
-    /// See [`Viewer::end`].
+    /// Those of [`Viewer::end`].
     pub fn present(
         &mut self,
         window: &Destination,
@@ -374,22 +373,22 @@ impl Cardboard {
         self.viewer.end(timing)
     }
 
-    /// The viewer's parameters and the screen in it.
+    /// Returns the viewer's parameters combined with the screen.
     pub fn optics(&self) -> &Optics {
         &self.optics
     }
 
-    /// The direction of the head.
+    /// Returns the tracker of the head's direction.
     pub fn tracker(&self) -> &HeadTracker {
         &self.tracker
     }
 
-    /// Size in pixels of each eye's image.
+    /// Returns the size in pixels of each eye's image.
     pub fn eye_size(&self) -> [u32; 2] {
         self.viewer.eye_size(self.optics.full_size(self.screen.size))
     }
 
-    /// Rotation from head to world at which to render, and at which to show.
+    /// Returns the rotations from head to world at which to render and at which to show.
     fn head(&self, timing: &FrameTiming) -> (Quat, Quat) {
         if let Some(held) = self.held {
             return (held.rendered, held.displayed);
@@ -398,7 +397,7 @@ impl Cardboard {
         (head, head)
     }
 
-    /// The eyes of a head that is turned like this, at the scene's viewpoint.
+    /// Returns the eyes of a head with this rotation, at the scene's viewpoint.
     fn eyes(&self, head: Quat) -> EyePair {
         let head = self.viewer.place(relative(head));
         let half = self.viewer.ipd().metres() / 2.0;
@@ -422,13 +421,13 @@ fn draw_panels(viewer: &mut Viewer, pair: &EyePair, frame: &StereoFrame) -> Resu
     Ok(())
 }
 
-/// Returns a head that is turned like this, relative to the viewpoint.
+/// Returns the pose of a head with this rotation, relative to the viewpoint.
 fn relative(head: Quat) -> Pose {
-    // At rest the eyes are where the scene's author has put them.
+    // For a head looking straight ahead the eyes are exactly at the viewpoint that the scene's author chose.
     Pose { position: neck_offset(head) - neck_offset(Quat::IDENTITY), orientation: head }
 }
 
-/// Returns width and height in metres of the screen behind the lenses, from the settings or else from the device.
+/// Returns width and height in metres of the screen behind the lenses: those of the settings, or else of the device.
 fn metres(settings: &Settings, screen: &Screen) -> [f32; 2] {
     settings.screen.map_or_else(|| screen.metres(), |size| size.metres())
 }

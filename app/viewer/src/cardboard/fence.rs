@@ -1,4 +1,4 @@
-//! A fence: waits until the GPU has finished earlier commands.
+//! A GPU fence: waits until the GPU has finished earlier commands.
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -6,31 +6,31 @@ use std::time::Duration;
 use glow::HasContext as _;
 use yoro_gl::Context;
 
-/// The longest wait for a frame: a slower GPU may have hung, or lost its context.
+/// The longest wait for a frame. A GPU that is slower may have hung or lost its context.
 const TIMEOUT: Duration = Duration::from_millis(250);
 
-/// A place in the stream of the GPU's commands.
+/// A point in the GPU's command stream.
 pub(super) struct Fence {
     gl: Rc<Context>,
     place: Option<glow::Fence>,
 }
 
 impl Fence {
-    /// Makes a fence that nothing waits for yet.
+    /// Creates a fence that is not set: waiting for it returns at once.
     pub fn new(gl: &Rc<Context>) -> Fence {
         Fence { gl: gl.clone(), place: None }
     }
 
-    /// Puts the fence behind the commands so far.
+    /// Sets the fence after all commands issued so far.
     pub fn set(&mut self) {
         self.clear();
-        // SAFETY: the context is current, by the contract of the viewer; the arguments are the only ones that there are.
+        // SAFETY: the viewer requires the context to be current; the arguments are the only valid ones.
         let place = unsafe { self.gl.raw().fence_sync(glow::SYNC_GPU_COMMANDS_COMPLETE, 0) };
-        // A driver without memory gives none, and then nothing is waited for.
+        // A driver that is out of memory returns no fence, and then there is nothing to wait for.
         self.place = place.ok().filter(|place| !place.0.is_null());
     }
 
-    /// Makes the GPU begin with all commands so far, and waits until it has passed the fence.
+    /// Flushes all commands issued so far and waits until the GPU has passed the fence.
     pub fn wait(&mut self) {
         if let Some(place) = self.place {
             // SAFETY: the context is current, and the fence was made in it and not deleted.
@@ -47,7 +47,7 @@ impl Fence {
 
     fn clear(&mut self) {
         if let Some(place) = self.place.take() {
-            // SAFETY: as in `wait`; deleted once.
+            // SAFETY: as in `wait`; the fence is deleted only once.
             unsafe { self.gl.raw().delete_sync(place) };
         }
     }

@@ -1,4 +1,4 @@
-//! Positional timewarp: the finished eyes, moved to where the head is when they are shown.
+//! Positional timewarp: moves the finished eyes to the head's pose at the time of display.
 
 use std::rc::Rc;
 
@@ -8,8 +8,8 @@ use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 use yoro_render::DepthCopy;
 use yoro_render::stereo::{DepthTarget, EyeTarget, StereoError, StereoFrame};
 
-/// The depth of both finished eyes, and the pass that moves them. Each eye is synthesized from itself; what it has not seen
-/// is filled like any disocclusion.
+/// The depth of both finished eyes, and the pass that moves them. Each eye is synthesized from its own image; what that
+/// image does not contain is filled like any disocclusion.
 pub(super) struct PositionalTimewarp {
     depths: [RenderTarget; 2],
     copy: DepthCopy,
@@ -18,7 +18,7 @@ pub(super) struct PositionalTimewarp {
 }
 
 impl PositionalTimewarp {
-    /// Compiles the passes for eyes of this size in pixels.
+    /// Compiles the passes for eyes of `size` pixels.
     pub(super) fn new(gl: &Rc<Context>, size: [u32; 2]) -> Result<PositionalTimewarp, GlError> {
         let depth = || RenderTarget::new(gl, size, &[], Some(Format::Depth32F));
         Ok(PositionalTimewarp {
@@ -29,13 +29,13 @@ impl PositionalTimewarp {
         })
     }
 
-    /// Resizes the images; nothing happens at the same size.
+    /// Resizes the images, if the size differs.
     pub(super) fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
         self.depths.iter_mut().try_for_each(|depth| depth.resize(size))?;
         self.moved.resize(size)
     }
 
-    /// Returns the targets of a frame with the depth that moving it needs.
+    /// Returns the targets of a frame, extended by the depth that moving it needs.
     pub(super) fn targets(&self, frame: &StereoFrame) -> [EyeTarget<'_>; 2] {
         let colors = frame.targets();
         Eye::BOTH.map(|eye| {
@@ -44,8 +44,8 @@ impl PositionalTimewarp {
         })
     }
 
-    /// Moves both eyes of a frame from where they were rendered to where they are now. Returns `None` if the head has turned
-    /// so far that the frame shows nothing of what is in view.
+    /// Moves both eyes of a frame from where they were rendered to where they are now. Returns `None` if the head has
+    /// turned so far that the frame shows nothing of the present view.
     pub(super) fn run(
         &mut self,
         frame: &StereoFrame,
@@ -87,7 +87,7 @@ mod tests {
         )
     }
 
-    /// Returns the columns in which a red bar before a blue wall is seen by one eye.
+    /// Returns the columns of an eye's image that show a red bar in front of a blue wall.
     fn red(frame: &StereoFrame, eye: Eye) -> Vec<usize> {
         let row = frame.eye(eye).read_rgba8(0, [0, 32], [SIZE[0], 1]);
         (0..SIZE[0] as usize).filter(|&x| row[4 * x] > 200).collect()
@@ -110,7 +110,7 @@ mod tests {
             gl.fill([0, 0], SIZE, [0.0, 0.0, 1.0, 1.0]);
             gl.fill([28, 0], [8, SIZE[1]], [1.0, 0.0, 0.0, 1.0]);
         }
-        // A quarter of a metre to the right: by 8 of 32 pixels a tangent, a metre away.
+        // 25 cm to the right. A tangent is 32 pixels, so a point 1 m away moves by 8 pixels.
         let now = eyes(Pose { position: Vec3::X * 0.25, orientation: Quat::IDENTITY });
         let moved = timewarp.run(&frame, &before, &now).unwrap().unwrap();
         for eye in Eye::BOTH {

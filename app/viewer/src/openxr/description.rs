@@ -3,10 +3,10 @@
 use crate::frame::FrameReport;
 use yoro::eyes::EyePair;
 
-/// Options of a session, besides the viewer's settings.
+/// Options of a session, in addition to the viewer's settings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// The activity.
+    /// The Java side of the application.
     #[cfg(target_os = "android")]
     pub android: Option<super::graphics::Android>,
 }
@@ -33,16 +33,16 @@ pub struct Description {
     pub direct: bool,
     /// Format of the depth that is submitted, if any.
     pub depth: Option<String>,
-    /// True if the lenses hide a part of the images.
+    /// True if the lenses hide part of the images.
     pub mask: bool,
-    /// Refresh rates that the display offers, in Hz, where the runtime says.
+    /// Refresh rates that the display offers, in Hz; empty if the runtime does not report them.
     pub refresh_rates: Vec<f32>,
     /// True if controllers are used.
     pub input: bool,
 }
 
 impl Description {
-    /// Says it in one line.
+    /// Logs the description in one line.
     pub(super) fn log(&self) {
         let [w, h] = self.size;
         let rates: Vec<String> = self.refresh_rates.iter().map(|hz| format!("{hz:.0}")).collect();
@@ -61,22 +61,22 @@ impl Description {
     }
 }
 
-/// A frame of both eyes as the runtime gets it.
+/// The images of both eyes as the runtime receives them.
 #[derive(Clone, Debug)]
 pub struct Capture {
-    /// RGBA, rows from the bottom.
+    /// RGBA, rows from the bottom to the top.
     pub eyes: [Vec<u8>; 2],
-    /// The eyes in the scene.
+    /// The eyes, in the scene's coordinates.
     pub pair: EyePair,
 }
 
 /// A frame that was handed to the runtime.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// The viewer's report; `None` for a frame without images, which the runtime asks for while nobody looks.
+    /// The viewer's report; `None` for a frame without images, requested by the runtime while invisible.
     pub report: Option<FrameReport>,
-    /// Time that this program's thread worked on it, in milliseconds; waiting for the runtime does not count.
+    /// Working time of this program's thread on the frame, in milliseconds; waiting for the runtime is not included.
     pub cpu_ms: f64,
-    /// Its images, if they were asked for.
+    /// The frame's images, if they were asked for.
     pub capture: Option<Box<Capture>>,
 }

@@ -6,14 +6,14 @@ use xr::sys;
 use super::runtime::NotFound;
 use yoro_gl::GlError;
 
-/// A reason why a headset cannot be used, or no longer. Each is one sentence with the remedy.
+/// A reason why a headset cannot be used, or can no longer be used. Each is one sentence with the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum XrError {
-    /// There is no runtime.
+    /// No runtime was found.
     #[error(transparent)]
     NotFound(#[from] NotFound),
-    /// A call was refused.
+    /// A call failed.
     #[error("{function} of the OpenXR runtime failed with XR_{result:?}: {}", remedy(function, *result))]
     Call {
         /// The function's name in the specification.
@@ -29,23 +29,23 @@ pub enum XrError {
         /// The extension's name.
         extension: &'static str,
     },
-    /// The runtime wants another version of OpenGL ES.
+    /// The runtime needs another version of OpenGL ES.
     #[error(
         "the OpenXR runtime needs OpenGL ES {needed} and this driver has {present}: update the driver or the runtime"
     )]
     Version {
-        /// The version needed.
+        /// The version that the runtime needs.
         needed: String,
-        /// The version that there is.
+        /// The context's version.
         present: String,
     },
-    /// The runtime breaks the specification.
+    /// The runtime violates the specification.
     #[error("the OpenXR runtime {0}: that is a mistake in the runtime, so update it")]
     Nonsense(String),
-    /// The runtime takes the session away.
+    /// The runtime has ended the session.
     #[error("the OpenXR runtime has ended the session by itself: a new one is begun")]
     Lost,
-    /// One session after the other has failed.
+    /// Several sessions in a row have failed.
     #[error("{sessions} OpenXR sessions in a row have failed; the last one: {last}")]
     GivenUp {
         /// Number of sessions.
@@ -56,13 +56,13 @@ pub enum XrError {
     /// The GL context cannot be used.
     #[error("the OpenGL ES context cannot be used with OpenXR: {0}")]
     Context(String),
-    /// GL refused.
+    /// A GL operation failed.
     #[error(transparent)]
     Gl(#[from] GlError),
 }
 
 impl XrError {
-    /// True if the session or the whole instance is gone, whoever is to blame.
+    /// True if the session or the whole instance is lost, whatever the cause.
     pub fn is_loss(&self) -> bool {
         matches!(
             self,
@@ -104,17 +104,17 @@ fn remedy(function: &str, result: sys::Result) -> &'static str {
     }
 }
 
-/// Names the function that a result comes from.
+/// Converts a result, adding the name of the function that returned it.
 pub(super) fn call<T>(function: &'static str, result: xr::Result<T>) -> Result<T, XrError> {
     result.map_err(|result| XrError::Call { function, result })
 }
 
-/// Does what [`call`] does, for functions that are called without the crate's wrapper.
+/// Does the same as [`call`] for functions that are called without the crate's wrapper.
 pub(super) fn check(function: &'static str, result: sys::Result) -> Result<sys::Result, XrError> {
     if result.into_raw() >= 0 { Ok(result) } else { Err(XrError::Call { function, result }) }
 }
 
-/// Takes the result of something optional: logs why it is missing and goes on, unless the session is gone.
+/// Handles the result of something optional: logs why it is missing and continues, unless the session is lost.
 pub(super) fn optional<T>(what: &str, result: Result<T, XrError>) -> Result<Option<T>, XrError> {
     match result {
         Ok(value) => Ok(Some(value)),

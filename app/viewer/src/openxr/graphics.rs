@@ -10,7 +10,7 @@ use yoro_context::Graphics;
 
 use super::error::{XrError, call, check};
 
-/// Makes the context current again; runtimes may change that in any call that has to do with images or frames.
+/// Makes the context current again. Runtimes may change the current context in any call concerning images or frames.
 pub(super) fn make_current(graphics: &dyn Graphics) -> Result<(), XrError> {
     graphics.make_current().map_err(XrError::Context)
 }
@@ -25,16 +25,16 @@ pub struct Android {
 
 #[cfg(target_os = "android")]
 impl Android {
-    /// A `JavaVM*` and a global JNI reference to the `android.app.Activity`.
+    /// Creates it from a `JavaVM*` and a global JNI reference to the `android.app.Activity`.
     ///
     /// # Safety
-    /// Both are valid as long as the value, or what was made with it, is used.
+    /// Both pointers must remain valid for as long as this value, or anything created from it, is used.
     pub unsafe fn new(vm: *mut c_void, activity: *mut c_void) -> Android {
         Android { vm, activity }
     }
 
     pub(super) fn platform(&self) -> xr::AndroidPlatformInfo {
-        // SAFETY: `new` takes only valid pointers, which outlive this value.
+        // SAFETY: the caller of `new` guarantees valid pointers that outlive this value.
         unsafe { xr::AndroidPlatformInfo::new(self.vm, self.activity) }
     }
 }
@@ -61,7 +61,7 @@ pub(super) fn create_session(
     let graphics_binding = sys::GraphicsBindingEGLMNDX {
         ty: sys::GraphicsBindingEGLMNDX::TYPE,
         next: std::ptr::null(),
-        // SAFETY: by the contract of `Graphics` this is eglGetProcAddress, of this type; null is `None`.
+        // SAFETY: by the contract of `Graphics` this is eglGetProcAddress, which has this type; null is `None`.
         get_proc_address: unsafe {
             std::mem::transmute::<*const c_void, Option<sys::pfn::EglGetProcAddressMNDX>>(
                 binding.get_proc_address,
@@ -82,11 +82,11 @@ pub(super) fn create_session(
     let result = unsafe { (instance.fp().create_session)(instance.as_raw(), &info, &mut handle) };
     make_current(graphics)?;
     check("xrCreateSession", result)?;
-    // SAFETY: a new session of this instance, made for OpenGL ES.
+    // SAFETY: the handle is a new session of this instance, created for OpenGL ES.
     Ok(unsafe { xr::Session::from_raw(instance.clone(), handle, Box::new(())) })
 }
 
-/// Calls xrGetOpenGLESGraphicsRequirementsKHR, which must come before a session; `present` is the context's version.
+/// Calls xrGetOpenGLESGraphicsRequirementsKHR, which must precede a session. `present` is the context's version.
 pub(super) fn check_version(
     instance: &xr::Instance,
     system: xr::SystemId,

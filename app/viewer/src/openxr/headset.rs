@@ -1,4 +1,4 @@
-//! A headset: one session after the other.
+//! A headset: replaces sessions that are lost.
 
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -15,31 +15,31 @@ use crate::viewer::Viewer;
 use yoro_context::Graphics;
 use yoro_gl::Context;
 
-/// The pause before the first new session; it doubles with each that fails.
+/// The pause before the first new session. It doubles with each session that fails.
 const PAUSE: Duration = Duration::from_millis(500);
-/// Sessions in a row that fail before the headset is given up.
+/// Number of consecutive sessions that may fail; the next failure gives up the headset.
 const MOST_FAILURES: u32 = 3;
-/// A session that has shown so many frames was a good one.
+/// A session that has shown this many frames counts as successful.
 const GOOD_FRAMES: u32 = 200;
-/// A runtime that was asked to end a session and does not is left alone after this.
+/// How long to wait for a runtime that was asked to end a session and does not.
 const EXIT_TIMEOUT: Duration = Duration::from_secs(3);
-/// States that are remembered.
+/// Number of session states that are kept.
 const MOST_STATES: usize = 64;
 
-/// The result of a call of [`Headset::step`].
+/// The result of [`Headset::step`].
 #[derive(Debug)]
 pub enum Step {
-    /// The runtime wants no frame now; ask again in some milliseconds.
+    /// The runtime wants no frame now; call again in a few milliseconds.
     Idle,
-    /// A frame.
+    /// A frame was handed to the runtime.
     Frame(Frame),
-    /// The session is over for good: the user, the system, or [`Headset::request_exit`] has ended it.
+    /// The session is over for good: ended by the user, the system, or [`Headset::request_exit`].
     Ended,
 }
 
-/// A [`Viewer`] on a display that is worn.
+/// A [`Viewer`] on a head-mounted display.
 pub struct Headset {
-    // What lives in the runtime's images goes before what is drawn there.
+    // Dropped first: objects that use the runtime's images must go before those images.
     session: Option<Session>,
     viewer: Viewer,
     runtime: Runtime,
@@ -48,21 +48,21 @@ pub struct Headset {
     description: Description,
     states: Vec<String>,
     restarts: u32,
-    /// Sessions in a row that have failed.
+    /// Number of consecutive sessions that have failed.
     failures: u32,
-    /// Frames of this session.
+    /// Number of frames in this session.
     frames: u32,
     retry: Option<Instant>,
     exit: Option<Instant>,
-    /// The runtime cannot end the session.
+    /// True if the runtime cannot end the session.
     is_refused: bool,
     is_over: bool,
     capture: bool,
 }
 
 impl Headset {
-    /// Begins the first session. The GL context of `graphics` is current, `gl` is made from it, and the viewer is
-    /// attached to it.
+    /// Starts the first session. The GL context of `graphics` must be current, `gl` must be created from it, and the
+    /// viewer must be attached to it.
     ///
     /// # Errors
     /// [`XrError`]: one sentence that says what the runtime lacks, and the remedy.
@@ -74,7 +74,7 @@ impl Headset {
         options: Options,
     ) -> Result<Headset, XrError> {
         let open = || Session::open(&runtime, graphics, gl, viewer.settings(), &options);
-        // A runtime that is just being started or replaced loses what was begun.
+        // A runtime that is just being started or replaced may lose the first session.
         let session = open().or_else(|error| {
             if !error.is_loss() {
                 return Err(error);
@@ -103,11 +103,11 @@ impl Headset {
         })
     }
 
-    /// Makes a frame, as soon as the runtime wants one: it sets the pace. A session that is lost, or fails, is replaced
-    /// after a pause; each time one sentence is logged.
+    /// Makes a frame as soon as the runtime wants one; the runtime sets the pace. A session that is lost or fails is
+    /// replaced after a pause, and one sentence is logged each time.
     ///
     /// # Errors
-    /// [`XrError`] when several sessions in a row have failed.
+    /// [`XrError`] if several consecutive sessions have failed.
     pub fn step(&mut self, graphics: &dyn Graphics) -> Result<Step, XrError> {
         let step = self.advance(graphics);
         self.is_over |= matches!(step, Ok(Step::Ended));
@@ -153,7 +153,7 @@ impl Headset {
         }
     }
 
-    /// Gives the session up, and the headset if that happens too often.
+    /// Gives up the session, and after several consecutive failures the headset.
     fn fail(&mut self, error: XrError, graphics: &dyn Graphics) -> Result<Step, XrError> {
         self.close(graphics)?;
         self.viewer.pause();
@@ -171,7 +171,7 @@ impl Headset {
         Ok(Step::Idle)
     }
 
-    /// Drops the session, which has framebuffers.
+    /// Drops the session, which owns framebuffers.
     fn close(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
         let before = make_current(graphics);
         self.session = None;
@@ -179,7 +179,7 @@ impl Headset {
         make_current(graphics)
     }
 
-    /// Begins a new session, when it is time.
+    /// Starts a new session once the pause is over.
     fn reopen(&mut self, graphics: &dyn Graphics) -> Result<Step, XrError> {
         if self.exit.is_some() {
             return Ok(Step::Ended);
@@ -205,7 +205,7 @@ impl Headset {
             return;
         }
         self.exit = Some(Instant::now());
-        // A session that has not begun has nothing to end.
+        // A session that is not running has nothing to end.
         if let Some(session) = &self.session
             && session.is_running()
         {
@@ -222,29 +222,29 @@ impl Headset {
         self.exit.is_some()
     }
 
-    /// Does what the user wants in the next frame.
+    /// Queues an action of the user for the next frame.
     pub fn event(&mut self, event: Event) {
         if let Some(session) = &mut self.session {
             session.event(event);
         }
     }
 
-    /// Keeps the images of the next frame that has any: [`Frame::capture`].
+    /// Keeps the images of the next frame that has any, see [`Frame::capture`].
     pub fn capture(&mut self) {
         self.capture = true;
     }
 
-    /// True if the runtime wants frames: then [`Headset::step`] waits for the display.
+    /// True if the runtime wants frames; then [`Headset::step`] waits for the display.
     pub fn is_running(&self) -> bool {
         self.session.as_ref().is_some_and(Session::is_running)
     }
 
-    /// The application that is worn.
+    /// Returns the application.
     pub fn viewer(&self) -> &Viewer {
         &self.viewer
     }
 
-    /// The application that is worn, for what is not the display's own: telemetry, scenes, settings.
+    /// Returns the application, for what does not depend on the display: telemetry, scenes, settings.
     pub fn viewer_mut(&mut self) -> &mut Viewer {
         &mut self.viewer
     }
@@ -254,7 +254,7 @@ impl Headset {
         &self.description
     }
 
-    /// The states that the sessions went through, the first ones.
+    /// Returns the first states that the sessions went through.
     pub fn states(&self) -> &[String] {
         &self.states
     }

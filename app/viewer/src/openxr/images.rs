@@ -13,9 +13,9 @@ use yoro::eyes::Eye;
 use yoro_context::Graphics;
 use yoro_gl::{Context, Destination, ForeignTarget};
 
-/// A compositor that holds an image for longer than this is stuck.
+/// A compositor that holds an image for longer than this is considered stuck.
 const TIMEOUT: Duration = Duration::from_secs(3);
-/// One wait; in between the program can still be interrupted.
+/// The length of a single wait. Between waits the program can still be interrupted.
 const WAIT_NS: i64 = 250_000_000;
 
 /// The kind of a swapchain's images.
@@ -30,8 +30,8 @@ pub(super) struct Kind {
 
 /// A swapchain.
 pub(super) struct Images {
-    // The framebuffers go before the images.
-    /// By image and layer.
+    // Dropped first: the framebuffers refer to the swapchain's images.
+    /// Indexed by image and layer.
     framebuffers: Vec<Vec<ForeignTarget>>,
     swapchain: xr::Swapchain<xr::OpenGlEs>,
     instance: xr::Instance,
@@ -77,7 +77,7 @@ impl Images {
                 .ok_or_else(|| XrError::Nonsense("offers an image without a name".into()))?;
             let framebuffer = |layer| {
                 let layer = (kind.layers > 1).then_some(layer);
-                // SAFETY: the runtime's textures of this swapchain live as long as it; the framebuffers go first.
+                // SAFETY: the textures live as long as the swapchain, which the framebuffers do not outlive.
                 unsafe { ForeignTarget::new(gl, glow::NativeTexture(name), layer, kind.is_depth, kind.size) }
             };
             (0..kind.layers).map(framebuffer).collect::<Result<Vec<_>, _>>().map_err(XrError::Gl)
@@ -95,7 +95,7 @@ impl Images {
     pub fn acquire(&mut self, graphics: &dyn Graphics) -> Result<(), XrError> {
         let (fp, raw) = (self.instance.fp(), self.swapchain.as_raw());
         let mut index = 0;
-        // SAFETY: a live swapchain; the result has a place.
+        // SAFETY: the swapchain is live, and there is room for the result.
         let result = unsafe { (fp.acquire_swapchain_image)(raw, std::ptr::null(), &mut index) };
         make_current(graphics)?;
         check("xrAcquireSwapchainImage", result)?;
@@ -128,7 +128,7 @@ impl Images {
         if self.current.take().is_none() {
             return Ok(());
         }
-        // SAFETY: a live swapchain.
+        // SAFETY: the swapchain is live.
         let result = unsafe {
             (self.instance.fp().release_swapchain_image)(self.swapchain.as_raw(), std::ptr::null())
         };
@@ -136,18 +136,18 @@ impl Images {
         check("xrReleaseSwapchainImage", result).map(drop)
     }
 
-    /// Deletes the framebuffers; nothing more can be drawn.
+    /// Deletes the framebuffers, after which nothing can be drawn.
     pub fn close(&mut self) {
         self.framebuffers.clear();
     }
 
-    /// Returns the destination of a layer of the image that was acquired.
+    /// Returns the destination for a layer of the acquired image.
     pub fn destination(&self, layer: u32, size: [u32; 2]) -> Option<Destination> {
         let image = self.framebuffers.get(self.current?)?;
         Some(image.get(layer as usize)?.part(size))
     }
 
-    /// The lower left part of a layer, as layers of a frame name it.
+    /// Returns the lower left part of a layer, as xrEndFrame takes it.
     pub fn sub_image(&self, layer: u32, size: [u32; 2]) -> sys::SwapchainSubImage {
         sys::SwapchainSubImage {
             swapchain: self.swapchain.as_raw(),
@@ -160,11 +160,11 @@ impl Images {
     }
 }
 
-/// The images of both eyes: two layers of one swapchain, or two swapchains where the runtime has no arrays.
+/// The images of both eyes: two layers of one swapchain, or two swapchains if the runtime does not support arrays.
 pub(super) struct EyeImages(Vec<Images>);
 
 impl EyeImages {
-    /// `kind.layers` is found out.
+    /// Creates the images. `kind.layers` is ignored: two layers are tried first.
     pub fn new(
         graphics: &dyn Graphics,
         gl: &Rc<Context>,

@@ -1,13 +1,13 @@
-//! Controllers, by OpenXR's action system.
+//! Controllers, through OpenXR's action system.
 //!
 //! | control | Touch and Pico controllers | simple controller | does |
 //! |---|---|---|---|
 //! | select | trigger, A, X | select | next method; held: opens the menu, in the menu recenters |
 //! | menu | menu, B, Y | menu | HUD; held: as above |
-//! | stick left, right | thumbstick | | method before, next method |
+//! | stick left, right | thumbstick | | previous method, next method |
 //! | stick up, down | thumbstick | | next scene, next viewpoint |
-//! | squeeze and stick | grip and thumbstick | | the eyes a millimetre further apart or closer |
-//! | aim | aim | aim | in the menu: the tile that is pointed at |
+//! | squeeze and stick | grip and thumbstick | | moves the eyes a millimetre further apart or closer |
+//! | aim | aim | aim | in the menu: points at a tile |
 
 use glam::Vec2;
 use openxr as xr;
@@ -17,17 +17,17 @@ use super::session::to_pose;
 use crate::event::Event;
 use yoro::eyes::Pose;
 
-/// A button that is held longer means something else, in nanoseconds.
+/// A button that is held for longer than this has another meaning, in nanoseconds.
 const LONG_NS: i64 = 600_000_000;
-/// The stick counts as pushed beyond the first, and as let go below the second.
+/// The stick counts as pushed above `PUSHED` and as released below `LET_GO`.
 const PUSHED: f32 = 0.7;
 const LET_GO: f32 = 0.4;
-/// A stick that stays pushed repeats, in nanoseconds.
+/// Period at which a stick that stays pushed repeats, in nanoseconds.
 const REPEAT_NS: i64 = 250_000_000;
 
 /// Pico's controllers (XR_BD_controller_interaction; the last one is what the runtime of Pico 4 Ultra reports). They
-/// have all the inputs of Touch controllers. A runtime maps those of other controllers onto them by `simple_controller`
-/// alone, which has neither stick nor squeeze.
+/// have all the inputs of Touch controllers. Without these profiles, a runtime can only map them to
+/// `simple_controller`, which has neither stick nor squeeze.
 const PICO: [&str; 3] = [
     "/interaction_profiles/bytedance/pico_neo3_controller",
     "/interaction_profiles/bytedance/pico4_controller",
@@ -40,20 +40,20 @@ struct Controls {
     select: bool,
     menu: bool,
     squeeze: bool,
-    /// X to the right and Y up, -1 to 1.
+    /// X to the right and Y up, each -1 to 1.
     stick: Vec2,
 }
 
 /// A button.
 #[derive(Clone, Copy, Debug, Default)]
 struct Button {
-    /// Since when it is down; nothing more happens once it has counted as held.
+    /// The time at which it was pressed. Once it has counted as held, `is_spent` is set and nothing more happens.
     since_ns: Option<i64>,
     is_spent: bool,
 }
 
 impl Button {
-    /// The event that follows, if any.
+    /// Returns the resulting event, if any.
     fn update(&mut self, is_down: bool, now_ns: i64, short: Event, long: Event) -> Option<Event> {
         match (is_down, self.since_ns) {
             (true, None) => {
@@ -73,12 +73,12 @@ impl Button {
     }
 }
 
-/// The state of the controls before.
+/// The previous state of the controls.
 #[derive(Clone, Copy, Debug, Default)]
 struct Memory {
     select: Button,
     menu: Button,
-    /// The time at which the pushed stick last did something.
+    /// The time at which the pushed stick last had an effect.
     pushed_ns: Option<i64>,
 }
 
@@ -97,7 +97,7 @@ impl Memory {
         if reach < PUSHED {
             return;
         }
-        // Only the distance between the eyes changes for as long as the stick is held.
+        // While the stick is held, only the distance between the eyes keeps changing.
         let again = controls.squeeze && self.pushed_ns.is_some_and(|then| now_ns - then >= REPEAT_NS);
         if self.pushed_ns.is_some() && !again {
             return;
@@ -116,12 +116,12 @@ impl Memory {
     }
 }
 
-/// The hands, the right one first: where both point at the menu, it counts.
+/// The hands. The right one is first, so that it takes precedence if both point at the menu.
 const HANDS: [&str; 2] = ["/user/hand/right", "/user/hand/left"];
 
 /// The controllers of a session.
 pub(super) struct Input {
-    /// The rays of the hands, and their action.
+    /// The rays of the hands, and the action that they belong to.
     aims: [xr::Space; 2],
     _aim: xr::Action<xr::Posef>,
     select: xr::Action<bool>,
@@ -133,7 +133,7 @@ pub(super) struct Input {
 }
 
 impl Input {
-    /// Makes the actions, suggests bindings and attaches them to the session, which can be done once.
+    /// Creates the actions, suggests bindings and attaches them to the session, which is possible only once.
     pub fn new(instance: &xr::Instance, session: &xr::Session<xr::OpenGlEs>) -> Result<Input, XrError> {
         let set = call("xrCreateActionSet", instance.create_action_set("viewer", "Viewer", 0))?;
         let flag =
@@ -193,7 +193,7 @@ impl Input {
             for profile in PICO {
                 match suggest(profile, &buttons, &sticks) {
                     Err(error) if error.is_loss() => return Err(error),
-                    // Not every runtime with the extension knows the latest of them.
+                    // Not every runtime with the extension supports its newest profile.
                     Err(error) => log::debug!("{profile}: {error}"),
                     Ok(()) => {}
                 }
@@ -205,7 +205,7 @@ impl Input {
         Ok(Input { aims, _aim: aim, select, menu, squeeze, stick, set, memory: Memory::default() })
     }
 
-    /// Returns the rays of the hands in a space, each along its pose's -Z; none for a hand that is not tracked.
+    /// Returns the rays of the hands in a space, each along its pose's -Z; `None` for a hand that is not tracked.
     pub fn rays(&self, base: &xr::Space, time: xr::Time) -> Result<[Option<Pose>; 2], XrError> {
         let mut rays = [None; 2];
         for (ray, aim) in rays.iter_mut().zip(&self.aims) {
@@ -242,7 +242,7 @@ impl Input {
         Ok(())
     }
 
-    /// Forgets what is held, while the system has the controls.
+    /// Forgets pressed controls, while the system uses them.
     pub fn forget(&mut self) {
         self.memory = Memory::default();
     }

@@ -13,7 +13,7 @@ use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderS
 pub(super) struct Mask {
     gl: Rc<Context>,
     program: Program,
-    /// None where nothing is hidden.
+    /// `None` where nothing is hidden.
     meshes: [Option<Mesh>; 2],
 }
 
@@ -38,7 +38,7 @@ impl Mask {
         Ok(self.set(eye, &vertices, &mask.indices)?)
     }
 
-    /// Takes triangles in tangents.
+    /// Sets a mesh of triangles whose vertices are tangents of view angles.
     fn set(&mut self, eye: Eye, vertices: &[[f32; 2]], indices: &[u32]) -> Result<(), GlError> {
         let whole = indices.len() - indices.len() % 3;
         let fits = indices[..whole].iter().all(|&i| (i as usize) < vertices.len());
@@ -56,7 +56,7 @@ impl Mask {
         self.meshes.iter().any(Option::is_some)
     }
 
-    /// Blackens what is hidden of both eyes: an image that the compositor turns shows nothing there either, and black
+    /// Blackens the hidden parts of both eyes. The compositor shows nothing there even after reprojection, and black
     /// compresses well.
     pub fn draw(&self, frusta: &[Frustum; 2], to: &[Destination; 2]) {
         if !self.hides() {
@@ -87,7 +87,7 @@ mod tests {
         let headless = Headless::open(Backend::Egl).unwrap();
         let gl = headless.gl();
         let mut mask = Mask::new(gl).unwrap();
-        // The left half of a frustum from -1 to 1.
+        // Covers the left half of a frustum from -1 to 1.
         mask.set(Eye::Left, &[[-1.0, -1.0], [0.0, -1.0], [0.0, 1.0], [-1.0, 1.0]], &[0, 1, 2, 0, 2, 3])
             .unwrap();
         mask.set(Eye::Right, &[[0.0, 0.0]], &[0, 1, 2]).unwrap();

@@ -2,14 +2,14 @@
 //!
 //! [`runtime`] finds the runtime of this machine. A [`Headset`] is the display of the [`Viewer`](crate::Viewer) that it
 //! owns: it takes poses, frusta and image sizes from the runtime, lets the viewer render into the runtime's own images,
-//! and begins a new session when one is lost.
+//! and starts a new session when one is lost.
 //!
 //! ```text
 //! runtime::find() ──> Headset::open() ──> step()* ──> request_exit(), step()* until Step::Ended
 //! ```
 //!
-//! A step is one frame, or nothing while the runtime wants none. All calls come from the thread on which the GL
-//! context is current; that includes dropping the [`Headset`], which has framebuffers.
+//! A step is one frame, or nothing while the runtime wants none. All calls, including the drop of the [`Headset`],
+//! which owns framebuffers, must come from the thread on which the GL context is current.
 
 mod description;
 mod error;

@@ -1,9 +1,9 @@
 //! Writes finished images into the runtime's images without changing their colours.
 //!
-//! Finished images are display-referred sRGB. The runtime's images should be stored as just that (SRGB8_ALPHA8), but
-//! OpenGL ES encodes what is written to such a framebuffer once more, unless GL_EXT_sRGB_write_control turns it off.
-//! Where it does (which is tried out once, for all ways of writing), eyes are drawn straight into the images;
-//! elsewhere they are drawn aside and decoded on their way.
+//! Finished images are display-referred sRGB. The runtime's images should store exactly these values (SRGB8_ALPHA8),
+//! but OpenGL ES encodes what is written to such a framebuffer a second time, unless GL_EXT_sRGB_write_control turns
+//! this off. Where it does (tested once, for all ways of writing), eyes are drawn directly into the images; elsewhere
+//! they are drawn into a target of their own and decoded on the way.
 
 use std::rc::Rc;
 
@@ -14,9 +14,9 @@ use yoro_gl::{
 };
 use yoro_render::stereo::{EyeTarget, StereoFrame};
 
-/// Formats of eye images, best first: stored as sRGB, or with bits to spare for linear colour, or neither.
+/// Formats of eye images, best first: stored as sRGB, with enough bits for linear colour, or neither.
 pub(super) const COLOR_FORMATS: [u32; 4] = [glow::SRGB8_ALPHA8, glow::RGBA16F, glow::RGB10_A2, glow::RGBA8];
-/// Formats of depth images, best first: most are what the g-buffer has.
+/// Formats of depth images, best first: 24 bits or floats, as in the g-buffer, or else 16 bits.
 pub(super) const DEPTH_FORMATS: [u32; 5] = [
     glow::DEPTH_COMPONENT24,
     glow::DEPTH24_STENCIL8,
@@ -25,7 +25,7 @@ pub(super) const DEPTH_FORMATS: [u32; 5] = [
     glow::DEPTH_COMPONENT16,
 ];
 
-/// The name of a format in GL.
+/// Returns the name of a GL format.
 pub(super) fn format_name(format: u32) -> String {
     let name = match format {
         glow::SRGB8_ALPHA8 => "SRGB8_ALPHA8",
@@ -42,33 +42,33 @@ pub(super) fn format_name(format: u32) -> String {
     name.into()
 }
 
-/// The first of `wanted` that is among `offered`.
+/// Returns the first of `wanted` that is in `offered`.
 pub(super) fn choose(wanted: &[u32], offered: &[u32]) -> Option<u32> {
     wanted.iter().copied().find(|format| offered.contains(format))
 }
 
-/// True if the driver can be told not to encode what is written to sRGB framebuffers.
+/// True if the driver can turn off the encoding of what is written to sRGB framebuffers.
 fn has_control(gl: &Context) -> bool {
     gl.raw().supported_extensions().contains("GL_EXT_sRGB_write_control")
 }
 
-/// Turns encoding on, which is how OpenGL ES begins, or off. Only where [`has_control`].
+/// Turns encoding on, which is OpenGL ES's default, or off. Requires [`has_control`].
 fn set_encoding(gl: &Context, on: bool) {
-    // SAFETY: a valid enum with the extension.
+    // SAFETY: the enum is valid with the extension.
     unsafe {
         if on { gl.raw().enable(glow::FRAMEBUFFER_SRGB) } else { gl.raw().disable(glow::FRAMEBUFFER_SRGB) }
     }
 }
 
-/// The way of the eyes into the runtime's images.
+/// How the eyes get into the runtime's images.
 pub(super) struct Storage {
     gl: Rc<Context>,
-    /// The target that eyes are drawn into first, and the pass that decodes them.
+    /// The target into which eyes are drawn first, and the pass that decodes them; `None` if they are drawn directly.
     detour: Option<(StereoFrame, Program)>,
 }
 
 impl Storage {
-    /// Chooses the way for images of a format.
+    /// Chooses how eyes are written into images of `format`.
     pub fn new(gl: &Rc<Context>, format: u32) -> Result<Storage, GlError> {
         let is_direct = format == glow::SRGB8_ALPHA8 && has_control(gl) && stores_as_written(gl)?;
         Storage::by(gl, is_direct)
@@ -87,7 +87,7 @@ impl Storage {
         self.detour.is_none()
     }
 
-    /// Begins a frame. Returns the targets of the eyes that are to end up in `images`.
+    /// Begins a frame. Returns the targets for eyes that are to end up in `images`.
     pub fn begin(&mut self, images: [Destination; 2]) -> Result<[Destination; 2], GlError> {
         match &mut self.detour {
             None => {
@@ -108,7 +108,7 @@ impl Storage {
             return;
         };
         self.gl.pass("transfer", || {
-            // Synthesis turns it off.
+            // Synthesis turns encoding off.
             if has_control(&self.gl) {
                 set_encoding(&self.gl, true);
             }
@@ -122,8 +122,8 @@ impl Storage {
     }
 }
 
-/// Tries out whether an sRGB framebuffer keeps the bits of what is drawn, cleared, and copied into it, with encoding
-/// turned off.
+/// Tests whether an sRGB framebuffer keeps the bits of what is drawn, cleared, and copied into it while encoding is
+/// off.
 fn stores_as_written(gl: &Rc<Context>) -> Result<bool, GlError> {
     const SIZE: [u32; 2] = [4, 4];
     const GREY: [f32; 4] = [100.0 / 255.0, 100.0 / 255.0, 100.0 / 255.0, 1.0];
@@ -165,7 +165,7 @@ mod tests {
     use yoro::eyes::Eye;
     use yoro_context::{Backend, Headless};
 
-    /// Both ways end with the same bits, in a framebuffer that is sRGB as in one that is not.
+    /// Both ways give the same bits, in sRGB and in other framebuffers.
     #[test]
     fn colours_reach_the_runtime_unchanged() {
         let headless = Headless::open(Backend::Egl).unwrap();

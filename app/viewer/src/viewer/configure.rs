@@ -1,4 +1,4 @@
-//! New settings while the viewer runs.
+//! Changes of the settings while the viewer runs.
 
 use std::path::PathBuf;
 
@@ -11,12 +11,11 @@ use yoro_render::stereo::StereoOptions;
 use yoro_render::{RenderSettings, Renderer};
 
 impl Viewer {
-    /// Applies new settings and recreates only the parts that changed. The user's own changes stay, unless that very
-    /// setting differs.
+    /// Applies new settings and recreates only the parts that changed. Changes that the user has made stay, unless the
+    /// same setting differs.
     ///
     /// # Errors
-    /// [`ViewerError::NoScene`], and [`ViewerError::Gl`] when the driver refuses; the former settings
-    /// stay.
+    /// [`ViewerError::NoScene`], and [`ViewerError::Gl`] if the driver refuses. The previous settings stay in effect.
     pub fn configure(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         let given = settings.clone();
         self.change(settings, folders)?;
@@ -26,7 +25,7 @@ impl Viewer {
 
     /// See [`Viewer::configure`].
     pub(crate) fn change(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
-        // First everything that a mistake in the settings can make fail.
+        // Everything that a mistake in the settings can make fail comes first.
         let source = self.other_scene(&settings, folders)?;
         let (render, method_differs) =
             (RenderSettings::of_settings(&settings), settings.method != self.settings.method);

@@ -1,4 +1,4 @@
-//! Frames: from what has been loaded to the report, and a log line a second.
+//! Frames: from the loaded scene to the frame's report, and a log line every second.
 
 use glam::Vec3;
 
@@ -15,13 +15,13 @@ use yoro_protocol::telemetry::{DeviceState, Line, Rating, SessionSummary, Stream
 use yoro_render::stereo::{DepthTarget, EyeTarget};
 use yoro_scene::Viewpoint;
 
-/// The images of the eyes are multiples of this many pixels, so that small changes need no new targets.
+/// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
 const SIZE_STEP: f32 = 16.0;
-/// The background while there is no scene.
+/// The background while no scene is shown.
 const BACKDROP: [f32; 4] = [0.03, 0.035, 0.05, 1.0];
 
 impl Viewer {
-    /// Begins a frame: a scene that has been loaded comes into view.
+    /// Begins a frame. If a scene has finished loading, it is shown from this frame on.
     pub fn begin(&mut self, timing: &FrameTiming) {
         self.now_ns = timing.now_ns;
         self.refresh_hz = timing.refresh_hz;
@@ -33,8 +33,8 @@ impl Viewer {
         }
     }
 
-    /// Renders both eyes; nothing but a backdrop until the scene is there. Eyes of which neither can be synthesized
-    /// from the other (canted ones) are both rendered, whatever the method.
+    /// Renders both eyes, or only a backdrop until the scene is loaded. If neither eye can be synthesized from the
+    /// other (canted eyes), both are rendered, whatever the method.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`], [`ViewerError::Gl`], [`ViewerError::Stereo`].
@@ -75,7 +75,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// Returns the HUD of this frame, if it is to be seen.
+    /// Returns the HUD of this frame, if it is to be shown.
     ///
     /// # Errors
     /// [`ViewerError::NoContext`].
@@ -94,7 +94,7 @@ impl Viewer {
         if !is_empty && !has_sentence && !self.caption.is_in_view(self.now_ns) {
             return Ok(None);
         }
-        // To and fro once in two seconds.
+        // Back and forth once every two seconds.
         let phase = (self.now_ns.rem_euclid(2_000_000_000)) as f32 * 1e-9;
         let progress = (is_empty && is_loading).then_some(1.0 - (1.0 - phase).abs());
         let placement = if is_empty { Placement::Middle } else { Placement::Below };
@@ -128,7 +128,7 @@ impl Viewer {
     /// Ends a frame that was handed to the display.
     ///
     /// # Errors
-    /// [`ViewerError::NoContext`]; [`ViewerError::Gl`] when an adapted method cannot be made.
+    /// [`ViewerError::NoContext`], and [`ViewerError::Gl`] if a method cannot be recompiled for another quality.
     pub fn end(&mut self, timing: &FrameTiming) -> Result<FrameReport, ViewerError> {
         let &FrameTiming { now_ns, refresh_hz, .. } = timing;
         self.now_ns = now_ns;
@@ -162,8 +162,8 @@ impl Viewer {
         })
     }
 
-    /// Ends a second: makes its line for the log. Call it when a [`FrameReport`] says so, with what the device says
-    /// now.
+    /// Ends a second and returns its log line. Call it when a [`FrameReport`] asks for it, with the device's present
+    /// state.
     pub fn telemetry(&mut self, now_ns: i64, device: &DeviceState) -> Line {
         self.method.set_thermal_headroom(device.thermal_headroom);
         let state = self.state();
@@ -196,19 +196,19 @@ impl Viewer {
         self.method.pipeline_name().filter(|_| self.stream.is_none())
     }
 
-    /// The session since the scene came into view, for the log at its end.
+    /// Returns the summary of the session since the scene was first shown, for the log.
     pub fn summary(&self, now_ns: i64) -> SessionSummary {
         self.stats.summary(now_ns)
     }
 
-    /// The answers to the questions of the settings so far; each is logged when it is given.
+    /// Returns the answers so far to the settings' questions; each is logged when it is given.
     pub fn ratings(&self) -> &[Rating] {
         self.stats.ratings()
     }
 
     /// Returns the size in pixels of each eye's image on a display whose full size is `full`.
     pub fn eye_size(&self, full: [f32; 2]) -> [u32; 2] {
-        // Methods render a guard band beside the image.
+        // Methods also render a guard band beside the image.
         let limit = self.attached.as_ref().map_or(4096, |g| g.gl.capabilities().max_texture_size) / 2;
         let steps = |pixels: f32| (pixels * self.render_scale() / SIZE_STEP).round().max(4.0) * SIZE_STEP;
         full.map(|n| (steps(n) as u32).min(limit))

@@ -1,4 +1,4 @@
-//! Does what the user wants, and asks questions.
+//! Performs the user's actions, and asks questions.
 
 use super::{Viewer, gl_with_scene};
 use crate::error::ViewerError;
@@ -6,14 +6,14 @@ use crate::event::{Action, Event};
 use yoro_protocol::telemetry::{Rating, ViewerState};
 use yoro_protocol::{Ipd, Settings};
 
-/// The IPD changes by this much at a time, in metres.
+/// The step by which the IPD changes, in metres.
 pub(super) const IPD_STEP: f32 = 0.001;
 
 impl Viewer {
-    /// Takes an action of the user.
+    /// Handles an action of the user.
     ///
     /// # Errors
-    /// [`ViewerError::Gl`] when a method cannot be made; the one before stays.
+    /// [`ViewerError::Gl`] if a method cannot be compiled; the previous one stays.
     pub fn event(&mut self, event: Event) -> Result<Action, ViewerError> {
         if self.stats.question().is_some() {
             return Ok(self.reply(event));
@@ -61,7 +61,7 @@ impl Viewer {
         Ok(action)
     }
 
-    /// Takes an event while a question is in view.
+    /// Handles an event while a question is shown.
     fn reply(&mut self, event: Event) -> Action {
         let now_ns = self.now_ns;
         let Some(question) = self.stats.question_mut() else { return Action::Nothing };
@@ -89,7 +89,7 @@ impl Viewer {
         }
     }
 
-    /// Keeps and logs the answer to the question in view.
+    /// Stores and logs the answer to the question shown.
     fn answer(&mut self) {
         let answer = self.stats.question_mut().and_then(|question| question.answer());
         let Some((question, rating)) = answer else { return };
@@ -101,7 +101,7 @@ impl Viewer {
         self.stats.keep(rating);
     }
 
-    /// Asks the questions of the settings when the session's time is up; true when there is nothing more to ask.
+    /// Asks the settings' questions when the session's time is up; returns true if no question is left.
     pub(super) fn ask(&mut self) -> bool {
         self.stats.ask(&self.settings);
         if self.stats.question().is_some_and(|question| question.has_settled(self.now_ns)) {
@@ -129,7 +129,7 @@ impl Viewer {
         Action::Scene
     }
 
-    /// Goes to the next (1) or previous (-1) method of the list that the driver can do.
+    /// Switches to the next (1) or previous (-1) method of the list that the driver supports.
     pub(super) fn other_method(&mut self, step: isize) -> Result<Action, ViewerError> {
         if self.stream.is_some() {
             return Ok(Action::Nothing);

@@ -1,4 +1,4 @@
-//! The menu: opens it, does what is chosen, and draws it.
+//! The menu: opens it, performs what the user chooses, and draws it.
 
 use super::input::IPD_STEP;
 use super::{Viewer, gl_with_scene};
@@ -9,16 +9,16 @@ use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::Destination;
 use yoro_protocol::{Setting, Settings};
 
-/// The steps of quality: the name, and the settings.
+/// The quality levels: name, `render-scale`, `adaptive` and `msaa`.
 const QUALITIES: [(&str, f32, bool, u32); 3] =
     [("saving", 0.7, true, 2), ("balanced", 1.0, false, 4), ("best", 1.4, false, 4)];
 
 impl Viewer {
-    /// Says where the head is, relative to the viewpoint, and the rays of controllers, each along its pose's -Z. Opens
-    /// the menu when the user has looked down for a second, and returns what was chosen by looking.
+    /// Updates the menu with the head's pose relative to the viewpoint and the rays of controllers, each along its
+    /// pose's -Z. Opens the menu when the user has looked down for a second, and performs what was chosen by looking.
     ///
     /// # Errors
-    /// See [`Viewer::event`].
+    /// Those of [`Viewer::event`].
     pub fn look(&mut self, head: Pose, rays: [Option<Pose>; 2]) -> Result<Action, ViewerError> {
         if self.stats.question().is_some() {
             self.menu.close();
@@ -137,7 +137,7 @@ impl Viewer {
         Ok(action)
     }
 
-    /// Takes back what the menu has changed.
+    /// Reverts all changes made in the menu.
     pub(super) fn reset(&mut self) -> Action {
         log::info!("menu: reset");
         self.kept.clear();
@@ -146,7 +146,7 @@ impl Viewer {
         Action::Settings
     }
 
-    /// Notes settings that are in use already.
+    /// Records settings that are in use already.
     pub(super) fn keep(&mut self, pairs: &[(&'static str, String)]) {
         for (key, value) in pairs {
             log::info!("menu: {key}={value}");
@@ -159,7 +159,7 @@ impl Viewer {
         self.is_kept_new = true;
     }
 
-    /// Asks the display for other settings.
+    /// Asks the display to apply other settings.
     pub(super) fn want(&mut self, pairs: &[(&'static str, String)]) -> Action {
         let before = self.settings.clone();
         self.keep(pairs);
@@ -167,7 +167,7 @@ impl Viewer {
         Action::Settings
     }
 
-    /// Returns which eye's picture is synthesized.
+    /// Returns the name of the eye that is synthesized.
     pub(super) fn made_up_eye(&self) -> &'static str {
         if self.settings.dominant == Eye::Left { "right" } else { "left" }
     }
@@ -179,12 +179,12 @@ impl Viewer {
             .position(|&(_, scale, is_adaptive, _)| (scale, is_adaptive) == (render_scale, adaptive))
     }
 
-    /// Returns the settings that the menu asks for, once; the display applies them.
+    /// Returns the settings that the menu asks for, once, for the display to apply.
     pub(crate) fn take_settings(&mut self) -> Option<Settings> {
         self.wanted.take()
     }
 
-    /// Applies settings of the menu; a mistake changes nothing.
+    /// Applies settings of the menu; on a mistake nothing changes.
     pub(crate) fn apply_menu(&mut self, settings: Settings) {
         let folders = self.folders.clone();
         if let Err(error) = self.change(settings, &folders) {
@@ -193,7 +193,7 @@ impl Viewer {
         self.write_menu();
     }
 
-    /// Returns the settings that the menu has changed, as keys and values, if they are others than at the last call.
+    /// Returns the settings that the menu has changed, as keys and values, if they have changed since the last call.
     pub fn take_kept(&mut self) -> Option<Vec<(&'static str, String)>> {
         std::mem::take(&mut self.is_kept_new).then(|| self.kept.clone())
     }
@@ -234,17 +234,17 @@ impl Viewer {
         );
     }
 
-    /// True while the menu is open, in view or not.
+    /// True while the menu is open, even if it is hidden for a comparison.
     pub fn is_menu_open(&self) -> bool {
         self.menu.board().is_some()
     }
 
-    /// The place of the menu's panel relative to the viewpoint, while it is in view.
+    /// Returns the pose of the menu's panel relative to the viewpoint, while the panel is shown.
     pub fn menu_place(&self) -> Option<Pose> {
         self.menu.board().filter(|_| !self.menu.is_comparing())
     }
 
-    /// Draws the menu over both eyes, if it is in view.
+    /// Draws the menu over both eyes, if it is shown.
     pub fn draw_menu(&mut self, pair: &EyePair, eyes: &[Destination; 2]) {
         let Some(board) = self.menu_place() else { return };
         let board_pose = self.place(board);

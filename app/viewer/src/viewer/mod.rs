@@ -1,10 +1,10 @@
 //! The application without a platform.
 //!
-//! A [`Viewer`] owns scene, renderer, stereo method, HUD, settings and statistics; where the eyes are, how large their
-//! images are and how a person comes to see them is a display's matter. There are two, and each owns its viewer:
-//! [`Cardboard`](crate::Cardboard), a phone behind lenses with its own motion sensors, and
-//! [`Headset`](crate::openxr::Headset), a headset with an OpenXR runtime. A platform (the Android application,
-//! `yoro view` and `yoro xr` on the desktop) gives a GL context, events and somewhere to draw.
+//! A [`Viewer`] owns scene, renderer, stereo method, HUD, settings and statistics. A display decides where the eyes
+//! are, how large their images are and how the user gets to see them. There are two displays, each of which owns its
+//! viewer: [`Cardboard`](crate::Cardboard), a phone behind lenses with its own motion sensors, and
+//! [`Headset`](crate::openxr::Headset), a headset with an OpenXR runtime. A platform (the Android application, `yoro
+//! view` and `yoro xr` on the desktop) provides a GL context, events and a surface to draw on.
 //!
 //! ```text
 //! new ──> attach(gl) ──> [ event()* ── begin() ── render_eyes() ── hud() ── end() ]* ──> summary()
@@ -12,8 +12,8 @@
 //!             └────────────────────────────┘
 //! ```
 //!
-//! All calls come from one thread; those that may touch GL (`attach`, `event`, `configure`, `begin`, `render_eyes`,
-//! `hud`, `end`, `detach`, drop) need the context to be current there. Times are nanoseconds of a monotonic clock.
+//! All calls must come from one thread. Those that may use GL (`attach`, `event`, `configure`, `begin`, `render_eyes`,
+//! `hud`, `end`, `detach`, drop) need a current context. Times are nanoseconds of a monotonic clock.
 
 mod configure;
 mod frames;
@@ -45,10 +45,10 @@ use yoro_render::RenderSettings;
 use yoro_render::stereo::MethodChoice;
 use yoro_scene::Scene;
 
-/// Passes of a frame for whose times there is room from the start.
+/// Capacity reserved for the times of a frame's passes.
 const MOST_PASSES: usize = 64;
 
-/// Objects that live in the GL context besides scene and method.
+/// Objects in the GL context, other than the scene and the method.
 struct Attached {
     gl: Rc<Context>,
     hud: Hud,
@@ -59,9 +59,9 @@ struct Attached {
 /// The sources of the distance between the eyes.
 #[derive(Clone, Copy, Debug)]
 struct IpdSources {
-    /// The settings or the user.
+    /// Chosen in the settings or by the user.
     chosen: Option<Ipd>,
-    /// The display by itself.
+    /// The display's own.
     native: Ipd,
 }
 
@@ -70,7 +70,7 @@ pub struct Viewer {
     settings: Settings,
     folders: Vec<PathBuf>,
     scene: SceneSlot,
-    /// In the scene's place.
+    /// The stream that is shown instead of the scene.
     stream: Option<Stream>,
     method: MethodSlot,
     stats: SessionStats,
@@ -80,21 +80,21 @@ pub struct Viewer {
     now_ns: i64,
     refresh_hz: f32,
     menu: Menu,
-    /// The settings that the viewer was made with or given since, without the changes of the menu.
+    /// The settings from the last call of `new` or `configure`, without the menu's changes.
     given: Settings,
-    /// Settings of the menu that the display has not taken yet.
+    /// Settings from the menu that the display has not taken yet.
     wanted: Option<Settings>,
-    /// The settings that the menu has changed, by their keys, and whether they have changed since they were taken.
+    /// The settings that the menu has changed, by key, and whether they have changed since they were last taken.
     kept: Vec<(&'static str, String)>,
     is_kept_new: bool,
     start: StartScreen,
 }
 
 impl Viewer {
-    /// Starts to load the scene in the background. `folders` are where scenes given by name are looked for.
+    /// Starts to load the scene in the background. `folders` are searched for scenes given by name.
     ///
     /// # Errors
-    /// [`ViewerError::NoScene`]: a mistake in the settings.
+    /// [`ViewerError::NoScene`] for a mistake in the settings.
     pub fn new(settings: Settings, folders: &[PathBuf]) -> Result<Viewer, ViewerError> {
         let source = SceneSource::find(&settings.scene, settings.seed, folders)?;
         log::info!("settings: {settings}");
@@ -119,14 +119,14 @@ impl Viewer {
         })
     }
 
-    /// Takes a GL context and makes everything that lives in it. The scene is shown as soon as it is loaded.
+    /// Takes a GL context and creates everything that lives in it. The scene is shown once it is loaded.
     ///
     /// # Errors
     /// [`ViewerError::Gl`].
     pub fn attach(&mut self, gl: Rc<Context>) -> Result<(), ViewerError> {
         gl.set_profiling(profiling(&self.settings));
         self.method.choose_pipeline(&gl, &self.settings);
-        // What a context before this one held.
+        // Drops what lived in an earlier context.
         self.detach();
         let (hud, board) = (Hud::new(&gl)?, Board::new(&gl)?);
         match &mut self.stream {
@@ -137,7 +137,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// Drops everything that lives in the GL context, which is lost or about to be destroyed. After another
+    /// Drops everything that lives in the GL context, which is lost or about to be destroyed. After the next
     /// [`Viewer::attach`] the scene is loaded again.
     pub fn detach(&mut self) {
         self.method.drop_made();
@@ -153,7 +153,7 @@ impl Viewer {
         self.attached.is_some()
     }
 
-    /// Shows a stream in the scene's place, until another scene is chosen.
+    /// Shows a stream instead of the scene, until another scene is chosen.
     ///
     /// # Errors
     /// [`ViewerError::Gl`].
@@ -181,8 +181,7 @@ impl Viewer {
         self.method.make(gl, &self.settings)
     }
 
-    /// Pauses in the background: nothing moves on, and the time until the next frame is not
-    /// counted.
+    /// Pauses in the background: animations stop, and the time until the next frame is not counted.
     pub fn pause(&mut self) {
         if let Some(shown) = self.scene.shown() {
             shown.pause();
@@ -196,27 +195,27 @@ impl Viewer {
         self.method.interrupt();
     }
 
-    /// The settings the viewer was made with, or has taken over since.
+    /// Returns the settings in use.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// The method that the settings or the user have chosen.
+    /// Returns the method that the settings or the user have chosen.
     pub fn method(&self) -> MethodChoice {
         self.method.choice().0
     }
 
-    /// Distance between the eyes in metres.
+    /// Returns the distance between the eyes.
     pub fn ipd(&self) -> Ipd {
         self.ipd.chosen.unwrap_or(self.ipd.native)
     }
 
-    /// The distance between the eyes that the settings or the user ask for, if not that of the display.
+    /// Returns the distance between the eyes that the settings or the user have chosen, if any.
     pub fn chosen_ipd(&self) -> Option<Ipd> {
         self.ipd.chosen
     }
 
-    /// Sets the distance between the eyes that the display has by itself.
+    /// Sets the display's own distance between the eyes.
     pub fn set_native_ipd(&mut self, ipd: Ipd) {
         self.ipd.native = ipd;
     }
@@ -226,17 +225,17 @@ impl Viewer {
         self.ipd.chosen = self.settings.ipd;
     }
 
-    /// Where scenes and viewers given by name are looked for.
+    /// Returns the folders that are searched for scenes and viewers given by name.
     pub(crate) fn folders(&self) -> &[PathBuf] {
         &self.folders
     }
 
-    /// The scene that is in view or on its way; `stream` for a stream.
+    /// Returns the name of the scene that is shown or being loaded; `stream` for a stream.
     pub fn scene_name(&self) -> &str {
         if self.stream.is_some() { "stream" } else { self.scene.name() }
     }
 
-    /// Time of the last frame in nanoseconds.
+    /// Returns the time of the last frame in nanoseconds.
     pub fn now_ns(&self) -> i64 {
         self.now_ns
     }
@@ -246,7 +245,7 @@ impl Viewer {
         self.scene.place(pose)
     }
 
-    /// The state of the scene.
+    /// Returns the state of the scene.
     pub fn scene_state(&self) -> SceneState {
         match &self.stream {
             Some(stream) if stream.is_shown() => SceneState::Ready,
@@ -255,7 +254,7 @@ impl Viewer {
         }
     }
 
-    /// True while a scene is on its way, also if another one is in view.
+    /// True while a scene is being loaded, even if another one is shown.
     pub fn is_loading(&self) -> bool {
         match &self.stream {
             Some(stream) => !stream.is_shown(),
@@ -263,27 +262,27 @@ impl Viewer {
         }
     }
 
-    /// The reason why the scene cannot be shown, in one sentence.
+    /// Returns the reason why the scene cannot be shown, in one sentence.
     pub fn failure(&self) -> Option<&str> {
         self.scene.failure()
     }
 
-    /// Uploads the scene if its thread is done; [`Viewer::begin`] does so by itself.
+    /// Uploads the scene if it is loaded; [`Viewer::begin`] calls this.
     pub fn poll_scene(&mut self) {
         let Some(attached) = &self.attached else { return };
         let Some(loaded) = self.scene.take_loaded() else { return };
         let gl = attached.gl.clone();
         let shown = loaded.and_then(|scene| self.show(&gl, scene).map_err(|error| error.to_string()));
         if let Err(reason) = shown {
-            // Whether that is the end is for the platform to say.
+            // Logged only for information: the platform decides whether this ends the program.
             log::info!("no scene: {reason}");
             self.scene.fail(reason);
         }
     }
 
-    /// Brings a scene into view.
+    /// Shows a scene.
     fn show(&mut self, gl: &Rc<Context>, scene: Scene) -> Result<(), GlError> {
-        // The old scene goes first, or both would need memory.
+        // The old scene is dropped first: memory may not suffice for both.
         self.method.drop_made();
         self.scene.drop_shown();
         self.scene.set_viewpoints(&scene.viewpoints);
@@ -298,7 +297,7 @@ impl Viewer {
     }
 }
 
-/// The context, where there is a scene in it to use a method on.
+/// Returns the context, if it has a scene that a method can be used on.
 fn gl_with_scene<'a>(attached: &'a Option<Attached>, scene: &SceneSlot) -> Option<&'a Rc<Context>> {
     attached.as_ref().filter(|_| scene.is_shown()).map(|attached| &attached.gl)
 }

@@ -1,4 +1,4 @@
-//! The start screen: does what is touched on it, and draws it; the viewers to choose from.
+//! The start screen: handles touches, draws itself, and lists the viewers to choose from.
 
 use glam::{Vec2, Vec3};
 
@@ -8,27 +8,27 @@ use crate::start::{Hint, OTHER, Tile, VIEWERS};
 use yoro_gl::Destination;
 use yoro_lenses::{Rotation, ViewerParams, tile_at};
 
-/// The viewers that are always there, and what they are called.
+/// The viewers that are always offered, as the settings name them.
 const BUILTIN: [&str; 2] = ["v1", "v2"];
 
 impl Viewer {
-    /// From now on the start screen comes into view when the phone stands upright, and the corners have their signs:
-    /// a person has started the application by hand.
+    /// Enables the start screen, which then appears when the phone is held upright, and the signs in the corners. For
+    /// applications that a person has started by hand.
     pub fn offer_start_screen(&mut self) {
         self.start.is_offered = true;
     }
 
-    /// True if the start screen comes into view when the phone stands upright.
+    /// True if the start screen appears when the phone is held upright.
     pub fn offers_start_screen(&self) -> bool {
         self.start.is_offered
     }
 
-    /// True while the start screen is in view, and the scene is not.
+    /// True while the start screen is shown instead of the scene.
     pub fn is_start_screen(&self) -> bool {
         self.start.is_shown
     }
 
-    /// Brings the start screen into view, with a sentence in place of its explanation unless it is empty.
+    /// Shows the start screen, with `message` instead of its explanation unless it is empty.
     pub fn show_start_screen(&mut self, message: &str) -> Action {
         if !self.start.is_shown {
             self.pause();
@@ -40,7 +40,7 @@ impl Viewer {
         Action::StartScreen(true)
     }
 
-    /// Does what is chosen at a place on the panel, 0 to 1 from the lower left; no place is a key, which starts.
+    /// Performs the choice at a point on the panel, 0 to 1 from the lower left. `None` is a key, which starts.
     pub(crate) fn touch_start_screen(&mut self, at: Option<Vec2>) -> Action {
         let tile = match at {
             Some(at) => tile_at(at, Tile::ALL.len()).map(|(i, _)| Tile::ALL[i]),
@@ -54,7 +54,7 @@ impl Viewer {
                 None => Action::Nothing,
             },
             Some(Tile::Scan) if was_scanning => Action::Scan(false),
-            // Where there is no camera, or it may not be used.
+            // Shown if there is no camera, or if it may not be used.
             Some(Tile::Scan) => {
                 OTHER.clone_into(&mut self.start.message);
                 Action::Scan(true)
@@ -62,7 +62,7 @@ impl Viewer {
             Some(Tile::Log) => Action::ShareLog,
             Some(Tile::Reset) => self.reset(),
             Some(Tile::Start) => {
-                // From now on a viewer is chosen, if it is the default.
+                // From now on the viewer counts as chosen by the user, even if it is the default.
                 self.keep(&[("viewer", self.settings.viewer.clone())]);
                 self.start.leave();
                 self.resume();
@@ -74,18 +74,18 @@ impl Viewer {
         action
     }
 
-    /// Explains what is seen once the scene is in view.
+    /// Explains the picture to the user once the scene is shown.
     pub fn explain(&mut self) {
         self.start.hint = Hint::Explanation;
     }
 
-    /// True while the start screen shows what the phone's camera sees.
+    /// True while the start screen shows the picture of the phone's camera.
     pub fn is_scanning(&self) -> bool {
         self.start.is_scanning
     }
 
-    /// Shows on the start screen what the phone's camera sees: luma of [`yoro_lenses::Board::PICTURE`] pixels, rows
-    /// from the bottom.
+    /// Shows the picture of the phone's camera on the start screen: luma of [`yoro_lenses::Board::PICTURE`] pixels,
+    /// rows from the bottom.
     pub fn show_camera(&mut self, picture: &[u8]) {
         if !std::mem::replace(&mut self.start.is_scanning, true) {
             self.write_start_screen();
@@ -95,7 +95,7 @@ impl Viewer {
         }
     }
 
-    /// Notes which way is up in the picture at a time. True if the start screen has come into view.
+    /// Records the up direction in the picture's axes at a time. Returns true if this shows the start screen.
     pub(crate) fn tilt(&mut self, up: Vec3, rotation: Rotation, now_ns: i64) -> bool {
         self.now_ns = now_ns;
         let is_upright = self.start.tilt(up, rotation, now_ns);
@@ -105,7 +105,7 @@ impl Viewer {
         is_upright
     }
 
-    /// Returns the viewers to choose from, as the setting `viewer` names them.
+    /// Returns the viewers to choose from, in the form of the setting `viewer`.
     pub(super) fn viewers(&self) -> Vec<String> {
         let (own, recent) = (&self.settings.viewer, &self.settings.recent_viewers);
         let own = (!recent.contains(own)).then_some(own);
@@ -119,7 +119,7 @@ impl Viewer {
         viewers
     }
 
-    /// Returns a viewer's maker and model.
+    /// Returns a viewer's vendor and model.
     pub(super) fn viewer_name(&self, viewer: &str) -> [String; 2] {
         if BUILTIN.contains(&viewer) {
             return ["Cardboard".into(), viewer.into()];
@@ -130,7 +130,7 @@ impl Viewer {
         }
     }
 
-    /// Asks for a viewer. A new one becomes the first of those that were chosen last; the others keep their places.
+    /// Asks for a viewer. A new viewer becomes the first of the recent ones; a known one keeps its place.
     pub fn choose_viewer(&mut self, viewer: &str) -> Action {
         let chosen = ("viewer", viewer.to_owned());
         let mut recent = self.settings.recent_viewers.clone();
@@ -159,12 +159,12 @@ impl Viewer {
         let Some(attached) = &mut self.attached else { return };
         attached.board.set(&self.start.tiles);
         attached.board.draw_flat(window, self.start.is_scanning);
-        // No frame of the session: its times are nobody's.
+        // Discards the GPU times: this is not a frame of the session.
         attached.pass_times.clear();
         attached.gl.end_timed_frame(&mut attached.pass_times);
     }
 
-    /// Draws the signs in a window's upper corners, if a person has started the application by hand.
+    /// Draws the signs in the window's upper corners, if a person has started the application by hand.
     pub(crate) fn draw_corners(&self, side: u32, window: &Destination) {
         if let Some(attached) = self.attached.as_ref().filter(|_| self.start.is_offered) {
             attached.board.draw_corners(side, window);

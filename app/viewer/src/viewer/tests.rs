@@ -1,4 +1,4 @@
-//! The viewer on a real GL context.
+//! Tests of the viewer with a real GL context.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -102,7 +102,7 @@ fn a_session_runs_from_loading_to_its_summary() {
     let summary = run.viewer.viewer().summary(run.now_ns).to_string();
     assert!(summary.contains("frames=60,FPS=60.0"), "{summary}");
 
-    // The context is lost and comes back; the scene is loaded again.
+    // The context is lost and comes back, and the scene is loaded again.
     let before = run.image();
     run.viewer.detach();
     assert!(matches!(
@@ -176,7 +176,7 @@ fn a_render_rate_below_the_displays_renders_every_other_frame() {
         run.frame();
         images.push(run.image());
     }
-    // What moves in the scene moves with each render.
+    // Moving objects move with each render.
     let changes: Vec<bool> = images.windows(2).map(|pair| pair[0] != pair[1]).collect();
     assert_eq!(changes, [false, true, false, true, false]);
     run.frame();
@@ -223,7 +223,7 @@ fn events_change_method_ipd_hud_and_viewpoint() {
     assert_eq!(gl.take_errors(), None);
 }
 
-/// Which method is cheaper here is the machine's matter.
+/// Which method is cheaper depends on the machine.
 #[test]
 fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why() {
     let headless = Headless::open(Backend::Egl).unwrap();
@@ -254,7 +254,7 @@ fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why(
     assert!(seen.contains(&format!("auto:{} {auto}\n", line.method)), "{seen}");
     let chosen = run.viewer.viewer().method.method();
     assert_eq!((chosen.name(), run.viewer.viewer().method()), (line.method.as_str(), MethodChoice::Auto));
-    // Another place is measured again, a method that is named is not.
+    // Another viewpoint is measured again; a method that is named is not.
     run.viewer.event(Event::NextViewpoint).unwrap();
     assert_eq!(seconds(&mut run, 2).auto.as_deref(), Some("measuring"));
     assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(Method::Mono.into()));
@@ -374,7 +374,7 @@ fn questions_are_asked_after_the_session_and_answered_by_head_or_keys() {
         assert!(!run.frame().session_over, "it is not over before the questions are answered");
     }
     assert_ne!(run.image(), scene, "the panel");
-    // Keys mean something else now, and the method stays what is being judged.
+    // Keys have another meaning now, and the method that is being judged does not change.
     assert_eq!(run.viewer.event(Event::IpdUp).unwrap(), Action::Marker(3.5));
     assert_eq!(run.viewer.event(Event::NextViewpoint).unwrap(), Action::Nothing);
     assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Answer);
@@ -497,7 +497,7 @@ fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
     let differing = open.chunks_exact(4).zip(synthesized.chunks_exact(4)).filter(|(a, b)| a != b).count();
     let all = open.len() / 4;
     assert!(differing > all / 20 && differing < all / 3, "the panel alone: {differing} of {all}");
-    // The dominant eye by looking for a second and a half; its lenses' tile by the trigger.
+    // Chooses the dominant eye by looking for a second and a half, and the lenses' tile by the trigger.
     look(&mut run, 15.0, -3.5, 95);
     assert_eq!(run.viewer.viewer().settings().dominant, yoro::eyes::Eye::Left);
     look(&mut run, 5.0, -3.5, 2);
@@ -506,7 +506,7 @@ fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
     let kept = run.viewer.viewer_mut().take_kept().unwrap();
     assert_eq!(kept, [("dominant", "left".to_owned()), ("viewer", "v2".to_owned())]);
     assert_eq!(run.viewer.viewer_mut().take_kept(), None);
-    // Compared for as long as the trigger is held, and without the panel.
+    // Compares while the trigger is held, without the panel.
     look(&mut run, 5.0, -7.5, 2);
     let menu = run.image();
     run.viewer.event(Event::Press).unwrap();
@@ -522,7 +522,7 @@ fn the_menu_is_chosen_from_by_looking_and_keeps_what_it_changes() {
     let apart = compared.iter().zip(&expected).filter(|(a, b)| a.abs_diff(**b) > 2).count();
     assert!(apart < expected.len() / 50, "two real renders besides the message: {apart}");
     drop(plain);
-    // Reset takes the settings of the start.
+    // Reset restores the initial settings.
     look(&mut run, -5.0, -7.5, 2);
     assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Settings);
     assert_eq!(run.viewer.viewer().settings().viewer, "v1");
@@ -559,7 +559,7 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     assert_eq!(run.viewer.viewer().menu_place(), None);
     run.viewer.viewer_mut().take_kept();
 
-    // The tiles' middles, by column and row.
+    // The centres of the tiles, by column and row.
     let tile = |column: usize, row: usize| Some([40.0 + 80.0 * column as f32, 115.0 + 34.0 * row as f32]);
     run.frame();
     let shown = run.image();
@@ -590,7 +590,7 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     let kept = run.viewer.viewer_mut().take_kept().unwrap();
     assert_eq!(kept, [("recent-viewers", URI.to_owned()), ("viewer", URI.to_owned())]);
 
-    // Upright for more than a second: gravity along the picture's width.
+    // Upright for more than a second: gravity points along the picture's width.
     run.frame();
     assert!(!run.viewer.viewer().is_start_screen());
     let stand = |run: &mut Run, up: Vec3, frames: i64| {
@@ -607,7 +607,7 @@ fn the_start_screen_is_touched_and_comes_when_the_phone_stands_upright() {
     assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
 }
 
-/// A triangle that goes from left to right in a second.
+/// A triangle that moves from left to right in one second.
 const MOVING: &str = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
   "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}],
@@ -635,7 +635,7 @@ fn what_moves_plays_and_rests_in_the_background() {
     };
     let [start, later] = [1, 15].map(&mut after);
     assert!(start != later);
-    // A second after the start: the loop is over.
+    // One second after the start the loop begins again.
     assert!(after(45) == start);
     let half = after(30);
     run.viewer.viewer_mut().pause();

@@ -1,4 +1,4 @@
-//! Measures the methods against each other.
+//! Measures the methods against one another.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use super::Page;
 use super::error::sentence;
 use crate::settings::Settings;
 
-/// All methods that the browser supports, ready to take turns. It is valid for the page's scene.
+/// All methods that the browser supports, ready to be measured in turn. It is only valid for the page's present scene.
 #[wasm_bindgen]
 pub struct Bench {
     gl: Rc<Context>,
@@ -20,13 +20,13 @@ pub struct Bench {
     facts: String,
     frame: StereoFrame,
     size: [u32; 2],
-    /// The choices that it was made with: those of the page may change meanwhile.
+    /// The choices that it was created with; the page's may change meanwhile.
     settings: Settings,
     passes: Vec<PassTime>,
     timed_frames: u32,
 }
 
-/// Returns the name of a method in result files, the one that `yoro bench` uses.
+/// Returns a method's name in result files, the same as that of `yoro bench`.
 fn contender(method: Method) -> String {
     match method {
         Method::Yoro => format!("{}-{}", method.name(), Pipeline::Gather.name()),
@@ -39,7 +39,7 @@ impl Bench {
     /// Prepares the methods for images of this size.
     ///
     /// # Errors
-    /// A sentence, for instance without memory.
+    /// A sentence, for instance if there is not enough memory.
     #[wasm_bindgen(constructor)]
     pub fn new(page: &Page, width: u32, height: u32) -> Result<Bench, JsError> {
         let Page { gl, settings, .. } = page;
@@ -53,7 +53,7 @@ impl Bench {
                 }
             }
         }
-        // Timed passes of the picture's own frames would be counted, too.
+        // Otherwise timed passes of the picture's own frames would be counted, too.
         gl.set_profiling(Profiling::Off);
         let facts = serde_json::json!({
             "contenders": names,
@@ -72,13 +72,13 @@ impl Bench {
         })
     }
 
-    /// Returns who takes part as JSON: `{"contenders": [...], "unsupported": [[name, reason]], "timerQueries"}`.
+    /// Returns the contenders as JSON: `{"contenders": [...], "unsupported": [[name, reason]], "timerQueries"}`.
     #[wasm_bindgen(getter)]
     pub fn facts(&self) -> String {
         self.facts.clone()
     }
 
-    /// Renders stereo frames, and waits until the GPU has done the last one.
+    /// Renders `count` stereo frames, and waits until the GPU has finished the last one.
     ///
     /// # Errors
     /// A sentence.
@@ -92,18 +92,18 @@ impl Bench {
         for _ in 0..count {
             self.frame(page, contender, viewpoint)?;
         }
-        // Browsers make little of glFinish; for a pixel they have to wait.
+        // Browsers may ignore glFinish, but reading a pixel makes them wait.
         self.frame.eye(Eye::Left).read_rgba8(0, [0, 0], [1, 1]);
         Ok(())
     }
 
-    /// Begins timed frames.
+    /// Starts timed frames.
     #[wasm_bindgen(js_name = startPasses)]
     pub fn start_passes(&self) {
         self.gl.set_profiling(Profiling::Queries);
     }
 
-    /// Renders one stereo frame with a timer query around each pass; results come with later calls.
+    /// Renders one stereo frame with a timer query around each pass; the results arrive in later calls.
     ///
     /// # Errors
     /// A sentence.
@@ -119,8 +119,8 @@ impl Bench {
         Ok(())
     }
 
-    /// Ends timed frames. Returns the GPU time of each pass in ms, the mean of the frames whose results have come, as
-    /// JSON; `{}` for none.
+    /// Ends timed frames. Returns the GPU time of each pass in ms as JSON, the mean of the frames whose results have
+    /// arrived; `{}` if there are none.
     #[wasm_bindgen(js_name = takePasses)]
     pub fn take_passes(&mut self) -> String {
         self.gl.set_profiling(Profiling::Off);
@@ -132,7 +132,7 @@ impl Bench {
         serde_json::json!(sums).to_string()
     }
 
-    /// Renders one stereo frame; nothing for a contender or a viewpoint that there is not.
+    /// Renders one stereo frame; does nothing for a contender or a viewpoint that does not exist.
     fn frame(&mut self, page: &mut Page, contender: usize, viewpoint: usize) -> Result<(), JsError> {
         let Some(scene) = page.scene() else { return Err(JsError::new("There is no scene to measure.")) };
         let prepared = &mut scene.prepared;

@@ -2,10 +2,10 @@
 
 use wasm_bindgen::JsError;
 
-/// Returns an error as a sentence of the page: with a capital letter and a full stop.
+/// Converts an error to a sentence for the page, with a capital letter and a full stop.
 pub fn sentence(error: impl std::fmt::Display) -> JsError {
     let mut text = error.to_string();
-    // A file keeps its name.
+    // A leading file name is not capitalized.
     let word = text.split_whitespace().next().unwrap_or_default();
     if !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_lowercase()) {
         text[..1].make_ascii_uppercase();

@@ -50,16 +50,16 @@ pub struct Page {
     show: Show,
     settings: Settings,
     walker: Walker,
-    /// Drags turn what is shown, and do not turn the head.
+    /// True if dragging rotates what is shown instead of the head.
     orbits: bool,
-    /// The middle of the scene.
+    /// The centre of the scene.
     middle: Vec3,
     content: Content,
 }
 
 #[wasm_bindgen]
 impl Page {
-    /// Takes the canvas's context.
+    /// Creates the page's objects in the canvas's context.
     ///
     /// # Errors
     /// A sentence, for a context that cannot render.
@@ -78,13 +78,13 @@ impl Page {
         })
     }
 
-    /// Returns the GPU's name, as far as the browser tells it.
+    /// Returns the GPU's name, if the browser reveals it.
     #[wasm_bindgen(getter)]
     pub fn gpu(&self) -> String {
         self.gl.capabilities().renderer.clone()
     }
 
-    /// Returns the version of yoro.
+    /// Returns yoro's version.
     #[wasm_bindgen(getter)]
     pub fn version(&self) -> String {
         env!("CARGO_PKG_VERSION").into()
@@ -96,14 +96,14 @@ impl Page {
         self.gl.capabilities().version_string.clone()
     }
 
-    /// Returns the number of live GL objects of the library, and the MiB of its textures: `[objects, mib]`.
+    /// Returns the number of the library's live GL objects, and the size of its textures in MiB: `[objects, mib]`.
     #[wasm_bindgen(getter)]
     pub fn held(&self) -> Vec<f64> {
         vec![self.gl.object_count() as f64, self.gl.texture_bytes() as f64 / f64::from(1 << 20)]
     }
 
-    /// Returns the methods with the renderer of these choices (JSON, as [`Page::configure`] takes it) as JSON:
-    /// `[{"name", "reason"}]`. There is a reason where browser or renderer cannot do the method.
+    /// Returns the methods for the renderer of these choices (JSON as for [`Page::configure`]) as JSON: `[{"name",
+    /// "reason"}]`. A reason is given if the browser or the renderer does not support the method.
     ///
     /// # Errors
     /// A sentence.
@@ -118,16 +118,16 @@ impl Page {
         Ok(serde_json::Value::from_iter(MethodChoice::ALL.map(entry)).to_string())
     }
 
-    /// Returns the renderer in a few words: `forward, 4 samples a pixel`.
+    /// Returns a short description of the renderer: `forward, 4 samples a pixel`.
     #[wasm_bindgen(getter)]
     pub fn renderer(&self) -> String {
         self.settings.render_settings().summary()
     }
 
-    /// Takes over the page's choices, as JSON.
+    /// Applies the page's choices, as JSON.
     ///
     /// # Errors
-    /// A sentence; the choices stay unchanged then.
+    /// A sentence; the choices then stay unchanged.
     pub fn configure(&mut self, json: &str) -> Result<(), JsError> {
         let settings = Settings::parse(json).map_err(sentence)?;
         match &mut self.content {
@@ -143,15 +143,15 @@ impl Page {
         Ok(())
     }
 
-    /// Shows a scene as [`work`] packs it, from its first viewpoint. Returns facts about it as JSON:
-    /// `{"name", "standsFor", "style", "triangles", "lights", "viewpoints", "object", "moves"}`: `object` is true for
-    /// what is seen from outside, around which the head then goes.
+    /// Shows a scene in the form in which [`work`] packs it, from its first viewpoint. Returns facts about it as JSON:
+    /// `{"name", "standsFor", "style", "triangles", "lights", "viewpoints", "object", "moves"}`. `object` is true for a
+    /// scene that is seen from outside; the head then moves around it.
     ///
     /// # Errors
-    /// A sentence, when the GPU cannot take it; nothing is shown then.
+    /// A sentence, if the GPU cannot hold it; nothing is shown then.
     #[wasm_bindgen(js_name = setScene)]
     pub fn set_scene(&mut self, packed: &[u8]) -> Result<String, JsError> {
-        // Frees the old content before the new scene takes memory.
+        // Frees the old content before the new scene allocates memory.
         self.content = Content::Empty;
         let scene: Scene = postcard::from_bytes(packed).map_err(sentence)?;
         let facts = serde_json::json!({
@@ -171,11 +171,11 @@ impl Page {
         Ok(facts.to_string())
     }
 
-    /// Shows a colour and a depth picture, each with its file's name, and the eyes that are made of them; `options` is
+    /// Shows a colour and a depth picture, each with its file's name, and the eyes synthesized from them; `options` is
     /// JSON. Returns width and height in pixels.
     ///
     /// # Errors
-    /// A sentence; the content before stays.
+    /// A sentence; the previous content stays.
     #[wasm_bindgen(js_name = setPictures)]
     pub fn set_pictures(
         &mut self,
@@ -200,7 +200,7 @@ impl Page {
     /// Shows the pictures with other options, as JSON.
     ///
     /// # Errors
-    /// A sentence; the options stay unchanged then.
+    /// A sentence; the options then stay unchanged.
     #[wasm_bindgen(js_name = setPictureOptions)]
     pub fn set_picture_options(&mut self, options: &str) -> Result<(), JsError> {
         let options = parse_options(options)?;
@@ -212,7 +212,7 @@ impl Page {
         }
     }
 
-    /// Moves everything in the scene to where it is at a time in seconds; nothing in a scene that stands still.
+    /// Moves everything in the scene to its place at a time in seconds; does nothing in a static scene.
     ///
     /// # Errors
     /// A sentence.
@@ -221,7 +221,7 @@ impl Page {
         self.scene().map_or(Ok(()), |scene| scene.prepared.set_time(seconds)).map_err(sentence)
     }
 
-    /// Goes to a viewpoint of the scene, or to where a video was taken.
+    /// Goes to a viewpoint of the scene, or to the position from which a video was taken.
     #[wasm_bindgen(js_name = goTo)]
     pub fn go_to(&mut self, viewpoint: usize) {
         if let Content::Scene(scene) = &self.content
@@ -238,13 +238,13 @@ impl Page {
         }
     }
 
-    /// Goes around what is shown, or walks in it.
+    /// Switches between moving around what is shown (true) and walking in it.
     pub fn orbit(&mut self, on: bool) {
         self.orbits = on;
         self.walker.go_around(on.then_some(self.middle));
     }
 
-    /// Goes to a place that [`Page::place`] returned; false if the numbers are not a place.
+    /// Goes to a place that [`Page::place`] returned; returns false if the numbers are not a place.
     #[wasm_bindgen(js_name = putAt)]
     pub fn put_at(&mut self, place: &[f32]) -> bool {
         let walker = place.try_into().ok().and_then(Walker::at);
@@ -254,23 +254,23 @@ impl Page {
         walker.is_some()
     }
 
-    /// Returns the head's position in metres, and its radians to the left and upwards; none at a viewpoint.
+    /// Returns the head's position in metres, and its rotation to the left and upwards in radians; none at a viewpoint.
     #[wasm_bindgen(getter)]
     pub fn place(&self) -> Option<Vec<f32>> {
         Some(self.walker.place()?.to_vec())
     }
 
-    /// Turns the head by radians to the left and upwards.
+    /// Turns the head by angles to the left and upwards, in radians.
     pub fn turn(&mut self, left: f32, up: f32) {
         self.walker.turn([left, up]);
     }
 
-    /// Walks by metres to the right, upwards and ahead.
+    /// Walks by distances to the right, upwards and ahead, in metres.
     pub fn walk(&mut self, right: f32, up: f32, ahead: f32) {
         self.walker.walk([right, up, ahead]);
     }
 
-    /// Renders for a canvas of this size, and shows it there as [`Page::show`] does.
+    /// Renders for a canvas of this size, and shows the result there as [`Page::show`] does.
     ///
     /// # Errors
     /// A sentence.
@@ -288,8 +288,8 @@ impl Page {
         Ok(())
     }
 
-    /// Ends a frame that was handed to the display at `now_ms` of the page's clock. `refresh_hz` are the refreshes of
-    /// the display per second, 0 if unknown.
+    /// Ends a frame that was handed to the display at `now_ms` of the page's clock. `refresh_hz` is the display's
+    /// refresh rate, 0 if unknown.
     #[wasm_bindgen(js_name = endFrame)]
     pub fn end_frame(&mut self, now_ms: f64, refresh_hz: f32) {
         if let Content::Scene(scene) = &mut self.content {
@@ -297,31 +297,31 @@ impl Page {
         }
     }
 
-    /// True while the cheaper method is being found: it needs frames.
+    /// True while `auto` measures which method is cheaper, for which it needs frames.
     #[wasm_bindgen(getter, js_name = isMeasuring)]
     pub fn is_measuring(&self) -> bool {
         self.auto().is_some_and(Auto::is_measuring)
     }
 
-    /// Returns the name of the method in use: of `auto` the one that was chosen last.
+    /// Returns the name of the method in use; with `auto`, the one chosen last.
     #[wasm_bindgen(getter, js_name = methodInUse)]
     pub fn method_in_use(&self) -> String {
         self.auto().map_or(self.settings.choice().first(), Auto::method).name().into()
     }
 
-    /// Returns why `auto` uses its method, as in the viewer's log line; none for a method that was named.
+    /// Returns the reason for `auto`'s method, as in the viewer's log line; none if the method was chosen by name.
     #[wasm_bindgen(getter)]
     pub fn reason(&self) -> Option<String> {
         Some(self.auto()?.to_string())
     }
 
-    /// Returns the times of a frame in ms that `auto` compared, two renders and synthesis; none where there are none.
+    /// Returns the frame times in ms that `auto` has compared, of two renders and of synthesis, if there are any.
     #[wasm_bindgen(getter)]
     pub fn costs(&self) -> Option<Vec<f32>> {
         Some(self.auto().filter(|auto| !auto.is_measuring())?.choice().costs_ms?.to_vec())
     }
 
-    /// Draws as [`Page::draw`] does, without the real images that a display compares with: sooner.
+    /// Draws as [`Page::draw`] does, but faster: without the real images that a display compares with.
     ///
     /// # Errors
     /// A sentence.
@@ -336,7 +336,7 @@ impl Page {
     }
 
     /// Shows the images of the last [`Page::draw`] on the canvas, without rendering. `divider` is the share of the
-    /// width that shows the real image, where the display compares it with the method's.
+    /// width in which displays with a comparison show the real image.
     pub fn show(&self, width: u32, height: u32, divider: f32) {
         let Settings { display, dominant, .. } = self.settings;
         let canvas = [width, height];
@@ -350,7 +350,7 @@ impl Page {
         self.gl.bind_framebuffer(None, [0, 0], canvas);
         self.gl.clear(None);
         if let Content::Stream(stream) = &self.content {
-            // There is no real image to compare with: the divider has nothing on its left.
+            // A stream has no real image to compare with, so nothing is left of the divider.
             let (layout, _) = stream.place(&self.settings, self.walker.pose(), display.part(canvas));
             self.show.eyes(display, &stream.frame, dominant, None, &layout);
         }
@@ -359,8 +359,8 @@ impl Page {
         }
     }
 
-    /// Renders the picture of the last [`Page::draw`] `count` times more, by two renders or by the method, and waits
-    /// for the GPU: to be timed. Nothing without a display that needs both.
+    /// Renders the picture of the last [`Page::draw`] `count` more times, by two renders or by the method, and waits
+    /// for the GPU, for timing. Does nothing unless the display needs both.
     ///
     /// # Errors
     /// A sentence.
@@ -368,9 +368,9 @@ impl Page {
         self.scene().map_or(Ok(()), |scene| scene.repeat(real, count)).map_err(sentence)
     }
 
-    /// Returns the PSNR in dB against the real image of the eye that is not dominant: of the method's image, and of the
-    /// dominant eye's (the same image to both eyes), all as last drawn. It is infinite for equal images, and none
-    /// without a display that needs the real image. Waits for the GPU.
+    /// Returns two PSNRs in dB against the real image of the non-dominant eye: of the method's image, and of the
+    /// dominant eye's (the same image to both eyes), all as last drawn. It is infinite for equal images; none unless
+    /// the display needs the real image. Waits for the GPU.
     #[wasm_bindgen(getter)]
     pub fn psnr(&self) -> Option<Vec<f64>> {
         let Content::Scene(scene) = &self.content else { return None };
@@ -380,8 +380,8 @@ impl Page {
         Some([dominant.other(), dominant].map(|eye| psnr(&read(scene.frame.eye(eye)), &real)).to_vec())
     }
 
-    /// Returns an eye's image of the last frame on the canvas, 0 left and 1 right: RGBA, rows from the bottom; empty if
-    /// nothing is shown. Waits for the GPU.
+    /// Returns an eye's image in the last frame, 0 left and 1 right: RGBA, rows from the bottom; empty if nothing is
+    /// shown. Waits for the GPU.
     #[wasm_bindgen(js_name = readEye)]
     pub fn read_eye(&self, eye: usize) -> Vec<u8> {
         let frame = match &self.content {
@@ -394,10 +394,10 @@ impl Page {
         target.read_rgba8(0, [0, 0], target.size())
     }
 
-    /// Returns both eyes in turn as an animated GIF, at most `width` pixels wide. Waits for the GPU.
+    /// Returns both eyes alternately as an animated GIF, at most `width` pixels wide. Waits for the GPU.
     ///
     /// # Errors
-    /// A sentence, also with nothing in view.
+    /// A sentence, also if nothing is shown.
     pub fn wiggle(&mut self, width: u32) -> Result<Vec<u8>, JsError> {
         let read = |frame: &StereoFrame| {
             Eye::BOTH.map(|eye| frame.eye(eye).read_rgba8(0, [0, 0], frame.eye(eye).size()))
@@ -411,7 +411,7 @@ impl Page {
         wiggle(eyes, size, width).map_err(sentence)
     }
 
-    /// Returns the errors of GL since the last call, for tests.
+    /// Returns GL's errors since the last call, for tests.
     #[wasm_bindgen(js_name = takeErrors)]
     pub fn take_errors(&self) -> Option<String> {
         self.gl.take_errors()
@@ -441,7 +441,7 @@ impl Page {
     }
 }
 
-/// True for a scene that is seen from outside.
+/// True if the scene's first viewpoint is outside its bounds.
 fn is_object(scene: &Scene) -> bool {
     let bounds = scene.model.bounds();
     let position = scene.viewpoints[0].position;

@@ -12,10 +12,10 @@ use super::scene_show::SceneShow;
 use super::{Content, Page};
 use crate::sensors::{Head, find_viewer, orientation};
 
-/// The widths and heights of screens, in metres.
+/// Plausible widths and heights of screens, in metres.
 const SCREEN: std::ops::Range<f32> = 0.03..0.4;
 
-/// The lenses before a screen of a size.
+/// The lenses in front of a screen of a given size.
 #[wasm_bindgen]
 pub struct Phone {
     optics: Optics,
@@ -26,26 +26,26 @@ pub struct Phone {
 
 #[wasm_bindgen]
 impl Phone {
-    /// Returns the reason why this is no viewer: neither `v1` nor `v2` nor the URI of a viewer's QR code.
+    /// Returns the reason why a text does not name a viewer: `v1`, `v2`, or the URI of a viewer's QR code.
     #[wasm_bindgen(js_name = viewerFault)]
     pub fn viewer_fault(viewer: &str) -> Option<String> {
         find_viewer(viewer).err()
     }
 
-    /// Returns maker and model of a viewer; empty for what is none.
+    /// Returns a viewer's vendor and model; empty if the text does not name a viewer.
     #[wasm_bindgen(js_name = viewerName)]
     pub fn viewer_name(viewer: &str) -> String {
         find_viewer(viewer).map_or(String::new(), |params| format!("{} {}", params.vendor, params.model))
     }
 
-    /// Returns the text of a QR code in a camera's picture, RGBA with rows from the top; none without one.
+    /// Returns the text of a QR code in a camera's picture, RGBA with rows from the top; none if there is no code.
     #[wasm_bindgen(js_name = readCode)]
     pub fn read_code(rgba: &[u8], width: usize) -> Option<String> {
         read_qr(rgba, width)
     }
 
-    /// Puts a screen of this size in metres into a viewer: `v1`, `v2`, or the URI of a viewer's QR code. The direction
-    /// that was straight ahead for the phone `before` stays it.
+    /// Combines a screen of this size in metres with a viewer: `v1`, `v2`, or the URI of a viewer's QR code. The
+    /// direction that was straight ahead for the phone `before` is kept.
     ///
     /// # Errors
     /// A sentence.
@@ -70,17 +70,17 @@ impl Phone {
         })
     }
 
-    /// Makes the direction straight ahead of the head the middle of the scene.
+    /// Makes the head's present direction straight ahead in the scene.
     pub fn recenter(&mut self) {
         self.head.recenter();
     }
 
-    /// Takes the angles of the sensors as browsers report them, and the screen's rotation, all in degrees.
+    /// Sets the sensors' angles as browsers report them, and the screen's rotation, all in degrees.
     pub fn turn(&mut self, alpha: f32, beta: f32, gamma: f32, screen: f32) {
         self.head.turn(orientation([alpha, beta, gamma], screen));
     }
 
-    /// Draws both eyes of the head through the lenses, on a canvas of this size. `scale` is a share of the full
+    /// Draws both eyes of the head through the lenses, on a canvas of this size. `scale` is a factor on the full
     /// resolution.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! The user's own pictures on the canvas, and the eyes made from them.
+//! The user's own pictures on the canvas, and the eyes synthesized from them.
 
 use std::rc::Rc;
 
@@ -13,14 +13,14 @@ use super::show::{Layout, Show};
 use crate::pictures::{PictureOptions, PicturePair};
 use crate::settings::{Display, Settings};
 
-/// Everything that is needed to show a pair of pictures.
+/// Everything needed to show a pair of pictures.
 pub struct PictureShow {
     pair: PicturePair,
     options: PictureOptions,
     pipeline: Box<dyn Synthesis>,
     color: Texture,
     depth: Texture,
-    /// The eyes.
+    /// The images of both eyes.
     pub frame: StereoFrame,
 }
 
@@ -31,7 +31,7 @@ fn pipeline(gl: &Rc<Context>, edges: Edges) -> Result<Box<dyn Synthesis>, GlErro
 }
 
 impl PictureShow {
-    /// Uploads the pictures and makes the eyes.
+    /// Uploads the pictures and synthesizes the eyes.
     ///
     /// # Errors
     /// A sentence.
@@ -57,10 +57,10 @@ impl PictureShow {
         Ok(pictures)
     }
 
-    /// Makes the eyes with other options.
+    /// Synthesizes the eyes with other options.
     ///
     /// # Errors
-    /// A sentence; the options stay unchanged then.
+    /// A sentence; the options then stay unchanged.
     pub fn set_options(
         &mut self,
         gl: &Rc<Context>,
@@ -79,7 +79,7 @@ impl PictureShow {
         made
     }
 
-    /// Makes the eyes, `ipd` metres apart.
+    /// Synthesizes the eyes, `ipd` metres apart.
     ///
     /// # Errors
     /// A sentence.
@@ -106,9 +106,9 @@ impl PictureShow {
         self.pair.size
     }
 
-    /// Shows the eyes whole on a cleared canvas, with black beside them.
+    /// Shows the whole eyes on a cleared canvas, with black beside them.
     pub fn draw(&self, show: &Show, settings: &Settings, canvas: [u32; 2]) {
-        // Pictures have no truth to compare with.
+        // There is no real image to compare with.
         let display = match settings.display {
             display if !display.needs_truth() => display,
             _ => Display::one_eye(self.options.source.targets()[0].0),

@@ -11,11 +11,11 @@ use yoro_scene::Scene;
 
 use crate::settings::Settings;
 
-/// Everything that is needed to show a scene.
+/// Everything needed to show a scene.
 pub struct SceneShow {
     pub prepared: PreparedScene,
     pub method: Chosen,
-    /// The images of the last frame on the canvas.
+    /// The images of the last frame.
     pub frame: StereoFrame,
     truth: Option<Truth>,
     /// The eyes of that frame.
@@ -23,7 +23,7 @@ pub struct SceneShow {
     passes: Vec<PassTime>,
 }
 
-/// A real render of both eyes, to compare the method's with.
+/// A real render of both eyes, for comparison with the method's.
 struct Truth {
     method: Box<dyn StereoMethod>,
     frame: StereoFrame,
@@ -33,7 +33,7 @@ impl SceneShow {
     /// Compiles renderer and method for a scene.
     ///
     /// # Errors
-    /// The GPU cannot do it.
+    /// The GPU does not support it.
     pub fn new(gl: &Rc<Context>, settings: &Settings, scene: Scene) -> Result<SceneShow, GlError> {
         Ok(SceneShow {
             prepared: PreparedScene::new(gl, scene, &settings.render_settings())?,
@@ -45,10 +45,10 @@ impl SceneShow {
         })
     }
 
-    /// Compiles renderer and method for other choices than those `before`.
+    /// Compiles renderer and method for choices other than those `before`.
     ///
     /// # Errors
-    /// The GPU cannot do it; renderer and method stay unchanged then.
+    /// The GPU does not support it; renderer and method then stay unchanged.
     pub fn configure(
         &mut self,
         gl: &Rc<Context>,
@@ -69,10 +69,10 @@ impl SceneShow {
         Ok(())
     }
 
-    /// Renders both eyes of a head, with images of `size` pixels, and the truth where the display needs it.
+    /// Renders both eyes of a head, with images of `size` pixels, and the real render if the display needs it.
     ///
     /// # Errors
-    /// The method's.
+    /// Those of the method.
     pub fn render(
         &mut self,
         gl: &Rc<Context>,
@@ -101,11 +101,11 @@ impl SceneShow {
         truth.method.render(renderer, scene, &pair, &mut truth.frame)
     }
 
-    /// Renders the last frame `count` times more, by the method or really, and waits for the GPU. Nothing without a
-    /// truth.
+    /// Renders the last frame `count` more times, by the method or by two real renders, and waits for the GPU. Does
+    /// nothing without a real render to compare with.
     ///
     /// # Errors
-    /// The method's.
+    /// Those of the method.
     pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), StereoError> {
         let (Some(truth), Some(pair)) = (&mut self.truth, &self.pair) else { return Ok(()) };
         let PreparedScene { renderer, scene, .. } = &mut self.prepared;
@@ -117,12 +117,12 @@ impl SceneShow {
         for _ in 0..count {
             method.render(renderer, scene, pair, frame)?;
         }
-        // Browsers make little of glFinish; for a pixel they have to wait.
+        // Browsers may ignore glFinish, but reading a pixel makes them wait.
         frame.eye(Eye::Left).read_rgba8(0, [0, 0], [1, 1]);
         Ok(())
     }
 
-    /// Ends a frame that was handed to the display at `now_ms`: counts it, where the cheaper method is used.
+    /// Ends a frame that was handed to the display at `now_ms`, and counts it if the choice of the method is automatic.
     pub fn end(&mut self, gl: &Context, now_ms: f64, refresh_hz: f32) {
         let wants_times = self.method.auto().is_some() && gl.capabilities().timer_queries;
         if wants_times != gl.times_passes() {
@@ -137,24 +137,24 @@ impl SceneShow {
         auto.end_frame((now_ms * 1e6) as i64, refresh_hz, gpu, None);
     }
 
-    /// Measures again, where the cheaper method is used: another place in the scene, or another resolution.
+    /// Makes an automatic choice measure again, after a change of the viewpoint or the resolution.
     pub fn measure_again(&mut self) {
         if let Some(auto) = self.method.auto_mut() {
             auto.scene_changed();
         }
     }
 
-    /// Returns the choice between two methods, if there is one.
+    /// Returns the automatic choice between two methods, if there is one.
     pub fn auto(&self) -> Option<&Auto> {
         self.method.auto()
     }
 
-    /// Returns the real render of the eye that is not dominant, where the display needs it.
+    /// Returns the real render of the non-dominant eye, if the display needs it.
     pub fn real_eye(&self, settings: &Settings) -> Option<&RenderTarget> {
         Some(self.truth.as_ref()?.frame.eye(settings.dominant.other()))
     }
 
-    /// Returns its image.
+    /// Returns the image of [`SceneShow::real_eye`].
     pub fn real_image(&self, settings: &Settings) -> Option<&Texture> {
         Some(self.real_eye(settings)?.color(0))
     }

@@ -12,18 +12,18 @@ use crate::settings::Display;
 
 /// The position of images on the canvas, in pixels.
 pub struct Layout {
-    /// The lower left corner of the first image, or of the only one.
+    /// The lower left corner of the first or only image.
     pub origin: [u32; 2],
     /// Width and height of each image.
     pub size: [u32; 2],
-    /// The distance from the first image's left edge to the second's.
+    /// The distance from the first image's left edge to the second one's.
     pub step: u32,
-    /// Columns of the image left of the divider, where a display has one.
+    /// Columns of the image left of the divider, for displays with a divider.
     pub divider: u32,
 }
 
 impl Layout {
-    /// Shows images with this proportion of width to height as large as they can be in the middle of parts of a canvas.
+    /// Returns the layout for images of this aspect ratio, as large as possible and centred in parts of a canvas.
     pub fn whole(part: [u32; 2], [width, height]: [f32; 2]) -> Layout {
         let factor = (part[0] as f32 / width).min(part[1] as f32 / height);
         let size = [width, height].map(|side| ((side * factor).round() as u32).max(1));
@@ -32,7 +32,7 @@ impl Layout {
     }
 }
 
-/// The programs that show images; they fill a rectangle, scaled to it.
+/// The programs that show images, scaled to fill a rectangle.
 pub struct Show {
     gl: Rc<Context>,
     plain: Program,
@@ -58,14 +58,14 @@ impl Show {
         })
     }
 
-    /// Writes depth as 24 bits of colour, the highest in red: WebGL reads no depth. The program is made for this call.
+    /// Writes depth as 24 bits of colour, red first, as WebGL cannot read depth. Compiles the program for each call.
     pub fn packed_depth(&self, depth: &Texture, to: &Destination) -> Result<(), GlError> {
         let program = compile(&self.gl, Some("PACKED_DEPTH"))?;
         self.run(&program, depth, None, to, 0..to.size[0]);
         Ok(())
     }
 
-    /// Runs a program on some columns of a rectangle that the images fill as a whole.
+    /// Draws some columns of a rectangle; the images span the whole rectangle.
     fn run(
         &self,
         program: &Program,
@@ -96,13 +96,13 @@ impl Show {
         self.run(&self.plain, image, None, to, 0..to.size[0]);
     }
 
-    /// Shows red of the left eye's image, green and blue of the right eye's.
+    /// Shows the red of the left eye's image, and green and blue of the right eye's.
     pub fn anaglyph(&self, left: &Texture, right: &Texture, to: &Destination) {
         self.run(&self.anaglyph, left, Some(("second", right)), to, 0..to.size[0]);
     }
 
-    /// Shows the real image left of the divider. Right of it is the method's image, or the difference of both: black
-    /// for none, white from a quarter of the range on.
+    /// Shows the real image left of the divider. Right of it is the method's image, or the difference of the two: black
+    /// for equal pixels, white from a quarter of the range on.
     fn divided(&self, real: &Texture, made: &Texture, difference: bool, to: &Destination, divider: u32) {
         let [width, _] = to.size;
         let divider = divider.min(width);
@@ -116,7 +116,7 @@ impl Show {
         }
     }
 
-    /// Shows both eyes on a display. `real` is the image that the display compares with the eye that is not dominant.
+    /// Shows both eyes on a display. `real` is the image that the display compares with the non-dominant eye.
     pub fn eyes(
         &self,
         display: Display,
@@ -146,7 +146,7 @@ impl Show {
         }
     }
 
-    /// Draws an image with its depth into the framebuffer that is bound, one that this library did not make.
+    /// Draws an image with its depth into the framebuffer that is bound, which this library did not create.
     pub fn with_depth(&self, image: &Texture, depth: &Texture, origin: [u32; 2], size: [u32; 2]) {
         let to = Destination { framebuffer: None, origin, size };
         self.gl.pass("show", || {

@@ -1,4 +1,4 @@
-//! The interface for JavaScript to a stream. JavaScript has the connection and the decoder.
+//! The interface of a stream for JavaScript, which owns the connection and the decoder.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::walker::Walker;
 
 #[wasm_bindgen]
 extern "C" {
-    /// A WebGL 2 context that uploads a decoded video frame, which web-sys has among its unstable interfaces.
+    /// A WebGL 2 context that uploads a decoded video frame, which web-sys supports only in its unstable interfaces.
     type VideoContext;
     #[wasm_bindgen(method, js_name = texSubImage2D)]
     fn upload(
@@ -32,18 +32,18 @@ extern "C" {
 
 #[wasm_bindgen]
 impl Page {
-    /// Returns the message with which a viewer begins; none for a token that is not 32 hexadecimal digits.
+    /// Returns the client's first message; none if the token is not 32 hexadecimal digits.
     #[wasm_bindgen(js_name = streamHello)]
     pub fn stream_hello(&self, token: &str) -> Option<Vec<u8>> {
         FromClient::hello(token).map(|hello| hello.to_bytes())
     }
 
-    /// Takes the first answer of a server, and shows its stream from now on, from the head's first pose; one that goes
-    /// on after a connection was lost keeps the head where it is. A video is shown whole. Returns the dominant eye that
-    /// goes with it, `left` or `right`; none for a stream that is rendered for the page's.
+    /// Handles a server's first answer, and shows its stream from now on, starting at the server's initial pose. A
+    /// stream that continues after a lost connection keeps the head where it is. A video is shown whole. Returns a
+    /// video's dominant eye, `left` or `right`; none for a stream, which is rendered for the page's.
     ///
     /// # Errors
-    /// Why the server refuses, as a sentence.
+    /// The reason why the server refuses, as a sentence.
     #[wasm_bindgen(js_name = streamBegin)]
     pub fn stream_begin(&mut self, answer: &[u8]) -> Result<Option<String>, JsError> {
         let (head, video) = match FromServer::read(answer) {
@@ -63,9 +63,9 @@ impl Page {
         Ok(video.map(|(_, eye)| eye.name().into()))
     }
 
-    /// Takes a frame, whose H.264 may be left out, with its decoded picture: a `Uint8Array` of its planes, or a
-    /// `VideoFrame` of this size in pixels. Returns the message that confirms it, and six numbers: when the pose that
-    /// it was rendered for was sent, by `performance.now()`; the ms to render and to encode it; its quantizer; width
+    /// Takes a frame, whose H.264 data may be omitted, with its decoded picture: a `Uint8Array` of its planes, or a
+    /// `VideoFrame` of this size in pixels. Returns the message that confirms it, and six numbers: the
+    /// `performance.now()` at which its pose was sent; the ms for rendering and for encoding it; its quantizer; width
     /// and height of each part.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl Page {
         if !stream.eyes.take(header.content, header.size, &picture).map_err(sentence)? {
             return Err(JsError::new("A picture of the stream is not what its frame tells."));
         }
-        // An emulated headset clears what is bound before each of its frames: not what has just been drawn.
+        // An emulated headset clears the bound framebuffer before each frame: it must not be the one just drawn.
         self.gl.bind_framebuffer(None, [0, 0], [1, 1]);
         let decoded = Uint8Array::from(&FromClient::Decoded(number).to_bytes()[..]);
         let [width, height] = header.size.map(f64::from);
@@ -101,15 +101,15 @@ impl Page {
         Ok(Array::of2(&decoded, &facts.into_iter().map(JsValue::from).collect::<Array>()))
     }
 
-    /// Returns the message that asks for the newest eyes at a time of `performance.now()`; none before any were drawn.
+    /// Returns the request for the newest eyes at a time of `performance.now()`; none before any were drawn.
     #[wasm_bindgen(js_name = streamRequest)]
     pub fn stream_request(&self, time: f64) -> Option<Vec<u8>> {
         let Content::Stream(stream) = &self.content else { return None };
         stream.eyes.request(time).map(|request| FromClient::Request(request).to_bytes())
     }
 
-    /// Returns the mean distance in cm and angle in degrees from the pose that a picture was rendered for to the one
-    /// that it was shown at, of all that was shown since the last call; none if that is nothing.
+    /// Returns the mean distance in cm and angle in degrees between the poses for which pictures were rendered and
+    /// those at which they were shown, since the last call; none if nothing was shown.
     #[wasm_bindgen(js_name = streamCorrection)]
     pub fn stream_correction(&mut self) -> Option<Vec<f32>> {
         let Content::Stream(stream) = &mut self.content else { return None };
@@ -118,30 +118,30 @@ impl Page {
     }
 }
 
-/// Puts the frames of a connection into their order. Frames are messages, of which only the page knows the content.
+/// Puts the frames of a connection in order. Frames are messages whose content only the page knows.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct StreamOrder(ReorderBuffer<ArrayBuffer>);
 
 #[wasm_bindgen]
 impl StreamOrder {
-    /// Begins with frame 0.
+    /// Creates a buffer that begins with frame 0.
     #[wasm_bindgen(constructor)]
     pub fn new() -> StreamOrder {
         StreamOrder::default()
     }
 
-    /// Takes a frame that has come.
+    /// Adds a frame that has arrived.
     pub fn insert(&mut self, number: u32, intra: bool, frame: ArrayBuffer) {
         self.0.insert(number, intra, frame);
     }
 
-    /// Returns the frame that is to be decoded next; none if it is not there.
+    /// Returns the next frame to decode; none if it has not arrived.
     pub fn pop(&mut self) -> Option<ArrayBuffer> {
         self.0.pop()
     }
 
-    /// Returns the message that names a missing frame, if one has to be sent at a time in ms.
+    /// Returns the message that reports a missing frame, if one is due at `time` in ms.
     pub fn missing(&mut self, time: f64) -> Option<Vec<u8>> {
         let number = self.0.missing(Duration::from_secs_f64(time * 1e-3))?;
         Some(FromClient::Missing(number).to_bytes())

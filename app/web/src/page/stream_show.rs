@@ -9,17 +9,17 @@ use yoro_gl::{Context, Destination, GlError};
 use yoro_render::StreamedEyes;
 use yoro_render::stereo::StereoFrame;
 
-/// Everything that is needed to show a stream.
+/// Everything needed to show a stream.
 pub struct StreamShow {
     pub eyes: StreamedEyes,
-    /// The eyes' frusta where they are not the page's: a video's, which has nothing beyond them.
+    /// The frusta of a video's eyes, beyond which it has nothing; `None` if the frusta are the page's.
     frusta: Option<[Frustum; 2]>,
-    /// The eyes' images, where they are for the canvas.
+    /// The eyes' images for the canvas.
     pub frame: StereoFrame,
 }
 
 impl StreamShow {
-    /// Makes what is needed for a stream, or for a video, which is shown whole, with these frusta.
+    /// Creates the objects for a stream, or for a video, which is shown whole with these frusta.
     ///
     /// # Errors
     /// The driver refuses.
@@ -34,8 +34,8 @@ impl StreamShow {
         self.frusta
     }
 
-    /// Returns where the eyes are shown on parts of a canvas of this size, and the eyes of a head there: the page's, or
-    /// a video's, whole and with black beside them.
+    /// Returns the layout of the eyes in parts of a canvas, each of size `part`, and the eyes of a head there: the
+    /// page's, or a video's, whole and with black beside them.
     pub fn place(&self, settings: &Settings, head: Pose, part: [u32; 2]) -> (Layout, EyePair) {
         let Some(frusta) = self.frusta else {
             let layout = Layout { origin: [0, 0], size: part, step: part[0], divider: 0 };
@@ -46,10 +46,10 @@ impl StreamShow {
         (layout, pair)
     }
 
-    /// Makes both eyes for the canvas.
+    /// Renders both eyes for the canvas.
     ///
     /// # Errors
-    /// The GPU has no memory for it.
+    /// The GPU has not enough memory.
     pub fn draw(&mut self, pair: &EyePair) -> Result<(), GlError> {
         self.frame.resize(pair.size)?;
         let to = Eye::BOTH.map(|eye| Destination::whole(self.frame.eye(eye)));

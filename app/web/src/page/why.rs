@@ -1,4 +1,4 @@
-//! Four pictures of the scene in view that say why synthesis works.
+//! Four pictures of the scene that explain why synthesis works.
 
 use std::rc::Rc;
 
@@ -24,10 +24,10 @@ pub struct Why {
 
 #[wasm_bindgen]
 impl Why {
-    /// Makes the pictures of the scene in view, of this size. They are made with objects of their own, which are freed.
+    /// Renders the pictures of the scene, of this size, with objects of their own, which are freed again.
     ///
     /// # Errors
-    /// A sentence, also without a scene, and for eyes that are not apart.
+    /// A sentence, also if there is no scene, or if the eyes are not apart.
     #[wasm_bindgen(constructor)]
     pub fn new(page: &mut Page, width: u32, height: u32) -> Result<Why, JsError> {
         let size = [width, height];
@@ -37,7 +37,7 @@ impl Why {
         Ok(Why { size, seen: seen.ok_or_else(|| JsError::new("There is no scene to explain."))? })
     }
 
-    /// Returns a picture: 0 colour, 1 depth, 2 what has moved how far, 3 what was filled in.
+    /// Returns a picture: 0 colour, 1 depth, 2 distances moved, 3 filled pixels.
     pub fn picture(&self, which: usize) -> Vec<u8> {
         let Explanation { color, depth, moved, filled, .. } = &self.seen;
         [color, depth, moved, filled].get(which).map_or(Vec::new(), |bytes| bytes.to_vec())
@@ -49,20 +49,20 @@ impl Why {
         self.size[0]
     }
 
-    /// Returns the farthest move in pixels.
+    /// Returns the largest distance moved in pixels.
     #[wasm_bindgen(getter)]
     pub fn farthest(&self) -> f64 {
         self.seen.farthest
     }
 
-    /// Returns the share of the pixels that are filled in.
+    /// Returns the share of filled pixels.
     #[wasm_bindgen(getter)]
     pub fn holes(&self) -> f64 {
         self.seen.holes
     }
 }
 
-/// Renders the eye that the method renders, as wide as it renders it, and synthesizes the other with its source map.
+/// Renders the dominant eye, as wide as the method does, and synthesizes the other one with its source map.
 fn explain(gl: &Rc<Context>, page: &mut Page, pair: &EyePair) -> Result<Option<Explanation>, StereoError> {
     let settings = page.settings;
     let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..settings.stereo_options() };

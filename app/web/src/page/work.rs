@@ -1,4 +1,4 @@
-//! Slow work for a worker: scenes from a generator or from files, as bytes that [`crate::Page::set_scene`] takes.
+//! Slow work for a worker: generates or loads scenes, as bytes for [`crate::Page::set_scene`].
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -36,7 +36,7 @@ impl log::Log for Warnings {
     fn flush(&self) {}
 }
 
-/// Has panics printed to the console: the browser itself only says that the module has ended.
+/// Prints panics to the console, since the browser itself only reports that the module has ended.
 #[wasm_bindgen(start)]
 fn start() {
     std::panic::set_hook(Box::new(|panic| console_error(&panic.to_string())));
@@ -45,7 +45,7 @@ fn start() {
     }
 }
 
-/// Returns the warnings since the last call, a sentence each.
+/// Returns the warnings since the last call, each a sentence.
 #[wasm_bindgen(js_name = takeWarnings)]
 pub fn take_warnings() -> Vec<String> {
     std::mem::take(&mut *WARNINGS.0.lock().unwrap_or_else(PoisonError::into_inner))
@@ -64,21 +64,21 @@ pub fn builtin_scenes() -> String {
     serde_json::Value::from_iter(scenes.iter().map(entry)).to_string()
 }
 
-/// Generates a built-in scene. `progress` is called now and then with the number of textures and of triangles so far.
+/// Generates a built-in scene. `progress` is called repeatedly with the numbers of textures and triangles.
 ///
 /// # Errors
-/// A sentence for a name that there is not.
+/// A sentence, for a name that does not exist.
 #[wasm_bindgen(js_name = buildScene)]
 pub fn build_scene(name: &str, progress: Function) -> Result<Vec<u8>, JsError> {
     let watch = move |done: Progress| {
         let [textures, triangles] = [done.textures, done.triangles].map(|n| JsValue::from(n as f64));
-        // An exception from it would be the worker's own mistake.
+        // An exception in it would be a bug of the worker.
         let _ = progress.call2(&JsValue::NULL, &textures, &triangles);
     };
     pack(&yoro_scenes::build_watched(name, DEFAULT_SEED, watch).map_err(sentence)?)
 }
 
-/// Loads the scene of `main`, the name of one of the files: `names` and `contents` (`Uint8Array`s) are these files.
+/// Loads the scene in the file `main`, which is one of `names`; `contents` (`Uint8Array`s) are the files' contents.
 ///
 /// # Errors
 /// A sentence that names the file and the remedy.

@@ -1,4 +1,4 @@
-//! Both eyes of a headset, in WebXR's terms.
+//! Both eyes of a headset, through WebXR.
 
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, EyePair};
@@ -17,16 +17,16 @@ use crate::walker::Walker;
 /// Near and far plane of a WebXR session.
 const DEPTH: DepthRange = DepthRange { near: 0.1, ..DepthRange::PAPER };
 
-/// The images of a headset, and the renderer for them.
+/// A headset's images, and the objects that render them.
 #[wasm_bindgen]
 pub struct Headset {
     /// Colour and depth of each eye.
     eyes: [RenderTarget; 2],
     copy: DepthCopy,
     hud: Hud,
-    /// Renders both eyes where neither can be synthesized from the other.
+    /// Renders both eyes if neither can be synthesized from the other.
     substitute: Substitute,
-    /// The choices that the substitute is made for.
+    /// The choices that the substitute was created for.
     settings: Settings,
 }
 
@@ -37,7 +37,7 @@ impl Headset {
         vec![DEPTH.near, DEPTH.far]
     }
 
-    /// Makes the images of a session.
+    /// Creates a session's images.
     ///
     /// # Errors
     /// A sentence.
@@ -56,9 +56,9 @@ impl Headset {
         })
     }
 
-    /// Renders both eyes into images of this size: `views` has 23 floats for each, the left one first: position,
-    /// orientation (x, y, z, w) and projection matrix. `text` hangs before the eyes, four lines at most. False when
-    /// both were rendered because neither can be synthesized from the other.
+    /// Renders both eyes into images of this size. `views` has 23 floats per eye, the left one first: position,
+    /// orientation (x, y, z, w) and projection matrix. `text`, of at most four lines, is shown in front of the eyes.
+    /// Returns false if both eyes were rendered because neither can be synthesized from the other.
     ///
     /// # Errors
     /// A sentence.
@@ -86,7 +86,7 @@ impl Headset {
                 let SceneShow { prepared, method, .. } = &mut **scene;
                 fits = Substitute::reason(settings.choice().first(), &pair).is_none();
                 let method: &mut dyn StereoMethod = match method {
-                    // It renders both eyes by itself.
+                    // The automatic choice handles unfit eyes itself.
                     Chosen::Auto(auto) => auto.as_mut(),
                     Chosen::Named(method) if fits => method.as_mut(),
                     Chosen::Named(_) => {
@@ -114,15 +114,14 @@ impl Headset {
         Ok(fits)
     }
 
-    /// Draws an eye's image and depth, 0 left and 1 right, into the framebuffer that is bound, whose viewport is set to
-    /// this.
+    /// Draws an eye's image and depth, 0 left and 1 right, into the bound framebuffer, with this viewport.
     pub fn show(&self, page: &Page, eye: usize, x: u32, y: u32, width: u32, height: u32) {
         let image = &self.eyes[eye.min(1)];
         page.show.with_depth(image.color(0), image.depth(), [x, y], [width, height]);
     }
 }
 
-/// Reads both eyes as WebXR describes them, the left one first; none for anything else.
+/// Reads both eyes in WebXR's form, the left one first; `None` for anything else.
 fn eyes(views: &[f32], settings: &Settings, walker: &Walker, size: [u32; 2]) -> Option<EyePair> {
     let (left, right) = views.split_at_checked(VIEW_FLOATS)?;
     let (left, right) = (view(left)?, view(right)?);

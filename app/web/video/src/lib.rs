@@ -1,5 +1,5 @@
-//! RGBD videos for the page: where the pictures of a file are, and what they show, in a stream's messages. The page
-//! decodes them.
+//! RGBD videos for the page: the locations of a file's pictures, and their content in the form of a stream's messages.
+//! The page decodes the pictures.
 
 #![cfg(target_arch = "wasm32")]
 
@@ -11,7 +11,7 @@ use wasm_bindgen::prelude::*;
 use yoro_stream::{Content, EyeView, FrameHeader, FromServer};
 use yoro_video::{Index, Planes, Rgbd, VideoError};
 
-/// A file's content.
+/// An RGBD video file.
 #[wasm_bindgen]
 pub struct Video {
     index: Index,
@@ -19,7 +19,7 @@ pub struct Video {
     header: FrameHeader,
 }
 
-/// A file of which JavaScript reads the pieces.
+/// A file whose parts JavaScript reads.
 struct Pieces<'a> {
     read: &'a Function,
     position: u64,
@@ -47,11 +47,11 @@ impl Seek for Pieces<'_> {
 
 #[wasm_bindgen]
 impl Video {
-    /// Finds out what is in a file of this name and length in bytes. `read` returns a piece of it, a `Uint8Array`, from
-    /// a place and a length in bytes.
+    /// Reads the index of a file with this name and length in bytes. `read` returns a part of the file as a
+    /// `Uint8Array`, given its offset and length in bytes.
     ///
     /// # Errors
-    /// A sentence, for what is no MP4 file, is damaged, or has no H.264 or no depth.
+    /// A sentence, if it is not an MP4 file, is damaged, or has no H.264 video or no depth.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str, length: f64, read: &Function) -> Result<Video, JsError> {
         let length = length as u64;
@@ -86,8 +86,8 @@ impl Video {
         self.index.has_hues()
     }
 
-    /// Returns a decoded picture, three planes one after another, with colour and depth where a stream has them; empty
-    /// for one of another size.
+    /// Returns a decoded picture, three planes one after another, in the layout of a stream's pictures; empty if it is
+    /// of another size.
     pub fn packed(&self, planes: &[u8]) -> Vec<u8> {
         let [width, height] = self.rgbd.size.map(|n| n as usize);
         let (size, luma) = ([2 * width, height], 2 * width * height);
@@ -99,7 +99,7 @@ impl Video {
         self.index.packed(Planes { size, planes: [y, u, v].map(<[u8]>::to_vec) }).planes.concat()
     }
 
-    /// Returns the codec's name, as the browser's decoder takes it.
+    /// Returns the codec's name in the form that the browser's decoder takes.
     ///
     /// # Errors
     /// A sentence.
@@ -115,7 +115,7 @@ impl Video {
         self.index.description().map_err(sentence)
     }
 
-    /// Returns five numbers for each picture: place and length in bytes, 1 for an intra frame, time and duration in
+    /// Returns five numbers for each picture: offset and length in bytes, 1 for an intra frame, time and duration in
     /// seconds.
     pub fn pictures(&self) -> Vec<f64> {
         let numbers = self.index.pictures.iter().map(|encoded| {
@@ -130,12 +130,12 @@ impl Video {
         numbers.flatten().collect()
     }
 
-    /// Returns the message with which a stream begins.
+    /// Returns the first message of a stream.
     pub fn welcome(&self) -> Vec<u8> {
         FromServer::Video(self.rgbd.pair().frusta, self.rgbd.eye).to_bytes()
     }
 
-    /// Returns what stands before a frame's picture in a stream.
+    /// Returns the bytes that precede a frame's picture in a stream.
     pub fn head(&self, number: u32) -> Vec<u8> {
         FromServer::Frame { number, intra: false, header: self.header, data: &[] }.to_bytes()
     }

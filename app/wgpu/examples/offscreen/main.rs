@@ -1,9 +1,9 @@
 //! yoro in an engine on wgpu: the engine has one eye in its own textures, and yoro records the passes that draw the
-//! other one into the engine's command encoder.
+//! other eye into the engine's command encoder.
 //!
-//! `cargo run -p yoro-wgpu --example offscreen` writes `out/wgpu.png`, left and right eye side by side, the left one
-//! synthesized, and prints how near it is to the left eye as it really is. `WGPU_BACKEND=gl` chooses another back end.
-//! `cargo xtask web --wgpu --serve` shows the same in a browser with WebGPU.
+//! `cargo run -p yoro-wgpu --example offscreen` writes `out/wgpu.png`, which shows the left and the right eye side by
+//! side, the left one synthesized. It prints how close that one is to a real render of the left eye. `WGPU_BACKEND=gl`
+//! chooses another back end. `cargo xtask web --wgpu --serve` shows the same in a browser with WebGPU.
 
 use anyhow::{Context as _, Result};
 use image::{Rgb, RgbImage};
@@ -51,15 +51,15 @@ fn instance() -> wgpu::Instance {
     wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
 }
 
-/// What is drawn.
+/// The drawn images.
 pub struct Stereo {
-    /// The back end, and the name of the GPU where it tells.
+    /// The back end, and the name of the GPU if known.
     pub device: String,
     /// The synthesized eye.
     pub left: RgbImage,
     /// The rendered eye.
     pub right: RgbImage,
-    /// The synthesized eye as it really is.
+    /// A real render of the synthesized eye.
     pub truth: RgbImage,
 }
 
@@ -67,7 +67,7 @@ impl Stereo {
     /// Draws both eyes.
     ///
     /// # Errors
-    /// When there is no GPU and no driver without one, and what wgpu and yoro refuse.
+    /// Fails if there is neither a GPU nor a software driver, and with the errors of wgpu and yoro.
     pub async fn draw(instance: &wgpu::Instance) -> Result<Stereo> {
         let adapter = instance.request_adapter(&Default::default()).await.context(
             "wgpu finds no GPU, and no driver that does without: install one, or take a browser with WebGPU",
@@ -80,8 +80,8 @@ impl Stereo {
             .await?;
         let engine = Engine::new(device, queue);
 
-        // Where the eyes are, and what the depth buffer means. With OpenXR, poses and frusta are those of the two
-        // views.
+        // The poses and frusta of the eyes, and the meaning of the depth buffer. With OpenXR, poses and frusta come
+        // from the two views.
         let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
         let head = Pose { position: [0.0, 1.6, 2.0].into(), ..Pose::IDENTITY };
         let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
@@ -92,7 +92,7 @@ impl Stereo {
         let options = Options { color_format: COLOR, ..Options::default() };
         let mut gather = Gather::new(&engine.device, &options)?;
 
-        // The engine's textures: the view to render is wider than the eye, by the guard band.
+        // The engine's textures. The view to render is wider than the eye by the guard band.
         let used =
             TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         let color = engine.texture(COLOR, views.source.size, used);
@@ -111,14 +111,14 @@ impl Stereo {
         // The rendered eye's own image is the part of the source that starts at this corner.
         let right = engine.picture(&color, views.dominant_crop_from_top()).await?;
         let left = engine.picture(&left, [0, 0]).await?;
-        // Worth doing once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
+        // Do this once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
         let truth = engine.rendered_target(&views).await?;
         let info = adapter.get_info();
         let device = format!("{:?} {}", info.backend, info.name).trim_end().to_owned();
         Ok(Stereo { device, left, right, truth })
     }
 
-    /// Returns the left eye beside the right one.
+    /// Returns the left eye next to the right one.
     pub fn side_by_side(&self) -> RgbImage {
         let mut both = RgbImage::new(2 * SIZE[0], SIZE[1]);
         image::imageops::replace(&mut both, &self.left, 0, 0);
@@ -126,7 +126,7 @@ impl Stereo {
         both
     }
 
-    /// Says how near the synthesized eye is to the truth.
+    /// Returns a sentence that says how close the synthesized eye is to the real one.
     fn sentence(&self) -> String {
         format!(
             "left eye synthesized on {}, right eye rendered; against the left eye rendered: {:.2} dB; the right eye in \
@@ -138,13 +138,13 @@ impl Stereo {
     }
 }
 
-/// Peak signal to noise ratio over red, green and blue in decibels.
+/// Returns the peak signal-to-noise ratio over red, green and blue in decibels.
 fn psnr(image: &RgbImage, truth: &RgbImage) -> f64 {
     let squares = image.iter().zip(truth.iter()).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
     10.0 * (255f64.powi(2) * truth.len() as f64 / squares.sum::<f64>()).log10()
 }
 
-/// An engine as small as can be.
+/// A minimal engine.
 struct Engine {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -214,7 +214,8 @@ impl Engine {
         let (eye, frustum) = (view.pose.position, &view.frustum);
         let values = [
             [eye.x, eye.y, eye.z, view.depth.near],
-            // On the plane at distance 1: the upper left corner of the picture, and a pixel. Rows run from the top.
+            // On the plane at distance 1: the upper left corner of the image, and a pixel's size. Rows run from the
+            // top.
             [frustum.left, frustum.top, frustum.width() / width, -frustum.height() / height],
         ];
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -252,7 +253,7 @@ impl Engine {
         pass.draw(0..3, 0..1);
     }
 
-    /// The synthesized eye as it really is.
+    /// Returns a real render of the synthesized eye.
     async fn rendered_target(&self, views: &SynthesisViews) -> Result<RgbImage> {
         let used = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
         let color = self.texture(COLOR, views.target.size, used);
@@ -264,7 +265,7 @@ impl Engine {
         self.picture(&color, [0, 0]).await
     }
 
-    /// The part of a texture that starts at a corner.
+    /// Returns the part of a texture that starts at a corner, of the size of an eye.
     async fn picture(&self, texture: &wgpu::Texture, [left, top]: [u32; 2]) -> Result<RgbImage> {
         let pitch = (4 * texture.width()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -281,7 +282,7 @@ impl Engine {
         self.queue.submit([encoder.finish()]);
         let (sender, mapped) = futures_channel::oneshot::channel();
         buffer.slice(..).map_async(wgpu::MapMode::Read, |result| drop(sender.send(result)));
-        // Browsers go on by themselves.
+        // Browsers do not need to be polled.
         self.device.poll(wgpu::PollType::wait_indefinitely())?;
         mapped.await??;
         let bytes = buffer.slice(..).get_mapped_range();

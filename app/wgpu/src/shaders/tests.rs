@@ -1,4 +1,4 @@
-//! The modules are those of the present shaders, and every back end takes them.
+//! The modules match the present shaders, and every back end accepts them.
 
 #[path = "../../../core/src/vulkan/modules.rs"]
 mod modules;
@@ -11,7 +11,7 @@ use modules::{MODULES, Module};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use yoro_tools::compiled::{self, Compiled, Source};
 
-/// The modules of sources with two samples. In SPIR-V a constant of the pipeline says how many there are.
+/// The modules for sources with two samples. In SPIR-V a specialization constant selects the number.
 const OF_TWO_SAMPLES: [Module; 2] = [
     ("split-multisample-two", "synthesis/layers/split.frag", &["MULTISAMPLE", "TWO"]),
     ("split-samples-two", "synthesis/layers/split.frag", &["MULTISAMPLE", "SAMPLE_COLORS", "TWO"]),
@@ -21,7 +21,7 @@ fn all_modules() -> Vec<Module> {
     [&MODULES[..], &OF_TWO_SAMPLES].concat()
 }
 
-/// Vulkan 1.0's SPIR-V as it was written: names and functions stay, so that a capture can be read.
+/// Plain SPIR-V for Vulkan 1.0: names and functions are kept, so that a capture can be read.
 const ARGUMENTS: [&str; 1] = ["-V"];
 
 fn folder() -> &'static Path {
@@ -36,13 +36,13 @@ fn source((name, file, macros): Module) -> Source {
     Source { name, vertex: file.ends_with(".vert"), text: for_wgsl(&text, !two.is_empty()) }
 }
 
-/// The text without what WGSL does not have, in four changes.
+/// Replaces what WGSL does not have, in four changes.
 fn for_wgsl(text: &str, two_samples: bool) -> String {
     text.lines().map(|line| line_for_wgsl(line, two_samples) + "\n").collect()
 }
 
 fn line_for_wgsl(line: &str, two_samples: bool) -> String {
-    // Textures and samplers are apart.
+    // WGSL separates textures and samplers.
     if let Some((binding, declared)) = line.strip_prefix("TEXTURE(").and_then(|rest| rest.split_once(')')) {
         let declared = declared.trim_start_matches(" uniform ").trim_start_matches("highp ");
         let (kind, name) = declared.trim_end_matches(';').split_once(' ').unwrap();
@@ -54,7 +54,7 @@ fn line_for_wgsl(line: &str, two_samples: bool) -> String {
         );
     }
     match line.trim() {
-        // Fetches instead of samples: of integers there are no others.
+        // WGSL cannot sample integer textures, so they are fetched instead.
         "layout(constant_id = 0) const bool PART = false;" => {
             "layout(set = 0, binding = 8) uniform sampler nearest_sampler;\n\
              layout(set = 0, binding = 9) uniform sampler linear_sampler;\n\
@@ -62,7 +62,7 @@ fn line_for_wgsl(line: &str, two_samples: bool) -> String {
                 .to_owned()
         }
         "return texture(span_map, span_at);" => "return uvec4(0u);".to_owned(),
-        // Nothing is computed from constants that come later.
+        // naga computes nothing from constants that are set later.
         "layout(constant_id = 1) const bool TWO_SAMPLES = false;" => {
             format!("const bool TWO_SAMPLES = {two_samples};")
         }
@@ -81,7 +81,7 @@ fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
         .map_err(|error| anyhow!("{}", error.emit_to_string("")))
         .with_context(|| source.name)?;
     naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-    // GLSL's names: without the types of the arguments, and one for each block, which has none.
+    // Restores GLSL's names: functions without argument types, and one name for each block, which has none.
     for (_, function) in module.functions.iter_mut() {
         let name = function.name.take().unwrap_or_default();
         function.name = name.split('(').next().map(str::to_owned);
@@ -98,7 +98,7 @@ fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
     Ok(format!("// Made of yoro's GLSL by `cargo tools wgsl`.\n{text}").into_bytes())
 }
 
-/// The version of naga that the workspace has; None without its lock file.
+/// Returns the workspace's version of naga, or `None` without a lock file.
 fn naga_version() -> Option<String> {
     let lock = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock")).ok()?;
     let version = lock.split("name = \"naga\"\nversion = \"").nth(1)?.split('"').next()?;
@@ -122,14 +122,14 @@ fn modules_are_compiled_from_the_present_shaders() {
     compiled.check(&sources).unwrap();
 }
 
-/// The modules as drivers get them: Metal's language, HLSL, SPIR-V's way by Vulkan is in the tests of pictures.
+/// The modules are valid in the languages of drivers: Metal's and HLSL. Tests of pictures cover SPIR-V on Vulkan.
 #[test]
 fn modules_are_valid_webgpu_metal_and_hlsl() {
     for (name, ..) in all_modules() {
         let text = fs::read_to_string(folder().join(name).with_extension("wgsl")).unwrap();
         let module = naga::front::wgsl::parse_str(&text)
             .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
-        // No capability beyond WebGPU's.
+        // No capability beyond those of WebGPU.
         let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
             .validate(&module)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(&text)));

@@ -1,5 +1,5 @@
-//! A browser's own compiler takes all modules, and its WebGPU draws OpenGL's picture with them. The page has the passes
-//! in JavaScript. The example is the crate itself, compiled for browsers.
+//! A browser's own compiler accepts all modules, and its WebGPU draws OpenGL's picture with them. The page runs the
+//! passes from JavaScript. The example is the crate itself, compiled for browsers.
 
 #[path = "../../../core/tests/vulkan/against_opengl.rs"]
 #[expect(dead_code, reason = "shared with tests that use all of it")]
@@ -26,7 +26,7 @@ use browser::Browser;
 use yoro::synthesis::{Places, Uniforms, tiles};
 use yoro_wgpu::wgpu;
 
-/// Chromium's WebGPU on the CPU.
+/// Runs Chromium's WebGPU on the CPU.
 const WEBGPU: [&str; 2] = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"];
 
 #[test]
@@ -41,7 +41,7 @@ fn a_browsers_webgpu_draws_opengls_picture() {
     let gl = Gl::new();
     browser.open(&folder.join("tests/browser/page.html"));
     for (number, (warp, range)) in [warps()[0], warps()[5]].into_iter().enumerate() {
-        // OpenGL gets the picture upside down, so that the same rows are in one tile.
+        // OpenGL receives the picture upside down, so that tiles contain the same rows.
         let turned = warp.rows_from_top();
         let Picture { rgba, depth, .. } = picture(&turned, range, number as u64);
         let want = gl.run(number, &Picture { warp: turned, rgba: rgba.clone(), depth: depth.clone() }).rgba;
@@ -69,7 +69,7 @@ fn a_browsers_webgpu_draws_opengls_picture() {
     }
 }
 
-/// A program that is ended when this is dropped.
+/// A program that is killed when this is dropped.
 struct Server(Child);
 
 impl Drop for Server {
@@ -113,8 +113,8 @@ fn the_example_in_a_browser_draws_opengls_picture() {
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     };
     let want = pollster::block_on(offscreen::Stereo::draw(&wgpu::Instance::new(descriptor))).unwrap();
-    // The room itself is rounded differently here and there: the rendered eye differs in some pixels at edges, and its
-    // depth moves edges of the synthesized one.
+    // The room itself is rounded differently by the two drivers: the rendered eye differs in some pixels at edges, and
+    // its depth moves edges of the synthesized eye.
     let want = want.side_by_side();
     assert_eq!(got.dimensions(), want.dimensions(), "{says}");
     let mut differ = [0, 0];

@@ -1,4 +1,4 @@
-//! Any view: the pictures and depth of OpenGL.
+//! Any view has the same colour and depth as on OpenGL.
 
 use yoro_wgpu::AnyView;
 use yoro_wgpu::wgpu::TextureFormat;
@@ -7,7 +7,7 @@ use crate::against_opengl::{Gl, assert_depth_equal, assert_equal, picture, pose_
 use crate::harness::with_gpus;
 use crate::{Setup, synthesize};
 
-/// Whole textures, parts of larger ones and layers of arrays, by one pipeline.
+/// Whole textures, parts of larger ones and layers of arrays, drawn by one pipeline.
 #[test]
 fn any_view_is_that_of_opengl() {
     let gl = Gl::new();

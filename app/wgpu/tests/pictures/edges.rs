@@ -1,4 +1,4 @@
-//! Anti-aliased sources on wgpu give the pictures that they give on OpenGL.
+//! Anti-aliased sources give the same pictures on wgpu as on OpenGL.
 
 #[path = "../../../../tests/src/samples.rs"]
 mod samples;
@@ -13,7 +13,7 @@ use super::against_opengl::{Picture, expected_depth};
 use super::harness::{Gpu, depth_of, one_layer, with_gpus};
 use samples::{GIVEN, Samples, example, on_opengl};
 
-/// A source, and what OpenGL makes of it: colour, and the source map.
+/// A source, and what OpenGL draws from it: colour and the source map.
 struct Wanted {
     given: (Edges, bool),
     warp: Warp,
@@ -26,7 +26,7 @@ fn wanted() -> Vec<Wanted> {
     let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
     let mut all = Vec::new();
     for (i, given) in GIVEN.into_iter().enumerate() {
-        // Each pass meets both eyes and both conventions.
+        // The cases cover both eyes and both depth conventions.
         let dominant = Eye::BOTH[i % 2];
         let convention = [DepthConvention::Standard, DepthConvention::Reversed][(i + i / 2) % 2];
         let (warp, samples) = example(dominant, convention, GuardBand::Pixels(21));
@@ -45,7 +45,7 @@ fn on_wgpu(gpu: &Gpu, wanted: &Wanted) -> (Vec<u8>, Vec<f32>) {
     gpu.upload_rgba8(&resolved, 0, &samples.resolved());
     let color_samples = gpu.multisampled(format, size);
     let stacked = [size[0], 4 * size[1]];
-    // Rows run from the bottom: the last one is the lowest.
+    // Rows run from the bottom, so the last row comes first in the texture.
     let (mut rgba, mut depths) = (samples.rgba.clone(), samples.depth.clone());
     let depth = match edges {
         Edges::Multisample => {
@@ -107,8 +107,8 @@ fn anti_aliased_sources_give_opengls_pictures() {
                 got.len() / 4
             );
 
-            // The depth is that of the source map's column, but for pixels at silhouettes. A column or a row further it
-            // is not.
+            // The depth is that of the source map's column, except for pixels at silhouettes. It is not that of the
+            // next column or row.
             let depths = wanted.samples.one_depth(given.0, warp.convention);
             let picture = Picture { warp: *warp, rgba: Vec::new(), depth: depths };
             let expected = expected_depth(&picture, &wanted.source_map);

@@ -1,6 +1,6 @@
 //! Devices without a window, and pictures in their textures.
 //!
-//! Arrays have their rows from the bottom, as everywhere; textures have them from the top, as wgpu does.
+//! Arrays have their rows from the bottom, as everywhere in yoro; textures have them from the top, as in wgpu.
 
 use std::sync::OnceLock;
 
@@ -16,8 +16,8 @@ use yoro_wgpu::wgpu::{
     TextureViewDimension, VertexState,
 };
 
-/// A device on one of wgpu's own back ends. It lives as long as the tests: the display of OpenGL's, which it would end,
-/// is also that of the pictures to compare with.
+/// A device on one of wgpu's native back ends. It lives as long as the tests, because dropping wgpu's OpenGL would also
+/// terminate the EGL display that the OpenGL pictures are drawn with.
 pub struct Gpu {
     pub name: String,
     pub device: Device,
@@ -25,8 +25,8 @@ pub struct Gpu {
     _instance: Instance,
 }
 
-/// Runs a test body on wgpu's Vulkan and on its OpenGL, unless tests are to do without. What the body compares with
-/// must have been drawn before: the thread's current context changes.
+/// Runs a test body on wgpu's Vulkan and on its OpenGL, unless the tests are told to skip Vulkan. The body must have
+/// drawn what it compares with before this call, because the thread's current context changes.
 pub fn with_gpus(mut body: impl FnMut(&Gpu)) {
     static GPUS: [OnceLock<Result<Gpu, String>>; 2] = [OnceLock::new(), OnceLock::new()];
     for (backend, gpu) in [Backends::VULKAN, Backends::GL].into_iter().zip(&GPUS) {
@@ -48,10 +48,10 @@ impl Gpu {
         let descriptor = InstanceDescriptor { backends, ..InstanceDescriptor::new_without_display_handle() };
         let instance = Instance::new(descriptor);
         let adapters = pollster::block_on(instance.enumerate_adapters(backends));
-        // A CPU's pictures are the same everywhere.
+        // The pictures of a CPU rasterizer are the same everywhere.
         let is_cpu = |adapter: &&wgpu::Adapter| adapter.get_info().device_type == DeviceType::Cpu;
         let adapter = adapters.iter().find(is_cpu).or(adapters.first()).ok_or("no device is here")?;
-        // What not every device has, of which the tests say so.
+        // Features that not every device has. Tests of formats check for them.
         let wanted = Features::TEXTURE_FORMAT_16BIT_NORM | Features::DEPTH32FLOAT_STENCIL8;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             required_features: wanted & adapter.features(),
@@ -64,12 +64,12 @@ impl Gpu {
         Ok(Gpu { name, device, queue, _instance: instance })
     }
 
-    /// True if textures of this format can be made.
+    /// True if textures of this format can be created.
     pub fn has(&self, format: TextureFormat) -> bool {
         self.device.features().contains(format.required_features())
     }
 
-    /// True for wgpu's OpenGL, which samples neither layers of arrays nor textures of several samples.
+    /// True for wgpu's OpenGL, which cannot sample layers of arrays or multisampled textures.
     pub fn is_opengl(&self) -> bool {
         self.device.adapter_info().backend == wgpu::Backend::Gl
     }
@@ -83,18 +83,18 @@ impl Gpu {
         result
     }
 
-    /// An array of textures that can be sampled, copied and, if the format allows it, rendered to.
+    /// Creates an array of textures that can be sampled, copied and, if the format allows it, rendered to.
     pub fn texture(&self, format: TextureFormat, size: [u32; 2], layers: u32) -> Texture {
         let copied = TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
         self.texture_of(format, size, layers, 1, copied)
     }
 
-    /// A texture of four samples that can be rendered to and sampled.
+    /// Creates a texture of four samples that can be rendered to and sampled.
     pub fn multisampled(&self, format: TextureFormat, size: [u32; 2]) -> Texture {
         self.texture_of(format, size, 1, 4, TextureUsages::empty())
     }
 
-    /// A view of a texture of one sample with this usage alone.
+    /// Returns a view of a single-sampled texture with this usage only.
     pub fn with_usage(&self, format: TextureFormat, size: [u32; 2], usage: TextureUsages) -> TextureView {
         one_layer(&self.texture_with(format, size, 1, 1, usage), 0, TextureAspect::All)
     }
@@ -134,7 +134,7 @@ impl Gpu {
         })
     }
 
-    /// Writes all of a layer of colour, in the format's own encoding.
+    /// Writes a whole layer of colour, in the format's own encoding.
     fn upload(&self, texture: &Texture, layer: u32, bytes: &[u8]) {
         let bytes_per_row = Some(bytes.len() as u32 / texture.height());
         let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
@@ -142,7 +142,7 @@ impl Gpu {
         self.queue.write_texture(place(texture, layer), &flipped(bytes, texture.height()), layout, size);
     }
 
-    /// A layer of colour in the format's own encoding, 4 bytes a pixel.
+    /// Reads a layer of colour in the format's own encoding, 4 bytes per pixel.
     fn read(&self, texture: &Texture, layer: u32) -> Vec<u8> {
         let pitch = (4 * texture.width()).next_multiple_of(256);
         let buffer = self.device.create_buffer(&BufferDescriptor {
@@ -165,8 +165,8 @@ impl Gpu {
         rows.flat_map(|row| &row[..4 * texture.width() as usize]).copied().collect()
     }
 
-    /// Draws pixel for pixel from one texture into a layer of another: colour, depth, or the bits of depth; into
-    /// each sample, if it has several.
+    /// Copies one texture to a layer of another pixel by pixel: colour, depth, or the bits of depth. If the target is
+    /// multisampled, copies to each sample.
     pub fn draw(&self, from: &TextureView, into: &Texture, layer: u32) {
         let (device, format) = (&self.device, into.format());
         let module = device.create_shader_module(wgpu::include_wgsl!("copies.wgsl"));
@@ -255,7 +255,7 @@ impl Gpu {
         });
     }
 
-    /// Fills a layer of colour with bytes of RGBA. sRGB takes them as they are.
+    /// Fills a layer of colour with RGBA bytes. sRGB formats take them unchanged.
     pub fn upload_rgba8(&self, texture: &Texture, layer: u32, rgba: &[u8]) {
         if is_rgba8(texture.format()) {
             return self.upload(texture, layer, rgba);
@@ -265,7 +265,7 @@ impl Gpu {
         self.draw(&plain.create_view(&Default::default()), texture, layer);
     }
 
-    /// A layer of colour as bytes of RGBA.
+    /// Reads a layer of colour as RGBA bytes.
     pub fn read_rgba8(&self, texture: &Texture, layer: u32) -> Vec<u8> {
         if is_rgba8(texture.format()) {
             return self.read(texture, layer);
@@ -293,9 +293,9 @@ impl Gpu {
         }
     }
 
-    /// A layer of depth.
+    /// Reads a layer of depth.
     pub fn read_depth(&self, texture: &Texture, layer: u32) -> Vec<f32> {
-        // Not every device renders to floats of 32 bits.
+        // Not every device can render to 32-bit floats.
         let plain = self.texture(TextureFormat::R32Uint, size(texture), 1);
         self.draw(&depth_of(texture, layer), &plain, 0);
         let bytes = self.read(&plain, 0);
@@ -315,12 +315,12 @@ fn place(texture: &Texture, layer: u32) -> TexelCopyTextureInfo<'_> {
     TexelCopyTextureInfo { origin: Origin3d { z: layer, ..Origin3d::ZERO }, ..texture.as_image_copy() }
 }
 
-/// The rows in the opposite order.
+/// Returns the rows in the opposite order.
 pub fn flipped<T: Copy>(values: &[T], rows: u32) -> Vec<T> {
     values.chunks_exact(values.len() / rows as usize).rev().flatten().copied().collect()
 }
 
-/// A view of one layer.
+/// Returns a view of one layer.
 pub fn one_layer(texture: &Texture, layer: u32, aspect: TextureAspect) -> TextureView {
     texture.create_view(&TextureViewDescriptor {
         dimension: Some(TextureViewDimension::D2),
@@ -331,7 +331,7 @@ pub fn one_layer(texture: &Texture, layer: u32, aspect: TextureAspect) -> Textur
     })
 }
 
-/// A view to read depth from, or a float.
+/// Returns a view to read depth or a float from.
 pub fn depth_of(texture: &Texture, layer: u32) -> TextureView {
     let aspect =
         if texture.format().has_depth_aspect() { TextureAspect::DepthOnly } else { TextureAspect::All };

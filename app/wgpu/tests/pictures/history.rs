@@ -1,4 +1,4 @@
-//! Disocclusions that are looked up in a history: the pictures of OpenGL.
+//! Disocclusions that are looked up in a history look the same as on OpenGL.
 
 use yoro::synthesis::{Edges, PassSet};
 use yoro_wgpu::wgpu::{TextureAspect, TextureFormat};
@@ -11,7 +11,7 @@ use crate::harness::{Gpu, depth_of, one_layer, with_gpus};
 #[test]
 fn what_is_recalled_is_what_opengl_recalls() {
     let (gl, scenes) = (Gl::new(), recalled_scenes());
-    // All before wgpu's OpenGL makes its own context current.
+    // All are drawn before wgpu's OpenGL makes its own context current.
     let cases = [(Edges::Hard, 0), (Edges::Hard, 1), (Edges::Nearest, 0)].map(|(edges, number)| {
         let mut opengl = gl.recalling(edges, number);
         (edges, number, scenes.iter().map(|scene| opengl.both(scene)).collect::<Vec<_>>())
@@ -32,7 +32,7 @@ fn what_is_recalled_is_what_opengl_recalls() {
     });
 }
 
-/// The other eye with the scene's history, and without, recorded one after the other.
+/// Returns the other eye with the scene's history and without it, recorded one after the other.
 fn synthesize(gpu: &Gpu, gather: &mut Gather, scene: &RecalledScene) -> [Vec<u8>; 2] {
     let warp = &scene.source.warp;
     let upload = |rgba: &[u8], depth: &[f32], size| {

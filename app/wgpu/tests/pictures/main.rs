@@ -1,4 +1,4 @@
-//! Pictures of the passes on wgpu equal those of the OpenGL passes, on wgpu's Vulkan and on its OpenGL.
+//! The pictures of the passes on wgpu equal those of the OpenGL passes, both on wgpu's Vulkan and on its OpenGL.
 
 #[path = "../../../core/tests/vulkan/against_opengl.rs"]
 mod against_opengl;
@@ -29,10 +29,10 @@ struct Setup {
     /// Formats of the target.
     target: TextureFormat,
     target_depth: Option<TextureFormat>,
-    /// Upper left corners and what lies beyond the lower right ones.
+    /// The space beyond the rectangle at its upper left and at its lower right corner, in pixels.
     source_margins: [[u32; 2]; 2],
     target_margins: [[u32; 2]; 2],
-    /// Of two, if it is the second one; else of one.
+    /// The layer that is used. It is the last layer of its texture.
     source_layer: u32,
     target_layer: u32,
 }
@@ -53,7 +53,7 @@ impl Setup {
         Options { color_format: self.target, depth_format: self.target_depth, ..Options::default() }
     }
 
-    /// This one, with what the device can do.
+    /// Returns this setup, reduced to what the device supports.
     fn on(&self, gpu: &Gpu) -> Setup {
         Setup { source_layer: if gpu.is_opengl() { 0 } else { self.source_layer }, ..*self }
     }
@@ -68,7 +68,7 @@ struct Result {
     depth: Option<Vec<f32>>,
 }
 
-/// Synthesizes a picture with textures around it that hold something else.
+/// Synthesizes a picture inside textures that hold something else around it.
 fn synthesize<W: WarpKind>(
     gpu: &Gpu,
     pipeline: &mut Pipeline<W>,
@@ -87,7 +87,7 @@ fn synthesize<W: WarpKind>(
     let [source_layers, target_layers] = [setup.source_layer + 1, setup.target_layer + 1];
     let color = gpu.texture(setup.color, source_image, source_layers);
     let depth = gpu.texture(setup.depth, source_image, source_layers);
-    // Near and far at random, which would show.
+    // Random near and far values, which would show if they were used.
     let mut rng = rand_pcg::Pcg32::seed_from_u64(99);
     let junk: Vec<u8> = (0..pixels(source_image) * 4).map(|_| rng.random()).collect();
     let junk_depth: Vec<f32> = (0..pixels(source_image)).map(|_| rng.random_range(0.0..=1.0)).collect();
@@ -103,7 +103,7 @@ fn synthesize<W: WarpKind>(
     let target = gpu.texture(setup.target, target_image, target_layers);
     let before: Vec<u8> = (0..pixels(target_image) * 4).map(|_| rng.random()).collect();
     (0..target_layers).for_each(|layer| gpu.upload_rgba8(&target, layer, &before));
-    // Whatever conversions there are between, what is read back unharmed is this.
+    // Reads the texture back, so that later comparisons include any conversions.
     let before = gpu.read_rgba8(&target, setup.target_layer);
     let target_depth = setup.target_depth.map(|format| gpu.texture(format, target_image, target_layers));
     let junk_depth: Vec<f32> = (0..pixels(target_image)).map(|_| rng.random_range(0.0..=1.0)).collect();
@@ -135,8 +135,8 @@ fn synthesize<W: WarpKind>(
     Result { rgba, depth }
 }
 
-/// What OpenGL makes of warps, with seeds from `first`, by each of [`PassSet::GATHER`]. It is given the pictures upside
-/// down, so that the same rows are in one tile as on wgpu, whose rows are counted from the top.
+/// Returns what OpenGL draws for warps, with seeds from `first`, by each of [`PassSet::GATHER`]. It receives the
+/// pictures upside down, so that tiles contain the same rows as on wgpu, whose rows are counted from the top.
 fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture, [Vec<u8>; 2])> {
     let numbered = warps.iter().zip(first..);
     let pictures = numbered.map(|((warp, range), seed)| picture(warp, *range, seed));
@@ -170,7 +170,7 @@ fn pictures_equal_those_of_opengl() {
     });
 }
 
-/// Parts of larger textures and layers of arrays, one pipeline for several sizes.
+/// Parts of larger textures and layers of arrays, with one pipeline for several sizes.
 #[test]
 fn parts_and_layers_are_found() {
     let pictures = on_opengl(&Gl::new(), &warps(), 50);
@@ -240,7 +240,7 @@ fn every_format_is_taken() {
             };
             let mut gather = setup.gather(gpu, PassSet::GatherOnCpu);
             let got = synthesize(gpu, &mut gather, &setup, picture);
-            // Ten bits have two of alpha.
+            // Ten-bit formats have two bits of alpha.
             assert_equal(&got.rgba, &wanted.rgba, 3, 0, &format!("{}, {setup:?}", gpu.name));
             let expected = expected_depth(picture, &wanted.source_map);
             let depth = got.depth.unwrap();
@@ -250,7 +250,7 @@ fn every_format_is_taken() {
     });
 }
 
-/// sRGB is decoded, filtered and encoded: by wgpu as by OpenGL.
+/// sRGB is decoded, filtered and encoded by wgpu as by OpenGL.
 #[test]
 fn srgb_is_filtered_in_linear_light() {
     let (warp, range) = warps()[2];
@@ -267,7 +267,7 @@ fn srgb_is_filtered_in_linear_light() {
     });
 }
 
-/// Any sizes, rectangles, eyes and laws; displacements of up to 300 pixels, where the search passes over tiles.
+/// Random sizes, rectangles, eyes and laws, with displacements of up to 300 pixels, for which the search skips tiles.
 #[test]
 fn sizes_and_rectangles_at_random() {
     let cases = random_cases();
@@ -292,7 +292,7 @@ fn sizes_and_rectangles_at_random() {
     });
 }
 
-/// Calls of one submission do not share their uniforms, and their buffers are those of whichever runs.
+/// Calls of one submission do not share their uniforms, although they share the intermediate buffers.
 #[test]
 fn calls_of_one_submission_do_not_disturb_each_other() {
     let (near, range) = warps()[2];
@@ -310,7 +310,7 @@ fn calls_of_one_submission_do_not_disturb_each_other() {
             [color, depth, target]
         });
         gpu.run(|encoder| {
-            // The second picture over the first, and the first over the second.
+            // Draws the second picture over the first, and the first over the second.
             for (source, target) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
                 let [color, depth, _] = made[source].each_ref().map(|texture| depth_of(texture, 0));
                 let into = depth_of(&made[target][2], 0);
@@ -326,7 +326,7 @@ fn calls_of_one_submission_do_not_disturb_each_other() {
     });
 }
 
-/// A caller's mistake is one error, and nothing is recorded.
+/// A caller's mistake returns one error, and nothing is recorded.
 #[test]
 fn mistakes_are_refused() {
     with_gpus(|gpu| {
@@ -436,7 +436,7 @@ fn a_lost_device_is_an_error() {
     assert_eq!(lost, Err(WgpuError::DeviceLost));
 }
 
-/// Measures the passes; docs/library.md has the figures.
+/// Measures the passes; docs/library.md has the results.
 #[test]
 #[ignore = "measures: cargo test -p yoro-wgpu --test pictures -- --ignored --nocapture cost"]
 fn cost_of_the_passes() {
@@ -473,7 +473,7 @@ fn cost_of_the_passes() {
         times[1].push(start.elapsed().as_secs_f64() * 1e3);
     }
     for (name, times) in ["OpenGL", "wgpu"].into_iter().zip(&mut times) {
-        // The first one compiles.
+        // The first run compiles.
         times.remove(0);
         times.sort_by(f64::total_cmp);
         println!("{name}: {:.1} ms ({:.1} to {:.1})", times[10], times[0], times[20]);

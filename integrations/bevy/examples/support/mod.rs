@@ -1,4 +1,4 @@
-//! What the examples and the tests share: a room to look at, and an application without a window.
+//! Shared by the examples and the tests: a room to look at, and an application without a window.
 #![allow(dead_code)]
 
 use bevy::app::{PluginGroupBuilder, PluginsState};
@@ -18,16 +18,16 @@ use bevy_yoro::YoroPlugin;
 use bevy_yoro::yoro_wgpu::wgpu;
 use image::RgbImage;
 
-/// On the glass in the room.
+/// Marks the glass in the room.
 #[derive(Component)]
 pub struct Glass;
 
-/// Returns where to stand in the room.
+/// Returns the camera's transform in the room.
 pub fn viewpoint() -> Transform {
     Transform::from_xyz(0.0, 1.6, 2.4).looking_at(Vec3::new(0.0, 1.2, -3.0), Vec3::Y)
 }
 
-/// A room with a chequered floor, a striped wall, columns, balls on them, a lamp, and a pane of glass.
+/// Spawns a room with a chequered floor, a striped wall, columns with balls on them, a lamp and a pane of glass.
 pub fn room(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -96,7 +96,7 @@ pub fn room(
     commands.spawn((PointLight::default(), Transform::from_xyz(-1.5, 3.0, 1.5)));
 }
 
-/// Returns Bevy without a window: each `update` renders one frame, with all of its pipelines compiled.
+/// Returns a Bevy application without a window. Each `update` renders one frame, with all of its pipelines compiled.
 pub fn headless() -> App {
     let mut app = App::new();
     let rendering = RenderPlugin {
@@ -112,7 +112,7 @@ pub fn headless() -> App {
     app
 }
 
-/// Returns Bevy's plugins without those for windows, and without rendering one frame while the next one is prepared.
+/// Returns Bevy's plugins without those for windows and for pipelined rendering.
 pub fn windowless() -> PluginGroupBuilder {
     DefaultPlugins
         .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
@@ -137,7 +137,7 @@ pub fn target(app: &mut App, size: [u32; 2]) -> Handle<Image> {
     app.world_mut().resource_mut::<Assets<Image>>().add(image)
 }
 
-/// Renders until everything has arrived, and returns what is in the image.
+/// Renders four frames, after which everything has arrived, and returns the contents of the image.
 pub fn picture(app: &mut App, image: &Handle<Image>) -> RgbImage {
     for _ in 0..4 {
         app.update();
@@ -145,7 +145,7 @@ pub fn picture(app: &mut App, image: &Handle<Image>) -> RgbImage {
     rendered(app, image)
 }
 
-/// Returns what the last frame has left in an image.
+/// Returns the contents of an image after the last frame.
 pub fn rendered(app: &App, image: &Handle<Image>) -> RgbImage {
     let images = app.sub_app(RenderApp).world().resource::<RenderAssets<GpuImage>>();
     read(app, &images.get(image).expect("the image is on the device").texture, 0)
@@ -195,14 +195,14 @@ pub fn psnr(image: &RgbImage, truth: &RgbImage) -> f64 {
     10.0 * (255f64.powi(2) * truth.len() as f64 / squares.sum::<f64>()).log10()
 }
 
-/// Returns the structural similarity in grey.
+/// Returns the structural similarity (SSIM) of the greyscale images.
 pub fn ssim(image: &RgbImage, truth: &RgbImage) -> f64 {
     let [image, truth] = [image, truth].map(image::imageops::grayscale);
     let algorithm = image_compare::Algorithm::MSSIMSimple;
     image_compare::gray_similarity_structure(&algorithm, &image, &truth).expect("pictures of one size").score
 }
 
-/// Returns the target for an image.
+/// Returns the render target for an image.
 pub fn into_image(image: &Handle<Image>) -> RenderTarget {
     RenderTarget::Image(image.clone().into())
 }

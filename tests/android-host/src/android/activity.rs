@@ -30,7 +30,7 @@ pub struct ARect {
     pub bottom: i32,
 }
 
-/// A callback that takes nothing but the activity.
+/// A callback that takes only the activity.
 pub type Event = Option<unsafe extern "C" fn(*mut ANativeActivity)>;
 /// A callback that takes the window.
 pub type WindowEvent = Option<unsafe extern "C" fn(*mut ANativeActivity, *const Window)>;
@@ -78,19 +78,19 @@ pub struct ANativeActivity {
 /// `ANativeActivity_onCreate`.
 pub type OnCreate = unsafe extern "C" fn(*mut ANativeActivity, *const c_void, usize);
 
-/// The application's folders, removed at the end.
+/// The application's folders, which are removed at the end.
 pub struct Directories {
     internal: CString,
     external: CString,
-    // Only a process that ends by itself removes it; the host ends by `_exit` and removes it by hand.
+    // Only removed if the process exits normally. The host calls `_exit`, so it removes the folder itself.
     root: TempDir,
 }
 
 impl Directories {
-    /// Folders with the script's files in the external one.
+    /// Creates the folders, and writes the script's files into the external one.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// Fails if they cannot be written.
     pub fn new(files: &BTreeMap<String, String>) -> Result<Self> {
         let root = tempfile::Builder::new()
             .prefix("yoro-android-host-")
@@ -111,19 +111,19 @@ impl Directories {
         Ok(Self { internal, external, root })
     }
 
-    /// `getFilesDir`.
+    /// Returns the path that `getFilesDir` gives.
     pub fn internal(&self) -> &CString {
         &self.internal
     }
 
-    /// `getExternalFilesDir(null)`.
+    /// Returns the path that `getExternalFilesDir(null)` gives.
     pub fn external(&self) -> &CString {
         &self.external
     }
 
-    /// Removes everything.
+    /// Removes the folders.
     pub fn remove(&self) {
-        // Ignores errors: a folder that stays is in the system's temporary folder.
+        // Ignores errors: the folder is in the system's temporary folder.
         _ = std::fs::remove_dir_all(self.root.path());
     }
 }

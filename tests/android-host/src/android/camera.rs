@@ -1,5 +1,5 @@
-//! libcamera2ndk.so and AImageReader of libmediandk.so: one camera at the back, whose pictures are a picture of the
-//! script's.
+//! libcamera2ndk.so and the AImageReader of libmediandk.so: a single camera at the back, which sees the script's
+//! picture.
 
 #![allow(non_snake_case)]
 
@@ -22,28 +22,28 @@ const NO_BUFFER: c_int = -30001;
 /// `ACAMERA_LENS_FACING` and `ACAMERA_SCALER_AVAILABLE_STREAM_CONFIGURATIONS`.
 const LENS_FACING: u32 = 0x8_0005;
 const STREAM_CONFIGURATIONS: u32 = 0xD_000A;
-/// Format, width, height, and 1 for inputs: YUV_420_888, and JPEG.
+/// Format, width, height, and 1 for inputs. The formats are JPEG (0x100) and YUV_420_888 (0x23).
 static CONFIGURATIONS: [i32; 16] =
     [0x100, 4000, 3000, 0, 0x23, 4000, 3000, 0, 0x23, 640, 480, 0, 0x23, 320, 240, 0];
 static BACK: u8 = 1;
-/// Nanoseconds from a picture to the next.
+/// Time between two pictures in nanoseconds.
 const PERIOD: u64 = 33_333_333;
-/// Rows lie further apart than their pixels.
+/// Unused bytes at the end of each row.
 const PADDING: usize = 64;
 
-/// The camera as the script has it.
+/// The simulated camera.
 pub struct Camera {
-    /// The file of what it sees; none without a camera.
+    /// The file with the picture that it sees, or `None` without a camera.
     sees: Mutex<Option<std::path::PathBuf>>,
-    /// True if the user lets the application use it.
+    /// True if the user allows the application to use it.
     pub is_allowed: AtomicBool,
-    /// True from a question of the application to its answer.
+    /// True between the application's request for permission and the answer.
     pub is_asked: AtomicBool,
-    /// True while another application has it.
+    /// True while another application uses it.
     is_taken: AtomicBool,
     objects: Mutex<HashMap<usize, &'static str>>,
     last: AtomicUsize,
-    /// The application's callback for a camera that is lost, with its context; 0 while none is open.
+    /// The application's callback for a lost camera, and its context. 0 while no camera is open.
     on_disconnected: AtomicUsize,
     context: AtomicUsize,
     is_repeating: AtomicBool,
@@ -54,7 +54,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera of a device.
+    /// Creates the camera of a device.
     pub fn new(device: &Device) -> Self {
         Self {
             sees: Mutex::new(device.camera.clone()),
@@ -72,20 +72,20 @@ impl Camera {
         }
     }
 
-    /// Shows it something else.
+    /// Makes it see another picture.
     pub fn see(&self, file: std::path::PathBuf) {
         *lock(&self.sees) = Some(file);
         self.is_taken.store(false, Ordering::Release);
     }
 
-    /// Another application takes it.
+    /// Lets another application take it.
     pub fn take(&self) {
         self.is_taken.store(true, Ordering::Release);
         let function = self.on_disconnected.load(Ordering::Acquire);
         if function == 0 {
             crate::host::fatal("the script takes a camera that is not open");
         }
-        // SAFETY: the application's function of this type, with its own context; a device that it ignores.
+        // SAFETY: the application's function has this type and gets its own context. It ignores the device.
         unsafe {
             let function: unsafe extern "C" fn(Handle, Handle) = std::mem::transmute(function);
             function(self.context.load(Ordering::Acquire) as Handle, std::ptr::null_mut());
@@ -171,7 +171,7 @@ extern "C" fn ACameraManager_getCameraIdList(manager: Handle, to: *mut *mut IdLi
 
 extern "C" fn ACameraManager_deleteCameraIdList(list: *mut IdList) {
     host().count("camera lists", -1);
-    // SAFETY: from the function above, and given back once.
+    // SAFETY: the list was made by the function above, and is freed once.
     drop(unsafe { Box::from_raw(list) });
 }
 
@@ -314,7 +314,7 @@ extern "C" fn ACameraCaptureSession_setRepeatingRequest(
 ) -> c_int {
     camera().check("camera sessions", session);
     for i in 0..usize::try_from(count).unwrap_or_default() {
-        // SAFETY: the application gives so many.
+        // SAFETY: the application passes this many requests.
         camera().check("camera requests", unsafe { *requests.add(i) });
     }
     camera().is_repeating.store(true, Ordering::Release);
@@ -341,7 +341,7 @@ extern "C" fn AImageReader_delete(reader: Handle) {
     camera().free("image readers", reader);
 }
 
-/// The window is the reader itself.
+/// The reader serves as its own window.
 extern "C" fn AImageReader_getWindow(reader: Handle, to: *mut Handle) -> c_int {
     camera().check("image readers", reader);
     // SAFETY: the application gives room for a handle.
@@ -365,7 +365,7 @@ extern "C" fn AImageReader_acquireLatestImage(reader: Handle, to: *mut Handle) -
         Ok(picture) => picture.into_luma8(),
         Err(error) => crate::host::fatal(format!("the camera cannot see {}: {error}", file.display())),
     };
-    // As it stands, in the middle of a grey wall.
+    // The picture at its original size, in the centre of a grey wall.
     let stride = width + PADDING;
     let mut luma = vec![0; stride * height];
     let [left, top] = [(width, picture.width()), (height, picture.height())]

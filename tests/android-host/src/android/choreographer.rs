@@ -1,4 +1,4 @@
-//! AChoreographer: callbacks at the display's refreshes, on the thread's looper.
+//! AChoreographer: callbacks on the thread's looper at the display's refreshes.
 
 #![allow(non_snake_case)]
 
@@ -11,7 +11,7 @@ use crate::host::{fatal, host, lock};
 type FrameCallback = unsafe extern "C" fn(nanoseconds: i64, data: *mut c_void);
 type VsyncCallback = unsafe extern "C" fn(frame: *const FrameData, data: *mut c_void);
 
-/// A callback that waits for its refresh.
+/// A callback that waits for a refresh.
 #[derive(Clone, Copy)]
 pub struct Pending {
     due: u64,
@@ -19,7 +19,7 @@ pub struct Pending {
     data: *mut c_void,
 }
 
-// SAFETY: `data` is the application's and only handed back to it, on the looper's own thread.
+// SAFETY: `data` belongs to the application, and is only passed back to it on the looper's own thread.
 unsafe impl Send for Pending {}
 
 #[derive(Clone, Copy)]
@@ -28,13 +28,13 @@ enum Kind {
     Vsync(VsyncCallback),
 }
 
-/// `AChoreographerFrameCallbackData`: one timeline, shown two refreshes later, or as the script says.
+/// `AChoreographerFrameCallbackData`: a single timeline. A frame is shown after the script's number of refreshes.
 pub struct FrameData {
     time: u64,
     period: u64,
 }
 
-/// Calls the callbacks due at `now`; true if there were any.
+/// Calls the callbacks that are due at `now`. Returns true if there were any.
 pub fn run(looper: &ALooper, now: u64) -> bool {
     let due: Vec<_> = {
         let mut pending = lock(&looper.choreographer);
@@ -44,7 +44,7 @@ pub fn run(looper: &ALooper, now: u64) -> bool {
     };
     for callback in &due {
         let period = host().clock.period();
-        // SAFETY: the application's functions, with the data that it gave for them, on the thread that posted them.
+        // SAFETY: the application's functions get the data that it passed with them, on the thread that posted them.
         unsafe {
             match callback.callback {
                 Kind::Frame(function) => function(callback.due as i64, callback.data),

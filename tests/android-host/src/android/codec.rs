@@ -1,5 +1,4 @@
-//! AMediaCodec and AMediaFormat of libmediandk.so: a decoder of H.264, by openh264, whose pictures are semi-planar and
-//! padded.
+//! AMediaCodec and AMediaFormat of libmediandk.so: an H.264 decoder (openh264) with semi-planar, padded pictures.
 
 #![allow(non_snake_case)]
 
@@ -12,21 +11,21 @@ use crate::bionic::text;
 use crate::exports::{Export, System, exports};
 use crate::host::host;
 
-/// `AMEDIA_ERROR_UNKNOWN`, and two answers of `dequeueOutputBuffer`.
+/// `AMEDIA_ERROR_UNKNOWN`, and two results of `dequeueOutputBuffer`.
 const UNKNOWN: c_int = -10000;
 const TRY_AGAIN_LATER: isize = -1;
 const OUTPUT_FORMAT_CHANGED: isize = -2;
 /// `COLOR_FormatYUV420SemiPlanar`.
 const SEMI_PLANAR: i32 = 21;
-/// A row of luma has so many bytes, and a plane of it so many rows, more than its picture.
+/// Unused bytes per row of luma, and unused rows per plane of luma.
 const PADDING: [usize; 2] = [24, 6];
-/// Bytes of the one buffer for input.
+/// Size of the only input buffer in bytes.
 const INPUT: usize = 1 << 20;
 
-/// Returns the picture of a frame; none for a damaged one.
+/// Decodes a frame. Returns `None` if it is damaged.
 type Decode = Box<dyn FnMut(&[u8]) -> Option<Planes>>;
 
-/// Returns a decoder; none where the host has none.
+/// Creates a decoder, or returns `None` if the host has none.
 #[cfg(target_arch = "x86_64")]
 fn decoder() -> Option<Decode> {
     let mut decoder = yoro_video::Decoder::new().ok()?;
@@ -50,10 +49,10 @@ struct Codec {
     decode: Option<Decode>,
     input: Vec<u8>,
     is_filling: bool,
-    /// The pictures that wait, with their times; the first is the application's while `is_read`.
+    /// Decoded pictures with their times. The application holds the first one while `is_read` is true.
     output: VecDeque<(u64, Vec<u8>)>,
     is_read: bool,
-    /// Width and height of the pictures, and whether the application knows them.
+    /// Width and height of the pictures, and whether the application has been told.
     size: [usize; 2],
     is_size_told: bool,
 }
@@ -94,7 +93,7 @@ unsafe extern "C" fn AMediaCodec_createDecoderByType(kind: *const c_char) -> *mu
 
 unsafe extern "C" fn AMediaCodec_delete(codec: *mut Codec) -> c_int {
     host().count("decoders", -1);
-    // SAFETY: made by the function above, and deleted once.
+    // SAFETY: the codec was made by the function above, and is deleted once.
     drop(unsafe { Box::from_raw(codec) });
     0
 }
@@ -153,7 +152,7 @@ extern "C" fn AMediaCodec_queueInputBuffer(
     }
 }
 
-/// Returns a picture as a decoder of a phone may hold it.
+/// Returns a picture with the layout that a phone's decoder may use.
 fn padded(planes: &Planes) -> Vec<u8> {
     let [width, height] = planes.size;
     let (stride, rows) = (width + PADDING[0], height + PADDING[1]);
@@ -217,7 +216,7 @@ extern "C" fn AMediaCodec_getOutputFormat(codec: &mut Codec) -> *mut Format {
         ("color-format", SEMI_PLANAR as usize),
     ];
     let format = AMediaFormat_new();
-    // SAFETY: it has just been made.
+    // SAFETY: the format has just been made.
     unsafe { &mut *format }.numbers = numbers.map(|(key, n)| (key.to_owned(), n as i32)).into();
     format
 }
@@ -229,7 +228,7 @@ extern "C" fn AMediaFormat_new() -> *mut Format {
 
 unsafe extern "C" fn AMediaFormat_delete(format: *mut Format) -> c_int {
     host().count("media formats", -1);
-    // SAFETY: made by the function above, and deleted once.
+    // SAFETY: the format was made by the function above, and is deleted once.
     drop(unsafe { Box::from_raw(format) });
     0
 }

@@ -1,5 +1,4 @@
-//! AConfiguration: the device's screen and language. The asset manager that it is made of has no assets: the application
-//! opens none.
+//! AConfiguration: the device's screen and language. The asset manager has no assets, since the application opens none.
 
 #![allow(non_snake_case)]
 
@@ -8,7 +7,7 @@ use std::ffi::{c_char, c_void};
 use crate::exports::{Export, System, exports};
 use crate::host::host;
 
-/// One configuration: the values that depend on the script.
+/// A configuration: the values that depend on the script.
 #[derive(Clone, Copy, Default)]
 pub struct AConfiguration {
     density: i32,
@@ -41,7 +40,7 @@ extern "C" fn AConfiguration_new() -> *mut AConfiguration {
 
 unsafe extern "C" fn AConfiguration_delete(configuration: *mut AConfiguration) {
     host().count("configurations", -1);
-    // SAFETY: made by new and deleted once by contract.
+    // SAFETY: by contract the configuration was made by `AConfiguration_new` and is deleted once.
     drop(unsafe { Box::from_raw(configuration) });
 }
 

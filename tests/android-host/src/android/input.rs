@@ -12,10 +12,10 @@ use crate::exports::{Export, System, exports};
 use crate::fd::EventFd;
 use crate::host::{host, lock};
 
-/// Totals for the summary.
+/// Numbers of events for the summary.
 #[derive(Default)]
 pub struct InputCounts {
-    /// Sent.
+    /// Sent to the application.
     pub sent: AtomicU64,
     /// Finished by the application.
     pub finished: AtomicU64,
@@ -23,32 +23,32 @@ pub struct InputCounts {
     pub handled: AtomicU64,
 }
 
-/// A touch or a key. `repr(C)` is not needed: the application only hands it back.
+/// A touch or a key. `repr(C)` is not needed, since the application only passes it back.
 #[derive(Clone, Debug)]
 pub enum AInputEvent {
     /// One finger on the touch screen.
     Motion {
         /// `AMOTION_EVENT_ACTION_*`.
         action: MotionAction,
-        /// Pixels from the left.
+        /// Pixels from the left edge.
         x: f32,
-        /// Pixels from the top.
+        /// Pixels from the top edge.
         y: f32,
-        /// Nanoseconds.
+        /// Time in nanoseconds.
         time: u64,
     },
     /// A button.
     Key {
-        /// True if it goes down.
+        /// True if the key is pressed, false if it is released.
         down: bool,
         /// `AKEYCODE_*`.
         code: c_int,
-        /// Nanoseconds.
+        /// Time in nanoseconds.
         time: u64,
     },
 }
 
-/// An action of a finger.
+/// What a finger does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionAction {
     /// `AMOTION_EVENT_ACTION_DOWN`.
@@ -57,7 +57,7 @@ pub enum MotionAction {
     Up = 1,
 }
 
-/// A queue that the system hands to the activity.
+/// A queue that the system passes to the activity.
 pub struct AInputQueue {
     event: EventFd,
     state: Mutex<QueueState>,
@@ -70,8 +70,8 @@ struct QueueState {
 }
 
 impl AInputQueue {
-    /// The process's one, emptied: activities come one after the other, and an application may hold the pointer a
-    /// little longer than it should.
+    /// Empties and returns the only queue of the process. One is enough, since activities follow one another. It is
+    /// never freed, since an application may keep the pointer slightly too long.
     pub fn fresh() -> &'static Self {
         static QUEUE: OnceLock<AInputQueue> = OnceLock::new();
         let queue = QUEUE.get_or_init(|| Self { event: EventFd::new(), state: Mutex::default() });
@@ -87,7 +87,7 @@ impl AInputQueue {
         self.event.signal();
     }
 
-    /// True if the application still listens: it must not when the queue is destroyed.
+    /// True if the queue is still attached to a looper, which must not be the case when it is destroyed.
     pub fn is_attached(&self) -> bool {
         lock(&self.state).looper.is_some()
     }
@@ -150,7 +150,7 @@ unsafe extern "C" fn AInputQueue_finishEvent(_queue: &AInputQueue, event: *mut A
     drop(unsafe { Box::from_raw(event) });
 }
 
-/// `AINPUT_EVENT_TYPE_KEY` is 1, `_MOTION` 2.
+/// Returns `AINPUT_EVENT_TYPE_KEY` (1) or `AINPUT_EVENT_TYPE_MOTION` (2).
 extern "C" fn AInputEvent_getType(event: &AInputEvent) -> i32 {
     match event {
         AInputEvent::Key { .. } => 1,
@@ -158,7 +158,7 @@ extern "C" fn AInputEvent_getType(event: &AInputEvent) -> i32 {
     }
 }
 
-/// `AINPUT_SOURCE_KEYBOARD` and `_TOUCHSCREEN`.
+/// Returns `AINPUT_SOURCE_KEYBOARD` or `AINPUT_SOURCE_TOUCHSCREEN`.
 extern "C" fn AInputEvent_getSource(event: &AInputEvent) -> i32 {
     match event {
         AInputEvent::Key { .. } => 0x101,
@@ -166,7 +166,7 @@ extern "C" fn AInputEvent_getSource(event: &AInputEvent) -> i32 {
     }
 }
 
-/// Defines getters of one kind of event; calling one for the other kind is a violation and gives zero.
+/// Defines getters for one kind of event. Calling one for the other kind is a violation and returns zero.
 macro_rules! getters {
     ($($name:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
         $(extern "C" fn $name(event: &AInputEvent) -> $type {
@@ -192,8 +192,8 @@ getters! {
     AMotionEvent_getPointerCount: AInputEvent::Motion { .. } => 1, usize;
 }
 
-/// `AMOTION_EVENT_AXIS_X` is 0, `_Y` 1, `_PRESSURE` 2; a finger has no others. An index beyond the one finger is a violation and
-/// gives zero.
+/// Returns the value of an axis: `AMOTION_EVENT_AXIS_X` (0), `_Y` (1) or `_PRESSURE` (2), the only ones that a finger
+/// has. An index other than 0 is a violation and returns zero.
 extern "C" fn AMotionEvent_getAxisValue(event: &AInputEvent, axis: i32, index: usize) -> f32 {
     match (event, axis) {
         (AInputEvent::Motion { x, .. }, 0) if index == 0 => *x,

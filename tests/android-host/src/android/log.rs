@@ -1,4 +1,4 @@
-//! liblog: the application's log goes into the summary, and to standard error on request.
+//! liblog: the application's log, which is written to the summary and, on request, to standard error.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::ffi::{c_char, c_int};
@@ -9,7 +9,7 @@ use crate::exports::{Export, System, exports};
 use crate::host::{fatal, host, lock};
 use crate::summary::LogLine;
 
-/// The tags of the application, which is the telemetry's, and of the API layer.
+/// The tags of the application, also used by its telemetry, and of the API layer.
 pub const TAGS: [&str; 2] = ["YORO", "yoro"];
 
 /// Everything logged so far.
@@ -19,27 +19,27 @@ pub struct Log {
     abort_message: Mutex<String>,
 }
 
-/// The part of the log that the summary takes.
+/// The part of the log that is written to the summary.
 #[derive(Clone, Default)]
 pub struct Collected {
-    /// Lines of [`TAGS`] and errors.
+    /// Lines with one of [`TAGS`], and errors.
     pub lines: Vec<LogLine>,
-    /// Lines by tag.
+    /// Number of lines per tag.
     pub counts: BTreeMap<String, u64>,
     recent: VecDeque<String>,
     total: usize,
 }
 
-/// Lines kept for the summary, and for those who wait for one: an application that fails in a loop logs millions.
+/// Maximum number of lines kept for the summary and for waiting steps. A failing application may log millions.
 const KEPT: usize = 5000;
 
 impl Log {
-    /// An empty log.
+    /// Creates an empty log.
     pub fn new(verbose: bool) -> Self {
         Self { verbose, state: Mutex::default(), abort_message: Mutex::default() }
     }
 
-    /// True if everything is shown.
+    /// True if all lines are printed.
     pub fn is_verbose(&self) -> bool {
         self.verbose
     }
@@ -77,7 +77,7 @@ impl Log {
         lock(&self.state).clone()
     }
 
-    /// The number of the first line from number `from` on that contains the text, of any tag.
+    /// Returns the number of the first line, from number `from` on, that contains the text. The tag does not matter.
     pub fn find(&self, from: usize, text: &str) -> Option<usize> {
         let state = lock(&self.state);
         let first = state.total - state.recent.len();
@@ -90,12 +90,12 @@ impl Log {
             .map(|index| first + skipped + index)
     }
 
-    /// Called before `abort`.
+    /// Stores the message that the application gives before it calls `abort`.
     pub fn set_abort_message(&self, message: String) {
         *lock(&self.abort_message) = message;
     }
 
-    /// The message, or else the last lines, for a failure's text.
+    /// Returns this message, or else the last lines of the log, for the text of a failure.
     pub fn abort_message(&self) -> String {
         let message = lock(&self.abort_message).clone();
         let state = lock(&self.state);
@@ -133,11 +133,11 @@ unsafe extern "C" fn __android_log_buf_write(
     tag: *const c_char,
     message: *const c_char,
 ) -> c_int {
-    // SAFETY: same contract as the caller's.
+    // SAFETY: the same contract as this function's.
     unsafe { __android_log_write(priority, tag, message) }
 }
 
-/// Shows the condition and the format unchanged, as the format's arguments cannot be read here.
+/// Reports the condition and the format as they are, since the format's variadic arguments cannot be read here.
 unsafe extern "C" fn __android_log_assert(
     condition: *const c_char,
     tag: *const c_char,

@@ -1,4 +1,4 @@
-//! ALooper. A thread that waits in its looper lets virtual time pass: to the next sensor event or display refresh, or
+//! ALooper. While a thread waits in its looper, virtual time advances to the next sensor event or display refresh, or
 //! to the end of the wait.
 
 #![allow(non_snake_case)]
@@ -21,13 +21,13 @@ const POLL_WAKE: c_int = -1;
 const POLL_CALLBACK: c_int = -2;
 const POLL_TIMEOUT: c_int = -3;
 const POLL_ERROR: c_int = -4;
-/// `ALOOPER_EVENT_INPUT`, `_OUTPUT`, `_ERROR`, `_HANGUP` and poll's words for them.
+/// `ALOOPER_EVENT_INPUT`, `_OUTPUT`, `_ERROR` and `_HANGUP`, and the corresponding events of poll.
 const EVENTS: [(c_int, i16); 4] =
     [(1, libc::POLLIN), (2, libc::POLLOUT), (4, libc::POLLERR), (8, libc::POLLHUP)];
-/// Real milliseconds between two looks at the virtual clock.
+/// Interval in real milliseconds at which the virtual clock is checked.
 const SLICE: c_int = 1;
 
-/// One thread's looper.
+/// The looper of a thread.
 pub struct ALooper {
     references: AtomicI32,
     wake: EventFd,
@@ -35,22 +35,22 @@ pub struct ALooper {
     entries: Mutex<Vec<Entry>>,
     /// Callbacks for the next display refresh.
     pub choreographer: Mutex<Vec<Pending>>,
-    /// Virtual time up to which the looper has nothing left to do.
+    /// Virtual time up to which the looper has handled everything.
     settled: AtomicU64,
 }
 
-/// Loopers that exist.
+/// Addresses of the existing loopers.
 static LOOPERS: Mutex<Vec<usize>> = Mutex::new(Vec::new());
 
-/// Waits until the loopers of other threads have taken everything due up to now: a display refresh or samples of
-/// sensors. Real phones deliver them while the frame is being drawn; here they are there when the next one begins. A
-/// looper that is busy with something else is not waited for long.
+/// Waits until the loopers of other threads have handled everything that is due: a display refresh or sensor samples.
+/// Real phones deliver these while a frame is being drawn; here they must arrive before the next frame begins. Waits at
+/// most 50 ms for loopers that are busy with something else.
 pub fn settle() {
     let now = host().clock.now();
     let own = current().map(|looper| std::ptr::from_ref(looper) as usize);
     let deadline = Instant::now() + Duration::from_millis(50);
     let busy = || {
-        // SAFETY: a looper leaves the list before it goes, and the list is locked meanwhile.
+        // SAFETY: a looper is removed from the locked list before it is freed.
         lock(&LOOPERS)
             .iter()
             .filter(|looper| Some(**looper) != own)
@@ -78,7 +78,7 @@ struct Entry {
     data: *mut c_void,
 }
 
-// SAFETY: `data` is the application's and only handed back to it, on the looper's own thread.
+// SAFETY: `data` belongs to the application, and is only passed back to it on the looper's own thread.
 unsafe impl Send for Entry {}
 
 /// A descriptor that is ready.
@@ -110,7 +110,7 @@ impl ALooper {
         samples.into_iter().chain(choreographer::next(self)).min()
     }
 
-    /// Returns the descriptors to poll: the entries in their order, and then the wake-up.
+    /// Returns the descriptors to poll: those of the entries in order, followed by the wake-up.
     fn descriptors(&self, entries: &[Entry]) -> Vec<libc::pollfd> {
         let mut fds: Vec<_> = entries
             .iter()
@@ -127,7 +127,7 @@ impl ALooper {
         fds
     }
 
-    /// Polls in real time; `also` is one more descriptor to wait for. Returns the ready descriptors, or an error.
+    /// Polls in real time. `also` is a further descriptor. Returns the descriptors that are ready, or an error.
     fn poll(&self, milliseconds: c_int, also: c_int) -> Result<Vec<Ready>, ()> {
         let entries = lock(&self.entries).clone();
         let mut fds = self.descriptors(&entries);
@@ -155,7 +155,7 @@ impl ALooper {
             .collect())
     }
 
-    /// Calls the callbacks among `ready`. Returns true if there were any, and the first entry that has an identifier.
+    /// Calls the callbacks of `ready`. Returns true if there were any, and the first entry with an identifier.
     fn dispatch(&self, ready: Vec<Ready>) -> (bool, Option<Ready>) {
         let mut called = false;
         let mut identified = None;
@@ -165,7 +165,7 @@ impl ALooper {
                 continue;
             };
             called = true;
-            // SAFETY: the application's function, with the data that it gave for it, on the looper's thread.
+            // SAFETY: the application's function gets the data that was passed with it, on the looper's thread.
             if unsafe { callback(item.fd, item.events, item.entry.data) } == 0 {
                 self.remove(item.fd);
             }
@@ -173,15 +173,15 @@ impl ALooper {
         (called, identified)
     }
 
-    /// Runs the work due on this looper, waiting at most `milliseconds` of real time for it. Used by the host's own
-    /// main thread, for which virtual time does not pass.
+    /// Does the looper's work, and waits at most `milliseconds` of real time for it. Used by the host's main thread,
+    /// whose waits do not advance virtual time.
     pub fn pump(&self, milliseconds: c_int, also: c_int) {
         if let Ok(ready) = self.poll(milliseconds, also) {
             self.dispatch(ready);
         }
     }
 
-    /// Removes a descriptor; true if it was there.
+    /// Removes a descriptor. Returns true if it was there.
     pub fn remove(&self, fd: c_int) -> bool {
         let mut entries = lock(&self.entries);
         let before = entries.len();
@@ -203,12 +203,12 @@ impl ALooper {
     }
 }
 
-/// The thread's own reference.
+/// A thread's own reference to its looper.
 struct Own(*const ALooper);
 
 impl Drop for Own {
     fn drop(&mut self) {
-        // SAFETY: the reference that the thread held since `prepare`.
+        // SAFETY: the thread has held this reference since `prepare`.
         unsafe { ALooper_release(self.0) };
     }
 }
@@ -223,11 +223,11 @@ pub fn current() -> Option<&'static ALooper> {
     CURRENT.try_with(|own| own.borrow().as_ref().map(|own| unsafe { &*own.0 })).ok().flatten()
 }
 
-/// Returns the calling thread's looper, made if there is none.
+/// Returns the calling thread's looper, which is created if necessary.
 pub fn prepare() -> &'static ALooper {
     CURRENT.with_borrow_mut(|own| {
         let own = own.get_or_insert_with(|| Own(ALooper::new()));
-        // SAFETY: as in `current`.
+        // SAFETY: see `current`.
         unsafe { &*own.0 }
     })
 }
@@ -259,7 +259,7 @@ unsafe extern "C" fn ALooper_release(looper: *const ALooper) {
     if before == 1 {
         host().count("loopers", -1);
         lock(&LOOPERS).retain(|known| *known != looper as usize);
-        // SAFETY: made by `ALooper::new`, and this was the last reference.
+        // SAFETY: the looper was made by `ALooper::new`, and this was its last reference.
         drop(unsafe { Box::from_raw(looper.cast_mut()) });
     }
 }
@@ -340,7 +340,7 @@ unsafe extern "C" fn ALooper_pollOnce(
 }
 
 impl ALooper {
-    /// Waits until something is ready, without taking it.
+    /// Waits until something is ready, but does not handle it.
     fn poll_only(&self, milliseconds: c_int) -> bool {
         let mut fds = self.descriptors(&lock(&self.entries));
         // SAFETY: pointer and length belong to one live vector.

@@ -1,4 +1,4 @@
-//! libandroid.so, liblog.so, and what there is of libcamera2ndk.so and libmediandk.so.
+//! libandroid.so, liblog.so, and the parts of libcamera2ndk.so and libmediandk.so that the application uses.
 
 pub mod activity;
 pub mod camera;

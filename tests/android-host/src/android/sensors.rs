@@ -1,8 +1,8 @@
-//! ASensorManager: a gyroscope and an accelerometer on a head that moves as the script says. Samples come on the
-//! virtual clock, at the rate that the application asked for.
+//! ASensorManager: a gyroscope and an accelerometer on a head that moves as the script says. Samples arrive on the
+//! virtual clock, at the rate that the application has requested.
 //!
-//! The phone is held in landscape, its left side down (`ROTATION_90`): the device's x axis points up, its y axis to the
-//! head's left, its z axis backwards, to the eyes.
+//! The phone is held in landscape with its left side down (`ROTATION_90`): the device's x axis points up, its y axis to
+//! the head's left, and its z axis backwards, towards the eyes.
 
 #![allow(non_snake_case)]
 
@@ -18,13 +18,13 @@ use crate::fd::EventFd;
 use crate::host::{host, lock};
 use crate::script::{Device, SensorKind};
 
-/// m/s².
+/// Acceleration of gravity in m/s².
 const GRAVITY: f32 = 9.81;
-/// The number of events that a queue holds before it drops the oldest, as hardware does.
+/// Maximum number of events in a queue. Further ones replace the oldest, as in hardware.
 const FIFO: usize = 4096;
-/// `SENSOR_DELAY_NORMAL`, a sensor's period until a rate is set; nanoseconds.
+/// Period of a sensor in nanoseconds until a rate is set (`SENSOR_DELAY_NORMAL`).
 const DEFAULT_PERIOD: u64 = 200_000_000;
-/// Fastest rate, nanoseconds.
+/// Minimum period in nanoseconds.
 const MIN_PERIOD: u64 = 5_000_000;
 
 /// A sensor of the device.
@@ -59,16 +59,16 @@ pub struct ASensorEvent {
 
 const _: () = assert!(size_of::<ASensorEvent>() == 104);
 
-/// A queue of the application.
+/// A sensor event queue of the application.
 pub struct ASensorEventQueue {
     looper: *const ALooper,
     event: EventFd,
     state: Mutex<QueueState>,
 }
 
-// SAFETY: the looper outlives its queues by contract and is only used through functions that lock.
+// SAFETY: by contract the looper outlives its queues. It is only used through functions that lock.
 unsafe impl Send for ASensorEventQueue {}
-// SAFETY: as above; everything else is locked.
+// SAFETY: as above. Everything else is locked.
 unsafe impl Sync for ASensorEventQueue {}
 
 #[derive(Default)]
@@ -103,7 +103,7 @@ impl Motion {
     }
 }
 
-/// The sensors of the device and the head they are on.
+/// The device's sensors, and the head that the device is attached to.
 pub struct Sensors {
     list: Vec<&'static ASensor>,
     motion: Mutex<Motion>,
@@ -111,7 +111,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// The sensors that the script gives the device; the head looks straight ahead.
+    /// Creates the sensors that the script lists. The head looks straight ahead.
     pub fn new(device: &Device) -> Self {
         let list = device
             .sensors
@@ -129,8 +129,8 @@ impl Sensors {
         Self { list, motion: Mutex::new(still), queues: Mutex::default() }
     }
 
-    /// Turns the head to an orientation (degrees; yaw to the left, then pitch up, then roll to the left) within
-    /// `duration` nanoseconds from `now` on, at first faster and faster, then slower.
+    /// Turns the head to an orientation within `duration` nanoseconds from `now` on, accelerating and then
+    /// decelerating. Angles are in degrees, in the order yaw (to the left), pitch (up), roll (to the left).
     pub fn turn(&self, yaw: f32, pitch: f32, roll: f32, now: u64, duration: u64) {
         self.fill(now);
         let to = Quat::from_euler(EulerRot::YXZ, yaw.to_radians(), pitch.to_radians(), roll.to_radians());
@@ -153,7 +153,7 @@ impl Sensors {
                 data[..3].copy_from_slice(&up.to_array());
             }
             SensorKind::Gyroscope | SensorKind::GyroscopeUncalibrated => {
-                // The mean rate since the last sample, so that integrating the samples gives the orientation.
+                // The mean rate since the last sample, so that integrating the samples results in the orientation.
                 let mut turned = motion.orientation(at - period).inverse() * head;
                 if turned.w < 0.0 {
                     turned = -turned;
@@ -174,14 +174,14 @@ impl Sensors {
         }
     }
 
-    /// Puts the samples up to `now` into the queues.
+    /// Adds the samples up to `now` to the queues.
     pub fn fill(&self, now: u64) {
         for queue in lock(&self.queues).iter() {
             let mut state = lock(&queue.state);
             let mut new = Vec::new();
             for sensor in &self.list {
                 if let Some(schedule) = state.enabled.get_mut(&sensor.type_number()) {
-                    // After a long sleep, delivers only as many samples as the FIFO would hold.
+                    // After a long sleep, only deliver as many samples as the FIFO holds.
                     let backlog =
                         (now.saturating_sub(schedule.next) / schedule.period).saturating_sub(FIFO as u64);
                     schedule.next += backlog * schedule.period;
@@ -262,7 +262,7 @@ unsafe extern "C" fn ASensorManager_destroyEventQueue(
 ) -> c_int {
     let host = host();
     let is_known = {
-        // Not held below: a looper that looks for its next event has its own lock when it asks for this one.
+        // Do not hold this lock below: a looper that determines its next event locks itself before these queues.
         let mut queues = lock(&host.sensors.queues);
         let before = queues.len();
         queues.retain(|known| !std::ptr::eq(*known, queue));
@@ -273,9 +273,9 @@ unsafe extern "C" fn ASensorManager_destroyEventQueue(
         return -libc::EINVAL;
     }
     host.count("sensor queues", -1);
-    // SAFETY: made by createEventQueue and, being in the list until now, not destroyed before.
+    // SAFETY: the queue was made by `createEventQueue`. It was in the list, so it has not been destroyed before.
     let queue = unsafe { Box::from_raw(queue) };
-    // SAFETY: the looper outlives its queues by contract.
+    // SAFETY: by contract the looper outlives its queues.
     unsafe { &*queue.looper }.remove(queue.event.raw());
     0
 }
@@ -350,11 +350,11 @@ mod tests {
         let sensors = sensors(vec![SensorKind::Accelerometer, SensorKind::GyroscopeUncalibrated]);
         let (accelerometer, gyroscope) = (sensors.list[0], sensors.list[1]);
         assert_eq!(sensors.sample(accelerometer, 1_000_000_000, MIN_PERIOD).data[..3], [GRAVITY, -0.0, 0.0]);
-        // A turn to the left is about the vertical, which is the device's x axis.
+        // A turn to the left is a rotation about the vertical, which is the device's x axis.
         sensors.turn(90.0, 0.0, 0.0, 1_000_000_000, 1_000_000_000);
         let rate = sensors.sample(gyroscope, 1_500_000_000, MIN_PERIOD).data;
         assert!(rate[0] > 2.0 && rate[1].abs() < 1e-3 && rate[2].abs() < 1e-3, "{rate:?}");
-        // Looking up brings gravity's reaction to the front of the head, the device's -z.
+        // After looking up, the reaction to gravity points to the front of the head, which is the device's -z.
         sensors.turn(0.0, 90.0, 0.0, 3_000_000_000, 0);
         let up = sensors.sample(accelerometer, 3_000_000_000, MIN_PERIOD).data;
         assert!((up[2] + GRAVITY).abs() < 1e-3, "{up:?}");
@@ -367,7 +367,7 @@ mod tests {
         let mut head = Quat::IDENTITY;
         for step in 1..=120_u64 {
             let data = sensors.sample(sensors.list[0], 1_000_000_000 + step * MIN_PERIOD, MIN_PERIOD).data;
-            // Device axes back to head axes.
+            // From device axes to head axes.
             let rate = Vec3::new(-data[1], data[0], data[2]);
             head = (head * Quat::from_scaled_axis(rate * 5e-3)).normalize();
         }

@@ -1,4 +1,4 @@
-//! AThermal and APerformanceHint, which applications find by `dlsym`.
+//! AThermal and APerformanceHint, which applications look up with `dlsym`.
 
 #![allow(non_snake_case)]
 
@@ -8,8 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::exports::{Export, System, exports};
 use crate::host::{host, lock};
 
-/// The time at which the headroom was last asked for, in nanoseconds; Android gives no answer before a second has
-/// passed.
+/// The time of the last query of the headroom in nanoseconds. Android only answers again after a second.
 static LAST_HEADROOM: AtomicU64 = AtomicU64::new(0);
 
 /// Returns the functions of this module that libandroid.so exports.
@@ -43,7 +42,7 @@ extern "C" fn AThermal_getThermalHeadroom(_manager: *mut c_void, _forecast_secon
     headroom()
 }
 
-/// Returns the headroom as Android does: NaN if it is asked for again within a second.
+/// Returns the thermal headroom, or NaN if it was queried within the last second, as on Android.
 pub fn headroom() -> f32 {
     let now = host().clock.now();
     let last = LAST_HEADROOM.load(Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! ANativeWindow: one window, whose surface is drawn by Mesa.
+//! ANativeWindow: a single window, drawn by Mesa.
 
 #![allow(non_snake_case)]
 
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicI32, AtomicI64, Ordering};
 use crate::exports::{Export, System, exports};
 use crate::host::host;
 
-/// The window of the activity.
+/// The activity's window.
 pub struct Window {
     width: AtomicI32,
     height: AtomicI32,
@@ -17,7 +17,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// A window that is not there yet.
+    /// Creates the window, which does not exist yet for the application.
     pub fn new(width: i32, height: i32) -> Self {
         Self {
             width: width.into(),
@@ -27,28 +27,28 @@ impl Window {
         }
     }
 
-    /// Pixels.
+    /// Returns width and height in pixels.
     pub fn size(&self) -> (i32, i32) {
         (self.width.load(Ordering::Acquire), self.height.load(Ordering::Acquire))
     }
 
-    /// Changes the size; surfaces follow at their next swap.
+    /// Changes the size. Surfaces are resized at their next swap.
     pub fn resize(&self, width: i32, height: i32) {
         self.width.store(width, Ordering::Release);
         self.height.store(height, Ordering::Release);
     }
 
-    /// Between `onNativeWindowCreated` and the end of `onNativeWindowDestroyed`.
+    /// True between `onNativeWindowCreated` and the end of `onNativeWindowDestroyed`.
     pub fn is_alive(&self) -> bool {
         self.alive.load(Ordering::Acquire)
     }
 
-    /// Makes the window appear or go.
+    /// Makes the window exist or not.
     pub fn set_alive(&self, alive: bool) {
         self.alive.store(alive, Ordering::Release);
     }
 
-    /// References that the application and its surfaces hold.
+    /// Returns the number of references held by the application and its surfaces.
     pub fn references(&self) -> i64 {
         self.references.load(Ordering::Acquire)
     }
@@ -71,7 +71,7 @@ pub fn exports() -> Vec<Export> {
     ]
 }
 
-/// True if the pointer is the window's.
+/// True if this is the window's address.
 pub fn is_window(window: *const c_void) -> bool {
     std::ptr::eq(window, (&raw const host().window).cast())
 }
@@ -92,7 +92,7 @@ extern "C" fn ANativeWindow_release(window: &Window) {
     window.reference(-1);
 }
 
-/// Zero for both sizes is the window's own; a smaller buffer that the display scales is not simulated.
+/// Zeros mean the window's own size. Smaller buffers, which a display would scale, are not supported.
 extern "C" fn ANativeWindow_setBuffersGeometry(
     window: &Window,
     width: i32,

@@ -1,6 +1,6 @@
-//! EGL. The display is Mesa's surfaceless one, and the surface of a window is a pbuffer of the window's size, replaced
-//! at a swap when the window has another size. Handles of surfaces are the host's own, so that a surface can be
-//! replaced; those of displays, configurations and contexts are Mesa's.
+//! EGL. The display is Mesa's surfaceless one. The surface of a window is a pbuffer of the window's size, which is
+//! replaced at a swap if the window's size has changed. For this purpose, the handles of surfaces are the host's own;
+//! those of displays, configurations and contexts are Mesa's.
 
 #![allow(non_snake_case)]
 
@@ -24,10 +24,10 @@ type Handle = usize;
 
 /// `EGL_PLATFORM_SURFACELESS_MESA`.
 const PLATFORM_SURFACELESS: u32 = 0x31dd;
-/// `EGL_RECORDABLE_ANDROID` and `EGL_FRAMEBUFFER_TARGET_ANDROID`, which only Android's drivers know.
+/// `EGL_RECORDABLE_ANDROID` and `EGL_FRAMEBUFFER_TARGET_ANDROID`, which only Android's drivers support.
 const ANDROID_ONLY: [i32; 2] = [0x3142, 0x3147];
 
-/// Declares Mesa's functions: those that the host calls, and those that the application gets unchanged.
+/// Declares Mesa's functions: those that the host calls, and those that are passed through to the application.
 macro_rules! mesa {
     (
         called { $($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)* }
@@ -44,9 +44,9 @@ macro_rules! mesa {
             /// Opens libEGL.
             ///
             /// # Errors
-            /// It is not there, or lacks a function.
+            /// Fails if libEGL is missing, or lacks a function.
             pub fn load() -> Result<Self> {
-                // SAFETY: libEGL's constructors are harmless.
+                // SAFETY: libEGL's constructors have no side effects that matter here.
                 let library = unsafe { libloading::Library::new("libEGL.so.1") }?;
                 macro_rules! get {
                     ($symbol:ident) => {
@@ -60,7 +60,7 @@ macro_rules! mesa {
 
         $(unsafe extern "C" fn $other($($given: $kind),*) -> $answer {
             ERROR.set(SUCCESS);
-            // SAFETY: Mesa gets the application's arguments to EGL.
+            // SAFETY: the application's arguments are passed to Mesa unchanged.
             unsafe { (real().$other)($($given),*) }
         })*
     };
@@ -89,19 +89,19 @@ mesa! {
     }
 }
 
-/// A surface of the application.
+/// An EGL surface of the application.
 pub struct Surface {
     pbuffer: Handle,
-    /// True if it stands for the window's.
+    /// True if this is the window's surface.
     pub is_window: bool,
     size: (i32, i32),
     config: Handle,
     colorspace: Option<i32>,
 }
 
-/// A context of the application.
+/// An EGL context of the application.
 pub struct ContextState {
-    /// Contexts that share objects have one group.
+    /// The share group, which is the same for contexts that share objects.
     pub group: usize,
     lost: bool,
     seen: bool,
@@ -116,11 +116,11 @@ struct Current {
 
 thread_local! {
     static CURRENT: Cell<Current> = const { Cell::new(Current { draw: 0, read: 0, context: 0 }) };
-    /// An error of the host's own, which hides Mesa's.
+    /// An error set by the host, which takes precedence over Mesa's.
     static ERROR: Cell<i32> = const { Cell::new(SUCCESS) };
 }
 
-/// Returns the share group of the current context; 0 without a context.
+/// Returns the share group of the current context, or 0 if there is none.
 pub fn current_group() -> usize {
     let context = CURRENT.get().context;
     lock(&host().graphics.contexts).get(&context).map_or(0, |context| context.group)
@@ -138,10 +138,10 @@ fn fail<T: Default>(error: i32) -> T {
 /// Returns the attribute pairs before `EGL_NONE`.
 ///
 /// # Safety
-/// Null, or pairs that end in `EGL_NONE`.
+/// `attributes` must be null or pairs that end with `EGL_NONE`.
 unsafe fn pairs(mut attributes: *const i32) -> Vec<(i32, i32)> {
     let mut pairs = Vec::new();
-    // SAFETY: it is not null, and the list has not ended.
+    // SAFETY: the pointer is not null, and the list has not ended.
     while !attributes.is_null() && unsafe { *attributes } != NONE {
         // SAFETY: a name is followed by its value.
         unsafe {
@@ -205,7 +205,7 @@ unsafe extern "C" fn eglChooseConfig(
         }
     }
     let wanted = list(&wanted);
-    // SAFETY: the list ends in EGL_NONE; the rest is the caller's.
+    // SAFETY: the list ends with EGL_NONE. The other arguments are the caller's.
     unsafe { (real().eglChooseConfig)(display, wanted.as_ptr(), configs, size, count) }
 }
 
@@ -225,7 +225,7 @@ unsafe extern "C" fn eglGetConfigAttrib(
             SURFACE_TYPE if *value & PBUFFER_BIT != 0 => *value |= WINDOW_BIT,
             NATIVE_VISUAL_ID => {
                 let mut alpha = 0;
-                // SAFETY: as above, with room of our own.
+                // SAFETY: as above. The value is written to a local variable.
                 unsafe { (real().eglGetConfigAttrib)(display, config, ALPHA_SIZE, &raw mut alpha) };
                 // WINDOW_FORMAT_RGBA_8888 and _RGBX_8888.
                 *value = if alpha > 0 { 1 } else { 2 };
@@ -283,7 +283,7 @@ fn new_pbuffer(display: Handle, config: Handle, size: (i32, i32), colorspace: Op
     let mut attributes = vec![(WIDTH, size.0), (HEIGHT, size.1)];
     attributes.extend(colorspace.map(|value| (GL_COLORSPACE, value)));
     let attributes = list(&attributes);
-    // SAFETY: the list ends in EGL_NONE.
+    // SAFETY: the list ends with EGL_NONE.
     unsafe { (real().eglCreatePbufferSurface)(display, config, attributes.as_ptr()) }
 }
 
@@ -354,7 +354,7 @@ unsafe extern "C" fn eglDestroySurface(display: Handle, surface: Handle) -> Bool
     if surface.is_window {
         host.window.reference(-1);
     }
-    // SAFETY: the pbuffer is ours and destroyed once.
+    // SAFETY: the pbuffer belongs to the host and is destroyed once.
     unsafe { (real().eglDestroySurface)(display, surface.pbuffer) }
 }
 
@@ -375,7 +375,7 @@ unsafe extern "C" fn eglMakeCurrent(display: Handle, draw: Handle, read: Handle,
     if lock(&graphics.contexts).get(&context).is_some_and(|context| context.lost) {
         return fail(CONTEXT_LOST);
     }
-    // SAFETY: same contract as the caller's, with the surfaces' real handles.
+    // SAFETY: the same contract as this function's, with the surfaces' real handles.
     let result = unsafe { (real().eglMakeCurrent)(display, draw_buffer, read_buffer, context) };
     if result == TRUE {
         CURRENT.set(Current { draw, read, context });
@@ -410,7 +410,7 @@ unsafe extern "C" fn eglQuerySurface(
     let Some(pbuffer) = lock(&host().graphics.surfaces).get(&surface).map(|surface| surface.pbuffer) else {
         return fail(BAD_SURFACE);
     };
-    // SAFETY: same contract as the caller's, with the surface's real handle.
+    // SAFETY: the same contract as this function's, with the surface's real handle.
     unsafe { (real().eglQuerySurface)(display, pbuffer, attribute, value) }
 }
 
@@ -458,7 +458,7 @@ unsafe extern "C" fn eglSwapBuffers(display: Handle, surface: Handle) -> Boolean
     result
 }
 
-/// Gives the surface of a window that has another size a new pbuffer, as Android's next buffer has the new size.
+/// Gives a window's surface a new pbuffer after the window's size has changed, like the next buffer on Android.
 fn resize(display: Handle, handle: Handle, current: Current) {
     let graphics = &host().graphics;
     let size = host().window.size();
@@ -476,7 +476,7 @@ fn resize(display: Handle, handle: Handle, current: Current) {
     } else {
         surfaces.get(&current.read).map(|surface| surface.pbuffer)
     };
-    // SAFETY: live surfaces and the context that is current on this thread; the old pbuffer is destroyed once.
+    // SAFETY: the surfaces are live, and the context is current on this thread. The old pbuffer is destroyed once.
     unsafe {
         (real().eglMakeCurrent)(display, pbuffer, read.unwrap_or(pbuffer), current.context);
         (real().eglDestroySurface)(display, old);
@@ -497,7 +497,7 @@ unsafe extern "C" fn eglGetProcAddress(name: *const c_char) -> *const c_void {
     gl::function(text).map_or(std::ptr::null(), |address| address as *const c_void)
 }
 
-/// Returns Mesa's function of this name; null if there is none.
+/// Returns Mesa's function with this name, or null.
 pub fn real_function(name: &CStr) -> *const c_void {
     // SAFETY: a terminated name.
     unsafe { (real().eglGetProcAddress)(name.as_ptr()) }

@@ -1,4 +1,4 @@
-//! OpenGL ES: Mesa's functions, wrappers of those that make and delete objects, and functions for the host's own use.
+//! OpenGL ES: Mesa's functions, wrappers of those that create and delete objects, and functions for the host itself.
 
 #![allow(non_snake_case)]
 
@@ -18,7 +18,7 @@ use crate::bionic::text;
 use crate::graphics::egl::{current_group, real_function};
 use crate::host::{fatal, host, lock};
 
-/// A function of Mesa, by name; a missing one that the host itself needs ends the run.
+/// Returns a function of Mesa that the host itself needs. Ends the run if it is missing.
 fn real(name: &CStr) -> *const c_void {
     let address = real_function(name);
     if address.is_null() {
@@ -27,15 +27,15 @@ fn real(name: &CStr) -> *const c_void {
     address
 }
 
-/// Declares functions of Mesa that the host calls.
+/// Declares functions of Mesa for the host's own calls.
 macro_rules! mesa {
     ($($name:ident as $symbol:literal($($argument:ident: $type:ty),*) $(-> $result:ty)?;)*) => {
         $(unsafe fn $name($($argument: $type),*) $(-> $result)? {
             static ADDRESS: OnceLock<usize> = OnceLock::new();
             let address = *ADDRESS.get_or_init(|| real($symbol) as usize);
-            // SAFETY: the type is that of gl3.h.
+            // SAFETY: the type is that in gl3.h.
             let function: unsafe extern "C" fn($($type),*) $(-> $result)? = unsafe { std::mem::transmute(address) };
-            // SAFETY: the caller has a current context, and pointers as GL wants them.
+            // SAFETY: the caller has a current context, and passes pointers that GL accepts.
             unsafe { function($($argument),*) }
         })*
     };
@@ -69,11 +69,11 @@ type DebugCallback = extern "C" fn(
     data: *const c_void,
 );
 
-/// The application's own callback and its data, by share group.
+/// The application's debug callback with its share group and data.
 static APPLICATION_CALLBACK: Mutex<Option<(usize, DebugCallback, usize)>> = Mutex::new(None);
 
 thread_local! {
-    /// True if the driver has described an error since the last look.
+    /// True if the driver has described an error since the last check.
     static DESCRIBED: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -101,7 +101,7 @@ extern "C" fn glDebugMessageCallback(callback: Option<DebugCallback>, data: *con
     *lock(&APPLICATION_CALLBACK) = callback.map(|callback| (current_group(), callback, data as usize));
 }
 
-/// Called once for each context, when it is current for the first time.
+/// Registers the debug callback in a context. Called once per context, when it first becomes current.
 pub fn watch_context() {
     // SAFETY: a context is current; the callback lives as long as the process.
     unsafe {
@@ -113,7 +113,7 @@ pub fn watch_context() {
     check_errors();
 }
 
-/// Notes errors that the application has not asked for. Those that the driver described are known already.
+/// Records errors that the application has not queried, except those that the driver has already described.
 pub fn check_errors() {
     // SAFETY: a context is current.
     let error = unsafe { get_error() };
@@ -124,22 +124,22 @@ pub fn check_errors() {
 
 fn integer(name: u32) -> i32 {
     let mut value = 0;
-    // SAFETY: a context is current, and the name has one value.
+    // SAFETY: a context is current, and the parameter has one value.
     unsafe { get_integer(name, &raw mut value) };
     value
 }
 
-/// Returns the picture that is about to be shown, row 0 at the top. The application's state stays unchanged.
+/// Returns the picture that is about to be shown, with row 0 at the top. Does not change the application's state.
 ///
 /// # Errors
-/// The driver refuses.
+/// Fails if the driver returns an error.
 pub fn read_default_framebuffer(width: i32, height: i32) -> Result<RgbaImage, String> {
     let store =
         [PACK_ALIGNMENT, PACK_ROW_LENGTH, PACK_SKIP_ROWS, PACK_SKIP_PIXELS].map(|name| (name, integer(name)));
     let (framebuffer, buffer) =
         (integer(READ_FRAMEBUFFER_BINDING) as u32, integer(PIXEL_PACK_BUFFER_BINDING) as u32);
     let mut pixels = vec![0_u8; width as usize * height as usize * 4];
-    // SAFETY: a context is current; with alignment 1 and no row length the picture fills the buffer exactly.
+    // SAFETY: a context is current. With an alignment of 1 and no row length, the picture exactly fills the buffer.
     let error = unsafe {
         bind_framebuffer(READ_FRAMEBUFFER, 0);
         bind_buffer(PIXEL_PACK_BUFFER, 0);
@@ -163,12 +163,12 @@ pub fn read_default_framebuffer(width: i32, height: i32) -> Result<RgbaImage, St
     Ok(image::imageops::flip_vertical(&image))
 }
 
-/// Fills the window with magenta after a swap. On a device its content is undefined then; magenta shows if an
+/// Fills the window with magenta after a swap. On a device the content is then undefined; magenta shows if an
 /// application relies on it.
 pub fn spoil_default_framebuffer() {
     let framebuffer = integer(DRAW_FRAMEBUFFER_BINDING) as u32;
     let (mut color, mut mask) = ([0.0_f32; 4], [0_i32; 4]);
-    // SAFETY: a context is current; both names have four values.
+    // SAFETY: a context is current, and both parameters have four values.
     unsafe {
         get_float(COLOR_CLEAR_VALUE, color.as_mut_ptr());
         get_integer(COLOR_WRITEMASK, mask.as_mut_ptr());
@@ -192,17 +192,17 @@ pub fn spoil_default_framebuffer() {
     }
 }
 
-/// Functions that make and delete names in arrays.
+/// Defines wrappers of functions that create and delete arrays of names.
 macro_rules! names {
     ($($kind:literal: $generate:ident $generate_name:literal, $delete:ident $delete_name:literal;)*) => {
         $(
             unsafe extern "C" fn $generate(count: i32, names: *mut u32) {
                 mesa! { call as $generate_name(count: i32, names: *mut u32); }
-                // SAFETY: Mesa gets the application's arguments to GL.
+                // SAFETY: the application's arguments are passed to Mesa unchanged.
                 unsafe { call(count, names) };
                 let group = current_group();
                 for index in 0..count.max(0) as usize {
-                    // SAFETY: the caller gives room for `count` names, and they have been written.
+                    // SAFETY: the caller provides room for `count` names, which have been written.
                     host().graphics.object_made(group, $kind, unsafe { *names.add(index) } as usize);
                 }
             }
@@ -211,13 +211,13 @@ macro_rules! names {
                 mesa! { call as $delete_name(count: i32, names: *const u32); }
                 let group = current_group();
                 for index in 0..count.max(0) as usize {
-                    // SAFETY: the caller gives `count` names.
+                    // SAFETY: the caller passes `count` names.
                     let name = unsafe { *names.add(index) } as usize;
                     if name != 0 {
                         host().graphics.object_deleted(group, $kind, name);
                     }
                 }
-                // SAFETY: Mesa gets the application's arguments to GL.
+                // SAFETY: the application's arguments are passed to Mesa unchanged.
                 unsafe { call(count, names) };
             }
         )*
@@ -236,13 +236,13 @@ names! {
     "vertex array": glGenVertexArrays c"glGenVertexArrays", glDeleteVertexArrays c"glDeleteVertexArrays";
 }
 
-/// Defines functions that make and delete one object.
+/// Defines wrappers of functions that create and delete a single object.
 macro_rules! objects {
     ($($kind:literal: $create:ident $create_name:literal($($argument:ident: $type:ty),*), $delete:ident $delete_name:literal;)*) => {
         $(
             extern "C" fn $create($($argument: $type),*) -> u32 {
                 mesa! { call as $create_name($($argument: $type),*) -> u32; }
-                // SAFETY: a context is current, or Mesa gives zero.
+                // SAFETY: a context is current, or Mesa returns zero.
                 let name = unsafe { call($($argument),*) };
                 if name != 0 {
                     host().graphics.object_made(current_group(), $kind, name as usize);
@@ -269,7 +269,7 @@ objects! {
 
 extern "C" fn glFenceSync(condition: u32, flags: u32) -> usize {
     mesa! { call as c"glFenceSync"(condition: u32, flags: u32) -> usize; }
-    // SAFETY: a context is current, or Mesa gives zero.
+    // SAFETY: a context is current, or Mesa returns zero.
     let sync = unsafe { call(condition, flags) };
     if sync != 0 {
         host().graphics.object_made(current_group(), "sync", sync);
@@ -280,7 +280,7 @@ extern "C" fn glFenceSync(condition: u32, flags: u32) -> usize {
 unsafe extern "C" fn glClientWaitSync(sync: usize, flags: u32, timeout: u64) -> u32 {
     mesa! { call as c"glClientWaitSync"(sync: usize, flags: u32, timeout: u64) -> u32; }
     host().graphics.waited();
-    // SAFETY: Mesa gets the application's arguments to GL.
+    // SAFETY: the application's arguments are passed to Mesa unchanged.
     unsafe { call(sync, flags, timeout) }
 }
 
@@ -289,15 +289,15 @@ unsafe extern "C" fn glDeleteSync(sync: usize) {
     if sync != 0 {
         host().graphics.object_deleted(current_group(), "sync", sync);
     }
-    // SAFETY: Mesa gets the application's arguments to GL.
+    // SAFETY: the application's arguments are passed to Mesa unchanged.
     unsafe { call(sync) };
 }
 
-/// The function that the application gets for a name.
+/// Returns the address that the application gets for a function's name.
 pub fn function(name: &str) -> Option<usize> {
     macro_rules! ours {
         ($($function:ident)*) => {
-            // Extensions' names of these functions are the same functions in Mesa.
+            // Mesa has the same functions under their extensions' names.
             match name.trim_end_matches("EXT").trim_end_matches("KHR") {
                 $(stringify!($function) => Some($function as *const () as usize),)*
                 _ => None,

@@ -1,4 +1,4 @@
-//! libEGL.so and libGLESv2.so: Mesa's, with window surfaces that are pbuffers, and with an eye on objects and errors.
+//! libEGL.so and libGLESv2.so: those of Mesa, with pbuffers as window surfaces, and with records of objects and errors.
 
 pub mod egl;
 pub mod gl;
@@ -13,7 +13,7 @@ use crate::host::{host, lock};
 use crate::script::GlesVersion;
 use crate::summary::GlFacts;
 
-/// The state of EGL and of its objects.
+/// The state of EGL and its objects.
 pub struct Graphics {
     pub(crate) real: egl::Real,
     pub(crate) newest: GlesVersion,
@@ -29,11 +29,11 @@ impl Graphics {
     /// Opens Mesa's libraries.
     ///
     /// # Errors
-    /// They are not there.
+    /// Fails if they are missing.
     pub fn new(newest: GlesVersion) -> Result<Self> {
         if newest < GlesVersion::Es32 {
             let (major, minor) = newest.numbers();
-            // SAFETY: the host has no other thread yet, and Mesa is not loaded.
+            // SAFETY: the host has no other threads yet, and Mesa is not loaded.
             unsafe { std::env::set_var("MESA_GLES_VERSION_OVERRIDE", format!("{major}.{minor}")) };
         }
         Ok(Self {
@@ -48,12 +48,12 @@ impl Graphics {
         })
     }
 
-    /// Loses the context that swaps next.
+    /// Makes the context of the next swap lost.
     pub fn lose_context(&self) {
         self.loss_asked.store(true, Ordering::Release);
     }
 
-    /// Returns the number of live objects of all contexts, by kind.
+    /// Returns the number of live objects in all contexts, by kind.
     pub fn live_objects(&self) -> BTreeMap<String, u64> {
         let mut sums = BTreeMap::new();
         for (kind, names) in lock(&self.objects).values().flatten() {
@@ -64,17 +64,17 @@ impl Graphics {
         sums
     }
 
-    /// Returns the number of contexts that are not destroyed.
+    /// Returns the number of contexts that have not been destroyed.
     pub fn live_contexts(&self) -> u64 {
         lock(&self.contexts).len() as u64
     }
 
-    /// Returns the number of surfaces that are not destroyed.
+    /// Returns the number of surfaces that have not been destroyed.
     pub fn live_surfaces(&self) -> u64 {
         lock(&self.surfaces).len() as u64
     }
 
-    /// Returns the number of the window's surfaces that are not destroyed.
+    /// Returns the number of window surfaces that have not been destroyed.
     pub fn live_window_surfaces(&self) -> usize {
         lock(&self.surfaces).values().filter(|surface| surface.is_window).count()
     }

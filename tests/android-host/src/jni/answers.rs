@@ -1,4 +1,4 @@
-//! Answers of Java methods and fields.
+//! Results of Java methods and values of fields.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -11,11 +11,11 @@ use crate::host::{Host, host, lock};
 use crate::jni::{Data, Member, Object, Value};
 use crate::script::Battery;
 
-/// `Integer.MIN_VALUE` and `Long.MIN_VALUE` are BatteryManager's words for "unsupported".
+/// BatteryManager returns `Integer.MIN_VALUE` or `Long.MIN_VALUE` for "unsupported".
 const UNSUPPORTED: i32 = i32::MIN;
 const CAMERA: &str = "android.permission.CAMERA";
 
-/// Returns the answer to a call; none if the method is not known.
+/// Returns the result of a call, or `None` if the method is not known.
 pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<Value> {
     let host = host();
     let text = |index: usize| match arguments.get(index) {
@@ -37,7 +37,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::object(Object::string(&class.replace('/', ".")))
         }
         "toString" => Value::object(Object::string(receiver.text().unwrap_or(class))),
-        // Objects without data, of the class that the signature promises.
+        // Objects without data, of the class in the signature.
         "getApplication"
         | "getAssets"
         | "getClassLoader"
@@ -274,7 +274,7 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
             Value::object(Object::string(receiver.text()?))
         }
 
-        // Sizes in the device's natural position, upright: width and height are swapped against the window's.
+        // The display's size in its upright orientation: the window's, with width and height swapped.
         "getPhysicalWidth" => Value::Int(host.device.mode.map_or(host.window.size().1, |mode| mode[1])),
         "getPhysicalHeight" => Value::Int(host.device.mode.map_or(host.window.size().0, |mode| mode[0])),
         "getRefreshRate" => Value::Float(host.device.refresh_hz as f32),
@@ -282,13 +282,13 @@ pub fn call(receiver: &Object, member: &Member, arguments: &[Value]) -> Option<V
         "getDisplayId" => Value::Int(0),
         "getWidth" => Value::Int(host.window.size().0),
         "getHeight" => Value::Int(host.window.size().1),
-        // They fill in a DisplayMetrics, whose fields are answered below.
+        // These fill in a DisplayMetrics, whose fields are handled below.
         "getMetrics" | "getRealMetrics" => Value::Void,
         _ => return None,
     })
 }
 
-/// Returns the value of a field; none if the field is not known.
+/// Returns the value of a field, or `None` if the field is not known.
 pub fn field(member: &Member) -> Option<Value> {
     let host = host();
     let (width, height) = host.window.size();
@@ -317,7 +317,7 @@ pub fn field(member: &Member) -> Option<Value> {
     })
 }
 
-/// Takes a new value of a field.
+/// Sets a field.
 pub fn set_field(member: &Member, value: f32) {
     if member.name == "screenBrightness" {
         host().request(format!("brightness {value}"));
@@ -332,7 +332,7 @@ fn file(path: &str) -> Value {
     Value::object(Object::new("java/io/File", Data::Text(path.to_owned())))
 }
 
-/// Returns a collection of strings, last first, for an iterator takes from the end.
+/// Returns a collection of strings in reverse order, since iterators take from the end.
 fn list<'a>(class: &str, items: impl DoubleEndedIterator<Item = &'a String>) -> Value {
     let items: Vec<_> = items.rev().map(|item| Some(Object::string(item))).collect();
     Value::object(Object::new(class, Data::Array(items.into())))
@@ -359,7 +359,7 @@ fn system_service(name: &str) -> Value {
     Value::object(Object::new(class, Data::None))
 }
 
-/// The sticky intent `ACTION_BATTERY_CHANGED`; a device without a battery says so in it.
+/// Returns the sticky intent `ACTION_BATTERY_CHANGED`, or `None` for a device without a battery.
 fn battery_intent(host: &Host) -> Option<Arc<Object>> {
     let Battery { level, millivolts, decidegrees, plugged, status, .. } = lock(&host.battery).clone()?;
     let extras: BTreeMap<String, Value> = [
@@ -397,7 +397,7 @@ fn battery_property(host: &Host, property: i32) -> i32 {
 fn battery_long_property(host: &Host, property: i32) -> i64 {
     match property {
         5 => lock(&host.battery).as_ref().and_then(|battery| battery.energy_counter).unwrap_or(i64::MIN),
-        // BatteryService widens the int, and its MIN_VALUE becomes the long's.
+        // BatteryService widens the int, and returns the long's MIN_VALUE for the int's.
         other => match battery_property(host, other) {
             UNSUPPORTED => i64::MIN,
             value => i64::from(value),

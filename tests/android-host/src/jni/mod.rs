@@ -1,8 +1,8 @@
-//! Java, played by a table of functions: enough for what android-activity and the application ask. Known questions have
-//! real answers ([`answers`]); any other call is answered by a new object of the type that the signature promises, by
-//! zero or by false, and listed in the summary as invented.
+//! Java, simulated by a table of functions: as much as android-activity and the application use. Known calls have real
+//! results ([`answers`]). Any other call returns a new object of the type in the signature, zero or false, and is
+//! listed in the summary as invented.
 //!
-//! References are counted like in a real virtual machine: local ones by thread and frame, global ones until deleted.
+//! References are counted as in a real virtual machine: local ones per thread and frame, global ones until deleted.
 
 pub mod answers;
 mod objects;

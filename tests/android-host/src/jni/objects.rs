@@ -1,4 +1,4 @@
-//! Objects and references.
+//! Java objects and references to them.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::atomic::AtomicUsize;
@@ -11,59 +11,59 @@ use crate::host::{fatal, lock};
 /// A Java object.
 #[derive(Debug)]
 pub struct Object {
-    /// The class's name with slashes: `android/content/Intent`.
+    /// The class's name with slashes, such as `android/content/Intent`.
     pub class: String,
-    /// Its data.
+    /// The object's data.
     pub data: Data,
 }
 
 /// The data of an object.
 #[derive(Debug)]
 pub enum Data {
-    /// No data, only a class.
+    /// No data.
     None,
-    /// A string's text, or a file's path.
+    /// The text of a string, or the path of a file.
     Text(String),
-    /// A class's name, with slashes.
+    /// The name of a class, with slashes.
     Class(String),
-    /// An intent, or a bundle: extras by key.
+    /// The extras of an intent or a bundle, by key.
     Extras(BTreeMap<String, Value>),
     /// An array or a collection of objects.
     Array(Mutex<Vec<Option<Arc<Object>>>>),
-    /// A table that a content provider gave.
+    /// A table returned by a content provider.
     Cursor(Cursor),
-    /// An open file, until somebody takes it.
+    /// An open file, until its descriptor is taken.
     File(Mutex<Option<std::fs::File>>),
 }
 
-/// Rows of texts, and the number of rows moved to.
+/// A table of texts, and the current row.
 #[derive(Debug)]
 pub struct Cursor {
     /// The columns' names.
     pub columns: Vec<String>,
     /// The rows' texts, in the columns' order.
     pub rows: Vec<Vec<String>>,
-    /// The number of rows moved to so far, which is the next row's index.
+    /// The number of rows moved to so far, which is the index of the next row.
     pub moves: AtomicUsize,
 }
 
 impl Object {
-    /// An object of a class.
+    /// Creates an object of a class.
     pub fn new(class: &str, data: Data) -> Arc<Self> {
         Arc::new(Self { class: class.to_owned(), data })
     }
 
-    /// A string.
+    /// Creates a string.
     pub fn string(text: &str) -> Arc<Self> {
         Self::new("java/lang/String", Data::Text(text.to_owned()))
     }
 
-    /// A class object.
+    /// Creates a class object.
     pub fn class_of(name: &str) -> Arc<Self> {
         Self::new("java/lang/Class", Data::Class(name.to_owned()))
     }
 
-    /// The text of a string or a file.
+    /// Returns the text of a string, or the path of a file.
     pub fn text(&self) -> Option<&str> {
         match &self.data {
             Data::Text(text) => Some(text),
@@ -92,7 +92,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// A non-null object.
+    /// Returns a non-null object as a value.
     pub fn object(object: Arc<Object>) -> Self {
         Self::Object(Some(object))
     }
@@ -101,7 +101,7 @@ impl Value {
 /// A method or a field.
 #[derive(Debug, PartialEq, Eq, Hash, Clone)]
 pub struct Member {
-    /// Class that it was looked up in, with slashes.
+    /// The class in which it was looked up, with slashes.
     pub class: String,
     /// Name.
     pub name: String,
@@ -110,12 +110,12 @@ pub struct Member {
 }
 
 impl Member {
-    /// Returns the type at the end of the signature, as JNI writes it.
+    /// Returns the type at the end of the signature, in JNI's notation.
     pub fn returned(&self) -> &str {
         self.signature.rsplit(')').next().unwrap_or("V")
     }
 
-    /// Returns the class of the object that a method returns, with slashes; none if it returns something else.
+    /// Returns the class of the object that a method returns, with slashes, or `None` if it returns something else.
     pub fn returned_class(&self) -> Option<&str> {
         self.returned().strip_prefix('L')?.strip_suffix(';')
     }
@@ -134,7 +134,7 @@ struct Reference {
     kind: Kind,
 }
 
-/// The virtual machine's state.
+/// The state of the virtual machine.
 pub struct Jni {
     references: Mutex<References>,
     members: Mutex<HashMap<Member, &'static Member>>,
@@ -148,7 +148,7 @@ struct References {
 }
 
 impl Jni {
-    /// Makes a machine without objects.
+    /// Creates a machine without objects.
     pub fn new() -> Self {
         Self { references: Mutex::default(), members: Mutex::default(), invented: Mutex::default() }
     }
@@ -158,7 +158,7 @@ impl Jni {
         lock(&self.references).live.len() as u64
     }
 
-    /// Returns the calls that were answered without knowing them.
+    /// Returns the unknown calls, with the number of times each was made.
     pub fn invented(&self) -> BTreeMap<String, u64> {
         lock(&self.invented).clone()
     }
@@ -172,19 +172,19 @@ impl Jni {
     /// Returns a new reference.
     pub(super) fn add(&self, object: Arc<Object>, kind: Kind) -> jobject {
         let mut references = lock(&self.references);
-        // Multiples of 8, as pointers are, and never used twice.
+        // Multiples of 8 like pointers, and never reused.
         references.last += 8;
         let handle = references.last;
         references.live.insert(handle, Reference { object, kind });
         handle as jobject
     }
 
-    /// Returns a new reference to the same object; null for null.
+    /// Returns a new reference to the same object, or null for null.
     pub(super) fn again(&self, handle: jobject, kind: Kind) -> jobject {
         self.get(handle).map_or(std::ptr::null_mut(), |object| self.add(object, kind))
     }
 
-    /// Deletes a reference, which must be of this kind; null is none.
+    /// Deletes a reference, which must be of this kind. Null is ignored.
     pub(super) fn remove(&self, handle: jobject, kind: Kind) {
         if handle.is_null() {
             return;
@@ -199,7 +199,7 @@ impl Jni {
         }
     }
 
-    /// Returns the object behind a reference; null is none.
+    /// Returns the object that a reference refers to, or `None` for null.
     pub(super) fn get(&self, handle: jobject) -> Option<Arc<Object>> {
         if handle.is_null() {
             return None;
@@ -210,12 +210,12 @@ impl Jni {
         }
     }
 
-    /// Returns the kind of a reference; none if there is no such reference.
+    /// Returns the kind of a reference, or `None` if the reference does not exist.
     pub(super) fn kind(&self, handle: jobject) -> Option<Kind> {
         lock(&self.references).live.get(&(handle as usize)).map(|reference| reference.kind)
     }
 
-    /// Returns the one identifier of a member.
+    /// Returns the unique identifier of a member.
     pub(super) fn member(&self, member: Member) -> &'static Member {
         lock(&self.members).entry(member).or_insert_with_key(|member| Box::leak(Box::new(member.clone())))
     }

@@ -1,4 +1,4 @@
-//! Strings and arrays of JNI.
+//! JNI's strings and arrays.
 
 #![allow(non_snake_case)]
 
@@ -13,11 +13,10 @@ use super::{Data, Object};
 use crate::bionic::text;
 use crate::host::{fatal, host, lock};
 
-/// Buffers of `GetStringUTFChars` and `GetStringChars` by address.
+/// The buffers of `GetStringUTFChars` and `GetStringChars`, by address.
 static CHARACTERS: Mutex<Option<HashMap<usize, Box<[u8]>>>> = Mutex::new(None);
 
-// Strings. JNI's "modified UTF-8" equals UTF-8 but for NUL and characters beyond the basic plane, which do not occur
-// here.
+// Strings. JNI's "modified UTF-8" only differs for NUL and beyond the basic plane, which do not occur here.
 
 fn string(handle: jobject) -> String {
     get(handle, "a string function").text().unwrap_or_default().to_owned()
@@ -27,7 +26,7 @@ fn utf16(handle: jobject) -> Vec<u16> {
     string(handle).encode_utf16().collect()
 }
 
-/// Keeps a copy for the application until it releases it.
+/// Keeps a copy for the application until it is released.
 fn lend(bytes: Vec<u8>) -> *const u8 {
     let bytes = bytes.into_boxed_slice();
     let address = bytes.as_ptr();

@@ -1,4 +1,4 @@
-//! The functions of JNI themselves, in the tables of jni-sys.
+//! The functions of JNI, in the tables of jni-sys.
 
 #![allow(non_snake_case)]
 
@@ -21,8 +21,8 @@ use crate::thunk;
 pub(super) type Env = *mut JNIEnv;
 
 thread_local! {
-    /// Local references by frame, when the thread is attached. It has no destructor: the application's own thread-local
-    /// values go later than the host's and may still call JNI.
+    /// Local references by frame, if the thread is attached. This has no destructor, since thread-local values of the
+    /// application are destroyed later than the host's and may still call JNI.
     static FRAMES: Cell<Option<&'static RefCell<Vec<Vec<usize>>>>> = const { Cell::new(None) };
 }
 
@@ -54,22 +54,22 @@ pub fn release_activity(activity: jobject) {
     host().jni.remove(activity, Kind::Global);
 }
 
-/// Makes a table in which each function ends the run, with its index, until another takes its place.
+/// Creates a table whose functions all end the run with a message that contains their index, until they are replaced.
 fn table<T>(name: &str) -> &'static mut T {
     let count = size_of::<T>() / size_of::<usize>();
     let names: Vec<_> =
         (0..count).map(|index| format!("the function of index {index} of JNI's {name}")).collect();
     let traps = thunk::traps(&names).unwrap_or_else(|error| fatal(format!("JNI: {error:#}")));
-    // SAFETY: both tables are unions of structs of pointers to functions; there are as many traps, which are functions.
+    // SAFETY: both tables are unions of structs of function pointers. There are as many traps, which are functions.
     unsafe { &mut *traps.leak().as_mut_ptr().cast::<T>() }
 }
 
-/// Returns the interface of all threads.
+/// Returns the JNI environment, which all threads share.
 pub fn environment() -> Env {
     static ENVIRONMENT: OnceLock<usize> = OnceLock::new();
     let address = *ENVIRONMENT.get_or_init(|| {
         let table = table::<JNINativeInterface_>("JNIEnv");
-        // SAFETY: every field of this version holds a function, by `table`.
+        // SAFETY: every field of this version contains a function, as ensured by `table`.
         fill(unsafe { &mut table.v1_6 });
         Box::into_raw(Box::new(std::ptr::from_ref(table))) as usize
     });
@@ -81,7 +81,7 @@ pub fn virtual_machine() -> *mut JavaVM {
     static MACHINE: OnceLock<usize> = OnceLock::new();
     let address = *MACHINE.get_or_init(|| {
         let table = table::<JNIInvokeInterface_>("JavaVM");
-        // SAFETY: every field of this version holds a function, by `table`.
+        // SAFETY: every field of this version contains a function, as ensured by `table`.
         let functions = unsafe { &mut table.v1_4 };
         functions.AttachCurrentThread = AttachCurrentThread;
         functions.AttachCurrentThreadAsDaemon = AttachCurrentThread;
@@ -92,7 +92,7 @@ pub fn virtual_machine() -> *mut JavaVM {
     address as *mut JavaVM
 }
 
-/// Puts every function that is answered into the table.
+/// Enters all implemented functions into the table.
 fn fill(table: &mut jni_sys::JNINativeInterface__1_6) {
     macro_rules! put {
         ($($function:ident)*) => { $(table.$function = $function;)* };
@@ -108,7 +108,7 @@ fn fill(table: &mut jni_sys::JNINativeInterface__1_6) {
         ReleaseStringUTFChars GetStringUTFRegion GetArrayLength NewObjectArray GetObjectArrayElement
         SetObjectArrayElement MonitorEnter MonitorExit GetJavaVM
     }
-    // A static call has a class in the place of the object; otherwise they are alike.
+    // A static call passes a class in place of the object, and is otherwise the same.
     table.GetStaticMethodID = GetMethodID;
     table.GetStaticFieldID = GetFieldID;
     table.CallStaticObjectMethodA = CallObjectMethodA;
@@ -152,7 +152,7 @@ extern "system" fn DetachCurrentThread(_machine: *mut JavaVM) -> jint {
     JNI_OK
 }
 
-/// Returns a new local reference; null for no object.
+/// Returns a new local reference, or null if there is no object.
 pub(super) fn local(object: Option<Arc<Object>>) -> jobject {
     let Some(object) = object else { return std::ptr::null_mut() };
     let handle = host().jni.add(object, Kind::Local);
@@ -162,7 +162,7 @@ pub(super) fn local(object: Option<Arc<Object>>) -> jobject {
     handle
 }
 
-/// Returns the object behind a reference, which a function needs.
+/// Returns the object that a reference refers to. Ends the run if it is null, with `function` in the message.
 pub(super) fn get(handle: jobject, function: &str) -> Arc<Object> {
     host().jni.get(handle).unwrap_or_else(|| fatal(format!("JNI: {function} was called with null")))
 }
@@ -183,8 +183,7 @@ extern "system" fn GetSuperclass(_env: Env, class: jobject) -> jobject {
     }
 }
 
-/// Returns true. Class relations are not known here: android-activity and jni only check relations that hold on a
-/// device.
+/// Returns true. Class relations are not simulated: android-activity and jni only check those that hold on a device.
 extern "system" fn IsAssignableFrom(_env: Env, one: jobject, other: jobject) -> jboolean {
     get(one, "IsAssignableFrom");
     get(other, "IsAssignableFrom");
@@ -196,7 +195,7 @@ extern "system" fn IsInstanceOf(_env: Env, _object: jobject, class: jobject) -> 
     true
 }
 
-/// Returns null, as no call throws here.
+/// Returns null, since calls never throw here.
 extern "system" fn ExceptionOccurred(_env: Env) -> jobject {
     std::ptr::null_mut()
 }
@@ -292,16 +291,16 @@ extern "system" fn GetObjectClass(_env: Env, handle: jobject) -> jobject {
     local(Some(Object::class_of(&get(handle, "GetObjectClass").class)))
 }
 
-/// Returns the identifier of a method or a field. A member of either kind is a class, a name and a signature.
+/// Returns the identifier of a method or a field. Either is identified by its class, name and signature.
 ///
 /// # Safety
-/// Name and signature are terminated strings.
+/// `name` and `signature` must be terminated strings.
 unsafe fn member(class: jobject, name: *const c_char, signature: *const c_char) -> *const Member {
     let class = match &get(class, "the look-up of a method or a field").data {
         Data::Class(name) => name.clone(),
         _ => fatal("JNI: a method or a field of something that is no class"),
     };
-    // SAFETY: terminated strings, as the caller says.
+    // SAFETY: the caller guarantees terminated strings.
     let (name, signature) = unsafe { (text(name), text(signature)) };
     host().jni.member(Member { class, name, signature })
 }
@@ -329,14 +328,14 @@ unsafe extern "system" fn GetFieldID(
 /// Returns the arguments of a call, by the method's signature.
 ///
 /// # Safety
-/// `values` holds a `jvalue` for each parameter.
+/// `values` must contain a `jvalue` for each parameter.
 unsafe fn arguments(signature: &str, values: *const jvalue) -> Vec<Value> {
     let parameters = signature.trim_start_matches('(').split(')').next().unwrap_or("");
     let mut result = Vec::new();
     let mut rest = parameters.chars().peekable();
     while let Some(kind) = rest.next() {
-        // SAFETY: there is a value for each parameter, of the type that the signature says. A boolean is read as a
-        // byte, so that no caller's mistake makes it something else.
+        // SAFETY: there is a value of the signature's type for each parameter. A boolean is read as a byte, so that an
+        // invalid one passed by a caller is not undefined behaviour.
         let value = unsafe { &*values.add(result.len()) };
         // SAFETY: as above.
         result.push(unsafe {
@@ -366,7 +365,7 @@ unsafe fn arguments(signature: &str, values: *const jvalue) -> Vec<Value> {
     result
 }
 
-/// Answers a call that nobody knows: a new object of the type at the end of the signature, or zero.
+/// Returns the result of an unknown call: a new object of the type at the end of the signature, or zero.
 fn invent(member: &Member) -> Value {
     host().jni.note_invented(member);
     match member.returned().chars().next() {
@@ -388,18 +387,18 @@ fn invent(member: &Member) -> Value {
 /// Calls a method.
 ///
 /// # Safety
-/// A method that came from `GetMethodID`, and a `jvalue` for each of its parameters.
+/// `method` must come from `GetMethodID`, and `values` must contain a `jvalue` for each of its parameters.
 unsafe fn call(receiver: jobject, method: jmethodID, values: *const jvalue) -> Value {
-    // SAFETY: it came from `member`, and members are never freed.
+    // SAFETY: the identifier came from `member`, and members are never freed.
     let method = unsafe { &*method.cast::<Member>() };
     let receiver = get(receiver, &method.name);
-    // SAFETY: a value for each parameter, as the caller says.
+    // SAFETY: the caller guarantees a value for each parameter.
     let arguments = unsafe { arguments(&method.signature, values) };
     let answer = answers::call(&receiver, method, &arguments).unwrap_or_else(|| invent(method));
     checked(answer, method)
 }
 
-/// Refuses answers of another type than the signature promises: a mistake in the host.
+/// Checks that a result has the type in the signature. Ends the run otherwise, since that is a mistake in the host.
 fn checked(value: Value, member: &Member) -> Value {
     let promised = member.returned().chars().next().unwrap_or('V');
     let fits = match value {
@@ -424,7 +423,7 @@ unsafe extern "system" fn NewObjectA(
     method: jmethodID,
     _values: *const jvalue,
 ) -> jobject {
-    // SAFETY: it came from `member`, and members are never freed.
+    // SAFETY: the identifier came from `member`, and members are never freed.
     let method = unsafe { &*method.cast::<Member>() };
     match &get(class, "NewObject").data {
         Data::Class(name) if method.name == "<init>" => local(Some(Object::new(name, Data::None))),
@@ -432,7 +431,7 @@ unsafe extern "system" fn NewObjectA(
     }
 }
 
-/// Defines functions that call a method of one type; an answer of another was refused before.
+/// Defines functions that call a method with one result type. Results of other types have been rejected before.
 macro_rules! calls {
     ($($function:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
         $(unsafe extern "system" fn $function(_env: Env, receiver: jobject, method: jmethodID, values: *const jvalue) -> $type {
@@ -460,7 +459,7 @@ macro_rules! fields {
     ($($function:ident: $pattern:pat => $value:expr, $type:ty;)*) => {
         $(unsafe extern "system" fn $function(_env: Env, receiver: jobject, field: jfieldID) -> $type {
             get(receiver, stringify!($function));
-            // SAFETY: it came from `member`, and members are never freed.
+            // SAFETY: the identifier came from `member`, and members are never freed.
             let field = unsafe { &*field.cast::<Member>() };
             match checked(answers::field(field).unwrap_or_else(|| invent(field)), field) {
                 $pattern => $value,
@@ -481,7 +480,7 @@ fields! {
 
 unsafe extern "system" fn SetFloatField(_env: Env, receiver: jobject, field: jfieldID, value: f32) {
     get(receiver, "SetFloatField");
-    // SAFETY: it came from `member`, and members are never freed.
+    // SAFETY: the identifier came from `member`, and members are never freed.
     answers::set_field(unsafe { &*field.cast::<Member>() }, value);
 }
 

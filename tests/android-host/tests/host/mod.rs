@@ -1,4 +1,4 @@
-//! Runs the simulated Android host and reads its findings.
+//! Runs the simulated Android host, and reads its results.
 
 use std::io::{BufRead as _, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -7,31 +7,31 @@ use std::process::{Child, Command, Stdio};
 use image::RgbImage;
 use yoro_android_host::summary::Summary;
 
-/// The variable by which `cargo xtask test` names the APK.
+/// The variable in which `cargo xtask test` passes the APK.
 const APK: &str = "YORO_TEST_APK";
-/// The variable that names the OpenXR API layer for Android, an AAR.
+/// The variable with the AAR of the OpenXR API layer for Android.
 const LAYER: &str = "YORO_TEST_ANDROID_LAYER";
-/// The variable that names a program that runs the simulated host for arm64.
+/// The variable with a program that runs the simulated host for arm64.
 const ARM64_HOST: &str = "YORO_TEST_ARM64_HOST";
 
-/// Steps after which the scene is in view.
+/// Steps after which the scene is visible.
 pub const READY: &str = r#"{ wait-log = { text = "triangles", frames = 2000 } }, { frames = 3 }"#;
 
 /// A finished run.
 pub struct Run {
-    /// The host's findings.
+    /// The host's summary.
     pub summary: Summary,
     folder: PathBuf,
 }
 
-/// Returns a `[device]` with settings as system properties, and more of its keys.
+/// Returns a `[device]` with settings as system properties, and with further keys.
 pub fn device(settings: &[(&str, &str)], keys: &str) -> String {
     let properties: String =
         settings.iter().map(|(key, value)| format!("\"debug.yoro.{key}\" = \"{value}\"\n")).collect();
     format!("[device]\n{keys}\n[device.properties]\n{properties}")
 }
 
-/// Returns the steps of one of the scripts that come with the host.
+/// Returns the steps of one of the scripts supplied with the host.
 pub fn script(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name);
     let text = std::fs::read_to_string(&path).unwrap();
@@ -40,27 +40,27 @@ pub fn script(name: &str) -> String {
     steps[1..steps.len() - 1].to_owned()
 }
 
-/// Plays steps on a device; none, with a loud line, where there is no APK.
+/// Plays steps on a device. Prints a message and returns `None` if there is no APK.
 pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
     let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
     Some(run(Path::new(env!("CARGO_BIN_EXE_yoro-android-host")), &apk, name, device, steps))
 }
 
-/// `yoro serve` of the tests' scene, until this is dropped.
+/// A running `yoro serve` of the tests' scene, which is ended when this is dropped.
 pub struct Server {
     child: Child,
-    /// What it prints.
+    /// The link that it prints.
     pub link: String,
 }
 
 impl Server {
-    /// Starts it; none, with a loud line, where the program was not built.
+    /// Starts the server. Prints a message and returns `None` if the program was not built.
     pub fn start(name: &str, port: &str) -> Option<Server> {
         let program = Path::new(env!("CARGO_BIN_EXE_yoro-android-host")).with_file_name("yoro");
         let program = program.exists().then_some(program);
         let program =
             program.or_else(|| left_out(name, "there is no program beside the host", "yoro", "builds it"))?;
-        // There is no page to be seen.
+        // The server needs a page, which no test opens.
         let page = folder("page");
         std::fs::create_dir_all(&page).unwrap();
         std::fs::write(page.join("index.html"), "").unwrap();
@@ -85,19 +85,19 @@ impl Drop for Server {
     }
 }
 
-/// The folder of a run.
+/// Returns the folder of a run.
 pub fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
-/// Plays steps after the application has started and its scene is in view; then the user leaves. Nothing may go wrong.
+/// Starts the application, plays steps once the scene is visible, and leaves. The run must be clean.
 pub fn show(name: &str, device: &str, steps: &str) -> Option<Run> {
     let run = play(name, device, &format!(r#""launch", {READY}, {steps}, "quit""#))?;
     run.assert_clean();
     Some(run)
 }
 
-/// Plays steps with the APK's arm64 library under qemu; none, with a loud line, where that is impossible.
+/// Plays steps with the APK's arm64 library under qemu. Prints a message and returns `None` if this is not possible.
 pub fn play_arm64(name: &str, device: &str, steps: &str) -> Option<Run> {
     let apk = named(APK).or_else(|| left_out(name, "there is no APK", APK, "builds one"))?;
     let remedy = "sets one up where Debian's packages are";
@@ -106,15 +106,15 @@ pub fn play_arm64(name: &str, device: &str, steps: &str) -> Option<Run> {
     Some(run(&host, &apk, name, device, steps))
 }
 
-/// The API layer's AAR for an application to carry; none, with a loud line, where there is none.
+/// Returns the AAR of the API layer for an application. Prints a message and returns `None` if there is none.
 pub fn layer(name: &str) -> Option<PathBuf> {
     named(LAYER).or_else(|| left_out(name, "there is no API layer", LAYER, "builds one"))
 }
 
-/// Returns a file that the environment names.
+/// Returns the path of a file in an environment variable.
 fn named(variable: &str) -> Option<PathBuf> {
     let path = std::env::var_os(variable)?;
-    // Cargo runs tests in the package's folder.
+    // Cargo runs tests in the package's folder, so the path is relative to the workspace.
     Some(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path))
 }
 
@@ -139,19 +139,19 @@ fn run(host: &Path, apk: &Path, name: &str, device: &str, steps: &str) -> Run {
 }
 
 impl Run {
-    /// The script was played to its end, and nothing was wrong.
+    /// Checks that the script was played to its end without any errors.
     pub fn assert_clean(&self) {
         assert!(self.summary.is_clean(), "{}\n{:#?}", self.summary, self.summary.log);
         let errors: Vec<_> = self.summary.log.iter().filter(|line| line.priority == 'E').collect();
         assert!(errors.is_empty(), "{errors:#?}");
     }
 
-    /// A picture of a `capture` step.
+    /// Returns the picture of a `capture` step.
     pub fn picture(&self, name: &str) -> RgbImage {
         image::open(self.folder.join(name)).unwrap().into_rgb8()
     }
 
-    /// Puts another picture beside it, to look at.
+    /// Saves another picture in the same folder, to look at.
     pub fn keep(&self, name: &str, picture: &RgbImage) {
         picture.save(self.folder.join(name)).unwrap();
     }

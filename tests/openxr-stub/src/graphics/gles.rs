@@ -21,7 +21,7 @@ type MakeCurrent =
 
 /// The context that a session is bound to.
 pub struct Gles {
-    /// The functions of GL, once they were needed.
+    /// The functions of GL, once they have been needed.
     gl: Option<glow::Context>,
     get_proc_address: GetProcAddress,
     get_current_context: GetCurrentContext,
@@ -30,10 +30,10 @@ pub struct Gles {
     context: *const c_void,
 }
 
-// SAFETY: it is only used on threads that have made the context current, which can be only one at a time.
+// SAFETY: it is only used on threads that have made the context current, of which there is at most one at a time.
 unsafe impl Send for Gles {}
 
-/// The binding of `XR_KHR_opengl_es_enable`, which openxr-sys has on Android only.
+/// The binding of `XR_KHR_opengl_es_enable`, which openxr-sys declares only on Android.
 #[repr(C)]
 struct AndroidBinding {
     ty: sys::StructureType,
@@ -46,7 +46,7 @@ struct AndroidBinding {
 /// Returns name, display and context, if the structure is a binding.
 ///
 /// # Safety
-/// The structure is of the type that it says.
+/// The structure is of the type that it states.
 pub unsafe fn binding(
     structure: &sys::BaseInStructure,
     enabled: impl Fn(&str) -> bool,
@@ -54,7 +54,7 @@ pub unsafe fn binding(
     let start: *const sys::BaseInStructure = structure;
     let (name, display, context) = match structure.ty {
         sys::StructureType::GRAPHICS_BINDING_EGL_MNDX if enabled("XR_MNDX_egl_enable") => {
-            // SAFETY: of this type.
+            // SAFETY: the structure has this type.
             let binding = unsafe { &*start.cast::<sys::GraphicsBindingEGLMNDX>() };
             forbid_if(
                 binding.get_proc_address.is_none(),
@@ -64,7 +64,7 @@ pub unsafe fn binding(
             ("egl", binding.display as *const c_void, binding.context as *const c_void)
         }
         sys::StructureType::GRAPHICS_BINDING_OPENGL_ES_ANDROID_KHR => {
-            // SAFETY: of this type.
+            // SAFETY: the structure has this type.
             let binding = unsafe { &*start.cast::<AndroidBinding>() };
             ("android", binding.display, binding.context)
         }
@@ -80,10 +80,10 @@ pub unsafe fn binding(
 
 impl Gles {
     pub fn new(display: *const c_void, context: *const c_void) -> Result<Gles, Refusal> {
-        // SAFETY: the application uses this library already.
+        // SAFETY: the application already uses this library.
         let library = EGL_LIBRARIES.iter().find_map(|name| unsafe { libloading::Library::new(name).ok() });
         let library = library.ok_or(Code::ERROR_RUNTIME_FAILURE)?;
-        // SAFETY: EGL's functions have these types, and the library stays.
+        // SAFETY: EGL's functions have these types, and the library stays loaded.
         let functions = unsafe {
             (
                 library.get(b"eglGetProcAddress").map(|f| *f),
@@ -98,11 +98,11 @@ impl Gles {
         Ok(Gles { gl: None, get_proc_address, get_current_context, make_current, display, context })
     }
 
-    /// Returns GL's functions; the context must be current.
+    /// Returns the functions of GL. The context must be current.
     fn gl(&mut self) -> &glow::Context {
         let get = self.get_proc_address;
         self.gl.get_or_insert_with(|| {
-            // SAFETY: the context is current, and GL's library stays.
+            // SAFETY: the context is current, and GL's library stays loaded.
             unsafe {
                 glow::Context::from_loader_function_cstr(|name: &CStr| {
                     let name = CString::from(name);
@@ -112,7 +112,7 @@ impl Gles {
         })
     }
 
-    /// Runs `work` with a layer of a texture as the framebuffer's colour. The application's state is set back.
+    /// Runs `work` with a layer of a texture as the framebuffer's colour. Restores the application's state.
     fn with_layer<T>(
         &mut self,
         texture: Texture,
@@ -123,7 +123,7 @@ impl Gles {
             return None;
         }
         let gl = self.gl();
-        // SAFETY: plain GL calls in the context that the texture is of.
+        // SAFETY: plain GL calls in the context that the texture belongs to.
         unsafe {
             let read = gl.get_parameter_framebuffer(glow::READ_FRAMEBUFFER_BINDING);
             let draw = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
@@ -153,7 +153,7 @@ fn name(texture: Texture) -> Option<glow::Texture> {
 
 impl Graphics for Gles {
     fn is_current(&self) -> bool {
-        // SAFETY: always allowed.
+        // SAFETY: the call has no preconditions.
         let current = unsafe { (self.get_current_context)() };
         !current.is_null() && current == self.context
     }
@@ -176,7 +176,7 @@ impl Graphics for Gles {
         } else {
             (glow::TEXTURE_2D, glow::TEXTURE_BINDING_2D)
         };
-        // SAFETY: plain GL calls; the application's binding is put back.
+        // SAFETY: plain GL calls; the application's binding is restored.
         unsafe {
             let before = gl.get_parameter_texture(binding);
             let texture = gl.create_texture().ok()?;
@@ -196,7 +196,7 @@ impl Graphics for Gles {
         if self.is_current() {
             let gl = self.gl();
             for texture in textures {
-                // SAFETY: made in this context.
+                // SAFETY: created in this context.
                 unsafe { name(*texture).map(|name| gl.delete_texture(name)) };
             }
         }
@@ -205,7 +205,7 @@ impl Graphics for Gles {
     fn poison(&mut self, texture: Texture) {
         for layer in 0..texture.layers {
             self.with_layer(texture, layer, |gl| {
-                // SAFETY: plain GL calls; the state that restricts a clear is put back.
+                // SAFETY: plain GL calls; the state that restricts a clear is restored.
                 unsafe {
                     let scissor = gl.is_enabled(glow::SCISSOR_TEST);
                     let mask = gl.get_parameter_bool_array::<4>(glow::COLOR_WRITEMASK);
@@ -225,7 +225,7 @@ impl Graphics for Gles {
         let [x, y, width, height] = rect;
         self.with_layer(texture, layer, |gl| {
             let mut pixels = vec![0; (width * height * 4) as usize];
-            // SAFETY: the array has room for all pixels; the application's state of packing is put back.
+            // SAFETY: the array has room for all pixels, and the application's pack state is restored.
             unsafe {
                 let buffer = gl.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING);
                 let settings = [

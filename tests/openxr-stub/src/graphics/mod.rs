@@ -14,7 +14,7 @@ use crate::world::{Refusal, forbid_if, forbidden};
 pub const OPENGL_ES: &str = "XR_KHR_opengl_es_enable";
 pub const VULKAN: [&str; 2] = ["XR_KHR_vulkan_enable", "XR_KHR_vulkan_enable2"];
 
-/// An image of a swapchain: the name of a GL texture, or a VkImage. With several layers it is an array.
+/// An image of a swapchain: the name of a GL texture, or a VkImage. It is an array if it has several layers.
 #[derive(Clone, Copy)]
 pub struct Texture {
     pub raw: u64,
@@ -23,13 +23,13 @@ pub struct Texture {
 
 /// The graphics that a session is bound to.
 pub trait Graphics: Send {
-    /// True if the runtime may use it on this thread.
+    /// True if the runtime may use the graphics on this thread.
     fn is_current(&self) -> bool;
 
-    /// Leaves no context current.
+    /// Makes no context current.
     fn unbind(&self);
 
-    /// Returns the type of structure in which the application gets an image.
+    /// Returns the type of structure in which the application receives an image.
     fn image_type(&self) -> sys::StructureType;
 
     /// Creates an image of a swapchain.
@@ -41,14 +41,14 @@ pub trait Graphics: Send {
     /// Fills every layer with [`POISON`](crate::script::POISON).
     fn poison(&mut self, texture: Texture);
 
-    /// Reads a rectangle of stored colour values: RGBA, the lowest row first.
+    /// Reads a rectangle of stored colour values as RGBA, beginning with the lowest row.
     fn read(&mut self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>>;
 }
 
 /// Returns the graphics binding in a chain of structures, and its name.
 ///
 /// # Safety
-/// `next` begins a chain of structures of the types that they say.
+/// `next` begins a chain of structures of the types that they state.
 pub unsafe fn bind(
     next: *const c_void,
     extensions: &[String],
@@ -65,13 +65,13 @@ pub unsafe fn bind(
         // SAFETY: every structure of a chain begins with this header.
         let structure = unsafe { &*next };
         if enabled(OPENGL_ES) {
-            // SAFETY: of the type that it says.
+            // SAFETY: of the type that it states.
             if let Some((name, display, context)) = unsafe { gles::binding(structure, enabled) }? {
                 return Ok((name, Box::new(gles::Gles::new(display, context)?)));
             }
         }
         if vulkan && structure.ty == sys::GraphicsBindingVulkanKHR::TYPE {
-            // SAFETY: of this type.
+            // SAFETY: the structure has this type.
             let binding = unsafe { &*next.cast::<sys::GraphicsBindingVulkanKHR>() };
             return Ok(("vulkan", Box::new(vulkan::Vulkan::new(binding)?)));
         }

@@ -1,5 +1,5 @@
-//! Vulkan on the application's device. An image is in the layout of an attachment when the application gets it, and
-//! must be so again when it is released.
+//! Vulkan on the application's device. An image is in an attachment layout when the application receives it, and must
+//! be in that layout again when it is released.
 
 use std::collections::HashMap;
 use std::ffi::c_void;
@@ -34,8 +34,8 @@ struct Image {
 impl Vulkan {
     pub fn new(binding: &sys::GraphicsBindingVulkanKHR) -> Result<Vulkan, Refusal> {
         let raw = |handle: *const c_void| handle as u64;
-        // SAFETY: the application's handles, which it keeps until the session is destroyed; the loader stays, because
-        // the application has it.
+        // SAFETY: the application's handles, which it keeps until the session is destroyed. The loader stays loaded,
+        // because the application uses it.
         unsafe {
             let entry = ash::Entry::load().map_err(|_| Code::ERROR_RUNTIME_FAILURE)?;
             let instance = vk::Instance::from_raw(raw(binding.instance));
@@ -111,7 +111,7 @@ impl Vulkan {
 
     fn destroy(&mut self, raw: u64) {
         if let Some(image) = self.images.remove(&raw) {
-            // SAFETY: made in `texture`; the work that used it has ended.
+            // SAFETY: created in `texture`; the work that used it has ended.
             unsafe {
                 self.device.queue_wait_idle(self.queue).ok();
                 self.device.destroy_image(vk::Image::from_raw(raw), None);
@@ -120,14 +120,14 @@ impl Vulkan {
         }
     }
 
-    /// Copies a rectangle with four bytes a pixel to the host.
+    /// Copies a rectangle with four bytes per pixel to the host.
     fn copy(&self, texture: Texture, layer: u32, rect: [i32; 4]) -> Option<Vec<u8>> {
         let [x, y, width, height] = rect;
         let image = self.images.get(&texture.raw)?;
         let size = width as u64 * height as u64 * 4;
         let info = vk::BufferCreateInfo::default().size(size).usage(vk::BufferUsageFlags::TRANSFER_DST);
         let visible = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
-        // SAFETY: a buffer with memory of its own, as long as the copy, which nothing uses afterwards.
+        // SAFETY: a buffer with its own memory, of the size of the copy, which nothing uses afterwards.
         unsafe {
             let buffer = self.device.create_buffer(&info, None).ok()?;
             let memory = self.allocate(self.device.get_buffer_memory_requirements(buffer), visible)?;
@@ -216,7 +216,7 @@ impl Graphics for Vulkan {
             .array_layers(layers)
             .samples(vk::SampleCountFlags::TYPE_1)
             .usage(usage(info.usage_flags));
-        // SAFETY: an image with memory of its own.
+        // SAFETY: an image with its own memory.
         unsafe {
             let image = self.device.create_image(&description, None).ok()?;
             let needs = self.device.get_image_memory_requirements(image);

@@ -8,10 +8,10 @@ use crate::eyes::PoseWarp;
 use crate::synthesis::PoseUniforms;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
 
-/// View synthesis for a target in any pose near the source's: tile bounds, tile spans, march. Where both views are
-/// parallel eyes on a level line it shows what [`Gather`](super::Gather) does, within the rounding of positions, and
-/// gather is the fast way. The buffers have 16 bytes per tile of 16 x 8 source pixels, and of as many target pixels.
-/// What a call does to the context's state is in the table of [`Synthesis`](super::Synthesis).
+/// View synthesis for a target in any pose near the source's: tile bounds, tile spans, march. For parallel eyes on a
+/// level line, it gives the same picture as [`Gather`](super::Gather), within the rounding of positions, but is slower.
+/// The buffers have 16 bytes per tile of 16 x 8 source pixels, and per tile of 16 x 8 target pixels. The table of
+/// [`Synthesis`](super::Synthesis) lists what a call does to the context's state.
 pub struct AnyView {
     gl: Rc<Context>,
     outputs: Outputs,
@@ -27,8 +27,8 @@ impl AnyView {
     /// Compiles the passes. Changes the same state as [`AnyView::prepare`], or none with [`GlState::Preserve`].
     ///
     /// # Errors
-    /// [`GlError::Unsupported`] for sources other than with [`Edges::Hard`], for a history, and for a source map, which
-    /// holds columns only; [`GlError::Shader`] if the driver refuses a shader.
+    /// [`GlError::Unsupported`] for other edges than [`Edges::Hard`], for a history, and for a source map, which can
+    /// only hold columns; [`GlError::Shader`] if the driver refuses a shader.
     pub fn new(gl: &Rc<Context>, options: &SynthesisOptions, outputs: Outputs) -> Result<AnyView, GlError> {
         if options.edges != Edges::Hard || options.history || outputs.source_map {
             let message = "any view is synthesized from hard edges, without history and source map";
@@ -52,7 +52,7 @@ impl AnyView {
         })
     }
 
-    /// Allocates the buffers for images of these sizes. Costs nothing if the sizes are the same as before.
+    /// Allocates the buffers for images of these sizes. Costs nothing if the sizes have not changed.
     /// [`AnyView::synthesize`] calls it.
     ///
     /// # Errors
@@ -112,7 +112,7 @@ impl AnyView {
     }
 }
 
-/// Runs a body, and restores the host's state afterwards if the options say so.
+/// Runs `body`, and restores the host's state afterwards if the options say so.
 fn preserving<R>(gl: &Context, options: &SynthesisOptions, body: impl FnOnce() -> R) -> R {
     match options.gl_state {
         GlState::Leave => body(),

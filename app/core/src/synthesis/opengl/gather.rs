@@ -9,16 +9,16 @@ use yoro_gl::{
     Capabilities, Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource,
 };
 
-/// Variants of the shaders for kinds of drivers. All give the same picture, within the rounding of positions; where a
-/// tile has a law, within an eighth of a pixel.
+/// Variants of the shaders for kinds of drivers. All give the same picture, within the rounding of positions; in tiles
+/// that have a law, within an eighth of a pixel.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GatherVariant {
-    /// For OpenGL ES 3.0: every depth value is a fetch, every pixel marches in one loop.
+    /// For OpenGL ES 3.0: each depth value is fetched separately, and all pixels march in one loop.
     Plain,
-    /// For CPU rasterizers, which execute every fetch in the text, taken or not: textureGather for the tiles only.
+    /// For CPU rasterizers, which execute every fetch in the shader, taken or not: textureGather for the tiles only.
     Software,
-    /// For GPUs: textureGather, laws of tiles, and a short path on which nearly every other pixel ends before the loop.
+    /// For GPUs: textureGather, laws of tiles, and a short path that settles nearly all other pixels before the loop.
     ShortWay,
 }
 
@@ -29,7 +29,7 @@ impl GatherVariant {
 
     fn of(capabilities: &Capabilities) -> GatherVariant {
         match capabilities {
-            // OpenGL ES 3.1 brings compute shaders and textureGather alike.
+            // OpenGL ES 3.1 has both compute shaders and textureGather.
             Capabilities { compute: false, .. } => GatherVariant::Plain,
             Capabilities { software: true, .. } => GatherVariant::Software,
             _ => GatherVariant::ShortWay,
@@ -45,7 +45,8 @@ impl GatherVariant {
     }
 }
 
-/// Tile bounds, tile spans, march. The two intermediate buffers have 16 bytes per tile of 16 x 8 pixels.
+/// The gather pipeline: tile bounds, tile spans, march. Its two intermediate buffers have 16 bytes per tile of 16 x 8
+/// pixels.
 pub struct Gather {
     gl: Rc<Context>,
     outputs: Outputs,
@@ -67,7 +68,7 @@ impl Gather {
         Gather::with_options(gl, outputs, &SynthesisOptions::default())
     }
 
-    /// Compiles the passes for the kind of source that the options choose.
+    /// Compiles the passes for the kind of source that the options select.
     pub(super) fn with_options(
         gl: &Rc<Context>,
         outputs: Outputs,
@@ -76,7 +77,7 @@ impl Gather {
         Gather::with_variant_of(gl, outputs, GatherVariant::of(gl.capabilities()), options)
     }
 
-    /// Compiles a variant that this driver would not choose, for any kind of source: for tests.
+    /// Compiles a variant that need not be this driver's, for any kind of source; for tests.
     ///
     /// # Errors
     /// Those of [`Gather::with_variant`].
@@ -90,7 +91,7 @@ impl Gather {
         Gather::with_defines(gl, outputs, variant.defines(), options)
     }
 
-    /// Compiles a variant that this driver would not choose, for tests.
+    /// Compiles a variant that need not be this driver's; for tests.
     ///
     /// # Errors
     /// Those of [`Gather::new`], also if the driver is too old for the variant.
@@ -103,8 +104,8 @@ impl Gather {
         Gather::with_variant_of(gl, outputs, variant, &SynthesisOptions::default())
     }
 
-    /// Compiles the variant for GPUs with counts in place of colours. Red: steps of the short way (low three bits),
-    /// then one bit each for a hole, for the long way, and for a law. Green: segments. Blue: events. Alpha: steps to a
+    /// Compiles the variant for GPUs, with counts instead of colours. Red: steps on the short path (low three bits),
+    /// then one bit each for a hole, the long path, and a law. Green: segments. Blue: events. Alpha: steps to a
     /// segment's crossing.
     ///
     /// # Errors

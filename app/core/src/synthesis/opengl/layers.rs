@@ -14,8 +14,8 @@ use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarg
 /// Number of draw buffers that the passes use: the split pass writes two.
 pub(super) const DRAW_BUFFERS: u32 = 2;
 
-/// Samples from left to right in the standard patterns of 2 and 4 samples (Vulkan's `standardSampleLocations`). Each
-/// sample stands for the nearest stripes of the pixel.
+/// The samples from left to right in the standard patterns of 2 and 4 samples (Vulkan's `standardSampleLocations`).
+/// Each sample represents the stripes of the pixel nearest to it.
 const STANDARD_2: IVec4 = IVec4::new(1, 1, 0, 0);
 const STANDARD_4: IVec4 = IVec4::new(2, 0, 3, 1);
 
@@ -32,17 +32,17 @@ pub struct Layers {
     bounds: Program,
     spans: Program,
     march: Program,
-    /// Layers, and the colour of the back surfaces.
+    /// The layers, and the colour of the back surfaces.
     layers: RenderTarget,
     tile_map: RenderTarget,
     span_map: RenderTarget,
     recall: Option<Recall>,
 }
 
-/// The first pass, without and with the colours of samples.
+/// The first pass, for sources without and with sample colours.
 struct Split {
     resolved: Program,
-    /// For sources with the colours of samples.
+    /// For sources with sample colours.
     samples: Option<Program>,
 }
 
@@ -56,9 +56,10 @@ impl Layers {
         Layers::with_options(gl, outputs, &SynthesisOptions { edges, ..SynthesisOptions::default() })
     }
 
-    /// Compiles the passes with counts in place of colours. Red: columns of the march's first loop. Green and blue:
-    /// pairs of columns in which something happens, and all that the second loop passes. Alpha: rows of its fill, and
-    /// in the highest bit whether the source's pixel at this place shows two surfaces. At most 255 each.
+    /// Compiles the passes with counts instead of colours. Red: columns of the march's first loop. Green and blue:
+    /// pairs of columns in which something happens, and all pairs that the second loop visits. Alpha: rows of its fill,
+    /// and in the highest bit whether the source pixel at the same place shows two surfaces. All counts are clamped to
+    /// 255.
     ///
     /// # Errors
     /// Those of [`Layers::new`].
@@ -68,7 +69,7 @@ impl Layers {
         Layers::with_defines(gl, Outputs::default(), &options, &[("COUNT_TRIPS", String::new())])
     }
 
-    /// Compiles the passes for the kind of source that the options choose.
+    /// Compiles the passes for the kind of source that the options select.
     pub(super) fn with_options(
         gl: &Rc<Context>,
         outputs: Outputs,
@@ -113,7 +114,7 @@ impl Layers {
         let march = [&edge_defines[..], &outputs.defines(), &options.last_pass_defines(), counts].concat();
         let split = "synthesis/layers/split.frag";
         let map = || RenderTarget::new(gl, [1, 1], &[(Format::R32Ui, Filter::Nearest)], None);
-        // Back surfaces are stored like the source's colour: unmixing is right in the colour space of the resolve.
+        // Back surfaces are stored like the source's colour: unmixing must happen in the colour space of the resolve.
         let back = if outputs.srgb { Format::Srgb8Alpha8 } else { Format::Rgba8 };
         let layers = [(Format::R32Ui, Filter::Nearest), (back, Filter::Nearest)];
         Ok(Layers {
@@ -151,7 +152,7 @@ impl Layers {
         uniforms.set(program);
     }
 
-    /// Returns the samples, from left to right, of the multisample texture that was bound last, to unit 0.
+    /// Returns the order from left to right of the samples of the multisample texture that is bound to the active unit.
     fn left_to_right(&self) -> IVec4 {
         // SAFETY: queries the texture that is bound to the active unit.
         let samples = unsafe {

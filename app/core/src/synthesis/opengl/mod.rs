@@ -1,4 +1,4 @@
-//! Synthesis on OpenGL: two textures of one eye in, the other eye in a framebuffer out.
+//! Synthesis on OpenGL: from two textures of one eye to a framebuffer with the other eye.
 
 mod any_view;
 mod gather;
@@ -20,23 +20,23 @@ pub use gather::GatherVariant;
 pub use layers::Layers;
 use preserve::Preserving;
 
-/// The unit of a history's colour, which is filtered.
+/// The texture unit of a history's colour, which is filtered.
 const HISTORY_COLOR_UNIT: u32 = 5;
 
 /// The outputs of a pipeline besides colour, and their encoding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outputs {
-    /// Write the synthesized eye's depth, in the source's encoding, to the target's depth attachment: for transparent
+    /// Writes the synthesized eye's depth, in the source's encoding, to the target's depth attachment, for transparent
     /// objects, near objects and compositors.
     pub depth: bool,
-    /// Write the source map to colour attachment 1 ([`yoro_gl::Format::R32Ui`]). Bit 31 marks a hole; the other bits
-    /// are the source column of the pixel, or of the edge it was filled from, in 1/65536 pixel. The column is counted
-    /// from the left for a synthesized left eye and from the right for a right eye.
-    /// [`SourceMapEntry`](super::SourceMapEntry) decodes it.
+    /// Writes the source map to colour attachment 1 ([`yoro_gl::Format::R32Ui`]). Bit 31 marks a hole; the other bits
+    /// are the source column of the pixel, or of the edge that it was filled from, in 1/65536 pixel. Columns are
+    /// counted from the left for a synthesized left eye and from the right for a right eye.
+    /// [`SourceMapEntry`](super::SourceMapEntry) decodes an entry.
     pub source_map: bool,
-    /// Encode colour for an sRGB target: set it if source and target are both sRGB textures
-    /// ([`yoro_gl::Format::Srgb8Alpha8`]), which sampling decodes. Otherwise encoding is off and values are stored as
-    /// they are sampled. OpenGL ES without `EXT_sRGB_write_control` always encodes for sRGB targets.
+    /// Encodes colour for an sRGB target. Set it if source and target are both sRGB textures
+    /// ([`yoro_gl::Format::Srgb8Alpha8`]), which are decoded when they are sampled. Otherwise values are stored as they
+    /// are sampled, without encoding. OpenGL ES without `EXT_sRGB_write_control` always encodes for sRGB targets.
     pub srgb: bool,
 }
 
@@ -52,8 +52,8 @@ impl Outputs {
     }
 }
 
-/// The rendered eye: GL names of 2-D textures, or arrays of them, of the same size. Their filters, wrapping, compare
-/// mode and samplers do not matter.
+/// The rendered eye, as GL names of 2-D textures, or arrays of them, of the same size. The textures' filters, wrapping,
+/// compare mode and samplers do not matter.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
     /// Colour, in any filterable format and any encoding; all four channels are synthesized. For kinds other than
@@ -68,29 +68,28 @@ pub struct Source {
     pub part: Option<Part>,
     /// The layer of both textures, for a pipeline with [`SynthesisOptions::array_textures`]; 0 otherwise.
     pub layer: u32,
-    /// What the other eye has seen, for a pipeline with [`SynthesisOptions::history`].
+    /// Earlier renders of the other eye, for a pipeline with [`SynthesisOptions::history`].
     pub history: Option<History>,
 }
 
-/// An image of the synthesized eye that was really rendered, in this frame or before. Disocclusions show what is there.
+/// A rendered image of the synthesized eye, from this frame or earlier ones. It shows what is in disocclusions.
 #[derive(Clone, Copy, Debug)]
 pub struct History {
-    /// Colour: what synthesis takes, so without what is drawn over both eyes afterwards. In the encoding of the
-    /// source's.
+    /// Colour in the encoding of the source's: the input of synthesis, without what is drawn over both eyes afterwards.
     pub color: glow::Texture,
-    /// Depth, of the same size, one value a pixel, with the planes and encoding of the source's.
+    /// Depth, of the same size, one value per pixel, with the planes and encoding of the source's.
     pub depth: glow::Texture,
     /// The views of its strips.
     pub strips: Strips,
 }
 
 impl Source {
-    /// Returns a source that is the whole of two textures, without the colours of samples.
+    /// Returns a source that is the whole of two textures, without sample colours.
     pub fn new(color: glow::Texture, depth: glow::Texture) -> Source {
         Source { color, depth, samples: None, part: None, layer: 0, history: None }
     }
 
-    /// Returns the place of a source of this size in its textures.
+    /// Returns the place of the source, of this size, in its textures, and that of the target.
     fn places(&self, size: [u32; 2], target: &Destination, part: bool) -> Places {
         let whole = Part { origin: [0, 0], image_size: size };
         let Part { origin, image_size } = self.part.filter(|_| part).unwrap_or(whole);
@@ -107,23 +106,23 @@ pub struct Part {
     pub image_size: [u32; 2],
 }
 
-/// The effect of a call on the context's state, which the table of [`Synthesis`] lists.
+/// What a call does to the context's state, as listed in the table of [`Synthesis`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GlState {
-    /// Leaves some state changed. This costs least, for hosts that set all state they draw with.
+    /// Leaves some state changed. This is cheapest, for hosts that set all the state they draw with.
     #[default]
     Leave,
-    /// Queries all state first and restores it at the end. This takes 3 to 4 microseconds a call on llvmpipe
-    /// (docs/library.md has the measurement). A driver that works in its own thread may have to wait for it.
+    /// Queries all state first and restores it at the end. This takes 3 to 4 microseconds per call on llvmpipe
+    /// (docs/library.md has the measurement). A driver that works in its own thread may have to be waited for.
     Preserve,
 }
 
 /// A pipeline that synthesizes the other eye.
 ///
-/// The context must be current on the calling thread. The picture does not depend on its state: a call sets all state
-/// that it relies on. Afterwards the state is as [`SynthesisOptions::gl_state`] says: with [`GlState::Leave`] as in the
-/// table, with [`GlState::Preserve`] as before the call. State that is not in the table is neither read nor changed.
-/// State that a context lacks, by version or extension, is neither set nor queried.
+/// The context must be current on the calling thread. The picture does not depend on the context's state: a call sets
+/// all the state that it relies on. Afterwards, the state is as in the table with [`GlState::Leave`], and as before the
+/// call with [`GlState::Preserve`]. State that is not in the table is neither read nor changed, and state that a
+/// context lacks, by version or extension, is neither set nor queried.
 ///
 /// | state | set to | afterwards |
 /// |---|---|---|
@@ -149,15 +148,16 @@ pub enum GlState {
 ///
 /// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, scissor
 /// box, blend function and equation, stencil function, clear values, other texture targets and units. A pending error
-/// stays, except in browsers, where GL's error flag is read when buffers are allocated. A program that the host has
-/// deleted while it was current goes, as GL says, when another becomes current; `Preserve` then leaves none.
+/// stays, except in browsers, where allocating buffers reads GL's error flag. A program that the host deleted while it
+/// was current is destroyed, as GL specifies, when another one becomes current; `Preserve` then leaves no program
+/// current.
 ///
-/// The host ensures the rest: transform feedback and conditional rendering are not active, the shading rate is one
-/// fragment a pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the source
-/// is attached to it. An active occlusion query counts the passes' fragments.
+/// The host ensures the rest: transform feedback and conditional rendering are inactive, the shading rate is one
+/// fragment per pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the
+/// source is attached to it. An active occlusion query counts the passes' fragments.
 pub trait Synthesis {
-    /// Allocates intermediate buffers for images of these sizes, for which it binds framebuffers and a 2-D texture to
-    /// the active unit. Costs nothing if the sizes are the same as before. [`Synthesis::synthesize`] calls it.
+    /// Allocates intermediate buffers for images of these sizes; this binds framebuffers, and a 2-D texture to the
+    /// active unit. Costs nothing if the sizes have not changed. [`Synthesis::synthesize`] calls it.
     ///
     /// # Errors
     /// [`GlError`] if the sizes are beyond the driver's limits.
@@ -179,9 +179,9 @@ pub struct SynthesisOptions {
     /// The effect of calls on the host's GL state.
     pub gl_state: GlState,
     /// True if sources may be parts of their textures ([`Source::part`]) and change their size from frame to frame, as
-    /// with dynamic resolution: buffers then only grow, so that no frame allocates after one of the largest size.
+    /// with dynamic resolution. Buffers then only grow, so that no frame allocates after one of the largest size.
     pub parts: bool,
-    /// True if colour and depth are layers of array textures, as those of multiview are ([`Source::layer`]). Not with
+    /// True if colour and depth are layers of array textures, as with multiview ([`Source::layer`]). Not supported with
     /// [`Edges::Multisample`].
     pub array_textures: bool,
     /// True if sources may have a history ([`Source::history`]).
@@ -189,7 +189,7 @@ pub struct SynthesisOptions {
 }
 
 impl SynthesisOptions {
-    /// Returns the macro of a last pass that looks disocclusions up.
+    /// Returns the preprocessor macro for a last pass that uses a history.
     fn last_pass_defines(&self) -> Vec<(&'static str, String)> {
         defines([("HISTORY", self.history)])
     }
@@ -198,12 +198,12 @@ impl SynthesisOptions {
         self.history.then(|| Recall::new(gl)).transpose()
     }
 
-    /// Returns the preprocessor's macros that select this kind of source.
+    /// Returns the preprocessor macros that select this kind of source.
     fn defines(&self) -> Vec<(&'static str, String)> {
         defines([("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.array_textures)])
     }
 
-    /// Binds a texture of the source, which is an array with [`SynthesisOptions::array_textures`]. The program must be
+    /// Binds a texture of the source: an array texture with [`SynthesisOptions::array_textures`]. The program must be
     /// current.
     fn bind<'a>(&self, program: &'a Program, name: &str, unit: u32, texture: glow::Texture) -> &'a Program {
         if self.array_textures {
@@ -220,20 +220,20 @@ impl SynthesisOptions {
         program.set("source_layer", source.layer as i32);
     }
 
-    /// Returns the size of a buffer that holds what is needed, and with parts what it holds already.
+    /// Returns a buffer's new size: the needed one, or with parts at least the current one, too.
     fn buffer_size(&self, now: [u32; 2], needed: [u32; 2]) -> [u32; 2] {
         if self.parts { [0, 1].map(|i| now[i].max(needed[i])) } else { needed }
     }
 }
 
-/// Returns the bytes of the buffers that a pipeline has for these sizes, which [`Synthesis::prepare`] allocates: to
-/// plan with before there is one. Drivers add padding.
+/// Returns the size in bytes of the buffers that [`Synthesis::prepare`] allocates for these sizes, for planning before
+/// a pipeline exists. Drivers add padding.
 pub fn buffer_bytes(edges: Edges, warp: &Warp) -> u64 {
     let area = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
     let maps: u64 = map_sizes(warp).map(area).iter().sum();
     match edges {
         Edges::Hard => 16 * maps,
-        // A source pixel's surfaces, and the colour of the back one.
+        // The surfaces of each source pixel (4 bytes), and the colour of the back one.
         _ => 4 * maps + 8 * area(warp.source_size),
     }
 }
@@ -268,7 +268,7 @@ pub fn create(
     }
 }
 
-/// Returns the preprocessor's macros that are wanted, each without a value.
+/// Returns those preprocessor macros that are wanted, without values.
 fn defines<const N: usize>(wanted: [(&'static str, bool); N]) -> Vec<(&'static str, String)> {
     wanted.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| (name, String::new())).collect()
 }
@@ -285,7 +285,7 @@ pub fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
     uniforms.set(program);
 }
 
-/// What a pipeline with [`SynthesisOptions::history`] has besides: a texture to bind for sources without one.
+/// The texture that a pipeline with [`SynthesisOptions::history`] binds for sources without a history.
 struct Recall {
     nothing: RenderTarget,
 }
@@ -295,8 +295,8 @@ impl Recall {
         Ok(Recall { nothing: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)? })
     }
 
-    /// Sets what `include/history.glsl` declares, with depth in a unit that is not filtered. The program must be
-    /// current.
+    /// Sets what `include/history.glsl` declares. Depth is bound to `depth_unit`, which must not filter. The program
+    /// must be current.
     fn set(&self, program: &Program, history: Option<History>, depth_unit: u32) {
         let nothing = self.nothing.color(0).raw();
         let none = History { color: nothing, depth: nothing, strips: Strips::NONE };
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn the_guide_lists_the_state() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
-        // Not in the published package.
+        // The published package does not contain this file.
         let Ok(guide) = std::fs::read_to_string(path) else { return };
         let rows = include_str!("mod.rs").lines().filter_map(|line| line.strip_prefix("/// | "));
         let rows: Vec<_> = rows.filter(|row| !row.starts_with("state |")).collect();

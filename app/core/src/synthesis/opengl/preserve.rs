@@ -6,7 +6,7 @@ use super::{Source, Synthesis};
 use crate::eyes::Warp;
 use yoro_gl::{Context, Destination, GlError, Touched};
 
-/// Saves the state before each call of a pipeline and restores it afterwards, also if the call fails.
+/// Saves the state before each call of a pipeline and restores it afterwards, even if the call fails.
 pub(super) struct Preserving {
     gl: Rc<Context>,
     pipeline: Box<dyn Synthesis>,

@@ -1,4 +1,4 @@
-//! A simulated device: its time, its battery, its log, and the application on it.
+//! A simulated device: its clock, its battery, its log, and the application on it.
 
 mod shell;
 
@@ -19,48 +19,48 @@ use yoro_protocol::Method;
 use yoro_protocol::Settings;
 use yoro_protocol::telemetry::{BatteryStatus, CurrentNormalizer, Line};
 
-/// Start of every replay in seconds since 1970, so that results do not depend on the day.
+/// The start of every replay in seconds since 1970. It is fixed so that results do not depend on the date.
 const BEGIN: f64 = 1_750_000_000.0;
-/// Seconds that a command takes.
+/// Duration of a command in seconds.
 const COMMAND_S: f64 = 0.02;
 /// Seconds from the application's start to its first frame.
 const LOADING_S: f64 = 1.5;
 /// Power in milliwatts while no application runs.
 const IDLE_MILLIWATTS: f64 = 300.0;
-/// Final rise of temperature in degrees Celsius per watt.
+/// Steady rise of the temperature in degrees Celsius per watt.
 const CELSIUS_PER_WATT: f64 = 5.0;
-/// Seconds after which a difference of temperature has fallen to a third.
+/// Time constant of the temperature in seconds: a difference has then fallen to 37 %.
 const WARMING_S: f64 = 400.0;
-/// Largest random difference between runs of a kind, as a share.
+/// Maximum random difference between runs of the same kind, as a fraction.
 const VARIATION: f64 = 0.02;
-/// Time that a start of Android takes after the device is connected again, in seconds.
+/// Time in seconds that Android takes to start once the device is connected again.
 const BOOT_S: f64 = 10.0;
 
-/// Level in percent at which the charger is taken off.
+/// Battery level in percent at which the charger is unplugged.
 const CHARGED_PERCENT: f64 = 95.0;
-/// The process of Meta's runtime that is no application.
+/// A process of Meta's runtime that is not an application.
 const RUNTIME_PID: u32 = 2072;
-/// Property in which a simulated headset records that it was set to be worn.
+/// Property that records whether a simulated headset was told that it is worn.
 const WORN: &str = "simulated.worn";
 
-/// One line in the log.
+/// A line of the log.
 struct Logged {
     clock: f64,
     text: String,
 }
 
-/// The application while it runs.
+/// The running application.
 struct Application {
     pid: u32,
-    /// The package of another application than this project's: only Meta's runtime logs it.
+    /// The package, if this is not the project's application: then only Meta's runtime logs it.
     other: Option<String>,
     settings: Settings,
     method: String,
     first_frame: f64,
-    /// Lines of a recorded log, repeated; none if they are generated.
+    /// Lines of a recorded log, played in a loop. `None` if lines are generated.
     recorded: Option<Vec<Line>>,
     lines: u32,
-    /// Random factor on this start's cost.
+    /// Random factor on the cost in this start of the application.
     variation: f64,
     normalizer: CurrentNormalizer,
     faults: Vec<Fault>,
@@ -78,7 +78,7 @@ impl Application {
     }
 }
 
-/// The state that a device keeps while it is off.
+/// The state that a device keeps while it is turned off.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Stored {
     settings: BTreeMap<String, String>,
@@ -92,9 +92,9 @@ pub struct SimulatedDevice {
     speed: Option<f64>,
     /// This computer's clock.
     now: f64,
-    /// The device's clock less this computer's.
+    /// The device's clock minus this computer's, in seconds.
     clock_offset: f64,
-    /// Time until which the device is gone, and its state meanwhile.
+    /// Time until which the device is gone, and the state in which adb lists it meanwhile.
     gone_until: f64,
     gone_as: State,
     boots: u32,
@@ -103,12 +103,12 @@ pub struct SimulatedDevice {
     installed: bool,
     application: Option<Application>,
     log: Vec<Logged>,
-    /// Lines before the first in the log.
+    /// Number of lines that the log no longer has.
     forgotten: usize,
-    /// Changes whenever readers of the log are cut off.
+    /// Incremented whenever readers of the log are cut off.
     generation: u32,
     stored: Stored,
-    /// The file of that state between replays.
+    /// The file that keeps `stored` from one replay to the next.
     store: Option<PathBuf>,
     charge_mah: f64,
     celsius: f64,
@@ -120,7 +120,7 @@ pub struct SimulatedDevice {
 }
 
 impl SimulatedDevice {
-    /// The device of a script, in its initial state but for what an earlier replay has kept in a file.
+    /// Creates the device of a script, in its initial state except for what an earlier replay has stored in a file.
     pub fn new(script: Phone, seed: u64, speed: Option<f64>, store: Option<PathBuf>) -> SimulatedDevice {
         let first = || Stored {
             settings: script.settings.clone(),
@@ -128,7 +128,7 @@ impl SimulatedDevice {
             files: script.files.clone(),
         };
         let earlier = store.as_ref().and_then(|path| serde_json::from_slice(&files::read(path).ok()?).ok());
-        // Devices of one script differ.
+        // Give each device of a script its own random numbers.
         let own = script
             .serial
             .bytes()
@@ -174,12 +174,12 @@ impl SimulatedDevice {
         device
     }
 
-    /// This computer's clock in seconds since 1970.
+    /// Returns this computer's clock in seconds since 1970.
     pub fn now(&self) -> f64 {
         self.now
     }
 
-    /// Returns the state in which adb lists the device; none if it does not.
+    /// Returns the state in which adb lists the device, or `None` if adb does not list it.
     pub fn state(&self) -> Option<State> {
         let state = State::from_adb(&self.script.state);
         if state != State::Ready {
@@ -191,7 +191,7 @@ impl SimulatedDevice {
         (self.gone_as == State::Unauthorized).then_some(State::Unauthorized)
     }
 
-    /// Lets a command's time pass; an error if the device does not answer.
+    /// Lets the time of a command pass. Returns an error if the device does not answer.
     pub fn reach(&mut self) -> Result<(), DeviceError> {
         let serial = self.script.serial.clone();
         self.advance(self.now + COMMAND_S);
@@ -203,7 +203,7 @@ impl SimulatedDevice {
         }
     }
 
-    /// Lets time pass until `to`, or less if the user asks to stop.
+    /// Lets time pass until `to`, or until the user interrupts the program.
     pub fn advance(&mut self, to: f64) {
         while self.now < to && !(self.speed.is_some() && interrupt::requested()) {
             self.step(to);
@@ -213,7 +213,7 @@ impl SimulatedDevice {
     /// Lets time pass until something happens, at most until `limit`.
     fn step(&mut self, limit: f64) {
         let next = |a: &Application| a.next_line().min(a.next_fault());
-        // Small steps at a limited speed, so that the user can stop.
+        // With a limited speed, take small steps so that the user can interrupt.
         let glance = self.speed.map_or(f64::INFINITY, |speed| self.now + 0.05 * speed);
         let to = self.application.as_ref().map_or(f64::INFINITY, next).min(limit).min(glance).max(self.now);
         let passed = to - self.now;
@@ -230,10 +230,10 @@ impl SimulatedDevice {
         }
     }
 
-    /// Returns the application's cost now.
+    /// Returns the application's current cost.
     fn load(&self, application: &Application) -> Load {
         let load = self.script.load.get(&application.method).copied().unwrap_or_default();
-        // A scene costs what its name makes of it, the same for all methods.
+        // The cost of a scene is derived from its name, and is the same factor for all methods.
         let name: u32 = application.settings.scene.bytes().map(u32::from).sum();
         let weight = (0.85 + 0.3 * f64::from(name % 100) / 100.0) * application.variation;
         Load { frame_ms: load.frame_ms * weight, milliwatts: load.milliwatts * weight }
@@ -246,13 +246,13 @@ impl SimulatedDevice {
         100.0 * self.charge_mah / self.script.capacity_mah
     }
 
-    /// True if somebody charges the device when it needs that, and takes the charger off.
+    /// True if somebody plugs in and unplugs the charger when needed.
     pub fn is_attended(&self) -> bool {
         let charger_goes = self.plugged_until.is_finite() && self.now < self.plugged_until;
         self.script.charged_below.is_some_and(|percent| percent > 0.0) || charger_goes
     }
 
-    /// Returns the voltage as the device gives it.
+    /// Returns the voltage as the device reports it.
     fn voltage(&self) -> f64 {
         match self.script.voltage {
             Voltage::Millivolts => self.volts() * 1e3,
@@ -343,7 +343,7 @@ impl SimulatedDevice {
         self.log.push(Logged { clock, text: text.trim_start().into() });
     }
 
-    /// Logs the application's line of this second, and ends the application when its time is over.
+    /// Logs the application's line of this second, and ends the application when its duration is over.
     fn log_second(&mut self) {
         let Some(mut application) = self.application.take() else { return };
         application.lines += 1;
@@ -391,7 +391,7 @@ impl SimulatedDevice {
         }
     }
 
-    /// Generates the line of a second from made-up figures.
+    /// Generates the line of a second from made-up values.
     fn generate(&mut self, application: &mut Application) -> Line {
         let load = self.load(application);
         let volts = self.volts();
@@ -456,8 +456,8 @@ impl SimulatedDevice {
         }
     }
 
-    /// Returns the position at which a new reader of the log begins: the end, a number of lines before it, or the first
-    /// line of a time.
+    /// Returns where a new reader of the log begins: at the oldest line if `since` is `None`, that many lines before
+    /// the end if it is an integer, otherwise at the first line at or after that time.
     pub fn reader(&self, since: Option<&str>) -> (usize, u32) {
         let end = self.forgotten + self.log.len();
         let begin = match since {
@@ -474,8 +474,8 @@ impl SimulatedDevice {
         (begin, self.generation)
     }
 
-    /// Returns the next line of a reader; time passes until it comes, at most `wait` seconds. An error if the reader is
-    /// cut off.
+    /// Returns the next line for a reader. Lets time pass until there is one, for at most `wait` seconds. Returns an
+    /// error if the reader is cut off.
     pub fn read_log(&mut self, at: &mut usize, generation: u32, wait: f64) -> Result<Option<String>, ()> {
         let limit = self.now + wait;
         loop {

@@ -1,4 +1,4 @@
-//! Answers of a simulated device to commands.
+//! A simulated device's answers to commands.
 
 use std::path::Path;
 
@@ -43,7 +43,7 @@ impl SimulatedDevice {
         DeviceError::Refused { serial, command: words.join(" "), reason: reason.into() }
     }
 
-    /// Answers a command as Android's shell does. Only the commands that the program uses are known.
+    /// Answers a command as Android's shell does. Only knows the commands that this program uses.
     pub fn shell(&mut self, words: &[&str]) -> Result<String, DeviceError> {
         self.reach()?;
         match words {
@@ -168,7 +168,7 @@ impl SimulatedDevice {
         ))
     }
 
-    /// Starts the application with the settings of the extras, overridden by properties.
+    /// Starts the application with the settings in `extras`, overridden by system properties.
     pub(super) fn start(&mut self, activity: &str, extras: &[&str]) -> Result<String, DeviceError> {
         let package = activity.split('/').next().unwrap_or_default();
         let other = self.script.others.iter().find(|other| *other == package).cloned();
@@ -208,7 +208,7 @@ impl SimulatedDevice {
             .into())
     }
 
-    /// Returns the lines of the recorded log of a method, pipeline and scene.
+    /// Returns the recorded lines of a method, pipeline and scene.
     fn recorded(&self, settings: &Settings) -> Result<Vec<Line>, DeviceError> {
         let is_wanted = |line: &Line| {
             let pipeline =
@@ -232,7 +232,7 @@ impl SimulatedDevice {
     }
 }
 
-/// Returns the telemetry in a log.
+/// Reads the telemetry lines of a log.
 fn read_recording(path: &Path) -> Result<Vec<Line>, DeviceError> {
     let bytes = files::read(path)?;
     let text = String::from_utf8_lossy(&bytes);

@@ -1,4 +1,4 @@
-//! The report's result for each method, in a sentence.
+//! The report's result for each method, as a sentence.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::format::{NO_SCATTER, change, change_format, count, number, signed, wi
 use crate::report::{CONFIDENCE, DeviceReport, Quantity};
 use yoro_figures::inference::{Basis, BlockInterval, Interval};
 
-/// The answer for a method on a device: the change of a quantity, from what to what, and the interval.
+/// The result of a method on a device: how much a quantity has changed, from which value to which, and the interval.
 #[derive(Serialize)]
 pub struct Answer {
     device: String,
@@ -17,17 +17,17 @@ pub struct Answer {
 
 #[derive(Serialize)]
 pub struct AnswerChange {
-    /// `-22.7 %`; a dash without a pair.
+    /// The change, such as `-22.7 %`, or a dash if there is no pair.
     change: String,
     name: &'static str,
     /// `1939 mW instead of 2510 mW`.
     values: String,
-    /// `95 % interval -24.1 to -21.3 %`; nothing without.
+    /// The interval, such as `95 % interval -24.1 to -21.3 %`. Empty if there is none.
     interval: String,
 }
 
 impl Answer {
-    /// Returns the answer as a sentence.
+    /// Returns the result as a sentence.
     pub fn sentence(&self) -> String {
         let change = |c: &AnswerChange| {
             let interval = if c.interval.is_empty() { String::new() } else { format!(", {}", c.interval) };
@@ -38,7 +38,7 @@ impl Answer {
     }
 }
 
-/// Returns the answers for all methods on all devices.
+/// Returns the results of all methods on all devices.
 pub fn answers(report: &DeviceReport) -> Vec<Answer> {
     let mut answers = Vec::new();
     for device in &report.devices {

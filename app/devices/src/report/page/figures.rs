@@ -6,7 +6,7 @@ use crate::report::{CONFIDENCE, Device, DeviceReport, Quantity, Run};
 use yoro_figures::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
 use yoro_figures::text::slug;
 
-/// Returns the change of power and frame rate by scene, with intervals.
+/// Returns figures of the changes of power, frame rate and temperature by scene, with intervals.
 pub fn change_figures(report: &DeviceReport, device: &Device, id: &str) -> Vec<Figure> {
     let mut found = Vec::new();
     for quantity in [Quantity::Power, Quantity::Fps, Quantity::Temperature] {
@@ -54,12 +54,12 @@ pub fn change_figures(report: &DeviceReport, device: &Device, id: &str) -> Vec<F
     found
 }
 
-/// Returns a device's name without the mark of simulated devices.
+/// Returns a device's name without `(simulated)`.
 fn device_plain(device: &Device) -> &str {
     device.name.trim_end_matches(" (simulated)")
 }
 
-/// Returns the power, frame rate and temperature over time: a thin line for each run that counts.
+/// Returns figures of power, frame rate and temperature over time, with a thin line for each run that counts.
 pub fn trace_figures(report: &DeviceReport, device: &Device, id: &str, scene: &str) -> Vec<Figure> {
     let mark = if device.simulated { " (simulated)" } else { "" };
     let mut found = Vec::new();

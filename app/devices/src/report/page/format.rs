@@ -1,12 +1,12 @@
-//! Figures as text.
+//! Formats numbers for the report.
 
 use crate::report::{Difference, Quantity};
 use yoro_figures::inference::{Basis, BlockInterval, Interval};
 
-/// Mark after an interval that rests on scenes or devices.
+/// Mark behind an interval that is based on the scatter of scenes or devices.
 pub const OVER_BLOCKS: &str = " †";
 
-/// Formats a count: `1 run`, `2 runs`.
+/// Formats a number with a noun: `1 run`, `2 runs`.
 pub fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
@@ -15,7 +15,7 @@ pub fn number(quantity: Quantity, value: f64) -> String {
     format!("{value:.0$}", quantity.decimals())
 }
 
-/// Returns decimals and unit of a change.
+/// Returns the number of decimals and the unit of a change.
 pub fn change_format(difference: &Difference) -> (usize, &'static str) {
     match difference.quantity {
         _ if difference.in_percent() => (1, "%"),
@@ -30,14 +30,15 @@ pub fn change(difference: &Difference) -> String {
     format!("{} {unit}", signed(difference.change, decimals))
 }
 
-/// Formats a value with its sign, but for a zero.
+/// Formats a value with its sign. Zero has no sign.
 pub fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{value:+.decimals$}");
     let is_zero = !text.bytes().any(|byte| matches!(byte, b'1'..=b'9'));
     if is_zero { text[1..].to_owned() } else { text }
 }
 
-/// Formats an interval: `[-31.0, -22.5]`, marked where it does not rest on repetitions; nothing without one.
+/// Formats an interval, such as `[-31.0, -22.5]`, with a mark if it is not based on repetitions. Returns an empty text
+/// if there is no interval.
 pub fn change_interval(difference: &Difference) -> String {
     let (decimals, _) = change_format(difference);
     match difference.interval {
@@ -52,7 +53,7 @@ pub fn change_interval(difference: &Difference) -> String {
     }
 }
 
-/// An interval of no width says that the device rounds, not that nothing varies.
+/// Shown instead of an interval of width 0, which means that the device rounds, not that nothing varies.
 pub const NO_SCATTER: &str = "no scatter was seen";
 
 pub fn without_scatter(low: f64, high: f64) -> bool {

@@ -19,7 +19,7 @@ use yoro_figures::page::{Template, figures, fill};
 
 pub(super) use format::count;
 
-/// Label of the mean over the scenes of a device.
+/// Label of the mean over all scenes of a device.
 const ALL_SCENES: &str = "all scenes";
 const TEMPLATE: Template =
     Template { name: "device.html.j2", text: include_str!("../../templates/device.html.j2") };
@@ -112,7 +112,7 @@ fn title(report: &DeviceReport) -> String {
     }
 }
 
-/// Returns the mark behind titles of replayed figures.
+/// Returns the mark that titles get if values are replayed.
 fn simulated_mark(report: &DeviceReport) -> &'static str {
     if !report.simulated {
         ""

@@ -16,7 +16,7 @@ const FIRST_HALF: [Quantity; 5] =
 const SECOND_HALF: [Quantity; 5] =
     [Quantity::GpuTime, Quantity::Temperature, Quantity::Rise, Quantity::Cpu, Quantity::Memory];
 
-/// Returns a table in the shape of the paper's for each method, its columns beside ours.
+/// Returns a table for each method in the layout of the paper's, with the paper's values in further columns.
 pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
     let methods = report.devices.iter().flat_map(|device| &device.methods);
     let methods = unique(methods.filter(|method| **method != report.baseline));
@@ -31,7 +31,7 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
         for i in 0..mean_columns {
             columns.push(if i == 0 { "mean of the devices" } else { "mean of the simulated" }.into());
         }
-        // The paper has this table for its own method only.
+        // The paper has this table only for its own method.
         let papers: &[paper::PaperDevice] = if method.starts_with("yoro") { &paper::DEVICES } else { &[] };
         columns.extend(papers.iter().map(|device| format!("{}, the paper's", device.name)));
         let mut table =
@@ -81,7 +81,7 @@ pub fn overview_tables(report: &DeviceReport) -> Vec<Table> {
     tables
 }
 
-/// Returns the tables of a device that have a row.
+/// Returns the tables of a device, without empty ones.
 pub fn device_tables(report: &DeviceReport, device: &Device) -> Vec<Table> {
     let mut tables = Vec::new();
     for half in [FIRST_HALF, SECOND_HALF] {
@@ -140,8 +140,8 @@ fn difference_table(report: &DeviceReport, device: &Device, quantities: [Quantit
     table
 }
 
-/// Returns the paper's power and frame rate against conventional rendering, in percent: for the system and the scene in
-/// the paper that correspond to a method and a scene, or for the mean of all scenes.
+/// Returns the paper's change of power and frame rate against conventional rendering, in percent, for the system and
+/// scene that correspond to a method and a scene. `None` for the scene stands for the mean over all scenes.
 pub fn papers_changes(scene: Option<&str>, method: &str) -> Option<(f64, f64)> {
     let column = match method {
         "hybrid" => 2,

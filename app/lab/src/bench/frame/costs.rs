@@ -1,34 +1,34 @@
-//! The cost of one invocation of each shader, by `docs/shader-cost.csv`.
+//! The cost of one invocation of each shader, from `docs/shader-cost.csv`.
 
 use anyhow::{Context as _, ensure};
 use yoro_gl::ProgramRecipe;
 
-/// Written by `cargo tools shader-cost --bless`.
+/// The table that `cargo tools shader-cost --bless` writes.
 const TABLE: &str = include_str!("../../../../../docs/shader-cost.csv");
-/// The table has materials without maps and with all of these.
+/// The macros of maps. The table has materials without maps and with all of these.
 const MAPS: [&str; 4] = ["DIFFUSE_MAP", "SPECULAR_MAP", "EMISSIVE_MAP", "NORMAL_MAP"];
 
-/// What a fragment shader executes.
+/// The cost of a fragment shader.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fragment {
-    /// Issue slots of an invocation without its loop over lamps; other loops once.
+    /// Issue slots of an invocation without its loop over lamps; other loops are counted once.
     pub slots: f64,
-    /// Issue slots for each lamp.
+    /// Issue slots per lamp.
     pub lamp: f64,
-    /// Pixels of a wave.
+    /// The number of pixels in a wave.
     pub lanes: u32,
 }
 
-/// Slots of a shader's text outside of loops, and of its loops.
+/// The issue slots of a shader's code outside of loops and in each loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
     /// Outside of all loops.
     pub straight: f64,
-    /// Loops that are in no other, without those inside, in the order of the listing.
+    /// The outermost loops in the order of the listing, without the loops inside them.
     pub loops: Vec<f64>,
-    /// The loop inside of another, if there is one.
+    /// The loop inside another loop, if any.
     pub inner: Option<f64>,
-    /// Pixels of a wave.
+    /// The number of pixels in a wave.
     pub lanes: u32,
 }
 
@@ -45,7 +45,7 @@ struct Row {
 /// The costs on one GPU.
 pub struct Costs {
     rows: Vec<Row>,
-    /// Pixels of a wave where the table does not say.
+    /// The number of pixels in a wave, for shaders without this number in the table.
     lanes: u32,
 }
 
@@ -53,7 +53,7 @@ impl Costs {
     /// Reads the costs on a GPU.
     ///
     /// # Errors
-    /// When the table has none of this GPU.
+    /// If the table has no entry for this GPU.
     pub fn of(gpu: &str) -> anyhow::Result<Costs> {
         let rows: Vec<Row> = TABLE.lines().filter_map(|line| row(gpu, line)).collect();
         ensure!(
@@ -63,11 +63,11 @@ impl Costs {
         Ok(Costs { rows, lanes: if gpu == "g52" { 8 } else { 16 } })
     }
 
-    /// Returns the cost of a program's fragment shader; of one with some maps, between that without maps and that with
-    /// all.
+    /// Returns the cost of a program's fragment shader. With some of the maps it lies between that without maps and
+    /// that with all of them.
     ///
     /// # Errors
-    /// When the table lacks the shader.
+    /// If the table lacks the shader.
     pub fn fragment(&self, program: &ProgramRecipe) -> anyhow::Result<Fragment> {
         let [none, all] = [false, true].map(|maps| self.find(program, "fragment", maps));
         let none = none.or(all);
@@ -89,7 +89,7 @@ impl Costs {
     /// Returns the parts of a fragment shader with exactly these macros.
     ///
     /// # Errors
-    /// When the table lacks the shader.
+    /// If the table lacks the shader.
     pub fn parts(&self, file: &str, macros: &[&str]) -> anyhow::Result<Parts> {
         let found =
             self.rows.iter().find(|row| row.stage == "fragment" && row.file == file && row.macros == macros);
@@ -118,7 +118,7 @@ impl Costs {
         Ok(parts)
     }
 
-    /// Returns the instructions of a program's vertex shader, and on Mali those of its position shader.
+    /// Returns the number of instructions of a program's vertex shader, including those of its position shader on Mali.
     pub fn vertex(&self, program: &ProgramRecipe) -> f64 {
         ["position", "vertex"]
             .iter()
@@ -127,8 +127,8 @@ impl Costs {
             .sum()
     }
 
-    /// Returns the row of a shader that is most like a program's. The table has each style and each way to draw both
-    /// eyes, but not both together, and no scene without a sun.
+    /// Returns the row of the shader that is most similar to a program's. The table has each style and each way of
+    /// drawing both eyes, but no combination of them, and no scene without a sun.
     fn find(&self, program: &ProgramRecipe, stage: &str, maps: bool) -> Option<&Row> {
         let file = program.files.last()?;
         let has = |text: &&&str| {
@@ -149,7 +149,7 @@ impl Costs {
     }
 }
 
-/// Reads a line of the table, if it is of this GPU.
+/// Reads a line of the table if it belongs to this GPU.
 fn row(gpu: &str, line: &'static str) -> Option<Row> {
     let cells: Vec<&str> = line.split(',').collect();
     let [of, program, stage, instructions, slots, _, _, lanes, .., loops] = cells[..] else { return None };
@@ -164,7 +164,7 @@ fn row(gpu: &str, line: &'static str) -> Option<Row> {
     Some(Row { file, macros, stage, instructions: number(instructions), fragment, loops })
 }
 
-/// True if the shader's only loop is that over lamps.
+/// True if the shader's only loop is the one over lamps.
 fn is_lit(file: &str) -> bool {
     ["render/lighting.frag", "render/forward.frag", "render/transparent.frag"].contains(&file)
 }

@@ -7,7 +7,7 @@ use yoro::eyes::View;
 use yoro_render::MAX_POINT_LIGHTS;
 use yoro_scene::PointLight;
 
-/// The lights of each pixel of a view, as bits.
+/// The lights that reach each pixel of a view, as bits.
 pub struct Lamps {
     bits: Vec<u32>,
     size: [u32; 2],
@@ -15,7 +15,7 @@ pub struct Lamps {
     means: HashMap<u32, f64>,
 }
 
-/// Returns columns and rows of the pixels of a wave.
+/// Returns the columns and rows of pixels in a wave.
 pub fn wave_size(lanes: u32) -> [u32; 2] {
     match lanes {
         128 => [16, 8],
@@ -26,8 +26,8 @@ pub fn wave_size(lanes: u32) -> [u32; 2] {
 }
 
 impl Lamps {
-    /// Finds the lights of each pixel from its depth, rows from the bottom. Beyond the first 32 lights none is found:
-    /// no built-in scene has more in reach of a wave.
+    /// Finds the lights of each pixel from its depth, with rows from the bottom. Lights after the first 32 are ignored:
+    /// in the built-in scenes no wave is reached by more.
     pub fn new(view: &View, depth: &[f32], lights: &[PointLight]) -> Lamps {
         let [width, height] = view.size;
         let local: Vec<(Vec3, f32)> = lights
@@ -56,7 +56,7 @@ impl Lamps {
         Lamps { bits: bits.collect(), size: view.size, means: HashMap::new() }
     }
 
-    /// Returns the mean over waves of this many lanes of the number of lights that reach one of their pixels.
+    /// Returns the mean number of lights that reach at least one pixel of a wave with this many lanes.
     pub fn of_wave(&mut self, lanes: u32) -> f64 {
         let (bits, [width, height]) = (&self.bits, self.size);
         *self.means.entry(lanes).or_insert_with(|| {

@@ -1,4 +1,4 @@
-//! What synthesis from layers executes: its loops are counted where they run, in its own shaders on real frames.
+//! The cost of synthesis from layers. The runs of its loops are counted by its own shaders on real frames.
 
 use std::rc::Rc;
 
@@ -10,30 +10,30 @@ use yoro::synthesis::{Edges, Layers};
 use yoro_gl::Context;
 use yoro_render::PreparedScene;
 
-/// Share of the march's text outside of loops that waves run which end in the first loop: an estimate from the
+/// The share of the march's code outside of loops that is run by waves that end in the first loop: an estimate from the
 /// listings.
 const PLAIN_SHARE: f64 = 0.5;
 
-/// Counts loops of the march over layers. All kinds of edges count as [`Edges::Nearest`] do.
+/// Counts the loops of the march over layers. All kinds of edges count like [`Edges::Nearest`].
 pub struct LayersMeter {
     counting: Counting<Layers>,
 }
 
-/// Counts of one frame.
+/// The counts of one frame.
 pub struct LayerCounts {
-    /// As [`Layers::counting`] writes them.
+    /// The pixels that [`Layers::counting`] writes.
     pixels: Vec<u8>,
     size: [u32; 2],
-    /// Width of the source over that of the target.
+    /// The source's width divided by the target's.
     wider: f64,
     span_trips: f64,
 }
 
 impl LayersMeter {
-    /// Compiles the pipeline that counts.
+    /// Compiles the counting pipeline.
     ///
     /// # Errors
-    /// When the driver refuses it.
+    /// If the driver refuses it.
     pub fn new(gl: &Rc<Context>) -> anyhow::Result<LayersMeter> {
         Ok(LayersMeter { counting: Counting::new(gl, Layers::counting(gl, Edges::Nearest)?)? })
     }
@@ -41,7 +41,7 @@ impl LayersMeter {
     /// Counts one frame.
     ///
     /// # Errors
-    /// When the eyes cannot be synthesized, or GL refuses.
+    /// If the eyes cannot be synthesized, or GL refuses.
     pub fn count(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> anyhow::Result<LayerCounts> {
         let (views, pixels) = self.counting.count(prepared, pair)?;
         Ok(LayerCounts {
@@ -54,18 +54,18 @@ impl LayersMeter {
 }
 
 impl LayerCounts {
-    /// Returns the slots for each pixel of the target, by pass.
+    /// Returns the issue slots per pixel of the target, by pass.
     ///
     /// # Errors
-    /// When the table lacks a shader.
+    /// If the table lacks a shader.
     pub fn slots(&self, costs: &Costs, edges: Edges) -> anyhow::Result<[(&'static str, f64); 4]> {
         let macros: &[&str] = if edges == Edges::Multisample { &["MULTISAMPLE"] } else { &[] };
         let split = costs.parts("synthesis/layers/split.frag", macros)?;
         let tiles = costs.parts("synthesis/layers/tiles.frag", &[])?;
         let spans = costs.parts("synthesis/gather/spans.frag", &[])?;
         let march = costs.parts("synthesis/layers/march.frag", macros)?;
-        // Trips of the loops of a pixel with two surfaces: taps of the estimates, those where nothing else is found
-        // (not counted), neighbours. Of all samples: taps.
+        // The trips of the loops at a pixel with two surfaces: taps of the estimates, taps if nothing else is found
+        // (not counted), neighbours. If all samples are read: taps.
         let trips: &[f64] = if edges == Edges::Multisample { &[8.0] } else { &[12.0, 0.0, 2.0] };
         let of_split = |wave: &Wave| split.straight + if wave.split { looped(&split, trips) } else { 0.0 };
         let tile = 1.0 / f64::from(TILE[0] * TILE[1]);
@@ -89,7 +89,7 @@ impl LayerCounts {
     }
 }
 
-/// The largest counts of a wave's pixels.
+/// The largest counts among a wave's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Wave {
     plain: u8,
@@ -113,12 +113,12 @@ fn looped(parts: &Parts, trips: &[f64]) -> f64 {
     parts.loops.iter().zip(trips).map(|(body, trips)| body * trips).sum()
 }
 
-/// Returns what a wave executes of the march.
+/// Returns the issue slots that a wave spends on the march.
 fn march_slots(march: &Parts, wave: &Wave) -> f64 {
     let goes_on = wave.events > 0 || wave.rows > 0;
     let straight = march.straight * if goes_on { 1.0 } else { PLAIN_SHARE };
     let trips = [wave.plain, wave.events, wave.rows].map(f64::from);
-    // The loop to the next event is inside of that over events.
+    // The loop to the next event is nested in the loop over events.
     straight + looped(march, &trips) + f64::from(wave.pairs) * march.inner.unwrap_or(0.0)
 }
 

@@ -1,9 +1,9 @@
-//! The cost of whole stereo frames on mobile GPUs that need not be here: `yoro bench shader-cost --frame`.
+//! The cost of whole stereo frames on mobile GPUs that are not available here: `yoro bench shader-cost --frame`.
 //!
-//! A frame is rendered here and [recorded](yoro_gl::Context::record): its passes, their images, and the samples that
-//! pass each depth test. `costs` knows what Mesa's compilers make of each shader, `traffic` what a tile-based GPU moves
-//! between its tiles and memory, `lamps` how many lights a wave computes, and `executed` beside it what the synthesis
-//! executes. `model` adds up.
+//! A frame is rendered here and [recorded](yoro_gl::Context::record): its passes, their images, and the number of
+//! samples that pass each depth test. `costs` has what Mesa's compilers make of each shader, `traffic` what a
+//! tile-based GPU moves between its tiles and memory, `lamps` the number of lights that a wave computes, and the module
+//! `executed` what the synthesis executes. `model` adds these up.
 
 mod costs;
 mod lamps;
@@ -24,22 +24,22 @@ pub use model::{FrameModel, SYNTHESIS, VERTICES, VERTICES_ONCE};
 pub use pass_table::pass_table;
 pub use traffic::{Piece, Traffic, pieces};
 
-/// The name in settings.
+/// The suite's name in settings.
 pub const SUITE: &str = "shader-cost-frame";
-/// Pixels of an eye: Quest 3's.
+/// The size of an eye in pixels, as on a Quest 3.
 pub const SIZE: [u32; 2] = [1680, 1760];
-/// The contender that is made of the record of [`Method::Instanced`]: both draw the same pixels, and differ in
+/// The contender derived from the record of [`Method::Instanced`], which draws the same pixels and differs only in
 /// vertices.
 pub const MULTIVIEW: &str = "multiview";
 
-/// The GPUs, with rates that are assumptions from public figures.
+/// The GPUs. Their rates are assumptions from public figures.
 pub const GPUS: [Device; 5] = [
     super::executed::DEVICES[0],
     super::executed::DEVICES[1],
-    // Two cores with 24 lanes each at 0.85 GHz, and LPDDR4X of 32 bits.
+    // Two cores with 24 lanes each at 0.85 GHz, and 32-bit LPDDR4X.
     Device { name: "mali-g52", gpu: "g52", size: [1200, 1080], slots: 0.041e12, fetches: 3.4e9, bytes: 13e9 },
     super::executed::DEVICES[2],
-    // Six cores with 64 lanes each at 0.86 GHz, and LPDDR5 of 64 bits.
+    // Six cores with 64 lanes each at 0.86 GHz, and 64-bit LPDDR5.
     Device { name: "mali-g610", gpu: "g610", size: [1200, 1080], slots: 0.33e12, fetches: 41e9, bytes: 51e9 },
 ];
 

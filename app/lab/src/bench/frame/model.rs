@@ -1,4 +1,4 @@
-//! Slots and bytes of a recorded frame, pass by pass.
+//! Issue slots and bytes of a recorded frame, pass by pass.
 
 use std::collections::BTreeMap;
 
@@ -11,21 +11,20 @@ use crate::bench::executed::Device;
 use yoro::synthesis::Edges;
 use yoro_gl::{Command, Draw, ProgramRecipe, Shape};
 
-/// Beginnings of the names of the passes that synthesize: what they execute is counted by `bench::executed`.
+/// Prefixes of the names of synthesis passes. Their execution is counted by `bench::executed`.
 pub const SYNTHESIS: [&str; 2] = ["gather ", "layers "];
-/// The pass that vertices are counted as.
+/// The name under which vertices are counted, like a pass.
 pub const VERTICES: &str = "vertices";
-/// The same with each vertex shaded once for both eyes, as multiview's draw calls allow.
+/// The same with each vertex shaded once for both eyes, as multiview allows.
 pub const VERTICES_ONCE: &str = "vertices once";
-/// Fragments of a surface drawn with several samples, for each pixel that it covers: an assumption, since edges between
-/// triangles are shaded once for each of them.
+/// Fragments shaded per covered pixel of a surface with several samples. This is an assumption: at an edge between
+/// triangles, the pixel is shaded once for each triangle.
 const EDGE_FRAGMENTS: f64 = 1.05;
 
-/// The costs of a frame for each pixel of an eye, by metric: `slots/a740/g-buffer`, `bytes/g-buffer`,
-/// `fragments/g-buffer`.
+/// The costs of a frame per pixel of an eye, by metric: `slots/a740/g-buffer`, `bytes/g-buffer`, `fragments/g-buffer`.
 pub type Frame = BTreeMap<String, f64>;
 
-/// What is needed to tell the costs of recorded frames.
+/// Computes the costs of recorded frames.
 pub struct FrameModel {
     costs: Vec<(Device, Costs)>,
 }
@@ -34,16 +33,16 @@ impl FrameModel {
     /// Reads the costs of shaders.
     ///
     /// # Errors
-    /// When the table lacks a GPU.
+    /// If the table lacks a GPU.
     pub fn new() -> anyhow::Result<FrameModel> {
         let costs = GPUS.into_iter().map(|gpu| Ok((gpu, Costs::of(gpu.gpu)?)));
         Ok(FrameModel { costs: costs.collect::<anyhow::Result<_>>()? })
     }
 
-    /// Returns the costs of a recorded frame, whose eyes have this size, without what the synthesis executes.
+    /// Returns the costs of a recorded frame whose eyes have this size, without what the synthesis executes.
     ///
     /// # Errors
-    /// When the table lacks a shader.
+    /// If the table lacks a shader.
     pub fn frame(&self, commands: &[Command], size: [u32; 2], lamps: &mut Lamps) -> anyhow::Result<Frame> {
         let pixels = f64::from(size[0]) * f64::from(size[1]);
         let mut frame = Frame::new();
@@ -72,10 +71,10 @@ impl FrameModel {
         Ok(frame)
     }
 
-    /// Returns what synthesis from layers executes for each pixel of an eye, by metric.
+    /// Returns the cost of synthesis from layers per pixel of an eye, by metric.
     ///
     /// # Errors
-    /// When the table lacks a shader.
+    /// If the table lacks a shader.
     pub fn layers(&self, counts: &LayerCounts, edges: Edges) -> anyhow::Result<Vec<(String, f64)>> {
         let mut metrics = Vec::new();
         for (gpu, costs) in &self.costs {
@@ -85,8 +84,8 @@ impl FrameModel {
         Ok(metrics)
     }
 
-    /// Returns the costs of the same frame by multiview: the record is that of
-    /// [`yoro_render::stereo::Method::Instanced`], which draws the same pixels.
+    /// Returns the costs of the same frame by multiview, from the record of [`yoro_render::stereo::Method::Instanced`],
+    /// which draws the same pixels.
     ///
     /// # Errors
     /// Those of [`FrameModel::frame`].
@@ -106,7 +105,7 @@ impl FrameModel {
     }
 }
 
-/// Returns the fragments that a draw call shades.
+/// Returns the number of fragments that a draw call shades.
 fn shaded(draw: &Draw) -> f64 {
     let samples =
         draw.target.as_ref().and_then(|target| target.color.first()).map_or(1, |image| image.samples);
@@ -114,10 +113,10 @@ fn shaded(draw: &Draw) -> f64 {
     fragments(draw) * if edges { EDGE_FRAGMENTS } else { 1.0 }
 }
 
-/// The draw call as multiview makes it, with the programs that draw into layers and read them.
+/// Returns the draw call as multiview would make it, with the programs that draw into layers and read them.
 fn with_layers(command: &Command) -> Command {
     let Command::Draw(draw) = command else { return command.clone() };
-    // The forward renderer has no layers: its surfaces are taken as instanced.
+    // The forward renderer has no layers. Its surfaces are counted as instanced.
     let is_forward = draw.program.defines.iter().any(|(name, _)| name == "FORWARD");
     let rename = |name: &str| match name {
         "CLIP_DISTANCE" | "SEAM_DISCARD" if is_forward => "CLIP_DISTANCE".to_owned(),
@@ -138,7 +137,7 @@ mod tests {
     use yoro::eyes::{EyeOptions, Pose};
     use yoro_gl::{Attachments, Format, Image};
 
-    /// A surface without maps on 120 of 100 pixels, of a mesh with 20 vertices, and a screen pass.
+    /// A mesh of 20 vertices without maps, with 120 fragments on 100 pixels, and a screen pass.
     #[test]
     fn slots_are_fragments_times_what_the_compiler_says() {
         let size = [10, 10];
@@ -183,9 +182,9 @@ mod tests {
         close("fragments/g-buffer", 1.2);
         close("bytes/g-buffer", 8.0);
         close("bytes/vertices", (20.0 * 32.0 + 30.0 * 4.0) / 100.0);
-        // What the synthesis executes is counted elsewhere.
+        // The execution of the synthesis is counted elsewhere.
         assert!(!frame.contains_key("slots/a740/gather march") && frame.contains_key("bytes/gather march"));
-        // By multiview each vertex is shaded twice, or once for both eyes.
+        // By multiview, each vertex is shaded twice, or once for both eyes.
         let both = model.multiview(&commands, size, &mut lamps).unwrap();
         assert_eq!(both["slots/a740/vertices once"], 0.5 * both["slots/a740/vertices"]);
     }

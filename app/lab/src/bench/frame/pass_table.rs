@@ -1,4 +1,4 @@
-//! The table of what each pass reads and writes, from recorded frames.
+//! The table of what each pass reads and writes, made from recorded frames.
 
 use std::fmt::Write as _;
 
@@ -6,14 +6,14 @@ use super::traffic::{Piece, Traffic};
 use yoro_gl::Image;
 use yoro_render::RendererKind;
 
-/// A piece of work as the table has it, and how often each method does it in a frame.
+/// A row of the table: a piece of work, and how often each method does it in a frame.
 struct Line {
     renderer: RendererKind,
     text: String,
     methods: Vec<(String, u32)>,
 }
 
-/// Returns the table in Markdown: a row for each kind of work on a framebuffer, for frames with the names of their
+/// Returns a table in Markdown with a row for each kind of work on a framebuffer, from frames with the names of their
 /// methods.
 pub fn pass_table(frames: &[(RendererKind, String, Vec<Piece>)]) -> String {
     let mut lines: Vec<Line> = Vec::new();
@@ -43,7 +43,7 @@ pub fn pass_table(frames: &[(RendererKind, String, Vec<Piece>)]) -> String {
     out
 }
 
-/// Names images with equal neighbours together, and what becomes of them.
+/// Lists images and what happens to them, with runs of equal neighbours in one entry.
 fn images(all: &[Traffic]) -> String {
     let named = all.iter().map(|traffic| {
         let fate = match (traffic.loaded, traffic.stored) {
@@ -62,7 +62,7 @@ fn textures(piece: &Piece) -> String {
     counted(read.map(|(uniform, image, _)| format!("{uniform} ({})", name(image))))
 }
 
-/// Joins texts by commas, with a number before those that come several times in a row.
+/// Joins texts by commas, with a count in front of repeated ones.
 fn counted(texts: impl Iterator<Item = String>) -> String {
     let mut runs: Vec<(String, u32)> = Vec::new();
     for text in texts {

@@ -1,50 +1,49 @@
 //! What a tile-based GPU moves between its tiles and memory.
 //!
-//! From a [record](yoro_gl::Context::record) by these laws:
+//! It is derived from a [record](yoro_gl::Context::record) by these rules:
 //!
-//! 1. Draw calls into one framebuffer, one after the other, are one piece of work: their images stay in the tiles
-//!    meanwhile.
-//! 2. An image is read into the tiles at the start, unless it is cleared, or first drawn by a triangle that covers the
-//!    view, without blending or a test against its depth.
-//! 3. It is written to memory at the end if anything was drawn into it, unless it is given up.
-//! 4. Samples are averaged in the tiles if that is the next thing after drawing them.
-//! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads a texel of each texture for
-//!    each fragment, and so does everything of the shadow map.
+//! 1. Consecutive draw calls into one framebuffer are one piece of work, during which their images stay in the tiles.
+//! 2. An image is read into the tiles at the start unless it is cleared, or first drawn by a triangle that covers the
+//!    view without blending and without a test against its depth.
+//! 3. An image is written to memory at the end if anything was drawn into it, unless it is discarded.
+//! 4. Samples are averaged in the tiles if this directly follows drawing them.
+//! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads one texel of each texture per
+//!    fragment. The shadow map is always read once per fragment.
 
 use std::rc::Rc;
 
 use yoro_gl::{Attachments, Command, Draw, Image, Shape};
 
-/// The texture that is always sampled near one place for each fragment.
+/// The texture that every draw call reads at one place per fragment.
 const SHADOW_MAP: &str = "shadow_map";
 
-/// An image that a piece draws into.
+/// An image that a piece of work draws into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Traffic {
     /// The image.
     pub image: Image,
-    /// True if it is read from memory first.
+    /// True if the image is read from memory first.
     pub loaded: bool,
-    /// True if it is written to memory.
+    /// True if the image is written to memory.
     pub stored: bool,
-    /// True if anything has touched it.
+    /// True if anything has drawn into or cleared the image.
     touched: bool,
 }
 
 /// A piece of work on one framebuffer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Names of its passes, each once.
+    /// The names of its passes, each once.
     pub passes: Vec<&'static str>,
-    /// Colour attachments, then depth.
+    /// The colour attachments, then depth.
     pub images: Vec<Traffic>,
-    /// Textures with the texels that are read, by name.
+    /// The textures: name, image, and number of texels that are read.
     pub textures: Vec<(String, Image, f64)>,
-    /// Columns and rows that are drawn.
+    /// The columns and rows that are drawn.
     pub area: [u32; 2],
-    /// The framebuffer.
+    /// The framebuffer; `None` for a copy.
     framebuffer: Option<Rc<Attachments>>,
-    /// Bytes of vertices and indices.
+    /// Bytes of vertices and indices that are read.
     pub vertex_bytes: f64,
 }
 
@@ -70,7 +69,7 @@ impl Piece {
         }
     }
 
-    /// Returns the bytes of images and textures.
+    /// Returns the bytes moved for images and textures.
     pub fn bytes(&self) -> f64 {
         let moved = |t: &Traffic| (f64::from(t.loaded) + f64::from(t.stored)) * texel_bytes(&t.image);
         let images: f64 = self.images.iter().map(moved).sum();
@@ -131,25 +130,25 @@ impl Piece {
     }
 }
 
-/// Returns the fragments of a draw call: those counted, or all pixels of the view.
+/// Returns the number of fragments of a draw call: the counted ones, or else all pixels of the view.
 pub fn fragments(draw: &Draw) -> f64 {
     let samples =
         draw.target.as_ref().and_then(|target| target.color.first()).map_or(1, |image| image.samples);
     draw.samples_passed.map_or(pixels(draw.area), |passed| passed as f64 / f64::from(samples))
 }
 
-/// Returns the texels of a texture that a triangle reads that covers a view of this size. Two views may lie side by
-/// side in the texture, and it may be larger or smaller than the view.
+/// Returns the number of texels that are read by a triangle that covers a view of this size. The texture may hold two
+/// views side by side, and may be larger or smaller than the view.
 fn texels_once(image: &Image, area: [u32; 2]) -> f64 {
     let scale = (f64::from(image.size[1]) / f64::from(area[1].max(1))).round().max(1.0);
     let part = [0, 1].map(|i| f64::from(image.size[i]).min(f64::from(area[i]) * scale));
     part[0] * part[1]
 }
 
-/// Returns the pieces of a recorded frame.
+/// Returns the pieces of work of a recorded frame.
 pub fn pieces(commands: &[Command]) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
-    // True if the next draw call into the framebuffer of the last piece belongs to it.
+    // True if the next draw call into the last piece's framebuffer belongs to that piece.
     let mut open = false;
     for command in commands {
         match command {
@@ -200,7 +199,7 @@ fn is_of_last(pieces: &[Piece], target: &Rc<Attachments>) -> bool {
     drawn.is_some_and(|piece| piece.draws_into(target))
 }
 
-/// Returns the piece that is being drawn into a framebuffer, a new one if that was another.
+/// Returns the open piece if it draws into this framebuffer, or else a new one.
 fn begin<'a>(pieces: &'a mut Vec<Piece>, open: &mut bool, target: &Rc<Attachments>) -> &'a mut Piece {
     let goes_on = *open && pieces.last().is_some_and(|piece| piece.draws_into(target));
     if !goes_on {
@@ -250,7 +249,7 @@ mod tests {
 
     const MESH: Shape = Shape::Mesh { indices: 6, vertices: 4, vertex_bytes: 32 };
 
-    /// Four samples are drawn, averaged and given up; with depth that is read afterwards, that is kept.
+    /// Four samples are drawn, averaged and discarded, except depth, which is kept if something reads it afterwards.
     #[test]
     fn samples_stay_in_the_tile_unless_something_reads_them() {
         let samples = target(image(Format::Rgba8, 4), Some(image(Format::Depth32F, 4)));
@@ -274,7 +273,7 @@ mod tests {
             let pieces = pieces(&[&forward[..], &discard, more].concat());
             pieces.iter().map(|piece| (piece.passes.join(", "), piece.bytes())).collect::<Vec<_>>()
         };
-        // 30 fragments of each draw call read a texel of 4 bytes.
+        // The 30 fragments of each draw call read a texel of 4 bytes.
         let maps = 2.0 * 30.0 * 4.0;
         let named = |name: &str, bytes: f64| (name.to_owned(), bytes);
         assert_eq!(
@@ -300,9 +299,9 @@ mod tests {
         let screen = |to| Command::Draw(draw("screen", to, Shape::Screen, &[]));
         let blended = |to| Command::Draw(Draw { blends: true, ..draw("blend", to, Shape::Screen, &[]) });
         let bytes = |commands: &[Command]| pieces(commands).iter().map(Piece::bytes).sum::<f64>();
-        // Written once; and blended with while it is in the tile.
+        // The image is written once, and blended with while it is in the tile.
         assert_eq!(bytes(&[screen(&a), blended(&a)]), 4.0 * PIXELS);
-        // Something else came in between: written, and read and written again.
+        // Another image is drawn in between, so that this one is written, and then read and written again.
         assert_eq!(bytes(&[screen(&a), screen(&b), blended(&a)]), (4.0 + 4.0 + 8.0) * PIXELS);
     }
 
@@ -310,7 +309,7 @@ mod tests {
     fn a_view_beside_another_is_half_of_the_texture() {
         let wide = Image { format: Format::Rgba8, size: [20, 4], samples: 1 };
         assert_eq!(texels_once(&wide, SIZE), PIXELS);
-        // All of a texture of twice the size, and of a small one.
+        // A texture of twice the size is read in full, and so is a small one.
         assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, SIZE), 4.0 * PIXELS);
         assert_eq!(texels_once(&Image { size: [5, 2], ..wide }, SIZE), 10.0);
     }

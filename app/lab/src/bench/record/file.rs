@@ -1,4 +1,4 @@
-//! Files of results: read as far as rounds are finished, and appended to.
+//! Files of results: reading finished rounds, and appending new ones.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -11,10 +11,10 @@ use yoro_files::{self as files, FileError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// It cannot be read or written.
+    /// The file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Its first line is not a header.
+    /// The first line is not a header.
     #[error(
         "{} is not a result of yoro bench (its first line is not a header): name another file",
         path.display()
@@ -23,7 +23,7 @@ pub enum RecordError {
         /// The file.
         path: PathBuf,
     },
-    /// It was written by another version.
+    /// The file was written by another version.
     #[error(
         "{} has version {version} of the result format and this yoro reads version {VERSION}: use the yoro that wrote it, or measure again into another file",
         path.display()
@@ -31,7 +31,7 @@ pub enum RecordError {
     Version {
         /// The file.
         path: PathBuf,
-        /// The version that it names.
+        /// The version that the file names.
         version: u64,
     },
     /// A line that is not the last one cannot be read.
@@ -42,12 +42,12 @@ pub enum RecordError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// Counted from 1.
+        /// The number of the line, counted from 1.
         line: usize,
-        /// The mistake.
+        /// The reason why it cannot be read.
         what: String,
     },
-    /// It belongs to a run with other parameters.
+    /// The file belongs to a run with other parameters.
     #[error(
         "{} holds results with {name} = {there}, and this run has {here}: give the same options to go on with it, or name another file",
         path.display()
@@ -57,9 +57,9 @@ pub enum RecordError {
         path: PathBuf,
         /// The parameter that differs.
         name: String,
-        /// The file's value.
+        /// The value in the file.
         there: String,
-        /// This run's value.
+        /// The value in this run.
         here: String,
     },
 }
@@ -67,25 +67,25 @@ pub enum RecordError {
 /// A file of results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
-    /// The file's path.
+    /// The path of the file.
     pub path: PathBuf,
-    /// The first line.
+    /// The header, which is the first line.
     pub header: Header,
-    /// All records of finished rounds, in the file's order, without the header.
+    /// All records of finished rounds in the order of the file, without the header.
     pub records: Vec<Record>,
-    /// Bytes up to the end of the last finished round.
+    /// The number of bytes up to the end of the last finished round.
     finished_bytes: u64,
 }
 
 impl Results {
-    /// Reads a file. What belongs to a round that was cut off, as by Ctrl-C or a power failure, is left out with
-    /// a warning.
+    /// Reads a file. The records of a round that was cut off, for example by Ctrl-C or a power failure, are left out
+    /// with a warning.
     ///
     /// # Errors
-    /// [`RecordError`] for a file that cannot be read, is something else, or is damaged before its last line.
+    /// [`RecordError`] for a file that cannot be read, is not a result file, or is damaged before its last line.
     pub fn read(path: &Path) -> Result<Results, RecordError> {
         let bytes = files::read(path)?;
-        // Without its newline even a line that can be read is not finished.
+        // A line without its newline is not finished, even if it can be read.
         let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         let mut cut_off = whole < bytes.len();
         let mut header = None;
@@ -121,7 +121,7 @@ impl Results {
         Ok(Results { path: path.into(), header, records, finished_bytes: finished_bytes as u64 })
     }
 
-    /// Returns the figures.
+    /// Returns the measurements.
     pub fn measurements(&self) -> impl Iterator<Item = &Measurement> {
         self.records.iter().filter_map(|record| match record {
             Record::Measurement(measurement) => Some(measurement),
@@ -129,7 +129,7 @@ impl Results {
         })
     }
 
-    /// Returns the facts of the settings, in the order in which they were measured.
+    /// Returns the facts about the settings in the order of measurement.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneFacts> {
         self.records.iter().filter_map(|record| match record {
             Record::Scene(facts) => Some(facts),
@@ -151,14 +151,14 @@ impl Results {
         ends.count() as u32
     }
 
-    /// True if a setting was left out, as one that the machine cannot carry: nobody was measured, and the file
-    /// says why.
+    /// True if a setting was left out, for example because it is too large for this machine. Then no contender was
+    /// measured, and the file gives the reason.
     pub fn is_left_out(&self, setting: &Setting) -> bool {
         self.rounds(setting) > 0 && !self.measurements().any(|m| m.setting == *setting)
     }
 }
 
-/// The header, with a sentence of its own for each way in which the first line can be something else.
+/// Reads the header, with a different error for each way in which the first line can be wrong.
 fn read_header(path: &Path, line: &[u8]) -> Result<Header, RecordError> {
     let foreign = || RecordError::Foreign { path: path.into() };
     let value: serde_json::Value = serde_json::from_slice(line).map_err(|_| foreign())?;
@@ -181,11 +181,11 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Opens the file of a run: a new one, or one that a run with the same header has begun; what was cut off at
-    /// its end is removed. Returns what it holds already. One process at a time has the file.
+    /// Opens the file of a run: a new one, or one that a run with the same header has begun, whose cut-off end is
+    /// removed. Returns the finished results in it. Only one process at a time can have the file open.
     ///
     /// # Errors
-    /// [`RecordError`]; the file stays as it was then.
+    /// [`RecordError`]; the file is then unchanged.
     pub fn open(path: &Path, header: &Header) -> Result<(Writer, Results), RecordError> {
         let failed = |source| FileError::Write { path: path.into(), source };
         let mut file = files::append(path)?;
@@ -203,10 +203,10 @@ impl Writer {
         Ok((Writer { file, path: path.into() }, results))
     }
 
-    /// Appends the records of a round and its end, and waits until the disk has them.
+    /// Appends the records of a round and its end, and waits until they are on the disk.
     ///
     /// # Errors
-    /// [`RecordError::File`]; the round is not counted then, whatever part of it was written.
+    /// [`RecordError::File`]; the round then does not count, even if part of it was written.
     pub fn append(&mut self, mut records: Vec<Record>, end: RoundEnd) -> Result<(), RecordError> {
         records.push(Record::Round(end));
         let write = |file: &mut File| -> io::Result<()> {
@@ -227,8 +227,8 @@ pub(super) fn lines(records: &[Record]) -> Vec<u8> {
     bytes
 }
 
-/// The first thing in which two headers differ so that their figures do not belong together: its name, the
-/// value there and here. Date and command do not count.
+/// Returns the first difference between two headers that keeps their figures apart: its name, the value there and the
+/// value here. Date and command do not count.
 fn difference(there: &Header, here: &Header) -> Option<(String, String, String)> {
     let differing =
         |name: &str, there: String, here: String| (there != here).then(|| (name.to_owned(), there, here));

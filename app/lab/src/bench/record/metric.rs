@@ -1,37 +1,36 @@
-//! Names of the metrics, with units. Quality is that of the eye that is not dominant, against the same eye
-//! really rendered (`conventional`); images are 8 bits, display-referred.
+//! Names of the metrics, with units. Quality is that of the eye that is not dominant, compared with a real render of
+//! the same eye (`conventional`); images are 8 bits, display-referred.
 
-/// Wall clock of a whole stereo frame up to glFinish, in ms.
+/// Wall-clock time of a whole stereo frame up to glFinish, in ms.
 pub const FRAME_MS: &str = "frame_ms";
-/// CPU time of the whole process during that frame, all threads together, in ms.
+/// CPU time of all threads of the process during that frame, in ms.
 pub const CPU_MS: &str = "cpu_ms";
-/// Prefix of the time of one pass in ms: `pass_ms/march`. The header's `pass_clock` says what clock. Frames
-/// of their own, since timing passes costs time. One value per round, at the setting's first frame.
+/// Prefix of the time of one pass in ms: `pass_ms/march`. The header's `pass_clock` names the clock. Passes are timed
+/// in separate frames, because timing them costs time. One value per round, at the setting's first frame.
 pub const PASS_MS: &str = "pass_ms/";
-/// GPU time of all passes of a frame by timer queries, in ms; only where they can be trusted. One value per
-/// round, at the setting's first frame.
+/// GPU time of all passes of a frame by timer queries, in ms, only where they can be trusted. One value per round, at
+/// the setting's first frame.
 pub const GPU_MS: &str = "gpu_ms";
-/// Textures that the contender holds after its first frame, by their formats, in MiB; one value.
+/// Size of the textures that the contender holds after its first frame, computed from their formats, in MiB; one value.
 pub const TEXTURE_MIB: &str = "texture_mib";
-/// The same with the resident memory of the process that has loaded the scene and made no contender yet, in MiB;
-/// one value.
+/// The same plus the resident memory of the process with the scene loaded and no contender made, in MiB; one value.
 pub const MEMORY_MIB: &str = "memory_mib";
 
 /// PSNR of red, green and blue in dB; null for identical images.
 pub const PSNR: &str = "psnr";
-/// Bits that a stream saves over two eyes at the same quantizer, in per cent; one value.
+/// Bits that a stream saves compared with two eyes at the same quantizer, in per cent; one value.
 pub const SAVED: &str = "saved";
 /// PSNR of luma in dB.
 pub const PSNR_LUMA: &str = "psnr_luma";
 /// SSIM, gaussian 11x11, mean of red, green and blue.
 pub const SSIM: &str = "ssim";
-/// The same of luma.
+/// SSIM of luma, gaussian 11x11.
 pub const SSIM_LUMA: &str = "ssim_luma";
 /// SSIM, uniform 7x7, mean of red, green and blue.
 pub const SSIM_UNIFORM: &str = "ssim_uniform";
 /// LDR-FLIP, mean over the image, 0 (equal) to 1.
 pub const FLIP: &str = "flip";
-/// Share of the pixels that the dominant eye's own image does not show, 0 to 1: the same for all contenders.
+/// Share of the pixels that the dominant eye's own image does not show, 0 to 1; the same for all contenders.
 pub const HOLE_SHARE: &str = "hole_share";
 /// PSNR (RGB) in the holes, in dB.
 pub const HOLE_PSNR: &str = "hole_psnr";
@@ -39,81 +38,80 @@ pub const HOLE_PSNR: &str = "hole_psnr";
 pub const HOLE_SSIM: &str = "hole_ssim";
 /// FLIP in the holes.
 pub const HOLE_FLIP: &str = "hole_flip";
-/// PSNR (RGB) elsewhere, in dB.
+/// PSNR (RGB) outside of the holes, in dB.
 pub const VISIBLE_PSNR: &str = "visible_psnr";
-/// SSIM (gaussian, RGB) elsewhere.
+/// SSIM (gaussian, RGB) outside of the holes.
 pub const VISIBLE_SSIM: &str = "visible_ssim";
-/// FLIP elsewhere.
+/// FLIP outside of the holes.
 pub const VISIBLE_FLIP: &str = "visible_flip";
 
-/// Flicker over all pixels, of 255; see [`crate::metrics::Flicker`]. One value per pair of frames, so one
-/// less than frames, as for the following.
+/// Flicker over all pixels, out of 255; see [`crate::metrics::Flicker`]. This metric and the following have one value
+/// per pair of consecutive frames, so one less than there are frames.
 pub const FLICKER: &str = "flicker";
 /// Flicker in the holes of either frame.
 pub const FLICKER_HOLES: &str = "flicker_holes";
-/// Flicker at the edges of the image, outside of holes.
+/// Flicker at the edges of the ground truth, outside of holes.
 pub const FLICKER_EDGES: &str = "flicker_edges";
 /// Flicker everywhere else.
 pub const FLICKER_REST: &str = "flicker_rest";
-/// Change of the ground truth from frame to frame, over all pixels, of 255: what flicker is to be held
-/// against.
+/// Change of the ground truth from frame to frame over all pixels, out of 255, for comparison with flicker.
 pub const CHANGE: &str = "change";
-/// The same in the holes of either frame.
+/// Change of the ground truth in the holes of either frame.
 pub const CHANGE_HOLES: &str = "change_holes";
-/// The same at edges.
+/// Change of the ground truth at its edges, outside of holes.
 pub const CHANGE_EDGES: &str = "change_edges";
-/// The same everywhere else.
+/// Change of the ground truth everywhere else.
 pub const CHANGE_REST: &str = "change_rest";
 
 /// The flicker metrics: all pixels, holes, edges, the rest.
 pub const FLICKERS: [&str; 4] = [FLICKER, FLICKER_HOLES, FLICKER_EDGES, FLICKER_REST];
-/// Their counterparts of the ground truth, measured for `conventional`.
+/// The corresponding metrics of the ground truth, measured for `conventional`.
 pub const CHANGES: [&str; 4] = [CHANGE, CHANGE_HOLES, CHANGE_EDGES, CHANGE_REST];
 
-/// Columns of the guard band that were drawn in a frame.
+/// Number of columns of the guard band that were drawn in a frame.
 pub const GUARD_COLUMNS: &str = "guard_columns";
-/// Pixels that lay in the guard band and were seen, but were not drawn, in a frame.
+/// Number of pixels in the guard band that were visible in a frame but not drawn.
 pub const UNDRAWN: &str = "undrawn";
-/// PSNR of red, green and blue in dB in the columns at the other eye's outer border that a guard band is for.
+/// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
 pub const BORDER_PSNR: &str = "border_psnr";
 
-/// Share of the uncovered pixels that the history shows, 0 to 1, as the method counts it, two frames before.
+/// Share of the uncovered pixels that the history shows, 0 to 1, as counted by the method two frames earlier.
 pub const SERVED: &str = "served";
-/// Pixels of the other eye that were rendered besides, as a share of an eye's.
+/// Number of additionally rendered pixels of the other eye, as a share of an eye's pixels.
 pub const RENDERED_BESIDES: &str = "rendered_besides";
 
 /// Share of the pixels whose tile has a law, 0 to 1.
 pub const LAW_PIXEL: &str = "law_pixel";
-/// Share of the waves all of whose pixels have one.
+/// Share of the waves in which every pixel's tile has a law, 0 to 1.
 pub const LAW_WAVE: &str = "law_wave";
-/// Trips of the loop of the march's short way for a pixel.
+/// Trips of the loop of the march's short way, per pixel.
 pub const TRIPS_PIXEL: &str = "trips_pixel";
-/// The same for a wave.
+/// Trips of the loop of the march's short way, per wave.
 pub const TRIPS_WAVE: &str = "trips_wave";
 /// Share of the pixels that go the long way, 0 to 1.
 pub const GOES_ON_PIXEL: &str = "goes_on_pixel";
-/// Share of the waves of which a pixel does.
+/// Share of the waves with a pixel that goes the long way, 0 to 1.
 pub const GOES_ON_WAVE: &str = "goes_on_wave";
-/// Segments that the march takes on its long way, for a wave.
+/// Segments that the march takes on its long way, per wave.
 pub const LONG_TRIPS_WAVE: &str = "long_trips_wave";
-/// Estimated issue slots for each pixel of the first pass of `gather`.
+/// Estimated issue slots per pixel of the first pass of `gather`.
 pub const SLOTS_TILES: &str = "slots_tiles";
-/// The same of the second pass.
+/// Estimated issue slots per pixel of the second pass.
 pub const SLOTS_SPANS: &str = "slots_spans";
-/// The same of the third.
+/// Estimated issue slots per pixel of the third pass.
 pub const SLOTS_MARCH: &str = "slots_march";
-/// The same of all three.
+/// Estimated issue slots per pixel of all three passes.
 pub const SLOTS: &str = "slots";
-/// Estimated texture instructions for each pixel.
+/// Estimated texture instructions per pixel.
 pub const FETCHES: &str = "fetches";
 /// Estimated time of the issue slots alone, in ms.
 pub const ALU_MS: &str = "alu_ms";
 /// Estimated time of the texture instructions alone, in ms.
 pub const FETCH_MS: &str = "fetch_ms";
-/// Estimated time of the bytes alone, in ms.
+/// Estimated time of the memory traffic alone, in ms.
 pub const MEMORY_MS: &str = "memory_ms";
 
-/// Time of a patcher alone in ms, by the wall clock, on an image that lies where the patcher works.
+/// Wall-clock time of patching alone in ms, with the image in the memory in which the patcher works.
 pub const PATCH_MS: &str = "patch_ms";
-/// Upload and readback around that, in ms; 0 for patchers on the CPU.
+/// Time of the upload before and the readback after patching in ms; 0 for patchers on the CPU.
 pub const PATCH_TRANSFER_MS: &str = "patch_transfer_ms";

@@ -1,4 +1,4 @@
-//! The result format of `yoro bench`: JSON lines, one file a run, appended to and never rewritten.
+//! The result format of `yoro bench`: JSON lines, one file per run, appended to and never rewritten.
 //!
 //! ```text
 //! {"record":"header","yoro_bench":1,"suites":["scenes"],"quick":false,"machine":{...},"pass_clock":"finish","parameters":[...]}
@@ -9,15 +9,15 @@
 //! {"record":"round","suite":"scenes","scene":"atrium","round":0}
 //! ```
 //!
-//! The first line is the [`Header`]. What follows comes in rounds: all records of a round, closed by a
-//! [`RoundEnd`], in one write. Records after the last [`RoundEnd`] belong to a round that was cut off; readers
-//! leave them out, and a resumed run removes them. A setting (`suite`, `scene`, and where the suite has them
-//! `label` and `point`) stands in each record; its facts ([`SceneFacts`]) and [`Unsupported`] contenders come
-//! with its first round, and so do values that are equal in each round (quality, memory).
+//! The first line is the [`Header`]. It is followed by rounds: all records of a round, closed by a [`RoundEnd`], are
+//! written at once. Records after the last [`RoundEnd`] belong to a round that was cut off; readers ignore them, and a
+//! resumed run removes them. Each record names its setting (`suite`, `scene`, and in some suites `label` or `point`).
+//! The facts about a setting ([`SceneFacts`]), its [`Unsupported`] contenders, and values that do not change between
+//! rounds (quality, memory) are written with its first round.
 //!
-//! In `values` each metric has one number for each of the setting's frames, in the order of
-//! [`SceneFacts::frames`]; `null` where there is no finite number: the PSNR of identical images, the quality of
-//! holes where there are none. [`metric`] has the names and units.
+//! In `values` each metric has one number for each of the setting's frames, in the order of [`SceneFacts::frames`]. It
+//! is `null` if there is no finite number, as for the PSNR of identical images and the quality of holes where there are
+//! none. [`metric`] has the names and units.
 
 mod file;
 pub mod metric;
@@ -34,56 +34,55 @@ use yoro_scene::ShadingStyle;
 
 pub use file::{RecordError, Results, Writer};
 
-/// Version of the format; raised when old readers would misread a new file.
+/// The version of the format, increased when old readers would misread a new file.
 pub const VERSION: u32 = 1;
 
-/// The clock of pass times.
+/// The clock that measures passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PassClock {
-    /// Timer queries of a GPU.
+    /// Timer queries of the GPU.
     TimerQueries,
-    /// The wall clock with glFinish around each pass: a CPU rasterizer, whose timer queries are unusable.
+    /// The wall clock with glFinish around each pass, for CPU rasterizers, whose timer queries are unusable.
     Finish,
-    /// No clock: a browser that hides timer queries. There are no pass times.
+    /// No clock, in browsers that hide timer queries. There are no pass times.
     None,
 }
 
-/// The first line.
+/// The first line of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// [`VERSION`] of the format.
+    /// The [`VERSION`] of the format.
     pub yoro_bench: u32,
-    /// The suites, in their order.
+    /// The suites, in the order in which they run.
     pub suites: Vec<String>,
     /// True for the short form (`--quick`).
     pub quick: bool,
-    /// Machine, driver, date and command.
+    /// The machine, driver, date and command.
     pub machine: Machine,
-    /// Clock of pass times.
+    /// The clock that measures passes.
     pub pass_clock: PassClock,
-    /// Everything that has an influence on the figures, as resolved; a run with others cannot go on with the
+    /// Everything that influences the figures, with defaults filled in. A run with other parameters cannot continue the
     /// file.
     pub parameters: Vec<Parameter>,
 }
 
-/// The conditions that are held fixed while the contenders take turns.
+/// The conditions that stay fixed while the contenders take turns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// Name of the suite.
     pub suite: String,
     /// Name of the scene.
     pub scene: String,
-    /// The point of a sweep over what has no number: the name of a shading style.
+    /// The point of a sweep that has no number, such as the name of a shading style.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
-    /// Value of the swept variable, if there is one, in the unit of the suite (triangles, mm, m, ImBuffer divisor,
-    /// pixels).
+    /// The value of the swept variable, if any, in the unit of the suite (triangles, mm, m, ImBuffer divisor, pixels).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<f64>,
 }
 
-/// `ipd, atrium, 65`.
+/// Writes the setting in the form `ipd, atrium, 65`.
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {}", self.suite, self.scene)?;
@@ -98,39 +97,39 @@ pub struct SceneFacts {
     /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
-    /// The scene of the paper that it stands for; empty if for none.
+    /// The paper's scene that it corresponds to, or empty.
     pub stands_for: String,
-    /// Shading style in use.
+    /// The shading style in use.
     pub style: ShadingStyle,
     /// Triangles of the whole scene.
     pub triangles: u64,
-    /// Point lights in use, at most.
+    /// The largest number of point lights in use.
     pub lights: u64,
-    /// Names of the frames that are measured, in the order of the values.
+    /// The names of the measured frames, in the order of the values.
     pub frames: Vec<String>,
 }
 
-/// A contender in one round.
+/// The measurement of a contender in one round.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
-    /// [`crate::bench::Contender::name`].
+    /// The [name](crate::bench::Contender::name) of the contender.
     pub contender: String,
-    /// Counted from 0.
+    /// The number of the round, counted from 0.
     pub round: u32,
-    /// Values by metric: a number for each frame, `None` if it is not finite.
+    /// Values by metric: one number per frame, `None` if it is not finite.
     pub values: BTreeMap<String, Vec<Option<f64>>>,
 }
 
 impl Measurement {
-    /// Returns the finite values of a metric; empty when it was not measured.
+    /// Returns the finite values of a metric; empty if it was not measured.
     pub fn finite(&self, metric: &str) -> impl Iterator<Item = f64> + '_ {
         self.values.get(metric).into_iter().flatten().filter_map(|value| *value)
     }
 
-    /// Adds the next frame's value of a metric; what is not finite becomes none.
+    /// Adds the next frame's value of a metric. A value that is not finite becomes `None`.
     pub fn push(&mut self, metric: impl Into<String>, value: f64) {
         self.values.entry(metric.into()).or_default().push(value.is_finite().then_some(value));
     }
@@ -142,34 +141,34 @@ pub struct Unsupported {
     /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
-    /// [`crate::bench::Contender::name`].
+    /// The [name](crate::bench::Contender::name) of the contender.
     pub contender: String,
-    /// The reason, as a sentence or clause.
+    /// The reason, as a sentence or a clause.
     pub reason: String,
 }
 
-/// All of a round is in the file.
+/// The end of a round, all of whose records are in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RoundEnd {
     /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
-    /// Counted from 0.
+    /// The number of the round, counted from 0.
     pub round: u32,
 }
 
-/// One line.
+/// One line of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "record", rename_all = "kebab-case")]
 pub enum Record {
     /// The first line.
     Header(Header),
-    /// Facts of a setting.
+    /// Facts about a setting.
     Scene(SceneFacts),
-    /// Figures of a contender.
+    /// The measurement of a contender.
     Measurement(Measurement),
     /// A contender that cannot take part.
     Unsupported(Unsupported),
-    /// Closes a round.
+    /// The end of a round.
     Round(RoundEnd),
 }

@@ -134,7 +134,7 @@ fn foreign_and_damaged_files_are_named() {
     assert!(Results::read(&path).unwrap_err().to_string().contains("does not exist"));
 }
 
-/// A run that was killed before its first line leaves such a file.
+/// A run that is killed before it writes its first line leaves such a file.
 #[test]
 fn an_empty_file_is_begun() {
     let dir = tempfile::tempdir().unwrap();

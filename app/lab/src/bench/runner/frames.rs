@@ -17,11 +17,11 @@ use yoro_files::interrupt;
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{ImBufferSize, StereoFrame};
 
-/// Everyone who renders frames of a setting, and what became of the others.
+/// The contenders that render the frames of a setting, and records of those that cannot.
 pub(super) struct Field {
     pub entrants: Vec<(Contender, Entrant)>,
     pub frame: StereoFrame,
-    /// Records of the first round: facts, contenders that are missing, memory.
+    /// Records for the first round: facts, missing contenders, memory.
     pub first: Vec<Record>,
     memory: Vec<Measurement>,
 }
@@ -81,7 +81,7 @@ impl Runner<'_> {
         Ok(())
     }
 
-    /// Renders every contender at every view, the order rotated so that each comes first, second, ... equally often.
+    /// Renders every contender at every view, rotating the order so that each is first, second, ... equally often.
     /// Returns the other eye's images, by contender and view, if they are to be kept.
     pub(super) fn render_round(
         &self,
@@ -112,7 +112,7 @@ impl Runner<'_> {
         Ok(images)
     }
 
-    /// Holds the images against those of the conventional method, which comes first.
+    /// Compares the images with those of the conventional method, which comes first.
     pub(super) fn compare(
         &self,
         prepared: &mut PreparedScene,
@@ -153,7 +153,7 @@ impl Runner<'_> {
         Ok(())
     }
 
-    /// Makes every contender and lets it render a first frame, which warms it up and tells what memory it takes.
+    /// Creates every contender. To measure costs, each renders a first frame, which warms it up and shows its memory.
     pub(super) fn field(
         &self,
         job: &Job,
@@ -195,7 +195,7 @@ impl Runner<'_> {
                     field.memory.push(memory);
                     field.entrants.push((contender, entrant));
                 }
-                // Without the ground truth there is nothing to hold the others against.
+                // Without the ground truth the others cannot be compared.
                 Err(error) if contender == Contender::CONVENTIONAL => return Err(error),
                 Err(error) => {
                     field.first.push(left_out(job, contender, &error));
@@ -206,7 +206,7 @@ impl Runner<'_> {
         Ok(field)
     }
 
-    /// Leaves the setting out when one conventional frame takes longer than the bound.
+    /// Leaves out a swarm's setting if one conventional frame takes longer than the limit. Returns whether it did.
     pub(super) fn is_too_slow(
         &mut self,
         job: &Job,

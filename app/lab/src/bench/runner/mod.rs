@@ -1,4 +1,4 @@
-//! Measures jobs, round by round.
+//! Measures jobs round by round.
 
 mod frames;
 mod patchers;
@@ -27,15 +27,15 @@ use yoro_gl::Context;
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_scene::{Scene, ShadingStyle, Viewpoint};
 
-/// Bytes that a triangle needs while its scene is made and uploaded, roughly: for the bound on memory.
+/// The approximate number of bytes per triangle while a scene is built and uploaded, for the limit on memory.
 const BYTES_PER_TRIANGLE: f64 = 150.0;
 
-/// Limits above which a scene is left out.
+/// The limits above which a scene is left out.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     /// Memory in MiB that the scene may need.
     pub memory_mib: f64,
-    /// Time that a frame of the conventional method may take.
+    /// The time that a frame of the conventional method may take.
     pub frame: Duration,
 }
 
@@ -43,13 +43,13 @@ pub struct Bounds {
 pub struct Inputs<'a> {
     /// The user's choices for all suites.
     pub choices: &'a Choices,
-    /// The object of the suites that need one.
+    /// The object, for the suites that need one.
     pub object: &'a LazyObject,
-    /// Another camera path than that of the scenes.
+    /// A camera path that replaces those of the scenes.
     pub path: Option<&'a [Viewpoint]>,
-    /// Limits above which a scene is left out.
+    /// The limits above which a scene is left out.
     pub bounds: Bounds,
-    /// Model of the neural patcher.
+    /// The options of patchers.
     pub patchers: PatcherOptions,
 }
 
@@ -64,7 +64,7 @@ pub struct Runner<'a> {
     prepared: Option<(SceneKey, PreparedScene)>,
 }
 
-/// Everything that a prepared scene depends on: settings that share it do not prepare it again.
+/// Everything that a prepared scene depends on. Settings with the same key share the scene.
 #[derive(Clone, Debug, PartialEq)]
 struct SceneKey {
     source: Source,
@@ -73,7 +73,7 @@ struct SceneKey {
 }
 
 impl<'a> Runner<'a> {
-    /// Makes a runner that measures into a file as [`Writer::open`] gives it.
+    /// Creates a runner that appends to a file opened by [`Writer::open`].
     pub fn new(
         gl: &'a Rc<Context>,
         inputs: Inputs<'a>,
@@ -83,11 +83,11 @@ impl<'a> Runner<'a> {
         Runner { gl, inputs, writer, before, bar, prepared: None }
     }
 
-    /// Measures what is missing of a job.
+    /// Measures the rounds of a job that the file does not have yet.
     ///
     /// # Errors
-    /// [`interrupt::Interrupted`] after Ctrl-C, and one sentence for whatever a user can help; finished rounds are in
-    /// the file then.
+    /// [`interrupt::Interrupted`] after Ctrl-C, and one sentence for any error that a user can remedy. The finished
+    /// rounds are in the file in both cases.
     pub fn run(&mut self, job: &Job) -> anyhow::Result<()> {
         let done = self.before.rounds(&job.setting);
         if done >= job.rounds || self.before.is_left_out(&job.setting) {
@@ -126,7 +126,7 @@ impl<'a> Runner<'a> {
             .then(|| format!("the scene needs about {needed:.0} MiB, and {bound:.0} MiB are allowed"))
     }
 
-    /// Refuses viewpoints of a named scene that show nothing.
+    /// Refuses a named scene if one of its viewpoints shows nothing.
     fn refuse_blank(&self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
         if !matches!(job.source, Source::Named(_)) {
             return Ok(());
@@ -148,7 +148,7 @@ impl<'a> Runner<'a> {
         BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))
     }
 
-    /// Writes for everyone that the setting was left out, and why.
+    /// Records for every contender that the setting was left out, and why.
     fn leave_out(&mut self, job: &Job, reason: String) -> anyhow::Result<()> {
         log::warn!("{} is left out: {reason}", job.setting);
         let records = job.contenders.iter().map(|contender| unsupported(job, *contender, reason.clone()));
@@ -157,12 +157,12 @@ impl<'a> Runner<'a> {
         Ok(())
     }
 
-    /// The scene of the job before if it fits, or a new one.
+    /// Returns the scene of the previous job if it fits, or else a new one.
     fn prepare(&mut self, job: &Job) -> anyhow::Result<PreparedScene> {
         let key = SceneKey::of(job);
         match self.prepared.take() {
             Some((present, prepared)) if present == key => Ok(prepared),
-            // The old one goes first: two large scenes at once are one too many.
+            // The old scene is dropped first, because two large scenes may not fit into memory together.
             old => {
                 drop(old);
                 Ok(PreparedScene::new(self.gl, self.scene(job)?, &job.render)?)
@@ -186,8 +186,7 @@ impl<'a> Runner<'a> {
         Ok(scene)
     }
 
-    /// Saves the other eye as a contender shows it in the first view, for the report, in the suites that are about
-    /// pictures.
+    /// Saves a contender's other eye in the first view for the report, in the suites that show pictures.
     fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
         if ![Suite::Scenes, Suite::AntiAliasing, Suite::History, Suite::Patchers]
             .iter()
@@ -204,7 +203,7 @@ impl<'a> Runner<'a> {
         Ok(picture::save_color(&folder.join(format!("{name}.png")), image)?)
     }
 
-    /// Writes a round: what comes with the first, and all measurements that hold something.
+    /// Writes a round: the records that come with the first round, and all measurements with values.
     fn finish_round(
         &mut self,
         job: &Job,
@@ -229,7 +228,7 @@ fn unsupported(job: &Job, contender: Contender, reason: String) -> Record {
     Record::Unsupported(Unsupported { setting: job.setting.clone(), contender: contender.name(), reason })
 }
 
-/// Returns the record of a contender that could not be made.
+/// Returns the record of a contender that could not be created.
 fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
     log::info!("{}: {contender} is left out: {error}", job.setting);
     unsupported(job, contender, error.to_string())

@@ -1,4 +1,4 @@
-//! One render shown at other poses: when the head has moved on, and for canted eyes.
+//! One render shown at another pose: after the head has moved, and for canted eyes.
 
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -21,28 +21,28 @@ use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_render::stereo::{self, Method, StereoFrame, StereoMethod, StereoOptions};
 use yoro_render::{PreparedScene, ViewTargets};
 
-/// Names of the ways to show a render at another pose.
+/// Names of the ways of showing a render at another pose.
 const SAME_IMAGE: &str = "same-image";
 const ROTATION: &str = "rotation";
 const ANY_VIEW: &str = "any-view";
-/// Gather between parallel eyes around the canted ones, then turned back.
+/// Gather between parallel eyes at the positions of the canted ones, with the result turned back.
 const PARALLEL_EYES: &str = "gather-parallel-eyes";
 
-/// The distance in metres from which on all surfaces are in the source's guard band.
+/// The distance in metres beyond which the source's guard band covers all surfaces.
 const NEAREST: f32 = 0.5;
-/// The angle by which each canted eye is turned outwards.
+/// The angle in degrees by which each canted eye is turned outwards.
 const CANT_DEGREES: f32 = 5.0;
 
-/// Names of what is timed: two renders, and with a rate of renders the frames that are rendered and those between.
+/// Names of what is timed: two renders and, with a limited rate of renders, the rendered frames and those in between.
 const TIMED: [&str; 3] = ["conventional", "rendered", "shown-again"];
-/// Renders a second: every other frame of a sequence.
+/// Renders per second, which is every other frame of a sequence.
 const RENDER_RATE: f32 = 36.0;
 
-/// One way's pictures and their truths.
+/// The pictures of each way, by its name.
 type Shown = Vec<(&'static str, RgbImage)>;
 
 impl Runner<'_> {
-    /// Measures the frames of the job, each against a render at the pose where it is shown.
+    /// Measures the frames of the job, each against a real render at the pose where it is shown.
     pub(super) fn reprojection(
         &mut self,
         job: &Job,
@@ -54,7 +54,7 @@ impl Runner<'_> {
         let mut timer = Timer::new(self.gl, job)?;
         let (views, late) = match displaced {
             Displaced::Late(motion, late) => {
-                // Spread over the motion, so that neighbours are not alike.
+                // The frames are spread over the motion, so that neighbours are not alike.
                 let all = Job { frames: job.frames * SPREAD + late, ..job.clone() };
                 (Views::of_motion(&all, prepared, motion)?.split_at_last(all.frames)[1].clone(), Some(late))
             }
@@ -94,7 +94,7 @@ impl Runner<'_> {
     }
 }
 
-/// Returns the measurement of a contender, which is made if there is none yet.
+/// Returns the measurement of a contender, and creates it if there is none yet.
 fn measurement_of<'a>(all: &'a mut Vec<Measurement>, job: &Job, name: &str) -> &'a mut Measurement {
     let at = all.iter().position(|m| m.contender == name).unwrap_or_else(|| {
         all.push(Measurement::new(&job.setting, name, 0));
@@ -103,10 +103,10 @@ fn measurement_of<'a>(all: &'a mut Vec<Measurement>, job: &Job, name: &str) -> &
     &mut all[at]
 }
 
-/// Frames from one measured frame to the next.
+/// The number of frames from one measured frame to the next.
 const SPREAD: usize = 9;
 
-/// The same eyes, turned outwards.
+/// Returns the same eyes, turned outwards.
 fn canted(pair: &EyePair) -> EyePair {
     let mut eyes = *pair;
     for (pose, side) in eyes.poses.iter_mut().zip([1.0, -1.0]) {
@@ -115,10 +115,10 @@ fn canted(pair: &EyePair) -> EyePair {
     eyes
 }
 
-/// Times of whole stereo frames.
+/// Times whole stereo frames.
 struct Timer {
     gl: Rc<Context>,
-    /// Two renders, and one render shown in several frames.
+    /// Two renders, and one render that is shown in several frames.
     methods: [Box<dyn StereoMethod>; 2],
     frame: StereoFrame,
 }
@@ -132,7 +132,7 @@ impl Timer {
         Ok(Timer { gl: gl.clone(), methods, frame: StereoFrame::new(gl, job.eyes.size)? })
     }
 
-    /// Returns the times up to glFinish, by [`TIMED`], after a frame of each that is not timed.
+    /// Returns the times up to glFinish in the order of [`TIMED`], after an untimed frame of each.
     fn run(
         &mut self,
         prepared: &mut PreparedScene,
@@ -161,7 +161,7 @@ impl Timer {
     }
 }
 
-/// Renders views and shows them at other poses, with one sample per pixel.
+/// Renders views with one sample per pixel and shows them at other poses.
 struct Shower {
     gl: Rc<Context>,
     any_view: AnyView,
@@ -199,7 +199,7 @@ impl Shower {
         Ok(picture::rgb_image(&self.shown.read_rgba8(0, [0, 0], warp.target_size), warp.target_size))
     }
 
-    /// Shows the dominant eye of one frame at its pose of a later one.
+    /// Shows the dominant eye of one frame at its pose in a later frame.
     fn late(
         &mut self,
         prepared: &PreparedScene,
@@ -224,7 +224,7 @@ impl Shower {
         Ok((shown, truth))
     }
 
-    /// Synthesizes the other one of two canted eyes, directly and by parallel eyes with as many pixels per tangent.
+    /// Synthesizes the other of two canted eyes, directly and by parallel eyes with as many pixels per tangent.
     fn canted(&mut self, prepared: &PreparedScene, eyes: &EyePair) -> anyhow::Result<(Shown, RgbImage)> {
         let other = eyes.dominant.other();
         let [own, target] = [eyes.dominant, other].map(|eye| eyes.view(eye));

@@ -1,4 +1,4 @@
-//! Measuring along a piece of the camera path, and counting what the synthesis executes.
+//! Measuring along a part of the camera path, and counting what the synthesis executes.
 
 use image::RgbImage;
 
@@ -49,8 +49,8 @@ impl Runner<'_> {
         self.finish_round(job, 0, field.first, measurements)
     }
 
-    /// Renders every contender's frames in their order, each once, as a viewer does. A frame's use of the band is known
-    /// two frames after it.
+    /// Renders every contender's frames in order, each once, as a viewer does. The recorded use of the guard band is
+    /// that of two frames earlier.
     pub(super) fn guard_band(&mut self, job: &Job, prepared: &mut PreparedScene) -> anyhow::Result<()> {
         let views = Views::along_path(job, prepared, views::HEADSET_STEP)?;
         let mut field = self.field(job, prepared, &views, true)?;
@@ -84,8 +84,8 @@ impl Runner<'_> {
         self.finish_round(job, 0, field.first, measurements)
     }
 
-    /// Renders every contender's frames in their order, each once, as a viewer does, and compares them once the history
-    /// is filled.
+    /// Renders every contender's frames in order, each once, as a viewer does, and compares those after the history is
+    /// filled.
     pub(super) fn history(
         &mut self,
         job: &Job,
@@ -189,8 +189,8 @@ impl Runner<'_> {
     }
 }
 
-/// The columns at the outer border of the eye that is not dominant for which surfaces at half a metre need a guard
-/// band: the widest that is measured.
+/// Returns the columns at the outer border of the eye that is not dominant in which surfaces at half a metre need a
+/// guard band, the widest one that is measured.
 fn border(image: &RgbImage, pair: &EyePair) -> anyhow::Result<RgbImage> {
     let width = pair.synthesis_views(Band::HalfMetre.guard_band())?.guard_columns.min(image.width());
     let left = match pair.dominant.other() {

@@ -1,4 +1,4 @@
-//! A stream's bits and what is seen of it, some frames later.
+//! The bits of a stream, and the quality of what it shows some frames later.
 
 use super::Runner;
 use crate::bench::bandwidth::metric::KBIT_S;
@@ -19,7 +19,7 @@ use yoro_render::PreparedScene;
 use yoro_stream::{EyeView, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
 
-/// The first one is what bits are saved against.
+/// The modes. The bits that the others save are relative to those of the first.
 const MODES: [(Mode, &str); 3] = [
     (Mode::Eyes, "two eyes, rotation"),
     (Mode::Depth, "one eye and depth"),
@@ -27,8 +27,8 @@ const MODES: [(Mode, &str); 3] = [
 ];
 
 impl Runner<'_> {
-    /// Encodes a walking head's frames by all modes at each quantizer, and measures both eyes at the poses that the
-    /// head has some frames later.
+    /// Encodes a walking head's frames in all modes at each quantizer, and measures both eyes at the poses of the head
+    /// some frames later.
     pub(super) fn stream(
         &mut self,
         job: &Job,
@@ -54,7 +54,7 @@ impl Runner<'_> {
             measure(&mut same, &[image.clone(), image], &truth)?;
             truths.push(truth);
         }
-        // The left eye in the last frame.
+        // The pictures that are saved show the left eye in the last frame.
         let folder = picture_folder(&self.before.path, &job.setting);
         let place = |name: &str| folder.join(format!("{}.png", slug(name)));
         if let Some([left, _]) = truths.last() {
@@ -74,7 +74,7 @@ impl Runner<'_> {
                 for (i, picture) in pictures.iter().enumerate() {
                     interrupt::check()?;
                     let encoded = encoder.encode(&picture.planes, quantizer, picture.new_span)?;
-                    // A stream begins once.
+                    // The first frame does not count, because a stream begins only once.
                     bytes += if i == 0 { 0 } else { encoded.data.len() };
                     anyhow::ensure!(i == 0 || !encoded.is_intra, "the distances change within the sequence");
                     let decoded = decoder.decode(&encoded.data)?;
@@ -114,11 +114,11 @@ fn pictures(
     pairs.iter().map(|pair| Ok(renderer.picture(prepared, &request(pair))?)).collect()
 }
 
-/// Notes the mean of both eyes.
+/// Records the mean quality of both eyes.
 fn measure(to: &mut Measurement, eyes: &[RgbImage; 2], truth: &[RgbImage; 2]) -> anyhow::Result<()> {
     let (mut sums, pairs) = ([0.0; 2], eyes.iter().zip(truth));
     for (eye, truth) in pairs {
-        // Equal images have no finite PSNR, and count as hardly distorted ones.
+        // Equal images have no finite PSNR. They count as 60 dB.
         sums[0] += psnr(eye, truth, Channels::Rgb)?.0.min(60.0);
         sums[1] += ssim(eye, truth, SsimWindow::Gaussian11, Channels::Rgb)?;
     }

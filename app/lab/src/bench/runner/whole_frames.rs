@@ -1,4 +1,4 @@
-//! Counting what whole frames cost on GPUs that need not be here.
+//! Estimating the cost of whole frames on GPUs that are not available here.
 
 use anyhow::Context as _;
 
@@ -17,7 +17,7 @@ use yoro_files::interrupt;
 use yoro_render::stereo::{Method, Pipeline, StereoFrame};
 use yoro_render::{PreparedScene, Selection, ViewTargets};
 
-/// The slots of the passes of `gather`, as [`Meter`] tells them, and the passes' names.
+/// The slots of the passes of `gather` as [`Meter`] names them, and the names of the passes.
 const GATHER: [(&str, &str); 3] = [
     (metric::SLOTS_TILES, "gather tiles"),
     (metric::SLOTS_SPANS, "gather spans"),
@@ -103,7 +103,7 @@ impl Runner<'_> {
         self.finish_round(job, 0, records, measurements)
     }
 
-    /// Returns the lights that reach what the dominant eye sees.
+    /// Returns the lights that reach the surfaces visible to the dominant eye.
     fn lamps(&self, prepared: &mut PreparedScene, pair: &EyePair) -> anyhow::Result<Lamps> {
         let view = pair.view(pair.dominant);
         let mut targets = ViewTargets::default();
@@ -115,12 +115,12 @@ impl Runner<'_> {
     }
 }
 
-/// True if the contender synthesizes by the pipeline gather from hard edges.
+/// True if the contender synthesizes with the pipeline gather from hard edges.
 fn is_gather(contender: &Contender) -> bool {
     matches!(contender, Contender::Yoro(Pipeline::Gather) | Contender::Edges(Edges::Hard))
 }
 
-/// The kind of edges, if the contender synthesizes by layers.
+/// Returns the kind of edges if the contender synthesizes from layers.
 fn layers_of(contender: &Contender) -> Option<Edges> {
     match contender {
         Contender::Edges(edges) if *edges != Edges::Hard => Some(*edges),

@@ -1,22 +1,22 @@
-//! The figures of result files, put together by suite, setting and contender.
+//! The measurements of result files, collected by suite, setting and contender.
 
 use std::collections::BTreeMap;
 
 use crate::bench::record::{Header, Results, SceneFacts, Setting, metric};
 use yoro_figures::stats::{Summary, geometric_mean, mean, median, percentile, unique};
 
-/// The name of the contender that costs are relative to: two full renders.
+/// The name of the contender that costs are compared with: two full renders.
 pub const CONVENTIONAL: &str = "conventional";
-/// The name of the baseline of quality: the same image to both eyes.
+/// The name of the baseline for quality: the same image for both eyes.
 pub const MONO: &str = "mono";
 
 /// One suite as measured under one set of conditions.
 pub struct Suite {
     /// Its name.
     pub name: String,
-    /// Machine, command, parameters; of the first file where several go together.
+    /// Machine, command and parameters; those of the first file if several are combined.
     pub header: Header,
-    /// Settings in the order of measurement.
+    /// The settings in the order of measurement.
     pub settings: Vec<SettingData>,
 }
 
@@ -24,31 +24,31 @@ pub struct Suite {
 pub struct SettingData {
     /// Suite, scene, and the point of a sweep.
     pub setting: Setting,
-    /// Triangles, style, frames; none if the file does not say.
+    /// Triangles, style and frames; `None` if the file does not have them.
     pub facts: Option<SceneFacts>,
-    /// Contenders in the order of measurement.
+    /// The contenders in the order of measurement.
     pub contenders: Vec<Measured>,
-    /// Contenders that could not take part, with the reason.
+    /// The contenders that could not take part, with the reasons.
     pub unsupported: Vec<(String, String)>,
 }
 
-/// Values by metric: a number for each frame.
+/// Values by metric: one number per frame.
 type Values = BTreeMap<String, Vec<Option<f64>>>;
 
-/// All rounds of a contender in a setting.
+/// All rounds of a contender in one setting.
 pub struct Measured {
     /// Its name.
     pub name: String,
-    /// Number of the round and values by metric.
+    /// The number of each round, with the values by metric.
     rounds: Vec<(u32, Values)>,
 }
 
 /// Median and quartiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
-    /// Half of the samples are below.
+    /// The value that half of the samples are below.
     pub median: f64,
-    /// A quarter and three quarters of the samples are below.
+    /// The values that a quarter and three quarters of the samples are below.
     pub quartiles: [f64; 2],
 }
 
@@ -60,39 +60,39 @@ impl Spread {
 }
 
 impl Measured {
-    /// The finite values of a metric, all rounds and frames.
+    /// Returns the finite values of a metric in all rounds and frames.
     pub fn samples(&self, metric: &str) -> Vec<f64> {
         let values = self.rounds.iter().filter_map(|(_, values)| values.get(metric));
         values.flatten().filter_map(|value| *value).filter(|value| value.is_finite()).collect()
     }
 
-    /// The values of a metric in the first round, in the order of the setting's frames.
+    /// Returns the values of a metric in the first round that has it, in the order of the setting's frames.
     pub fn by_frame(&self, metric: &str) -> &[Option<f64>] {
         self.rounds.iter().find_map(|(_, values)| values.get(metric)).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the names of the metrics that it has values of.
+    /// Returns the names of the metrics with values.
     pub fn metrics(&self) -> impl Iterator<Item = &str> {
         self.rounds.iter().flat_map(|(_, values)| values.keys()).map(String::as_str)
     }
 
-    /// The mean of those values. Identical images have no finite PSNR and do not count.
+    /// Returns the mean of [`Measured::samples`]. Identical images have no finite PSNR and do not count.
     pub fn mean(&self, metric: &str) -> Option<f64> {
         mean(self.samples(metric))
     }
 
-    /// The statistics of those values.
+    /// Returns the statistics of [`Measured::samples`].
     pub fn summary(&self, metric: &str) -> Option<Summary> {
         Summary::of(&self.samples(metric))
     }
 
-    /// The median of those values.
+    /// Returns the median of [`Measured::samples`].
     pub fn median(&self, metric: &str) -> Option<f64> {
         median(&self.samples(metric))
     }
 
-    /// The metric over the baseline's, frame by frame within each round: what slows a machine down for a while
-    /// meets both.
+    /// Returns the ratio of the metric to the baseline's, frame by frame within each round: a temporary slowdown of the
+    /// machine affects both.
     pub fn ratio(&self, baseline: &Measured, metric: &str) -> Option<Spread> {
         let mut ratios = Vec::new();
         for (round, values) in &self.rounds {
@@ -116,38 +116,38 @@ impl SettingData {
         self.find(CONVENTIONAL)
     }
 
-    /// The time of a stereo frame over that of two full renders.
+    /// Returns the time of a stereo frame divided by that of two full renders.
     pub fn cost(&self, contender: &str) -> Option<Spread> {
         self.find(contender)?.ratio(self.conventional()?, metric::FRAME_MS)
     }
 
-    /// Returns a name for tables: the scene, and the point of a sweep.
+    /// Returns the name for tables: the scene, and the point of a sweep.
     pub fn label(&self) -> String {
         let Setting { suite, scene, label, point } = &self.setting;
         match (label, point) {
             (Some(label), _) => format!("{scene}, {label}"),
-            // All of them have the same few lights.
+            // All settings of this suite have the same number of lights.
             (None, Some(_)) if suite == "lights" => scene.clone(),
             (None, Some(point)) => format!("{scene}, {point}"),
             (None, None) => scene.clone(),
         }
     }
 
-    /// The paper's scene that it stands for; empty if for none.
+    /// Returns the paper's scene that it corresponds to, or an empty text.
     pub fn stands_for(&self) -> &str {
         self.facts.as_ref().map_or("", |facts| &facts.stands_for)
     }
 }
 
 impl Suite {
-    /// Returns the names of the contenders, measured or not, in the order of measurement.
+    /// Returns the names of all contenders, measured or not, in the order of measurement.
     pub fn contenders(&self) -> Vec<&str> {
         let measured = self.settings.iter().flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()));
         let refused = self.settings.iter().flat_map(|s| s.unsupported.iter().map(|(name, _)| name.as_str()));
         unique(measured.chain(refused))
     }
 
-    /// Returns the names of the contenders for which a metric was measured.
+    /// Returns the names of the contenders with values of a metric.
     pub fn measured(&self, metric: &str) -> Vec<&str> {
         let has = |name: &&str| {
             self.settings.iter().any(|s| s.find(name).is_some_and(|m| !m.samples(metric).is_empty()))
@@ -155,12 +155,12 @@ impl Suite {
         self.contenders().into_iter().filter(has).collect()
     }
 
-    /// The same without two full renders, which the others are compared with.
+    /// Returns the same names without two full renders, which the others are compared with.
     pub fn compared(&self, metric: &str) -> Vec<&str> {
         self.measured(metric).into_iter().filter(|name| *name != CONVENTIONAL).collect()
     }
 
-    /// Returns the reason if a contender could take part nowhere.
+    /// Returns the reason if a contender took part in no setting.
     pub fn reason(&self, contender: &str) -> Option<&str> {
         if self.settings.iter().any(|setting| setting.find(contender).is_some()) {
             return None;
@@ -169,22 +169,22 @@ impl Suite {
         refused.find(|(name, _)| name == contender).map(|(_, reason)| reason.as_str())
     }
 
-    /// Returns a contender's value in each setting, where it has one.
+    /// Returns a contender's value in each setting that has one.
     pub fn values(&self, contender: &str, value: impl Fn(&Measured) -> Option<f64>) -> Vec<f64> {
         self.settings.iter().filter_map(|setting| value(setting.find(contender)?)).collect()
     }
 
-    /// The mean over the settings of a contender's means of a metric.
+    /// Returns a contender's mean of a metric: the mean over the settings' means.
     pub fn mean(&self, contender: &str, metric: &str) -> Option<f64> {
         mean(self.values(contender, |measured| measured.mean(metric)))
     }
 
-    /// The geometric mean over the settings of a contender's frame time over two full renders.
+    /// Returns a contender's frame time divided by that of two full renders: the geometric mean over the settings.
     pub fn mean_cost(&self, contender: &str) -> Option<f64> {
         geometric_mean(self.settings.iter().filter_map(|setting| Some(setting.cost(contender)?.median)))
     }
 
-    /// The points of a sweep, ascending, each once.
+    /// Returns the points of a sweep in ascending order, each once.
     pub fn points(&self) -> Vec<f64> {
         let mut points: Vec<f64> = self.settings.iter().filter_map(|setting| setting.setting.point).collect();
         points.sort_by(f64::total_cmp);
@@ -192,7 +192,7 @@ impl Suite {
         points
     }
 
-    /// Returns the labels of a sweep that has no numbers, in order.
+    /// Returns the labels of a sweep over something without numbers, in order.
     pub fn labels(&self) -> Vec<&str> {
         unique(self.settings.iter().filter_map(|setting| setting.setting.label.as_deref()))
     }
@@ -202,7 +202,7 @@ impl Suite {
         unique(self.settings.iter().map(|setting| setting.setting.scene.as_str()))
     }
 
-    /// Returns a curve over the points: at each the mean over the scenes.
+    /// Returns a curve over the points of a sweep, with the mean over the scenes at each.
     pub fn curve(&self, value: impl Fn(&SettingData) -> Option<f64>) -> Vec<(f64, f64)> {
         let at = |point: f64| {
             let here = self.settings.iter().filter(|setting| setting.setting.point == Some(point));
@@ -212,7 +212,7 @@ impl Suite {
     }
 }
 
-/// True if figures of two files may stand in one table.
+/// True if the figures of two files may be combined in one table.
 fn same_conditions(a: &Header, b: &Header) -> bool {
     let (m, n) = (&a.machine, &b.machine);
     a.parameters == b.parameters
@@ -221,12 +221,12 @@ fn same_conditions(a: &Header, b: &Header) -> bool {
             == (&n.cpu, n.cores, &n.gl_renderer, &n.gl_version)
 }
 
-/// The suites of all files, in the order of the files. A suite measured under several conditions is there several
-/// times.
+/// Returns the suites of all files, in the order of the files. A suite that was measured under several conditions
+/// occurs once for each.
 pub fn suites(files: &[Results]) -> Vec<Suite> {
     let mut suites: Vec<Suite> = Vec::new();
     for file in files {
-        // Rounds of another file with the same settings go on counting.
+        // The numbers of rounds continue from those of earlier files with the same settings.
         let mut first_round: BTreeMap<String, u32> = BTreeMap::new();
         let settings = file.scenes().map(|facts| &facts.setting);
         let settings = settings.chain(file.measurements().map(|m| &m.setting));

@@ -1,4 +1,4 @@
-//! The report of `yoro bench`: result files as one self-contained page, and as Markdown.
+//! The report of `yoro bench`: result files as one self-contained page and as Markdown.
 
 mod data;
 mod sections;
@@ -26,42 +26,42 @@ use yoro_files as files;
 const TEMPLATE: Template =
     Template { name: "bench.html.j2", text: include_str!("../templates/bench.html.j2") };
 
-/// The page, all tables, and the main ones.
+/// The page, all tables, and the main tables.
 pub const FILES: [&str; 3] = ["report.html", "results.md", "summary.md"];
 
-/// Heading of the page.
+/// The heading of the page.
 const TITLE: &str = "yoro: every method side by side";
 
-/// Result files, put together.
+/// The combined contents of result files.
 pub struct BenchReport {
     files: Vec<Results>,
     suites: Vec<Suite>,
     pictures: Vec<Pictured>,
 }
 
-/// The pictures that a run saved of a setting.
+/// The pictures that a run saved for one setting.
 struct Pictured {
     name: String,
     note: String,
     viewpoint: Viewpoint,
 }
 
-/// The marks by which the paper's figures are recognised.
+/// Explains the marks by which the paper's figures are recognized.
 const PAPERS_MARK: &str = "What is *in italics*, hollow or dashed is the paper's (\"You Only Render Once\", MobiSys '25): \
 its own scenes, six phones and a Quest 2.";
 
-/// The method behind the frame times, printed wherever they are.
+/// Explains how frame times are measured; printed wherever they are shown.
 const TIME_METHOD: &str = "Frame times: wall clock of a whole stereo frame up to glFinish. Methods take turns within \
 each round, so that ratios pair frames of the same round; means of ratios over scenes are geometric.";
 
-/// The folders of a report.
+/// The folders that a report is written to.
 #[derive(Clone, Copy, Debug)]
 pub struct Places<'a> {
-    /// Folder of the page and of the tables in one file.
+    /// The folder of the page and of the files with all tables.
     pub report: &'a Path,
-    /// Folder of the figures as SVG files, if they are wanted.
+    /// The folder of the figures as SVG files, if they are wanted.
     pub figures: Option<&'a Path>,
-    /// Folder of a Markdown file for each suite, if they are wanted.
+    /// The folder of a Markdown file for each suite, if they are wanted.
     pub results: Option<&'a Path>,
 }
 
@@ -70,22 +70,21 @@ pub struct Places<'a> {
 pub struct Written {
     /// The page.
     pub page: PathBuf,
-    /// All tables, in the page's order.
+    /// All tables, in the order of the page.
     pub results: PathBuf,
     /// The first table of each experiment, for a README.
     pub summary: PathBuf,
-    /// The figures, as SVG.
+    /// The figures as SVG.
     pub figures: Vec<PathBuf>,
-    /// The tables of each suite.
+    /// The tables of each suite, one file per suite.
     pub suites: Vec<PathBuf>,
 }
 
 impl BenchReport {
-    /// Puts files together and loads the pictures beside them.
+    /// Combines files and loads the pictures beside them.
     ///
     /// # Errors
-    /// [`ReportError::Empty`] for a file without a finished round; [`ReportError::PictureFile`] for a damaged
-    /// picture.
+    /// [`ReportError::Empty`] for a file without a finished round; [`ReportError::PictureFile`] for a damaged picture.
     pub fn new(files: Vec<Results>) -> Result<BenchReport, ReportError> {
         if let Some(empty) = files.iter().find(|file| file.measurements().next().is_none()) {
             return Err(ReportError::Empty { path: empty.path.clone() });
@@ -98,10 +97,10 @@ impl BenchReport {
         Ok(BenchReport { files, suites, pictures })
     }
 
-    /// The self-contained page.
+    /// Returns the self-contained page.
     ///
     /// # Errors
-    /// [`ReportError`] when a figure or a picture cannot be made.
+    /// [`ReportError`] if a figure or a picture cannot be made.
     pub fn to_html(&self) -> Result<String, ReportError> {
         let viewpoints: Vec<&[Viewpoint]> =
             self.pictures.iter().map(|pictured| std::slice::from_ref(&pictured.viewpoint)).collect();
@@ -147,7 +146,7 @@ impl BenchReport {
         Ok(page::fill(TEMPLATE, TITLE, page)?)
     }
 
-    /// Returns all tables, with `figures` (if given) as the folder from which pictures are linked.
+    /// Returns all tables. Figures are linked from the folder `figures`, if it is given.
     pub fn to_markdown(&self, figures: Option<&str>) -> String {
         let mut out = format!("{PAPERS_MARK}\n");
         for (suite, section) in sections::sections(&self.suites) {
@@ -157,7 +156,7 @@ impl BenchReport {
         out
     }
 
-    /// The tables of each suite as a document of its own, by the suite's name: at its head machine, command and method.
+    /// Returns a document with the tables of each suite, by the suite's name, headed by machine, command and method.
     /// `figures` as in [`BenchReport::to_markdown`].
     pub fn to_documents(&self, figures: Option<&str>) -> Vec<(String, String)> {
         let sections = sections::sections(&self.suites);
@@ -191,7 +190,7 @@ impl BenchReport {
         out
     }
 
-    /// A section's figures, tables and source.
+    /// Writes a section's figures, tables and source.
     fn content(&self, out: &mut String, suite: &Suite, section: &Section, figures: Option<&str>) {
         if let Some(folder) = figures {
             for figure in &section.figures {
@@ -205,7 +204,7 @@ impl BenchReport {
         source(out, suite);
     }
 
-    /// The first table of each experiment.
+    /// Returns the first table of each experiment.
     pub fn to_summary(&self) -> String {
         let mut out = String::new();
         for (suite, section) in sections::sections(&self.suites) {
@@ -223,7 +222,7 @@ impl BenchReport {
         let _ = writeln!(out, "\n## {}{place}\n\n{}\n", section.title, section.intro);
     }
 
-    /// The GL renderer, where another one measured the same suite; with its version, where only that differs.
+    /// Returns the GL renderer if several machines measured the same suite, with its version if only that differs.
     fn place(&self, suite: &Suite) -> Option<String> {
         let (renderer, version) = gl(suite);
         let same_suite = |other: &&Suite| other.name == suite.name;
@@ -236,11 +235,10 @@ impl BenchReport {
         }
     }
 
-    /// Writes [`FILES`], and where they are wanted the figures as SVG files and a
-    /// `SUITE.md` for each suite.
+    /// Writes [`FILES`] and, if they are wanted, the figures as SVG files and a `SUITE.md` for each suite.
     ///
     /// # Errors
-    /// [`ReportError`]; files that were there before stay then.
+    /// [`ReportError`]; existing files are then unchanged.
     pub fn write(&self, places: Places) -> Result<Written, ReportError> {
         // Everything is made before anything is written.
         let link = |from: &Path| places.figures.map(|figures| link_from(from, figures));
@@ -272,7 +270,7 @@ impl BenchReport {
     }
 }
 
-/// Writes with what a suite was measured: command, machine, date.
+/// Writes how a suite was measured: command, machine, date.
 fn source(out: &mut String, suite: &Suite) {
     let machine = &suite.header.machine;
     let _ = writeln!(
@@ -282,13 +280,13 @@ fn source(out: &mut String, suite: &Suite) {
     );
 }
 
-/// Returns the renderer and version of GL that a suite was measured with.
+/// Returns the renderer and version of GL with which a suite was measured.
 fn gl(suite: &Suite) -> (&str, &str) {
     let machine = &suite.header.machine;
     (&machine.gl_renderer, &machine.gl_version)
 }
 
-/// Returns the relative path from a file in `folder` to `target`, with slashes.
+/// Returns the relative path, with slashes, from a file in `folder` to `target`.
 fn link_from(folder: &Path, target: &Path) -> String {
     let normal = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let (folder, target) = (normal(folder), normal(target));
@@ -305,7 +303,7 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The pictures that lie beside a file, in the order of its settings.
+/// Loads the pictures beside a file, in the order of its settings.
 fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
     let mut pictures = Vec::new();
     let dominant_eye = file.header.parameters.iter().find(|parameter| parameter.name == "dominant eye");
@@ -315,7 +313,7 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
     };
     for facts in file.scenes() {
         let folder = picture_folder(&file.path, &facts.setting);
-        // Those of a stream show no dominant eye.
+        // The pictures of a stream do not include the dominant eye.
         if !["truth.png", "dominant.png"].iter().all(|name| folder.join(name).is_file()) {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Results with known figures, through tables, figures and page.
+//! Results with known figures, checked in tables, figures and the page.
 
 use std::path::Path;
 
@@ -37,10 +37,10 @@ fn setting(suite: &str, scene: &str, label: Option<&str>, point: Option<f64>) ->
     Setting { suite: suite.into(), scene: scene.into(), label: label.map(str::to_owned), point }
 }
 
-/// Values of a contender in a round: `(contender, [(metric, values)])`.
+/// The values of a contender in one round: `(contender, [(metric, values)])`.
 type Figures<'a> = (&'a str, Vec<(&'a str, Vec<f64>)>);
 
-/// Appends rounds of a setting; multiview is never supported.
+/// Appends rounds of a setting. Multiview is never supported.
 fn append<'a>(
     writer: &mut Writer,
     setting: &Setting,
@@ -86,7 +86,7 @@ const METHODS: [(&str, f64); 5] =
     [("conventional", 1.0), ("mono", 0.5), ("hybrid", 0.8), ("yoro-gather", 0.55), ("yoro-paper", 0.6)];
 
 fn times(ms: f64, round: u32) -> Vec<Figures<'static>> {
-    // The machine gets slower from round to round: ratios of pairs do not notice.
+    // The machine slows down from round to round, which does not affect ratios within a round.
     let slow = ms * 2f64.powi(round as i32);
     let of = |share: f64| vec![(metric::FRAME_MS, vec![slow * share, slow * share * 1.5])];
     METHODS.iter().map(|(name, share)| (*name, of(*share))).collect()
@@ -121,7 +121,7 @@ fn both(ms: f64, psnr: f64, round: u32) -> Vec<Figures<'static>> {
     figures
 }
 
-/// Streams of the suite `bandwidth` at five quantizers.
+/// Returns the streams of the suite `bandwidth` at five quantizers.
 fn streams() -> Vec<Figures<'static>> {
     use bandwidth::metric::*;
     let rates = [8000.0, 4000.0, 2000.0, 1000.0, 500.0];
@@ -145,7 +145,7 @@ fn streams() -> Vec<Figures<'static>> {
     ]
 }
 
-/// Every suite, on a few settings each.
+/// Writes results of every suite, with a few settings each.
 fn write_results(path: &Path, header: &Header) {
     let (mut writer, _) = Writer::open(path, header).unwrap();
     let w = &mut writer;
@@ -232,7 +232,7 @@ fn report(dir: &Path) -> BenchReport {
     BenchReport::new(vec![Results::read(&path).unwrap()]).unwrap()
 }
 
-/// The cells of the first row of a Markdown table below a heading that starts with `row`.
+/// Returns the cells of the first row that starts with `row` in the Markdown table below a heading.
 fn row(markdown: &str, table: &str, row: &str) -> Vec<String> {
     let start = markdown.find(table).unwrap_or_else(|| panic!("no table {table} in {markdown}"));
     let mut lines = markdown[start..].lines().map(|line| line.replace("\\|", "/"));
@@ -259,7 +259,7 @@ fn slopes_are_least_squares_beside_the_papers() {
     let markdown = report(dir.path()).to_markdown(None);
     let cells = row(&markdown, "**Slope and ratio**", "yoro-paper");
     assert_eq!(cells[..5], ["yoro-paper", "24.00", "0.00", "0.600", "0.600"], "{cells:?}");
-    // NumPy: polyfit of the paper's nine points.
+    // The expected values come from NumPy's polyfit of the paper's nine points.
     assert_eq!(cells[5..], ["*8.26*", "*0.490*", "*0.540*"], "{cells:?}");
     assert!(row(&markdown, "**Slope and ratio**", "multiview")[1].contains("no GL_OVR_multiview2"));
 }
@@ -269,7 +269,7 @@ fn quality_has_the_same_image_and_the_paper_as_baselines() {
     let dir = tempfile::tempdir().unwrap();
     let markdown = report(dir.path()).to_markdown(None);
     let cells = row(&markdown, "**PSNR in dB / SSIM**", "street &lt;b>&\"café\"&lt;/b>");
-    // 30 dB times 1.5 - share, and 1 dB more in the mean of two frames.
+    // 30 dB times 1.5 - share, plus 1 dB in the mean of two frames.
     assert_eq!(
         cells[2..6],
         ["31.00 / 0.9667", "22.00 / 0.9524", "29.50 / 0.9649", "28.00 / 0.9630"],
@@ -369,7 +369,7 @@ fn the_page_is_escaped_self_contained_and_has_its_pictures() {
         assert!(!html.contains(foreign), "{foreign}");
     }
     assert!(html.contains("street &lt;b&gt;&amp;&quot;café&quot;"));
-    // Truth, the method, the same image, two error maps.
+    // The truth, the method, the same image, and two error maps.
     assert_eq!(html.matches("src=\"data:image/jpeg;base64,").count(), 5);
     assert!(html.matches("<svg viewBox").count() > 20);
 }
@@ -415,7 +415,7 @@ fn files_are_written_and_linked() {
         assert!(path.is_file());
     }
     assert!(written.page.is_file() && written.summary.is_file());
-    // A file for each suite, those of one with all its sections, with machine and method at the head.
+    // One file per suite, with all sections of the suite, headed by machine and method.
     assert_eq!(written.suites.len(), 13);
     let scenes = read(&results.join("scenes.md"));
     assert!(scenes.starts_with("# Scenes: frame time, image quality, overhead\n"), "{scenes}");

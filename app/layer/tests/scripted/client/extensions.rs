@@ -1,4 +1,4 @@
-//! Calls of extensions.
+//! Calls to functions of extensions.
 
 use std::ffi::CStr;
 use std::ptr;
@@ -26,7 +26,7 @@ impl Client<'_> {
         let mut views: Vec<_> = ranges.iter_mut().map(view).collect();
         let (mut number, room) = (0, count as u32);
         let call = self.xr.enumerate_view_configuration_views;
-        // SAFETY: room for as many as is said.
+        // SAFETY: room for as many elements as stated.
         let result =
             unsafe { call(self.instance, self.system, self.views, room, &mut number, views.as_mut_ptr()) };
         check("xrEnumerateViewConfigurationViews", result)?;
@@ -54,7 +54,7 @@ impl Client<'_> {
     pub fn reprojection_modes(&self, views: ViewsOf) -> Outcome<Vec<sys::ReprojectionModeMSFT>> {
         let (mut modes, mut count) = ([sys::ReprojectionModeMSFT::DEPTH; 4], 0);
         let name = c"xrEnumerateReprojectionModesMSFT";
-        // SAFETY: a function of this name has this type, and there is room for as many as is said.
+        // SAFETY: a function of this name has this type, and there is room for as many elements as stated.
         let result = unsafe {
             let ask: pfn::EnumerateReprojectionModesMSFT = std::mem::transmute(self.function(name));
             ask(self.instance, self.system, views, 4, &mut count, modes.as_mut_ptr())
@@ -106,16 +106,16 @@ impl Client<'_> {
     /// Returns a function of an enabled extension.
     fn function(&self, name: &CStr) -> pfn::VoidFunction {
         let mut function = None;
-        // SAFETY: a live instance, and a name that ends in zero.
+        // SAFETY: a live instance, and a null-terminated name.
         let result = unsafe { (self.get)(self.instance, name.as_ptr(), &mut function) };
         assert_eq!(result, sys::Result::SUCCESS, "{name:?}");
         function.unwrap()
     }
 
-    /// Asks for a function without an instance. Returns the result, and what is in the function's place afterwards.
+    /// Asks for a function without an instance. Returns the result, and the value of the function pointer afterwards.
     pub fn function_without_an_instance(&self, name: &CStr) -> (sys::Result, Option<pfn::VoidFunction>) {
         let mut function = Some(self.function(c"xrWaitFrame"));
-        // SAFETY: a name that ends in zero, and a place for a function.
+        // SAFETY: a null-terminated name, and a place for a function.
         let result = unsafe { (self.get)(sys::Instance::NULL, name.as_ptr(), &mut function) };
         (result, function)
     }

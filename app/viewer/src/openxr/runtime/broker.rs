@@ -6,16 +6,16 @@ use std::path::Path;
 use super::error::Failure;
 use super::library::Candidate;
 
-/// The rows of a table: in each, a text or nothing for every column that was asked for, in that order.
+/// The rows of a table. Each row has one value per requested column, in the order of the request.
 pub type Rows = Vec<Vec<Option<String>>>;
 
-/// Asks content providers, which on Android takes Java: `ContentResolver.query`.
+/// Queries content providers, which on Android requires Java: `ContentResolver.query`.
 pub trait Broker {
-    /// Returns all rows of the table at `uri`, with `columns` as texts (`Cursor.getString`; nothing for null and for a
-    /// column that the table does not have); none where no provider answers (a null cursor).
+    /// Returns all rows of the table at `uri`, with `columns` as texts (`Cursor.getString`). A value is `None` if it is
+    /// null or if the table does not have the column. Returns `None` if no provider answers (a null cursor).
     ///
     /// # Errors
-    /// The system's message, an exception for instance.
+    /// The system's message, for instance an exception.
     fn query(&self, uri: &str, columns: &[&str]) -> Result<Option<Rows>, String>;
 }
 
@@ -41,7 +41,7 @@ const FOLDER: &str = "native_lib_dir";
 const FILE: &str = "so_filename";
 const HAS_FUNCTIONS: &str = "has_functions";
 
-/// The libraries that the broker at `authority` offers, the preferred one first.
+/// Returns the libraries that the broker at `authority` offers, the preferred one first.
 pub(super) fn ask(broker: &dyn Broker, authority: &str) -> Result<Vec<Result<Candidate, Failure>>, Failure> {
     let table = |path: &str, columns: &[&str]| {
         broker
@@ -60,7 +60,7 @@ pub(super) fn ask(broker: &dyn Broker, authority: &str) -> Result<Vec<Result<Can
             cell.ok_or_else(|| Failure::BrokerRow { authority: authority.into(), column })
         };
         let (package, folder, file) = (text(PACKAGE), text(FOLDER)?, text(FILE)?);
-        // Cursor.getString of a number or of a truth value.
+        // What Cursor.getString returns for a number and for a truth value.
         let renamed = matches!(text(HAS_FUNCTIONS).as_deref(), Ok("1" | "true"));
         let mut functions = HashMap::new();
         if renamed {

@@ -1,8 +1,8 @@
-//! The runtime's `xrGetInstanceProcAddr` as the crate `openxr` needs it.
+//! Adapts the runtime's `xrGetInstanceProcAddr` to what the crate `openxr` expects.
 //!
-//! Khronos's loader answers for the functions that need no instance by itself, so that a runtime may never have been
-//! asked for them with one. The crate does ask so when it has made an instance, and takes a success without a function
-//! for impossible. Between them stands a function of our own.
+//! Khronos's loader itself provides the functions that need no instance, so a runtime may never have been asked for
+//! them with an instance. The crate does ask for them with one after it has created it, and assumes that success always
+//! comes with a function. The function here, between the two, handles both.
 
 use std::ffi::{CStr, c_char};
 use std::mem;
@@ -14,17 +14,17 @@ use openxr::sys::{self, Handle as _, pfn};
 const GLOBAL: [&CStr; 3] =
     [c"xrCreateInstance", c"xrEnumerateApiLayerProperties", c"xrEnumerateInstanceExtensionProperties"];
 
-/// `xrGetInstanceProcAddr` of the runtime in use, as an address; 0 for none. A process has one active runtime, and
-/// functions in the API carry no context.
+/// The address of the `xrGetInstanceProcAddr` in use; 0 if there is none. It is global because a process has one active
+/// runtime, and functions of the API carry no context.
 static RUNTIME: AtomicUsize = AtomicUsize::new(0);
 
-/// Returns an entry to the API by a runtime's function.
+/// Returns an entry to the API through a runtime's function.
 ///
 /// # Safety
-/// It is the `xrGetInstanceProcAddr` of a runtime or loader that is never unloaded.
+/// `runtime` must be the `xrGetInstanceProcAddr` of a runtime or loader that is never unloaded.
 pub(super) unsafe fn open(runtime: pfn::GetInstanceProcAddr) -> openxr::Result<openxr::Entry> {
     RUNTIME.store(runtime as usize, Ordering::Release);
-    // SAFETY: it answers as the runtime does, and where it does not, as the specification says.
+    // SAFETY: `get` answers as the runtime does, and as the specification requires where the runtime does not.
     unsafe { openxr::Entry::from_get_instance_proc_addr(get, &()) }
 }
 
@@ -39,17 +39,17 @@ unsafe extern "system" fn get(
     }
     // SAFETY: `open` has stored a function of this type.
     let runtime = unsafe { mem::transmute::<usize, pfn::GetInstanceProcAddr>(address) };
-    // SAFETY: the caller gives a text that ends with 0.
+    // SAFETY: the caller passes a null-terminated string.
     let wanted = unsafe { CStr::from_ptr(name) };
     if wanted == c"xrGetInstanceProcAddr" {
-        // SAFETY: the caller gives room for a function, which callers cast to the type that belongs to its name.
+        // SAFETY: the caller provides room for a function pointer, and casts it to the type that belongs to the name.
         unsafe { *function = Some(mem::transmute::<pfn::GetInstanceProcAddr, pfn::VoidFunction>(get)) };
         return sys::Result::SUCCESS;
     }
     let instance = if GLOBAL.contains(&wanted) { sys::Instance::NULL } else { instance };
-    // SAFETY: the caller's arguments, but for an instance that these functions do not need.
+    // SAFETY: the arguments are the caller's, except that functions of `GLOBAL` get the null instance.
     let result = unsafe { runtime(instance, name, function) };
-    // SAFETY: the runtime has been given the same room.
+    // SAFETY: the caller's room for the function is valid, as above.
     if result == sys::Result::SUCCESS && unsafe { (*function).is_none() } {
         return sys::Result::ERROR_FUNCTION_UNSUPPORTED;
     }

@@ -1,4 +1,4 @@
-//! Reasons why a place led to no runtime.
+//! Reasons why no runtime was found.
 
 use std::fmt;
 use std::io;
@@ -8,16 +8,16 @@ use openxr::sys;
 
 use super::places::Place;
 
-/// The failures of all places, none of which led to a runtime. `Display` writes them in one line.
+/// No place led to a runtime. `Display` writes all failures in one line.
 #[derive(Debug)]
 pub struct NotFound {
-    /// The places in the order in which they were tried; a broker that offers several runtimes appears once for each.
+    /// The places in the order in which they were tried. A broker that offers several runtimes appears once for each.
     pub attempts: Vec<(Place, Failure)>,
 }
 
 impl NotFound {
-    /// True if nothing at all is installed: no place names a library. A phone is like this; anything else is a runtime
-    /// that is there and does not work.
+    /// True if no place names a library, as on a phone: nothing is installed. Otherwise a runtime is installed but does
+    /// not work.
     pub fn nothing_installed(&self) -> bool {
         self.attempts.iter().all(|(place, failure)| {
             matches!(
@@ -41,11 +41,11 @@ impl fmt::Display for NotFound {
 
 impl std::error::Error for NotFound {}
 
-/// A failure at one place. Each names the step, and the file, library or broker.
+/// A failure at one place. Each names the failed step, and the file, library or broker.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Failure {
-    /// There is no manifest at this path.
+    /// No manifest exists at this path.
     #[error("{} does not exist", path.display())]
     NoManifest {
         /// The manifest.
@@ -56,10 +56,10 @@ pub enum Failure {
     ReadManifest {
         /// The manifest.
         path: PathBuf,
-        /// The system's answer.
+        /// The system's error.
         source: io::Error,
     },
-    /// The manifest is not JSON, or not that of a runtime.
+    /// The manifest is not JSON, or not a runtime's manifest.
     #[error("{} is not the manifest of an OpenXR runtime ({source})", path.display())]
     Manifest {
         /// The manifest.
@@ -67,7 +67,7 @@ pub enum Failure {
         /// The mistake and its position.
         source: serde_json::Error,
     },
-    /// The manifest is of a format that is not known.
+    /// The manifest has an unknown format version.
     #[error("the manifest {} is of format {version}; only 1.0.0 is known", path.display())]
     ManifestVersion {
         /// The manifest.
@@ -81,7 +81,7 @@ pub enum Failure {
         /// The authority asked.
         authority: String,
     },
-    /// Asking the broker failed.
+    /// The broker could not be queried.
     #[error("the broker {authority} cannot be asked ({reason})")]
     Broker {
         /// The authority asked.
@@ -89,13 +89,13 @@ pub enum Failure {
         /// The system's message.
         reason: String,
     },
-    /// The broker knows no active runtime for this architecture.
+    /// The broker has no active runtime for this architecture.
     #[error("the broker {authority} has no active runtime")]
     NoActiveRuntime {
         /// The authority asked.
         authority: String,
     },
-    /// A column is missing in the broker's answer.
+    /// A column is missing from the broker's answer.
     #[error("the broker {authority} names a runtime without {column}")]
     BrokerRow {
         /// The authority asked.
@@ -103,7 +103,7 @@ pub enum Failure {
         /// The column that is missing or empty.
         column: &'static str,
     },
-    /// The broker says that functions are renamed, but not how.
+    /// The broker says that functions are renamed, but does not list their names.
     #[error("the broker {authority} does not tell the function names of {package}")]
     BrokerFunctions {
         /// The authority asked.
@@ -134,7 +134,7 @@ pub enum Failure {
     Initialize {
         /// The library.
         library: PathBuf,
-        /// Its answer.
+        /// The result that it returned.
         result: sys::Result,
     },
     /// `xrNegotiateLoaderRuntimeInterface` failed.
@@ -142,10 +142,10 @@ pub enum Failure {
     Refused {
         /// The library.
         library: PathBuf,
-        /// Its answer.
+        /// The result that it returned.
         result: sys::Result,
     },
-    /// The negotiation ended with another version.
+    /// The runtime negotiated another version.
     #[error(
         "{} negotiates loader interface {interface} and OpenXR {}.{}; needed are interface 1 and OpenXR 1",
         library.display(), api.major(), api.minor()

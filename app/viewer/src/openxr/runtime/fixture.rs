@@ -1,5 +1,5 @@
-//! A library for the finder's tests, which compile it: runtimes good and bad under one roof. A manifest chooses one of
-//! them by renaming functions.
+//! A library that the finder's tests compile: good and bad runtimes in one file. A manifest chooses one of them by
+//! renaming functions.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -86,7 +86,7 @@ pub struct LoaderInit {
     activity: *const u32,
 }
 
-/// Reads what the two pointers of Java point to, so that a test can see that they arrived.
+/// Reads through the two Java pointers, so that a test can see that they arrived.
 #[no_mangle]
 pub extern "C" fn initialize(init: &LoaderInit) -> i32 {
     let arrived = unsafe { init.ty == 1000089000 && *init.vm == 17 && *init.activity == 4 };

@@ -22,16 +22,16 @@ pub struct JavaContext {
 }
 
 impl JavaContext {
-    /// A `JavaVM*` and a JNI reference to the `android.app.Activity`.
+    /// Creates it from a `JavaVM*` and a JNI reference to the `android.app.Activity`.
     ///
     /// # Safety
-    /// Both are valid as long as the context is used; the reference is a global one.
+    /// Both pointers must remain valid for as long as the context is used; the reference must be a global one.
     pub unsafe fn new(vm: *mut c_void, activity: *mut c_void) -> JavaContext {
         JavaContext { vm, activity }
     }
 }
 
-/// `XrLoaderInitInfoAndroidKHR`, which `openxr` has on Android only; the tests need it everywhere.
+/// `XrLoaderInitInfoAndroidKHR`, which `openxr` declares only for Android but the tests need everywhere.
 #[repr(C)]
 struct LoaderInitInfoAndroid {
     ty: sys::StructureType,
@@ -43,14 +43,14 @@ struct LoaderInitInfoAndroid {
 /// A library that a place names.
 #[derive(Debug)]
 pub(super) struct Candidate {
-    /// Path, or plain name.
+    /// A path, or a plain name.
     pub(super) library: PathBuf,
-    /// Symbols of the functions that have another name than in the specification.
+    /// Symbols of the functions whose names differ from the specification.
     pub(super) functions: HashMap<String, String>,
 }
 
 impl Candidate {
-    /// Loads a runtime and agrees on versions; gives its `xrGetInstanceProcAddr` and the version of the API.
+    /// Loads a runtime and negotiates versions with it. Returns its `xrGetInstanceProcAddr` and the version of the API.
     pub(super) fn negotiate(
         &self,
         java: Option<&JavaContext>,
@@ -67,7 +67,7 @@ impl Candidate {
             )
         };
         let negotiate = negotiate.map_err(|symbol| self.no_symbol(symbol, "runtime"))?;
-        // A runtime that exports the function wants it before the negotiation, others after it.
+        // A runtime that exports this function wants it called before the negotiation; others want it after.
         let initialize = initialize.ok();
         if let (Some(java), Some(initialize)) = (java, initialize) {
             self.initialize(initialize, java)?;
@@ -79,7 +79,7 @@ impl Candidate {
             min_interface_version: INTERFACE,
             max_interface_version: INTERFACE,
             min_api_version: sys::Version::new(1, 0, 0),
-            // The largest version that every loader of OpenXR 1 names: a runtime compares its own newest one with it.
+            // The largest version that a loader of OpenXR 1 passes; the runtime compares it with its own newest one.
             max_api_version: sys::Version::new(1, 0x3ff, 0xfff),
         };
         let mut request = sys::NegotiateRuntimeRequest {
@@ -90,7 +90,7 @@ impl Candidate {
             runtime_api_version: sys::Version::new(0, 0, 0),
             get_instance_proc_addr: None,
         };
-        // SAFETY: both structures are complete and live through the call.
+        // SAFETY: both structures are complete and outlive the call.
         let result = unsafe { negotiate(&loader, &mut request) };
         let path = || self.library.clone();
         if result.into_raw() < 0 {
@@ -108,7 +108,7 @@ impl Candidate {
         Ok((get, api))
     }
 
-    /// Loads a loader; gives its `xrGetInstanceProcAddr`.
+    /// Loads a loader. Returns its `xrGetInstanceProcAddr`.
     pub(super) fn open_loader(
         &self,
         java: Option<&JavaContext>,
@@ -126,9 +126,9 @@ impl Candidate {
 
     fn open(&self) -> Result<Library, Failure> {
         // SAFETY: the initialisers of the system's active runtime, or of a loader that the user has chosen, are trusted
-        // as a driver's are.
+        // as those of a driver are.
         unsafe { Library::new(&self.library) }.map_err(|error| {
-            // glibc begins with the path, which the failure says itself.
+            // glibc's message begins with the path, which the failure contains already.
             let reason = error.to_string();
             let path = format!("{}: ", self.library.display());
             let reason = reason.strip_prefix(&path).unwrap_or(&reason).to_owned();
@@ -140,20 +140,20 @@ impl Candidate {
         Failure::Symbol { library: self.library.clone(), symbol, kind }
     }
 
-    /// Returns a function by its name in the specification; the error is the name that was looked for.
+    /// Returns a function by its name in the specification. The error is the name that was looked up.
     ///
     /// # Safety
-    /// `T` is the type of the function, and nothing calls it after the library is unloaded.
+    /// `T` must be the type of the function, which must not be called after the library is unloaded.
     unsafe fn function<T: Copy>(&self, library: &Library, name: &str) -> Result<T, String> {
         let symbol = self.functions.get(name).map_or(name, String::as_str);
-        // SAFETY: the caller vouches for the type.
+        // SAFETY: the caller guarantees the type.
         unsafe { library.get::<T>(symbol.as_bytes()) }.map(|found| *found).map_err(|_| symbol.into())
     }
 
-    /// Calls `xrInitializeLoaderKHR` where `get` knows it.
+    /// Calls `xrInitializeLoaderKHR` if `get` returns it.
     fn initialize_by(&self, get: pfn::GetInstanceProcAddr, java: &JavaContext) -> Result<(), Failure> {
         let mut function = None;
-        // SAFETY: the name ends with 0, and the null instance is allowed for this function.
+        // SAFETY: the name is null-terminated, and the null instance is allowed for this function.
         let result = unsafe { get(sys::Instance::NULL, c"xrInitializeLoaderKHR".as_ptr(), &mut function) };
         match function.filter(|_| result == sys::Result::SUCCESS) {
             // SAFETY: the function of this name has this type.
@@ -171,7 +171,7 @@ impl Candidate {
             application_vm: java.vm,
             application_context: java.activity,
         };
-        // SAFETY: the structure is what Android's runtimes and loaders take; it lives through the call.
+        // SAFETY: the structure is the one that Android's runtimes and loaders take, and it outlives the call.
         let result = unsafe { initialize((&raw const info).cast()) };
         if result.into_raw() < 0 {
             return Err(Failure::Initialize { library: self.library.clone(), result });

@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::error::Failure;
 use super::library::Candidate;
 
-/// The one format there is. Unknown keys are allowed by the specification.
+/// A manifest in the only format that exists. The specification allows unknown keys.
 #[derive(Deserialize)]
 struct Manifest {
     file_format_version: String,
@@ -24,7 +24,7 @@ struct Runtime {
     functions: HashMap<String, String>,
 }
 
-/// The library that the manifest at `path` names.
+/// Returns the library that the manifest at `path` names.
 pub(super) fn read(path: &Path) -> Result<Candidate, Failure> {
     let text = fs::read(path).map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => Failure::NoManifest { path: path.into() },
@@ -39,8 +39,8 @@ pub(super) fn read(path: &Path) -> Result<Candidate, Failure> {
     Ok(Candidate { library, functions: manifest.runtime.functions })
 }
 
-/// A plain name is left to the dynamic linker; other paths are relative to the manifest, to the real one where
-/// `manifest` is a link to it.
+/// Resolves a library's path. A plain name is left to the dynamic linker; other relative paths are relative to the
+/// manifest, or to its target if it is a symbolic link.
 fn locate(library: &str, manifest: &Path) -> PathBuf {
     if !library.contains('/') {
         return library.into();

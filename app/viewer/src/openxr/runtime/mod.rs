@@ -1,20 +1,20 @@
 //! Finds, loads and negotiates with the OpenXR runtime of this machine, in pure Rust.
 //!
-//! Usually the Khronos loader does this. It is C++, which an Android library without C++ cannot carry, and what it does
-//! to reach the one active runtime is little:
+//! Usually the Khronos loader does this. It is written in C++, which an Android library without C++ cannot include, and
+//! little is needed to reach the one active runtime:
 //!
-//! 1. find the runtime: on Android a content provider (the *runtime broker*) names a library, or a manifest file on one
-//!    of the system's partitions does; on Linux a manifest file that `XR_RUNTIME_JSON` or the XDG directories lead to;
-//! 2. `dlopen` the library and call its `xrNegotiateLoaderRuntimeInterface`;
-//! 3. use the `xrGetInstanceProcAddr` that this returns.
+//! 1. Find the runtime. On Android, a content provider (the *runtime broker*) names a library, or a manifest file on
+//!    one of the system's partitions does; on Linux, a manifest file by `XR_RUNTIME_JSON` or the XDG directories.
+//! 2. `dlopen` the library and call its `xrNegotiateLoaderRuntimeInterface`.
+//! 3. Use the `xrGetInstanceProcAddr` that this returns.
 //!
-//! A loader library, where one is packaged or named, wins over all of it: see [`Place::Loader`].
+//! A loader library, if one is packaged or named, takes precedence: see [`Place::Loader`].
 //!
 //! # What is bypassed
-//! API layers are the loader's work. Without it neither implicit nor explicit layers are found, so tools such as
-//! validation, capture and toolkit layers do not see the application. A runtime need not even know the functions that
-//! list layers: do not call `openxr::Entry::enumerate_layers` or `enumerate_layer_extensions`, which abort where it
-//! does not. Use a loader library to get layers back.
+//! API layers are the loader's job. Without it neither implicit nor explicit layers are found, so tools such as
+//! validation, capture and toolkit layers do not see the application. A runtime need not even implement the functions
+//! that list layers: do not call `openxr::Entry::enumerate_layers` or `enumerate_layer_extensions`, which abort in that
+//! case. Use a loader library to get layers back.
 //!
 //! # Use
 //! ```no_run
@@ -27,9 +27,8 @@
 //! println!("{:?}", entry.enumerate_extensions());
 //! ```
 //!
-//! The module uses nothing of the rest of this crate, only `openxr`, `libloading`, `serde`, `serde_json` and
-//! `thiserror`. Sources: OpenXR specification, "Loader Runtime Interaction", and the Khronos loader's documented
-//! search.
+//! The module uses nothing else of this crate, only `openxr`, `libloading`, `serde`, `serde_json` and `thiserror`.
+//! Sources: OpenXR specification, "Loader Runtime Interaction", and the Khronos loader's documented search.
 
 mod broker;
 mod entry;
@@ -51,24 +50,24 @@ pub use places::{Place, android_places, linux_places};
 
 use library::Candidate;
 
-/// The runtime that is in use: a library that has been loaded and has agreed to talk.
+/// The runtime in use: a library that was loaded and has accepted the versions offered.
 ///
-/// The library stays loaded until the process ends: runtimes keep threads, and functions that were asked for may be
-/// called at any time. Finding the runtime again, after an instance loss for instance, gives the same library.
+/// The library stays loaded until the process ends: runtimes have threads, and functions obtained from them may be
+/// called at any time. Finding the runtime again, for instance after the loss of an instance, returns the same library.
 #[derive(Clone, Debug)]
 pub struct Runtime {
     get_instance_proc_addr: openxr::sys::pfn::GetInstanceProcAddr,
     found: Found,
 }
 
-/// The runtime that was found, and its place; `Display` writes the one line for the log.
+/// A description of the runtime that was found; `Display` writes it in one line for the log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// The place that led to the library.
     pub place: Place,
-    /// The library as it was given to `dlopen`.
+    /// The library as it was passed to `dlopen`.
     pub library: PathBuf,
-    /// The newest OpenXR version that the runtime offers; none where a loader stands between.
+    /// The newest OpenXR version that the runtime offers; `None` behind a loader.
     pub api_version: Option<(u16, u16, u32)>,
 }
 
@@ -89,35 +88,35 @@ impl fmt::Display for Found {
 }
 
 impl Runtime {
-    /// `xrGetInstanceProcAddr` of the runtime, or of the loader in front of it.
+    /// Returns the `xrGetInstanceProcAddr` of the runtime, or of the loader in front of it.
     pub fn get_instance_proc_addr(&self) -> openxr::sys::pfn::GetInstanceProcAddr {
         self.get_instance_proc_addr
     }
 
-    /// The runtime that was found, and its place.
+    /// Returns a description of the runtime and its place.
     pub fn found(&self) -> &Found {
         &self.found
     }
 
-    /// The entry to the API, as the crate `openxr` has it. On Android nothing is left to initialise: instances are
-    /// created with `openxr::AndroidPlatformInfo`. Of several runtimes in one process, instances go to the one whose
-    /// entry was asked for last.
+    /// Returns the entry to the API for the crate `openxr`. On Android nothing else needs to be initialised: instances
+    /// are created with `openxr::AndroidPlatformInfo`. If a process has several runtimes, instances go to the one whose
+    /// `entry` was called last.
     pub fn entry(&self) -> openxr::Result<openxr::Entry> {
-        // SAFETY: the function is what the runtime itself offers as xrGetInstanceProcAddr, and its library is never
-        // unloaded.
+        // SAFETY: the function is the xrGetInstanceProcAddr that the runtime or loader provides, and its library is
+        // never unloaded.
         unsafe { entry::open(self.get_instance_proc_addr) }
     }
 }
 
-/// The first of `places` that leads to a runtime which can be loaded and agrees on OpenXR 1.
+/// Returns the first runtime that `places` lead to, that can be loaded and that accepts OpenXR 1.
 ///
-/// `broker` answers for [`Place::Broker`]; [`NoBroker`] where there is none. `java` is needed on Android, where
-/// loaders and some runtimes want `xrInitializeLoaderKHR` to be called before anything else.
+/// `broker` answers for [`Place::Broker`]; pass [`NoBroker`] where there is none. `java` is needed on Android, where
+/// loaders and some runtimes require `xrInitializeLoaderKHR` before any other call.
 ///
-/// This runs code of the library that it finds. Nothing is ever tested with `stat`: a library may lie within an APK.
+/// This runs code of the libraries found. Nothing is tested with `stat`, since a library may be inside an APK.
 ///
 /// # Errors
-/// [`NotFound`] with the failure of every place.
+/// [`NotFound`] with the failure at every place.
 pub fn find(places: &[Place], broker: &dyn Broker, java: Option<&JavaContext>) -> Result<Runtime, NotFound> {
     let mut attempts = Vec::new();
     for place in places {
@@ -150,7 +149,7 @@ fn load(place: &Place, candidate: &Candidate, java: Option<&JavaContext>) -> Res
     Ok(Runtime { get_instance_proc_addr, found })
 }
 
-/// The libraries that a place names, in the order in which they are to be tried.
+/// Returns the libraries that a place names, in the order in which to try them.
 fn candidates(place: &Place, broker: &dyn Broker) -> Result<Vec<Result<Candidate, Failure>>, Failure> {
     match place {
         Place::Loader(library) => {

@@ -1,22 +1,22 @@
-//! The places where a runtime may be, by the conventions of each system.
+//! The places where a runtime may be, by each system's conventions.
 
 use std::ffi::OsString;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// The installable broker, which the user can choose, and the one that comes with the system.
+/// The installable broker, which the user can choose, and the one that is part of the system.
 const AUTHORITIES: [&str; 2] =
     ["org.khronos.openxr.runtime_broker", "org.khronos.openxr.system_runtime_broker"];
-/// Partitions of Android, the most specific first.
+/// Configuration folders of Android's partitions, the most specific first.
 const ANDROID_ETC: [&str; 5] = ["/product/etc", "/odm/etc", "/oem/etc", "/vendor/etc", "/system/etc"];
-/// The name under which an Android package carries a loader.
+/// The name under which an Android package contains a loader.
 const ANDROID_LOADER: &str = "libopenxr_loader.so";
 
-/// One place to look.
+/// A place to look for a runtime.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// A loader library by its path, or by a plain name that `dlopen` looks for itself. The loader finds the runtime
-    /// and API layers by its own rules.
+    /// A loader library, by its path or by a plain name for `dlopen` to find. The loader finds the runtime and API
+    /// layers by its own rules.
     Loader(PathBuf),
     /// The runtime broker at this authority: a content provider of Android.
     Broker(String),
@@ -34,8 +34,8 @@ impl fmt::Display for Place {
     }
 }
 
-/// Android: the loader in the application's own package if it has one, the brokers, and the manifest files of the
-/// system's partitions.
+/// Returns Android's places: the loader in the application's own package if there is one, the brokers, and the manifest
+/// files on the system's partitions.
 pub fn android_places() -> Vec<Place> {
     let mut places = vec![Place::Loader(ANDROID_LOADER.into())];
     places.extend(AUTHORITIES.map(|authority| Place::Broker(authority.into())));
@@ -43,11 +43,11 @@ pub fn android_places() -> Vec<Place> {
     places
 }
 
-/// Linux: the manifest that `XR_RUNTIME_JSON` names and no other, or else those of the XDG configuration directories,
-/// the user's before the system's.
+/// Returns Linux's places: only the manifest that `XR_RUNTIME_JSON` names, or else those of the XDG configuration
+/// directories, the user's before the system's.
 ///
-/// `environment` is asked for `XR_RUNTIME_JSON`, `XDG_CONFIG_HOME`, `XDG_CONFIG_DIRS` and `HOME`. A program that runs
-/// with more rights than its user should answer none.
+/// `environment` is asked for `XR_RUNTIME_JSON`, `XDG_CONFIG_HOME`, `XDG_CONFIG_DIRS` and `HOME`. In a program that
+/// runs with more privileges than its user, it should return `None`.
 pub fn linux_places(environment: impl Fn(&str) -> Option<OsString>) -> Vec<Place> {
     let set = |name: &str| environment(name).filter(|value| !value.is_empty());
     if let Some(manifest) = set("XR_RUNTIME_JSON") {
@@ -69,7 +69,7 @@ pub fn linux_places(environment: impl Fn(&str) -> Option<OsString>) -> Vec<Place
     places
 }
 
-/// A manifest for this architecture alone goes before that for all.
+/// Returns the manifests in a configuration folder: the one for this architecture before the general one.
 fn manifests(configuration: &Path) -> [Place; 2] {
     let architecture = match std::env::consts::ARCH {
         "x86" => "i686",

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use super::*;
 
-/// The compiled `fixture.rs`: once for all tests of a process, since a library that was found is never unloaded.
+/// Compiles `fixture.rs`, once per process, since a library that was found is never unloaded.
 fn fixture() -> &'static Path {
     static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
     LIBRARY.get_or_init(|| {
@@ -18,7 +18,7 @@ fn fixture() -> &'static Path {
         fs::create_dir_all(&folder).unwrap();
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/openxr/runtime/fixture.rs");
         let library = folder.join("libfixture.so");
-        // Another process may be using the one that is there.
+        // Another process may be using the existing library.
         let new = folder.join(format!("libfixture.{}.so", std::process::id()));
         let rustc = Command::new("rustc")
             .args(["--edition", "2021", "--crate-type", "cdylib", "-Cpanic=abort", "-o"])
@@ -43,7 +43,7 @@ impl Written {
         Written { folder }
     }
 
-    /// A manifest of the fixture, with functions renamed.
+    /// Writes a manifest of the fixture, with functions renamed.
     fn fixture(functions: &[(&str, &str)]) -> Written {
         let functions: HashMap<_, _> = functions.iter().copied().collect();
         Written::new(json!({
@@ -60,7 +60,7 @@ impl Written {
         find(&[Place::Manifest(self.path())], &NoBroker, java)
     }
 
-    /// The sentence of the failure, with this folder's path left out.
+    /// Returns the failure's sentence without this folder's path.
     fn failure(&self) -> String {
         let error = self.find(None).unwrap_err();
         assert!(!error.nothing_installed(), "{error}");
@@ -170,9 +170,9 @@ fn failed_negotiations_name_the_reason() {
     }
 }
 
-/// Numbers instead of a virtual machine and an activity; the fixture looks whether they arrive.
+/// Numbers instead of a virtual machine and an activity; the fixture checks that they arrive.
 fn java(vm: &mut u32, activity: &mut u32) -> JavaContext {
-    // SAFETY: the fixture only reads a number at each, and both outlive the search.
+    // SAFETY: the fixture only reads a number through each pointer, and both outlive the search.
     unsafe { JavaContext::new((vm as *mut u32).cast::<c_void>(), (activity as *mut u32).cast::<c_void>()) }
 }
 
@@ -209,7 +209,7 @@ fn a_loader_is_preferred_and_optional() {
     );
 }
 
-/// A broker with scripted tables; remembers what it was asked.
+/// A broker with scripted tables, which records its queries.
 #[derive(Default)]
 struct Scripted {
     tables: HashMap<String, Result<Option<Rows>, String>>,

@@ -8,11 +8,11 @@ use crate::openxr::error::{XrError, call, check, optional};
 use crate::viewer::Viewer;
 use yoro::eyes::Eye;
 
-/// At most so many events are taken before a frame, so that a runtime that never stops sending them cannot stop frames.
+/// The most events that are handled before a frame, so that a runtime that never stops sending them cannot stop frames.
 const MAX_EVENTS: usize = 64;
 
 impl Session {
-    /// True when the session is over for good.
+    /// Handles the runtime's events. Returns true if the session is over for good.
     pub(super) fn poll_events(
         &mut self,
         viewer: &mut Viewer,
@@ -20,8 +20,8 @@ impl Session {
     ) -> Result<bool, XrError> {
         for _ in 0..MAX_EVENTS {
             let mut buffer = std::mem::MaybeUninit::<sys::EventDataBuffer>::uninit();
-            // SAFETY: type and next are all that the runtime reads; the event is looked at only after success, when
-            // the runtime has written it.
+            // SAFETY: the runtime reads only `type` and `next`. The event is read only after success, when the runtime
+            // has written it.
             let event = unsafe {
                 let head = buffer.as_mut_ptr().cast::<sys::BaseInStructure>();
                 head.write(sys::BaseInStructure { ty: sys::EventDataBuffer::TYPE, next: std::ptr::null() });
@@ -75,7 +75,7 @@ impl Session {
         Ok(false)
     }
 
-    /// True when the session is over for good.
+    /// Handles a new session state. Returns true if the session is over for good.
     fn change_state(&mut self, state: xr::SessionState, viewer: &mut Viewer) -> Result<bool, XrError> {
         log::info!("OpenXR session: {state:?}");
         let is_visible = |state| matches!(state, xr::SessionState::VISIBLE | xr::SessionState::FOCUSED);

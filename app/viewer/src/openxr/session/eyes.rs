@@ -10,15 +10,15 @@ use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
 use yoro_protocol::Settings;
 use yoro_render::stereo::Substitute;
 
-/// Half of the angle beyond which no frustum makes sense, in radians.
+/// The largest magnitude of a field of view's angles that is accepted, in radians.
 const WIDEST: f32 = 1.55;
-/// A quaternion that is shorter points nowhere: what is left of it are rounding errors.
+/// A shorter quaternion has no meaningful direction: it consists of rounding errors.
 const SHORTEST: f32 = 1e-3;
-/// Canted eyes are rendered parallel only while their frusta grow by no more than this factor on either axis.
+/// Canted eyes are rendered parallel only if their frusta grow by at most this factor on either axis.
 const MOST_GROWTH: f32 = 1.5;
 
 impl Session {
-    /// Returns the eyes as the runtime predicts them; `None` while it does not know.
+    /// Returns the eyes as the runtime predicts them; `None` while their poses are unknown.
     pub(super) fn locate(
         &self,
         settings: &Settings,
@@ -40,13 +40,13 @@ impl Session {
             *frustum = to_frustum(&view.fov)
                 .ok_or_else(|| XrError::Nonsense(format!("gives an eye the field of view {:?}", view.fov)))?;
         }
-        // An invalid pose is not known, whatever the flags say.
+        // An invalid pose counts as unknown, whatever the flags say.
         let (Some(left), Some(right)) = (to_pose(&left.pose), to_pose(&right.pose)) else { return Ok(None) };
         let (poses, dominant) = ([left, right], settings.dominant);
         Ok(Some(EyePair { poses, frusta, depth: DepthRange::PAPER, size, dominant }))
     }
 
-    /// Returns eyes that the viewer's method can use, near those of the runtime.
+    /// Returns eyes that the viewer's method can use, close to those of the runtime.
     pub(super) fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
         let reason = Substitute::reason(viewer.method().first(), &native);
         let aligned = match reason {
@@ -86,8 +86,8 @@ impl Session {
     }
 }
 
-/// Returns a pose of this library; `None` if the numbers are no pose. The specification lets a runtime be off unit
-/// length by a hundredth, and some are off by more, so the quaternion is normalised.
+/// Converts a pose of OpenXR; `None` if its numbers are not a pose. The specification allows a runtime to deviate from
+/// unit length by one percent, and some deviate more, so the quaternion is normalised.
 pub fn to_pose(pose: &xr::Posef) -> Option<Pose> {
     let (p, q) = (pose.position, pose.orientation);
     let (position, orientation) = (Vec3::new(p.x, p.y, p.z), Quat::from_xyzw(q.x, q.y, q.z, q.w));
@@ -96,7 +96,7 @@ pub fn to_pose(pose: &xr::Posef) -> Option<Pose> {
     is_pose.then(|| Pose { position, orientation: orientation / length })
 }
 
-/// Returns a pose of OpenXR.
+/// Converts a pose to OpenXR.
 pub(super) fn from_pose(pose: &Pose) -> xr::Posef {
     let (p, q) = (pose.position, pose.orientation);
     xr::Posef {
@@ -105,7 +105,7 @@ pub(super) fn from_pose(pose: &Pose) -> xr::Posef {
     }
 }
 
-/// Returns the frustum of a field of view; `None` if no image can have it.
+/// Converts a field of view; `None` if no image can have it.
 fn to_frustum(fov: &xr::Fovf) -> Option<Frustum> {
     let angles = [fov.angle_left, fov.angle_right, fov.angle_down, fov.angle_up];
     let fits = angles.iter().all(|angle| angle.abs() < WIDEST);
@@ -113,7 +113,7 @@ fn to_frustum(fov: &xr::Fovf) -> Option<Frustum> {
     (fits && frustum.width() > 0.0 && frustum.height() > 0.0).then_some(frustum)
 }
 
-/// Returns a field of view.
+/// Converts a frustum to a field of view.
 pub(super) fn from_frustum(frustum: &Frustum) -> xr::Fovf {
     xr::Fovf {
         angle_left: frustum.left.atan(),

@@ -81,7 +81,7 @@ impl Session {
         Ok(Layers { eyes: Some(shown), panel })
     }
 
-    /// Renders both eyes into images; false when the viewer cannot.
+    /// Renders both eyes into images; returns false if the viewer cannot.
     fn render_eyes(
         &mut self,
         viewer: &mut Viewer,
@@ -101,13 +101,12 @@ impl Session {
             mask.draw(&pair.frusta, &color);
         }
         self.storage.end(images);
-        // The runtime may read on another queue.
-        // SAFETY: no arguments.
+        // The runtime may read the images on another queue. SAFETY: `flush` has no arguments.
         unsafe { glow::HasContext::flush(self.gl.raw()) };
         Ok(self.told(rendered).is_some())
     }
 
-    /// Brings the menu or the HUD up to date, if it is to be seen.
+    /// Updates the image of the menu or the HUD, if one of them is to be shown.
     fn render_panel(
         &mut self,
         graphics: &dyn Graphics,
@@ -127,11 +126,11 @@ impl Session {
                 size: xr::Extent2Df { width, height },
             };
         if let Some(place) = viewer.menu_place() {
-            // The dot moves with each frame.
+            // The dot that shows where the user points moves with each frame.
             images.acquire(graphics)?;
             if let Some(to) = images.destination(0, Board::SIZE) {
                 viewer.draw_menu_image(&to);
-                // SAFETY: no arguments.
+                // SAFETY: `flush` has no arguments.
                 unsafe { glow::HasContext::flush(self.gl.raw()) };
             }
             images.release(graphics)?;
@@ -151,7 +150,7 @@ impl Session {
             images.acquire(graphics)?;
             if let Some(to) = images.destination(0, panel.size()) {
                 panel.draw(&to);
-                // SAFETY: no arguments.
+                // SAFETY: `flush` has no arguments.
                 unsafe { glow::HasContext::flush(self.gl.raw()) };
             }
             images.release(graphics)?;
@@ -163,7 +162,7 @@ impl Session {
         Ok(Some(quad(&self.spaces.head, images.sub_image(0, panel.size()), pose, metres)))
     }
 
-    /// Returns the size in pixels of each eye in this frame, which is no larger than the images.
+    /// Returns the size in pixels of each eye in this frame, at most that of the images.
     fn frame_size(&self, viewer: &Viewer) -> [u32; 2] {
         let wanted = viewer.eye_size(self.description.recommended.map(|n| n as f32));
         [0, 1].map(|i| wanted[i].min(self.description.size[i]))
@@ -229,7 +228,7 @@ impl Session {
             layer_count,
             layers: shown.as_ptr(),
         };
-        // SAFETY: all that the structures point to is on this stack or lives in `self`.
+        // SAFETY: everything that the structures point to is on this stack or in `self`.
         let result = unsafe { (self.instance.fp().end_frame)(self.session.as_raw(), &info) };
         check("xrEndFrame", result).map(drop)
     }

@@ -1,4 +1,4 @@
-//! Opens a session: the instance, its system, and everything that frames are made of.
+//! Opens a session: the instance, its system, and everything that frames need.
 
 use std::rc::Rc;
 
@@ -24,11 +24,11 @@ use yoro_lenses::{Board, Panel};
 use yoro_protocol::Settings;
 use yoro_render::DepthCopy;
 
-/// The images of the eyes are multiples of this many pixels, where they are scaled.
+/// If the eyes' images are scaled, their sizes are multiples of this many pixels.
 const SIZE_STEP: f32 = 16.0;
 
 impl Session {
-    /// Begins a session with a runtime.
+    /// Starts a session with a runtime.
     pub fn open(
         runtime: &Runtime,
         graphics: &dyn Graphics,
@@ -96,7 +96,7 @@ impl Session {
     }
 }
 
-/// Returns an instance with the extensions that are of use.
+/// Creates an instance with all useful extensions.
 fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance, XrError> {
     let entry = call("xrGetInstanceProcAddr", runtime.entry())?;
     let offered = call("xrEnumerateInstanceExtensionProperties", entry.enumerate_extensions())?;
@@ -142,33 +142,33 @@ fn create_instance(runtime: &Runtime, options: &Options) -> Result<xr::Instance,
     call("xrCreateInstance", created)
 }
 
-/// Tells the runtime which thread renders, so that it can raise its priority (XR_KHR_android_thread_settings).
+/// Tells the runtime which thread renders, so that it can raise the thread's priority (XR_KHR_android_thread_settings).
 #[cfg(target_os = "android")]
 fn hint_thread(session: &xr::Session<xr::OpenGlEs>) -> Result<(), XrError> {
     let Some(extension) = &session.instance().exts().khr_android_thread_settings else { return Ok(()) };
-    // SAFETY: no arguments.
+    // SAFETY: `gettid` has no arguments.
     let thread = unsafe { libc::gettid() };
     let kind = sys::AndroidThreadTypeKHR::RENDERER_MAIN;
-    // SAFETY: a live session, a valid enum, and the number of a thread of this process.
+    // SAFETY: the session is live, the enum valid, and the number that of a thread of this process.
     let result =
         unsafe { (extension.set_android_application_thread)(session.as_raw(), kind, thread.cast_unsigned()) };
     let hinted = check("xrSetAndroidApplicationThreadKHR", result);
     optional("the priority of the rendering thread stays", hinted).map(drop)
 }
 
-/// The headset that an instance is to be used with.
+/// The headset that an instance is used with.
 struct System {
     id: xr::SystemId,
     name: String,
     views: xr::ViewConfigurationType,
-    /// Size in pixels of each eye that the runtime recommends, and the largest.
+    /// The size in pixels that the runtime recommends for each eye, and the largest possible one.
     recommended: [u32; 2],
     largest: [u32; 2],
     blend: xr::EnvironmentBlendMode,
 }
 
 impl System {
-    /// Asks the runtime; `one_view` prefers one view to two.
+    /// Asks the runtime for the headset; `one_view` prefers one view to two.
     fn of(instance: &xr::Instance, one_view: bool) -> Result<System, XrError> {
         let id = call("xrGetSystem", instance.system(xr::FormFactor::HEAD_MOUNTED_DISPLAY))?;
         let properties = call("xrGetSystemProperties", instance.system_properties(id))?;
@@ -209,7 +209,7 @@ impl System {
         self.views == xr::ViewConfigurationType::PRIMARY_STEREO
     }
 
-    /// Returns the size in pixels of the images: what is recommended, scaled.
+    /// Returns the size in pixels of the images: the recommended one, scaled.
     fn image_size(&self, scale: f32, limit: u32) -> [u32; 2] {
         image_size(self.recommended, scale, self.largest.map(|n| n.min(limit)))
     }
@@ -217,7 +217,7 @@ impl System {
 
 /// The runtime's images that frames are drawn into.
 struct FrameImages {
-    /// Format of eyes and panel.
+    /// Format of the eyes and the panel.
     color: u32,
     eyes: EyeImages,
     depth: Option<Depth>,
@@ -271,7 +271,7 @@ fn make_depth(
     Ok(Some(Depth { images, copy: DepthCopy::new(gl)?, format }))
 }
 
-/// The hidden part of each eye's image, if the runtime gives it.
+/// Returns the mask of the hidden part of each eye's image, if the runtime provides it.
 fn make_mask(
     gl: &Rc<Context>,
     session: &xr::Session<xr::OpenGlEs>,
@@ -299,7 +299,7 @@ fn make_spaces(session: &xr::Session<xr::OpenGlEs>) -> Result<Spaces, XrError> {
     })
 }
 
-/// The display's refresh rates in Hz; empty if the runtime does not give them.
+/// Returns the display's refresh rates in Hz; empty if the runtime does not report them.
 fn ask_refresh_rates(session: &xr::Session<xr::OpenGlEs>) -> Result<Vec<f32>, XrError> {
     if session.instance().exts().fb_display_refresh_rate.is_none() {
         return Ok(Vec::new());
@@ -308,7 +308,7 @@ fn ask_refresh_rates(session: &xr::Session<xr::OpenGlEs>) -> Result<Vec<f32>, Xr
     Ok(optional("refresh rates are not known", rates)?.unwrap_or_default())
 }
 
-/// Returns the size of the images: what is recommended, scaled.
+/// Returns the size of the images: the recommended one, scaled.
 fn image_size(recommended: [u32; 2], scale: f32, limit: [u32; 2]) -> [u32; 2] {
     let scaled =
         |n: u32| if scale == 1.0 { n } else { ((n as f32 * scale / SIZE_STEP).ceil() * SIZE_STEP) as u32 };

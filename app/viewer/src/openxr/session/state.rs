@@ -17,7 +17,7 @@ use yoro_gl::Context;
 use yoro_protocol::Performance;
 use yoro_render::DepthCopy;
 
-/// The result of a step.
+/// The result of [`Session::step`].
 pub enum Progress {
     Idle,
     Frame(Frame),
@@ -27,11 +27,11 @@ pub enum Progress {
 /// The HUD's own images.
 pub struct PanelImages {
     pub images: Images,
-    /// The version of the panel that they show: [`Panel::version`](yoro_lenses::Panel::version).
+    /// The version of the panel that the images show: [`Panel::version`](yoro_lenses::Panel::version).
     pub version: Option<u64>,
 }
 
-/// Depth of both eyes.
+/// Depth of both eyes, for the runtime.
 pub struct Depth {
     pub copy: DepthCopy,
     pub images: EyeImages,
@@ -42,14 +42,14 @@ pub struct Depth {
 pub struct Spaces {
     /// The head.
     pub head: xr::Space,
-    /// The runtime's straight ahead.
+    /// The runtime's reference space.
     pub base: xr::Space,
-    /// The user's straight ahead.
+    /// The reference space turned to the user's straight ahead.
     pub ahead: xr::Space,
 }
 
-/// One session, from xrCreateInstance to the last frame. What has framebuffers goes before the images, and those before
-/// the session.
+/// One session, from xrCreateInstance to the last frame. The field order is the drop order: owners of framebuffers
+/// before the images, and the images before the session.
 pub struct Session {
     pub(super) storage: Storage,
     pub(super) mask: Option<Mask>,
@@ -68,7 +68,7 @@ pub struct Session {
     pub(super) blend: xr::EnvironmentBlendMode,
     pub(super) state: xr::SessionState,
     pub(super) is_running: bool,
-    /// The requests that were made by extensions.
+    /// The refresh rate and performance that were last requested through extensions.
     pub(super) applied: Option<(Option<f32>, Performance)>,
     /// The reason why the eyes are not rendered as the runtime locates them, if so.
     pub(super) realigned: Option<EyesError>,
@@ -88,7 +88,7 @@ impl Session {
         self.is_running
     }
 
-    /// Does what the user wants in the next frame.
+    /// Queues an action of the user for the next frame.
     pub fn event(&mut self, event: Event) {
         self.events.push(event);
     }
@@ -98,7 +98,7 @@ impl Session {
         call("xrRequestExitSession", self.session.request_exit())
     }
 
-    /// Returns the value of a call of the viewer, and logs its error, once if it comes with every frame.
+    /// Returns the value of a viewer's call or logs its error, which is logged only once if it repeats in every frame.
     pub(super) fn told<T>(&mut self, result: Result<T, ViewerError>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
@@ -113,7 +113,7 @@ impl Session {
         }
     }
 
-    /// Sets where straight ahead is, relative to where the runtime has it.
+    /// Sets the user's straight ahead, relative to the runtime's.
     pub(super) fn set_space(&mut self, pose: xr::Posef) -> Result<(), XrError> {
         let space = self.session.create_reference_space(xr::ReferenceSpaceType::LOCAL, pose);
         self.spaces.ahead = call("xrCreateReferenceSpace", space)?;
@@ -123,7 +123,7 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        // Whether the context is still current after a swapchain is destroyed is up to the runtime.
+        // After a swapchain is destroyed, the context may no longer be current, depending on the runtime.
         self.eyes.close();
         if let Some(depth) = &mut self.depth {
             depth.images.close();

@@ -1,4 +1,4 @@
-//! One step of a session: what the user wants, then a frame.
+//! One step of a session: the user's actions, then a frame.
 
 use std::time::Instant;
 
@@ -18,7 +18,7 @@ use yoro_context::Graphics;
 use yoro_protocol::{Performance, Settings};
 
 impl Session {
-    /// Takes the runtime's events, and makes a frame if it wants one. New states go to `states`.
+    /// Handles the runtime's events and makes a frame if it wants one. New states go to `states`.
     pub fn step(
         &mut self,
         graphics: &dyn Graphics,
@@ -63,7 +63,7 @@ impl Session {
         Ok(Progress::Frame(Frame { report, cpu_ms, capture: captured.map(Box::new) }))
     }
 
-    /// Reads the controllers and does what the user wants.
+    /// Reads the controllers and performs the user's actions.
     fn poll_input(&mut self, viewer: &mut Viewer, time: xr::Time) -> Result<(), XrError> {
         if self.state == xr::SessionState::FOCUSED
             && let Some(input) = &mut self.input
@@ -103,7 +103,7 @@ impl Session {
         Ok(())
     }
 
-    /// Asks for the refresh rate and the performance of the settings, when they have changed.
+    /// Requests the settings' refresh rate and performance level if they have changed.
     fn apply_settings(&mut self, settings: &Settings) -> Result<(), XrError> {
         let wanted = (settings.refresh_rate, settings.performance);
         let before = self.applied.replace(wanted);
@@ -136,7 +136,7 @@ impl Session {
                 Performance::Boost => xr::PerfSettingsLevelEXT::BOOST,
             };
             for domain in [xr::PerfSettingsDomainEXT::CPU, xr::PerfSettingsDomainEXT::GPU] {
-                // SAFETY: a live session and valid enums.
+                // SAFETY: the session is live and the enums are valid.
                 let result = unsafe {
                     (extension.perf_settings_set_performance_level)(self.session.as_raw(), domain, level)
                 };

@@ -1,4 +1,4 @@
-//! Bit rates as H.264.
+//! Bit rates with H.264.
 
 use super::cells::percent;
 use super::section::Section;
@@ -12,10 +12,10 @@ use yoro_figures::plot::{Axis, Panel, Series};
 use yoro_figures::stats::mean;
 use yoro_figures::text::{fixed, slug};
 
-/// The share of the anchor's qualities that a curve must reach to be compared.
+/// The smallest share of the anchor's range of qualities that a curve must reach to be compared.
 const LEAST_OVERLAP: f64 = 0.1;
 
-/// The section of the suite `bandwidth`.
+/// Returns the section of the suite `bandwidth`.
 pub fn section(suite: &Suite) -> Section {
     use bandwidth::{STEREO_RGB, metric::*};
     let mut section = Section::new(
@@ -61,7 +61,7 @@ pub fn section(suite: &Suite) -> Section {
     let mut equal = Table::new("Bit rate at equal quality against stereo RGB (BD-rate)", &columns);
     for setting in &suite.settings {
         for (i, name) in streams.iter().filter(|name| **name != STEREO_RGB).enumerate() {
-            // Over a sliver of common quality the fitted curves say nothing.
+            // The fitted curves say nothing if they have hardly any quality in common.
             let compare = |metrics: [&str; 2]| {
                 let (anchor, tested) =
                     (rate_points(setting, STEREO_RGB, metrics), rate_points(setting, name, metrics));
@@ -88,7 +88,7 @@ pub fn section(suite: &Suite) -> Section {
     section
 }
 
-/// Returns the rate and both eyes' mean quality of a stream, by quantizer.
+/// Returns the rate of a stream and the mean quality of both eyes, by quantizer.
 fn rate_points(setting: &SettingData, stream: &str, metrics: [&str; 2]) -> Vec<(f64, f64)> {
     let Some(measured) = setting.find(stream) else { return Vec::new() };
     let rates = measured.by_frame(bandwidth::metric::KBIT_S);
@@ -100,7 +100,7 @@ fn rate_points(setting: &SettingData, stream: &str, metrics: [&str; 2]) -> Vec<(
     points
 }
 
-/// Returns bit rates at one quantizer, as the paper compares them.
+/// Returns the bit rates at one quantizer, as compared by the paper.
 fn rate_table(suite: &Suite) -> Table {
     use bandwidth::{RGB_DEPTH, STEREO_RGB, metric::*};
     let columns = [

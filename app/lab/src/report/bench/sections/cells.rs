@@ -10,19 +10,19 @@ use yoro_figures::text::fixed;
 /// The prefix of the labels of the paper's curves.
 pub const PAPERS: &str = "the paper's ";
 
-/// Formats a time in ms: `530` or `12.30`, since four digits are enough.
+/// Formats a time in ms with two decimals or, from 100 ms on, without: `530` or `12.30`.
 pub fn milliseconds(value: f64) -> String {
-    // No minus before a zero.
+    // Avoids a minus sign in front of zero.
     let value = if value.abs() < 0.005 { 0.0 } else { value };
     if value >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }
 
-/// Returns a share as a signed difference in percent.
+/// Formats a share as a signed difference in percent.
 pub fn percent(share: f64) -> String {
     format!("{:+.1} %", 100.0 * share)
 }
 
-/// Returns both figures of a contender, as in the paper's tables; none where SSIM was not measured.
+/// Returns PSNR and SSIM of a contender, as in the paper's tables; `None` if SSIM was not measured.
 pub fn psnr_ssim(measured: &Measured) -> Option<String> {
     let ssim = measured.mean(metric::SSIM)?;
     // Identical images have no finite PSNR.
@@ -30,12 +30,12 @@ pub fn psnr_ssim(measured: &Measured) -> Option<String> {
     Some(format!("{psnr} / {ssim:.4}"))
 }
 
-/// Returns a cell of ours, or of the baseline's if the contender is one.
+/// Returns a cell with one of our figures, or with a baseline if the contender is one.
 pub fn cell(contender: &str, text: Option<String>) -> Cell {
     if [CONVENTIONAL, MONO].contains(&contender) { Cell::base(text) } else { Cell::ours(text) }
 }
 
-/// The scene of the paper that a setting's scene stands for.
+/// Returns the paper's scene that a setting's scene corresponds to.
 pub fn paper_scene(setting: &SettingData) -> Option<&'static paper::PaperScene> {
     paper::find(setting.stands_for())
 }

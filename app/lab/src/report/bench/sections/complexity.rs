@@ -1,4 +1,4 @@
-//! Frame time over the number of triangles.
+//! Frame time by number of triangles.
 
 use super::cells::{CONVENTIONAL, PAPERS, cell, milliseconds};
 use super::section::Section;
@@ -12,13 +12,13 @@ use yoro_figures::plot::{Axis, Panel, Series};
 use yoro_figures::stats::{geometric_mean, mean};
 use yoro_figures::text::{fixed, short_count};
 
-/// The paper's frame times of conventional rendering, by [`COMPLEXITY`]'s triangles.
+/// The paper's frame times of conventional rendering, for the triangles of [`COMPLEXITY`].
 const PAPERS_CONVENTIONAL: [f64; 9] = COMPLEXITY.systems[1].1;
 
-/// Milliseconds or ratios over millions of triangles.
+/// Milliseconds or ratios by millions of triangles.
 type Curve = Vec<(f64, f64)>;
 
-/// The section of the suite `complexity`.
+/// Returns the section of the suite `complexity`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "complexity",
@@ -56,18 +56,18 @@ fn times(suite: &Suite, name: &str) -> Curve {
     curve.into_iter().map(|(triangles, ms)| (triangles / 1e6, ms)).collect()
 }
 
-/// Returns the frame times of a contender over those of conventional rendering.
+/// Returns a contender's frame times divided by those of conventional rendering.
 fn ratios(suite: &Suite, name: &str) -> Curve {
     let curve = suite.curve(|setting| setting.cost(name).map(|cost| cost.median));
     curve.into_iter().map(|(triangles, ratio)| (triangles / 1e6, ratio)).collect()
 }
 
-/// Returns values of the paper, one for each of its sizes.
+/// Returns the curve of a series of the paper's values, one for each of its sizes.
 fn papers(values: impl IntoIterator<Item = f64>) -> Curve {
     COMPLEXITY.triangles.into_iter().zip(values).collect()
 }
 
-/// Returns a curve for each of the paper's systems, its times passed through `value` with their place.
+/// Returns a curve for each of the paper's systems. `value` maps each time and its index to a value.
 fn papers_series(value: impl Fn(usize, f64) -> f64) -> Vec<Series> {
     let series = COMPLEXITY.systems.iter().map(|(method, times)| Series {
         method: (*method).into(),
@@ -78,7 +78,7 @@ fn papers_series(value: impl Fn(usize, f64) -> f64) -> Vec<Series> {
     series.collect()
 }
 
-/// Returns a curve for each contender, the first on top.
+/// Returns a curve for each contender, with the first on top.
 fn series(suite: &Suite, curve: fn(&Suite, &str) -> Curve) -> Vec<Series> {
     let contenders = suite.measured(metric::FRAME_MS);
     let series = contenders.iter().rev().map(|name| Series {
@@ -90,7 +90,7 @@ fn series(suite: &Suite, curve: fn(&Suite, &str) -> Curve) -> Vec<Series> {
     series.collect()
 }
 
-/// Returns the cost of a million triangles more by each contender, and by the paper's systems.
+/// Returns a table of the cost of an additional million triangles, for each contender and for the paper's systems.
 fn slopes(suite: &Suite) -> Table {
     let columns = [
         "<method",

@@ -1,16 +1,16 @@
-//! Dot plots with a line for each setting.
+//! Dot plots with a row for each setting.
 
 use super::cells::PAPERS;
 use crate::report::bench::data::{SettingData, Suite};
 use yoro_figures::paper;
 use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
 
-/// The paper's figure of the system that a method here stands for.
+/// Returns a mark for the paper's figure of the system that a method here corresponds to.
 pub fn papers_mark(method: &str, value: f64) -> Mark {
     Mark::papers(method, format!("{PAPERS}{}", paper::system(method)), value)
 }
 
-/// Returns a dot plot with a line for each setting.
+/// Returns a dot plot with a row for each setting.
 pub fn scene_dots(
     suite: &Suite,
     axis: Axis,
@@ -20,7 +20,7 @@ pub fn scene_dots(
 ) -> Panel {
     let rows = suite.settings.iter().map(|setting| {
         let paper = papers(setting).into_iter().map(|(method, value)| papers_mark(method, value));
-        // The first contender stays on top of others with equal figures.
+        // The first contender is drawn on top of others with equal figures.
         let ours = contenders.iter().rev().filter_map(|name| {
             let value = value(setting, name)?;
             Some(Mark::new(*name, *name, value))

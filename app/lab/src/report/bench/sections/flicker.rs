@@ -10,7 +10,7 @@ use yoro_figures::grid::Cell;
 use yoro_figures::plot::Axis;
 use yoro_figures::text::fixed;
 
-/// The section of the suite `flicker`.
+/// Returns the section of the suite `flicker`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "flicker",

@@ -6,16 +6,16 @@ use crate::report::bench::data::{CONVENTIONAL, Measured, SettingData, Suite};
 use yoro_figures::grid::{Cell, Table};
 use yoro_figures::stats::{mean, unique};
 
-/// Passes whose cost is that of the application's surfaces.
+/// The passes whose cost depends on the application's surfaces.
 const SURFACES: [&str; 3] = ["g-buffer", "lighting", "forward"];
 
-/// A contender of one renderer.
+/// A contender with one of the renderers.
 #[derive(Clone, Copy)]
 struct Entry<'a> {
     suite: &'a Suite,
     renderer: &'a str,
     name: &'a str,
-    /// Vertices shaded once for both eyes.
+    /// True if vertices are shaded once for both eyes.
     once: bool,
 }
 
@@ -53,17 +53,17 @@ impl<'a> Entry<'a> {
         self.suite.settings.iter().filter(move |s| s.setting.label.as_deref() == Some(renderer))
     }
 
-    /// The value for each scene.
+    /// Returns the value of each scene.
     fn by_scene(&self, value: impl Fn(&Measured) -> f64) -> Vec<f64> {
         self.settings().filter_map(|setting| Some(value(setting.find(self.name)?))).collect()
     }
 
-    /// Returns two renders by the same renderer.
+    /// Returns two renders with the same renderer.
     fn baseline(&self) -> Entry<'a> {
         Entry { name: CONVENTIONAL, once: false, ..*self }
     }
 
-    /// Slots for each pixel of an eye, in the scenes, of the passes that `counts` takes.
+    /// Returns the issue slots per pixel of an eye in each scene, for the passes for which `counts` is true.
     fn slots(&self, gpu: &str, counts: impl Fn(&str) -> bool) -> Vec<f64> {
         let left_out = if self.once { frame::VERTICES } else { frame::VERTICES_ONCE };
         self.sums(&format!("slots/{gpu}/"), |pass| pass != left_out && counts(pass))
@@ -73,7 +73,7 @@ impl<'a> Entry<'a> {
         self.sums("bytes/", |_| true)
     }
 
-    /// Sums the metrics with a prefix whose rest `counts` takes, in the scenes.
+    /// Returns in each scene the sum of the metrics that start with `prefix` and for whose rest `counts` is true.
     fn sums(&self, prefix: &str, counts: impl Fn(&str) -> bool) -> Vec<f64> {
         self.by_scene(|measured| {
             let names = unique(measured.metrics()).into_iter();
@@ -83,8 +83,8 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// The mean of a metric of a pass. There are as many vertices in a frame of any size: they are counted for each pixel
-/// of an eye of [`frame::SIZE`].
+/// Returns the mean of a pass's metric. Vertices are scaled to an eye of [`frame::SIZE`], because their number does not
+/// depend on the size of the frame.
 fn value(suite: &Suite, measured: &Measured, metric: &str) -> Option<f64> {
     let scale =
         if metric.contains(frame::VERTICES) { measured_pixels(suite) / pixels(frame::SIZE) } else { 1.0 };
@@ -95,7 +95,7 @@ fn pixels(size: [u32; 2]) -> f64 {
     f64::from(size[0]) * f64::from(size[1])
 }
 
-/// Returns the number of pixels of an eye as it was measured: `512 x 512` in the header.
+/// Returns the number of pixels of a measured eye, from `512 x 512` in the header.
 fn measured_pixels(suite: &Suite) -> f64 {
     let size = suite.header.parameters.iter().find(|parameter| parameter.name == "size of each eye, pixels");
     let parts =
@@ -107,16 +107,16 @@ fn average(values: &[f64]) -> f64 {
     mean(values.iter().copied()).unwrap_or(f64::NAN)
 }
 
-/// The cost of surfaces, in slots for each pixel of an eye, from which on a method is cheaper than two renders.
+/// Returns the cost of surfaces, in slots per pixel of one eye, above which a method is cheaper than two renders.
 ///
-/// Two renders cost `x * surfaces[0] + rest[0]` and the method `x * surfaces[1] + rest[1]`, where surfaces cost `x`
-/// times what they do in the scenes. `None` if the method is never cheaper.
+/// If surfaces cost `x` times those of the scenes, two renders cost `x * surfaces[0] + rest[0]` and the method `x *
+/// surfaces[1] + rest[1]`. `None` if the method is never cheaper.
 fn break_even(surfaces: [f64; 2], rest: [f64; 2]) -> Option<f64> {
     let saved = surfaces[0] - surfaces[1];
     (saved > 0.0).then(|| 0.5 * surfaces[0] * (rest[1] - rest[0]) / saved)
 }
 
-/// The section of `shader-cost --frame`.
+/// Returns the section of `shader-cost --frame`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "frame-cost",
@@ -166,7 +166,7 @@ fn ratios(entries: &[Entry]) -> Table {
     table
 }
 
-/// Writes a mean with the least and the most.
+/// Formats a mean with the smallest and the largest value.
 fn spread(values: &[f64]) -> String {
     let (low, high) = values.iter().fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(*v), high.max(*v)));
     format!("{:.2} ({low:.2}–{high:.2})", average(values))
@@ -252,7 +252,7 @@ fn passes(entries: &[Entry]) -> Table {
 mod tests {
     use super::*;
 
-    /// Surfaces of 300 slots, seen twice, against once and a tenth; the rest costs 100 each, and the synthesis 180.
+    /// Surfaces cost 300 slots, drawn twice or 1.1 times; the rest costs 100 per eye, and the synthesis 180.
     #[test]
     fn costs_are_equal_at_the_break_even() {
         let (surfaces, rest) = ([600.0, 330.0], [200.0, 380.0]);

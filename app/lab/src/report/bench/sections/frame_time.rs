@@ -1,4 +1,4 @@
-//! Frame time, on all scenes and with few lights.
+//! Frame time in all scenes and with few lights.
 
 use super::cells::{CONVENTIONAL, milliseconds, paper_scene};
 use super::dots::{papers_mark, scene_dots};
@@ -16,7 +16,7 @@ fn paper_ratios(setting: &SettingData) -> Vec<(&'static str, f64)> {
     })
 }
 
-/// The section on frame times of the suite `scenes`.
+/// Returns the section on frame times of the suite `scenes`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "frame-time",
@@ -94,7 +94,7 @@ pub fn section(suite: &Suite) -> Section {
     section
 }
 
-/// The section of the suite `lights`.
+/// Returns the section of the suite `lights`.
 pub fn few_lights(suite: &Suite) -> Section {
     let mut section = Section::new(
         "few-lights",

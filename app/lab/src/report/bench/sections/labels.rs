@@ -1,4 +1,4 @@
-//! Suites whose settings have a label: the shading style, or what edges are made of.
+//! Suites whose settings have a label: the shading style, or the content of edges.
 
 use super::cells::{CONVENTIONAL, cell};
 use super::dots::papers_mark;
@@ -12,21 +12,21 @@ use yoro_figures::paper;
 use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
 use yoro_figures::stats::mean;
 
-/// The differences between sections of this kind.
+/// What differs between sections of this kind.
 struct Labels {
-    /// Heading of the labels' column.
+    /// The heading of the labels' column.
     column: &'static str,
-    /// Title of the table with a row for each label.
+    /// The title of the table with a row for each label.
     title: &'static str,
-    /// Title of the table with all settings.
+    /// The title of the table with all settings.
     details: &'static str,
-    /// The paper's SSIM and PSNR in dB by label; empty where it has none.
+    /// The paper's SSIM and PSNR in dB by label; empty if it has none.
     papers: &'static [(&'static str, f64, f64)],
     /// True if frame times were measured.
     timed: bool,
 }
 
-/// The section of the suite `styles`.
+/// Returns the section of the suite `styles`.
 pub fn styles(suite: &Suite) -> Section {
     let section = Section::new(
         "styles",
@@ -43,7 +43,7 @@ pub fn styles(suite: &Suite) -> Section {
     fill(section, suite, &labels)
 }
 
-/// The section of the suite `anti-aliasing`.
+/// Returns the section of the suite `anti-aliasing`.
 pub fn anti_aliasing(suite: &Suite) -> Section {
     let section = Section::new(
         "anti-aliasing",

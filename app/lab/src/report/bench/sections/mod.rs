@@ -1,4 +1,4 @@
-//! The report's sections of each suite, a file per experiment: figures with the paper's curves beside ours, and tables.
+//! The report's sections, one file per experiment: figures with the paper's curves beside ours, and tables.
 
 mod bandwidth;
 mod cells;
@@ -25,8 +25,8 @@ pub use section::Section;
 
 type MakeSection = fn(&Suite) -> Section;
 
-/// Suites by name in the paper's order, with what makes their sections. One suite can have several: the paper
-/// looks at frame time, quality and overhead of the same eight scenes in three places.
+/// The suites in the paper's order, with the functions that make their sections. A suite can have several, because the
+/// paper treats frame time, quality and overhead of the same eight scenes in three places.
 const ORDER: [(bench::Suite, MakeSection); 15] = [
     (bench::Suite::Scenes, frame_time::section),
     (bench::Suite::Complexity, complexity::section),
@@ -45,7 +45,7 @@ const ORDER: [(bench::Suite, MakeSection); 15] = [
     (bench::Suite::Stream, stream::section),
 ];
 
-/// The sections of all suites in the paper's order, each with its suite; suites of other names come last.
+/// Returns the sections of all suites in the paper's order, each with its suite. Suites with other names come last.
 pub fn sections(suites: &[Suite]) -> Vec<(&Suite, Section)> {
     let mut sections = Vec::new();
     for (kind, make) in ORDER {
@@ -59,7 +59,7 @@ pub fn sections(suites: &[Suite]) -> Vec<(&Suite, Section)> {
     };
     sections.extend(suites.iter().filter(|suite| !known(suite)).map(|suite| (suite, other::section(suite))));
     sections.retain(|(_, section)| !section.figures.is_empty() || !section.tables.is_empty());
-    // The same experiment on another machine needs another anchor.
+    // The same experiment on another machine needs a different anchor.
     let mut seen: Vec<String> = Vec::new();
     for (_, section) in &mut sections {
         let before = seen.iter().filter(|id| **id == section.id).count();

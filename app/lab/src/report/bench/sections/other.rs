@@ -1,4 +1,4 @@
-//! A suite that has no section of its own.
+//! Suites without a section of their own.
 
 use super::cells::cell;
 use super::section::Section;
@@ -8,7 +8,7 @@ use yoro_figures::grid::{Cell, Table};
 use yoro_figures::stats::unique;
 use yoro_figures::text::{fixed, slug};
 
-/// Returns every metric of a suite that has no section of its own.
+/// Returns a section with every metric of a suite.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(&slug(&suite.name), &format!("Suite {}", suite.name), "");
     let measured = suite.settings.iter().flat_map(|setting| &setting.contenders);

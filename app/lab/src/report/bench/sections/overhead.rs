@@ -13,7 +13,7 @@ use yoro_figures::plot::Axis;
 use yoro_figures::stats::{mean, unique};
 use yoro_figures::text::fixed;
 
-/// The section on CPU time and memory of the suite `scenes`.
+/// Returns the section on CPU time and memory of the suite `scenes`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "overhead",
@@ -71,7 +71,7 @@ pub fn section(suite: &Suite) -> Section {
     section
 }
 
-/// Times of passes, medians over the scenes' medians.
+/// Returns a table of the passes' times, as medians over the scenes' medians.
 fn pass_table(suite: &Suite) -> Table {
     let measured = suite.settings.iter().flat_map(|setting| &setting.contenders);
     let metrics = unique(measured.flat_map(|measured| measured.metrics()));

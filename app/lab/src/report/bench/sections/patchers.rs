@@ -11,7 +11,7 @@ use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
 use yoro_figures::stats::mean;
 use yoro_figures::text::fixed;
 
-/// The section of the suite `patchers`.
+/// Returns the section of the suite `patchers`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "patchers",
@@ -25,7 +25,7 @@ pub fn section(suite: &Suite) -> Section {
         paper::PATCHERS.iter().find(|patcher| patcher.name == name)
     };
     let dots = |axis: Axis, ours: &dyn Fn(&str) -> Option<f64>, papers: fn(&paper::PaperPatcher) -> f64| {
-        // The patcher is the row; colours say whose figure it is.
+        // Each patcher is a row; colours distinguish our figures from the paper's.
         let rows = contenders.iter().map(|name| {
             let paper =
                 paper_of(name).map(|patcher| Mark::papers("yoro-paper", "the paper's", papers(patcher)));

@@ -21,7 +21,7 @@ fn paper_quality(scene: &paper::PaperScene, name: &str) -> Option<f64> {
     }
 }
 
-/// The section on quality of the suite `scenes`.
+/// Returns the section on quality of the suite `scenes`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "quality",
@@ -29,9 +29,9 @@ pub fn section(suite: &Suite) -> Section {
         "The eye that is not dominant, against the same eye really rendered. “mono” shows the dominant eye's image to both: the baseline of doing nothing, \
          without which no figure says much.",
     );
-    // The ground truth has no likeness to itself worth a column.
+    // The ground truth needs no column for its similarity to itself.
     let contenders = suite.compared(metric::SSIM);
-    // The paper's figures alone are no section: browsers measure time only.
+    // The paper's figures alone are not worth a section: browsers measure time only.
     if contenders.is_empty() {
         return section;
     }
@@ -80,7 +80,7 @@ fn quality_figures(section: &mut Section, suite: &Suite) {
     }
 }
 
-/// Returns the quality in holes and elsewhere, means over the scenes.
+/// Returns a table of the quality in holes and elsewhere, as means over the scenes.
 fn parts_table(suite: &Suite, contenders: &[&str]) -> Table {
     let columns = [
         ("PSNR, dB", metric::PSNR, 2),

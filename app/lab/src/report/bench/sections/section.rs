@@ -6,15 +6,15 @@ use yoro_figures::plot::{Figure, Panel};
 /// An experiment on the page.
 #[derive(Debug)]
 pub struct Section {
-    /// Anchor, and beginning of the figures' names.
+    /// The anchor, and the prefix of the figures' names.
     pub id: String,
-    /// Heading.
+    /// The heading.
     pub title: String,
-    /// Description of the measurement, and of the paper's.
+    /// A description of our measurement and of the paper's.
     pub intro: String,
-    /// Figures in their order on the page.
+    /// The figures in the order of the page.
     pub figures: Vec<Figure>,
-    /// Tables in their order on the page.
+    /// The tables in the order of the page.
     pub tables: Vec<Table>,
 }
 

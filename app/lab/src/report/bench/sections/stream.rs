@@ -1,4 +1,4 @@
-//! A stream's bits, and what is seen of it some frames later.
+//! The bits of a stream, and the quality of what it shows some frames later.
 
 use super::cells::{cell, percent, psnr_ssim};
 use super::section::Section;
@@ -11,7 +11,7 @@ use yoro_figures::paper;
 use yoro_figures::stats::mean;
 use yoro_figures::text::fixed;
 
-/// The section of the suite `stream`.
+/// Returns the section of the suite `stream`.
 pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "stream",
@@ -26,7 +26,7 @@ pub fn section(suite: &Suite) -> Section {
     section
 }
 
-/// Returns bits and what they save against both eyes. They do not depend on the delay.
+/// Returns a table of bits, and of the savings compared with both eyes. They do not depend on the delay.
 fn bits(suite: &Suite) -> Table {
     let scenes = suite.scenes();
     let mut columns = vec!["<sent, each with its quantizer"];
@@ -60,7 +60,7 @@ fn bits(suite: &Suite) -> Table {
     table
 }
 
-/// Returns the quality of both eyes by delay.
+/// Returns a table of the quality of both eyes by delay.
 fn quality(suite: &Suite) -> Table {
     let mut columns = vec!["<shown by".to_owned()];
     columns.extend(suite.settings.iter().map(|setting| setting.label()));

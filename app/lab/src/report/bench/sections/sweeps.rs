@@ -10,14 +10,14 @@ use yoro_figures::paper;
 use yoro_figures::plot::{Axis, Panel, Series};
 use yoro_figures::text::fixed;
 
-/// The eye that is not dominant, by metric, for the page's figures.
+/// The metrics of the eye that is not dominant that have a figure: metric, axis, and a note.
 pub const QUALITY_FIGURES: [(&str, &str, &str); 3] = [
     (metric::PSNR, "PSNR, dB", "More is better."),
     (metric::SSIM, "SSIM, gaussian 11x11", "More is better."),
     (metric::FLIP, "FLIP, 0 to 1", "Less is better. The paper has none."),
 ];
 
-/// Curves of quality over a sweep, with the paper's where it has some.
+/// Adds curves of quality over a sweep, with the paper's where there are any.
 fn quality_sweep(
     section: &mut Section,
     suite: &Suite,
@@ -64,7 +64,7 @@ fn quality_sweep(
     }
 }
 
-/// Curves and a table of the frame time over a sweep.
+/// Adds curves and a table of the frame time over a sweep.
 fn time_sweep(section: &mut Section, suite: &Suite, x: Axis, label: impl Fn(f64) -> String) {
     let contenders = suite.measured(metric::FRAME_MS);
     let curves = |value: &dyn Fn(&SettingData, &str) -> Option<f64>, without: &str| -> Vec<Series> {
@@ -92,7 +92,7 @@ fn time_sweep(section: &mut Section, suite: &Suite, x: Axis, label: impl Fn(f64)
     section.table(sweep_table(suite, "Median frame time, ms", metric::FRAME_MS, &quantity, label));
 }
 
-/// The section of the suite `ipd`.
+/// Returns the section of the suite `ipd`.
 pub fn ipd(suite: &Suite) -> Section {
     let mut section = Section::new(
         "ipd",
@@ -110,7 +110,7 @@ pub fn ipd(suite: &Suite) -> Section {
     section
 }
 
-/// The section of the suite `distance`.
+/// Returns the section of the suite `distance`.
 pub fn distance(suite: &Suite) -> Section {
     let (ssim, psnr) = paper::DISTANCE;
     let mut section = Section::new(
@@ -125,7 +125,7 @@ pub fn distance(suite: &Suite) -> Section {
     section
 }
 
-/// The section of the suite `imbuffer`.
+/// Returns the section of the suite `imbuffer`.
 pub fn imbuffer(suite: &Suite) -> Section {
     let mut section = Section::new(
         "imbuffer",
@@ -139,7 +139,7 @@ pub fn imbuffer(suite: &Suite) -> Section {
     section
 }
 
-/// The section of the suite `resolution`.
+/// Returns the section of the suite `resolution`.
 pub fn resolution(suite: &Suite) -> Section {
     let mut section = Section::new(
         "resolution",

@@ -1,4 +1,4 @@
-//! Tables that several experiments have.
+//! Tables that several experiments share.
 
 use super::cells::{cell, milliseconds};
 use crate::bench::record::metric;
@@ -7,8 +7,8 @@ use yoro_figures::grid::{Cell, Table};
 use yoro_figures::stats::{mean, percentile};
 use yoro_figures::text::{fixed, short_count};
 
-/// Returns a table with a row for each setting and a column for each contender; then the mean, and those that were not
-/// measured.
+/// Returns a table with a row for each setting and a column for each contender, followed by the means and by the
+/// contenders that were not measured.
 pub fn scene_table(
     suite: &Suite,
     title: &str,
@@ -43,7 +43,7 @@ fn triangles(setting: &SettingData) -> String {
     setting.facts.as_ref().map_or_else(String::new, |facts| short_count(facts.triangles))
 }
 
-/// A row with the reason for each contender that could not take part, in the whole suite or in some settings.
+/// Adds a row with the reason for each contender that could not take part, in the whole suite or in some settings.
 pub fn push_refusals(table: &mut Table, suite: &Suite) {
     for name in suite.contenders() {
         if let Some(reason) = suite.reason(name) {
@@ -58,7 +58,7 @@ pub fn push_refusals(table: &mut Table, suite: &Suite) {
     }
 }
 
-/// Returns the frame times of each contender in each setting, in full.
+/// Returns a table with the frame times of each contender in each setting.
 pub fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &str) -> Option<f64>) -> Table {
     let columns = [
         "<scene",
@@ -108,8 +108,8 @@ pub fn time_details(suite: &Suite, title: &str, ratio: impl Fn(&SettingData, &st
     table
 }
 
-/// Returns a table with a row for each point of a sweep and a column for each contender, means over the scenes; medians
-/// of times.
+/// Returns a table with a row for each point of a sweep and a column for each contender: means over the scenes or, for
+/// times, medians.
 pub fn sweep_table(
     suite: &Suite,
     title: &str,
@@ -141,7 +141,7 @@ pub fn sweep_table(
     table
 }
 
-/// Returns a row for each contender and a column for each metric that was measured, means over the settings.
+/// Returns a table of means over the settings, with a row for each contender and a column for each measured metric.
 pub fn means_table(
     suite: &Suite,
     title: &str,
@@ -171,7 +171,7 @@ pub fn means_table(
     table
 }
 
-/// Returns a row for each setting and contender, a column for each metric: the long form, so that no figure is lost.
+/// Returns a table of all figures, with a row for each setting and contender and a column for each metric.
 pub fn metric_table(suite: &Suite, title: &str, contenders: &[&str]) -> Table {
     let metrics = [
         ("PSNR, dB", metric::PSNR, 2),
