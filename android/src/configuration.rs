@@ -60,7 +60,7 @@ impl Configuration {
         if let Some(scenes) = folders.first() {
             shared::remove_unfinished(scenes);
         }
-        let reading = java.is_given().then(|| {
+        let reading = java.is_shared().then(|| {
             let java = java.clone();
             Reading::begin(folders.first().cloned(), move || java.given())
         });

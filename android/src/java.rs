@@ -198,8 +198,8 @@ impl Java {
 
     /// True if the activity was started by an intent with which another application shares something. What is shared
     /// while the activity runs does not arrive: `onNewIntent` is a Java method that NativeActivity does not pass on.
-    pub fn is_given(&self) -> bool {
-        let is_given = self.ask("the shared", |env, activity| {
+    pub fn is_shared(&self) -> bool {
+        let is_shared = self.ask("the shared", |env, activity| {
             let intent = activity.get_intent(env)?;
             // An activity started again from the list of recent applications gets the intent of its first start.
             if intent.is_null() || intent.get_flags(env)? & LAUNCHED_FROM_HISTORY != 0 {
@@ -208,10 +208,10 @@ impl Java {
             let action = intent.get_action(env)?;
             Ok(!action.is_null() && [SEND, VIEW].contains(&action.try_to_string(env)?.as_str()))
         });
-        is_given.unwrap_or_default()
+        is_shared.unwrap_or_default()
     }
 
-    /// Returns what another application shares, if [`Java::is_given`]. The file's owner may take long to answer.
+    /// Returns what another application shares, if [`Java::is_shared`]. The file's owner may take long to answer.
     pub fn given(&self) -> Given {
         let given = self.ask("the shared", |env, activity| {
             let intent = activity.get_intent(env)?;

@@ -111,7 +111,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
-    let beat = Beat { shared, choreographer: Choreographer::of_thread(), is_posted: Cell::new(false) };
+    let beat = RefreshLoop { shared, choreographer: Choreographer::of_thread(), is_posted: Cell::new(false) };
     match &beat.choreographer {
         None => log::info!("this device has no choreographer: eglSwapBuffers sets the pace"),
         Some(Choreographer { post: Post::Frame(_), .. }) => {
@@ -237,14 +237,14 @@ impl Vsync {
 }
 
 /// Requests one refresh after another while they are wanted.
-struct Beat<'a> {
+struct RefreshLoop<'a> {
     shared: &'a Shared,
     choreographer: Option<Choreographer>,
     /// True while a requested refresh is pending. A pause may end before it arrives, and must not start a second chain.
     is_posted: Cell<bool>,
 }
 
-impl Beat<'_> {
+impl RefreshLoop<'_> {
     fn post(&self) {
         let Some(choreographer) = &self.choreographer else { return };
         if self.is_posted.replace(true) {
@@ -252,7 +252,7 @@ impl Beat<'_> {
         }
         let (instance, data) = (choreographer.instance.as_ptr(), ptr::from_ref(self).cast_mut().cast());
         // SAFETY: this is the choreographer's thread. The callback runs on the same thread, while `run` polls and so
-        // while its `Beat` is alive.
+        // while its `RefreshLoop` is alive.
         unsafe {
             match &choreographer.post {
                 Post::Frame(post) => post(instance, on_frame, data),
@@ -276,14 +276,14 @@ impl Beat<'_> {
 }
 
 unsafe extern "C" fn on_frame(frame_time_ns: i64, data: *mut c_void) {
-    // SAFETY: the pointer is the one that `Beat::post` passed.
-    let beat = unsafe { &*data.cast::<Beat>() };
+    // SAFETY: the pointer is the one that `RefreshLoop::post` passed.
+    let beat = unsafe { &*data.cast::<RefreshLoop>() };
     beat.on_refresh(Refresh { begin_ns: frame_time_ns, timeline: None });
 }
 
 unsafe extern "C" fn on_vsync(frame: *const FrameData, data: *mut c_void) {
-    // SAFETY: the pointer is the one that `Beat::post` passed.
-    let beat = unsafe { &*data.cast::<Beat>() };
+    // SAFETY: the pointer is the one that `RefreshLoop::post` passed.
+    let beat = unsafe { &*data.cast::<RefreshLoop>() };
     if let Some(Choreographer { post: Post::Vsync(vsync), .. }) = &beat.choreographer {
         // SAFETY: the data belong to this callback.
         beat.on_refresh(unsafe { vsync.refresh(frame) });

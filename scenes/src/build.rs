@@ -118,7 +118,7 @@ impl SceneBuilder {
         SceneBuilder { watch: Some(Box::new(watch)), ..SceneBuilder::new() }
     }
 
-    fn tell(&mut self) {
+    fn report_progress(&mut self) {
         if let Some(watch) = &mut self.watch {
             watch(self.progress);
         }
@@ -128,7 +128,7 @@ impl SceneBuilder {
     pub fn texture(&mut self, image: TextureImage) -> usize {
         self.textures.push(image);
         self.progress.textures += 1;
-        self.tell();
+        self.report_progress();
         self.textures.len() - 1
     }
 
@@ -204,7 +204,7 @@ impl SceneBuilder {
     /// Adds to the count the triangles that a scene adds to its finished model itself.
     pub fn count(&mut self, triangles: usize) {
         self.progress.triangles += triangles;
-        self.tell();
+        self.report_progress();
     }
 
     /// Returns the finished model: one part for each object and material, objects in the order in which they were first
@@ -258,7 +258,7 @@ impl SceneBuilder {
         self.groups[group].indices.extend_from_slice(&corners);
         self.progress.triangles += 1;
         if self.progress.triangles.is_multiple_of(WATCHED_STEP) {
-            self.tell();
+            self.report_progress();
         }
     }
 

@@ -129,7 +129,7 @@ impl World {
     }
 
     /// Returns the highest voxel of a column to stand on, ignoring trees.
-    fn footing(&self, x: i32, z: i32) -> i32 {
+    fn walkable_top(&self, x: i32, z: i32) -> i32 {
         let tree = [Block::Leaves, Block::Blossom, Block::LogSide].map(code);
         (-DEPTH..self.top(x, z) + 1)
             .rev()
@@ -975,7 +975,7 @@ pub fn build(seed: u64, mut s: SceneBuilder) -> Scene {
     }
     for z in [56, 66, 78] {
         let x = path_bend(z) - 5;
-        let foot = vec3(x as f32 + 0.5, w.footing(x, z) as f32 + 1.0, z as f32 + 0.5) * EDGE;
+        let foot = vec3(x as f32 + 0.5, w.walkable_top(x, z) as f32 + 1.0, z as f32 + 0.5) * EDGE;
         s.object(&format!("lamp-path-{z}"));
         let p = lamp_post(&mut s, wood, iron, glow, foot, Vec3::X);
         lights.push(PointLight { position: p, color: warm, range: 9.0 });
@@ -1078,7 +1078,7 @@ fn walk(w: &World) -> Vec<Viewpoint> {
     let height = |x: f32, z: f32| {
         // The mean over a stride, so that the head does not jump by a voxel.
         let around: f32 =
-            (-4..=4).map(|d| (w.footing(x.floor() as i32, z.floor() as i32 + d) + 1) as f32).sum();
+            (-4..=4).map(|d| (w.walkable_top(x.floor() as i32, z.floor() as i32 + d) + 1) as f32).sum();
         around / 9.0 * EDGE + 1.65
     };
     steps

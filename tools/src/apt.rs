@@ -59,7 +59,7 @@ impl Need {
 ///
 /// # Errors
 /// Fails if something is still missing; the error names it and the remedy.
-pub fn provide(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
+pub fn install_missing(needs: impl Fn() -> Vec<Need>, yes: bool) -> anyhow::Result<()> {
     /// Locked so that a second thread does not miss packages that the first one is installing.
     static PROVIDING: Mutex<()> = Mutex::new(());
     let _providing = PROVIDING.lock().unwrap_or_else(PoisonError::into_inner);

@@ -30,7 +30,7 @@ pub fn fetch() -> anyhow::Result<PathBuf> {
         let rust = Rust::for_target(TRIPLE).map(|(rust, _)| rust);
         vec![Need::program("clang", &["clang"]), Need::program("ld.lld", &["lld"]), source(rust.as_ref())]
     };
-    apt::provide(needs, true)?;
+    apt::install_missing(needs, true)?;
     let folder = folder()?;
     System::make(&folder)?;
     Ok(folder)

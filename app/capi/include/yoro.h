@@ -25,17 +25,17 @@
   (memset(&(structure), 0, sizeof(structure)), (structure).struct_size = (uint32_t)sizeof(structure))
 
 /**
- * Version of this header.
+ * Major version of this header.
  */
 #define YORO_VERSION_MAJOR 0
 
 /**
- * Second part of the version.
+ * Minor version of this header.
  */
 #define YORO_VERSION_MINOR 1
 
 /**
- * Third part of the version.
+ * Patch version of this header.
  */
 #define YORO_VERSION_PATCH 0
 
@@ -45,7 +45,7 @@
 #define YORO_VERSION (((YORO_VERSION_MAJOR * 1000000) + (YORO_VERSION_MINOR * 1000)) + YORO_VERSION_PATCH)
 
 /**
- * A guard band that is complete for everything farther away than an arm's length, in metres.
+ * A guard band, in metres, that is complete for everything farther away than an arm's length.
  */
 #define YORO_GUARD_BAND 1.0
 
@@ -55,8 +55,8 @@
 #define YORO_MOST_STRIPS 8
 
 /**
- * Finds out whether two renders are cheaper on this device, or one with synthesis: it renders both in turns for about
- * a second, chooses, and measures again when that may have changed.
+ * Finds out whether two renders or one render with synthesis is cheaper on this device. It alternates between them for
+ * about a second, chooses, and measures again when the result may have changed.
  *
  * Use it from one thread at a time. It needs no YoroContext.
  */
@@ -65,8 +65,8 @@ typedef struct YoroChooser YoroChooser;
 /**
  * The synthesis in one GL context or on one Vulkan device: compiled shaders and small buffers.
  *
- * Use it from one thread at a time, a second thread gets YORO_ERROR_BUSY. For OpenGL that must be the thread on which
- * the GL context is current; for Vulkan it can be any thread.
+ * Use it from one thread at a time. A second thread receives YORO_ERROR_BUSY. For OpenGL that must be the thread on
+ * which the GL context is current; for Vulkan it can be any thread.
  */
 typedef struct YoroContext YoroContext;
 
@@ -91,7 +91,7 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_VALUE (-3)
 /**
- * A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not fit each other.
+ * A matrix is not a rigid view or not a perspective projection, or the two eyes' matrices do not match.
  */
 #define YORO_ERROR_MATRIX (-4)
 /**
@@ -104,7 +104,7 @@ typedef int32_t YoroResult;
 #define YORO_ERROR_EYES_OFF_AXIS (-6)
 /**
  * The left eye lies to the right of the right eye, or surfaces at the near plane move by more pixels than can be
- * synthesized: 4095 in images that are wider than that.
+ * synthesized (4095, in images that are wider).
  */
 #define YORO_ERROR_EYES_IPD (-7)
 /**
@@ -136,7 +136,7 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_DRIVER (-14)
 /**
- * The YoroContext was created for another API than the function belongs to.
+ * The YoroContext was created for a different API than the function's.
  */
 #define YORO_ERROR_API (-15)
 /**
@@ -144,11 +144,11 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_BUSY (-16)
 /**
- * No memory is left, on the host or on the device.
+ * No memory is left on the host or on the device.
  */
 #define YORO_ERROR_MEMORY (-17)
 /**
- * The Vulkan device is lost: create it and the YoroContext again.
+ * The Vulkan device is lost: create both it and the YoroContext again.
  */
 #define YORO_ERROR_DEVICE_LOST (-18)
 /**
@@ -156,12 +156,12 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_NOT_REGISTERED (-19)
 /**
- * An error of the library itself. Afterwards the YoroContext returns only this, and can only be destroyed.
+ * An internal error of the library. Afterwards the YoroContext returns only this error, and can only be destroyed.
  */
 #define YORO_ERROR_INTERNAL (-20)
 
 /**
- * One of the two eyes, which is also its index in arrays of two.
+ * One of the two eyes. The value is also its index in arrays of two.
  */
 typedef uint32_t YoroEye;
 /**
@@ -174,12 +174,12 @@ typedef uint32_t YoroEye;
 #define YORO_EYE_RIGHT 1
 
 /**
- * Pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. Laid out
- * as XrPosef.
+ * The pose of an eye in a right-handed world with Y up. The eye looks along its own -Z axis, with X to the right. The
+ * layout is that of XrPosef.
  */
 typedef struct {
   /**
-   * Rotation from the eye's axes to the world's: the quaternion x, y, z, w, of length 1.
+   * Rotation from the eye's axes to the world's, as the quaternion x, y, z, w, of length 1.
    */
   float orientation[4];
   /**
@@ -189,30 +189,30 @@ typedef struct {
 } YoroPose;
 
 /**
- * Angles in radians from the eye's axis to the edges of its image, each smaller than a right angle. Left and down are
- * negative if the image contains the axis. Laid out as XrFovf.
+ * Angles in radians from the eye's axis to the edges of its image, each smaller than a right angle. The left and lower
+ * angles are negative if the image contains the axis. The layout is that of XrFovf.
  */
 typedef struct {
   /**
-   * Left edge.
+   * Angle to the left edge.
    */
   float angle_left;
   /**
-   * Right edge.
+   * Angle to the right edge.
    */
   float angle_right;
   /**
-   * Upper edge.
+   * Angle to the upper edge.
    */
   float angle_up;
   /**
-   * Lower edge.
+   * Angle to the lower edge.
    */
   float angle_down;
 } YoroFov;
 
 /**
- * The meaning of the values 0 to 1 in a depth buffer. It does not depend on the API's clip volume.
+ * The meaning of the values 0 to 1 in a depth buffer. It is independent of the API's clip volume.
  */
 typedef uint32_t YoroDepth;
 /**
@@ -255,31 +255,31 @@ typedef uint32_t YoroClip;
 #define YORO_CLIP_Y_UP_Z_0_1 2
 
 /**
- * Bits for changes to eyes that cannot be synthesized as they are.
+ * Bits that change eyes which cannot be synthesized as they are.
  */
 typedef uint32_t YoroEyesFlags;
 /**
- * Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Show the
- * images with the resulting angles.
+ * Gives both eyes frusta of the same width and height over the same rows, large enough to contain their own. Display
+ * the images with the resulting angles.
  */
 #define YORO_EYES_EVEN 1
 /**
- * Turns both eyes, which stay where they are, to one direction at right angles to the line between them, and gives
- * them even frusta that contain their own. For canted eyes, and for eyes that do not lie on one horizontal line, such
- * as those of a calibrated headset. Show the images with the resulting poses and angles: an OpenXR runtime turns
- * images back that are submitted with these.
+ * Turns both eyes, without moving them, to one direction at right angles to the line between them, and gives them
+ * frusta of the same size that contain their own. For canted eyes, and for eyes that do not lie on one horizontal
+ * line, such as those of a calibrated headset. Display the images with the resulting poses and angles: an OpenXR
+ * runtime that receives these with the images rotates them back.
  */
 #define YORO_EYES_PARALLEL 2
 
 /**
- * Receives the sentence of an error: the fault and the remedy, in UTF-8, valid during the call only. It is called on
- * the thread of the function that fails, before that returns. It must not throw, and must not call yoro with the same
- * context.
+ * Receives an error message: one sentence that names the fault and the remedy, in UTF-8, valid during the call only.
+ * It is called on the thread of the failing function, before that returns. It must not throw, and must not call yoro
+ * with the same context.
  */
 typedef void (*YoroMessageCallback)(void *user, YoroResult result, const char *sentence);
 
 /**
- * The receiver of the sentences of errors.
+ * The receiver of error messages.
  */
 typedef struct {
   /**
@@ -293,12 +293,12 @@ typedef struct {
 } YoroMessages;
 
 /**
- * The two eyes of a frame, given by poses and angles.
+ * The two eyes of a frame, given as poses and angles.
  *
- * Metres stand for any unit: all lengths may have another one, the same for all, and the eyes may be any distance
- * apart, so that a wearer is a giant or a mouse. Positions are rounded to 32 bits: 1 km from the origin to 0.06 mm, a
- * thousandth of the eyes' distance. In larger worlds give poses relative to the head, and move the resulting view
- * matrices by the head's place.
+ * Any unit of length may be used instead of metres, as long as it is the same for all lengths. The eyes may be any
+ * distance apart, so a wearer can be a giant or a mouse. Positions are rounded to 32 bits: at 1 km from the origin to
+ * 0.06 mm, a thousandth of the distance between the eyes. In larger worlds give poses relative to the head, and
+ * translate the resulting view matrices by the head's position.
  */
 typedef struct {
   /**
@@ -330,7 +330,7 @@ typedef struct {
    */
   float near_z;
   /**
-   * Distance of the far plane in metres, more than near_z, also for reversed depth; may be INFINITY.
+   * Distance of the far plane in metres, more than near_z even for reversed depth; may be INFINITY.
    */
   float far_z;
   /**
@@ -338,7 +338,7 @@ typedef struct {
    */
   YoroDepth depth;
   /**
-   * Order of rows in the images.
+   * The order of rows in the images.
    */
   YoroRows rows;
   /**
@@ -346,8 +346,8 @@ typedef struct {
    */
   YoroClip clip;
   /**
-   * Guard band: the distance in metres from which on the rendered image contains the whole outer border of the other
-   * eye. Smaller values cost more pixels. 0 for no guard band: the border is filled in.
+   * Guard band: the distance in metres beyond which the rendered image contains the whole outer border of the other
+   * eye. Smaller values cost more pixels. 0: no guard band, and the border is filled in.
    */
   float guard_band;
   /**
@@ -355,11 +355,11 @@ typedef struct {
    */
   YoroEyesFlags flags;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
-   * Where the sentences of errors go.
+   * Receives error messages.
    */
   YoroMessages messages;
 } YoroEyes;
@@ -377,11 +377,11 @@ typedef struct {
    */
   uint32_t height;
   /**
-   * Pose of the eye. For matrices of a left-handed world it is in the world with the Z axis negated.
+   * Pose of the eye. For matrices of a left-handed world, the Z axis of the world is negated.
    */
   YoroPose pose;
   /**
-   * Angles of the image's outer edges.
+   * Angles to the outer edges of the image.
    */
   YoroFov fov;
   /**
@@ -427,7 +427,7 @@ typedef struct {
    */
   double scale;
   /**
-   * Target row minus source row.
+   * Displacement in rows: target row minus source row.
    */
   int32_t row_offset;
   /**
@@ -435,11 +435,11 @@ typedef struct {
    */
   YoroEye target_eye;
   /**
-   * The meaning of depth values.
+   * The meaning of the depth buffer's values.
    */
   YoroDepth depth;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
 } YoroWarp;
@@ -465,11 +465,11 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * The view to render: the rendered eye's, widened by the guard band. Render colour and depth of this size.
+   * The view to render: the rendered eye's view, widened by the guard band. Render colour and depth of this size.
    */
   YoroView source;
   /**
-   * The rendered eye's own image: the part of the source of this size that begins at crop_x, crop_y.
+   * The rendered eye's own image: the part of the source, of this size, that begins at crop_x and crop_y.
    */
   YoroView rendered;
   /**
@@ -477,15 +477,15 @@ typedef struct {
    */
   YoroView synthesized;
   /**
-   * The mapping of pixels, for synthesis.
+   * The mapping of pixels, which synthesis takes.
    */
   YoroWarp warp;
 } YoroViews;
 
 /**
- * The two eyes of a frame, given by matrices; they may be any distance apart. All matrices are column-major, for
- * column vectors, as GL and Vulkan take them. The translation of a view matrix is in elements 12 to 14. Element 11
- * of a projection is -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
+ * The two eyes of a frame, given as matrices. They may be any distance apart. All matrices are column-major, for
+ * column vectors, as in GL and Vulkan. The translation of a view matrix is in elements 12 to 14. Element 11 of a
+ * projection is -1 for eyes that look along -Z, and 1 for eyes that look along +Z.
  */
 typedef struct {
   /**
@@ -509,7 +509,7 @@ typedef struct {
    */
   float view[2][16];
   /**
-   * Eye to clip space, left eye first: perspective. Reversed and infinite depth are recognized.
+   * Eye to clip space, left eye first: perspective projections. Reversed and infinite depth are recognized.
    */
   float projection[2][16];
   /**
@@ -517,27 +517,27 @@ typedef struct {
    */
   YoroClip clip;
   /**
-   * Order of rows in the images.
+   * The order of rows in the images.
    */
   YoroRows rows;
   /**
-   * As in YoroEyes, in metres.
+   * Guard band in metres, as in YoroEyes.
    */
   float guard_band;
   /**
-   * Units of the world in a metre: 100 for centimetres. 0 means 1.
+   * Number of world units in a metre: 100 for centimetres. 0 means 1.
    */
   float units_per_metre;
   /**
-   * Where the sentences of errors go.
+   * Receives error messages.
    */
   YoroMessages messages;
   /**
-   * YORO_EYES_ bits. The resulting view matrices are turned as the eyes are.
+   * YORO_EYES_ bits. The resulting view matrices are rotated with the eyes.
    */
   YoroEyesFlags flags;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
 } YoroMatrices;
@@ -584,11 +584,11 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * 1 if there are compute shaders; yoro does not need them.
+   * 1 if the API has compute shaders, which yoro does not need.
    */
   uint32_t compute;
   /**
-   * 1 if the CPU draws (llvmpipe, SwiftShader).
+   * 1 if the CPU renders (llvmpipe, SwiftShader).
    */
   uint32_t software;
   /**
@@ -600,13 +600,13 @@ typedef struct {
    */
   uint64_t buffer_bytes;
   /**
-   * Name of the GPU or its driver in UTF-8, cut off if it is too long, and ended by 0.
+   * Name of the GPU or its driver in UTF-8, terminated by 0, and truncated if it is too long.
    */
   uint8_t device[128];
 } YoroCapabilities;
 
 /**
- * The GPU's times of one frame, in nanoseconds. All are 0 as long as none is known.
+ * The GPU times of one frame, in nanoseconds. All are 0 until the first are known.
  */
 typedef struct {
   /**
@@ -614,29 +614,29 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * 1 if the times are those of a frame.
+   * 1 if the times are known.
    */
   uint32_t is_known;
   /**
-   * The split of the source into surfaces; 0 with YORO_EDGES_HARD.
+   * Time to split the source into surfaces; 0 with YORO_EDGES_HARD.
    */
   uint64_t split_ns;
   /**
-   * The bounds of the displacements, or depths, in each tile.
+   * Time to find the bounds of the displacements, or of the depths, in each tile.
    */
   uint64_t tiles_ns;
   /**
-   * The part of the source to search for each tile of the target.
+   * Time to find the part of the source to search for each tile of the target.
    */
   uint64_t spans_ns;
   /**
-   * The search, which writes the target.
+   * Time of the search, which writes the target.
    */
   uint64_t march_ns;
 } YoroTimes;
 
 /**
- * A way to make both eyes of a frame, which is also its index in arrays of two.
+ * A way to produce both eyes of a frame. The value is also its index in arrays of two.
  */
 typedef uint32_t YoroWay;
 /**
@@ -648,12 +648,12 @@ typedef uint32_t YoroWay;
  */
 #define YORO_WAY_SYNTHESIS 1
 /**
- * Something else, such as both eyes rendered because synthesis was not possible: the frame counts for no way.
+ * Another way, such as both eyes rendered because synthesis was not possible. The frame counts for neither way.
  */
 #define YORO_WAY_OTHER 2
 
 /**
- * A frame that was handed to the display.
+ * A frame that was submitted to the display.
  */
 typedef struct {
   /**
@@ -665,25 +665,25 @@ typedef struct {
    */
   YoroWay rendered;
   /**
-   * The time now, in nanoseconds of a monotonic clock.
+   * The current time of a monotonic clock, in nanoseconds.
    */
   int64_t now_ns;
   /**
-   * Refreshes of the display per second; 0 if unknown, or if the display did not set the pace of this frame, as when
-   * you waited for the GPU to measure it.
+   * Refreshes of the display per second. 0 if unknown, or if the display did not set the pace of this frame, for
+   * example because you waited for the GPU in order to measure it.
    */
   float refresh_hz;
   /**
-   * Milliseconds that a frame has taken; 0 if none are known by now. The GPU's time, if there is a timer; else the
-   * time from the beginning of the frame's work to the end of the GPU's, if you wait for that.
+   * Milliseconds that a frame took; 0 if none are known yet. This is the GPU time if there is a timer. Otherwise, if
+   * you wait for the GPU, it is the time from the beginning of the frame's work until the GPU has finished it.
    */
   float cost_ms;
   /**
-   * The frame that took cost_ms, as the number of frames ended since: 0 for this one. 63 at most.
+   * The frame that took cost_ms, as the number of frames that ended after it: 0 for this one, at most 63.
    */
   uint32_t cost_frames_ago;
   /**
-   * 1 if heat is known.
+   * 1 if `heat` is known.
    */
   uint32_t has_heat;
   /**
@@ -691,11 +691,11 @@ typedef struct {
    */
   float heat;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
-   * Where the sentences of errors go.
+   * Receives error messages.
    */
   YoroMessages messages;
 } YoroFrameEnd;
@@ -705,32 +705,32 @@ typedef struct {
  */
 typedef uint32_t YoroReason;
 /**
- * Nothing is measured yet in this scene: it is the way to begin with, or the one before.
+ * Nothing has been measured in this scene yet. The initial way, or the one chosen before, is kept.
  */
 #define YORO_REASON_UNMEASURED 0
 /**
- * It costs less.
+ * The chosen way costs less.
  */
 #define YORO_REASON_CHEAPER 1
 /**
- * It costs more, but too little for a change: it is the way before.
+ * The chosen way costs more, but too little more to justify a change. It is kept.
  */
 #define YORO_REASON_SIMILAR 2
 /**
- * It holds the display's rate, and the other way does not.
+ * The chosen way reaches the display's refresh rate, and the other does not.
  */
 #define YORO_REASON_HOLDS_RATE 3
 /**
- * Both ways hold the display's rate, which hides their costs, and nothing more is known: it is the way before.
+ * Both ways reach the display's refresh rate, which hides their costs, and nothing else is known. The way is kept.
  */
 #define YORO_REASON_BOTH_HOLD_RATE 4
 /**
- * One of the ways could not be measured: it is the way before.
+ * One of the ways could not be measured. The way is kept.
  */
 #define YORO_REASON_INCOMPARABLE 5
 
 /**
- * The way to render, and why.
+ * The way to render the next frame, and the reason.
  */
 typedef struct {
   /**
@@ -742,7 +742,7 @@ typedef struct {
    */
   YoroWay next;
   /**
-   * 1 while both ways are being measured. Keep resolution and quality meanwhile.
+   * 1 while both ways are being measured. Do not change resolution or quality during this time.
    */
   uint32_t is_measuring;
   /**
@@ -750,18 +750,19 @@ typedef struct {
    */
   YoroWay chosen;
   /**
-   * Why.
+   * The reason for that choice.
    */
   YoroReason reason;
   /**
-   * The compared times in milliseconds, by way; 0 if there was nothing to compare.
+   * The compared times in milliseconds, indexed by way; 0 if there was nothing to compare.
    */
   float cost_ms[2];
 } YoroChoice;
 
 /**
- * A history: an image of the synthesized eye that was really rendered, in strips of equally many rows, each in a frame
- * of its own. All but the last have as many rows: the image's divided by the number of strips, rounded up.
+ * A history: a rendered image of the synthesized eye, divided into strips of rows, each rendered in a frame of its
+ * own. All strips but the last have the same number of rows: the rows of the image divided by the number of strips,
+ * rounded up.
  */
 typedef struct {
   /**
@@ -773,12 +774,13 @@ typedef struct {
    */
   uint32_t count;
   /**
-   * From row 0 of the image on, the view of the whole image from which each was rendered: YoroViews' synthesized of
-   * that frame, in the size of the history, all of one size. NULL for a strip with nothing in it.
+   * For each strip, beginning with the one at row 0, the view of the whole image that it was rendered from:
+   * YoroViews' `synthesized` of that frame, with the size of the history. All views have the same size. NULL for an
+   * empty strip.
    */
   const YoroView *strips[YORO_MOST_STRIPS];
   /**
-   * Distance of the near plane, as of the eyes: in metres, more than 0.
+   * Distance of the near plane in metres, as for the eyes; more than 0.
    */
   float near_z;
   /**
@@ -794,20 +796,19 @@ typedef struct {
    */
   YoroRows rows;
   /**
-   * Where the sentences of errors go.
+   * Receives error messages.
    */
   YoroMessages messages;
 } YoroHistory;
 
 /**
  * The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record.
- * yoro_strips fills it. It can be copied and kept. It has the layout of the block `History` of the shader kit, in
- * std140.
+ * yoro_strips fills it. It can be copied and kept. It has the std140 layout of the shader kit's block `History`.
  */
 typedef struct {
   /**
-   * From a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth,
-   * column-major. Zeros for strips with nothing in them.
+   * Matrices that map a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth,
+   * column-major. Zeros for empty strips.
    */
   float to_history[YORO_MOST_STRIPS][16];
   /**
@@ -815,7 +816,7 @@ typedef struct {
    */
   uint32_t count;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved[3];
 } YoroStrips;
@@ -833,11 +834,11 @@ typedef struct {
    */
   YoroDepth depth;
   /**
-   * Distance of the near plane of both, in metres, more than 0.
+   * Distance of the near plane of both views in metres, more than 0.
    */
   float near_z;
   /**
-   * Distance of the far plane of both, in metres; may be INFINITY.
+   * Distance of the far plane of both views in metres; may be INFINITY.
    */
   float far_z;
   /**
@@ -845,12 +846,12 @@ typedef struct {
    */
   YoroRows rows;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
-   * The rendered view. Of this and the next one size, pose and angles are read, which may differ; the matrices are
-   * not.
+   * The rendered view. Of this view and the target, the size, pose and angles are read, which may differ. The
+   * matrices are ignored.
    */
   const YoroView *source;
   /**
@@ -858,7 +859,7 @@ typedef struct {
    */
   const YoroView *target;
   /**
-   * Where the sentences of errors go.
+   * Receives error messages.
    */
   YoroMessages messages;
 } YoroPoses;
@@ -867,7 +868,7 @@ typedef struct {
  * The mapping of pixels from a rendered view to one in any pose near it, for yoro_gl_synthesize_pose and
  * yoro_vk_record_pose. yoro_pose_warp fills it. It can be copied and kept.
  *
- * A surface that the target shows at the pixel (x, y), at the distance 1 / k along the axis of its eye, lies in the
+ * A surface that the target shows at the pixel (x, y), at the distance 1 / k along its viewing axis, lies in the
  * source at the homogeneous pixel homography * (x, y, 1) + k * epipole.
  */
 typedef struct {
@@ -892,29 +893,29 @@ typedef struct {
    */
   double homography[9];
   /**
-   * Place of the target's eye in the source image. Zeros in its place leave rotation alone, without depth.
+   * Position of the target's eye in the source image. Set it to zeros to apply the rotation only, without depth.
    */
   double epipole[3];
   /**
-   * The source's 1 / distance is `source_law[0] + source_law[1] * depth`.
+   * The source's depth buffer holds values for which 1 / distance is `source_law[0] + source_law[1] * depth`.
    */
   double source_law[2];
   /**
-   * The same of the target.
+   * The same for the target.
    */
   double target_law[2];
   /**
-   * Stored depth, in the source, of the nearest surface that the target may show.
+   * Depth value, in the source, of the nearest surface that the target may show.
    */
   double nearest;
   /**
-   * Stored depth of the source's far plane.
+   * Depth value of the source's far plane.
    */
   double far_depth;
 } YoroPoseWarp;
 
 /**
- * The bounds of a head's motion from the pose of a render to that of its display, and a view to render for it.
+ * The limits of a head's motion between the render and its display, and the view that is rendered.
  */
 typedef struct {
   /**
@@ -922,7 +923,7 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Largest angle of rotation, about any axis, in radians.
+   * Largest angle of rotation about any axis, in radians.
    */
   float rotation;
   /**
@@ -930,7 +931,7 @@ typedef struct {
    */
   float translation;
   /**
-   * Distance in metres from the eye from which on surfaces are to stay in the image.
+   * Distance from the eye, in metres, beyond which surfaces must stay in the image.
    */
   float nearest;
   /**
@@ -954,15 +955,15 @@ typedef struct {
    */
   YoroClip clip;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
-   * The view to widen: its size, pose and angles are read.
+   * The view to widen. Its size, pose and angles are read.
    */
   const YoroView *view;
   /**
-   * Where the sentences of errors go.
+   * Receives error messages.
    */
   YoroMessages messages;
 } YoroHeadMotion;
@@ -980,7 +981,7 @@ typedef struct {
    */
   uint32_t crop_x;
   /**
-   * First row of it, counted as YoroRows says.
+   * First row of the original view's image in the wider one, counted as YoroRows says.
    */
   uint32_t crop_y;
   /**
@@ -988,7 +989,7 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * The wider view: what to render.
+   * The wider view, which is the one to render.
    */
   YoroView view;
 } YoroGuardedView;
@@ -998,32 +999,32 @@ typedef struct {
  */
 typedef uint32_t YoroOutputFlags;
 /**
- * Writes depth of the synthesized eye to the target's depth attachment, in the source's encoding: for transparent
- * objects.
+ * Writes the depth of the synthesized eye to the target's depth attachment, in the source's encoding, so that
+ * transparent objects can be drawn afterwards.
  */
 #define YORO_OUTPUT_DEPTH 1
 /**
- * Source and target are both sRGB images: sampling decodes them, and writing encodes.
+ * Source and target are both sRGB images: sampling decodes them, and writing encodes them.
  */
 #define YORO_OUTPUT_SRGB 2
 
 /**
- * The treatment of GL state that a call changes.
+ * What happens to GL state that a call changes.
  */
 typedef uint32_t YoroGlState;
 /**
- * Some of it stays changed: for engines that set all state that they draw with. library.md lists each state.
+ * Some of it stays changed. For engines that set all the state they draw with. library.md lists each state.
  */
 #define YORO_GL_STATE_LEAVE 0
 /**
- * All of it is restored. A program that was deleted while it was current goes at the first call, as GL says; none is
- * current then.
+ * All of it is restored, except that a program that was deleted while it was current goes at the first call, as GL
+ * requires. None is current then.
  */
 #define YORO_GL_STATE_PRESERVE 1
 
 /**
- * The kind of source images, by their edges: the pixels that show more than one surface. Never give depth that was
- * averaged over samples: it belongs to no surface, and gives halos.
+ * The kind of source images, by how they represent edges: the pixels that show more than one surface. Never pass depth
+ * that was averaged over samples. It belongs to no surface, and causes halos.
  */
 typedef uint32_t YoroEdges;
 /**
@@ -1031,16 +1032,16 @@ typedef uint32_t YoroEdges;
  */
 #define YORO_EDGES_HARD 0
 /**
- * Colour resolved from several samples, depth of the nearest of them.
+ * Colour resolved from several samples, and depth of the nearest of them.
  */
 #define YORO_EDGES_NEAREST 1
 /**
- * Colour resolved from several samples, depth of the first of them. Drivers that resolve depth themselves leave this.
+ * Colour resolved from several samples, depth of the first of them: the result of drivers that resolve depth.
  */
 #define YORO_EDGES_SAMPLE 2
 /**
- * Colour resolved from 2 or 4 samples in the standard positions, depth of all of them and, if it still exists, the
- * colour of all of them. This gives the best picture.
+ * Colour resolved from 2 or 4 samples in the standard positions, depth of all samples and, if it still exists, colour
+ * of all samples. This gives the best image.
  */
 #define YORO_EDGES_MULTISAMPLE 3
 
@@ -1050,38 +1051,38 @@ typedef uint32_t YoroEdges;
 typedef void (*YoroGlProc)(void);
 
 /**
- * Returns an entry point by its name, NULL for one that does not exist: eglGetProcAddress, glfwGetProcAddress and
- * others. Cast those of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
+ * Returns an entry point by its name, or NULL if it does not exist: eglGetProcAddress, glfwGetProcAddress and others.
+ * Cast loaders of other types: (YoroGlLoader)SDL_GL_GetProcAddress.
  */
 typedef YoroGlProc (*YoroGlLoader)(const char *name);
 
 /**
- * Bits for the way in which sources lie in their textures.
+ * Bits that describe where sources lie in their textures.
  */
 typedef uint32_t YoroGlSourceFlags;
 /**
- * The rendered image is a part of larger textures, of any size up to theirs in each frame: dynamic resolution, or both
- * eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
+ * The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution, or
+ * both eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
  * sizes.
  */
 #define YORO_GL_SOURCE_PARTS 1
 /**
- * The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, of colour and of depth: the textures of GL_OVR_multiview,
- * and of OpenXR's swapchains for it. Not with YORO_EDGES_MULTISAMPLE.
+ * The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, in colour and in depth: for the textures of GL_OVR_multiview
+ * and the OpenXR swapchains used with it. Cannot be combined with YORO_EDGES_MULTISAMPLE.
  */
 #define YORO_GL_SOURCE_LAYERS 2
 
 /**
- * The kind of warp that a context is made for.
+ * The kind of warp that a context is created for.
  */
 typedef uint32_t YoroWarpKind;
 /**
- * Between two parallel eyes: YoroWarp.
+ * Between two parallel eyes, with a YoroWarp.
  */
 #define YORO_WARP_KIND_EYES 0
 /**
- * To a view in any pose near that of the rendered one: YoroPoseWarp. For YORO_EDGES_HARD, without a history. Where
- * both views are parallel eyes the other kind gives the same picture, and is faster.
+ * To a view in any pose near the rendered one, with a YoroPoseWarp. Only with YORO_EDGES_HARD and without a history.
+ * If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
  */
 #define YORO_WARP_KIND_POSE 1
 
@@ -1094,7 +1095,7 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Zero. Earlier versions chose a pipeline here; other numbers are refused.
+   * Must be 0. Earlier versions chose a pipeline here.
    */
   uint32_t reserved;
   /**
@@ -1102,16 +1103,16 @@ typedef struct {
    */
   YoroOutputFlags outputs;
   /**
-   * The treatment of GL state.
+   * What happens to GL state.
    */
   YoroGlState state;
   /**
-   * 1: each call checks textures, framebuffer and GL's error flag, which it clears. This waits for the driver: use
-   * it in development. 0: mistakes are undefined behaviour, as in GL.
+   * 1: each call checks the textures, the framebuffer and GL's error flag, which it clears. This waits for the
+   * driver, so use it in development only. 0: mistakes are undefined behaviour, as in GL.
    */
   uint32_t check;
   /**
-   * The kind of source images; 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
+   * The kind of source images. 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
    */
   YoroEdges edges;
   /**
@@ -1119,7 +1120,7 @@ typedef struct {
    */
   YoroGlLoader loader;
   /**
-   * The receiver of the sentences of errors, also in later calls.
+   * Receives error messages, including those of later calls.
    */
   YoroMessages messages;
   /**
@@ -1127,22 +1128,22 @@ typedef struct {
    */
   YoroGlSourceFlags sources;
   /**
-   * 1: times the passes for yoro_times, by GL_TIME_ELAPSED queries. No such query of the engine may be active then.
-   * 0: no times.
+   * 1: measures the passes for yoro_times with GL_TIME_ELAPSED queries. The engine must have no such query active
+   * during a call. 0: measures nothing.
    */
   uint32_t timed;
   /**
-   * 1: sources may have a history (YoroGlImages). 0: none has.
+   * 1: sources may have a history (see YoroGlImages). 0: none has.
    */
   uint32_t history;
   /**
-   * The kind of warp; 0 is YORO_WARP_KIND_EYES.
+   * The kind of warp. 0 is YORO_WARP_KIND_EYES.
    */
   YoroWarpKind warp_kind;
 } YoroGlInfo;
 
 /**
- * Textures and framebuffer of one synthesis.
+ * The textures and the framebuffer of one synthesis.
  */
 typedef struct {
   /**
@@ -1151,17 +1152,18 @@ typedef struct {
   uint32_t struct_size;
   /**
    * Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another
-   * target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Filters and
-   * sampler objects do not matter. Unless YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
+   * target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Texture filters
+   * and samplers have no effect. With edges other than YORO_EDGES_HARD it is the resolved image, with values between
+   * 0 and 1.
    */
   uint32_t color_texture;
   /**
    * Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as
-   * depth) or red float format. For YORO_EDGES_MULTISAMPLE a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+   * depth) or red float format. With YORO_EDGES_MULTISAMPLE, a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
    */
   uint32_t depth_texture;
   /**
-   * The framebuffer to draw into, 0 for the window's. Its first colour attachment is written, and with
+   * The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
    * YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
    */
   uint32_t framebuffer;
@@ -1174,13 +1176,13 @@ typedef struct {
    */
   uint32_t y;
   /**
-   * For YORO_EDGES_MULTISAMPLE, name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or 0 if
-   * it does not exist any more. Otherwise 0.
+   * With YORO_EDGES_MULTISAMPLE, the name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or
+   * 0 if it no longer exists. Otherwise 0.
    */
   uint32_t sample_color_texture;
   /**
-   * First column of the rendered part in its textures. This and the next three are for YORO_GL_SOURCE_PARTS,
-   * otherwise 0.
+   * First column of the rendered part in its textures. This field and the next three are for YORO_GL_SOURCE_PARTS,
+   * and otherwise 0.
    */
   uint32_t source_x;
   /**
@@ -1196,22 +1198,22 @@ typedef struct {
    */
   uint32_t image_height;
   /**
-   * The layer of both textures, for YORO_GL_SOURCE_LAYERS; otherwise 0. A layer to draw into is attached to the
-   * framebuffer, by glFramebufferTextureLayer.
+   * The layer of both textures for YORO_GL_SOURCE_LAYERS, otherwise 0. To draw into a layer, attach it to the
+   * framebuffer with glFramebufferTextureLayer.
    */
   uint32_t layer;
   /**
-   * What the other eye has seen, for contexts with `history`; otherwise 0. Name of a GL_TEXTURE_2D of any size with
-   * the colour of an image of the synthesized eye that was really rendered, in this frame or before: disocclusions
-   * show what is there. It holds what synthesis takes, so nothing that is drawn over both eyes afterwards.
+   * The history, for contexts with `history`; otherwise 0. The name of a GL_TEXTURE_2D of any size with the colour
+   * of a rendered image of the synthesized eye, from this frame or earlier ones. Disocclusions are filled from it.
+   * It must show only what the source shows, and nothing that is drawn over both eyes after synthesis.
    */
   uint32_t history_color_texture;
   /**
-   * The depth of that image, of its size, one value a pixel, with the planes and encoding of the source's.
+   * The depth of that image, of the same size, with one value per pixel and the planes and encoding of the source.
    */
   uint32_t history_depth_texture;
   /**
-   * The views of its strips; NULL: nothing is looked up.
+   * The views of the history's strips. NULL: the history is not used.
    */
   const YoroStrips *strips;
 } YoroGlImages;
@@ -1241,8 +1243,8 @@ uint32_t yoro_version(void);
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
  * @param eyes  The eyes.
- * @param views Filled in; the caller sets struct_size.
- * @pre Both pointers lead to structures of the size that they state.
+ * @param views Receives the views. The caller sets struct_size.
+ * @pre Both pointers point to structures of the sizes that they state.
  * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE or a YORO_ERROR_EYES_ code for eyes that are impossible or cannot be
  *         synthesized; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
@@ -1250,20 +1252,20 @@ YoroResult yoro_views_from_eyes(const YoroEyes *eyes,
                                 YoroViews *views);
 
 /**
- * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices have the world,
- * clip volume and units of the given ones. Poses are in metres.
+ * Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices use the same
+ * world, clip volume and units as the given ones. Poses are in metres.
  *
- * The translation of a view matrix is rounded to 32 bits: 1 km from the origin to 0.06 mm, a thousandth of the eyes'
- * distance. Displacements that this rounding makes are taken out; the eyes' distance keeps its error. In larger worlds
- * give matrices relative to the head: subtract its place from both eyes' places, in 64 bits, before making the
- * matrices.
+ * The translation of a view matrix is rounded to 32 bits: at 1 km from the origin to 0.06 mm, a thousandth of the
+ * distance between the eyes. Displacements caused by this rounding are removed, but the distance between the eyes
+ * keeps its error. In larger worlds give matrices relative to the head: subtract its position from both eyes'
+ * positions, in 64 bits, before computing the matrices.
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
  * @param matrices The eyes.
- * @param views    Filled in; the caller sets struct_size.
- * @pre Both pointers lead to structures of the size that they state.
- * @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as
+ * @param views    Receives the views. The caller sets struct_size.
+ * @pre Both pointers point to structures of the sizes that they state.
+ * @return YORO_ERROR_MATRIX for matrices that are not rigid views or perspective projections; otherwise as for
  *         yoro_views_from_eyes.
  */
 YoroResult yoro_views_from_matrices(const YoroMatrices *matrices,
@@ -1275,7 +1277,7 @@ YoroResult yoro_views_from_matrices(const YoroMatrices *matrices,
  * Call it on the thread that may use the context; for OpenGL with the GL context current. It changes no GL state.
  *
  * @param context      The context.
- * @param capabilities Filled in; the caller sets struct_size.
+ * @param capabilities Receives the limits. The caller sets struct_size.
  * @pre context is alive.
  * @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
  */
@@ -1283,16 +1285,17 @@ YoroResult yoro_capabilities(YoroContext *context,
                              YoroCapabilities *capabilities);
 
 /**
- * Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait.
+ * Returns the times of the passes in an earlier frame. Call it once a frame, before the synthesis; it does not wait
+ * for the GPU.
  *
- * OpenGL: of a frame some frames ago, if `timed` of YoroGlInfo is 1 and the driver has timer queries that can be
- * trusted; those of CPU rasterizers cannot. Vulkan: of the frame that was recorded `timed_frames` of YoroVkInfo calls
- * of yoro_vk_record ago, on queue families with timestamps.
+ * OpenGL: the times are those of a frame a few frames ago, if `timed` of YoroGlInfo is 1 and the driver has reliable
+ * timer queries. Those of CPU rasterizers are not. Vulkan: the times are those of the frame recorded `timed_frames`
+ * (of YoroVkInfo) calls of yoro_vk_record ago, on queue families with timestamps.
  *
- * Thread and preconditions are those of yoro_capabilities.
+ * Thread and preconditions are as for yoro_capabilities.
  *
  * @param context The context.
- * @param times   Filled in; the caller sets struct_size.
+ * @param times   Receives the times. The caller sets struct_size.
  * @pre For Vulkan the commands of that frame have been executed.
  * @return YORO_ERROR_DEVICE_LOST, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE, YORO_ERROR_BUSY.
  */
@@ -1300,11 +1303,11 @@ YoroResult yoro_times(YoroContext *context,
                       YoroTimes *times);
 
 /**
- * Destroys a context and its objects on the GPU. NULL is allowed, and does nothing.
+ * Destroys a context and its objects on the GPU. Does nothing if the context is NULL.
  *
  * Call it on the thread that may use the context. For OpenGL the GL context must be current. For Vulkan the device
  * must have executed all recorded commands. Destroy the YoroContext before the GL context or device. Deleted GL
- * objects that were bound are not bound any more; other GL state stays.
+ * objects are unbound; other GL state is unchanged.
  *
  * @param context The context, or NULL.
  * @pre context is alive and no other thread uses it.
@@ -1317,28 +1320,32 @@ YoroResult yoro_destroy(YoroContext *context);
  *
  * Call it from any thread.
  *
- * @param first   The way to begin with, which stays if nothing can be measured: YORO_WAY_TWO_VIEWS or
- * YORO_WAY_SYNTHESIS. @param chooser Receives the chooser; NULL after an error. @pre chooser can be written. @return
- * YORO_ERROR_VALUE, YORO_ERROR_NULL.
+ * @param first   The initial way, which is kept if nothing can be measured: YORO_WAY_TWO_VIEWS or YORO_WAY_SYNTHESIS.
+ * @param chooser Receives the chooser, or NULL after an error. Destroy it with yoro_chooser_destroy.
+ * @pre chooser can be written to.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_NULL.
  */
 YoroResult yoro_chooser_create(YoroWay first,
                                YoroChooser **chooser);
 
 /**
- * Takes a frame that was handed to the display, and says how to render the next one. It allocates nothing. The first
- * frame is rendered in the way that yoro_chooser_create was given.
+ * Takes a frame that was submitted to the display, and returns how to render the next one. It allocates nothing.
+ * Render the first frame in the way that yoro_chooser_create was given.
  *
- * @param chooser The chooser. @param frame   The frame. @param choice  Filled in; the caller sets struct_size. @pre
- * chooser is alive, and no other thread uses it. The others lead to structures of the size that they state. @return
- * YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers that are
- * not finite: such a frame is not counted.
+ * @param chooser The chooser.
+ * @param frame   The frame.
+ * @param choice  Receives the choice. The caller sets struct_size.
+ * @pre chooser is alive, and no other thread uses it. The other pointers point to structures of the sizes that they
+ *      state.
+ * @return YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE; YORO_ERROR_VALUE for an unknown way, negative numbers and numbers
+ *         that are not finite: such a frame is not counted.
  */
 YoroResult yoro_chooser_end_frame(YoroChooser *chooser,
                                   const YoroFrameEnd *frame,
                                   YoroChoice *choice);
 
 /**
- * Has both ways measured again: there is another scene, another place in it, or another resolution.
+ * Requests a new measurement of both ways, after a change of the scene, the place in it, or the resolution.
  *
  * @param chooser The chooser.
  * @pre chooser is alive, and no other thread uses it.
@@ -1347,7 +1354,7 @@ YoroResult yoro_chooser_end_frame(YoroChooser *chooser,
 YoroResult yoro_chooser_scene_changed(YoroChooser *chooser);
 
 /**
- * Destroys a chooser. NULL is allowed, and does nothing.
+ * Destroys a chooser. Does nothing if it is NULL.
  *
  * @param chooser The chooser, or NULL.
  * @pre chooser is alive, and no other thread uses it.
@@ -1360,9 +1367,9 @@ void yoro_chooser_destroy(YoroChooser *chooser);
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
  * @param history     The strips.
- * @param synthesized The image to synthesize: YoroViews' synthesized of this frame.
- * @param strips      Filled in.
- * @pre The pointers lead to structures, and `history` to one of the size that it states.
+ * @param synthesized The image to synthesize: YoroViews' `synthesized` of this frame.
+ * @param strips      Receives the relation.
+ * @pre The pointers point to structures, `history` to one of the size that it states.
  * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_strips(const YoroHistory *history, const YoroView *synthesized, YoroStrips *strips);
@@ -1372,9 +1379,11 @@ YoroResult yoro_strips(const YoroHistory *history, const YoroView *synthesized, 
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
- * @param poses The views. @param warp  Filled in. @pre The pointers lead to structures, and `poses` to one of the size
- * that it states. @return YORO_ERROR_VALUE for views that are impossible, or of which the target sees further than 80
- * degrees from the source's axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ * @param poses The views.
+ * @param warp  Receives the mapping.
+ * @pre The pointers point to structures, `poses` to one of the size that it states.
+ * @return YORO_ERROR_VALUE for impossible views, and if the target sees more than 80 degrees away from the source's
+ *         axis; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_pose_warp(const YoroPoses *poses,
                           YoroPoseWarp *warp);
@@ -1384,22 +1393,24 @@ YoroResult yoro_pose_warp(const YoroPoses *poses,
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
  *
- * @param motion  The bounds and the view. @param guarded Filled in; the caller sets struct_size. @pre The pointers
- * lead to structures of the sizes that they state. @return YORO_ERROR_VALUE for a view that is impossible or would
- * have to see further than 80 degrees to a side; YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ * @param motion  The limits and the view.
+ * @param guarded Receives the wider view. The caller sets struct_size.
+ * @pre The pointers point to structures of the sizes that they state.
+ * @return YORO_ERROR_VALUE for an impossible view, or one that would have to see more than 80 degrees to a side;
+ *         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_guarded_view(const YoroHeadMotion *motion,
                              YoroGuardedView *guarded);
 
 /**
  * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at
- * start, not in a frame.
+ * startup, not in a frame.
  *
- * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says; the error flag
- * stays.
+ * Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated; the error flag is
+ * left as it is.
  *
  * @param info    The options.
- * @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+ * @param context Receives the new context, or NULL after an error. Destroy it with yoro_destroy.
  * @pre The GL context is current, and lives as long as the YoroContext.
  * @return YORO_ERROR_NO_CONTEXT, YORO_ERROR_UNSUPPORTED, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
  *         YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
@@ -1408,15 +1419,15 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes the buffers of a context will have on the GPU, of its edges and a frame's sizes alone;
- * drivers add padding. yoro_capabilities says it of a context that exists. Not for YORO_WARP_KIND_POSE: there they are
- * 16 bytes for each 16 x 8 pixels of the source, and of the target.
+ * Returns how many bytes of GPU memory the buffers of a context will take, computed from its edges and the sizes of a
+ * frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
+ * buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
  *
- * Call it from any thread. Neither loader nor GL context is needed.
+ * Call it from any thread. It needs neither a loader nor a GL context.
  *
  * @param info  The options.
- * @param warp  The warp of a frame of the largest sizes.
- * @param bytes Receives the number.
+ * @param warp  The warp of a frame of the largest size.
+ * @param bytes Receives the number of bytes.
  * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_gl_buffer_bytes(const YoroGlInfo *info,
@@ -1424,10 +1435,10 @@ YoroResult yoro_gl_buffer_bytes(const YoroGlInfo *info,
                                 uint64_t *bytes);
 
 /**
- * Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize does not. Does nothing if the
- * sizes are as before.
+ * Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize need not. Does nothing if the
+ * sizes have not changed.
  *
- * Thread, GL state and results are those of yoro_gl_synthesize.
+ * Thread, GL state and results are as for yoro_gl_synthesize.
  *
  * @param context The context.
  * @param warp    The warp of a frame of these sizes.
@@ -1437,7 +1448,7 @@ YoroResult yoro_gl_prepare(YoroContext *context,
                            const YoroWarp *warp);
 
 /**
- * Does what yoro_gl_prepare does in a context of YORO_WARP_KIND_POSE.
+ * Does what yoro_gl_prepare does, in a context of YORO_WARP_KIND_POSE.
  *
  * @param context The context.
  * @param warp    The warp of a frame of these sizes.
@@ -1446,31 +1457,34 @@ YoroResult yoro_gl_prepare(YoroContext *context,
 YoroResult yoro_gl_prepare_pose(YoroContext *context, const YoroPoseWarp *warp);
 
 /**
- * Synthesizes the other eye into a rectangle of warp's target size, and overwrites all of it. Call it after the opaque
- * objects of the rendered eye, and before transparent objects and effects that are drawn for each eye.
+ * Synthesizes the other eye into a rectangle of the warp's target size, and overwrites all of it. Call it after the
+ * rendered eye's opaque objects, and before transparent objects and effects that are drawn for each eye.
  *
- * Call it on the thread on which the GL context is current. GL state is treated as YoroGlInfo says. While sizes stay
+ * Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated. While sizes stay
  * the same it allocates and compiles nothing, and does not wait for the GPU.
  *
- * @param context The context. @param warp    The warp of YoroViews. @param images  The images to read and the place to
- * draw. @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says.
- * Transform feedback and conditional rendering are not active. @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE,
- * YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT; YORO_ERROR_API,
- * YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ * @param context The context.
+ * @param warp    The warp of YoroViews.
+ * @param images  The images to read and where to draw.
+ * @pre The GL context is current. The textures and the framebuffer belong to it and are as YoroGlImages says.
+ *      Transform feedback and conditional rendering are not active.
+ * @return YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DRIVER; with `check` also
+ *         YORO_ERROR_FORMAT and YORO_ERROR_NO_CONTEXT; YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL,
+ *         YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_gl_synthesize(YoroContext *context,
                               const YoroWarp *warp,
                               const YoroGlImages *images);
 
 /**
- * Synthesizes a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE. All else is as in
+ * Synthesizes a view in any pose near the rendered one, in a context of YORO_WARP_KIND_POSE. Otherwise it is like
  * yoro_gl_synthesize.
  *
  * @param context The context.
  * @param warp    The warp of yoro_pose_warp.
- * @param images  The images to read and the place to draw.
- * @pre Those of yoro_gl_synthesize.
- * @return Those of yoro_gl_synthesize.
+ * @param images  The images to read and where to draw.
+ * @pre As for yoro_gl_synthesize.
+ * @return As for yoro_gl_synthesize.
  */
 YoroResult yoro_gl_synthesize_pose(YoroContext *context,
                                    const YoroPoseWarp *warp,
@@ -1490,7 +1504,7 @@ YoroResult yoro_gl_synthesize_pose(YoroContext *context,
 #define YORO_VULKAN_H
 
 /**
- * vkGetInstanceProcAddr of the Vulkan loader, or of a layer in its place.
+ * vkGetInstanceProcAddr of the Vulkan loader, or of a layer that replaces it.
  */
 typedef void (*(*YoroVkLoader)(VkInstance instance, const char *name))(void);
 
@@ -1503,7 +1517,7 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Family of the queue that executes the command buffers; it has graphics.
+   * Family of the queue that executes the command buffers; it must support graphics.
    */
   uint32_t queue_family;
   /**
@@ -1523,17 +1537,17 @@ typedef struct {
    */
   VkDevice device;
   /**
-   * 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled; it is then used. 0:
+   * 1 if the feature dynamicRendering of Vulkan 1.3 or VK_KHR_dynamic_rendering is enabled, which is then used. 0:
    * render passes and framebuffers are used, with the same result.
    */
   uint32_t dynamic_rendering;
   /**
-   * Format of the targets' colour, any that the device can render to. Choose an sRGB format if the source is sampled
-   * as sRGB.
+   * Format of the targets' colour: any format that the device can render to. Choose an sRGB format if the source is
+   * sampled as sRGB.
    */
   VkFormat color_format;
   /**
-   * Format of the targets' depth, which is written in the source's encoding; VK_FORMAT_UNDEFINED for no depth.
+   * Format of the targets' depth, which is written in the source's encoding. VK_FORMAT_UNDEFINED for no depth.
    */
   VkFormat depth_format;
   /**
@@ -1553,15 +1567,15 @@ typedef struct {
    */
   uint32_t max_target_height;
   /**
-   * The kind of source images; 0 is YORO_EDGES_HARD.
+   * The kind of source images. 0 is YORO_EDGES_HARD.
    */
   YoroEdges edges;
   /**
-   * For YORO_EDGES_MULTISAMPLE, samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
+   * With YORO_EDGES_MULTISAMPLE, the number of samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
    */
   uint32_t samples;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
@@ -1569,24 +1583,24 @@ typedef struct {
    */
   VkPipelineCache pipeline_cache;
   /**
-   * The receiver of the sentences of errors, also in later calls.
+   * Receives error messages, including those of later calls.
    */
   YoroMessages messages;
   /**
-   * For yoro_times: the number of frames after which it returns the times of one, at least the frames in flight. 0
-   * for no times.
+   * For yoro_times: the number of frames after which the times of a frame are returned, at least the number of
+   * frames in flight. 0: nothing is measured.
    */
   uint32_t timed_frames;
   /**
-   * 1: sources may have a history (YoroVkSource). 0: none has.
+   * 1: sources may have a history (see YoroVkSource). 0: none has.
    */
   uint32_t history;
   /**
-   * The kind of warp; 0 is YORO_WARP_KIND_EYES.
+   * The kind of warp. 0 is YORO_WARP_KIND_EYES.
    */
   YoroWarpKind warp_kind;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved_too;
 } YoroVkInfo;
@@ -1596,15 +1610,16 @@ typedef struct {
  */
 typedef struct {
   /**
-   * Its layout.
+   * The layout of the image.
    */
   VkImageLayout layout;
   /**
-   * The stages that use it. 0: nothing is waited for before, or nothing waits afterwards, as where a semaphore does.
+   * The stages that use the image. 0: nothing is waited for before the call, or nothing waits after it, for example
+   * because a semaphore does this.
    */
   VkPipelineStageFlags stages;
   /**
-   * Their kinds of access; 0 without stages.
+   * The kinds of access of these stages; 0 if there are none.
    */
   VkAccessFlags access;
 } YoroVkState;
@@ -1614,8 +1629,8 @@ typedef struct {
  */
 typedef struct {
   /**
-   * The image. Its usage has VK_IMAGE_USAGE_SAMPLED_BIT for a source, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or
-   * VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
+   * The image. Its usage must include VK_IMAGE_USAGE_SAMPLED_BIT for a source, and
+   * VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT or VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT for a target.
    */
   VkImage image;
   /**
@@ -1623,15 +1638,15 @@ typedef struct {
    */
   VkFormat format;
   /**
-   * The layer of the image, for example the eye's; 0 for an image with one layer.
+   * The layer of the image, for example that of the eye. 0 for an image with one layer.
    */
   uint32_t layer;
   /**
-   * Its use before yoro_vk_record: its layout then, and the stages to wait for.
+   * Its use before yoro_vk_record: its layout at that time, and the stages to wait for.
    */
   YoroVkState before;
   /**
-   * Its use afterwards, for which it is made ready.
+   * Its use after yoro_vk_record, for which it is made ready.
    */
   YoroVkState after;
 } YoroVkImage;
@@ -1653,26 +1668,26 @@ typedef struct {
    */
   uint32_t height;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
-   * Colour of the rendered eye, in any format that can be filtered. All four channels are carried over. Unless
-   * YORO_EDGES_HARD is chosen it is resolved, with values between 0 and 1.
+   * Colour of the rendered eye, in any filterable format. All four channels are carried over. With edges other than
+   * YORO_EDGES_HARD this is the resolved image, with values between 0 and 1.
    */
   YoroVkImage color;
   /**
    * Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or
-   * R32_SFLOAT. For YORO_EDGES_MULTISAMPLE it has YoroVkInfo's samples.
+   * R32_SFLOAT. With YORO_EDGES_MULTISAMPLE it has as many samples as YoroVkInfo says.
    */
   YoroVkImage depth;
   /**
-   * For YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
-   * VK_NULL_HANDLE if it does not exist any more, and for all other edges.
+   * With YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
+   * VK_NULL_HANDLE if that no longer exists, and for all other edges.
    */
   YoroVkImage sample_color;
   /**
-   * Width of the history's images in pixels, any; 0 without a history.
+   * Width of the history's images in pixels, which may be any; 0 without a history.
    */
   uint32_t history_width;
   /**
@@ -1680,13 +1695,13 @@ typedef struct {
    */
   uint32_t history_height;
   /**
-   * What the other eye has seen, for contexts with `history`: colour of an image of the synthesized eye that was
-   * really rendered, in this frame or before; disocclusions show what is there. It holds what synthesis takes, so
-   * nothing that is drawn over both eyes afterwards. Its image is VK_NULL_HANDLE without a history.
+   * The history, for contexts with `history`: the colour of a rendered image of the synthesized eye, from this frame
+   * or earlier ones. Disocclusions are filled from it. It must show only what the source shows, and nothing that is
+   * drawn over both eyes after synthesis. Its image is VK_NULL_HANDLE without a history.
    */
   YoroVkImage history_color;
   /**
-   * The depth of that image, one value a pixel, with the planes and encoding of the source's.
+   * The depth of that image, with one value per pixel and the planes and encoding of the source.
    */
   YoroVkImage history_depth;
 } YoroVkSource;
@@ -1713,7 +1728,7 @@ typedef struct {
    */
   uint32_t height;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
@@ -1736,19 +1751,19 @@ typedef uint32_t YoroVkTargetId;
  */
 typedef struct {
   /**
-   * Its use before yoro_vk_record: its layout then, and the stages to wait for.
+   * Its use before yoro_vk_record: its layout at that time, and the stages to wait for.
    */
   YoroVkState before;
   /**
-   * Its use afterwards, for which it is made ready.
+   * Its use after yoro_vk_record, for which it is made ready.
    */
   YoroVkState after;
 } YoroVkUse;
 
 /**
- * The uses of all images in one call, for engines whose images come from other passes and go to others in each frame.
- * Those of images that were not registered are ignored. A source is still sampled in the layout that it was registered
- * for: if its registered layout before is not one of those that can be sampled,
+ * The uses of all images in one call, for engines whose images come from different passes and go to different ones in
+ * each frame. Those of images that were not registered are ignored. A source is still sampled in the layout that it
+ * was registered with: the registered `before` layout if it can be sampled, otherwise
  * VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
  */
 typedef struct {
@@ -1757,41 +1772,41 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
-   * Of the source's colour.
+   * The use of the source's colour.
    */
   YoroVkUse source_color;
   /**
-   * Of the source's depth.
+   * The use of the source's depth.
    */
   YoroVkUse source_depth;
   /**
-   * Of the source's colour of samples.
+   * The use of the source's multisampled colour.
    */
   YoroVkUse source_sample_color;
   /**
-   * Of the target's colour.
+   * The use of the target's colour.
    */
   YoroVkUse target_color;
   /**
-   * Of the target's depth.
+   * The use of the target's depth.
    */
   YoroVkUse target_depth;
   /**
-   * Of the history's colour.
+   * The use of the history's colour.
    */
   YoroVkUse history_color;
   /**
-   * Of the history's depth.
+   * The use of the history's depth.
    */
   YoroVkUse history_depth;
 } YoroVkUses;
 
 /**
- * The images and places of one synthesis.
+ * The images of one synthesis, and the rectangles in them.
  */
 typedef struct {
   /**
@@ -1807,7 +1822,7 @@ typedef struct {
    */
   uint32_t source_x;
   /**
-   * First row of the rendered part; row 0 is the first in memory.
+   * First row of the rendered part. Row 0 is the first in memory.
    */
   uint32_t source_y;
   /**
@@ -1823,15 +1838,15 @@ typedef struct {
    */
   uint32_t target_y;
   /**
-   * Zero.
+   * Must be 0.
    */
   uint32_t reserved;
   /**
-   * The uses of the images around this call, in place of those of their registration; may be NULL.
+   * The uses of the images around this call, which replace those given at registration. May be NULL.
    */
   const YoroVkUses *uses;
   /**
-   * The views of the history's strips, for sources with one; NULL: nothing is looked up.
+   * The views of the history's strips, for sources with a history. NULL: the history is not used.
    */
   const YoroStrips *strips;
 } YoroVkFrame;
@@ -1841,12 +1856,12 @@ extern "C" {
 #endif
 
 /**
- * Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at start, not in a frame.
+ * Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at startup, not in a frame.
  *
  * Call it from any thread.
  *
  * @param info    The options.
- * @param context Receives the new context, NULL after an error. Destroy it with yoro_destroy.
+ * @param context Receives the new context, or NULL after an error. Destroy it with yoro_destroy.
  * @pre The handles are valid, belong together, and live until the YoroContext is destroyed.
  * @return YORO_ERROR_NO_CONTEXT for a loader without Vulkan's commands, YORO_ERROR_UNSUPPORTED, YORO_ERROR_FORMAT,
  *         YORO_ERROR_TOO_LARGE, YORO_ERROR_MEMORY, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_VALUE,
@@ -1856,20 +1871,20 @@ YoroResult yoro_vk_create(const YoroVkInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes the buffers of a context will have on the GPU, of the sizes, formats and edges of its options
- * alone; drivers add padding. yoro_capabilities says it of a context that exists.
+ * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes, formats and edges
+ * of its options. Drivers add padding. For an existing context, call yoro_capabilities.
  *
- * Call it from any thread. No handle of the options is needed.
+ * Call it from any thread. It needs none of the handles in the options.
  *
  * @param info  The options.
- * @param bytes Receives the number.
+ * @param bytes Receives the number of bytes.
  * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
 YoroResult yoro_vk_buffer_bytes(const YoroVkInfo *info,
                                 uint64_t *bytes);
 
 /**
- * Creates views and descriptors of images to read. Call it once for each set of images that you render to.
+ * Creates views and descriptors for images to read. Call it once for each set of images that you render to.
  *
  * Call it on the thread that may use the context.
  *
@@ -1885,9 +1900,9 @@ YoroResult yoro_vk_register_source(YoroContext *context,
                                    YoroVkSourceId *id);
 
 /**
- * Creates views of images to write. Call it once for each image of a swapchain.
+ * Creates views for images to write. Call it once for each image of a swapchain.
  *
- * Thread, preconditions and results are those of yoro_vk_register_source.
+ * Thread, preconditions and results are as for yoro_vk_register_source.
  *
  * @param context The context.
  * @param target  The images.
@@ -1896,7 +1911,7 @@ YoroResult yoro_vk_register_source(YoroContext *context,
 YoroResult yoro_vk_register_target(YoroContext *context, const YoroVkTarget *target, YoroVkTargetId *id);
 
 /**
- * Releases the views and descriptors of images to read. Ignores an id that is not registered.
+ * Releases the views and descriptors of images to read. Does nothing if the id is not registered.
  *
  * Call it on the thread that may use the context.
  *
@@ -1908,7 +1923,7 @@ YoroResult yoro_vk_register_target(YoroContext *context, const YoroVkTarget *tar
 YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
 
 /**
- * Releases the views of images to write. Thread and results are those of yoro_vk_release_source.
+ * Releases the views of images to write. Thread and results are as for yoro_vk_release_source.
  *
  * @param context The context.
  * @param id      The id from yoro_vk_register_target.
@@ -1917,23 +1932,26 @@ YoroResult yoro_vk_release_source(YoroContext *context, YoroVkSourceId id);
 YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
 
 /**
- * Records the synthesis of the other eye into a rectangle of warp's target size, all of which is overwritten:
- * barriers, and three draws with YORO_EDGES_HARD, four with other edges. Record it after the opaque objects of the
- * rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
+ * Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it. Records
+ * barriers and three draws with YORO_EDGES_HARD, four with other edges. Call it after recording the opaque objects of
+ * the rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
  * submits nothing, and does not wait.
  *
- * Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Brings
- * images from their state `before` to their state `after`.
+ * Changes the command buffer's graphics pipeline, descriptor set 0, push constants, viewport and scissor. Transitions
+ * the images from their state `before` to their state `after`.
  *
  * Call it on the thread that may use the context and that records the command buffer.
  *
- * @param context  The context. @param commands A command buffer of the device. @param warp     The warp of YoroViews,
- * with rows as they lie in the images. @param frame    The images to read and the place to draw. @pre The command
- * buffer is in the recording state, outside of render passes and dynamic rendering, and is submitted to the queue
- * family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering is not active.
+ * @param context  The context.
+ * @param commands A command buffer of the device.
+ * @param warp     The warp of YoroViews, with rows ordered as in the images.
+ * @param frame    The images to read and where to draw.
+ * @pre The command buffer is in the recording state, outside render passes and dynamic rendering, and is submitted to
+ *      the queue family of YoroVkInfo. The images are in the state `before` when it is executed. Conditional rendering
+ *      is not active.
  * @return YORO_ERROR_NOT_REGISTERED, YORO_ERROR_TOO_LARGE for sizes beyond those of YoroVkInfo or rectangles beyond
- * their images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE. After an
- * error nothing was recorded.
+ *         their images, YORO_ERROR_VALUE, YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
+ *         After an error nothing has been recorded.
  */
 YoroResult yoro_vk_record(YoroContext *context,
                           VkCommandBuffer commands,
@@ -1941,15 +1959,15 @@ YoroResult yoro_vk_record(YoroContext *context,
                           const YoroVkFrame *frame);
 
 /**
- * Records the synthesis of a view in any pose near that of the rendered one, in a context of YORO_WARP_KIND_POSE:
- * barriers and three draws. All else is as in yoro_vk_record.
+ * Records the synthesis of a view in any pose near the rendered one, in a context of YORO_WARP_KIND_POSE: barriers and
+ * three draws. Otherwise it is like yoro_vk_record.
  *
  * @param context  The context.
  * @param commands A command buffer of the device.
- * @param warp     The warp of yoro_pose_warp, with rows as they lie in the images.
- * @param frame    The images to read and the place to draw.
- * @pre Those of yoro_vk_record.
- * @return Those of yoro_vk_record.
+ * @param warp     The warp of yoro_pose_warp, with rows ordered as in the images.
+ * @param frame    The images to read and where to draw.
+ * @pre As for yoro_vk_record.
+ * @return As for yoro_vk_record.
  */
 YoroResult yoro_vk_record_pose(YoroContext *context,
                                VkCommandBuffer commands,

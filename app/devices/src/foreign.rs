@@ -57,7 +57,7 @@ impl<'a> Foreign<'a> {
     }
 
     /// True if a line is for [`Reading`]: a line of the runtime about this application, or a damaged line.
-    pub fn is_its(&mut self, line: &str) -> Result<bool, DeviceError> {
+    pub fn accepts(&mut self, line: &str) -> Result<bool, DeviceError> {
         let entry = match log::parse(line) {
             Kind::Entry(entry) => entry,
             Kind::Mark | Kind::Damaged => return Ok(true),
@@ -70,11 +70,11 @@ impl<'a> Foreign<'a> {
             self.processes = unless_lost(phone::processes(self.device, &self.subject.process))?
                 .unwrap_or(std::mem::take(&mut self.processes));
         }
-        let is_its = self.processes.contains(&pid);
-        if !is_its {
+        let is_own = self.processes.contains(&pid);
+        if !is_own {
             self.strangers.insert(pid);
         }
-        Ok(is_its)
+        Ok(is_own)
     }
 
     /// Adds the battery's values to a sample, and records their faults in `reading`.
@@ -91,7 +91,7 @@ impl<'a> Foreign<'a> {
             status: battery.status,
             ..Line::default()
         };
-        reading.judge(&line, sample.time_s);
+        reading.count_anomalies(&line, sample.time_s);
         sample.current_raw = battery.current_raw;
         sample.current_ma = current_ma;
         sample.voltage_mv = battery.voltage_mv.filter(|voltage| *voltage >= phone::LEAST_MILLIVOLTS);

@@ -428,9 +428,9 @@ impl Context {
             None => [glow::DEPTH, glow::COLOR, glow::COLOR],
         };
         let ([x, y], [w, h]) = (to.origin.map(|n| n as i32), to.size.map(|n| n as i32));
-        let given_up = &attachments[usize::from(!depth)..=colors];
+        let discarded = &attachments[usize::from(!depth)..=colors];
         // SAFETY: attachments that every framebuffer may have, and a rectangle whose size is not negative.
-        unsafe { self.raw().invalidate_sub_framebuffer(glow::FRAMEBUFFER, given_up, x, y, w, h) }
+        unsafe { self.raw().invalidate_sub_framebuffer(glow::FRAMEBUFFER, discarded, x, y, w, h) }
     }
 
     /// Reads a rectangle of colour as RGBA8, rows from the bottom. sRGB colour stays encoded. Waits for the GPU.

@@ -205,7 +205,7 @@ impl MultisampleTarget {
     /// Discards the contents of colour, depth or both, so that a tile-based GPU does not write them to memory.
     pub fn discard(&self, color: bool, depth: bool) {
         let attachments = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT];
-        let given_up = match (color, depth) {
+        let discarded = match (color, depth) {
             (true, true) => &attachments[..],
             (true, false) => &attachments[..1],
             (false, true) => &attachments[1..],
@@ -215,7 +215,7 @@ impl MultisampleTarget {
         // SAFETY: this target's framebuffer has these attachments.
         unsafe {
             self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
-            self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, given_up);
+            self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, discarded);
         }
     }
 

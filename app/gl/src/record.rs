@@ -252,9 +252,9 @@ impl Context {
         });
     }
 
-    pub(crate) fn record_discard(&self, framebuffer: glow::Framebuffer, given_up: [bool; 2]) {
+    pub(crate) fn record_discard(&self, framebuffer: glow::Framebuffer, discarded: [bool; 2]) {
         self.recorded(|recorder| {
-            recorder.push(Command::Discard(self.target(Some(framebuffer)), given_up), None);
+            recorder.push(Command::Discard(self.target(Some(framebuffer)), discarded), None);
         });
     }
 

@@ -183,9 +183,9 @@ impl TextureSet {
             Recipe::Gloss { diffuse, diffuse_factor, gloss, specular_factor } => {
                 let diffuse = diffuse.as_ref().map_or(Ok(None), |d| self.decode(d, edge))?;
                 let factors = [diffuse_factor, specular_factor].map(|f| Vec3::from(f.map(f32::from_bits)));
-                self.decode(gloss, edge)?.map(|gloss| plain(matt(diffuse, &gloss, factors)))
+                self.decode(gloss, edge)?.map(|gloss| plain(gloss_diffuse(diffuse, &gloss, factors)))
             }
-            Recipe::Specular(source) => self.decode(source, edge)?.map(glossy),
+            Recipe::Specular(source) => self.decode(source, edge)?.map(gloss_specular),
         })
     }
 
@@ -455,7 +455,7 @@ pub(super) fn diffuse_of_gloss(diffuse: Vec3, specular: Vec3) -> Vec3 {
 }
 
 /// Returns the diffuse colour of a specular-glossiness material, pixel by pixel, with the factors of both colours.
-fn matt(
+fn gloss_diffuse(
     diffuse: Option<RgbaImage>,
     gloss: &RgbaImage,
     [diffuse_factor, specular_factor]: [Vec3; 2],
@@ -477,7 +477,7 @@ fn matt(
 }
 
 /// Returns the specular colour of a specular-glossiness picture, made opaque, and 1 minus the mean of its glossiness.
-fn glossy(mut image: RgbaImage) -> (RgbaImage, f32) {
+fn gloss_specular(mut image: RgbaImage) -> (RgbaImage, f32) {
     let gloss =
         image.pixels().map(|p| p[3] as f64).sum::<f64>() / (image.pixels().len().max(1) as f64 * 255.0);
     image.pixels_mut().for_each(|p| p[3] = 255);

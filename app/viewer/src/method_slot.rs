@@ -11,8 +11,8 @@ use yoro_gl::{Context, GlError};
 use yoro_protocol::Settings;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
-    self, Auto, Chosen, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, StereoOptions,
-    Substitute,
+    self, Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,
+    StereoOptions, Substitute,
 };
 
 /// The stereo method in use. It is created once a scene is loaded.
@@ -29,7 +29,7 @@ pub(crate) struct MethodSlot {
     /// The reason why neither eye of the last frame could be synthesized from the other, if so.
     unfit: Option<EyesError>,
     /// The compiled method, while a scene is shown.
-    made: Option<Chosen>,
+    made: Option<SelectedMethod>,
     /// True while both eyes are rendered for a comparison with the method.
     is_comparing: bool,
     /// Renders both eyes while they are unfit for synthesis or compared.
@@ -136,8 +136,8 @@ impl MethodSlot {
     }
 
     /// Compiles the chosen method with the present options.
-    fn create(&self, gl: &Rc<Context>, settings: &Settings) -> Result<Chosen, GlError> {
-        Chosen::new(gl, self.choice, &RenderSettings::of_settings(settings), &self.options(settings))
+    fn create(&self, gl: &Rc<Context>, settings: &Settings) -> Result<SelectedMethod, GlError> {
+        SelectedMethod::new(gl, self.choice, &RenderSettings::of_settings(settings), &self.options(settings))
     }
 
     /// Compiles the chosen method, if there is a context with a scene.
@@ -262,12 +262,12 @@ impl MethodSlot {
         let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
         let method = match &mut self.made {
             // The automatic choice handles unfit eyes itself.
-            Some(Chosen::Auto(auto)) if !self.is_comparing => auto.as_mut(),
+            Some(SelectedMethod::Auto(auto)) if !self.is_comparing => auto.as_mut(),
             _ if self.is_comparing || self.unfit.is_some() => {
                 self.substitute.get(|method| stereo::create(gl, method, &render, &options))?
             }
-            Some(Chosen::Named(method)) => method.as_mut(),
-            Some(Chosen::Auto(auto)) => auto.as_mut(),
+            Some(SelectedMethod::Named(method)) => method.as_mut(),
+            Some(SelectedMethod::Auto(auto)) => auto.as_mut(),
             None => return Err(ViewerError::NoContext),
         };
         Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
@@ -280,7 +280,7 @@ impl MethodSlot {
 
     /// Ends a frame that was handed to the display, with the GPU time of an earlier frame if it is known by now.
     pub fn end_frame(&mut self, now_ns: i64, refresh_hz: f32, gpu: Option<Cost>) {
-        let Some(auto) = self.made.as_mut().and_then(Chosen::auto_mut) else { return };
+        let Some(auto) = self.made.as_mut().and_then(SelectedMethod::auto_mut) else { return };
         let (was_measuring, before) = (auto.is_measuring(), auto.choice());
         auto.end_frame(now_ns, refresh_hz, gpu, self.headroom);
         self.is_mixed |= was_measuring;
@@ -292,7 +292,7 @@ impl MethodSlot {
     /// Makes an automatic choice measure again, after a change of the viewpoint or the resolution.
     pub fn measure_again(&mut self) {
         self.rendered_ns = None;
-        if let Some(auto) = self.made.as_mut().and_then(Chosen::auto_mut) {
+        if let Some(auto) = self.made.as_mut().and_then(SelectedMethod::auto_mut) {
             auto.scene_changed();
         }
     }

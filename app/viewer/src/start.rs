@@ -93,7 +93,7 @@ pub(crate) struct StartScreen {
     /// The time from which the phone has been upright.
     upright_since: Option<i64>,
     /// True from when the user leaves the start screen until the phone is in landscape.
-    is_on_its_way: bool,
+    ignores_upright: bool,
 }
 
 impl StartScreen {
@@ -105,7 +105,7 @@ impl StartScreen {
 
     /// Leaves the start screen. An upright phone is ignored until it has been in landscape.
     pub fn leave(&mut self) {
-        (self.is_shown, self.upright_since, self.is_on_its_way) = (false, None, true);
+        (self.is_shown, self.upright_since, self.ignores_upright) = (false, None, true);
         if self.hint == Hint::None {
             self.hint = Hint::Menu;
         }
@@ -125,8 +125,8 @@ impl StartScreen {
         };
         // Only the direction within the screen's plane counts, since the phone may lean back.
         let top = if up.z < FLAT { top / up.truncate().length().max(0.1) } else { 0.0 };
-        self.is_on_its_way &= top.abs() >= LANDSCAPE;
-        if top < UPRIGHT || up.z < LEANS_BACK || self.is_on_its_way {
+        self.ignores_upright &= top.abs() >= LANDSCAPE;
+        if top < UPRIGHT || up.z < LEANS_BACK || self.ignores_upright {
             self.upright_since = None;
             return false;
         }

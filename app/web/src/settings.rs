@@ -7,7 +7,7 @@ use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_protocol::Ipd;
 use yoro_render::stereo::{
-    self, AntiAliasing, Chosen, History, Method, MethodChoice, StereoMethod, StereoOptions,
+    self, AntiAliasing, History, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
 };
 use yoro_render::{RenderSettings, RendererKind};
 
@@ -155,8 +155,8 @@ impl Settings {
     ///
     /// # Errors
     /// Those of [`stereo::create`].
-    pub fn create_chosen(&self, gl: &Rc<Context>) -> Result<Chosen, GlError> {
-        Chosen::new(gl, self.choice(), &self.render_settings(), &self.stereo_options())
+    pub fn create_chosen(&self, gl: &Rc<Context>) -> Result<SelectedMethod, GlError> {
+        SelectedMethod::new(gl, self.choice(), &self.render_settings(), &self.stereo_options())
     }
 
     /// Returns both eyes of a head, with images of `size` pixels.

@@ -12,9 +12,9 @@ const PAUSE: Duration = Duration::from_millis(2);
 
 /// Minimum processor time that counts as progress, as a fraction of the patience. On a busy machine, especially under
 /// qemu, a frame may take minutes, so real time alone does not show that a process hangs.
-const LEAST: f64 = 0.02;
+const MIN_PROGRESS: f64 = 0.02;
 /// Maximum processor time, as a multiple of the patience. A process that uses more is in an endless loop.
-const MOST: f64 = 20.0;
+const MAX_PROCESSOR_TIME: f64 = 20.0;
 
 /// The progress of something that must end.
 pub struct Progress {
@@ -33,10 +33,10 @@ impl Progress {
     /// Returns the reason for giving up, if there is one.
     pub fn given_up(&mut self, now: Instant, spent: Duration, patience: Duration) -> Option<String> {
         let used = spent.saturating_sub(self.begun);
-        if used > patience.mul_f64(MOST) {
+        if used > patience.mul_f64(MAX_PROCESSOR_TIME) {
             return Some(format!("has used {:.0} s of processor time", used.as_secs_f64()));
         }
-        if spent.saturating_sub(self.moved.1) > patience.mul_f64(LEAST) {
+        if spent.saturating_sub(self.moved.1) > patience.mul_f64(MIN_PROGRESS) {
             self.moved = (now, spent);
         }
         let still = now.saturating_duration_since(self.moved.0);

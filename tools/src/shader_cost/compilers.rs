@@ -50,12 +50,12 @@ pub struct Run {
     /// Mesa's version, such as `26.1.6-1~bpo13+1`.
     pub mesa: String,
     /// Results in the order of the programs; fewer if the compiler crashed.
-    pub programs: Vec<Said>,
+    pub programs: Vec<DriverOutput>,
 }
 
 /// The driver's output for one program.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Said {
+pub struct DriverOutput {
     /// True if the program compiles and links.
     pub ok: bool,
     /// Errors and warnings of the compiler and the linker.
@@ -196,7 +196,7 @@ fn read(lines: &str, listings: &str) -> Option<Run> {
     let mesa = driver["version"].as_str()?.split_once("Mesa ")?.1.to_owned();
     let mut listings = listings.split("# program ").skip(1);
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let programs = values.map(|value| Said {
+    let programs = values.map(|value| DriverOutput {
         ok: value["ok"] == true,
         log: text(&value["log"]),
         messages: value["messages"].as_array().into_iter().flatten().map(text).collect(),

@@ -294,7 +294,7 @@ fn described(gpus: &[Gpu], found: &Table, committed: &Table) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::compilers::Said;
+    use super::compilers::DriverOutput;
     use super::table::tests::row;
     use super::*;
 
@@ -321,7 +321,7 @@ mod tests {
 
     #[test]
     fn refused_programs_and_crashes_are_faults() {
-        let said = |ok| Said { ok, log: "0:1: no".into(), messages: vec![], listing: String::new() };
+        let said = |ok| DriverOutput { ok, log: "0:1: no".into(), messages: vec![], listing: String::new() };
         let names = ["a", "b", "c", "d"].map(str::to_owned);
         let run = Run { mesa: "26".into(), programs: vec![said(true), said(false)] };
         let faults = refusals(&"g52".parse().unwrap(), &names, &run);

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use anyhow::{Context as _, bail};
 
-use super::compilers::Said;
+use super::compilers::DriverOutput;
 use super::gpus::{Compiler, Gpu};
 use super::listing::{Code, Loop, Stage, Statistics};
 
@@ -55,7 +55,7 @@ const UNITS: [(&str, &str); 8] = [
 
 impl Row {
     /// Parses the driver's output for a program. Omits stages that the compiler has removed.
-    pub fn all(gpu: &Gpu, program: &str, said: &Said) -> Vec<Self> {
+    pub fn all(gpu: &Gpu, program: &str, said: &DriverOutput) -> Vec<Self> {
         let mut rows: Vec<Self> = Vec::new();
         for (stage, statistics) in said.messages.iter().filter_map(|message| Statistics::parse(message)) {
             let row = Self::new(gpu, program, stage, &statistics, &said.listing);
@@ -295,7 +295,7 @@ pub mod tests {
 
     #[test]
     fn rows_come_from_statistics_and_listing() {
-        let said = Said {
+        let said = DriverOutput {
             ok: true,
             log: String::new(),
             messages: vec![

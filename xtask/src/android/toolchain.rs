@@ -140,7 +140,7 @@ fn stand_in() -> Vec<Need> {
 /// # Errors
 /// Fails if something is still missing; the error names it and the remedy.
 pub fn ensure(toolchain: &Toolchain, yes: bool) -> anyhow::Result<()> {
-    apt::provide(|| toolchain.needs(), yes).map_err(|error| match toolchain {
+    apt::install_missing(|| toolchain.needs(), yes).map_err(|error| match toolchain {
         Toolchain::Google { .. } => error,
         Toolchain::StandIn => anyhow!(
             "{error}; or set ANDROID_HOME and ANDROID_NDK_ROOT to Google's SDK and NDK and add rustup's android targets"

@@ -68,9 +68,9 @@ const SCENES: [Scene; 2] = [
     },
 ];
 /// Minimum similarity of the synthesized eye to Godot's: PSNR in dB before and after tone mapping, and SSIM.
-const FLOOR: f64 = 35.0;
+const MIN_PSNR: f64 = 35.0;
 const TONE_MAPPED: f64 = 32.5;
-const SIMILAR: f64 = 0.975;
+const MIN_SSIM: f64 = 0.975;
 /// Minimum gain in PSNR over showing the same image to both eyes, in dB.
 const GAIN: f64 = 10.0;
 /// Minimum PSNR in dB if the distance between the eyes is 0, where nothing has to move.
@@ -235,10 +235,10 @@ fn lag(printed: &str) -> Option<f64> {
 
 fn too_far(scene: &Scene, case: &str, made: Quality, same: Quality) -> Option<String> {
     // A headset's pictures are copied before tone mapping.
-    let floor = if scene.headset || case == "linear" { FLOOR } else { TONE_MAPPED };
+    let floor = if scene.headset || case == "linear" { MIN_PSNR } else { TONE_MAPPED };
     let sound = match case {
         "ipd0" => made.psnr >= IDENTITY,
-        _ => made.psnr >= floor && made.ssim >= SIMILAR && made.psnr >= same.psnr + GAIN,
+        _ => made.psnr >= floor && made.ssim >= MIN_SSIM && made.psnr >= same.psnr + GAIN,
     };
     (!sound).then(|| format!("{case} is too far from Godot's own eye: {:.2} dB, {:.4}", made.psnr, made.ssim))
 }

@@ -203,9 +203,9 @@ const TURNS: u32 = 6;
 /// The number of frames to wait for late costs.
 const LATE_FRAMES: u32 = 16;
 /// A way holds the display's rate if the time between its frames is at most this many refreshes.
-const IN_TIME: f32 = 1.25;
+const MAX_REFRESHES_PER_FRAME: f32 = 1.25;
 /// A choice is changed if the other way costs less than this share.
-const WORTH_A_CHANGE: f32 = 0.9;
+const SWITCH_BELOW: f32 = 0.9;
 /// The share of the time that measuring may cost.
 const OVERHEAD: f32 = 0.002;
 /// The shortest time between two measurements, and the bounds of that time if nothing changes.
@@ -383,14 +383,14 @@ impl Chooser {
 
     fn choose(&self) -> Choice {
         let of_both = |samples: &[Samples; 2]| {
-            let [two_views, synthesis] = samples.each_ref().map(Samples::middle);
+            let [two_views, synthesis] = samples.each_ref().map(Samples::interquartile_mean);
             Some([two_views?, synthesis?])
         };
         let (costs, intervals) = (of_both(&self.costs), of_both(&self.intervals));
         let stay = |reason, costs_ms| Choice { way: self.choice.way, reason, costs_ms };
         let Some(intervals) = intervals else { return stay(Reason::Incomparable, None) };
         if self.refresh_hz > 0.0 {
-            let in_time = intervals.map(|ms| ms * self.refresh_hz <= 1e3 * IN_TIME);
+            let in_time = intervals.map(|ms| ms * self.refresh_hz <= 1e3 * MAX_REFRESHES_PER_FRAME);
             if in_time[0] != in_time[1] {
                 let way = if in_time[0] { Way::TwoViews } else { Way::Synthesis };
                 return Choice { way, reason: Reason::HoldsRate, costs_ms: Some(intervals) };
@@ -401,7 +401,7 @@ impl Chooser {
         }
         let costs = costs.unwrap_or(intervals);
         let [now, other] = [self.choice.way, self.choice.way.other()].map(|way| costs[way.index()]);
-        let share = if self.choice.reason == Reason::Unmeasured { 1.0 } else { WORTH_A_CHANGE };
+        let share = if self.choice.reason == Reason::Unmeasured { 1.0 } else { SWITCH_BELOW };
         if other < now * share {
             Choice { way: self.choice.way.other(), reason: Reason::Cheaper, costs_ms: Some(costs) }
         } else if now <= other {
@@ -439,7 +439,7 @@ impl Watch {
         if now_ns - *self.begin_ns.get_or_insert(now_ns) < WATCH_NS {
             return false;
         }
-        let now = [self.costs.middle(), self.intervals.middle()];
+        let now = [self.costs.interquartile_mean(), self.intervals.interquartile_mean()];
         self.restart();
         let Some(first) = self.first else {
             self.first = Some(now);

@@ -36,7 +36,7 @@ impl Samples {
 
     /// Returns the mean of the middle half, or `None` for fewer than four times. Unlike a median, it distinguishes
     /// between times that a coarse clock has rounded.
-    pub fn middle(&self) -> Option<f32> {
+    pub fn interquartile_mean(&self) -> Option<f32> {
         let mut times = self.times;
         let times = &mut times[..self.len];
         if times.len() < FEWEST {

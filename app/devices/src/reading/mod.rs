@@ -194,7 +194,7 @@ impl Reading {
         if !self.methods.contains(&named) {
             self.methods.push(named);
         }
-        self.judge(&line, time_s);
+        self.count_anomalies(&line, time_s);
         self.time_s = time_s;
         self.seconds += 1;
         LineContent::Sample(Box::new(self.sample(line, message, time_s)))
@@ -242,7 +242,7 @@ impl Reading {
     }
 
     /// Counts the anomalies of a second, from the battery values and thermal status of its line.
-    pub(crate) fn judge(&mut self, line: &Line, at_s: f64) {
+    pub(crate) fn count_anomalies(&mut self, line: &Line, at_s: f64) {
         self.judged += 1;
         let is_idle = matches!(line.status, Some(BatteryStatus::NotCharging));
         let is_plugged = line.plugged.is_some_and(|plugged| plugged != 0) || is_idle;

@@ -325,9 +325,9 @@ fn faults(runs: &[Run]) -> Vec<Note> {
             notes.push(Note { name: "gaps", of: run.name(), detail });
         }
         let mut note = |name, detail| notes.push(Note { name, of: run.name(), detail });
-        let is_told = run.faults.iter().any(|fault| fault.kind == FaultKind::ImplausiblePower);
+        let is_reported = run.faults.iter().any(|fault| fault.kind == FaultKind::ImplausiblePower);
         if let Some(detail) =
-            run.integrated.filter(|_| !is_told).and_then(|found| implausible(found.milliwatts))
+            run.integrated.filter(|_| !is_reported).and_then(|found| implausible(found.milliwatts))
         {
             note(fault_name(FaultKind::ImplausiblePower), detail);
         }

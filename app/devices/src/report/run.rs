@@ -263,7 +263,7 @@ impl Run {
                 temperature: thinned(&temperature, longest_step),
             },
         };
-        if let Some((name, reason)) = run.worthless(capture) {
+        if let Some((name, reason)) = run.exclusion_reason(capture) {
             run.leave_out(name, reason);
         } else if let Some((name, reason)) = run.without_power(capture, &samples) {
             run.exclusions.push(Exclusion { power_only: true, name, reason });
@@ -342,7 +342,7 @@ impl Run {
     }
 
     /// Returns why the whole run is excluded. This is the first reason found, since further ones may follow from it.
-    fn worthless(&self, capture: &Capture) -> Option<(&'static str, String)> {
+    fn exclusion_reason(&self, capture: &Capture) -> Option<(&'static str, String)> {
         match &capture.info.outcome {
             Outcome::Complete => {}
             Outcome::Interrupted { reason } => return Some(("interrupted", reason.clone())),

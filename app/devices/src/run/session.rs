@@ -160,12 +160,12 @@ struct KernelVoltage {
     millivolts: Option<f64>,
     /// Time of the last query.
     asked_s: f64,
-    is_told: bool,
+    is_reported: bool,
 }
 
 impl Default for KernelVoltage {
     fn default() -> KernelVoltage {
-        KernelVoltage { millivolts: None, asked_s: f64::NEG_INFINITY, is_told: false }
+        KernelVoltage { millivolts: None, asked_s: f64::NEG_INFINITY, is_reported: false }
     }
 }
 
@@ -234,9 +234,9 @@ impl Session<'_> {
         let now = self.device.now();
         let passed_s = now - self.heard_s + self.delay_s;
         let damaged = self.reading.damaged();
-        let is_its = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.is_its(line))?;
-        let news = if is_its { self.reading.line(line, Some(passed_s)) } else { LineContent::Other };
-        self.others_since_s = if is_its { None } else { self.others_since_s.or(Some(now)) };
+        let is_own = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.accepts(line))?;
+        let news = if is_own { self.reading.line(line, Some(passed_s)) } else { LineContent::Other };
+        self.others_since_s = if is_own { None } else { self.others_since_s.or(Some(now)) };
         let outcome = match news {
             LineContent::Sample(mut sample) => {
                 (self.heard_s, self.silent_since_s) = (now, now);
@@ -248,7 +248,7 @@ impl Session<'_> {
                 self.compare_refresh(&sample)?;
                 self.writer.sample(&sample)?;
                 self.show(&sample);
-                self.stranger(&sample)
+                self.unexpected_content(&sample)
             }
             LineContent::Summary => {
                 self.has_ended = self.reading.samples() > 0;
@@ -282,7 +282,7 @@ impl Session<'_> {
                 Err(error) if error.is_lost() => {}
                 Err(error) => return Err(error),
             }
-            if !std::mem::replace(&mut self.kernel.is_told, true) {
+            if !std::mem::replace(&mut self.kernel.is_reported, true) {
                 let detail = match self.kernel.millivolts {
                     Some(_) => format!("the voltage is the kernel's, asked every {VOLTAGE_PERIOD_S:.0} s"),
                     None => "the kernel's voltage may not be read either: power is left out".into(),
@@ -306,7 +306,7 @@ impl Session<'_> {
     }
 
     /// Returns a failure if the device shows another method or scene than requested, by a tap or for lack of support.
-    fn stranger(&self, sample: &Sample) -> Option<Outcome> {
+    fn unexpected_content(&self, sample: &Sample) -> Option<Outcome> {
         let settings = &self.plan.settings;
         let (method, scene) = self.reading.methods().last()?;
         let failed = |what: &str, shown: &str, wanted: &str| {

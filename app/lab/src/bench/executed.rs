@@ -67,7 +67,7 @@ struct Trips {
     searches: f64,
     short: f64,
     /// 1 if the pixel goes the long way.
-    goes_on: f64,
+    takes_long_way: f64,
     segments: f64,
     events: f64,
     /// Steps to the crossing of a segment.
@@ -82,7 +82,7 @@ impl Trips {
             law,
             searches: 1.0 - law,
             short: f64::from(ways & 7),
-            goes_on: f64::from(ways >> 4 & 1),
+            takes_long_way: f64::from(ways >> 4 & 1),
             segments: segments.into(),
             events: events.into(),
             crossings: crossings.into(),
@@ -95,7 +95,7 @@ impl Trips {
             law: self.law.max(other.law),
             searches: self.searches.max(other.searches),
             short: self.short.max(other.short),
-            goes_on: self.goes_on.max(other.goes_on),
+            takes_long_way: self.takes_long_way.max(other.takes_long_way),
             segments: self.segments.max(other.segments),
             events: self.events.max(other.events),
             crossings: self.crossings.max(other.crossings),
@@ -167,7 +167,7 @@ impl Costs {
             ("march: law", trips.law),
             ("march: short way", trips.searches),
             ("march: short step", trips.short),
-            ("march: long way", trips.goes_on),
+            ("march: long way", trips.takes_long_way),
             ("march: segment", trips.segments),
             ("march: event", trips.events),
             ("march: crossing", trips.crossings),
@@ -322,8 +322,8 @@ impl Meter {
             (metric::LAW_WAVE, mean(waves.iter().map(|trips| 1.0 - trips.searches))),
             (metric::TRIPS_PIXEL, mean(each.iter().map(|trips| trips.short))),
             (metric::TRIPS_WAVE, mean(waves.iter().map(|trips| trips.short))),
-            (metric::GOES_ON_PIXEL, mean(each.iter().map(|trips| trips.goes_on))),
-            (metric::GOES_ON_WAVE, mean(waves.iter().map(|trips| trips.goes_on))),
+            (metric::GOES_ON_PIXEL, mean(each.iter().map(|trips| trips.takes_long_way))),
+            (metric::GOES_ON_WAVE, mean(waves.iter().map(|trips| trips.takes_long_way))),
             (metric::LONG_TRIPS_WAVE, mean(waves.iter().map(|trips| trips.segments))),
             (metric::SLOTS_TILES, tiles.slots),
             (metric::SLOTS_SPANS, spans.slots),
@@ -377,7 +377,7 @@ mod tests {
         let short = Trips { law: 1.0, searches: 1.0, short: 2.0, ..Trips::default() };
         let long = Trips {
             short: 3.0,
-            goes_on: 1.0,
+            takes_long_way: 1.0,
             segments: 9.0,
             events: 2.0,
             crossings: 7.0,
@@ -406,7 +406,8 @@ mod tests {
         assert_eq!(costs.march(lawful), body(30.0, 2.0));
         let short = Trips { searches: 1.0, short: 2.0, ..Trips::default() };
         assert_eq!(costs.march(short), body(80.0 + 40.0, 3.0 + 2.0));
-        let long = Trips { goes_on: 1.0, segments: 3.0, events: 2.0, crossings: 1.0, holes: 1.0, ..short };
+        let long =
+            Trips { takes_long_way: 1.0, segments: 3.0, events: 2.0, crossings: 1.0, holes: 1.0, ..short };
         let slots = 80.0 + 40.0 + 90.0 + 180.0 + 80.0 + 70.0 + 75.0;
         assert_eq!(costs.march(long), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 1.0 + 8.0));
     }

@@ -365,8 +365,9 @@ impl Choices {
             job.render.renderer = renderer;
             job.anti_aliasing = Some(anti_aliasing);
             // Without multisampling, only hard edges are measured.
-            let says_more = |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
-            job.contenders.retain(|c| renderer == RendererKind::Forward || !says_more(c));
+            let needs_multisampling =
+                |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
+            job.contenders.retain(|c| renderer == RendererKind::Forward || !needs_multisampling(c));
         })
     }
 

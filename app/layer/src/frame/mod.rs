@@ -87,6 +87,7 @@ pub unsafe fn end_frame(
     let layers = unsafe { chain::layers(info) };
     // The runtime has begun the session with two views, so it would accept layers of two views, which the application
     // must not submit.
+    // SAFETY: the application's layers.
     if views == 1 && !unsafe { chain::all_have(layers, 1) } {
         return Err(sys::Result::ERROR_VALIDATION_FAILURE);
     }
@@ -97,6 +98,7 @@ pub unsafe fn end_frame(
         frames.statistics.frames += 1;
         frames.statistics.application += begun.map_or(Duration::ZERO, |begun| start.duration_since(begun));
         // The runtime's xrEndFrame must find the same current context that the application left.
+        // SAFETY: the session is live.
         let _current =
             session.binding.filter(|_| session.reads_images()).and_then(|binding| unsafe { binding.hold() });
         // SAFETY: the application's layers, which live as long as `info`.

@@ -228,14 +228,14 @@ impl ForwardRenderer {
         }
     }
 
-    /// Adds bloom and outlines, if there are any, to an eye's image. With `again` the previous bloom is used again.
+    /// Adds bloom and outlines, if there are any, to an eye's image. With `reuse_bloom` the previous bloom is used reuse_bloom.
     /// Until another eye is developed, [`ViewImages::color`] is this eye's.
-    pub(crate) fn develop(&self, targets: &ForwardTargets, view: &View, eye: Eye, again: bool) {
+    pub(crate) fn develop(&self, targets: &ForwardTargets, view: &View, eye: Eye, reuse_bloom: bool) {
         let (Some(program), Some(to)) = (&self.develop, &targets.developed) else { return };
         let source = targets.resolved.color(0);
         let origin = targets.layout().origin(view.size, eye);
         let bloom = self.bloom.as_ref().zip(targets.bloom.as_ref());
-        if let Some((pass, bloom)) = bloom.filter(|_| !again) {
+        if let Some((pass, bloom)) = bloom.filter(|_| !reuse_bloom) {
             let columns = targets.request.columns.map_or([0, view.size[0]], |columns| columns.always);
             pass.run_display_referred(
                 bloom,

@@ -20,14 +20,14 @@ use yoro_gl::{Context, GlError};
 const METHODS: [Method; 2] = [Method::Conventional, Method::Yoro];
 
 /// A named method, or the cheaper of two.
-pub enum Chosen {
+pub enum SelectedMethod {
     /// Always this method.
     Named(Box<dyn StereoMethod>),
     /// The cheaper one.
     Auto(Box<Auto>),
 }
 
-impl Chosen {
+impl SelectedMethod {
     /// Makes the method, or both methods.
     ///
     /// # Errors
@@ -37,38 +37,40 @@ impl Chosen {
         choice: MethodChoice,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<Chosen, GlError> {
+    ) -> Result<SelectedMethod, GlError> {
         Ok(match choice {
-            MethodChoice::Named(method) => Chosen::Named(super::create(gl, method, settings, options)?),
+            MethodChoice::Named(method) => {
+                SelectedMethod::Named(super::create(gl, method, settings, options)?)
+            }
             // Two renders cannot show a frame again.
             MethodChoice::Auto if options.render_rate.is_some() => {
-                Chosen::Named(super::create(gl, Method::Yoro, settings, options)?)
+                SelectedMethod::Named(super::create(gl, Method::Yoro, settings, options)?)
             }
-            MethodChoice::Auto => Chosen::Auto(Box::new(Auto::new(gl, settings, options)?)),
+            MethodChoice::Auto => SelectedMethod::Auto(Box::new(Auto::new(gl, settings, options)?)),
         })
     }
 
     /// Returns the method to render with.
     pub fn method(&mut self) -> &mut dyn StereoMethod {
         match self {
-            Chosen::Named(method) => method.as_mut(),
-            Chosen::Auto(auto) => auto.as_mut(),
+            SelectedMethod::Named(method) => method.as_mut(),
+            SelectedMethod::Auto(auto) => auto.as_mut(),
         }
     }
 
     /// Returns the choice between two methods, if there is one.
     pub fn auto(&self) -> Option<&Auto> {
         match self {
-            Chosen::Named(_) => None,
-            Chosen::Auto(auto) => Some(auto),
+            SelectedMethod::Named(_) => None,
+            SelectedMethod::Auto(auto) => Some(auto),
         }
     }
 
     /// Returns the choice between two methods, if there is one.
     pub fn auto_mut(&mut self) -> Option<&mut Auto> {
         match self {
-            Chosen::Named(_) => None,
-            Chosen::Auto(auto) => Some(auto),
+            SelectedMethod::Named(_) => None,
+            SelectedMethod::Auto(auto) => Some(auto),
         }
     }
 }

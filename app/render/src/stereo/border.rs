@@ -17,7 +17,7 @@ const SPARE: u32 = 4;
 /// Number of recent frames of which the widest request counts.
 const HOLD: usize = 8;
 /// The whole band is drawn once in this many frames: only that finds near surfaces entirely outside the drawn part.
-const LOOK_EVERY: u32 = 30;
+const FULL_BAND_INTERVAL: u32 = 30;
 /// One row in this many is measured.
 const ROWS: u32 = 2;
 /// A head that moves by more than this many times the distance between the eyes is taken as placed elsewhere.
@@ -215,7 +215,7 @@ impl Width {
         };
         self.asked[self.frames as usize % HOLD] = (seen + SPARE).max(least).min(now.guard_columns);
         self.frames += 1;
-        if self.frames.is_multiple_of(LOOK_EVERY) {
+        if self.frames.is_multiple_of(FULL_BAND_INTERVAL) {
             return now.guard_columns;
         }
         // The band itself may have become narrower in the meantime.
@@ -378,8 +378,11 @@ mod tests {
         assert_eq!(width.next(Some(&other), &narrow, LEAST), 40);
         let mut width = Width::default();
         let mut next = |disparity: f32| width.next(Some(&profile(56, |_| disparity)), &rest, LEAST);
-        let widths = [(); 2 * LOOK_EVERY as usize].map(|()| next(0.0));
-        assert_eq!(widths.iter().filter(|columns| **columns == LEAST).count(), 2 * LOOK_EVERY as usize - 2);
+        let widths = [(); 2 * FULL_BAND_INTERVAL as usize].map(|()| next(0.0));
+        assert_eq!(
+            widths.iter().filter(|columns| **columns == LEAST).count(),
+            2 * FULL_BAND_INTERVAL as usize - 2
+        );
     }
 
     #[test]

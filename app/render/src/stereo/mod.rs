@@ -32,7 +32,7 @@ use std::rc::Rc;
 use crate::render::{DeferredRenderer, ForwardRenderer, Layout, RenderSettings, RendererKind};
 use yoro_gl::{Context, GlError};
 
-pub use auto::{Auto, Chosen};
+pub use auto::{Auto, SelectedMethod};
 use conventional::Conventional;
 use frame::Setup;
 use hybrid::Hybrid;

@@ -14,15 +14,15 @@ use yoro_gl::{
 };
 
 /// Anti-aliasing of the rendered eye before synthesis.
-pub(super) struct Smooth {
+pub(super) struct SmoothedEye {
     fxaa: Fxaa,
     pub(super) image: RenderTarget,
 }
 
-impl Smooth {
-    pub(super) fn new(gl: &Rc<Context>) -> Result<Smooth, GlError> {
+impl SmoothedEye {
+    pub(super) fn new(gl: &Rc<Context>) -> Result<SmoothedEye, GlError> {
         let image = RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?;
-        Ok(Smooth { fxaa: Fxaa::new(gl)?, image })
+        Ok(SmoothedEye { fxaa: Fxaa::new(gl)?, image })
     }
 
     /// Smooths an image of the same size into `image`.
@@ -32,13 +32,13 @@ impl Smooth {
 }
 
 /// What is drawn over both eyes of a frame.
-pub(super) struct Over {
+pub(super) struct OverlaySurfaces {
     /// The near objects, if they are left out of the synthesis.
     pub(super) near: Option<Selection>,
     pub(super) transparent: bool,
 }
 
-impl Over {
+impl OverlaySurfaces {
     /// True if anything is drawn. It is then tested against the depth of either eye.
     pub(super) fn is_any(&self) -> bool {
         self.transparent || self.near.is_some()
@@ -49,7 +49,7 @@ impl Over {
 #[derive(Clone, Copy)]
 pub(super) enum EyeSource<'a> {
     /// The rendered eye: the contents of its targets, or the smoothed copy that the other eye was synthesized from.
-    Rendered(Option<&'a Smooth>),
+    Rendered(Option<&'a SmoothedEye>),
     /// The synthesized eye, with float depth if anything is drawn or its target has depth.
     Synthesized(&'a RenderTarget),
 }
@@ -67,7 +67,7 @@ pub(super) trait Overlay: Sized {
         &'a mut self,
         frame: &Frame<Self::Renderer>,
         views: &SynthesisViews,
-        over: &Over,
+        over: &OverlaySurfaces,
         targets: &'a <Self::Renderer as ViewRenderer>::Targets,
         eye: EyeSource<'a>,
     ) -> Result<EyeImage<'a>, GlError>;
@@ -103,7 +103,7 @@ impl Overlay for DeferredOverlay {
         &'a mut self,
         frame: &Frame<DeferredRenderer>,
         views: &SynthesisViews,
-        over: &Over,
+        over: &OverlaySurfaces,
         targets: &'a <DeferredRenderer as ViewRenderer>::Targets,
         eye: EyeSource<'a>,
     ) -> Result<EyeImage<'a>, GlError> {
@@ -190,7 +190,7 @@ impl Overlay for ForwardOverlay {
         &'a mut self,
         frame: &Frame<ForwardRenderer>,
         views: &SynthesisViews,
-        over: &Over,
+        over: &OverlaySurfaces,
         targets: &'a <ForwardRenderer as ViewRenderer>::Targets,
         eye: EyeSource<'a>,
     ) -> Result<EyeImage<'a>, GlError> {

@@ -11,7 +11,7 @@ use super::method::{GuardBandUse, HistoryUse, StereoError};
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::{DepthMap, NearFraction};
 use super::options::{AntiAliasing, History, Pipeline, PipelineOptions, StereoOptions};
-use super::overlay::{EyeSource, Over, Overlay, Smooth};
+use super::overlay::{EyeSource, Overlay, OverlaySurfaces, SmoothedEye};
 use super::past::Past;
 use crate::render::{GpuScene, KeptSamples, PixelDepth, RenderSettings, Selection, ViewImages, ViewRequest};
 use yoro::eyes::{GuardBand, SynthesisViews};
@@ -27,7 +27,7 @@ pub struct Synthesized<R: StereoRenderer> {
     auto_guard_band: Option<AutoGuardBand>,
     past: Option<Past<R>>,
     /// Anti-aliasing before synthesis, if the options ask for that.
-    smooth: Option<Smooth>,
+    smooth: Option<SmoothedEye>,
     overlay: R::Overlay,
     finish: Finish,
     switch: Option<Switch<R>>,
@@ -113,7 +113,7 @@ impl<R: StereoRenderer> Synthesized<R> {
             synthesizers,
             auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
             past,
-            smooth: is_smooth.then(|| Smooth::new(gl)).transpose()?,
+            smooth: is_smooth.then(|| SmoothedEye::new(gl)).transpose()?,
             overlay: R::Overlay::new(setup)?,
             finish: Finish::smoothing(setup, options.anti_aliasing == AntiAliasing::After)?,
             switch: switch.transpose()?,
@@ -169,7 +169,7 @@ impl<R: StereoRenderer> Synthesized<R> {
         &mut self,
         frame: &Frame<R>,
         views: &SynthesisViews,
-        over: &Over,
+        over: &OverlaySurfaces,
     ) -> Result<(), GlError> {
         let near_field = self.options.near_field;
         let multisample = self.edges == Edges::Multisample;
@@ -239,7 +239,7 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
         let from = pair.middle();
         let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
-        let over = Over { near, transparent };
+        let over = OverlaySurfaces { near, transparent };
         let selection = self.selection(frame);
         let past = self.past.as_mut();
         let history = past.map(|past| past.history(frame, &views, selection)).transpose()?;

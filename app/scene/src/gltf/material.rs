@@ -12,7 +12,7 @@ use crate::textures::{AlphaUse, Built, METAL_DIFFUSE_LOSS, Recipe, Source, diffu
 
 /// The textures of one material, by their number in the [`TextureSet`].
 #[derive(Default)]
-pub(super) struct Wanted {
+pub(super) struct MaterialTextures {
     diffuse: Option<usize>,
     specular: Option<usize>,
     emissive: Option<usize>,
@@ -29,7 +29,7 @@ pub(super) struct Wanted {
     pub(super) placement: Option<[Vec2; 3]>,
 }
 
-impl Wanted {
+impl MaterialTextures {
     /// Takes the texture coordinates of the material's main map, or those of the first other map that it has.
     fn take_coordinates(&mut self, material: &gltf::Material, main: Option<&gltf::texture::Info>) {
         let Some(info) = main else {
@@ -143,7 +143,11 @@ impl Reader<'_> {
     }
 
     /// Returns the picture of a texture with its sampler.
-    fn map(&mut self, texture: gltf::Texture, wanted: &mut Wanted) -> Result<Option<Map>, SceneError> {
+    fn map(
+        &mut self,
+        texture: gltf::Texture,
+        wanted: &mut MaterialTextures,
+    ) -> Result<Option<Map>, SceneError> {
         let sampler = texture.sampler();
         wanted.unrepeated |= [sampler.wrap_s(), sampler.wrap_t()].iter().any(|w| *w != WrappingMode::Repeat);
         let nearest = sampler.mag_filter() == Some(MagFilter::Nearest);
@@ -155,9 +159,12 @@ impl Reader<'_> {
     }
 
     /// Returns a material, and the textures that it uses.
-    pub(super) fn material(&mut self, m: &gltf::Material) -> Result<(Material, Wanted), SceneError> {
+    pub(super) fn material(
+        &mut self,
+        m: &gltf::Material,
+    ) -> Result<(Material, MaterialTextures), SceneError> {
         let srgb = |v: Vec3| Vec3::from(v.to_array().map(to_srgb));
-        let mut wanted = Wanted::default();
+        let mut wanted = MaterialTextures::default();
 
         let [color_info, surface_info] = surface_textures(m);
         wanted.take_coordinates(m, color_info.as_ref().or(surface_info.as_ref()));
@@ -204,7 +211,7 @@ impl Reader<'_> {
         pbr: &PbrMetallicRoughness,
         base_map: Option<Map>,
         orm: Option<Map>,
-        wanted: &mut Wanted,
+        wanted: &mut MaterialTextures,
     ) -> Surface {
         let [r, g, b, opacity] = pbr.base_color_factor().map(unit);
         let base = Vec3::new(r, g, b);
@@ -237,7 +244,7 @@ impl Reader<'_> {
         pbr: &PbrSpecularGlossiness,
         diffuse_map: Option<Map>,
         gloss: Option<Map>,
-        wanted: &mut Wanted,
+        wanted: &mut MaterialTextures,
     ) -> Surface {
         let [r, g, b, opacity] = pbr.diffuse_factor().map(unit);
         let factors = [Vec3::new(r, g, b), Vec3::from(pbr.specular_factor().map(unit))];

@@ -18,7 +18,7 @@ use gltf::json::extensions::scene::khr_lights_punctual as khr_lights;
 use gltf::json::validation::Checked;
 
 use self::file::{buffers, check, check_extensions, read_file};
-use self::material::Wanted;
+use self::material::MaterialTextures;
 use self::motion::{Carried, Standing, place_carried};
 use self::reader::Reader;
 use super::error::{MAX_ELEMENTS, SceneError};
@@ -87,7 +87,7 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     }
     // Last is the material of primitives without one.
     materials.push(Material::default());
-    wanted.push(Wanted::default());
+    wanted.push(MaterialTextures::default());
     let Nodes { mut meshes, colors, cameras, lamps, sun, mut motion, carried } =
         reader.nodes(&document, &mut wanted)?;
     let mut built = reader.textures.build()?;
@@ -255,7 +255,7 @@ fn place(mesh: &mut RawMesh, placement: Option<[Vec2; 3]>) {
 impl Reader<'_> {
     /// Returns the nodes of the default scene, or all nodes of a file without scenes. `wanted` is by material; the last
     /// entry is for primitives without one.
-    fn nodes(&self, document: &Document, wanted: &mut [Wanted]) -> Result<Nodes, SceneError> {
+    fn nodes(&self, document: &Document, wanted: &mut [MaterialTextures]) -> Result<Nodes, SceneError> {
         let mut nodes = Nodes::default();
         let mut corners = 0;
         let mut moves = self.moves(document)?;

@@ -241,8 +241,8 @@ impl<'a> Table<'a> {
             self.simulated = true;
             println!("SIMULATED: {}", line.trim_matches(['-', ' ']));
         }
-        let is_its = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.is_its(line))?;
-        let news = if is_its { self.reading.line(line, passed_s) } else { LineContent::Other };
+        let is_own = self.foreign.as_mut().map_or(Ok(true), |foreign| foreign.accepts(line))?;
+        let news = if is_own { self.reading.line(line, passed_s) } else { LineContent::Other };
         match news {
             LineContent::Sample(sample) => self.sample(*sample)?,
             LineContent::Damaged(why) => {

@@ -27,6 +27,8 @@ pub const MAX_MESSAGE_BYTES: usize = 1 << 12;
 pub const HELLO_TIMEOUT: Duration = Duration::from_secs(10);
 /// The time allowed for sending a file.
 const FILE_TIMEOUT: Duration = Duration::from_secs(60);
+/// The pause after a connection that could not be accepted.
+const ACCEPT_PAUSE: Duration = Duration::from_millis(200);
 /// The number of connections that may wait for admission, from all machines and from one. A browser opens six for the
 /// files of a page.
 const MAX_PENDING: [usize; 2] = [64, 16];
@@ -67,7 +69,16 @@ impl Access {
 
     /// Accepts connections forever, and passes on the admitted clients.
     pub fn accept(self: &Arc<Self>, listener: &TcpListener, clients: &mpsc::Sender<Client>) {
-        for (socket, address) in std::iter::repeat_with(|| listener.accept()).flatten() {
+        loop {
+            let (socket, address) = match listener.accept() {
+                Ok(accepted) => accepted,
+                Err(error) => {
+                    // Such as no file descriptors being left: the next attempt would fail at once, too.
+                    log::warn!("a connection is not accepted: {error}");
+                    thread::sleep(ACCEPT_PAUSE);
+                    continue;
+                }
+            };
             let Some(place) = self.place(address.ip()) else {
                 log::info!("{address} has too many connections");
                 continue;

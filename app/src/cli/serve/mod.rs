@@ -114,7 +114,7 @@ impl EncoderArg {
 }
 
 /// The longest side of an eye in pixels if three parts are side by side: hardware decodes at most 4096 columns.
-const MOST_OF_THREE: u16 = 1024;
+const MAX_SIDE_OF_THREE_PARTS: u16 = 1024;
 
 impl Subcommand for ServeArgs {
     fn files(&self) -> anyhow::Result<Files> {
@@ -232,8 +232,8 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
         ModeArg::EyesDepth => Mode::EyesDepth,
     };
     ensure!(
-        mode != Mode::EyesDepth || args.max_size <= MOST_OF_THREE,
-        "browsers do not decode three pictures of {} pixels: give --max-size {MOST_OF_THREE} or less with --mode eyes-depth",
+        mode != Mode::EyesDepth || args.max_size <= MAX_SIDE_OF_THREE_PARTS,
+        "browsers do not decode three pictures of {} pixels: give --max-size {MAX_SIDE_OF_THREE_PARTS} or less with --mode eyes-depth",
         args.max_size
     );
     let settings = args.renderer.render_settings()?;

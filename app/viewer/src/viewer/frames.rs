@@ -27,7 +27,7 @@ impl Viewer {
         self.refresh_hz = timing.refresh_hz;
         self.poll_scene();
         if self.scene_state() == SceneState::Ready
-            && let Some(text) = std::mem::take(&mut self.start.hint).text(self.made_up_eye())
+            && let Some(text) = std::mem::take(&mut self.start.hint).text(self.synthesized_eye())
         {
             self.caption.announce(text, self.now_ns);
         }

@@ -168,7 +168,7 @@ impl Viewer {
     }
 
     /// Returns the name of the eye that is synthesized.
-    pub(super) fn made_up_eye(&self) -> &'static str {
+    pub(super) fn synthesized_eye(&self) -> &'static str {
         if self.settings.dominant == Eye::Left { "right" } else { "left" }
     }
 
@@ -205,7 +205,7 @@ impl Viewer {
         }
         let text =
             |key: &str| Setting::find(key).map_or_else(String::new, |setting| setting.text(&self.settings));
-        let made_up = self.made_up_eye();
+        let made_up = self.synthesized_eye();
         let quality = self.quality().map_or("own", |at| QUALITIES[at].0);
         let tiles = Item::ALL.map(|item| match item {
             Item::Recenter => "Recenter".into(),

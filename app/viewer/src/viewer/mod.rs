@@ -59,7 +59,7 @@ struct Attached {
 /// The sources of the distance between the eyes.
 #[derive(Clone, Copy, Debug)]
 struct IpdSources {
-    /// Chosen in the settings or by the user.
+    /// SelectedMethod in the settings or by the user.
     chosen: Option<Ipd>,
     /// The display's own.
     native: Ipd,

@@ -150,7 +150,7 @@ impl Viewer {
         let viewers = self.viewers();
         let chosen = viewers.iter().position(|viewer| *viewer == self.settings.viewer);
         let names: Vec<_> = viewers.iter().map(|viewer| self.viewer_name(viewer)).collect();
-        let made_up = self.made_up_eye();
+        let made_up = self.synthesized_eye();
         self.start.write(&names, chosen, made_up);
     }
 

@@ -235,6 +235,7 @@ impl Page {
             && stream.frusta().is_some()
         {
             self.walker = Walker::new(Pose::IDENTITY);
+            self.orbit(self.orbits);
         }
     }
 

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use yoro::choice::Cost;
 use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::{Context, GlError, PassTime, Profiling, RenderTarget, Texture};
-use yoro_render::stereo::{Auto, Chosen, Method, StereoError, StereoFrame, StereoMethod};
+use yoro_render::stereo::{Auto, Method, SelectedMethod, StereoError, StereoFrame, StereoMethod};
 use yoro_render::{PreparedScene, Renderer};
 use yoro_scene::Scene;
 
@@ -14,7 +14,7 @@ use crate::settings::Settings;
 /// Everything needed to show a scene.
 pub struct SceneShow {
     pub prepared: PreparedScene,
-    pub method: Chosen,
+    pub method: SelectedMethod,
     /// The images of the last frame.
     pub frame: StereoFrame,
     truth: Option<Truth>,

@@ -5,7 +5,7 @@ use yoro::eyes::{DepthRange, EyePair};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{Content as HudContent, Hud, Placement};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{Chosen, DepthTarget, EyeTarget, StereoMethod, Substitute};
+use yoro_render::stereo::{DepthTarget, EyeTarget, SelectedMethod, StereoMethod, Substitute};
 
 use super::error::sentence;
 use super::scene_show::SceneShow;
@@ -87,9 +87,9 @@ impl Headset {
                 fits = Substitute::reason(settings.choice().first(), &pair).is_none();
                 let method: &mut dyn StereoMethod = match method {
                     // The automatic choice handles unfit eyes itself.
-                    Chosen::Auto(auto) => auto.as_mut(),
-                    Chosen::Named(method) if fits => method.as_mut(),
-                    Chosen::Named(_) => {
+                    SelectedMethod::Auto(auto) => auto.as_mut(),
+                    SelectedMethod::Named(method) if fits => method.as_mut(),
+                    SelectedMethod::Named(_) => {
                         substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?
                     }
                 };

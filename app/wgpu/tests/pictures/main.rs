@@ -63,7 +63,7 @@ impl Setup {
     }
 }
 
-struct Result {
+struct Synthesized {
     rgba: Vec<u8>,
     depth: Option<Vec<f32>>,
 }
@@ -74,7 +74,7 @@ fn synthesize<W: WarpKind>(
     pipeline: &mut Pipeline<W>,
     setup: &Setup,
     picture: &Picture<W>,
-) -> Result {
+) -> Synthesized {
     let warp = &picture.warp;
     let [source_size, target_size] = warp.sizes();
     let sum = |[a, b]: [[u32; 2]; 2], size: [u32; 2]| [0, 1].map(|i| a[i] + size[i] + b[i]);
@@ -132,7 +132,7 @@ fn synthesize<W: WarpKind>(
         assert!(outside == after, "depth outside of the target's rectangle has changed: {setup:?}");
         values
     });
-    Result { rgba, depth }
+    Synthesized { rgba, depth }
 }
 
 /// Returns what OpenGL draws for warps, with seeds from `first`, by each of [`PassSet::GATHER`]. It receives the

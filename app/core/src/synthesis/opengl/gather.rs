@@ -2,7 +2,9 @@
 
 use std::rc::Rc;
 
-use super::{Outputs, Recall, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source};
+use super::{
+    HistoryBinding, Outputs, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source,
+};
 use crate::eyes::Warp;
 use crate::synthesis::uniforms::Uniforms;
 use yoro_gl::{
@@ -56,7 +58,7 @@ pub struct Gather {
     march: Program,
     tile_map: RenderTarget,
     span_map: RenderTarget,
-    recall: Option<Recall>,
+    recall: Option<HistoryBinding>,
 }
 
 impl Gather {

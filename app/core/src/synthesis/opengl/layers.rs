@@ -5,7 +5,9 @@ use std::rc::Rc;
 use glam::IVec4;
 use glow::HasContext as _;
 
-use super::{Outputs, Recall, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source};
+use super::{
+    HistoryBinding, Outputs, Source, Synthesis, SynthesisOptions, draw_target, map_sizes, march_source,
+};
 use crate::eyes::Warp;
 use crate::synthesis::edges::Edges;
 use crate::synthesis::uniforms::Uniforms;
@@ -36,7 +38,7 @@ pub struct Layers {
     layers: RenderTarget,
     tile_map: RenderTarget,
     span_map: RenderTarget,
-    recall: Option<Recall>,
+    recall: Option<HistoryBinding>,
 }
 
 /// The first pass, for sources without and with sample colours.

@@ -194,8 +194,8 @@ impl SynthesisOptions {
         defines([("HISTORY", self.history)])
     }
 
-    fn recall(&self, gl: &Rc<Context>) -> Result<Option<Recall>, GlError> {
-        self.history.then(|| Recall::new(gl)).transpose()
+    fn recall(&self, gl: &Rc<Context>) -> Result<Option<HistoryBinding>, GlError> {
+        self.history.then(|| HistoryBinding::new(gl)).transpose()
     }
 
     /// Returns the preprocessor macros that select this kind of source.
@@ -286,13 +286,15 @@ pub fn set_source(program: &Program, source: Source, uniforms: &Uniforms) {
 }
 
 /// The texture that a pipeline with [`SynthesisOptions::history`] binds for sources without a history.
-struct Recall {
+struct HistoryBinding {
     nothing: RenderTarget,
 }
 
-impl Recall {
-    fn new(gl: &Rc<Context>) -> Result<Recall, GlError> {
-        Ok(Recall { nothing: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)? })
+impl HistoryBinding {
+    fn new(gl: &Rc<Context>) -> Result<HistoryBinding, GlError> {
+        Ok(HistoryBinding {
+            nothing: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
+        })
     }
 
     /// Sets what `include/history.glsl` declares. Depth is bound to `depth_unit`, which must not filter. The program

@@ -50,7 +50,7 @@ impl Runner<'_> {
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
         self.bar.set_message(job.setting.to_string());
-        let mut shower = Shower::new(self.gl)?;
+        let mut reprojector = Reprojector::new(self.gl)?;
         let mut timer = Timer::new(self.gl, job)?;
         let (views, late) = match displaced {
             Displaced::Late(motion, late) => {
@@ -66,9 +66,9 @@ impl Runner<'_> {
             let (shown, truth) = match late {
                 Some(late) => {
                     let [then, now] = [0, late].map(|n| views.pairs[i * SPREAD + n]);
-                    shower.late(prepared, &then, &now)?
+                    reprojector.late(prepared, &then, &now)?
                 }
-                None => shower.canted(prepared, &canted(&views.pairs[i]))?,
+                None => reprojector.canted(prepared, &canted(&views.pairs[i]))?,
             };
             if i == 0 {
                 let folder = picture_folder(&self.before.path, &job.setting);
@@ -162,7 +162,7 @@ impl Timer {
 }
 
 /// Renders views with one sample per pixel and shows them at other poses.
-struct Shower {
+struct Reprojector {
     gl: Rc<Context>,
     any_view: AnyView,
     gather: Box<dyn Synthesis>,
@@ -171,12 +171,12 @@ struct Shower {
     shown: RenderTarget,
 }
 
-impl Shower {
-    fn new(gl: &Rc<Context>) -> Result<Shower, GlError> {
+impl Reprojector {
+    fn new(gl: &Rc<Context>) -> Result<Reprojector, GlError> {
         let options = SynthesisOptions::default();
         let formats = [(Format::Rgba8, Filter::Linear)];
         let outputs = Outputs { depth: true, ..Outputs::default() };
-        Ok(Shower {
+        Ok(Reprojector {
             gl: gl.clone(),
             any_view: AnyView::new(gl, &options, Outputs::default())?,
             gather: yoro::synthesis::create(gl, &options, outputs)?,
