@@ -108,7 +108,7 @@ settings! {
         range(|s| !s.scene.trim().is_empty(), "name a built-in scene or a file"),
     /// Seed of a built-in scene.
     "seed" seed: u64 = 1,
-    /// The scene's viewpoint to stand at, from 0; beyond the last it starts over.
+    /// The scene's viewpoint to stand at, from 0; numbers beyond the last one start over.
     "viewpoint" viewpoint: usize = 0,
     /// The stereo method to start with; `auto` measures `conventional` and `yoro` on the device and uses the cheaper one.
     "method" method: MethodChoice = MethodChoice::Auto,
@@ -139,8 +139,8 @@ settings! {
     /// How the synthesis reads the rendered eye's edges.
     "edges" edges: Option<Edges> = None;
         auto("hard; sample with several samples on OpenGL ES 3.0"),
-    /// Fill disocclusions with what the other eye has really seen: strips of it, an eighth of its rows, are rendered in the
-    /// frames in which more is uncovered. Not with the paper's pipeline.
+    /// Fill disocclusions with what the other eye has really seen: strips of an eighth of its rows are rendered in
+    /// frames that uncover more. Not with the paper's pipeline.
     "history" history: History = History::Off,
     /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;
@@ -150,8 +150,8 @@ settings! {
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
     /// yoro: renders a second. Frames between two renders show the last one at the newest head pose, both eyes synthesized from
-    /// it; what moves in the scene stands still meanwhile. `method=auto` is `yoro` then. Hard edges, without near field, history and
-    /// the switch to two renders; not with the paper's pipeline.
+    /// it; what moves in the scene stands still meanwhile. `method=auto` then means `yoro`. Only with hard edges, and without near
+    /// field, history, the switch to two renders and the paper's pipeline.
     "render-rate" render_rate: Option<f32> = None;
         value_name("HZ");
         range(|s| s.render_rate.is_none_or(|hz| (5.0..=1000.0).contains(&hz)), "give renders per second from 5 to 1000, or auto");
@@ -162,9 +162,9 @@ settings! {
         range(|s| is_positive(s.split_disparity), "give pixels above 0, such as 1"),
     /// The viewer: v1, v2, the URI of its QR code, or a parameter file.
     "viewer" viewer: String = "v2".into(),
-    /// Viewers that the menu and the start screen offer besides v1 and v2: those that were chosen last.
+    /// Viewers that the menu and the start screen offer besides v1 and v2: the last ones chosen.
     "recent-viewers" recent_viewers: Vec<String> = Vec::new(),
-    /// Size of the whole screen behind the lenses, such as `158x71mm`: measure it where the device is wrong about it.
+    /// Size of the whole screen behind the lenses, such as `158x71mm`: measure it if the device reports it wrongly.
     "screen" screen: Option<ScreenSize> = None; auto("what the device says"),
     /// The eye that is rendered.
     "dominant" dominant: Eye = Eye::Right,
@@ -176,7 +176,8 @@ settings! {
         range(|s| (0.25..=2.0).contains(&s.render_scale), "give a factor from 0.25 to 2"),
     /// Lower render scale and ImBuffer to hold the display's refresh rate and to spare a hot device.
     "adaptive" adaptive: bool = false,
-    /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and draws three passes more in each.
+    /// Phones: how the finished image follows the head after rendering. `position` copies the depth of both eyes and adds
+    /// three passes to each.
     "timewarp" timewarp: Timewarp = Timewarp::default(),
     /// Correct the lenses' chromatic aberration.
     "chromatic" chromatic: bool = false,
@@ -186,8 +187,8 @@ settings! {
     "renderer" renderer: RendererKind = RendererKind::Deferred,
     /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them.
     "msaa" msaa: u32 = 4; value_name("N"); range(|s| MSAA.contains(&s.msaa), "give 1, 2 or 4"),
-    /// forward with several samples: bits of the one depth in each pixel that the synthesis reads, 16 or 32. 16 halve what
-    /// it moves of depth.
+    /// forward with several samples: bits of the resolved depth that the synthesis reads, 16 or 32. 16 halve the memory
+    /// traffic of depth.
     "depth-bits" depth_bits: u32 = 32;
         value_name("N");
         range(|s| DEPTH_BITS.contains(&s.depth_bits), "give 16 or 32"),
@@ -217,8 +218,8 @@ settings! {
     "auto-exit" auto_exit: bool = false,
     /// The display that shows the eyes; read at start-up only.
     "display" display: DisplayKind = DisplayKind::Auto,
-    /// Phones and headsets with Android: the address of a stream, as `yoro serve` prints it, to be shown in the scene's place;
-    /// read at start-up only.
+    /// Phones and headsets with Android: the address of a stream, as `yoro serve` prints it, to show in place of the scene; read at
+    /// start-up only.
     "stream" stream: Option<String> = None,
     /// Refreshes per second. Headsets: the nearest of the rates that the runtime offers. Phones: the rate that Android is
     /// asked for (Android 11).
@@ -231,8 +232,8 @@ settings! {
     "performance-hints" performance_hints: bool = true,
     /// Headsets: submit the depth of both eyes to the compositor, which costs energy; read when a session begins.
     "submit-depth" submit_depth: bool = true,
-    /// Headsets: one view in place of two, where the runtime, or an API layer such as yoro's, offers that. Meant for
-    /// `method=mono`, with which one view is all that is rendered; read when a session begins.
+    /// Headsets: one view instead of two, if the runtime or an API layer such as yoro's offers that. Meant for
+    /// `method=mono`, which renders only one view; read when a session begins.
     "one-view" one_view: bool = false,
     /// Measure the GPU time of each stage, where the driver has timer queries.
     "profiling" profiling: bool = true,

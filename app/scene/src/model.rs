@@ -179,7 +179,7 @@ pub enum ShadingStyle {
     /// GGX, smooth normals.
     #[default]
     Realistic,
-    /// Few bands of light, saturated, soft outline-free.
+    /// Few bands of light, saturated colours, no outlines.
     Cartoon,
     /// One normal per triangle.
     LowPoly,

@@ -43,7 +43,7 @@ pub fn stored_edges() -> impl TypedValueParser<Value = Edges> {
 pub fn style() -> impl TypedValueParser<Value = ShadingStyle> {
     choice(ShadingStyle::ALL, ShadingStyle::name, |style| match style {
         ShadingStyle::Realistic => "GGX, smooth normals",
-        ShadingStyle::Cartoon => "Few bands of light, saturated, soft outline-free",
+        ShadingStyle::Cartoon => "Few bands of light, saturated colours, no outlines",
         ShadingStyle::LowPoly => "One normal per triangle",
         ShadingStyle::Voxel => {
             "One normal per face, unfiltered textures, ambient occlusion in the foreground"

@@ -77,7 +77,7 @@ pub struct RenderArgs {
     /// Render N frames along the scene's camera path instead of one viewpoint
     #[arg(long, value_name = "N", conflicts_with = "position", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: Option<u32>,
-    /// The time in seconds for what moves in the scene; of --frames that of the first
+    /// The time in seconds for what moves in the scene; with --frames, the time of the first frame
     #[arg(long, default_value_t = 0.0, value_parser = seconds, value_name = "SECONDS", allow_hyphen_values = true)]
     time: f64,
     /// Head position in metres, instead of a viewpoint of the scene

@@ -63,7 +63,7 @@ suites! {
     Imbuffer "imbuffer" "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation",
     Lights "lights" "Frame time of every method with four lights: the paper's setting for single-pass instancing",
     Resolution "resolution" "Frame time and quality of every method from 512 to 2048 pixels per eye",
-    AntiAliasing "anti-aliasing" "Quality and frame time by what edges are made of: one sample per pixel, FXAA, MSAA with each kind of depth",
+    AntiAliasing "anti-aliasing" "Quality and frame time by anti-aliasing: one sample per pixel, FXAA, MSAA with each kind of depth",
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     History "history" "Quality, flicker and frame time with what the other eye has seen, as the head moves",

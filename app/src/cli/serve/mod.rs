@@ -48,13 +48,13 @@ pub struct ServeArgs {
     /// H.264's quantizer, 12 (best) to 44; it grows where the connection is too slow
     #[arg(long, default_value_t = 24, value_name = "QP", value_parser = clap::value_parser!(u8).range(12..=44))]
     quantizer: u8,
-    /// What encodes
+    /// The video encoder
     #[arg(long, value_enum, default_value = "auto")]
     encoder: EncoderArg,
-    /// Most frames a second
+    /// The largest number of frames per second
     #[arg(long, default_value_t = 60, value_name = "HZ", value_parser = clap::value_parser!(u16).range(1..=240))]
     frame_rate: u16,
-    /// Most pixels of an eye's longer side
+    /// The largest length of an eye's longer side in pixels
     #[arg(long, default_value_t = 1024, value_name = "N", value_parser = clap::value_parser!(u16).range(64..=1400))]
     max_size: u16,
     /// Serve to the local network by https, at this address of this machine [default: the one by which it reaches
@@ -79,25 +79,25 @@ pub struct ServeArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum ModeArg {
-    /// One eye and its depth, of which both eyes are made
+    /// One eye and its depth, from which both eyes are made
     Depth,
     /// Both eyes, corrected by rotation alone
     Eyes,
-    /// Both eyes and the depth of one, of which each eye is made
+    /// Both eyes and the depth of one, from which each eye is made
     EyesDepth,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum EncoderArg {
-    /// A graphics card by ffmpeg, where that works; else openh264
+    /// A graphics card, through ffmpeg, where that works; otherwise openh264
     Auto,
-    /// openh264, built in
+    /// The built-in encoder
     Openh264,
-    /// NVIDIA's NVENC, by ffmpeg
+    /// NVIDIA's NVENC, through ffmpeg
     Nvenc,
-    /// VA-API (Intel, AMD), by ffmpeg
+    /// VA-API (Intel, AMD), through ffmpeg
     Vaapi,
-    /// x264, by ffmpeg
+    /// x264 on the CPU, through ffmpeg
     X264,
 }
 

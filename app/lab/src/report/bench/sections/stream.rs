@@ -17,7 +17,7 @@ pub fn section(suite: &Suite) -> Section {
         "stream",
         "Streaming",
         "Frames of a walking head (1.35 m/s, 72 frames a second) as `yoro serve` sends them, encoded by openh264 at one quantizer: one \
-         eye and its depth, of which both eyes are made at the pose where they are shown; both eyes, turned to that pose; and both eyes \
+         eye and its depth, from which both eyes are made at the pose where they are shown; both eyes, turned to that pose; and both eyes \
          with the depth of one. Quality is the mean of both eyes against real renders at that pose, at once and 2 and 5 frames (28 and \
          69 ms) later. The first frame's bits, an intra frame's, do not count. No times are measured.",
     );
