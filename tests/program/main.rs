@@ -1,6 +1,8 @@
 //! The program `yoro` from end to end.
 
 mod browser;
+#[path = "../src/monado.rs"]
+mod monado;
 mod program;
 
 mod bench;

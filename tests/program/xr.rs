@@ -24,6 +24,7 @@ use yoro_protocol::Settings;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 
+use crate::monado::{self, Running};
 use crate::program::{Run, finish, yoro};
 
 /// Settings that make rendering cheap.
@@ -659,11 +660,11 @@ fn asymmetric_eyes_in_every_scene() {
     }
 }
 
-/// Monado's service with its own folder. It is ended when this is dropped.
+/// Monado's service with its own folder.
 struct Monado {
     programs: PathBuf,
     folder: TempDir,
-    service: std::process::Child,
+    _service: Running,
 }
 
 impl Monado {
@@ -678,33 +679,12 @@ impl Monado {
             return None;
         };
         let folder = tempfile::tempdir().unwrap();
-        let log = fs::File::create(folder.path().join("service.log")).unwrap();
-        let service = Command::new(programs.join("monado-service"))
-            .env("XDG_RUNTIME_DIR", folder.path())
-            .stdin(Stdio::null())
-            .stdout(log.try_clone().unwrap())
-            .stderr(log)
-            .spawn()
-            .unwrap();
-        let mut monado = Monado { programs, folder, service };
-        let start = Instant::now();
-        while !monado.folder.path().join("monado_comp_ipc").exists() {
-            assert_eq!(monado.service.try_wait().unwrap(), None, "{}", monado.log());
-            assert!(start.elapsed() < LIMIT, "{}", monado.log());
-            thread::sleep(Duration::from_millis(50));
-        }
-        Some(monado)
+        let service = monado::start(&programs.join("monado-service"), folder.path()).unwrap();
+        Some(Monado { programs, folder, _service: service })
     }
 
     fn log(&self) -> String {
         fs::read_to_string(self.folder.path().join("service.log")).unwrap()
-    }
-}
-
-impl Drop for Monado {
-    fn drop(&mut self) {
-        let _ = self.service.kill();
-        let _ = self.service.wait();
     }
 }
 

@@ -40,7 +40,8 @@ pub fn test() -> anyhow::Result<()> {
             let folder = target_folder()?.join("bevy-tests");
             remove(&folder)?;
             make_parent(&folder.join("runtime.log"))?;
-            let _runtime = monado::start(&programs.join("monado-service"), &folder)?;
+            let _runtime =
+                monado::start(&programs.join("monado-service"), &folder).map_err(anyhow::Error::msg)?;
             let runner = format!("target.'cfg(all())'.runner=[{:?}]", programs.join("run"));
             let drivers = monado_packages::make()?.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
             let environment = [

@@ -6,6 +6,7 @@ mod bevy;
 mod godot;
 mod kit;
 mod lint;
+#[path = "../../tests/src/monado.rs"]
 mod monado;
 mod package;
 mod setup;

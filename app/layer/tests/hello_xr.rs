@@ -1,14 +1,19 @@
 //! The layer between Debian's build of Khronos's hello_xr and Monado, alone and with Khronos's validation layer.
 
+#[path = "../../../tests/src/monado.rs"]
+mod monado;
+
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
+
+use monado::Running;
 
 /// The longest duration of a run. Large images can take seconds at times.
 const LIMIT: Duration = Duration::from_secs(300);
@@ -29,16 +34,6 @@ const VALIDATION: &str = "XR_APILAYER_LUNARG_core_validation";
 /// This package's layer for measurements.
 const MEASURED: &str = "XR_APILAYER_YORO_measured";
 
-/// A process that is killed when this is dropped.
-struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.0.kill().ok();
-        self.0.wait().ok();
-    }
-}
-
 /// Monado's service, in its own folder.
 struct Monado {
     programs: PathBuf,
@@ -49,21 +44,7 @@ struct Monado {
 impl Monado {
     fn start(programs: PathBuf) -> Monado {
         let folder = tempfile::tempdir().unwrap();
-        let log = fs::File::create(folder.path().join("service.log")).unwrap();
-        let service = Command::new(programs.join("monado-service"))
-            .env("XDG_RUNTIME_DIR", folder.path())
-            .stdin(Stdio::null())
-            .stdout(log.try_clone().unwrap())
-            .stderr(log)
-            .spawn()
-            .unwrap();
-        let mut service = Running(service);
-        let start = Instant::now();
-        while !folder.path().join("monado_comp_ipc").exists() {
-            assert_eq!(service.0.try_wait().unwrap(), None, "Monado's service has ended");
-            assert!(start.elapsed() < LIMIT, "Monado's service does not begin");
-            thread::sleep(Duration::from_millis(50));
-        }
+        let service = monado::start(&programs.join("monado-service"), folder.path()).unwrap();
         let monado = Monado { programs, folder, _service: service };
         let folder = std::env::current_exe().unwrap().parent().unwrap().to_owned();
         let layer = folder.join("libyoro_layer.so");

@@ -91,6 +91,6 @@ impl Session {
     /// # Errors
     /// Fails if the runtime does not start.
     pub fn runtime(&self, folder: &Path) -> anyhow::Result<Running> {
-        monado::start(&self.godot.join("monado-service"), folder)
+        monado::start(&self.godot.join("monado-service"), folder).map_err(anyhow::Error::msg)
     }
 }
