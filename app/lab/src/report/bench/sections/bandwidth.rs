@@ -22,8 +22,8 @@ pub fn section(suite: &Suite) -> Section {
         "bandwidth",
         "Bandwidth",
         "H.264 of one eye and its depth, from which the receiver synthesizes the other eye, against H.264 of both \
-         eyes. The paper compares bit rates alone; at one quantizer the two do not look the same, so that the \
-         quality of both eyes after decoding is measured here, and rates are compared at equal quality.",
+         eyes. The paper compares bit rates alone. At one quantizer the two streams differ in quality, so both eyes \
+         are measured after decoding, and rates are compared at equal quality.",
     );
     let streams = suite.measured(KBIT_S);
     let both_luma = [PSNR_LUMA_DOMINANT, PSNR_LUMA_OTHER];
@@ -80,10 +80,11 @@ pub fn section(suite: &Suite) -> Section {
             equal.push_grouped(cells, i == 0);
         }
     }
-    equal.note = "Bjøntegaard's mean difference by the mean quality of both eyes; negative: fewer bits than stereo RGB for \
-                  the same quality. A curve counts only over the qualities that both reach: what synthesis cannot \
-                  show, no bit rate buys."
-        .into();
+    equal.note =
+        "Bjøntegaard's mean difference by the mean quality of both eyes. Negative means fewer bits than stereo RGB for \
+         the same quality. Curves are compared only over qualities that both reach: no bit rate recovers what \
+         synthesis cannot show."
+            .into();
     section.table(equal);
     section
 }
@@ -108,7 +109,7 @@ fn rate_table(suite: &Suite) -> Table {
         "QP",
         "stereo RGB, kbit/s",
         "RGB + depth, kbit/s",
-        "of it depth",
+        "depth's share, kbit/s",
         "difference",
         "stereo RGB: luma PSNR, dB",
         "RGB + depth: luma PSNR, dB",
@@ -149,7 +150,7 @@ fn rate_table(suite: &Suite) -> Table {
     push_refusals(&mut table, suite);
     let papers = mean(paper::BANDWIDTH.iter().map(|(_, depth, stereo)| depth / stereo - 1.0));
     table.note = format!(
-        "Mean difference here {}; the paper's {}. The paper names neither quantizer nor resolution: its rates stand \
+        "Mean difference here {}; the paper's {}. The paper names neither quantizer nor resolution, so its rates are \
          in each scene's first row.",
         mean(differences).map_or_else(|| "–".into(), percent),
         papers.map_or_else(|| "–".into(), percent),

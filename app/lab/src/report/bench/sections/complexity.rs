@@ -23,8 +23,8 @@ pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "complexity",
         "Complexity",
-        "Frame time against the number of triangles of one scene. The slope is the cost of a million triangles \
-         more, by least squares; what synthesis costs does not depend on the scene.",
+        "Frame time against the number of triangles of one scene. The slope is the cost of another million triangles, \
+         by least squares. Synthesis costs the same in every scene.",
     );
     let x = || Axis::new("triangles, millions").from_zero();
     let y = || Axis::new("frame time, ms").from_zero();
@@ -129,8 +129,8 @@ fn slopes(suite: &Suite) -> Table {
     }
     push_refusals(&mut table, suite);
     table.note =
-        "The paper's slopes by least squares from its nine points. Its “51.40 %” leaves out the smallest \
-                  scene; the ratio here is the mean over all nine."
+        "The paper's slopes are least-squares fits to its nine points. Its “51.40 %” omits the smallest scene; the \
+         ratio here is the mean of all nine."
             .into();
     table
 }

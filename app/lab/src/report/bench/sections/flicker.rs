@@ -15,8 +15,8 @@ pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "flicker",
         "Flicker",
-        "Change of the synthesized eye from frame to frame, along a piece of the camera path at walking pace, that \
-         the really rendered eye does not have. The paper has none.",
+        "Frame-to-frame change of the synthesized eye that a real render does not have, along part of the camera path \
+         at walking pace. The paper does not measure this.",
     );
     for (id, title, name) in [
         ("all", "Flicker of all pixels", metric::FLICKER),

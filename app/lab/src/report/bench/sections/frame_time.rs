@@ -21,15 +21,15 @@ pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "frame-time",
         "Frame time",
-        "A whole stereo frame by every method, on scenes that stand for the paper's eight. The paper measured \
-         frame rates of its own scenes on six phones and a Quest 2; ratios can be held against each other, times \
-         cannot.",
+        "A whole stereo frame by every method, on scenes that correspond to the paper's eight. The paper measured \
+         frame rates of its own scenes on six phones and a Quest 2. Ratios can be compared, times cannot.",
     );
     let contenders = suite.measured(metric::FRAME_MS);
     section.figure(
         "ratio",
         "Frame time over two full renders",
-        "Less is better; the line is conventional rendering. The paper's from its frame rates (Figure “frame rate”).",
+        "Less is better; the line is conventional rendering. The paper's values come from its frame rates (Figure \
+         “frame rate”).",
         scene_dots(
             suite,
             Axis::new("frame time / conventional").baseline(1.0),
@@ -99,8 +99,8 @@ pub fn few_lights(suite: &Suite) -> Section {
     let mut section = Section::new(
         "few-lights",
         "Few lights",
-        "The paper's setting for single-pass instancing: fewer than five lights, basic post-processing. It gives \
-         means over scenes and devices only.",
+        "The paper's setting for single-pass instancing: fewer than five lights, basic post-processing. It gives means \
+         over scenes and devices only.",
     );
     let contenders = suite.measured(metric::FRAME_MS);
     let others = suite.compared(metric::FRAME_MS);

@@ -31,7 +31,7 @@ pub fn styles(suite: &Suite) -> Section {
     let section = Section::new(
         "styles",
         "Shading styles",
-        "The same synthesis under five styles of shading. In the paper each style is another scene of its own.",
+        "The same synthesis under five styles of shading. In the paper, each style is a separate scene.",
     );
     let labels = Labels {
         column: "<style",
@@ -48,8 +48,8 @@ pub fn anti_aliasing(suite: &Suite) -> Section {
     let section = Section::new(
         "anti-aliasing",
         "Anti-aliasing",
-        "Each synthesized eye against the same eye rendered in the same way: with one sample per pixel, with FXAA after \
-         synthesis, and with MSAA, where the synthesis is told nothing of the edges (hard), the nearest or the first \
+        "Each synthesized eye against the same eye rendered in the same way: with one sample per pixel, with FXAA \
+         after synthesis, and with MSAA, where the synthesis takes edges as hard, or reads the nearest or the first \
          sample's depth, or the depth of all samples.",
     );
     let labels = Labels {

@@ -18,8 +18,8 @@ pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "overhead",
         "Overhead",
-        "CPU time and memory of a stereo frame. The paper gives the load of the CPU in percent and the memory of \
-         its applications; power and temperature are a phone's matter.",
+        "CPU time and memory of a stereo frame. The paper gives CPU load in percent and its applications' memory. \
+         Power and temperature need a phone.",
     );
     let contenders = suite.measured(metric::CPU_MS);
     let others = suite.compared(metric::CPU_MS);
@@ -35,8 +35,8 @@ pub fn section(suite: &Suite) -> Section {
     section.figure(
         "cpu",
         "CPU time over two full renders",
-        "CPU time of a stereo frame, all threads together; where the CPU also rasterizes, that is in it. The \
-         paper's: CPU load over conventional rendering's.",
+        "CPU time of a stereo frame over all threads, including rasterization if the CPU rasterizes. The paper's: CPU \
+         load over conventional rendering's.",
         scene_dots(
             suite,
             Axis::new("CPU time / conventional").baseline(1.0),
@@ -48,7 +48,8 @@ pub fn section(suite: &Suite) -> Section {
     section.figure(
         "memory",
         "Memory over two full renders",
-        "Of the process with the scene and the textures of one method. The paper's: memory of its applications over conventional rendering's.",
+        "Memory of the process, with the scene and one method's textures. The paper's: memory of its applications over \
+         conventional rendering's.",
         scene_dots(
             suite,
             Axis::new("memory / conventional"),
@@ -95,8 +96,8 @@ fn pass_table(suite: &Suite) -> Table {
         PassClock::TimerQueries => "GPU time by timer queries.".into(),
         PassClock::None => "Not told by this browser.".into(),
         PassClock::Finish => {
-            "Wall clock with glFinish around each pass, on frames of their own: a CPU rasterizer's timer queries \
-             are unusable."
+            "Wall clock with glFinish around each pass, on frames of their own: a CPU rasterizer's timer queries are \
+             unusable."
                 .into()
         }
     };

@@ -16,8 +16,8 @@ pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "patchers",
         "Patchers",
-        "What fills the holes of the same reprojected image. The paper's times are a phone's; its GAN runs on the \
-         CPU there.",
+        "How each patcher fills the holes of one reprojected image. The paper's times are from a phone, where its GAN \
+         runs on the CPU.",
     );
     let contenders = suite.measured(metric::SSIM);
     let paper_of = |name: &str| {

@@ -26,8 +26,8 @@ pub fn section(suite: &Suite) -> Section {
     let mut section = Section::new(
         "quality",
         "Image quality",
-        "The eye that is not dominant, against the same eye really rendered. “mono” shows the dominant eye's image to both: the baseline of doing nothing, \
-         without which no figure says much.",
+        "The synthesized eye against a real render of the same eye. “mono” shows the dominant eye's image to both \
+         eyes: the baseline for every other figure.",
     );
     // The ground truth needs no column for its similarity to itself.
     let contenders = suite.compared(metric::SSIM);
