@@ -8,6 +8,7 @@
 
 pub mod bd_rate;
 mod error;
+mod files;
 pub mod grid;
 pub mod inference;
 pub mod page;
@@ -19,3 +20,4 @@ mod student;
 pub mod text;
 
 pub use error::ReportError;
+pub use files::ReportFiles;

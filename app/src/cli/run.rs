@@ -17,7 +17,7 @@ use yoro_files as files;
 use yoro_gl::Context;
 use yoro_lab::machine::Parameter;
 use yoro_lab::picture;
-use yoro_lab::report::{self, RunReport};
+use yoro_lab::report::RunReport;
 use yoro_lab::run::{Candidate, Plan};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Method, Pipeline};
@@ -94,8 +94,8 @@ impl Subcommand for RunArgs {
                 picture(&format!("{method}.error-map"));
             }
         }
-        for name in report::FILES {
-            files.write(self.out.join(name), "the report");
+        for path in RunReport::files(&self.out).paths() {
+            files.write(path, "the report");
         }
         Ok(files)
     }
@@ -127,7 +127,7 @@ impl Subcommand for RunArgs {
             scenes,
         };
         write_pictures(self, &report)?;
-        let page = report.write(&self.out)?;
+        let page = report.write(&self.out)?.page;
         if self.json {
             print!("{}", report.to_json()?);
         } else {

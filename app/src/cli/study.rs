@@ -9,9 +9,7 @@ use anyhow::{Context as _, bail, ensure};
 use crate::cli::Subcommand;
 use crate::cli::machine;
 use crate::cli::outputs::Files;
-use yoro_devices::study::{
-    Collected, Condition, Options, Plan, Ratings, Study, StudyError, Written, read_trials,
-};
+use yoro_devices::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
 use yoro_files as files;
 use yoro_protocol::Settings;
 use yoro_render::stereo::Method;
@@ -142,8 +140,7 @@ impl Subcommand for StudyArgs {
             }
             Command::Analyse(args) => {
                 files.read([&args.ratings]);
-                let written = Written::of(&args.out);
-                for path in [written.page, written.markdown, written.json] {
+                for path in Study::files(&args.out).paths() {
                     files.write(path, "the report");
                 }
             }

@@ -21,8 +21,7 @@ use super::capture::{Capture, FaultKind};
 use super::mean_power::implausible;
 pub use compare::{Difference, Mean};
 pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
-use yoro_figures::ReportError;
-use yoro_files as files;
+use yoro_figures::{ReportError, ReportFiles};
 use yoro_scenes::BUILTINS;
 
 /// Confidence of all intervals.
@@ -83,17 +82,6 @@ pub struct DeviceReport {
     pub faults: Vec<Note>,
     /// The figures of all runs.
     pub runs: Vec<Run>,
-}
-
-/// The files that were written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written {
-    /// The HTML page.
-    pub page: PathBuf,
-    /// The tables as Markdown.
-    pub markdown: PathBuf,
-    /// All figures as JSON.
-    pub json: PathBuf,
 }
 
 impl DeviceReport {
@@ -189,17 +177,10 @@ impl DeviceReport {
     ///
     /// # Errors
     /// [`ReportError`]. All three are made before the first one is written.
-    pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
-        let written = Written {
-            page: folder.join("report.html"),
-            markdown: folder.join("report.md"),
-            json: folder.join("report.json"),
-        };
-        let (page, markdown, json) = (self.to_html()?, self.to_markdown(), self.to_json()?);
-        files::write(&written.json, json.as_bytes())?;
-        files::write(&written.markdown, markdown.as_bytes())?;
-        files::write(&written.page, page.as_bytes())?;
-        Ok(written)
+    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+        let files = ReportFiles::of(folder, "report");
+        files.write(&self.to_html()?, &self.to_markdown(), &self.to_json()?)?;
+        Ok(files)
     }
 }
 

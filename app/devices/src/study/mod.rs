@@ -10,39 +10,21 @@ mod page;
 mod plan;
 mod ratings;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use yoro_figures::ReportError;
-use yoro_files as files;
+use yoro_figures::{ReportError, ReportFiles};
 
 pub use analysis::{Excluded, Options, Question, Scale, Study, Verdict};
 pub use error::StudyError;
 pub use plan::{Condition, Plan, Trial, Trials, read_trials};
 pub use ratings::{Collected, Ratings, Row};
 
-/// The files that were written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written {
-    /// The HTML page.
-    pub page: PathBuf,
-    /// The tables as Markdown.
-    pub markdown: PathBuf,
-    /// All figures as JSON.
-    pub json: PathBuf,
-}
-
-impl Written {
-    /// Returns the files of a report in `folder`.
-    pub fn of(folder: &Path) -> Written {
-        Written {
-            page: folder.join("study.html"),
-            markdown: folder.join("study.md"),
-            json: folder.join("study.json"),
-        }
-    }
-}
-
 impl Study {
+    /// Returns the files that [`Study::write`] writes into `folder`.
+    pub fn files(folder: &Path) -> ReportFiles {
+        ReportFiles::of(folder, "study")
+    }
+
     /// Returns the analysis as a self-contained HTML page.
     ///
     /// # Errors
@@ -65,12 +47,9 @@ impl Study {
     ///
     /// # Errors
     /// [`ReportError`]. All three are made before the first one is written.
-    pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
-        let written = Written::of(folder);
-        let (page, json) = (self.to_html()?, serde_json::to_string_pretty(self)?);
-        files::write(&written.json, json.as_bytes())?;
-        files::write(&written.markdown, self.to_markdown().as_bytes())?;
-        files::write(&written.page, page.as_bytes())?;
-        Ok(written)
+    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+        let files = Study::files(folder);
+        files.write(&self.to_html()?, &self.to_markdown(), &serde_json::to_string_pretty(self)?)?;
+        Ok(files)
     }
 }

@@ -10,21 +10,18 @@ mod page;
 mod run;
 mod table;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
+use yoro_figures::ReportFiles;
 use yoro_figures::paper::{self, PaperScene};
-use yoro_files as files;
 
 pub use error::ReportError;
 pub use run::{
     Cost, MethodCost, MethodMean, MethodView, PassTime, QUALITY_METHOD, Row, RunReport, SceneReport,
     Viewpoint,
 };
-
-/// The names of a [`RunReport`]'s files: the page, all figures, and the table.
-pub const FILES: [&str; 3] = ["report.html", "report.json", "report.md"];
 
 impl RunReport {
     /// Returns all figures as JSON, without the pictures.
@@ -62,13 +59,16 @@ impl RunReport {
         table::text(self)
     }
 
-    /// Writes [`FILES`] into `folder` and returns the path of the page.
-    pub fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
-        let [page, json, markdown] = FILES.map(|name| folder.join(name));
-        files::write(&page, self.to_html()?.as_bytes())?;
-        files::write(&json, self.to_json()?.as_bytes())?;
-        files::write(&markdown, self.to_markdown().as_bytes())?;
-        Ok(page)
+    /// Returns the files that [`RunReport::write`] writes into `folder`.
+    pub fn files(folder: &Path) -> ReportFiles {
+        ReportFiles::of(folder, "report")
+    }
+
+    /// Writes the page, the table and all figures into `folder`.
+    pub fn write(&self, folder: &Path) -> Result<ReportFiles, ReportError> {
+        let files = RunReport::files(folder);
+        files.write(&self.to_html()?, &self.to_markdown(), &self.to_json()?)?;
+        Ok(files)
     }
 }
 
@@ -187,7 +187,7 @@ pub(crate) mod tests {
     #[test]
     fn files_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let page = synthetic(24, 1).write(&folder.path().join("new")).unwrap();
+        let page = synthetic(24, 1).write(&folder.path().join("new")).unwrap().page;
         assert!(page.is_file() && page.with_extension("json").is_file());
     }
 }
