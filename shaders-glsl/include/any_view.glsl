@@ -1,4 +1,5 @@
-// Inputs of the passes for any view. app/core/src/synthesis/uniforms.rs fills the block; docs/library.md has the table of offsets.
+// Inputs of the passes for any view. app/core/src/synthesis/uniforms.rs fills the block; docs/library.md has the table
+// of offsets.
 
 #include "include/interface.glsl"
 
@@ -8,16 +9,16 @@ UNIFORM_BLOCK uniform AnyView {
 UNIFORM ivec2 source_size;
 // Corner of the target in its framebuffer, on the side of row 0.
 UNIFORM ivec2 target_origin;
-// A target pixel (x, y) whose surface has the inverse distance k from the target's eye lies in the source at the homogeneous
-// pixel whose components are the scalar products of these with (x, y, 1, k): the rows of the homography of the rotation, and
-// the epipole.
+// Map a target pixel (x, y), whose surface is at the inverse distance k from the target's eye, to the source: the
+// components of the homogeneous source pixel are the dot products of these rows with (x, y, 1, k). The first three
+// columns are the homography of the rotation, the last one is the epipole.
 UNIFORM vec4 to_source_x;
 UNIFORM vec4 to_source_y;
 UNIFORM vec4 to_source_w;
-// Inverse distance from stored depth, `law.x + law.y * depth`: of the source, and of the target.
+// The laws of the source and of the target, which give inverse distance from stored depth: `law.x + law.y * depth`.
 UNIFORM vec2 source_law;
 UNIFORM vec2 target_law;
-// Stored depth of the nearest surface that can be seen, and of the far plane.
+// Stored depth of the nearest surface that can be visible, and of the far plane.
 UNIFORM float nearest;
 UNIFORM float far_depth;
 // The source's corner in its image, on the side of row 0, and one pixel of the image in texture coordinates.

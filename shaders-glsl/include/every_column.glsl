@@ -1,16 +1,16 @@
 #include "include/march.glsl"
 
-// The search of a fragment column by column: for CPU rasterizers, and for OpenGL ES 3.0.
+// The search of a fragment, column by column: for CPU rasterizers and for OpenGL ES 3.0.
 
-// State of the search. Whole columns are those of the image here, not forward ones.
+// State of the search. Integer columns are columns of the image here, not forward columns.
 struct Search {
     int column;
-    // Place of the column, and the places where the surfaces of the column before and of this one land, all relative to
-    // the pixel.
+    // Position of the column, and where the surfaces of the previous column and of this one land, all relative to the
+    // pixel.
     float shift;
     float a;
     float b;
-    // Depth of the column before and its own.
+    // Depths of the previous column and of this one.
     float depth;
     float next;
     bool found;
@@ -18,7 +18,7 @@ struct Search {
     int edge;
     float edge_depth;
 #ifdef HISTORY
-    // law.y * depth of the foreground beside it.
+    // law.y * depth of the foreground beside the hole.
     float front;
 #endif
     // The nearest silhouette beside the pixel.
@@ -26,12 +26,12 @@ struct Search {
     float rim_depth;
 };
 
-// Tiles that are always walked: skipping pays only where there are many.
+// Number of tiles that are always walked: skipping pays only where there are many.
 const float FIRST_TILES = 4.0;
 
-// From column `x` on, where a tile begins, the first one whose tile lands within a pixel of this one, or that of the
-// last tile before `end`. Beside the silhouettes of near surfaces that is hundreds of columns away. The far plane's
-// surface lands here from column `origin`.
+// Returns the first column from `x` on, where a tile begins, whose tile lands within a pixel of the target pixel, or
+// else the start of the last tile before `end`. Beside the silhouettes of near surfaces, this skips hundreds of
+// columns. A surface on the far plane lands on the pixel from column `origin`.
 float next_candidate(float x, float end, float origin, int row) {
     bool lands = false;
     while (x + float(TILE.x) < end && !lands) {
@@ -53,7 +53,7 @@ void leap(inout Search at, float x, float origin, int row) {
 
 // Walks column by column until the surface is found, or to forward column `end`.
 void walk(inout Search at, float end, float origin, int row) {
-    // Between two columns: places are rounded.
+    // Halfway between two columns, since positions are rounded.
     float limit = end - origin - 0.5;
     int step = mirrored ? -1 : 1;
     while (at.shift < limit && !at.found) {
@@ -78,19 +78,19 @@ void walk(inout Search at, float end, float origin, int row) {
     }
 }
 
-// Colour and surface of a pixel. Column x lands at x - origin + law.y * depth, relative to the pixel. The search starts
-// at column `x`, of depth `next`, that lands at `b`, and takes `steps` steps at most.
+// Returns the colour and the surface of a pixel. Column x lands at x - origin + law.y * depth, relative to the pixel.
+// The search starts at column `x`, which has the depth `next` and lands at `b`, and takes at most `steps` steps.
 //
-// A silhouette that crosses the pixel is blended over what lies behind. Where the row jumps over the pixel from a
-// farther to a nearer surface there is a disocclusion: the farthest such jump is remembered and the hole is
-// filled from its background side.
+// A silhouette that crosses the pixel is blended over what lies behind it. Where the row jumps over the pixel from a
+// farther to a nearer surface, there is a disocclusion: the farthest such jump is remembered, and the hole is filled
+// from its background side.
 vec4 march(float origin, int row, float steps, float x, float b, float next, out Surface surface) {
     float last_column = float(source_size.x - 1);
     // Columns beyond the borders repeat them.
     b -= x;
     x = clamp(x, 0.0, last_column);
     b += x;
-    // Left of everything the border of the image is the background.
+    // Left of all surfaces, the border of the image is the background.
     bool outside = x == 0.0 && b > 0.0;
     float end = outside && b < 0.5 ? x : min(x + steps, last_column);
     int column = source_column(int(x));
@@ -102,7 +102,8 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
     Search at = Search(column, x - origin, b, b, next, next, false, edge, edge_depth, -1, 0.0);
 #endif
 #ifndef TEXTURE_GATHER
-    // Nearly every pixel ends within the first tiles; those beside silhouettes of near surfaces go on, tile by tile.
+    // Nearly every pixel finds its surface within the first tiles. Pixels beside silhouettes of near surfaces continue
+    // tile by tile.
     float first = (floor(x / float(TILE.x)) + FIRST_TILES) * float(TILE.x);
     walk(at, min(first, end), origin, row);
     while (at.shift < end - origin - 0.5 && !at.found) {
@@ -111,11 +112,11 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
         walk(at, min(x + float(TILE.x), end), origin, row);
     }
 #else
-    // CPU rasterizers execute every fetch in the text. Without those of the tiles they are faster, except in frames of near
-    // surfaces.
+    // CPU rasterizers execute every fetch in the code. They are faster without those of the tiles, except in frames of
+    // near surfaces.
     walk(at, end, origin, row);
 #endif
-    // Where nothing is found: the hole's edge, or the last column right of everything.
+    // If nothing is found, take the hole's edge, or the last column if the pixel is right of all surfaces.
     bool own = at.found || at.edge < 0;
     column = own ? at.column : at.edge;
     x = float(source_column(column));
@@ -128,7 +129,7 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
 #ifdef HISTORY
     vec4 color = color_at(surface.source, row);
     bool unknown = surface.hole;
-    // A loop, as in `fill_hole`.
+    // A loop instead of an `if`, as in `fill_hole`.
     for (int i = surface.hole ? 0 : 1; i < 1; ++i) {
         unknown = !recall(gl_FragCoord.xy - vec2(target_origin), at.front, origin, row, color, surface.depth);
     }
@@ -136,8 +137,8 @@ vec4 march(float origin, int row, float steps, float x, float b, float next, out
 #else
     vec4 color = fill_hole(surface.hole, color_at(surface.source, row), away, x, surface.depth, row);
 #endif
-    // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
-    // it covers on average.
+    // A silhouette lies anywhere between its last sample and the next one, so blend by the share of the pixel that it
+    // covers on average.
     if (at.rim >= 0) {
         x = float(source_column(at.rim));
         float coverage = 1.0 - abs(x - origin + law.y * at.rim_depth);

@@ -1,9 +1,9 @@
 #include "include/warp.glsl"
 
-// Disocclusions looked up in a history: an image of the synthesized eye that was really rendered, in this frame or in former ones.
-// It consists of strips of equally many rows, each rendered from a pose of its own.
+// Looks up disocclusions in a history: an image of the synthesized eye that was really rendered, in this frame or in
+// earlier ones. It consists of strips of equally many rows, each rendered from a pose of its own.
 
-// Most strips of a history.
+// The maximum number of strips in a history.
 const int STRIPS = 8;
 
 TEXTURE(10) uniform sampler2D history_depth;
@@ -11,24 +11,26 @@ TEXTURE(11) uniform sampler2D history_color;
 #ifdef UNIFORM_BLOCK
 BLOCK(12) uniform History {
 #endif
-// From a pixel of the target and its depth to a pixel of each strip's image and its depth. Zero for strips with nothing in them.
+// For each strip, maps a pixel of the target and its depth to a pixel of the strip's image and its depth. Zero for
+// empty strips.
 UNIFORM mat4 to_history[STRIPS];
 UNIFORM int history_strips;
 #ifdef UNIFORM_BLOCK
 };
 #endif
 
-// Looks a pixel of a disocclusion up, at the depth of its background. If its surface is there, `color` and `depth` become those
-// of that surface, and the result is true. `pixel` is its middle, counted from the target's corner, `front` law.y * depth of
-// the foreground beside it, `origin` as in the march.
+// Looks up a pixel of a disocclusion at the depth of its background. If the history has its surface, sets `color` and
+// `depth` to that surface's and returns true. `pixel` is the middle of the pixel, counted from the target's corner,
+// `front` is law.y * depth of the foreground beside the disocclusion, and `origin` is that of the march.
 //
-// What the history shows is taken if it is behind the foreground's edge and the rendered eye does not see past it: else it is not
-// what was uncovered, or it has moved since.
+// A surface from the history is taken only if it is behind the foreground's edge and the rendered eye sees nothing
+// behind it. Otherwise it is not what was uncovered, or it has moved since.
 bool recall(vec2 pixel, float front, float origin, int row, inout vec4 color, inout float depth) {
     vec2 size = vec2(textureSize(history_depth, 0));
     vec2 scale = size / vec2(target_size);
     float rows = float((int(size.y) + history_strips - 1) / history_strips);
-    // The strip of the pixel's own row; and after a turn of the head, the one in whose rows the first shows the place.
+    // Begin with the strip of the pixel's own row. After a turn of the head, the place may be in the rows of another
+    // strip, which is tried second.
     vec2 guess = pixel * scale;
     vec4 seen;
     int strip;
@@ -41,7 +43,7 @@ bool recall(vec2 pixel, float front, float origin, int row, inout vec4 color, in
     if (!(seen.w > 0.0 && inside && int(guess.y / rows) == strip)) {
         return false;
     }
-    // On the pixel's ray, the depth that is stored there, and its place.
+    // The depth that is stored there, and the place at which the pixel's ray has this depth.
     float stored = texelFetch(history_depth, ivec2(guess), 0).r;
     vec4 along = to_history[strip][2];
     float farther = (stored * seen.w - seen.z) / (along.z - stored * along.w);
@@ -60,7 +62,7 @@ bool recall(vec2 pixel, float front, float origin, int row, inout vec4 color, in
     if (!(same && behind && hidden)) {
         return false;
     }
-    // Filtered where all four texels show this surface.
+    // Filter only if all four texels show this surface.
     vec2 least = vec2(0.5, float(strip) * rows + 0.5);
     vec2 most = vec2(size.x, min(float(strip + 1) * rows, size.y)) - 0.5;
     place = clamp(place, least, most);

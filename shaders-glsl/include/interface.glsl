@@ -1,5 +1,5 @@
-// How the synthesis passes declare their inputs: plain uniforms for OpenGL; blocks if UNIFORM_BLOCK is the qualifier of a std140
-// block, such as Vulkan's push constants.
+// How the synthesis passes declare their inputs: as plain uniforms for OpenGL, or as blocks if UNIFORM_BLOCK is
+// defined. It is the qualifier of a std140 block, such as Vulkan's push constants.
 
 #ifdef UNIFORM_BLOCK
 #define UNIFORM
@@ -7,12 +7,13 @@
 #define UNIFORM uniform
 #endif
 
-// Textures and blocks have a binding in the text for Vulkan, and are bound by name in OpenGL.
+// Textures and blocks have bindings in the shader for Vulkan; in OpenGL they are bound by name.
 #ifdef VULKAN
 #define TEXTURE(n) layout(set = 0, binding = n)
 #define BLOCK(n) layout(set = 0, binding = n, std140)
 #define VARYING(n) layout(location = n)
-// The source is a part of its image, or the maps are larger than needed: nothing beside them is read.
+// True if the source is a part of its image, or if the maps are larger than needed. Nothing outside of that part is
+// read.
 layout(constant_id = 0) const bool PART = false;
 #else
 #define TEXTURE(n)

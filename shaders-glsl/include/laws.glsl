@@ -1,36 +1,37 @@
 #include "include/planes.glsl"
 
-// Laws of target tiles, from the tile map.
+// The laws of target tiles, computed from the tile map.
 
-// Source tiles that may land in a target tile with a law: at most so many.
+// The maximum number of source tiles that may land in a target tile with a law.
 const int LAW_TILES = 4;
 
-// Where the source tile's first column lands in the tile's first and last row, and what is added to the displacement from one
-// column to the next.
+// Returns where the source tile's first column lands in the tile's first and last row, and how much the displacement
+// changes from one column to the next.
 vec3 landing(int source_tile, int row) {
     vec3 plane = uintBitsToFloat(texelFetch(tile_map, ivec2(source_tile, row), 0).yzw);
     float first = float(source_tile * TILE.x) + plane.x;
     return vec3(first, first + float(TILE.y - 1) * plane.z, plane.y);
 }
 
-// Rows of the target beyond the source repeat its border.
+// True if this row of tiles contains target rows beyond the source, which repeat the source's border.
 bool repeats_border(int row) {
     int rows = (source_size.y + TILE.y - 1) / TILE.y;
     return (row == 0 && row_offset > 0) || (row == rows - 1 && target_size.y - row_offset > source_size.y);
 }
 
-// The law of a target tile in which source tiles `left` to `right` may land: the source's texture coordinate is
-// x + y * gl_FragCoord.x + z * gl_FragCoord.y. 0 if there is none within PLANAR.
+// Returns the law of a target tile in which source tiles `left` to `right` may land: the source's texture coordinate is
+// x + y * gl_FragCoord.x + z * gl_FragCoord.y. Returns 0 if no law holds within PLANAR.
 //
-// If all these tiles are planes, what lands is one continuous surface, since a tile's plane takes in the column after it. The
-// source column is affine in the pixel where their planes agree.
+// If all these tiles are planes, what lands is one continuous surface, since a tile's plane includes the column after
+// it. The source column is affine in the pixel where their planes agree.
 vec3 law_of(ivec2 tile, int left, int right) {
     if (left > right || right >= left + LAW_TILES || repeats_border(tile.y)) {
         return vec3(0.0);
     }
     float first = float(tile.x * TILE.x);
     float last = first + float(TILE.x - 1);
-    // Source columns that land in the tile's corners: left and right of its first row, and of its last one.
+    // Source columns that land in the tile's corners: left and right in its first row, then left and right in its last
+    // row.
     vec4 ends = vec2(first, last).xyxy;
     vec4 corners = vec4(0.0);
     bool planar = true;
@@ -42,7 +43,7 @@ vec3 law_of(ivec2 tile, int left, int right) {
     }
     vec2 slope = vec2(corners.y - corners.x, corners.z - corners.x) / vec2(TILE.x - 1, TILE.y - 1);
     float error = abs(corners.w - corners.y - corners.z + corners.x);
-    // Where one tile ends and the next one begins, the surface may be bent.
+    // The surface may be bent where one tile ends and the next one begins.
     for (int s = left + 1; s <= right; ++s) {
         vec2 lands = landing(s, tile.y).xy;
         vec2 off = abs(corners.xz + slope.x * (lands - first) - float(s * TILE.x));

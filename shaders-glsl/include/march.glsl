@@ -10,8 +10,8 @@ float nearness_at(int x, int row) {
 
 TEXTURE(2) uniform highp usampler2D tile_map;
 
-// The surface that a target pixel shows: fractional source column and depth. For a hole they are those of the column from
-// which it is filled.
+// The surface that a target pixel shows: fractional source column and depth. For a hole they are those of the column
+// from which it is filled.
 struct Surface {
     float source;
     float depth;

@@ -2,23 +2,24 @@
 
 // Tiles whose displacements lie on a plane. Depth-buffer values are affine on a plane, and so are displacements.
 //
-// A tile of the tile map holds its interval and, as floats, the displacement of its first pixel and what is added from one
-// forward column and from one row to the next. If its pixels are not on one plane there are NO_PLANE in place of the second,
-// and marks in place of the others: 16 bits for every two rows, bit i for columns i and i + 1 if in one of the rows these land
-// on one another, or tear, within rounding.
+// A tile of the tile map holds its interval and, as floats, the displacement of its first pixel and the changes of
+// displacement from one forward column and from one row to the next. If its pixels are not on one plane, the second
+// float is NO_PLANE, and the other two are marks: 16 bits for every two rows. Bit i is set if, in one of the rows,
+// columns i and i + 1 land on one another, or tear, within rounding.
 
 // Largest distance in pixels of a displacement from its tile's plane.
 const float PLANAR = 1.0 / 16.0;
 const float NO_PLANE = 9.0;
-// Difference of two neighbours' displacements from which on their pair is marked.
+// Two neighbours whose displacements differ by more than this, in pixels, are marked.
 const float MARKED = 0.99;
 
-// Marks of four rows whose bits are in the order of the image's columns, the first ones last.
+// Converts marks of four rows, collected in the order of the image's columns with the first ones in the highest bits,
+// to a bit for each forward column, with the first ones in the lowest bits.
 uint in_place(uint marks) {
     return mirrored ? marks >> 16 | marks << 16 : bitfieldReverse(marks);
 }
 
-// The tile at this forward column and row, and the column after it.
+// Returns the tile at this forward column and row, including the column after it.
 uvec4 plane_tile(vec2 corner) {
     const vec2 LAST = vec2(TILE.x, TILE.y - 1);
     vec2 middle = corner + 0.5;
@@ -27,20 +28,21 @@ uvec4 plane_tile(vec2 corner) {
     float above = depth_sample(place_of(middle + vec2(0.0, LAST.y)));
     float opposite = depth_sample(place_of(middle + LAST));
     vec2 slope = (vec2(right, above) - first) / LAST;
-    // Where the corners are not on one plane the interval is that of depth itself, which is tighter.
+    // If the corners are not on one plane, the interval is that of depth itself, which is tighter.
     slope = abs(law.y * (first - right - above + opposite)) <= 4.0 * PLANAR ? slope : vec2(0.0);
-    // Smallest and largest depth above the plane through the first pixel. Two by two texels a fetch, two rows a pass, in the
-    // order of the image's columns; of the pairs of columns the last overlaps the one before.
+    // Smallest and largest depth relative to the plane through the first pixel. Each fetch takes 2 x 2 texels and each
+    // pass two rows, in the order of the image's columns. The last pair of columns overlaps the one before.
     vec4 low = vec4(1e9);
     vec4 high = vec4(-1e9);
     float plane = 0.0;
-    // A bit for each pair of neighbours in two rows: the first four rows, and all.
+    // A bit for each pair of neighbours in two rows. `lower_marks` gets those of the first four rows, `marks` ends with
+    // those of the last four.
     uint lower_marks = 0u;
     uint marks = 0u;
     float marked = MARKED / abs(law.y);
     float begin = mirrored ? LAST.x - 1.0 : 0.0;
     float sense = mirrored ? -1.0 : 1.0;
-    // A loop that no compiler unrolls: all the fetches in flight at once would take most of the registers.
+    // A loop that no compiler unrolls: all fetches in flight at once would take most of the registers.
     for (float row = corner.y; row < corner.y + float(TILE.y); row += 2.0) {
         lower_marks = row == corner.y + 4.0 ? marks : lower_marks;
         vec2 before = vec2(0.0);
@@ -60,7 +62,7 @@ uvec4 plane_tile(vec2 corner) {
         }
         plane += 2.0 * slope.y;
     }
-    // The second column and row of each fetch; forward columns may run against the texture's.
+    // What the plane adds at the second column and row of each fetch. Forward columns may run against the texture's.
     vec4 second = slope.x * (mirrored ? vec4(1, 0, 0, 1) : vec4(0, 1, 1, 0)) + slope.y * vec4(1, 1, 0, 0);
     low -= second;
     high -= second;
@@ -72,7 +74,7 @@ uvec4 plane_tile(vec2 corner) {
     float a = displacement(least + min(rise.x, 0.0) + min(rise.y, 0.0));
     float b = displacement(most + max(rise.x, 0.0) + max(rise.y, 0.0));
     vec3 plane_law = vec3(displacement(0.5 * (least + most)), law.y * slope);
-    // A surface whose columns land less than half a pixel apart, or MAX_STRETCH and more, is left to the search.
+    // A surface whose columns land less than half a pixel apart, or MAX_STRETCH or more, is left to the search.
     bool planar = abs(law.y) * (most - least) <= 2.0 * PLANAR && abs(plane_law.y - 0.25) < 0.75;
     uvec3 rest = planar ? floatBitsToUint(plane_law) : uvec3(in_place(lower_marks), floatBitsToUint(NO_PLANE), in_place(marks));
     return uvec4(pack_interval(min(a, b), max(a, b)), rest);

@@ -1,11 +1,11 @@
 #include "include/march.glsl"
 #include "include/planes.glsl"
 
-// The search of a fragment over segments, for GPUs: from each marked pair of columns to the next (include/planes.glsl), or to
-// the next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns beyond the
-// borders repeat them.
+// The search of a fragment over segments, for GPUs: from each marked pair of columns to the next (include/planes.glsl),
+// or to the next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns
+// beyond the borders repeat them.
 
-// For measuring, the parts of the text to compile; everywhere else, all.
+// For measurements: the parts of the shader to compile. By default, all.
 #ifndef PARTS
 #define PARTS 63
 #endif
@@ -16,7 +16,7 @@ const int EVENTS = 8;
 const int FILL = 16;
 const int CROSSING = 32;
 
-// How far the search is: at forward columns x and x + 1, their depths, and where they land, relative to the pixel.
+// State of the search: forward column x, the depths of columns x and x + 1, and where they land relative to the pixel.
 struct Search {
     float x;
     vec2 depths;
@@ -30,8 +30,8 @@ vec2 depth_pair(float x) {
         float row = row_at(0.0);
         return vec2(depth_sample(vec2(column_at(x), row)), depth_sample(vec2(column_at(x + 1.0), row)));
     }
-    // A quarter of a column past the middle of x, fetches of four texels take x and x + 1; a quarter of a row past the row's
-    // middle, they take its row and the one above.
+    // A gather at a quarter of a column past the middle of x takes columns x and x + 1; at a quarter of a row past the
+    // row's middle, it takes this row and the one above.
     vec4 quad = textureGather(depth_map, TEXTURE_PLACE(vec2(columns.x * (x + 1.25) + columns.y, row_at(0.25))));
     return mirrored ? quad.zw : quad.wz;
 }
@@ -47,8 +47,8 @@ bool is_event(float a, float b) {
     return a <= 0.0 && (b > 0.0 || max(b, -1.0) < a);
 }
 
-// The end of the segment that begins at forward column x: the first column of a marked pair, or where the tile ends.
-// `below` and `shift` are where the row's marks are in its tile.
+// Returns the end of the segment that begins at forward column x: the first column of a marked pair, or the end of the
+// tile. `below` and `shift` say where the row's marks are in its tile.
 float segment_end(float x, int tile_row, bool below, uint shift) {
     uint column = uint(x);
     uint within = column % uint(TILE.x);
@@ -60,19 +60,19 @@ float segment_end(float x, int tile_row, bool below, uint shift) {
 
 // What a search has found so far beside the pixel.
 struct Beside {
-    // Column and depth of the hole's background; a negative column for none.
+    // Column and depth of the hole's background; the column is negative if there is none.
     float edge;
     float edge_depth;
 #ifdef HISTORY
-    // law.y * depth of the foreground beside it.
+    // law.y * depth of the foreground beside the hole.
     float front;
 #endif
-    // The nearest silhouette.
+    // Column and depth of the nearest silhouette; the column is negative if there is none.
     float rim;
     float rim_depth;
 };
 
-// Takes an event into account. Returns true if the pair is the visible surface.
+// Takes an event into account. Returns true if the pair of columns is the visible surface.
 bool meet(inout Beside beside, Search at) {
     COUNT_TRIP(3)
     bool jump = at.b > 0.0;
@@ -89,13 +89,13 @@ bool meet(inout Beside beside, Search at) {
     return jump && (at.a > -0.5 || !torn);
 }
 
-// Colour and surface of a pixel, from where the short way has ended.
+// Returns the colour and the surface of a pixel. The search continues where the short way has ended.
 //
-// A silhouette that crosses the pixel is blended over what lies behind. Where the row jumps over the pixel from a
-// farther to a nearer surface there is a disocclusion: the farthest such jump is remembered and the hole is
-// filled from its background side.
+// A silhouette that crosses the pixel is blended over what lies behind it. Where the row jumps over the pixel from a
+// farther to a nearer surface, there is a disocclusion: the farthest such jump is remembered, and the hole is filled
+// from its background side.
 vec4 march(Search at, float end, float origin, int row, out Surface surface) {
-    // Left of everything the border of the image is the background.
+    // Left of all surfaces, the border of the image is the background.
     float border = at.a - at.x;
     bool outside = at.x <= 0.0 && border > 0.0;
     end = outside && border < 0.5 ? 0.0 : end;
@@ -111,7 +111,7 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     if ((PARTS & EVENTS) != 0 && at.x >= 0.0 && at.x < end && is_event(at.a, at.b)) {
         found = meet(beside, at);
     }
-    // A segment's first column, and where it lands.
+    // The segment's first column, and where it lands.
     float x = max(at.x + 1.0, 0.0);
     float a = at.b + (x - at.x - 1.0);
     int tile_row = row / TILE.y;
@@ -126,11 +126,11 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
         if ((PARTS & EVENTS) != 0 && !crosses && at.x < end && is_event(at.a, at.b)) {
             found = meet(beside, at);
         }
-        // Past the pair.
+        // Continue after the pair.
         x = found ? x : at.x + 1.0;
         a = found ? a : at.b;
     }
-    // The pair of the segment that crosses the pixel.
+    // Find the pair of the segment's columns that crosses the pixel.
     float last = at.x;
     float b = at.a;
     while ((PARTS & CROSSING) != 0 && crosses && x < last) {
@@ -143,7 +143,7 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
         last = behind ? at.x : last;
         b = behind ? at.a : b;
     }
-    // Where nothing is found: the hole's edge, or the last column right of everything.
+    // If nothing is found, take the hole's edge, or the last column if the pixel is right of all surfaces.
     bool own = found || beside.edge < 0.0;
     x = own ? min(at.x, end) : beside.edge;
     float t = found && at.b - at.a < MAX_STRETCH ? -at.a / (at.b - at.a) : 0.0;
@@ -160,8 +160,8 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
 #endif
         color = fill_hole(true, color, away, x, surface.depth, row);
     }
-    // A silhouette lies anywhere between its last sample and the next one: blend by the share of the pixel that
-    // it covers on average.
+    // A silhouette lies anywhere between its last sample and the next one, so blend by the share of the pixel that it
+    // covers on average.
     if (beside.rim >= 0.0) {
         float coverage = 1.0 - abs(beside.rim - origin + law.y * beside.rim_depth);
         color = mix(color, color_sample(vec2(column_at(beside.rim), row_at(0.0))), coverage);

@@ -1,4 +1,5 @@
-// The rendered image: its textures, and places in it. Follows the file that declares `source_size` and `source_origin`.
+// The rendered image: its textures, and places in it. To be included after the declarations of `source_size` and
+// `source_origin`.
 
 // Columns and rows of a tile.
 const ivec2 TILE = ivec2(16, 8);
@@ -17,7 +18,7 @@ TEXTURE(1) uniform sampler2D color_map;
 #define TEXTURE_PLACE(at) (at)
 #endif
 
-// A place in the source as one in its image.
+// Converts a pixel of the source to a pixel of its image.
 ivec2 in_image(ivec2 pixel) {
     return PART ? source_origin + pixel : pixel;
 }

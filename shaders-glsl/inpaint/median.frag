@@ -1,7 +1,7 @@
 #version 310 es
-// One pass of the median patcher (Noori et al.): each channel of a hole's pixel is the median of its valid 5x5 neighbours
-// (the lower of the two in the middle). Pixels without valid neighbours are left to the next pass, for which this pass's
-// pixels are valid: holes close from their border inwards.
+// One pass of the median patcher (Noori et al.): each channel of a hole's pixel is the median of its valid 5x5
+// neighbours (the lower of the two in the middle). Pixels without valid neighbours are left to the next pass, for which
+// this pass's pixels are valid: holes close from their border inwards.
 
 #include "inpaint/holes.glsl"
 
@@ -30,9 +30,9 @@ void main() {
     ivec2 last = min(pixel + RADIUS, size - 1);
     int level = 0;
     int count = 0;
-    // The median is the largest level that no more than half of the values lie below: found two bits at a time. The
-    // neighbours are fetched again each time, since an array of them lies in memory or takes most of a GPU's registers.
-    // Rare work stands in a loop with a dynamic count; see include/fill.glsl.
+    // The median is the largest level with no more than half of the values below it. It is found two bits at a time.
+    // The neighbours are fetched again each time, since an array of them would lie in memory or take most of a GPU's
+    // registers. The rare work is in a loop with a dynamic count; see include/fill.glsl.
     for (int bit = color.a < 0.5 ? 64 : 0; bit > 0; bit >>= 2) {
         ivec3 candidates = level + bit * ONES * ivec3(1, 2, 3);
         ivec3 above = ivec3(0);

@@ -1,18 +1,18 @@
 #version 310 es
-// Algorithm 3, as corrected, on a reprojected image: see stereo/paper/patch.frag. There the ImBuffer has the hole's two
-// ends; here they are found by walking.
+// Algorithm 3, as corrected, on a reprojected image: see stereo/paper/patch.frag. There, the ImBuffer has both ends of
+// the hole; here, they are found by walking.
 
 #include "inpaint/holes.glsl"
 
 // Rows of the kernel, `h` of Algorithm 3.
 const int KERNEL_HEIGHT = 3;
-// The weights fall by half or more a step: more columns than this add less than 1/1000.
+// The weights at least halve with each step: columns beyond these would add less than 1/1000.
 const int MAX_KERNEL_WIDTH = 10;
 
 void main() {
     ivec2 pixel = here();
     color = color_at(pixel.x, pixel.y);
-    // Rare work stands in a loop with a dynamic count; see include/fill.glsl.
+    // The rare work is in a loop with a dynamic count; see include/fill.glsl.
     for (int once = color.a < 0.5 ? 0 : 1; once < 1; ++once) {
         int left = pixel.x;
         while (left >= 0 && is_hole(left, pixel.y)) {

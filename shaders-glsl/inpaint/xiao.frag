@@ -1,8 +1,8 @@
 #version 310 es
-// One pass of the background filter of Xiao et al. 2022. It averages the valid pixels in a window of 29x29 around a hole's
-// pixel that lie in the farther half of the window's range of inverse depth, with weights that fall with the distance.
-// Disparity is averaged alike. Pixels without such neighbours are left to the next pass, for which this pass's pixels are
-// valid.
+// One pass of the background filter of Xiao et al. 2022. It averages the valid pixels in a window of 29x29 around a
+// hole's pixel that lie in the farther half of the window's range of inverse depth, with weights that fall with the
+// distance. Disparity is averaged alike. Pixels without such neighbours are left to the next pass, for which this
+// pass's pixels are valid.
 
 #include "inpaint/holes.glsl"
 
@@ -14,7 +14,7 @@ void main() {
     ivec2 pixel = here();
     color = color_at(pixel.x, pixel.y);
     disparity = vec4(disparity_at(pixel.x, pixel.y));
-    // Rare work stands in a loop with a dynamic count; see include/fill.glsl.
+    // The rare work is in a loop with a dynamic count; see include/fill.glsl.
     bool hole = color.a < 0.5;
     ivec2 low = max(pixel - RADIUS, ivec2(0));
     ivec2 high = min(pixel + RADIUS, size - 1);

@@ -1,5 +1,5 @@
-// A lit surface, display-referred. Tone mapping comes before the samples of a pixel are averaged, so that edges of bright
-// surfaces are as smooth as others. Alpha is luma, or the material if outlines are drawn.
+// A lit surface, display-referred. Tone mapping comes before the samples of a pixel are averaged, so that edges of
+// bright surfaces are as smooth as others. Alpha is luma, or the material if outlines are drawn.
 #include "include/surface.glsl"
 
 uniform float exposure;

@@ -1,5 +1,5 @@
-// Scene triangles, with positions relative to the eye. With STEREO each triangle is drawn for both eyes: by two views, or
-// by two instances side by side.
+// Scene triangles, with positions relative to the eye. With STEREO each triangle is drawn for both eyes: by two views,
+// or by two instances side by side.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
@@ -13,7 +13,7 @@ layout(num_views = 2) in;
 #else
 #define VIEW gl_InstanceID
 #endif
-// A choice between two, not an index: for that Mali and Adreno load the uniforms from memory.
+// A choice between two instead of an index: with an index, Mali and Adreno load the uniforms from memory.
 #define OF_VIEW(uniforms) (VIEW == 0 ? uniforms[0] : uniforms[1])
 #define EYE OF_VIEW(eyes)
 #define EYE_TO_CLIP OF_VIEW(eyes_to_clip)

@@ -1,4 +1,4 @@
-// Lights the g-buffer, with ambient occlusion, to scene-referred colour; the sky where no surface is.
+// Lights the g-buffer, with ambient occlusion, to scene-referred colour. Pixels without a surface show the sky.
 #include "include/view.glsl"
 #include "include/g_buffer.glsl"
 #include "include/role.glsl"

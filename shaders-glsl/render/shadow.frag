@@ -1,4 +1,4 @@
-// Depth alone; leaves cast the shadow of leaves.
+// Writes only depth. Alpha cuts out holes, so that leaves cast the shadows of leaves.
 #include "include/material.glsl"
 
 void main() {

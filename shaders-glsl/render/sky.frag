@@ -1,4 +1,4 @@
-// The sky, where no surface was drawn: display-referred, with luma in alpha. Drawn at the far plane's depth.
+// The sky where no surface was drawn: display-referred, with luma in alpha. It is drawn at the far plane's depth.
 #include "include/view.glsl"
 #include "include/shade.glsl"
 

@@ -1,5 +1,5 @@
-// At a surface's edge, gives half of a pixel's samples the depth behind the surface, by alpha to coverage. An image has the
-// front's depth in every pixel that the front touches, and covers half of on average.
+// Gives half of a pixel's samples at a surface's edge the depth behind the surface, by alpha to coverage. An image has
+// the front's depth in every pixel that the front touches, although it covers only half of such a pixel on average.
 #include "include/view.glsl"
 
 uniform sampler2D depth_map;
@@ -17,7 +17,7 @@ void main() {
         float there = texelFetch(depth_map, clamp(p + step, ivec2(0), last), 0).x;
         behind = inverse_distance.y * (behind - there) > 0.0 ? there : behind;
     }
-    // A slanted surface is no edge.
+    // A slanted surface is not an edge.
     float c = inverse_distance.x + inverse_distance.y * depth;
     if (inverse_distance.y * (depth - behind) < 0.05 * c) {
         discard;

@@ -44,10 +44,10 @@ float occlusion(ivec2 p, float z) {
     return max(1.0 - sum * (falloff.w * (100.0 * STRENGTH / float(SAMPLES))), 0.0);
 }
 
-// True if a pixel is lit whose blur reads this texel.
+// True if this texel is read by the blur of a lit pixel.
 bool is_wanted(ivec2 p, float depth) {
 #ifdef REPROJECTED
-    // Filtered where four texels meet, each tap sees all of them.
+    // A filtered fetch where four texels meet takes in all four of them.
     const int FIRST = SCALE == 1 ? 0 : -3;
     const int TAPS = SCALE == 1 ? 2 : 5;
     vec2 texel = 1.0 / vec2(textureSize(disocclusion, 0));

@@ -1,11 +1,11 @@
-// Averages the sixteen rotations of the occlusion pattern, on one surface.
+// Averages the sixteen rotations of the occlusion pattern within one surface.
 #include "include/occlusion.glsl"
 
 uniform sampler2D occlusion_map;
 
 layout(location = 0) out vec4 out_occlusion;
 
-// The smaller difference of the two sides: the one that stays on the surface.
+// Returns the smaller of the differences on both sides: the one that stays on the surface.
 float slope(float before, float center, float after) {
     float a = center - before, b = after - center;
     return abs(a) < abs(b) ? a : b;

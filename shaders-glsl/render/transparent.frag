@@ -1,5 +1,5 @@
-// Transparent surfaces over a display-referred image: a finished one with its depth in a texture, or, with DEPTH_BUFFER,
-// the one that is being rendered.
+// Transparent surfaces over a display-referred image: a finished one with its depth in a texture, or, with
+// DEPTH_BUFFER, the one that is being rendered.
 #include "include/surface.glsl"
 #ifndef DEPTH_BUFFER
 #include "include/g_buffer.glsl"

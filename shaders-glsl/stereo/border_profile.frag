@@ -1,7 +1,7 @@
 #version 310 es
-// The nearness of surfaces at the border of a rendered view, on the side of its guard band: each of 64 x 16 texels has the
-// nearest of a few columns, in every second row of its sixteenth of the rows. Columns are counted forward
-// (include/warp.glsl): those of the guard band are the first.
+// The nearness of surfaces at the border of a rendered view, on the side of its guard band. Each of 64 x 16 texels has
+// the nearest surface of a few columns, in every second row of a sixteenth of the rows. Columns are counted forward
+// (include/warp.glsl), so those of the guard band are the first.
 
 uniform sampler2D depth_map;
 uniform bool mirrored;
@@ -30,14 +30,14 @@ void main() {
             float depth = texelFetch(depth_map, ivec2(mirrored ? size.x - 1 - x : x, row), 0).r;
             float disparity = law.x + law.y * depth;
             nearest = max(nearest, disparity);
-            // A surface that goes on beyond the outermost column that is drawn, seen as far as it moves in.
+            // A surface that continues beyond the outermost drawn column is seen as far as it moves into the image.
             if (x == first) {
                 float seen = min(disparity - beyond, float(guard)) - float(guard - first);
                 undrawn += first > 0 ? max(seen, 0.0) : 0.0;
             }
         }
     }
-    // One unit more: zero marks a buffer that was not written.
+    // One unit more, since zero marks a buffer that was not written.
     ivec2 values = ivec2(min(ceil(vec2(nearest * UNIT + 1.0, undrawn)), 65535.0));
     profile = vec4(values & 255, values >> 8).xzyw / 255.0;
 }

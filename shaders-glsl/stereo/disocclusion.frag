@@ -1,5 +1,5 @@
-// Disocclusions: r is 1 for pixels of the second eye that the dominant eye does not see. Elsewhere g is 1 if both of the
-// dominant eye's pixels around the place show the same surface, so that they may be filtered.
+// Disocclusions: r is 1 for pixels of the second eye that the dominant eye does not see. Elsewhere, g is 1 if both of
+// the dominant eye's pixels around the reprojected place show the same surface, so that they may be filtered.
 #include "include/reprojection.glsl"
 
 uniform sampler2D depth_map;       // of the second eye
@@ -10,8 +10,8 @@ uniform float far_depth;
 
 layout(location = 0) out vec4 out_disocclusion;
 
-// True if a pixel of the dominant eye shows the surface: its disparity differs by less than half a pixel, its distance by
-// less than a tenth.
+// True if a pixel of the dominant eye shows the surface: its disparity differs by less than half a pixel, its distance
+// by less than a tenth.
 bool shows(ivec2 q, float depth) {
     ivec2 size = textureSize(dominant_depth, 0);
     float there = texelFetch(dominant_depth, clamp(q, ivec2(0), size - 1), 0).x;

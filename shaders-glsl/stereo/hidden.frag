@@ -1,4 +1,4 @@
-// Marks the far field's pixels that the near field hides from both eyes, by the near plane's depth.
+// Marks the far field's pixels that the near field hides from both eyes, by writing the near plane's depth.
 uniform sampler2D left_depth;
 uniform sampler2D right_depth;
 uniform ivec2 crops[2];   // pixel of the far field that belongs to each eye's lower left pixel

@@ -1,6 +1,6 @@
 #version 310 es
-// The share of a depth image that is nearer than a given depth: each of 16 x 16 texels counts 8 x 8 pixels of its part of
-// the image. In a multisample image the first sample counts.
+// The share of a depth image that is nearer than a given depth: each of 16 x 16 texels counts 8 x 8 pixels of its part
+// of the image. In a multisample image the first sample counts.
 
 #ifdef MULTISAMPLE
 uniform highp sampler2DMS depth_map;

@@ -1,6 +1,7 @@
 #version 310 es
-// The pixels that a rendered eye uncovers in the other one, and those of them that its history does not know: each of 32 x 64
-// texels counts them in its part of one row. What hides a disocclusion is not looked for: an estimate.
+// The pixels that a rendered eye uncovers in the other one, and those of them that its history does not know. Each of
+// 32 x 64 texels counts them in its part of one row. This is an estimate: it ignores nearer surfaces that may hide a
+// disocclusion.
 
 #include "include/warp.glsl"
 
@@ -25,7 +26,7 @@ void main() {
     int x = cell.x * source_size.x / GRID.x;
     for (float here = nearness_at(x, row); seen && x < end; ++x) {
         float next = nearness_at(x + 1, row);
-        // Columns between the places where the two land.
+        // The number of columns between the places where the two land.
         float width = next - here;
         float middle = floor(float(x) + law.x + here + 0.5 * (width + 1.0));
         if (width + 1.0 >= MAX_STRETCH && middle >= 0.0 && middle < float(target_size.x)) {
@@ -37,7 +38,7 @@ void main() {
         }
         here = next;
     }
-    // One more: zero marks a buffer that was not written.
+    // One more, since zero marks a buffer that was not written.
     ivec2 values = ivec2(min(ceil(pixels + vec2(1.0, 0.0)), 65535.0));
     counts = vec4(values & 255, values >> 8).xzyw / 255.0;
 }

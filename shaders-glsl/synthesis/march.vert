@@ -1,6 +1,6 @@
 #version 310 es
-// The triangle of screen.vert for the last pass, with the place of each fragment's span: GPUs that fetch from a place as
-// interpolated do so before the fragment begins.
+// The triangle of screen.vert for the last pass, with the place of each fragment's span. GPUs that fetch at an
+// unchanged interpolated place do so before the fragment begins.
 
 #include "include/uniforms.glsl"
 

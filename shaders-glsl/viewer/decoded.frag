@@ -1,5 +1,5 @@
-// One part of a decoded video picture as colour, or its luma as depth, rows from the top. The picture is BT.601 in full range, 4:2:0; with
-// RGB it has been converted to red, green and blue.
+// One part of a decoded video picture as colour, or its luma as depth, with rows from the top. The picture is BT.601 in
+// full range, 4:2:0; with RGB it has been converted to red, green and blue.
 
 uniform sampler2D picture;  // luma, or the converted picture
 #ifndef RGB

@@ -1,5 +1,5 @@
-// The eye's image through the lens. It is looked up by direction, so that it can be turned (timewarp), and fades towards the
-// borders of the lens and of the image.
+// The eye's image through the lens. It is looked up by direction, so that it can be turned (timewarp), and fades
+// towards the borders of the lens and of the image.
 
 uniform sampler2D image;  // display-referred sRGB, as the screen takes it
 uniform vec4 frustum;     // left, bottom, width, height of the image in tangents

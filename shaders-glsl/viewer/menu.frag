@@ -1,4 +1,4 @@
-// The menu's panel, which stands in the world: white on dark, translucent, with a dot where one points.
+// The menu's panel, which stands in the world: white on dark, translucent, with a dot where the user points.
 
 #include "include/color.glsl"
 

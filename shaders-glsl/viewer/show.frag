@@ -1,5 +1,5 @@
-// Two images of one size on a flat screen: the first one, an anaglyph of both, or their difference. For a headset that takes
-// depth: the first image with its depth. For a browser, which reads no depth: depth as colour.
+// Two images of one size on a flat screen: the first one, an anaglyph of both, or their difference. For a headset that
+// takes depth: the first image with its depth. For a browser, which reads no depth: depth as colour.
 
 uniform sampler2D first;   // display-referred sRGB; the left eye's for an anaglyph; with PACKED_DEPTH window depth
 #if defined(ANAGLYPH) || defined(DIFFERENCE)

@@ -1,23 +1,23 @@
 /*
- * yoro on OpenGL ES: an image is shown from a pose that the head has taken since it was rendered.
+ * yoro on OpenGL ES: shows an image from the pose that the head has reached since the image was rendered.
  *
  *   any_view [FILE.png]
  *
- * writes the view from the new pose on the left and the rendered one on the right, and prints how close the first is to the
- * same view rendered. engine_gles.h stands for an engine.
+ * writes the synthesized view from the new pose on the left and the rendered view on the right, and prints how close
+ * the first is to a real render of it. engine_gles.h stands in for an engine.
  */
 #include <yoro.h>
 
 #include "engine_gles.h"
 
-/* Gets the sentence of every error; here that is the end. */
+/* Called with a sentence for every error, after which the sample exits. */
 static void on_error(void *user, YoroResult result, const char *sentence) {
   (void)user;
   fprintf(stderr, "yoro (%s): %s\n", yoro_result_text(result), sentence);
 }
 
-/* Widens a view for a head that turns by up to `rotation` radians and moves by up to `translation` metres, and sets its
- * matrices. Surfaces half a metre away or farther stay in the image. */
+/* Widens a view for a head that turns by up to `rotation` radians and moves by up to `translation` metres, and sets the
+ * view's matrices. Surfaces at a distance of half a metre or more stay in the image. */
 static YoroGuardedView widened(const YoroView *view, float rotation, float translation) {
   YoroHeadMotion motion;
   YORO_INIT(motion);
@@ -50,13 +50,13 @@ int main(int argc, char **argv) {
   info.messages.callback = on_error;
   if (yoro_gl_create(&info, &yoro) != YORO_OK) return 1;
 
-  /* 2. At a render: the eye's view, widened for the motion that is expected until the image is shown. */
+  /* 2. When rendering: the eye's view, widened for the motion that is expected until the image is shown. */
   YoroView own = {SIZE, SIZE, {{0, 0, 0, 1}, {0, 1.6f, 2}}, {-0.7f, 0.6f, 0.65f, -0.65f}, {0}, {0}};
   YoroGuardedView guarded = widened(&own, 0.15f, 0.06f);
   Image source = make_image(guarded.view.width, guarded.view.height);
   draw(program, guarded.view.projection, guarded.view.view, &source);
 
-  /* 3. At its display: the head has turned by a tenth of a radian to the left, and moved to the right and forward. */
+  /* 3. When displaying: the head has turned by a tenth of a radian to the left, and moved to the right and forward. */
   own.pose.orientation[1] = sinf(0.05f);
   own.pose.orientation[3] = cosf(0.05f);
   own.pose.position[0] += 0.04f;
@@ -79,7 +79,8 @@ int main(int argc, char **argv) {
   images.framebuffer = shown.framebuffer;
   if (yoro_gl_synthesize_pose(yoro, &warp, &images) != YORO_OK) return 1;
 
-  /* The same view rendered. An engine takes its own camera; here the matrices are those of a view that is widened by nothing. */
+  /* A real render of the same view. An engine uses its own camera; here the matrices are those of a view that is not
+   * widened. */
   YoroGuardedView exact = widened(&own, 0, 0);
   Image truth = make_image(SIZE, SIZE);
   draw(program, exact.view.projection, exact.view.view, &truth);

@@ -1,4 +1,4 @@
-/* An engine as small as can be, for the samples on OpenGL ES: a context, images to render to, and a scene. Nothing of yoro. */
+/* A minimal engine for the samples on OpenGL ES: a context, images to render to, and a scene. It does not use yoro. */
 #ifndef ENGINE_GLES_H
 #define ENGINE_GLES_H
 
@@ -53,8 +53,8 @@ static Image make_image(uint32_t width, uint32_t height) {
   return image;
 }
 
-/* The scene: a tiled room with balls, one ray a pixel. It takes a projection times view without its translation, since an
- * engine has such a matrix, and inverts it, since a ray caster needs that. */
+/* The scene: a tiled room with balls, one ray per pixel. It takes the product of the projection and of the view without
+ * its translation, since an engine has such a matrix, and inverts it, since a ray caster needs the inverse. */
 static const char VERTEX[] =
     "#version 310 es\n"
     "out vec2 ndc;\n"
@@ -129,7 +129,7 @@ static void read_pixels(const Image *image, int x, int y, uint8_t *pixels) {
   glReadPixels(x, y, SIZE, SIZE, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 }
 
-/* Writes both eyes side by side, the synthesized one on the left, and prints how close it is to the same eye rendered. */
+/* Writes both eyes side by side, the synthesized one on the left, and prints how close it is to a real render. */
 static void report(const char *path, const Image *synthesized, const Image *source, int crop_x, int crop_y,
                    const Image *truth) {
   static uint8_t both[4 * 2 * SIZE * SIZE], rendered[4 * SIZE * SIZE];

@@ -1,6 +1,6 @@
 /*
- * What stands for an engine in vulkan.c: a device, images, a scene of one draw, and a picture read back. It uses Vulkan 1.3
- * to be short, which yoro does not need.
+ * The engine of vulkan.c: a device, images, a scene of one draw, and reading a picture back. For brevity it uses Vulkan
+ * 1.3, which yoro does not need.
  */
 #ifndef ENGINE_VULKAN_H
 #define ENGINE_VULKAN_H
@@ -41,7 +41,7 @@ static VkDeviceMemory allocate(VkMemoryRequirements needs, VkMemoryPropertyFlags
   return memory;
 }
 
-/* What the engine renders to and yoro reads from or writes to. */
+/* Images that the engine renders to, and that yoro reads or writes. */
 typedef struct {
   VkImage color, depth;
   VkImageView color_view, depth_view;
@@ -91,7 +91,7 @@ static VkShaderModule make_shader(const uint32_t *words, size_t bytes) {
   return shader;
 }
 
-/* The scene: one triangle over the viewport, projection and view as push constants. */
+/* The scene: one triangle over the viewport, with projection and view as push constants. */
 static VkPipelineLayout layout;
 static VkPipeline scene;
 static VkPipeline make_scene(void) {
@@ -199,7 +199,8 @@ static void read_back(const Image *image, uint32_t x, uint32_t y, VkBuffer buffe
   vkCmdCopyImageToBuffer(commands, image->color, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &copy);
 }
 
-/* An instance, the first device, queue family 0, Vulkan 1.3's dynamic rendering, and a command buffer that records. */
+/* Makes an instance, the first device with queue family 0 and Vulkan 1.3's dynamic rendering, and begins a command
+ * buffer. */
 static void engine_start(void) {
   VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO, NULL, "sample", 1, NULL, 0, VK_API_VERSION_1_3};
   VkInstanceCreateInfo instance_info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, NULL, 0, &application, 0, NULL, 0, NULL};
@@ -227,8 +228,8 @@ static void engine_start(void) {
   check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
 }
 
-/* Executes what was recorded. Gives three pictures, SIZE x SIZE each: the first image and a part of the second one side by
- * side, and below these the third one in rows of half the length. */
+/* Executes what was recorded. Returns three pictures of SIZE x SIZE pixels: the first image and a part of the second
+ * one side by side, and below these the third one in rows of half the length. */
 static const uint8_t *engine_finish(const Image *left, const Image *right, uint32_t x, uint32_t y, const Image *third) {
   VkBufferCreateInfo buffer_info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, NULL, 0, 3 * 4 * SIZE * SIZE,
                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_SHARING_MODE_EXCLUSIVE, 0, NULL};

@@ -1,16 +1,16 @@
 /*
- * yoro on OpenGL ES: one eye is rendered, the other one synthesized.
+ * yoro on OpenGL ES: renders one eye and synthesizes the other.
  *
  *   gles [FILE.png]
  *
- * writes both eyes side by side, the synthesized left eye on the left, and prints how close it is to the same eye
- * rendered. engine_gles.h stands for an engine.
+ * writes both eyes side by side, the synthesized left eye on the left, and prints how close that is to a real render of
+ * it. engine_gles.h stands in for an engine.
  */
 #include <yoro.h>
 
 #include "engine_gles.h"
 
-/* Gets the sentence of every error; here that is the end. */
+/* Called with a sentence for every error, after which the sample exits. */
 static void on_error(void *user, YoroResult result, const char *sentence) {
   (void)user;
   fprintf(stderr, "yoro (%s): %s\n", yoro_result_text(result), sentence);
@@ -20,7 +20,7 @@ int main(int argc, char **argv) {
   make_context();
   GLuint program = make_program();
 
-  /* 1. Once, with the engine's context current. `check` is for development: mistakes become sentences. */
+  /* 1. Once, with the engine's context current. `check` is for development: it reports mistakes as sentences. */
   YoroContext *yoro = NULL;
   YoroGlInfo info;
   YORO_INIT(info);
@@ -31,7 +31,7 @@ int main(int argc, char **argv) {
   info.messages.callback = on_error;
   if (yoro_gl_create(&info, &yoro) != YORO_OK) return 1;
 
-  /* 2. Each frame: where the eyes are. With OpenXR, poses and angles are those of xrLocateViews, copied. */
+  /* 2. Each frame: where the eyes are. With OpenXR, copy the poses and angles from xrLocateViews. */
   YoroEyes eyes;
   YORO_INIT(eyes);
   eyes.rendered = YORO_EYE_RIGHT;
@@ -56,11 +56,11 @@ int main(int argc, char **argv) {
   YORO_INIT(views);
   if (yoro_views_from_eyes(&eyes, &views) != YORO_OK) return 1;
 
-  /* 3. The engine renders the opaque objects of one eye. The image is wider than the eye's: it is the crop of it. */
+  /* 3. The engine renders the opaque objects of one eye. The image is wider than the eye's, which is a crop of it. */
   Image source = make_image(views.source.width, views.source.height);
   draw(program, views.source.projection, views.source.view, &source);
 
-  /* 4. The other eye. Transparent objects are drawn into both afterwards, tested against each eye's depth. */
+  /* 4. The other eye. Transparent objects are drawn into both eyes afterwards, tested against each eye's depth. */
   Image other = make_image(views.synthesized.width, views.synthesized.height);
   YoroGlImages images;
   YORO_INIT(images);
@@ -69,8 +69,8 @@ int main(int argc, char **argv) {
   images.framebuffer = other.framebuffer;
   if (yoro_gl_synthesize(yoro, &views.warp, &images) != YORO_OK) return 1;
 
-  /* Worth doing once in every engine: the same eye rendered. A wrong sign, a flipped row or a misread depth costs more
-   * than 10 dB. */
+  /* A real render of the same eye. Do this once in every engine: a wrong sign, a flipped row or a misread depth costs
+   * more than 10 dB. */
   Image truth = make_image(views.synthesized.width, views.synthesized.height);
   draw(program, views.synthesized.projection, views.synthesized.view, &truth);
   report(argc > 1 ? argv[1] : "gles.png", &other, &source, (int)views.crop_x, (int)views.crop_y, &truth);

@@ -1,4 +1,4 @@
-/* What the samples do with their pictures: PNG files, and figures that compare two of them. Images are RGBA, 8 bits. */
+/* The samples' functions for pictures: PNG files, and figures that compare two pictures. Images are RGBA, 8 bits. */
 #ifndef PICTURE_H
 #define PICTURE_H
 
@@ -32,7 +32,7 @@ static double picture_psnr(const Picture *a, const Picture *b) {
   return mean > 0.0 ? 10.0 * log10(255.0 * 255.0 / mean) : INFINITY;
 }
 
-/* Structural similarity of luma in windows of 8 x 8 pixels, four apart. */
+/* Structural similarity of luma in windows of 8 x 8 pixels, four pixels apart. */
 static double picture_ssim(const Picture *a, const Picture *b) {
   const double c1 = 6.5025, c2 = 58.5225;
   double sum = 0.0;
@@ -73,10 +73,11 @@ static void picture_chunk(FILE *file, const char *name, const uint8_t *bytes, si
   fwrite(number, 1, 4, file);
 }
 
-/* Writes a PNG without compression, rows from the bottom where `rows_up`. Returns 0 when the file cannot be written. */
+/* Writes a PNG without compression, with rows from the bottom if `rows_up` is set. Returns 0 if the file cannot be
+ * written. */
 static int picture_write(const char *path, const Picture *p, int rows_up) {
   size_t row = 1 + 3 * (size_t)p->width, height = (size_t)p->height;
-  /* One stored deflate block a row: 5 bytes before it. Behind all of them Adler's checksum. */
+  /* One stored deflate block per row, with 5 bytes before it. Adler's checksum follows the last one. */
   size_t size = 2 + height * (5 + row) + 4, at = 0;
   uint8_t *data = (uint8_t *)malloc(size), header[13] = {0, 0, 0, 0, 0, 0, 0, 0, 8, 2, 0, 0, 0};
   FILE *file = row < 65536 ? fopen(path, "wb") : NULL;

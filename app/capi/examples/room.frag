@@ -1,5 +1,5 @@
 #version 450
-// The scene of vulkan.c, that of gles.c: a tiled room with balls, one ray a pixel.
+// The scene of vulkan.c, the same as in gles.c: a tiled room with balls, one ray per pixel.
 layout(push_constant) uniform Eye {
     mat4 projection;
     mat4 view;

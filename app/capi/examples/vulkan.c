@@ -1,11 +1,11 @@
 /*
- * yoro on Vulkan: one eye is rendered, the other one synthesized.
+ * yoro on Vulkan: renders one eye and synthesizes the other.
  *
  *   vulkan [FILE.png]
  *
- * writes both eyes side by side, the synthesized left eye on the left, and prints how close it is to the same eye
- * rendered. Everything that has to do with yoro is here, steps 1 to 5; engine_vulkan.h stands for an engine. yoro needs
- * Vulkan 1.1 and no extension.
+ * writes both eyes side by side, the synthesized left eye on the left, and prints how close that is to a real render of
+ * it. Steps 1 to 5 show all uses of yoro; engine_vulkan.h stands in for an engine. yoro needs Vulkan 1.1 and no
+ * extension.
  */
 #include "engine_vulkan.h"
 
@@ -17,7 +17,7 @@ static void on_error(void *user, YoroResult result, const char *sentence) {
 int main(int argc, char **argv) {
   engine_start();
 
-  /* 1. Where the eyes are. With OpenXR, poses and angles are those of xrLocateViews, copied. */
+  /* 1. Where the eyes are. With OpenXR, copy the poses and angles from xrLocateViews. */
   YoroEyes eyes;
   YORO_INIT(eyes);
   eyes.rendered = YORO_EYE_RIGHT;
@@ -61,7 +61,7 @@ int main(int argc, char **argv) {
   info.messages.callback = on_error;
   if (yoro_vk_create(&info, &yoro) != YORO_OK) return 1;
 
-  /* 3. Once for each pair of images: what they were used for before, and what for afterwards. All stay attachments here. */
+  /* 3. Once for each pair of images: how they are used before and afterwards. Here, all of them stay attachments. */
   Image source = make_image(views.source.width, views.source.height), other = make_image(SIZE, SIZE);
   const YoroVkState as_color = {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
                                 VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT};
@@ -69,7 +69,7 @@ int main(int argc, char **argv) {
       VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
       VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
       VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
-  /* What the target held is not needed. */
+  /* The previous contents of the target are not needed. */
   const YoroVkState nothing = {VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, 0};
   const YoroVkImage color_read = {source.color, VK_FORMAT_R8G8B8A8_UNORM, 0, as_color, as_color};
   const YoroVkImage depth_read = {source.depth, VK_FORMAT_D32_SFLOAT, 0, as_depth, as_depth};
@@ -88,14 +88,16 @@ int main(int argc, char **argv) {
   if (yoro_vk_register_source(yoro, &read, &frame.source) != YORO_OK) return 1;
   if (yoro_vk_register_target(yoro, &written, &frame.target) != YORO_OK) return 1;
 
-  /* 4. Each frame: the engine records the opaque objects of one eye. The image is wider than the eye's: it is the crop. */
+  /* 4. Each frame: the engine records the opaque objects of one eye. The image is wider than the eye's, which is a crop
+   * of it. */
   engine_draw(&views.source, &source);
 
-  /* 5. The other eye, recorded behind it. Transparent objects are drawn into both afterwards, against each eye's depth. */
+  /* 5. The other eye, recorded after it. Transparent objects are drawn into both eyes afterwards, against each eye's
+   * depth. */
   if (yoro_vk_record(yoro, commands, &views.warp, &frame) != YORO_OK) return 1;
 
-  /* Worth doing once in every engine: the same eye rendered. A wrong sign, a flipped row or a misread depth costs more
-   * than 10 dB. */
+  /* A real render of the same eye. Do this once in every engine: a wrong sign, a flipped row or a misread depth costs
+   * more than 10 dB. */
   Image truth = make_image(SIZE, SIZE);
   engine_draw(&views.synthesized, &truth);
   const uint8_t *pixels = engine_finish(&other, &source, views.crop_x, views.crop_y, &truth);
@@ -104,7 +106,7 @@ int main(int argc, char **argv) {
   printf("synthesized: %.2f dB, SSIM %.4f\n", picture_psnr(&left, &expected), picture_ssim(&left, &expected));
   printf("same image:  %.2f dB, SSIM %.4f\n", picture_psnr(&right, &expected), picture_ssim(&right, &expected));
   if (!picture_write(argc > 1 ? argv[1] : "vulkan.png", &pair, 0)) return 1;
-  /* Before the device; the rest of this engine goes with its process. */
+  /* To be destroyed before the device. The rest of this engine ends with its process. */
   yoro_destroy(yoro);
   return 0;
 }

@@ -1,4 +1,5 @@
-/* An engine on OpenGL ES with the shader kit alone: the shaders are read from the folder kit, or that of YORO_KIT. */
+/* An engine on OpenGL ES that uses only the shader kit. The shaders are read from the folder kit, or from that in
+ * YORO_KIT. */
 #include "engine_gles.h"
 #include "yoro_kit.h"
 
@@ -59,7 +60,7 @@ static void run_pass(GLuint program, const Image *target) {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-/* The engine's matrices: reversed depth from 0.1 m to infinity, eyes that are not turned. */
+/* Draws a view with the engine's matrices: reversed depth from 0.1 m to infinity, eyes that are not rotated. */
 static void draw_view(GLuint program, const YoroKitFrustum *f, float eye_x, const Image *image) {
   const float w = f->right - f->left, h = f->up - f->down;
   const float projection[16] = {2 / w, 0, 0, 0, 0, 2 / h, 0, 0, (f->right + f->left) / w, (f->up + f->down) / h, 1, -1,

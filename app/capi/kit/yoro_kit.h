@@ -1,5 +1,5 @@
 /*
- * yoro, shader kit: what to render, and the uniforms of the passes, from two eyes. No other file is needed.
+ * yoro, shader kit: computes from two eyes what to render, and the uniforms of the passes. No other file is needed.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
@@ -10,13 +10,13 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Tangents of the angles from an eye's axis to the edges of its image; left and down are negative when the image contains
- * the axis. With OpenXR: tanf of the angles of XrFovf. */
+/* Tangents of the angles from an eye's axis to the edges of its image; left and down are negative when the image
+ * contains the axis. With OpenXR: tanf of the angles of XrFovf. */
 typedef struct {
   float left, right, up, down;
 } YoroKitFrustum;
 
-/* Two eyes that look in one direction, at right angles to the line between them. */
+/* Two eyes that look in the same direction, at right angles to the line between them. */
 typedef struct {
   YoroKitFrustum frusta[2]; /* left eye first; of one width, one height and the same rows */
   float ipd;                /* distance between the eyes in metres, 0 or more; or all lengths in another unit */
@@ -53,7 +53,7 @@ typedef struct {
   YoroKitUniforms uniforms; /* for all three passes */
 } YoroKitViews;
 
-/* No driver renders larger images. */
+/* The largest side of an image in pixels: no driver renders larger ones. */
 #define YORO_KIT_MAX_SIDE 65536
 
 static inline int yoro_kit_ceil(double pixels) {
@@ -61,15 +61,16 @@ static inline int yoro_kit_ceil(double pixels) {
 }
 
 /*
- * Works out everything for a frame. x and y are the corner of the other eye's image in its target, at row 0's side.
- * Returns 0 for eyes that cannot be served: give both frusta one width, one height and the same rows, and look at the
- * ranges above; no image may have more than 65536 pixels on a side, and in images that are wider nothing may move by more
- * than 4095 of them. Eyes that are rotated against each other are not told here: do not give them.
+ * Computes everything for a frame. x and y are the corner of the other eye's image in its target, on the side of row 0.
+ * Returns 0 if the other eye cannot be synthesized: both frusta need the same width, height and rows, and all values
+ * must be in the ranges above. No image may have more than 65536 pixels on a side, and in images wider than 4095 pixels
+ * nothing may move by more than 4095 pixels. Eyes that are rotated against each other cannot be detected here: do not
+ * pass them.
  */
 static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitViews *views) {
   YoroKitFrustum s = eyes->frusta[eyes->rendered != 0], t = eyes->frusta[eyes->rendered == 0];
   if (eyes->rows_down) {
-    /* Rows are counted from the lower edge; from the upper one, everything is upside down. */
+    /* Rows are counted from the lower edge. If row 0 is the topmost, turn everything upside down. */
     float up = s.up;
     s.up = -s.down, s.down = -up;
     up = t.up, t.up = -t.down, t.down = -up;
@@ -82,13 +83,13 @@ static inline int yoro_kit_views(const YoroKitEyes *eyes, int x, int y, YoroKitV
   const double width = eyes->width, height = eyes->height;
   const double dx = (s.right - s.left) / width, dy = (s.up - s.down) / height; /* tangent per pixel */
   const double row = (s.down - t.down) / dy;
-  /* In this form numbers that are not finite fail, too. */
+  /* Written so that numbers that are not finite fail, too. */
   if (!(fabs((t.right - t.left) / width / dx - 1) * width <= 0.05 && fabs((t.up - t.down) / height / dy - 1) * height <= 0.05 &&
         fabs(row - round(row)) <= 0.05))
     return 0;
 
-  /* The source: the rendered eye, grown by whole pixels to the union of both frusta and by the guard band, which lies on
-   * the side that the other eye sees more of. */
+  /* The source: the rendered eye, grown by whole pixels to the union of both frusta and by the guard band, which lies
+   * on the side that the other eye sees more of. */
   const int to_left = eyes->rendered != 0;
   const int guard = eyes->guard_band > 0 ? yoro_kit_ceil(eyes->ipd / dx / eyes->guard_band) : 0;
   const int left = yoro_kit_ceil((s.left - t.left) / dx) + (to_left ? guard : 0);
@@ -146,7 +147,7 @@ typedef struct {
   float position[3];    /* in metres */
 } YoroKitPose;
 
-/* Most strips of a history. */
+/* The maximum number of strips in a history. */
 #define YORO_KIT_STRIPS 8
 
 /* The block `History` of march.frag with HISTORY, in std140: 528 bytes. */
@@ -155,7 +156,7 @@ typedef struct {
   int32_t history_strips, padding[3];
 } YoroKitStrips;
 
-/* Turns a vector by the orientation of a pose, or back by -1. */
+/* Rotates a vector by the orientation of a pose if `sense` is 1, or by its inverse if `sense` is -1. */
 static inline void yoro_kit_turn(const YoroKitPose *pose, double sense, const double v[3], double turned[3]) {
   const float *o = pose->orientation;
   const double q[3] = {sense * o[0], sense * o[1], sense * o[2]}, w = o[3];
@@ -165,10 +166,11 @@ static inline void yoro_kit_turn(const YoroKitPose *pose, double sense, const do
 }
 
 /*
- * Works out where a history shows the surfaces of the other eye: an image of it of any size that was really rendered, in strips
- * of equally many rows from row 0 on, each from a pose of its own; all but the last have as many rows, the image's divided by
- * count, rounded up. `other` is the pose of the other eye now, strips[i] its pose when strip i was rendered, NULL for strips
- * with nothing in them. The frusta and depth planes are those of `eyes`, then as now. Returns 0 for numbers out of range.
+ * Computes where a history shows the surfaces of the other eye. A history is a really rendered image of that eye, of
+ * any size, in strips from row 0 on, each rendered from its own pose. All strips but the last have the same number of
+ * rows: the image's divided by count, rounded up. `other` is the present pose of the other eye, strips[i] its pose when
+ * strip i was rendered, or NULL if the strip is empty. The frusta and depth planes must have been those of `eyes`, too.
+ * Returns 0 if numbers are out of range.
  */
 static inline int yoro_kit_strips(const YoroKitEyes *eyes, const YoroKitPose *other, const YoroKitPose **strips,
                                   int count, int width, int height, YoroKitStrips *block) {
@@ -225,10 +227,11 @@ typedef struct {
 } YoroKitPoseUniforms;
 
 /*
- * Works out the uniforms to show `target`, in any pose near that of `source`, from the rendered image of that: near_z, far_z and
- * reversed are as in YoroKitEyes, of both, and so is rows_down. x and y are the corner of the target's image, at row 0's side; the
- * source fills its textures. maps receives the sizes of the targets of any_view_tiles.frag and any_view_spans.frag, both RGBA32UI.
- * Returns 0 for numbers out of range, and if the target sees further than 80 degrees from the source's axis.
+ * Computes the uniforms to show `target`, in any pose near that of `source`, from the rendered image of `source`.
+ * near_z, far_z, reversed and rows_down are as in YoroKitEyes, and apply to both. x and y are the corner of the
+ * target's image, on the side of row 0; the source fills its textures. maps receives the sizes of the targets of
+ * any_view_tiles.frag and any_view_spans.frag, both RGBA32UI. Returns 0 if numbers are out of range, or if the target
+ * sees farther than 80 degrees from the source's axis.
  */
 static inline int yoro_kit_any_view(const YoroKitView *source, const YoroKitView *target, float near_z, float far_z,
                                     int reversed, int rows_down, int x, int y, int maps[2][2],
@@ -247,7 +250,8 @@ static inline int yoro_kit_any_view(const YoroKitView *source, const YoroKitView
         x >= 0 && x <= YORO_KIT_MAX_SIDE && y >= 0 && y <= YORO_KIT_MAX_SIDE && across > 0 && isfinite(across) && up > 0 &&
         isfinite(up) && wide > 0 && high > 0 && near_z > 0 && near_z < far_z))
     return 0;
-  /* Columns of the matrix from a pixel of the target and the inverse of its distance to a place before the source's eye. */
+  /* Columns of the matrix from a pixel of the target and the inverse of its distance to a place before the source's
+   * eye. */
   double ray[4][3] = {{wide / target->width, 0, 0}, {0, sense * high / target->height, 0}, {t.left, low, -1}, {0, 0, 0}}, own[4][3];
   for (int i = 0; i < 3; ++i) ray[3][i] = (double)target->pose.position[i] - source->pose.position[i];
   for (int column = 0; column < 4; ++column) {
@@ -264,7 +268,7 @@ static inline int yoro_kit_any_view(const YoroKitView *source, const YoroKitView
       seen[i] = own[2][i] + (corner & 1) * target->width * own[0][i] + (corner >> 1) * target->height * own[1][i];
       length += seen[i] * seen[i];
     }
-    /* In this form numbers that are not finite fail, too. */
+    /* Written so that numbers that are not finite fail, too. */
     if (!(-seen[2] >= least_cosine * sqrt(length))) return 0;
   }
   const double nearest = fmax(near_z, least_cosine * near_z - own[3][2]);

@@ -1,4 +1,4 @@
-## A room with a headset, or side by side on a screen. Space changes how the eyes are made.
+## A room, shown in a headset, or with both eyes side by side on a screen. The space bar changes how the eyes are made.
 extends Node3D
 
 @onready var camera: YoroCamera3D = $XROrigin3D/YoroCamera3D

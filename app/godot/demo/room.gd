@@ -2,7 +2,7 @@
 class_name DemoRoom
 extends Node3D
 
-## Drawn for both eyes by Godot: YoroCamera3D.stereo_layers.
+## The layers that Godot draws for both eyes, for YoroCamera3D.stereo_layers.
 const STEREO := YoroMarks.LAYER
 
 var environment := WorldEnvironment.new()
@@ -16,7 +16,7 @@ func _init() -> void:
 	var steel := _checked(Color(0.6, 0.6, 0.62), Color(0.5, 0.5, 0.55), 2, 5)
 	steel.metallic = 0.8
 	steel.roughness = 0.3
-	# Open to the right, so that the sky is seen.
+	# Open to the right, so that the sky is visible.
 	_box(Vector3(9, 0.2, 9), Vector3(0, -0.1, -2), wood)
 	_box(Vector3(9, 3, 0.2), Vector3(0, 1.5, -6), wall)
 	_box(Vector3(0.2, 3, 9), Vector3(-4, 1.5, -2), wall)

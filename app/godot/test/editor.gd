@@ -1,5 +1,5 @@
-## The editor with a scene that does not know the add-on yet: what its yoro menu does, and what is undone. A person's clicks
-## arrive at the same signals. `out=FOLDER`, with a display, gets pictures of the editor.
+## Tests the editor with a scene that does not use the add-on yet: what the yoro menu does, and what undo restores. It
+## emits the signals that a user's clicks would emit. With a display, pictures of the editor are saved to `out=FOLDER`.
 extends SceneTree
 
 enum Item { REPLACE, MARK, PREVIEW }
@@ -63,14 +63,14 @@ func _frames(count: int) -> void:
 		await process_frame
 
 
-## Saves what the whole editor shows.
+## Saves a picture of the whole editor.
 func _picture(name: String) -> void:
 	if out != "":
 		await _frames(20)
 		EditorInterface.get_base_control().get_viewport().get_texture().get_image().save_png("%s/%s.png" % [out, name])
 
 
-## Opens the menu, and what the warning sign beside a node in the scene tree tells.
+## Opens the menu, and the warning of a node in the scene tree.
 func _open(node: Node) -> void:
 	const WARNING := 5
 	var editor: Node = EditorInterface.get_base_control().find_children("*", "SceneTreeEditor", true, false)[0]

@@ -1,17 +1,19 @@
-## The demo on an OpenXR runtime whose head is held still: pictures of both eyes, one rendered and both, into `out=FOLDER`.
+## Runs the demo on an OpenXR runtime, with the head held still. Saves pictures of both eyes to `out=FOLDER`, with one
+## eye rendered and with both.
 extends Node
 
 @onready var camera: YoroCamera3D = $Demo/XROrigin3D/YoroCamera3D
 @onready var room: DemoRoom = $Demo/Room
 var out := ""
-## How many of them the run has, at least.
+## The minimum number of frames of the run.
 var frames := 100
-## Godot, for the program that takes the headset.
+## The path of Godot, to start the program that takes over the headset.
 var godot := ""
 var look := Look.new()
 
 
-## Holds the head: the headset is located anew after all scripts have run, so this is drawn before everything else.
+## Holds the head still. It runs before everything else is drawn, since OpenXR locates the headset anew after all
+## scripts have run.
 class Hold:
 	extends CompositorEffect
 	var at: Transform3D
@@ -26,7 +28,7 @@ class Hold:
 		XRServer.world_origin = at * Transform3D(left.basis, (left.origin + right.origin) / 2.0).affine_inverse()
 
 
-## Copies what both eyes are shown, before tone mapping, and compares the pose that was rendered with the one that is shown.
+## Copies the images of both eyes, before tone mapping, and compares the rendered pose with the one that is shown.
 class Look:
 	extends CompositorEffect
 	var synthesis: YoroSynthesis
@@ -59,7 +61,7 @@ class Look:
 		push.encode_float(0, 2.0 if RenderingServer.get_current_rendering_method() == "mobile" else 1.0)
 		var size := buffers.get_internal_size()
 		for view in buffers.get_view_count():
-			# The buffers themselves cannot be copied from. They are linear, and encoded as they are written here.
+			# The buffers themselves cannot be copied from. They are linear; writing to this texture encodes them.
 			var copy := passes.texture(size, RenderingDevice.DATA_FORMAT_R8G8B8A8_SRGB)
 			passes.draw("look", [copy], [buffers.get_texture_slice("render_buffers", "color", view, 0, 1, 1)], push)
 			pictures.append(Image.create_from_data(size.x, size.y, false, Image.FORMAT_RGBA8, passes.device.texture_get_data(copy, 0)))
@@ -96,7 +98,8 @@ func _ready() -> void:
 	look.synthesis = camera.synthesis()
 	print("fact views %d" % interface.get_view_count())
 	var was := hold.at
-	# An arm's length from the wall, past its right end: a fifth, two fifths and most of the view are near, and back again.
+	# At an arm's length from the wall, past its right end: a fifth, two fifths and then most of the view is near, and
+	# back again.
 	var near: Array[bool] = []
 	for x: float in [4.70, 4.55, 4.35, 4.55, 4.70]:
 		hold.at = Transform3D(Basis(), Vector3(x, 1.5, -5.6))
@@ -116,7 +119,7 @@ func _ready() -> void:
 	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
 	interface.render_target_size_multiplier = 1.5
 	await _case("resized")
-	# The head moves again; nobody looks at the pictures.
+	# The head moves again: these pictures are not compared.
 	interface.render_target_size_multiplier = 0.5
 	first.queue_free()
 	look.radians = 0.0
@@ -134,7 +137,7 @@ func _frames(count: int) -> void:
 		await RenderingServer.frame_post_draw
 
 
-## Another program takes the headset for a while, and the scene is paused. Afterwards all is as it was.
+## Lets another program take the headset for a while, which pauses the scene. Afterwards everything must be as before.
 func _pause(interface: OpenXRInterface) -> void:
 	var memory := _memory()
 	var before := look.pictures
@@ -155,7 +158,7 @@ func _pause(interface: OpenXRInterface) -> void:
 	for view in 2:
 		levels = maxf(levels, before[view].compute_image_metrics(look.pictures[view], false).root_mean_squared)
 	print("resumed: %.3f of 255 from before, root mean square" % levels)
-	# 60 dB: the head is held by a division, which rounds.
+	# A small difference, of 60 dB, is allowed: the inverse transform that holds the head is rounded.
 	print("fact resumed, as before %s, bytes more %d" % [levels < 0.25, _memory() - memory])
 
 
@@ -163,7 +166,7 @@ func _memory() -> int:
 	return RenderingServer.get_rendering_info(RenderingServer.RENDERING_INFO_VIDEO_MEM_USED)
 
 
-## Waits for a condition, but not for ever.
+## Waits for a condition, up to a time limit.
 func _until(holds: Callable) -> void:
 	for i in 600:
 		if holds.call():

@@ -1,4 +1,5 @@
-## The demo without a headset: pictures of both eyes as they are made, and as Godot draws them, into the folder `out=FOLDER`.
+## Runs the demo without a headset. Saves pictures of both eyes, as the add-on makes them and as Godot draws them, to
+## `out=FOLDER`.
 extends Node
 
 @onready var camera: YoroCamera3D = $Demo/XROrigin3D/YoroCamera3D
@@ -28,7 +29,7 @@ func _ready() -> void:
 	camera.synthesis().short_way = false
 	await _case("every", ["ONE_VIEW"])
 	camera.synthesis().short_way = true
-	# Then glass is drawn with the rendered eye, and that looks as before.
+	# Without stereo layers, glass is drawn with the rendered eye, whose picture must not change.
 	var before := _image(camera.dominant_eye)
 	camera.stereo_layers = 0
 	await _frames(2)
@@ -45,7 +46,7 @@ func _ready() -> void:
 	room.environment.environment.glow_bloom = 0.3
 	await _case("glow")
 	room.environment.environment.glow_enabled = false
-	# As the headset's pictures are copied: tone mapping makes all differences larger.
+	# Linear, as in the copies of the headset's pictures: tone mapping would enlarge all differences.
 	room.environment.environment.tonemap_mode = Environment.TONE_MAPPER_LINEAR
 	await _case("linear")
 	room.environment.environment.tonemap_mode = Environment.TONE_MAPPER_ACES
@@ -57,7 +58,7 @@ func _ready() -> void:
 		await _frames(2)
 		_save("debug-%d" % view)
 	camera.debug_view = YoroCamera3D.DebugView.NONE
-	# As large as at first, after everything above.
+	# The initial size again, after everything above.
 	get_window().size = Vector2i(1024, 512)
 	await _frames(2)
 	camera.preview_without_headset = false
@@ -67,7 +68,8 @@ func _ready() -> void:
 	get_tree().quit()
 
 
-## Returns for eyes that are parallel, parallel but for rounding, turned, raised and of unlike sizes whether one can be synthesized.
+## Returns whether an eye can be synthesized, for eyes that are parallel, parallel except for rounding, turned, raised,
+## and of unequal sizes.
 func _served() -> Array[bool]:
 	var frustum: Array[float] = [-1.0, 1.0, 1.0, -1.0]
 	var wider: Array[float] = [-1.0, 1.1, 1.0, -1.0]
@@ -102,11 +104,11 @@ func _frames(count: int) -> void:
 		await RenderingServer.frame_post_draw
 
 
-## Both eyes with both views and with one, switched while running.
+## Saves both eyes in each mode, switching modes while running.
 func _case(name: String, modes: Array[String] = ["BOTH_VIEWS", "ONE_VIEW"]) -> void:
 	for mode in modes:
 		camera.mode = YoroCamera3D.Mode[mode]
-		# What is shown follows the environment within eight frames.
+		# The picture follows changes of the environment within eight frames.
 		await _frames(9 if name in ["glow", "linear"] and mode == "ONE_VIEW" else 2)
 		_save("%s-%s" % [name, mode.to_lower()])
 

@@ -1,20 +1,20 @@
-## What a frame of the demo costs, on an OpenXR runtime or without one (two viewports are then Godot's stereo). Without arguments
-## all variants in turn. A runtime paces a program by the frames before, so for the time between frames one variant has a process
-## of its own: `only=NUMBER`. `blocks=COUNT` says how often each has its turn. With Godot's option `--gpu-profile` also the stages
-## of each viewport. Run it by hand.
+## Measures the cost of a frame of the demo, on an OpenXR runtime or without one (then two viewports stand in for
+## Godot's stereo). Without arguments, all variants take turns. A runtime paces a program by its previous frames, so to
+## measure the time between frames, run one variant in a process of its own: `only=NUMBER`. `blocks=COUNT` is the number
+## of turns of each variant. Godot's option `--gpu-profile` adds the stages of each viewport. Run it by hand.
 extends Node
 
-## What is set for each; the first one is Godot's stereo.
+## The settings of each variant. The first one is Godot's stereo.
 const VARIANTS: Array[Dictionary] = [
 	{mode = YoroCamera3D.Mode.BOTH_VIEWS, near_limit = 0.4, stereo_layers = DemoRoom.STEREO},
 	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = DemoRoom.STEREO},
 	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.0, stereo_layers = DemoRoom.STEREO},
 	{mode = YoroCamera3D.Mode.ONE_VIEW, near_limit = 0.4, stereo_layers = 0},
 ]
-## Frames of a block; the first ones of a block are not counted.
+## The number of measured frames in a block. The [constant SKIPPED] frames before them are not counted.
 const FRAMES := 8
 const SKIPPED := 3
-## Clock ticks in a second of /proc.
+## The clock ticks per second in /proc.
 const TICKS := 100.0
 
 @onready var camera: YoroCamera3D = $Demo/XROrigin3D/YoroCamera3D
@@ -66,7 +66,7 @@ func _ready() -> void:
 	get_tree().quit()
 
 
-## Returns the GPU's time for the last frame of viewports, in ms.
+## Returns the GPU time of the viewports' last frame, in ms.
 func _gpu(viewports: Array[Viewport]) -> float:
 	var time := 0.0
 	for viewport in viewports:
@@ -74,7 +74,7 @@ func _gpu(viewports: Array[Viewport]) -> float:
 	return time
 
 
-## Adds the GPU's time of each stage that Godot names, in ms. A stage lasts until the next one.
+## Adds the GPU time of each stage that Godot names, in ms. A stage lasts until the next one begins.
 func _add_stages(to: Dictionary) -> void:
 	var device := RenderingServer.get_rendering_device()
 	var viewport := 0
@@ -90,7 +90,7 @@ func _median(values: Array) -> float:
 	return values[values.size() / 2]
 
 
-## Returns the seconds that all threads of this program have run for, on Linux.
+## Returns the CPU time of all threads of this program in seconds, on Linux.
 func _processor() -> float:
 	var fields := FileAccess.open("/proc/self/stat", FileAccess.READ).get_line().get_slice(") ", 1).split(" ")
 	return (float(fields[11]) + float(fields[12])) / TICKS

@@ -1,4 +1,5 @@
-## A second program on the same OpenXR runtime: while it runs, the headset is its own and the first one's session is paused.
+## A second program on the same OpenXR runtime. While it runs, it has the headset, and the first program's session is
+## paused.
 extends Node3D
 
 

@@ -6,7 +6,7 @@ import { say, sayAlso } from './messages.js';
 
 let keeping = 0;
 
-/** Writes the settings into the address, soon. */
+/** Writes the settings into the address after a short delay. */
 export function keep() {
   clearTimeout(keeping);
   keeping = setTimeout(keepNow, 300);
@@ -24,7 +24,7 @@ export function keepPlace() {
   keep();
 }
 
-/** Takes the settings from the address or another link's part behind `#`, and shows a message about its faults. */
+/** Reads the settings from the address or from the fragment of another link, and shows a message about its faults. */
 export function readAddress(link = location.hash) {
   const here = (list) => list.filter(({ reason }) => !reason).map(({ name }) => name);
   const { settings, faults } = parse(link, {
@@ -35,7 +35,7 @@ export function readAddress(link = location.hash) {
   if (faults.length) say(faults.join(' '));
 }
 
-/** Goes to the viewpoint of the settings, or to the place. */
+/** Goes to the place in the settings, or else to their viewpoint. */
 export function goThere() {
   const { settings } = app;
   const last = (app.facts?.viewpoints ?? 1) - 1;

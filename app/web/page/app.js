@@ -9,20 +9,20 @@ import { defaults } from './link.js';
  * @property {{name: string, bytes: ArrayBuffer}[]} [files]
  * @property {{name: string, bytes: ArrayBuffer}} [color]
  * @property {{name: string, bytes: ArrayBuffer}} [depth]
- * @property {() => string} [options] of pictures, as JSON
+ * @property {() => string} [options] returns the options of pictures as JSON
  */
 
 /**
- * @typedef {object} Run Whoever draws instead of the loop: a measurement, a viewer or a headset.
+ * @typedef {object} Run What draws instead of the loop: a measurement, a viewer or a headset.
  * @property {string} name
- * @property {string} end a sentence: how the user ends it
+ * @property {string} end a sentence that says how the user ends it
  * @property {() => void} stop
- * @property {boolean} [immersive] true if it shows both eyes before the user's own
+ * @property {boolean} [immersive] true if it shows each eye its own image
  */
 
 /**
  * @param {string} id
- * @returns {any} it: the kinds of elements are index.html's
+ * @returns {any} the element; index.html says of which kind it is
  */
 export const element = (id) => document.getElementById(id);
 
@@ -39,14 +39,14 @@ export const app = {
   source: null,
   /** The source that is being loaded. @type {Source | null} */
   wanted: null,
-  /** A stream's or a video's state, once it has begun.
+  /** The state of a stream or a video, once it has begun.
    * @type {{frames: number, there: boolean, losses: number, video?: boolean, ask: () => void, way: string, choose: (way: string) => void, stop: () => void, again: () => void} | null} */
   stream: null,
   /** The module's facts about the scene; null for pictures. */
   facts: null,
   /** The built-in scenes: `{name, title, kiloTriangles}`. */
   scenes: [],
-  /** The methods of each renderer: `{name, reason}`, with the reason where it cannot be used. */
+  /** The methods of each renderer: `{name, reason}`, with a reason if it cannot be used. */
   methods: {},
   /** @type {Run | null} */
   busy: null,

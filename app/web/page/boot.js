@@ -1,5 +1,5 @@
-// Starts the page, and says why if it does not start. An old kind of script: these run from a file, too, and where a module
-// is missing.
+// Starts the page, or says why it does not start. This is a classic script: such scripts also run from a file, and if a
+// module is missing.
 
 import('./main.js').then((page) => page.start()).catch((error) => {
   const message = document.getElementById('message');

@@ -1,4 +1,4 @@
-// The elements with which people choose settings.
+// The elements with which users choose settings.
 
 import { keep } from './address.js';
 import { app, element } from './app.js';
@@ -8,18 +8,18 @@ import { clear, say } from './messages.js';
 import { explanations } from './methods.js';
 import { sentence } from './sentence.js';
 
-/** The settings that have an element of their name. */
+/** The settings that have an element of the same name. */
 const choices = [
   'scene', 'viewpoint', 'method', 'renderer', 'anti-aliasing', 'history', 'dominant', 'display', 'scale', 'ipd',
 ];
 const numbers = ['viewpoint', 'scale', 'ipd'];
-/** Those that pictures have no use for. */
+/** The settings that do not apply to pictures. */
 const ofScenes = ['viewpoint', 'method', 'renderer', 'anti-aliasing', 'history', 'dominant'];
 /** The displays that compare with a real render, which pictures lack. */
 const comparing = ['divider', 'difference', 'flicker'];
 let offered = null;
 
-/** Offers the methods and the anti-aliasing of a renderer. */
+/** Offers the methods and the kinds of anti-aliasing of a renderer. */
 function offerRenderer(renderer) {
   offered = renderer;
   element('method').replaceChildren(...app.methods[renderer].map(({ name, reason }) => {
@@ -46,7 +46,7 @@ export function showChoices() {
   element('error').checked = settings.display === 'difference';
 }
 
-/** Gives the module the settings, and the elements their values. */
+/** Passes the settings to the module, and shows them in the elements. */
 export function apply() {
   const { settings } = app;
   showChoices();
@@ -63,7 +63,7 @@ export function apply() {
 }
 
 /**
- * Chooses the next one, for keys and controllers.
+ * Chooses the next value of a setting, for keys and controllers.
  * @param {'method' | 'viewpoint' | 'display'} what
  */
 export function step(what) {
@@ -75,7 +75,7 @@ export function step(what) {
   element(what).dispatchEvent(new Event('change'));
 }
 
-/** Changes a setting; the one before comes back if it cannot be. */
+/** Changes a setting. If the module refuses it, restores the settings and says why. */
 function choose(key, value) {
   const before = { ...app.settings };
   if (!app.page) return;
@@ -95,7 +95,7 @@ function choose(key, value) {
   }
 }
 
-/** Offers to go around what is shown, where it is the user's own: an object seen from outside is gone around at first. */
+/** Offers to orbit the user's own content. Orbiting starts switched on for an object seen from outside. */
 export function offerOrbit() {
   element('orbit').labels[0].hidden = !app.facts || Boolean(app.source?.builtin);
   element('orbit').checked = Boolean(app.facts?.object);

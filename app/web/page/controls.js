@@ -4,7 +4,7 @@ const RADIANS_PER_PIXEL = 0.004;
 const METRES_PER_PIXEL = 0.01;
 const METRES_PER_SECOND = 1.6;
 const TURN_PER_SECOND = 1.2;
-/** A turn goes on for about the inverse of this, in seconds. */
+/** A turn continues for about the inverse of this, in seconds. */
 const FRICTION = 6;
 
 const moves = {
@@ -13,14 +13,14 @@ const moves = {
 };
 const turns = { ArrowLeft: 1, ArrowRight: -1 };
 
-/** Listens to a canvas. `move.turn(left, up)`, `move.walk(right, up, ahead)`; `changed()` after each. */
+/** Listens to a canvas. Calls `move.turn(left, up)` or `move.walk(right, up, ahead)`, then `changed()`. */
 export function listen(canvas, move, changed) {
   const pointers = new Map();
   const pressed = new Set();
-  // Pressed and let go of between two steps: a slow frame loses no key.
+  // Released keys stay pressed until the next step, so that a slow frame loses none.
   const released = new Set();
   let fast = false;
-  /** Radians a second to the left and upwards, with which the head turns on after a drag. */
+  /** The turn that continues after a drag, in radians per second to the left and upwards. */
   let spin = [0, 0];
   let dragged = 0;
   addEventListener('keydown', (event) => { fast = event.shiftKey; });
@@ -31,7 +31,7 @@ export function listen(canvas, move, changed) {
     spin = [0, 0];
   });
   canvas.addEventListener('pointerup', (event) => {
-    // A finger that rested before it was lifted throws nothing.
+    // If the finger rested before it was lifted, the turn stops.
     if (event.timeStamp - dragged > 60) spin = [0, 0];
     else changed();
   });
@@ -51,7 +51,7 @@ export function listen(canvas, move, changed) {
       dragged = event.timeStamp;
       move.turn(...turn);
     } else {
-      // Each of two fingers contributes half; apart they bring what is ahead nearer.
+      // Each of two fingers contributes half. Spreading them walks forward.
       const [other] = [...pointers].filter(([id]) => id !== event.pointerId).map(([, place]) => place);
       const away = (place) => Math.hypot(place[0] - other[0], place[1] - other[1]);
       const pinch = away(now) - away(before);
@@ -61,7 +61,7 @@ export function listen(canvas, move, changed) {
     changed();
   });
   canvas.addEventListener('wheel', (event) => {
-    // Where the picture has not been chosen, the wheel scrolls the page; with ctrl it zooms it.
+    // Unless the picture has the focus, the wheel scrolls the page. With ctrl it zooms the page.
     if (event.ctrlKey || (document.activeElement !== canvas && !document.fullscreenElement)) return;
     move.walk(0, 0, -event.deltaY * METRES_PER_PIXEL * 0.3);
     event.preventDefault();
@@ -78,8 +78,8 @@ export function listen(canvas, move, changed) {
   canvas.addEventListener('blur', () => pressed.clear());
 
   return {
-    /** Moves by the keys that are down, fast with Shift, and by a drag that goes on, in `seconds` since the last call; true
-     * if anything moves. */
+    /** Moves by the keys that are down, fast with Shift, and by a turn that continues after a drag, for the `seconds`
+     * since the last call. Returns true if anything moves. */
     step(seconds) {
       const dt = Math.min(seconds, 0.1);
       for (const code of pressed) {

@@ -1,35 +1,35 @@
-// Decodes pictures in a worker, and gives the page the newest one.
+// Decodes pictures in a worker, and passes the newest one to the page.
 
 /**
- * How the page gets a picture: copied by the processor into planes, or as the browser has it. At first they take turns, then the
- * one that took less time goes on.
+ * How the page gets a picture: copied by the CPU into planes, or as the browser's frame. The two alternate at first;
+ * then the one that took less time is used.
  */
 const WAYS = ['planes', 'frame'];
-/** Pictures of each way that are timed, after one that is not. */
+/** How many pictures are timed for each way, after one that is not. */
 const TRIALS = 4;
-/** Pictures after which a decoder that fails is worth another try. */
+/** How many pictures a decoder must have decoded to be started again if it fails. */
 const TRUSTED_AFTER = 30;
 
 let decoder = null;
-/** Pictures that it has decoded. */
+/** How many pictures it has decoded. */
 let pictures = 0;
 /** The headers of the frames that are being decoded, by number. */
 const headers = new Map();
 /** The number of the newest frame that was decoded. */
 let latest = -1;
-/** The newest decoded frame, if the page is still busy with the one before. */
+/** The newest decoded frame, if the page is still busy with the previous one. */
 let newest = null;
 let pageIsFree = true;
-/** What is done with a picture's planes before the page gets them. @type {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} */
+/** Converts a picture's planes for the page. @type {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} */
 let pack = null;
 let bytes = 0;
-/** The way that was chosen. @type {string | null} */
+/** The way in use, once it is chosen. @type {string | null} */
 let way = null;
-/** The ms that pictures took, by way. */
+/** How long pictures took in ms, by way. */
 const times = { planes: [], frame: [] };
 let skipped = 0;
 
-/** Counts bytes that have come. @param {number} more */
+/** Counts received bytes. @param {number} more */
 export function count(more) {
   bytes += more;
 }
@@ -37,8 +37,8 @@ export function count(more) {
 /**
  * Starts a decoder.
  * @param {VideoDecoderConfig} config
- * @param {() => void} failed it has failed after having worked
- * @param {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} convert what is done with the planes of each picture
+ * @param {() => void} failed called if the decoder fails after having worked
+ * @param {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} convert converts the planes of each picture
  */
 export function start(config, failed, convert = null) {
   pack = convert;
@@ -63,7 +63,7 @@ export function end() {
 /** True if there is a decoder. */
 export const isStarted = () => Boolean(decoder);
 
-/** Waits until few pictures wait for the decoder. */
+/** Waits until no more than two pictures are queued in the decoder. */
 export async function queueShrinks() {
   while (decoder?.decodeQueueSize > 2) await new Promise((resolve) => decoder.addEventListener('dequeue', resolve, { once: true }));
 }
@@ -72,7 +72,7 @@ export async function queueShrinks() {
  * Decodes a frame.
  * @param {number} number of the frame
  * @param {boolean} intra
- * @param {Uint8Array} head what the page gets beside the picture
+ * @param {Uint8Array} head the header, which the page gets with the picture
  * @param {Uint8Array} data
  */
 export function decode(number, intra, head, data) {
@@ -81,10 +81,10 @@ export function decode(number, intra, head, data) {
 }
 
 addEventListener('message', ({ data }) => {
-  // Tests choose.
+  // Tests choose the way.
   if (data.way) way = data.way;
   if (!data.free) return;
-  // The page takes the next frame.
+  // The page is ready for the next frame.
   pageIsFree = true;
   if (data.took && !way) took(data.took);
   deliver();
@@ -107,7 +107,7 @@ async function decoded(frame) {
     return;
   }
   const start = performance.now();
-  // Some pictures have one way alone.
+  // Some pictures can only be passed in one way.
   const only = pack ? 'planes' : ['I420', 'NV12'].includes(frame.format) ? way : 'frame';
   const picture = { number: frame.timestamp, head, way: only ?? WAYS[pictures % 2], isTimed: !only };
   if (picture.way === 'frame') {
@@ -124,7 +124,7 @@ async function decoded(frame) {
   }
 }
 
-/** Returns the planes of a frame, one after another. @param {VideoFrame} frame */
+/** Returns the planes of a frame, one after the other. @param {VideoFrame} frame */
 async function copied(frame) {
   const { format, visibleRect } = frame;
   const { width, height } = visibleRect;
@@ -141,7 +141,7 @@ async function copied(frame) {
 
 /** Keeps the newest frame until the page takes it. */
 function put(picture) {
-  // Planes come later than the frame after them may.
+  // Planes may be ready only after a newer picture, which was passed as a frame.
   const old = picture.number < latest ? picture : newest;
   if (old) {
     skipped += 1;
@@ -153,7 +153,7 @@ function put(picture) {
   deliver();
 }
 
-/** Returns two planes of samples that take turns. */
+/** Separates interleaved samples into two planes, one after the other. */
 function apart(mixed) {
   const planes = new Uint8Array(mixed.length);
   const half = mixed.length / 2;
@@ -164,7 +164,7 @@ function apart(mixed) {
   return planes;
 }
 
-/** Gives the page the newest frame, once it has taken the one before. */
+/** Passes the newest frame to the page, once that is ready for it. */
 function deliver() {
   if (!newest || !pageIsFree) return;
   pageIsFree = false;

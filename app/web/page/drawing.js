@@ -11,11 +11,11 @@ import { sentence } from './sentence.js';
 import { explain } from './why.js';
 
 const { canvas } = app;
-/** The canvas has at most so many pixels. */
+/** The largest number of pixels of the canvas. */
 const MAX_PIXELS = 4e6;
-/** So many slow frames in a row end the choice of the cheaper method: this device cannot show the scene. */
+/** This many slow frames in a row end the choice of the cheaper method: the device is too slow for the scene. */
 const MOST_SLOW = 4;
-/** The width of a saved wiggle picture in pixels, at most. */
+/** The maximum width of a saved wiggle picture in pixels. */
 const WIGGLE = 640;
 
 const controls = listen(canvas, {
@@ -23,20 +23,20 @@ const controls = listen(canvas, {
   walk: (right, up, ahead) => { app.page?.walk(right, up, ahead); },
 }, () => { if (app.page) { keepPlace(); changed(); } });
 
-/** What is to be done: nothing, showing what is rendered, or rendering. */
+/** The work that is due: nothing, showing the rendered images, or rendering. */
 const [NOTHING, SHOW, RENDER] = [0, 1, 2];
 let due = RENDER;
 let scheduled = false;
 let last = 0;
 let real = false;
-/** Seconds that the scene has played. */
+/** For how long the scene has played, in seconds. */
 let played = 0;
 let noted = false;
 let drawn = 0;
-/** Slow frames in a row. */
+/** The number of slow frames in a row. */
 let slow = 0;
 
-/** Draws soon: something has changed that is not rendered yet. */
+/** Renders in the next frame: something has changed. */
 export function changed() {
   due = RENDER;
   slow = 0;
@@ -44,13 +44,13 @@ export function changed() {
   if (!app.busy && app.page) schedule();
 }
 
-/** Shows the rendered images soon: only the divider or the magnifier has moved. */
+/** Shows the rendered images again in the next frame: only the divider or the magnifier has moved. */
 function moved() {
   due = Math.max(due, SHOW);
   if (!app.busy && app.page) schedule();
 }
 
-/** Draws again after somebody else has drawn. */
+/** Restarts the loop after something else has drawn on the canvas. */
 export function startLoop() {
   last = 0;
   changed();
@@ -95,7 +95,7 @@ function frame(now) {
     if (work === RENDER) {
       resize();
       if (app.facts && !noted) {
-        // The first picture is there sooner without the real images; they come with the next frame.
+        // The first picture appears sooner without the real images, which come with the next frame.
         app.page.preview(canvas.width, canvas.height);
         noteFirst();
         changed();
@@ -103,7 +103,7 @@ function frame(now) {
       }
       app.page.draw(canvas.width, canvas.height, divider());
       app.page.endFrame(now, 0);
-      // Frames of a second and more count as pauses: nothing can be chosen by them.
+      // Frames of a second or more count as pauses, which say nothing about the methods' costs.
       slow = now - drawn < 1000 ? 0 : slow + 1;
       if (choosing(slow >= MOST_SLOW)) due = RENDER;
       drawn = now;
@@ -132,7 +132,7 @@ function resize() {
   if (canvas.height !== size[1]) canvas.height = size[1];
 }
 
-/** Notes when the first picture was there, in ms since the page was asked for. */
+/** Records when the first picture was complete, in ms since the page was requested. */
 function noteFirst() {
   noted = true;
   const { gl } = app;
@@ -151,7 +151,7 @@ function noteFirst() {
   setTimeout(look);
 }
 
-/** Saves a picture of what is shown. @param {Blob} blob @param {string} kind the end of its name */
+/** Saves a picture as a file. @param {Blob} blob @param {string} kind the end of the file's name */
 function save(blob, kind) {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(blob);

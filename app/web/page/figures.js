@@ -1,14 +1,14 @@
-// The figures of the picture in view, measured while nothing moves: the method against two renders.
+// The figures below the picture, measured while nothing moves: the method against two renders.
 
 import { app, element } from './app.js';
 import { inUse } from './methods.js';
 import { median, nextTask } from './timing.js';
 
-/** The picture rests so long before it is measured, in ms. */
+/** How long the picture must stay unchanged before it is measured, in ms. */
 const REST = 500;
-/** Measuring ends after so long, in ms. */
+/** How long a measurement takes, in ms. */
 const LENGTH = 1000;
-/** A batch is at least this long, in ms: browsers round their clocks to 1 ms at worst. */
+/** The shortest batch, in ms: browsers round their clocks, at worst to 1 ms. */
 const BATCH = 20;
 const MOST_FRAMES = 200;
 
@@ -20,7 +20,7 @@ let about = '';
 
 const compares = () => Boolean(app.facts && app.page && !app.busy) && ['divider', 'difference'].includes(app.settings.display);
 
-/** Ends a measurement: the picture changes. */
+/** Ends the measurement, since the picture changes. */
 export function forgetFigures() {
   clearTimeout(timer);
   current = null;
@@ -30,7 +30,7 @@ export function forgetFigures() {
   about = now;
 }
 
-/** Measures the picture once it has rested. */
+/** Measures the picture once it has stayed unchanged for a while. */
 export function figures() {
   clearTimeout(timer);
   if (!compares() || current) return;
@@ -42,7 +42,7 @@ export function figures() {
 }
 
 /**
- * Says what `auto` has chosen, and why; true while it still measures, for which it needs frames.
+ * Says what `auto` has chosen, and why. Returns true while it still measures, for which it needs frames.
  * @param {boolean} slow whether frames come too slowly to measure
  */
 export function choosing(slow) {
@@ -56,7 +56,8 @@ export function choosing(slow) {
   return isMeasuring && !slow;
 }
 
-/** Returns the ms of a frame of two batches, one by the method and one by two renders, and the frames of a batch. */
+/** Measures two batches, one of the method and one of two renders. Returns the ms per frame of each, and the frames of
+ * a batch. */
 function pair(frames) {
   return [false, true].map((real, i) => {
     const start = performance.now();
@@ -94,7 +95,7 @@ async function measure(run) {
   app.figures = { share, made, real };
 }
 
-/** Returns the figures in words; `psnr` is nothing where there is no real render to compare with. */
+/** Returns the figures in words. `psnr` is undefined if there is no real render to compare with. */
 export function sentences(method, share, made, real, psnr = undefined) {
   const digits = (ms) => `${ms.toFixed(ms < 10 ? 2 : ms < 100 ? 1 : 0)} ms`;
   const who = /llvmpipe|swiftshader|software|basic render/i.test(app.page.gpu) ? 'This device’s processor, without a GPU,' : 'Your GPU';

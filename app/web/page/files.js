@@ -1,4 +1,4 @@
-// The user's own files: dropped or chosen, shown, kept on this device.
+// The user's own files, dropped or chosen. They stay on this device.
 
 import { app, element } from './app.js';
 import { changed } from './drawing.js';
@@ -12,10 +12,10 @@ const PICTURE = /\.(png|jpe?g|bmp|tga|exr)$/i;
 const VIDEO = /\.(mp4|m4v|mov)$/i;
 const EXR = /\.exr$/i;
 const DEPTH = /depth|disp|z[-_. ]?(buffer|map)/i;
-/** A size beyond the capacity of a browser's module, in bytes. */
+/** The largest total size of the files in bytes: more would not fit into the module's memory. */
 const MAX_BYTES = 1.5e9;
 
-/** Returns all dropped files, those in folders with their paths. */
+/** Returns all dropped files. Files in folders are named by their paths. */
 async function dropped(transfer) {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
   if (!entries.length) return [...transfer.files].map((file) => ({ name: file.name, file }));
@@ -28,7 +28,7 @@ async function dropped(transfer) {
     }
     const reader = entry.createReader();
     for (;;) {
-      // Browsers give a hundred at a time.
+      // Browsers return at most a hundred entries at a time.
       const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
       if (!some.length) return;
       for (const inner of some) await walk(inner);
@@ -42,7 +42,7 @@ async function dropped(transfer) {
 export function understand(files) {
   const models = files.filter(({ name }) => MODEL.test(name));
   if (models.length) {
-    // The outermost one if there are several.
+    // Take the outermost one if there are several.
     const depth = ({ name }) => name.split('/').length;
     const main = models.reduce((a, b) => (depth(b) < depth(a) ? b : a));
     return { main: main.name, files };
@@ -62,7 +62,7 @@ export function understand(files) {
 }
 
 /**
- * Shows files: `{name, file}` each. Says what is wrong with them; what was shown stays then.
+ * Shows files. If something is wrong with them, says what; then what was shown stays.
  * @param {{name: string, file: Blob}[]} files
  * @param {Record<string, string | number> | null} known the options of pictures; null to guess them
  */
@@ -95,7 +95,7 @@ export async function take(files, known = null) {
   }
 }
 
-/** Loads an example of the page's own. */
+/** Loads one of the page's own examples. */
 async function example(names, known) {
   try {
     take(await Promise.all(names.map(async (name) => {

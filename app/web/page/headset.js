@@ -1,4 +1,4 @@
-// A headset, by WebXR: views, projections and framebuffer as the browser gives them.
+// A headset, by WebXR: the views, projections and framebuffer come from the browser.
 
 import { Headset } from './yoro_web.js';
 import { keepPlace } from './address.js';
@@ -9,12 +9,12 @@ import { clear, isFree, say } from './messages.js';
 import { inUse } from './methods.js';
 import { sentence } from './sentence.js';
 
-/** xr-standard gamepads: trigger, squeeze, thumbstick; axes 2 and 3 are the thumbstick's. */
+/** The buttons of xr-standard gamepads. Axes 2 and 3 are the thumbstick's. */
 const [TRIGGER, SQUEEZE, THUMBSTICK] = [0, 1, 3];
 const METRES_PER_SECOND = 1.5;
 const TURN = Math.PI / 6;
 
-/** Presses since the last call, and where the thumbsticks point. */
+/** Returns the buttons pressed since the last call, and where the thumbsticks point. */
 function controllers(session, before) {
   const presses = { [TRIGGER]: false, [SQUEEZE]: false, [THUMBSTICK]: false };
   const stick = { left: [0, 0], right: [0, 0] };
@@ -32,17 +32,17 @@ function controllers(session, before) {
   return { presses, stick };
 }
 
-/** What is shown, in a word or two. */
+/** Returns what is shown, in a word or two. */
 const shownBy = () => (app.stream ? 'stream' : inUse());
 
-/** Chooses by devices without buttons of their own: hands, and pinches where a glance points. */
+/** Listens to input sources without buttons of their own: hands, and gaze with a pinch. */
 function listenToHands(session) {
   const isHand = ({ inputSource }) => !inputSource.gamepad;
   session.addEventListener('select', (event) => { if (isHand(event)) step('method'); });
   session.addEventListener('squeeze', (event) => { if (isHand(event)) step('viewpoint'); });
 }
 
-/** Asks for the wanted frames a second: of those that the session offers the nearest. */
+/** Requests the chosen frame rate, or the nearest one that the session offers. */
 async function setRate(session) {
   const wanted = Number(element('headset-rate').value);
   const [nearest] = [...session.supportedFrameRates ?? []].sort((a, b) => Math.abs(a - wanted) - Math.abs(b - wanted));
@@ -51,11 +51,11 @@ async function setRate(session) {
   else if (nearest !== session.frameRate) await session.updateTargetFrameRate(nearest).catch((error) => say(`The headset refuses ${nearest} frames a second: ${error.message}`));
 }
 
-/** Has the borders of the picture drawn with fewer pixels, as wanted, where the browser can. */
+/** Has the borders of the picture drawn with fewer pixels, as chosen, if the browser can. */
 function foveate(layer) {
   const wanted = element('headset-foveation').value;
   if (wanted === '') return;
-  // It is null or missing where the browser cannot.
+  // It is null or missing if the browser cannot.
   if (typeof layer.fixedFoveation === 'number') layer.fixedFoveation = Number(wanted);
   else say('This browser has no foveation for pages.');
 }
@@ -158,7 +158,7 @@ async function enter(button) {
   }
 }
 
-/** Makes the panel work. */
+/** Sets up the panel. */
 export async function offerHeadset() {
   const [button, state] = [element('headset'), element('headset-state')];
   const look = async () => {
@@ -173,7 +173,7 @@ export async function offerHeadset() {
   };
   for (const id of ['headset-rate', 'headset-foveation']) {
     try {
-      // A value that is not offered leaves the field empty.
+      // A value that is not offered would leave the field empty.
       const kept = localStorage.getItem(id);
       if ([...element(id).options].some(({ value }) => value === kept)) element(id).value = kept;
     } catch { /* The fields keep what they have. */ }

@@ -5,7 +5,7 @@ import { making } from './methods.js';
 
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
-/** Returns an eye, and how it was made. */
+/** Returns a text that names an eye and how it was made. */
 function describe(eye) {
   if (!app.source.color) return `${eye} eye: ${making(app.page.methodInUse, eye === app.settings.dominant)}`;
   return `${eye} eye: ${element('picture-source').value === eye ? 'your picture' : 'synthesized'}`;
@@ -29,7 +29,7 @@ function texts(real) {
   }
 }
 
-/** Labels the parts of the picture. @param {boolean} real true if a display of two pictures in turn shows the real one */
+/** Labels the parts of the picture. @param {boolean} real true if a display of pictures in turn shows the real one */
 export function label(real) {
   const { display } = app.settings;
   const compares = Boolean(app.facts) && ['divider', 'difference'].includes(display);

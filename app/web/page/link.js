@@ -1,11 +1,11 @@
-// Settings in the address's fragment, without those that have their default.
+// The settings in the address's fragment. Settings with their default value are left out.
 
 export const defaults = {
   scene: 'prototype', viewpoint: 0, method: 'auto', renderer: 'deferred', 'anti-aliasing': 'after', history: 'off', ipd: 63,
   dominant: 'right', display: 'divider', divider: 50, scale: 1, at: null, stream: null,
 };
 
-/** The anti-aliasing that each renderer has, its default first. */
+/** The kinds of anti-aliasing of each renderer, its default first. */
 export const antiAliasing = {
   deferred: ['after', 'before', 'off'],
   forward: ['msaa', 'after', 'before', 'off'],
@@ -19,13 +19,13 @@ const allowed = {
   scale: ['1', '0.75', '0.5'],
 };
 
-/** Numbers go from 0 to this. */
+/** The largest values of numbers; the smallest is 0. */
 const most = { ipd: 80, divider: 100 };
 
-/** A head is no farther away than this, in metres: the module's limit. */
+/** The largest coordinate of the head in metres, which is the module's limit. */
 const FARTHEST = 1e6;
 
-/** Returns the number that a text is; NaN for anything else, also for nothing. */
+/** Parses a number. Returns NaN for any other text, and for the empty one. */
 const number = (text) => (/^[-+]?\d+(\.\d*)?(e[-+]?\d+)?$/i.test(text) ? Number(text) : NaN);
 
 /** Returns a place, or null. @param {string} text */
@@ -61,7 +61,7 @@ export function parse(fragment, known) {
   return { settings, faults };
 }
 
-/** Returns the fragment of settings. Without a built-in scene it has no place either. */
+/** Returns the fragment of settings. Without a built-in scene, it has no place either. */
 export function format(settings) {
   const fields = new URLSearchParams();
   const usual = { ...defaults, 'anti-aliasing': antiAliasing[settings.renderer][0] };

@@ -2,16 +2,16 @@
 
 import { app, element } from './app.js';
 
-/** Screen pixels for a pixel of the picture. */
+/** How many screen pixels show a pixel of the picture, per axis. */
 const ZOOM = 4;
 
 const { canvas } = app;
-/** The pointer over the canvas in CSS pixels; null elsewhere. */
+/** The position of the pointer on the canvas in CSS pixels; null if it is elsewhere. */
 let at = null;
 canvas.addEventListener('pointermove', (event) => { at = [event.offsetX, event.offsetY]; });
 canvas.addEventListener('pointerleave', () => { at = null; });
 
-/** Fills and places the magnifier; true if the canvas has to be shown again. */
+/** Fills and places the magnifier. Returns true if the canvas has to be shown again. */
 export function magnify() {
   const lens = element('lens');
   lens.hidden = !element('magnifier').checked || element('magnifier').disabled || !at;
@@ -24,7 +24,7 @@ export function magnify() {
   paint.imageSmoothingEnabled = false;
   paint.fillStyle = '#000';
   paint.fillRect(0, 0, lens.width, height);
-  // All of it real, then all of it the method's.
+  // First the real image over the whole canvas, then the method's.
   for (const [share, x] of [[1, 0], [0, half]]) {
     app.page.show(canvas.width, canvas.height, share);
     paint.drawImage(canvas, ...corner, width, tall, x, 0, half, height);

@@ -21,7 +21,7 @@ Object.assign(app, { say, clear, changed, showSource, startLoop, step, take });
 // For the console, and for tests.
 globalThis.yoro = app;
 
-/** Takes the canvas's context; true if it can render. */
+/** Gets the canvas's context. Returns true if it can render. */
 function attach() {
   app.gl = canvas.getContext('webgl2', {
     alpha: false, antialias: false, depth: false, stencil: false, powerPreference: 'high-performance',
@@ -41,7 +41,7 @@ function attach() {
   return true;
 }
 
-/** Copies the link, and says so on the button, where people look. */
+/** Copies the link, and says so on the button, where users look. */
 async function share() {
   keepNow();
   const button = element('share');
@@ -61,7 +61,7 @@ function followLink({ newURL }) {
     return;
   }
   clear();
-  // The address may have been written over since it changed: settings are kept after a short delay.
+  // The address may have been overwritten since it changed: settings are written to it after a short delay.
   readAddress(new URL(newURL).hash);
   if (app.settings.stream) {
     location.reload();
@@ -123,7 +123,7 @@ async function compile() {
   if (!response.ok) throw new Error(`The page's module is missing (${response.status}): reload the page.`);
   const streams = response.headers.get('content-type')?.startsWith('application/wasm');
   try {
-    // Some hosts send another type, which only the browser's streaming minds.
+    // Some hosts send another content type, which only streaming compilation rejects.
     return await (streams ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
   } catch (error) {
     if (/unsafe-eval|Content.Security.Policy/i.test(error.message)) {
@@ -159,7 +159,7 @@ export async function start() {
   if (app.settings.stream) (await import('./stream.js')).follow(app.settings.stream);
   else await showSource({ builtin: app.settings.scene }, { keepPlace: true });
   app.ready = true;
-  // Loaded once, the page works without a network, where browsers allow that: over https and on this machine. What is kept
-  // for that is fetched once more, which is not to delay the first picture.
+  // Once loaded, the page works without a network where browsers allow that: over https and on this machine. The kept
+  // files are fetched again for this, which must not delay the first picture.
   if ('serviceWorker' in navigator) navigator.serviceWorker.register('offline.js').catch(() => {});
 }

@@ -1,4 +1,4 @@
-// The methods against each other, and a file that `yoro report` reads.
+// Compares the methods' times, and makes a file that `yoro report` reads.
 
 import { Bench } from './yoro_web.js';
 import { app, element } from './app.js';
@@ -7,13 +7,13 @@ import { clear, isFree, say } from './messages.js';
 import { sentence } from './sentence.js';
 import { median, nextFrame, nextTask } from './timing.js';
 
-/** A batch of frames is at least this long, in ms: browsers round their clocks to 0.005 to 1 ms. */
+/** The shortest batch of frames, in ms: browsers round their clocks to between 0.005 and 1 ms. */
 const BATCH = 50;
-/** Frames with timer queries a turn: results come some frames late. */
+/** The number of frames with timer queries in each turn. Their results arrive some frames late. */
 const TIMED_FRAMES = 10;
 const VIEWPOINTS = 3;
 
-/** Refresh rate of the display in Hz, by the callbacks of a third of a second. */
+/** Measures the refresh rate of the display in Hz, from the callbacks within a third of a second. */
 async function refreshRate() {
   const times = [];
   const start = await nextFrame();
@@ -22,7 +22,7 @@ async function refreshRate() {
   return 1000 / median(steps);
 }
 
-/** The smallest step of the page's clock in ms. */
+/** Measures the smallest step of the page's clock in ms. */
 function clockStep() {
   let smallest = Infinity;
   for (let i = 0, last = performance.now(); i < 2e4 && smallest > 0.001; i++) {
@@ -34,7 +34,7 @@ function clockStep() {
 }
 
 /**
- * Measures the methods; null if the run is stopped.
+ * Measures the methods. Returns null if the run is stopped.
  * @param {Bench} bench the methods, with images of the wanted size
  */
 async function measure(bench, seconds, run) {
@@ -45,7 +45,7 @@ async function measure(bench, seconds, run) {
   const count = Math.min(VIEWPOINTS, app.facts.viewpoints);
   const viewpoints = Array.from({ length: count }, (_, i) => Math.floor((i * app.facts.viewpoints) / count));
   const turn = async (contender, viewpoint, milliseconds) => {
-    // Finds the number of frames that makes a batch long enough. The first frame is not measured.
+    // Find the number of frames that makes a batch long enough. The first frame is not measured.
     let frames = 1;
     let best = [];
     const end = performance.now() + milliseconds;
@@ -84,7 +84,7 @@ async function measure(bench, seconds, run) {
     for (const [index, name] of contenders.entries()) {
       const values = { frame_ms: [] };
       for (const viewpoint of viewpoints) {
-        // The round before the first warms up: shaders are compiled and targets made.
+        // Round -1 warms up: it compiles the shaders and makes the targets.
         const result = await turn(index, viewpoint, round < 0 ? 0 : share);
         if (!result) return null;
         values.frame_ms.push(result.ms);
@@ -112,7 +112,7 @@ function machine() {
   };
 }
 
-/** The result as `yoro bench` writes it: JSON lines. `settings` are those that the run began with. */
+/** Returns the result as JSON lines, as `yoro bench` writes them. `settings` are those at the start of the run. */
 function lines(settings, size, seconds, result) {
   const setting = { suite: 'scenes', scene: app.facts.name };
   const { facts, records, rounds, rate, clock } = result;
@@ -199,12 +199,12 @@ function show(size, result, run) {
   }));
 }
 
-/** Locks what a measurement depends on. @param {boolean} locked */
+/** Locks the controls that a measurement depends on. @param {boolean} locked */
 function lock(locked) {
   for (const id of ['look', 'own', 'measure-fields']) element(id).disabled = locked;
 }
 
-/** Makes the panel work. */
+/** Sets up the panel. */
 export function offerMeasure() {
   const [button, save, bar] = ['measure', 'measure-save', 'measure-progress'].map(element);
   let file = null;
@@ -243,7 +243,7 @@ export function offerMeasure() {
     bench?.free();
     bar.hidden = true;
     button.textContent = 'Measure';
-    // The figures of an earlier run stay.
+    // The figures of an earlier run stay available.
     Object.assign(save, { hidden: !file, disabled: false });
     lock(false);
     if (app.busy === run) app.busy = null;

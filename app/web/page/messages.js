@@ -7,12 +7,12 @@ export function say(text) {
   const message = element('message');
   element('message-text').textContent = text;
   message.hidden = false;
-  // Shown last, it lies above an element that has the whole screen.
+  // The popover that is shown last lies above a fullscreen element.
   message.hidePopover?.();
   message.showPopover?.();
 }
 
-/** Shows a sentence after those that are shown. @param {string} text */
+/** Adds a sentence to the message on display. @param {string} text */
 export function sayAlso(text) {
   say(element('message').hidden ? text : `${element('message-text').textContent} ${text}`);
 }
@@ -23,9 +23,9 @@ export function clear() {
 }
 
 /**
- * True if nobody else draws and a scene is shown; says otherwise what is missing.
- * @param {string} need a sentence: what needs a scene
- * @param {boolean} streams true if a stream will do
+ * Returns true if nothing else draws and a scene is shown. Otherwise says what is missing.
+ * @param {string} need a sentence that says what needs a scene
+ * @param {boolean} streams true if a stream is enough
  */
 export function isFree(need, streams = false) {
   const shown = Boolean(app.page && (app.facts || (streams && app.stream)));
@@ -35,7 +35,7 @@ export function isFree(need, streams = false) {
 }
 
 /**
- * Shows the work in progress; hides the display for null.
+ * Shows the work in progress, or hides the display if the text is null.
  * @param {string | null} text
  * @param {number | null} part the progress from 0 to 1, null if unknown
  * @param {string} count the same in words

@@ -2,7 +2,7 @@
 
 import { app } from './app.js';
 
-/** Returns a sentence for each method. */
+/** A sentence for each method. */
 export const explanations = {
   auto: 'Two renders and yoro take turns here for a second; the cheaper one goes on. The divider compares both.',
   conventional: 'Renders both eyes, one after the other: the baseline of every comparison.',
@@ -14,13 +14,13 @@ export const explanations = {
   yoro: 'Renders one eye, and synthesizes the other from its colour and depth.',
 };
 
-/** Returns the method in use; of `auto` with the reason, as the viewer's log line has it: `auto:yoro 6.1/8.9ms`. */
+/** Returns the method in use. For `auto`, adds the reason as in the viewer's log line: `auto:yoro 6.1/8.9ms`. */
 export function inUse() {
   const { methodInUse, reason } = app.page;
   return reason ? `auto:${methodInUse} ${reason}` : methodInUse;
 }
 
-/** How each method makes the eye that is not rendered whole. */
+/** How each method makes the eye that it does not simply render. */
 const other = {
   hybrid: 'near rendered, far copied', 'shading-reprojection': 'shading copied', mono: 'a copy', yoro: 'synthesized',
 };

@@ -1,8 +1,8 @@
-// Keeps the page's files, so that it works without a network.
+// The service worker that keeps the page's files, so that the page works without a network.
 
 const CACHE = 'yoro VERSION';
 const FILES = ['./', 'icon.svg', 'manifest.webmanifest', /* FILES */];
-/** The longest wait for the network where the file is kept, in ms. */
+/** The longest wait for the network if the file is kept, in ms. */
 const NETWORK_TIMEOUT = 4000;
 
 self.addEventListener('install', (event) => {
@@ -27,7 +27,7 @@ function ask(request) {
 
 async function answer(request) {
   const cache = await caches.open(CACHE);
-  // The page has one document, by whatever name it was asked for.
+  // The page has one document, under whichever name it was requested.
   const kept = await cache.match(request.mode === 'navigate' ? './' : request, { ignoreSearch: true });
   // Files of a version never change.
   if (!kept || new URL(request.url).pathname.includes('/VERSION/')) return kept ?? fetch(request);

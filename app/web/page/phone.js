@@ -9,17 +9,17 @@ import { clear, isFree, say } from './messages.js';
 import { scan } from './scan.js';
 import { sentence } from './sentence.js';
 
-/** Sensors that have not told anything for so long, in ms, are none. */
+/** After this time without a reading, in ms, the device counts as having no sensors. */
 const SILENCE = 1500;
-/** The shortest short edge of a screen in mm: the lenses' limit. */
+/** The smallest length of a screen's short edge in mm, which the lenses require. */
 const SHORTEST = 30;
 
 const { canvas } = app;
 
-/** Asks for permission to use the sensors if the browser requires it; throws a sentence. */
+/** Asks for permission to use the sensors if the browser requires it. Throws a sentence if that is refused. */
 async function askForSensors() {
   if (typeof DeviceOrientationEvent === 'undefined') throw new Error('This browser does not report how it is held.');
-  // Only Apple's browsers ask.
+  // Only Apple's browsers require permission.
   const { requestPermission } = /** @type {any} */ (DeviceOrientationEvent);
   if (requestPermission) {
     const answer = await requestPermission.call(DeviceOrientationEvent).catch((error) => error.message);
@@ -27,7 +27,7 @@ async function askForSensors() {
   }
 }
 
-/** Checks both fields, and marks the first that is wrong; true if both are right. */
+/** Checks both fields, and marks the first invalid one. Returns true if both are valid. */
 function checkFields() {
   const [viewer, long] = ['phone-viewer', 'phone-width'].map(element);
   viewer.setCustomValidity(Phone.viewerFault(viewer.value) ?? '');
@@ -38,7 +38,7 @@ function checkFields() {
   return viewer.reportValidity() && long.reportValidity();
 }
 
-/** A visit to the viewer: draws until it is left. */
+/** One use of the viewer: draws until the user leaves it. */
 class Visit {
   name = 'phone';
   immersive = true;
@@ -46,7 +46,7 @@ class Visit {
   /** The phone in the viewer, once the size of the screen is known. @type {Phone | undefined} */
   #phone;
   #size = '';
-  /** What the sensors told last: alpha, beta, gamma and the screen's rotation, in degrees. */
+  /** The last reading of the sensors: alpha, beta, gamma and the screen's rotation, in degrees. */
   #angles = null;
   #awake = null;
   #silence = 0;
@@ -55,7 +55,7 @@ class Visit {
   #listeners = new AbortController();
 
   constructor() {
-    // Some browsers give no element the whole screen: it fills the window there.
+    // Some browsers have no fullscreen for elements: there the canvas fills the window.
     document.body.classList.add('filling');
     element('phone-leave').hidden = false;
     const { signal } = this.#listeners;
@@ -111,7 +111,7 @@ class Visit {
         Object.assign(canvas, { width, height });
         const long = element('phone-width').valueAsNumber / 1000;
         const metres = [width, height].map((n) => (long * n) / Math.max(width, height));
-        // The new phone takes over the direction straight ahead, which consumes the phone before.
+        // The new phone takes over the direction straight ahead, which consumes the previous phone.
         const before = this.#phone;
         this.#phone = undefined;
         this.#phone = new Phone(app.page, element('phone-viewer').value, ...metres, before);
@@ -128,7 +128,7 @@ class Visit {
   }
 }
 
-/** Keeps viewer and screen for the next visit. */
+/** Stores the viewer and the size of the screen for the next use. */
 function remember() {
   try {
     localStorage.setItem('viewer', element('phone-viewer').value);
@@ -136,14 +136,14 @@ function remember() {
   } catch { /* The fields are to be filled again next time. */ }
 }
 
-/** Says which viewer the field has. */
+/** Shows the name of the viewer in the field. */
 function nameViewer() {
   element('phone-name').textContent = Phone.viewerName(element('phone-viewer').value);
 }
 
-/** Makes the panel work. */
+/** Sets up the panel. */
 export function offerPhone() {
-  // The viewer that was used last; a browser may refuse to keep anything.
+  // The viewer that was used last. A browser may refuse to store anything.
   try {
     element('phone-viewer').value = localStorage.getItem('viewer') ?? 'v1';
     element('phone-width').value = localStorage.getItem('screen') ?? '140';
@@ -161,7 +161,7 @@ export function offerPhone() {
       if (document.fullscreenElement) await document.exitFullscreen();
       return;
     }
-    // Only some browsers can, and the phone may be locked upright.
+    // Only some browsers can do this, and the phone may be locked upright.
     await screen.orientation?.lock?.('landscape').catch(() => {});
     remember();
     app.busy = new Visit();

@@ -1,13 +1,13 @@
 // Portrait photos that carry their depth: Google's GDepth in the XMP data of a JPEG
-// (https://developers.google.com/depthmap-metadata/reference), or Dynamic Depth, whose XMP data lists the files that follow
-// the JPEG (https://developer.android.com/training/camera2/Dynamic-depth-v1.0.pdf).
+// (https://developers.google.com/depthmap-metadata/reference), or Dynamic Depth, whose XMP data lists the files that
+// follow the JPEG (https://developer.android.com/training/camera2/Dynamic-depth-v1.0.pdf).
 
 const XMP = 'http://ns.adobe.com/xap/1.0/\0';
 const EXTENDED = 'http://ns.adobe.com/xmp/extension/\0';
-/** In front of an extended part: the identifier, the length of all parts, and the offset of this one. */
+/** The bytes in front of an extended part: the identifier, the length of all parts, and the offset of this one. */
 const [IDENTIFIER, LENGTH, OFFSET] = [32, 4, 4];
 
-/** Returns the XMP data of a JPEG as text; empty without any. @param {ArrayBuffer} bytes */
+/** Returns the XMP data of a JPEG as text, which is empty if it has none. @param {ArrayBuffer} bytes */
 function metadata(bytes) {
   const [view, all] = [new DataView(bytes), new Uint8Array(bytes)];
   if (all.length < 4 || view.getUint16(0) !== 0xffd8) return '';
@@ -29,7 +29,7 @@ function metadata(bytes) {
 
 const decode = (base64) => Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
 
-/** Returns the depth as a PNG of a size, 0 near to 1 far as a depth buffer has it. */
+/** Returns the depth as a PNG of the given size, from 0 (near) to 1 (far) as in a depth buffer. */
 async function depthBuffer(depth, [width, height], { linear, near, far }) {
   const paint = new OffscreenCanvas(width, height).getContext('2d');
   paint.drawImage(await createImageBitmap(depth), 0, 0, width, height);
@@ -55,7 +55,7 @@ function listed(text, bytes) {
     return { address: value('DataURI') ?? value('Semantic') ?? '', length: Number(value('Length') ?? 0) };
   });
   const found = new Map();
-  // They lie one after the other at the end of the file.
+  // They are stored one after the other at the end of the file.
   let end = bytes.byteLength;
   for (const { address, length } of items.filter((item) => item.length > 0).reverse()) {
     found.set(address, bytes.slice(Math.max(0, end - length), end));
@@ -65,7 +65,8 @@ function listed(text, bytes) {
 }
 
 /**
- * Returns what a photo says about its depth, and the picture before its background was blurred, if it has it; null without.
+ * Returns what a photo says about its depth and, if it has it, the picture before its background was blurred. Returns
+ * null if the photo has no depth.
  * @param {string} text @param {ArrayBuffer} bytes
  */
 function carried(text, bytes) {
@@ -81,7 +82,8 @@ function carried(text, bytes) {
 }
 
 /**
- * Returns colour and depth of a photo, and the values of the options' fields; null if it carries no depth.
+ * Returns the colour and the depth of a photo, and the values of the options' fields. Returns null if the photo has no
+ * depth.
  * @param {{name: string, bytes: ArrayBuffer}} file
  */
 export async function photo({ name, bytes }) {

@@ -1,4 +1,4 @@
-// The options of a colour and a depth picture, and a guess of them.
+// The options of a colour and a depth picture, and how they are guessed.
 
 import { element } from './app.js';
 
@@ -10,9 +10,9 @@ const needed = {
   near: ['standard-z', 'reversed-z'], far: ['standard-z', 'reversed-z'], 'metres-at-white': ['metres'],
   'disparity-offset': ['disparity'], 'disparity-scale': ['disparity'], 'fov-y-degrees': ['standard-z', 'reversed-z', 'metres'],
 };
-/** A guessed disparity is at most this share of the picture's width: comfortable on a screen. */
+/** The largest guessed disparity, as a share of the picture's width. It is comfortable on a screen. */
 const DISPARITY = 0.03;
-/** Millimetres are what 16-bit pictures of depth cameras hold. */
+/** The depth of white in metres: 16-bit pictures of depth cameras hold millimetres. */
 const METRES_AT_WHITE = 65.535;
 
 /** Returns the options as JSON. */
@@ -40,13 +40,13 @@ export function checkOptions() {
   if (wrong) throw new Error(`${wrong.labels[0].firstChild.textContent.trim()}: ${wrong.validationMessage}`);
 }
 
-/** Gives fields other values. @param {Record<string, string | number>} values */
+/** Sets the values of fields. @param {Record<string, string | number>} values */
 export function fill(values) {
   for (const [key, value] of Object.entries(values)) element(`picture-${key}`).value = String(value);
   showFields();
 }
 
-/** Returns the mean of the red of a picture's upper and lower quarter, and its width. */
+/** Returns the mean of red in a picture's upper and lower quarter, and the picture's width. */
 async function sample(bytes) {
   const bitmap = await createImageBitmap(new Blob([bytes]));
   const side = 32;
@@ -62,9 +62,9 @@ async function sample(bytes) {
 }
 
 /**
- * Guesses the encoding of a depth picture by its file: EXR holds metres, 16-bit PNG millimetres of a depth camera. Of 8 bits,
- * what is at the bottom is taken to be nearer than what is at the top: a brighter bottom is a disparity, as networks for depth
- * estimate it.
+ * Guesses the encoding of a depth picture from its file: EXR holds metres, 16-bit PNG the millimetres of a depth
+ * camera. In pictures of 8 bits, the bottom is assumed to be nearer than the top: a brighter bottom means disparity, as
+ * estimated by networks for depth.
  * @param {{name: string, bytes: ArrayBuffer}} depth
  * @returns {Promise<Record<string, string | number>>} values for the fields
  */
@@ -73,7 +73,7 @@ export async function guess({ name, bytes }) {
   const start = new Uint8Array(bytes, 0, Math.min(bytes.byteLength, 25));
   const bits = start[0] === 0x89 && start.length > 24 ? start[24] : 8;
   if (bits === 16 && !/disp/i.test(name)) return { encoding: 'metres', 'metres-at-white': METRES_AT_WHITE };
-  // Browsers do not decode all formats; the module says what is wrong with a damaged file.
+  // Browsers do not decode all formats. The module says what is wrong with a damaged file.
   const seen = await sample(bytes).catch(() => null);
   if (!seen || (seen.top >= seen.bottom && !/disp/i.test(name))) return { encoding: 'standard-z' };
   return { encoding: 'disparity', 'disparity-offset': 0, 'disparity-scale': Math.max(1, Math.round(seen.width * DISPARITY)) };

@@ -4,10 +4,11 @@ import { Phone } from './yoro_web.js';
 import { element } from './app.js';
 import { say } from './messages.js';
 
-/** Pictures are looked at this often, in ms. */
+/** The time between two pictures that are searched for a code, in ms. */
 const STEP = 150;
 
-/** Returns what reads a code in a video: the browser's own reader, where it has one, else the module's. */
+/** Returns a function that reads a code in a video: with the browser's own reader if it has one, else with the
+ * module's. */
 async function reader() {
   const Detector = /** @type {any} */ (globalThis).BarcodeDetector;
   const formats = await Detector?.getSupportedFormats().catch(() => []);
@@ -24,7 +25,7 @@ async function reader() {
   };
 }
 
-/** Returns the text of the first code of a viewer that the camera sees; null if the user gives up, or without a camera. */
+/** Returns the text of the first viewer's code that the camera sees, or null if the user gives up or has no camera. */
 export async function scan() {
   const [dialog, video, state] = ['scan', 'scan-video', 'scan-state'].map(element);
   let stream = null;

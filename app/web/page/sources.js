@@ -7,11 +7,11 @@ import { changed, startLoop } from './drawing.js';
 import { loading, say, sayAlso } from './messages.js';
 import { sentence } from './sentence.js';
 
-/** The work on `app.wanted`: ends the worker, and gives its promise null. */
+/** Cancels the work on `app.wanted`: ends the worker, and resolves its promise with null. */
 let cancel = () => {};
 
 /**
- * Loads and shows a source, from its first viewpoint. The content before stays until then.
+ * Loads and shows a source, from its first viewpoint. What was shown before stays until then.
  * @param {import('./app.js').Source} source
  * @param {{keepPlace?: boolean}} options true to go to the settings' viewpoint and place, not to the first viewpoint
  */
@@ -23,13 +23,13 @@ export async function showSource(source, { keepPlace = false } = {}) {
   else await showScene(source, keepPlace);
 }
 
-/** Shows again what was shown or was to be shown, after a lost context. */
+/** After a lost context, shows the source again that was shown or was being loaded. */
 export function showAgain() {
   const source = app.wanted ?? app.source;
   if (source) showSource(source, { keepPlace: true });
 }
 
-/** Gives up loading; what was shown stays. */
+/** Gives up loading. What was shown stays. */
 export function stopLoading() {
   cancel();
   end();
@@ -63,7 +63,7 @@ function showPictures(source) {
   changed();
 }
 
-/** Returns a packed scene and its warnings, or an error; null if the work was cancelled. */
+/** Returns a packed scene and its warnings, or an error, or null if the work was cancelled. */
 async function load(source, doing) {
   const worker = new Worker(new URL('worker.js', import.meta.url), { type: 'module' });
   const answer = await new Promise((resolve) => {
@@ -85,7 +85,7 @@ async function showScene(source, keepPlace) {
   const doing = source.builtin ? `Generating ${source.builtin}` : `Loading ${source.main}`;
   loading(doing);
   const answer = await load(source, doing);
-  // Somebody else wants something, or the context is lost and the source comes with it.
+  // Another source is wanted by now, or the context is lost: this source is loaded again with the new context.
   if (!answer || app.wanted !== source || (answer.bytes && !app.page)) return;
   if (answer.error) {
     say(answer.error);
@@ -93,7 +93,7 @@ async function showScene(source, keepPlace) {
     return;
   }
   loading('Compiling shaders');
-  // Lets the browser show the line above first.
+  // Let the browser show that message first.
   await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
   if (app.wanted !== source || !app.page) return;
   try {
@@ -106,7 +106,7 @@ async function showScene(source, keepPlace) {
     goThere();
     if (answer.warnings.length) sayAlso(answer.warnings.map((text) => `${text}.`).join(' '));
   } catch (error) {
-    // The module has let go of what was shown.
+    // The module has already dropped what was shown.
     Object.assign(app, { source: null, facts: null });
     say(sentence(error));
   }
@@ -116,7 +116,7 @@ async function showScene(source, keepPlace) {
 
 const counted = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
 
-/** Shows a scene's progress: first the textures, then the triangles, whose final number is known. */
+/** Shows the progress of a scene: first its textures, then its triangles, whose total is known. */
 function generating(doing, name, { textures, triangles }) {
   const { kiloTriangles } = app.scenes.find((scene) => scene.name === name);
   const kilo = Math.round(triangles / 1000);

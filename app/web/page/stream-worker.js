@@ -3,7 +3,7 @@
 import init, { StreamOrder } from './yoro_web.js';
 import * as decoding from './decoding.js';
 
-/** The kind of a frame's message; what stands before its header is described in app/stream/src/messages.rs. */
+/** The kind of a frame's message. app/stream/src/messages.rs describes what precedes its header. */
 const FRAME = 2;
 const PREFIX = 8;
 /** The decoder takes H.264's constrained baseline profile up to this level (5.1), as the server encodes it. */
@@ -14,19 +14,19 @@ const RETRY_DELAY = 1000;
 /** The longest wait for a WebTransport, in ms. */
 const CONNECT_TIMEOUT = 3000;
 
-/** What the page has said: `hello`, the message with which to begin; the `module`; the WebSocket's address as `socket`, and the
- * WebTransport's `address` with its certificate's `hash` as `transport`, where there are these. */
+/** What the page has sent: `hello`, the message to begin with; the `module`; and, if available, `socket`, the
+ * WebSocket's address, and `transport`, the WebTransport's `address` with its certificate's `hash`. */
 let begin;
-/** The connection, or the one that is being tried.
+/** The connection, also while it is being made.
  * @type {{name: string, send: (message: Uint8Array) => void, close: () => void} | null} */
 let connection = null;
-/** True if the WebTransport has failed where there is a WebSocket. */
+/** True if the WebTransport has failed and there is a WebSocket. */
 let useSocket = false;
 /** True once the server has answered. */
 let answered = false;
 /** Puts this connection's frames into their order. @type {StreamOrder | null} */
 let order = null;
-/** Frames of this connection that are lost. */
+/** The number of lost frames of this connection. */
 let lost = 0;
 
 onmessage = async ({ data }) => {
@@ -55,7 +55,7 @@ function connect() {
   }
 }
 
-/** Takes a message of the server. @param {ArrayBuffer} message */
+/** Handles a message from the server. @param {ArrayBuffer} message */
 function receive(message) {
   decoding.count(message.byteLength);
   if (new Uint8Array(message)[0] === FRAME) {
@@ -66,7 +66,7 @@ function receive(message) {
   postMessage({ answer: new Uint8Array(message), by: connection.name });
 }
 
-/** The connection has ended. */
+/** Handles the end of the connection. */
 function ended() {
   connection = null;
   decoding.end();
@@ -108,7 +108,7 @@ function openTransport({ transport: { address, hash }, hello }) {
     receive(await whole(first.readable));
     const streams = transport.incomingUnidirectionalStreams.getReader();
     for (let next = await streams.read(); !next.done; next = await streams.read()) {
-      // A frame that the server gives up is left out.
+      // A frame that the server gives up is skipped.
       whole(next.value).then((frame) => { if (connection === self) receive(frame); }, ignore);
     }
   };
@@ -127,7 +127,7 @@ function openTransport({ transport: { address, hash }, hello }) {
   return self;
 }
 
-/** Takes a frame, and decodes those whose turn it is. @param {ArrayBuffer} message */
+/** Takes a frame, and decodes the frames whose turn it is. @param {ArrayBuffer} message */
 function take(message) {
   const view = new DataView(message);
   order.insert(view.getUint32(4, true), view.getUint8(1) === 1, message);
@@ -137,7 +137,7 @@ function take(message) {
   miss();
 }
 
-/** Names a frame that is missing. */
+/** Reports a missing frame to the server. */
 function miss() {
   const missing = order.missing(performance.now());
   if (missing) connection?.send(missing);

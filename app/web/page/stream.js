@@ -1,5 +1,5 @@
-// Moving pictures of one eye with its depth: a stream from a server, or an RGBD video. Hands frames to the module, tells the
-// server where the head is, and shows figures.
+// Moving pictures of one eye with its depth: a stream from a server, or an RGBD video. Passes frames to the module,
+// tells the server where the head is, and shows figures.
 
 import { app, element } from './app.js';
 import { apply, offerOrbit } from './choices.js';
@@ -7,27 +7,27 @@ import { changed, startLoop } from './drawing.js';
 import { clear, loading, say } from './messages.js';
 import { sentence } from './sentence.js';
 
-/** The longest time between two requests to a server, in ms: it is asked although nothing is drawn. */
+/** The longest time between two requests to a server, in ms. Requests are also sent while nothing is drawn. */
 const REQUEST_INTERVAL = 100;
 /** The time from one line of figures to the next, in ms. */
 const FIGURES_INTERVAL = 1000;
-/** The answer of a server that serves another page; app/stream/src/messages.rs has all. */
+/** The answer of a server that serves another page. app/stream/src/messages.rs lists all answers. */
 const BUSY = [1, 1];
 
 let worker = null;
-/** The file that is played, if the worker plays one. @type {File | null} */
+/** The file that the worker plays, if any. @type {File | null} */
 let playing = null;
 let isThere = false;
-/** Since the last line of figures. */
+/** Sums since the last line of figures. */
 let sums = { frames: 0, lost: 0, bytes: 0, skipped: 0, latency: 0 };
 let last = null;
 /** The name of the transport. */
 let transport = '';
 let timers = [];
-/** When the server was asked last. */
+/** When the last request was sent to the server. */
 let asked = 0;
 
-/** Says why nothing can be decoded here; true if it can. */
+/** Returns true if this browser can decode. Otherwise says why not. */
 function canDecode() {
   const can = 'VideoDecoder' in globalThis;
   if (!can) {
@@ -50,7 +50,7 @@ function start(script) {
   };
 }
 
-/** Plays an RGBD video, over and over, unless it is paused. @param {File} file */
+/** Plays an RGBD video in a loop, unless it is paused. @param {File} file */
 export function play(file) {
   if (!canDecode()) return;
   if (worker) stop();
@@ -61,15 +61,15 @@ export function play(file) {
   worker.postMessage({ file });
 }
 
-/** Tells a video to go on or to pause. */
+/** Pauses or resumes a video. */
 function pause() {
   if (playing) worker?.postMessage({ playing: element('play').checked && !document.hidden });
 }
 
 /**
  * Follows a stream.
- * @param {string} stream a token, for the server that the page comes from; or, with commas between them, a server's address, its
- * certificate's SHA-256 in hexadecimal digits and a token
+ * @param {string} stream a token, for the server that the page comes from; or, separated by commas, a server's address,
+ * the SHA-256 of its certificate in hexadecimal digits, and a token
  */
 export function follow(stream) {
   const [token, hash, address] = stream.split(',').reverse();
@@ -100,7 +100,7 @@ export function follow(stream) {
   const keepAlive = () => { if (performance.now() - asked > REQUEST_INTERVAL) request(); };
   timers = [setInterval(keepAlive, REQUEST_INTERVAL), setInterval(figures, FIGURES_INTERVAL)];
   requestAnimationFrame(refresh);
-  // Nobody sees a hidden page: another one may have the stream.
+  // A hidden page gives up the stream, so that another page can have it.
   document.addEventListener('visibilitychange', () => {
     if (!playing) worker?.postMessage(document.hidden ? { end: true } : { begin });
   });
@@ -118,7 +118,7 @@ function end() {
   loading(null);
 }
 
-/** Ends the stream: something else is shown. */
+/** Ends the stream, since something else is shown. */
 function stop() {
   end();
   app.stream = null;
@@ -151,7 +151,7 @@ function receive({ answer, by, lost, fault, head, way, planes, frame, ms, isTime
     const facts = app.page.streamFrame(head, frame ?? planes, frame?.displayWidth ?? 0, frame?.displayHeight ?? 0);
     const [decoded, [time, render, code, quantizer, width, height]] = facts;
     if (isTimed) {
-      // Waits for the GPU.
+      // Wait for the GPU.
       app.gl.readPixels(0, 0, 1, 1, app.gl.RGBA, app.gl.UNSIGNED_BYTE, new Uint8Array(4));
       took = { way, ms: ms + performance.now() - start };
     }
@@ -175,7 +175,7 @@ function welcome(answer) {
   try {
     app.settings.dominant = app.page.streamBegin(answer) ?? app.settings.dominant;
   } catch (error) {
-    // Another page may end; every other refusal would come again.
+    // Another page may end soon. Every other refusal would be repeated.
     if (BUSY.some((byte, i) => answer[i] !== byte)) end();
     loading(null);
     say(sentence(error));
@@ -197,14 +197,15 @@ function welcome(answer) {
 document.addEventListener('visibilitychange', pause);
 element('play').addEventListener('change', pause);
 
-/** Asks at each refresh of the display, once the eyes are drawn: their pose is newest then. */
+/** Sends a request at each refresh of the display, after the eyes are drawn, since their pose is newest then. */
 function refresh() {
   if (!timers.length) return;
   setTimeout(request);
   requestAnimationFrame(refresh);
 }
 
-/** Asks for the eyes as they were made last. A headset's session asks by itself: the page has no refreshes then. */
+/** Requests a picture for the eyes' latest pose. During a headset's session, that sends the requests: the page has no
+ * refreshes then. */
 function request() {
   if (!isThere || !app.page || app.source) return;
   asked = performance.now();

@@ -1,6 +1,6 @@
 // Waiting and counting for measurements.
 
-/** Waits for the browser to do other things first, without the delay of timers. */
+/** Lets the browser run other tasks first, without the delay of timers. */
 export const nextTask = () => new Promise((resolve) => {
   const { port1, port2 } = new MessageChannel();
   port1.onmessage = resolve;

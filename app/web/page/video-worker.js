@@ -1,11 +1,11 @@
-// Reads an RGBD video and decodes it at its pace, over and over, away from the page.
+// Reads an RGBD video and decodes it at its own pace, in a loop, away from the page.
 
 import init, { Video } from './yoro_web_video.js';
 import * as decoding from './decoding.js';
 
-/** A picture that is so late, in ms, shifts those after it. */
+/** A picture that is later than this, in ms, delays all pictures after it. */
 const LATE = 100;
-/** Numbers of a picture in the module's list. */
+/** How many numbers the module's list has for each picture. */
 const NUMBERS = 5;
 
 let isPlaying = true;
@@ -27,7 +27,7 @@ onmessage = async ({ data }) => {
   }
 };
 
-/** Returns the bytes of a part of a file. */
+/** Returns part of a file as bytes. */
 function part(file, position, length) {
   return new Uint8Array(new FileReaderSync().readAsArrayBuffer(file.slice(position, position + length)));
 }

@@ -1,4 +1,5 @@
-// Why it works: four pictures of the scene in view, made once it rests and they are in sight.
+// Why it works: four pictures of the scene in view. They are made when they are in sight and the scene no longer
+// changes.
 
 import { Why } from './yoro_web.js';
 import { app, element } from './app.js';
@@ -7,18 +8,18 @@ import { sentence } from './sentence.js';
 
 /** The pictures' width in pixels. */
 const WIDTH = 480;
-/** The picture rests so long before it is explained, in ms. */
+/** How long the picture must stay unchanged before it is explained, in ms. */
 const REST = 700;
-/** A share of the pictures that has to be in sight. */
+/** The share of the pictures that must be in sight. */
 const SEEN = 0.4;
 
 const section = element('why');
 let isSeen = false;
 let timer = 0;
-/** What the pictures show. */
+/** The scene and the settings that the pictures show. */
 let about = '';
 
-/** Explains the picture soon, if it still rests then. */
+/** Explains the picture, if it stays unchanged for a while. */
 export function explain() {
   clearTimeout(timer);
   section.hidden = !app.facts;
@@ -47,7 +48,7 @@ function make() {
   }
 }
 
-/** Makes the pictures when they come into sight. */
+/** Has the pictures made when they come into sight. */
 export function watchWhy() {
   new IntersectionObserver(([{ isIntersecting }]) => {
     isSeen = isIntersecting;

@@ -1,4 +1,4 @@
-// Makes scenes away from the page: generating and decoding take seconds.
+// Makes scenes away from the page, since generating and decoding them takes seconds.
 
 import init, { buildScene, loadScene, takeWarnings } from './yoro_web.js';
 

@@ -1,10 +1,10 @@
 #version 310 es
-// Any view, pass 3: for each target pixel, walk along the segment of the source image on which its ray is seen, from the place of
-// its tile's span to the far plane's, past the tiles that hold no depth of the ray.
+// Any view, pass 3: the ray of each target pixel appears in the source image as a segment. The search walks along it,
+// from the place that its tile's span gives to that of the far plane, and skips tiles that hold no depth of the ray.
 //
 // A surface at inverse distance s from the source, seen at the target pixel p, lies at the source pixel
-// `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity and e the epipole in homogeneous pixels. This is affine
-// in s, and so in the stored depth. The rules for surfaces, silhouettes and holes are those of gather
+// `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity and e the epipole in homogeneous pixels. It
+// is affine in s, and so in the stored depth. The rules for surfaces, silhouettes and holes are those of gather
 // (include/every_column.glsl, include/fill.glsl), with samples along the segment in place of a row's columns.
 
 #include "include/any_view.glsl"
@@ -14,22 +14,23 @@ TEXTURE(3) uniform highp usampler2D span_map;
 
 layout(location = 0) out vec4 color;
 
-// The segment of a target pixel. Samples are one pixel apart on its longer axis; indices count pixels' middles.
+// The segment of a target pixel. Samples are one pixel apart along its longer axis; integer indices are the middles of
+// pixels.
 struct Segment {
-    // The longer axis is that of rows.
+    // True if the longer axis runs along a column, so that indices on it are rows.
     bool steep;
     // Direction of samples from near to far: 1 or -1.
     float sense;
-    // Index of the far plane's place on the longer axis, and on the other one.
+    // Indices of the far plane's place on the longer axis and on the other axis.
     float far;
     float far_beside;
-    // Change of the other index along the longer one.
+    // Change of the other index per step of the longer axis's index.
     float slope;
-    // A sample lands at `sense * (index - far) + law * (depth - far_depth)`, in pixels relative to the target's.
+    // A sample lands at `sense * (index - far) + law * (depth - far_depth)`, in pixels relative to the target pixel.
     float law;
 };
 
-// A place on the segment. Between two pixels side by side, `beside` is fractional if they show one surface.
+// A place on the segment. `beside` is fractional, between two neighbouring pixels, if these show one surface.
 struct Sample {
     float index;
     float beside;
@@ -86,15 +87,15 @@ float steps_in_tile(Segment line, float index, float beside) {
     return max(min(along, abs(drift) * along > room ? floor(room / abs(drift)) + 1.0 : along), 1.0);
 }
 
-// True if a surface of the tile may land within a pixel of the target's, from a sample on for some steps.
+// True if a surface of the tile may land within a pixel of the target pixel, from this sample on for some steps.
 bool lands(Segment line, float index, float beside, float steps) {
     uvec2 bounds = texelFetch(tile_map, pixel_of(line, index, floor(beside)) / TILE, 0).rg;
     vec2 ends = vec2(landing(line, index, uintBitsToFloat(bounds.x)), landing(line, index, uintBitsToFloat(bounds.y)));
     return min(ends.x, ends.y) <= 1.0 && max(ends.x, ends.y) + steps >= -1.0;
 }
 
-// The colour of a sample; if a disocclusion lies beside it, that of the background there, from five samples side by side, as
-// `fill_hole`. `away` is its distance from the target in pixels.
+// Returns the colour of a sample. If a disocclusion lies beside it, returns the colour of the background there,
+// averaged over five samples side by side as in `fill_hole`. `away` is the sample's distance from the target in pixels.
 vec4 fill_beside(Segment line, Sample edge, float away) {
     float last = last_indices(line).y;
     float spread = fill_spread(away);
@@ -111,7 +112,8 @@ vec4 fill_beside(Segment line, Sample edge, float away) {
     return sum / weights;
 }
 
-// The target's stored depth of a surface with this one in the source, on a ray with this third component in the source.
+// Returns the depth that the target stores for a surface with this depth in the source. `scale` is the third component
+// of the ray in the source.
 float target_depth(float depth, float scale) {
     float inverse = source_law.x + source_law.y * depth;
     float seen = inverse * scale / (1.0 - inverse * to_source_w.w);
@@ -138,8 +140,8 @@ void main() {
     line.far_beside = far.y;
     line.slope = moved.x == 0.0 ? 0.0 : moved.y / moved.x;
     line.law = -line.sense * moved.x;
-    // From before the nearest place in the tile's span to behind the farthest one; a hundredth of a pixel for rounding. Samples
-    // beyond the borders repeat them.
+    // The search goes from just before the nearest place in the tile's span to just behind the farthest one, with a
+    // hundredth of a pixel for rounding. Samples beyond the borders repeat the border.
     ivec2 tile = ivec2(pixel.xy) / TILE;
     reach = moved.x * (uintBitsToFloat(texelFetch(span_map, tile, 0).r) - far_depth);
     vec2 last = last_indices(line);
@@ -148,19 +150,19 @@ void main() {
     float end = clamp(line.sense * (floor(middle + 0.01) + 1.0), 0.0, last.x);
     float left = line.sense * (end - first);
 
-    // The search holds indices and depths alone: registers are few.
+    // The search keeps only indices and depths, since registers are scarce.
     float index = first;
     float depth = sample_at(line, first).depth;
     float b = landing(line, first, depth);
     float a = b;
     bool found = false;
-    // Before all samples the border of the image is the background.
+    // Before all samples, the border of the image is the background.
     bool outside = b > 0.0 && first == (line.sense > 0.0 ? 0.0 : last.x);
-    // The hole's background; a negative index for none.
+    // Index of the hole's background; negative if there is none.
     float edge = outside ? first : -1.0;
     float edge_depth = depth;
     left = outside && b < 0.5 ? 0.0 : left;
-    // The nearest silhouette beside the pixel; negative for none.
+    // Index of the nearest silhouette beside the pixel; negative if there is none.
     float rim = -1.0;
     while (left > 0.0 && !found) {
         float beside = clamp(beside_at(line, index), 0.0, last.y);
@@ -168,7 +170,7 @@ void main() {
         bool walked = lands(line, index, beside, steps);
         left -= steps;
         if (!walked) {
-            // The tile's bounds contain the first sample beyond it.
+            // The tile's bounds include the first sample beyond it.
             index += line.sense * steps;
             depth = sample_at(line, index).depth;
             b = landing(line, index, depth);
@@ -187,7 +189,7 @@ void main() {
             }
         }
     }
-    // Where nothing is found: the hole's edge, or the last sample beyond everything.
+    // If nothing is found, take the hole's edge, or the last sample if the pixel is beyond all of them.
     Sample here = sample_at(line, found || edge < 0.0 ? index : edge);
     if (found) {
         Sample before = sample_at(line, index - line.sense);

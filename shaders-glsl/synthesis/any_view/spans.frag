@@ -1,15 +1,16 @@
 #version 310 es
-// Any view, pass 2: for each target tile, the stored depth from which on its pixels' searches must look: that of the nearest step
-// of the segments on which a tile of the source has something to show.
+// Any view, pass 2: for each target tile, the stored depth at which the searches of its pixels start. It is that of the
+// nearest step of their segments in which a source tile holds a depth of the step.
 //
-// From the near plane's places to the far plane's, the segments of the tile's pixels are walked together, in steps of about a
-// tile. The pixels lie between the tile's corners, their places in a step between those of the corners at both of its ends.
+// The segments of the tile's pixels are walked together, from the places of the near plane to those of the far plane,
+// in steps of about a tile. In each step, the pixels lie within the places of the tile's corners at both ends of the
+// step.
 
 #include "include/any_view.glsl"
 
 TEXTURE(2) uniform highp usampler2D tile_map;
 
-// Bits of the depth.
+// The bits of the depth.
 layout(location = 0) out uvec4 span;
 
 const float MOST_STEPS = 64.0;
@@ -51,7 +52,7 @@ void main() {
     vec4 far_y = infinity_y + farthest * parallax_y - 0.5;
     vec2 moved = max(abs(range_of(reach * parallax_x)), abs(range_of(reach * parallax_y)));
     float steps = clamp(ceil(max(moved.x, moved.y) / float(TILE.x)), 1.0, MOST_STEPS);
-    // A pixel for rounding.
+    // A margin of one pixel for rounding.
     const vec4 MARGIN = vec4(-1, 1, -1, 1);
     bool found = false;
     float from = 1.0;
@@ -66,6 +67,6 @@ void main() {
             max(rows.y, next_rows.y));
         found = holds(place + MARGIN, mix(far_depth, nearest, from), mix(far_depth, nearest, to));
     }
-    // Where nothing is found the searches look everywhere, and find the border.
+    // If nothing is found, the searches look everywhere and find the border.
     span = uvec4(floatBitsToUint(mix(far_depth, nearest, found ? from : 1.0)), 0u, 0u, 0u);
 }

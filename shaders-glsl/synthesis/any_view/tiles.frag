@@ -1,10 +1,11 @@
 #version 310 es
-// Any view, pass 1: smallest and largest stored depth of each source tile and of the pixels around it: one below, and two above, where
-// a sample beyond the tile has its second pixel.
+// Any view, pass 1: the smallest and the largest stored depth of each source tile and of the pixels around it. On each
+// axis, these are one pixel before the tile and two after it, since a sample just beyond the tile has its second pixel
+// there.
 
 #include "include/any_view.glsl"
 
-// Bits of the smallest and of the largest depth.
+// The bits of the smallest and of the largest depth.
 layout(location = 0) out uvec4 tile;
 
 void main() {

@@ -1,12 +1,12 @@
 #version 310 es
-// Gather, pass 3: for each target pixel, walk along the source row from the nearest candidate outwards,
-// past the tiles that do not land in the pixel.
+// Gather, pass 3: for each target pixel, walk along the source row from the nearest candidate outwards, past the tiles
+// that do not land in the pixel.
 //
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
-// fetched with linear filtering. With SHORT_WAY, where the pass before has found a law, the column is affine in the pixel;
-// nearly every other pixel ends within a few cheap steps here, and only those beside silhouettes continue in
-// include/segments.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the text: there all pixels take
-// the way of include/every_column.glsl.
+// fetched with linear filtering. With SHORT_WAY, the column is affine in the pixel where the previous pass has found a
+// law. Nearly every other pixel ends within a few cheap steps here, and only those beside silhouettes continue in
+// include/segments.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the code, so there all pixels
+// use include/every_column.glsl.
 
 #include "include/march.glsl"
 #ifdef SHORT_WAY
@@ -25,7 +25,7 @@ int source_row() {
 }
 
 #ifdef SHORT_WAY
-// Steps of the short way: as many as a wave should wait for.
+// The maximum number of steps of the short way: as many as a wave should wait for.
 const float SHORT_STEPS = 2.0;
 
 // Colour and surface of a pixel whose tile has a law.
@@ -46,7 +46,7 @@ vec4 searched(uint span, out Surface surface) {
     Search at = search_at(floor(origin - farthest - uintBitsToFloat(span)), origin);
     float end = min(max(at.x, 0.0) + span_steps(span), float(source_size.x - 1));
     float limit = min(at.x + SHORT_STEPS, end);
-    // On to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
+    // Continue to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
     for (; at.x < limit && at.b <= 0.0 && max(at.b, -1.0) >= at.a; at.x += 1.0) {
         COUNT_TRIP(0)
         float next = depth_sample(vec2(column_at(at.x + 2.0), row_at(0.0)));

@@ -1,6 +1,6 @@
 #version 310 es
-// Gather, pass 2: for each target tile, the range of source columns that may land in it. With SHORT_WAY, where these are of
-// one continuous surface whose columns are affine in the target's, that law.
+// Gather, pass 2: for each target tile, the range of source columns that may land in it. With SHORT_WAY, if these
+// columns are of one continuous surface and affine in the target's, this law instead.
 
 #include "include/tiles.glsl"
 
@@ -10,7 +10,7 @@ TEXTURE(2) uniform highp usampler2D tile_map;
 #include "include/laws.glsl"
 #endif
 
-// A span, and 0 in its second component; or a law, whose second component is never 0.
+// A span with 0 in its second component, or a law, whose second component is never 0.
 layout(location = 0) out uvec4 span;
 
 void main() {
@@ -20,8 +20,8 @@ void main() {
     int tiles = (source_size.x + TILE.x - 1) / TILE.x;
     int from = clamp(int(floor((first - near_displacement - 1.0) / float(TILE.x))) - 1, 0, tiles - 1);
     int to = clamp(int(floor((last - far_displacement + 1.0) / float(TILE.x))), 0, tiles - 1);
-    // In units of the tiles' intervals: the displacements that take source tile `from` just to the first and just to
-    // the last target column.
+    // The displacements that move source tile `from` just to the first and just to the last target column, in units of
+    // the tiles' intervals.
     const int PITCH = TILE.x * int(TILE_UNITS);
     int least = int(floor((first - 1.0 - far_displacement - float((from + 1) * TILE.x)) * TILE_UNITS));
     int most = int(ceil((last + 1.0 - far_displacement - float(from * TILE.x)) * TILE_UNITS));
@@ -44,10 +44,10 @@ void main() {
         most -= PITCH;
     }
     if (high < low) {
-        // Beyond a border of the source: its outermost column is where to start.
+        // Beyond a border of the source, the search starts at its outermost column.
         low = high = 2 * tile.x * TILE.x < target_size.x ? 0xffff : 0;
     }
-    // To the last candidate from the first, each rounded away, and one to close the last pair.
+    // From the first candidate to the last one, each rounded outwards, and one more to close the last pair.
     uint search = pack_span(float(high) / TILE_UNITS, ceil(float(high - low) / TILE_UNITS) + 2.0);
     span = uvec4(search, 0u, 0u, 0u);
 #ifdef SHORT_WAY

@@ -1,7 +1,7 @@
 #version 310 es
-// Gather, pass 1: smallest and largest displacement of each source tile and of the column after it, so that every
-// pair of neighbours, and with it every disocclusion, lies within one tile. With SHORT_WAY also their plane, if they are on
-// one.
+// Gather, pass 1: the smallest and the largest displacement of each source tile and of the column after it, so that
+// every pair of neighbours, and with it every disocclusion, lies within one tile. With SHORT_WAY, also the plane of
+// these displacements, if they are on one.
 
 #include "include/tiles.glsl"
 #ifdef SHORT_WAY
@@ -19,10 +19,10 @@ void main() {
     float least = 1e9;
     float most = -1e9;
 #ifdef TEXTURE_GATHER
-    // Two by two texels a fetch, two rows a pass; of the pairs of columns the last overlaps the one before.
+    // Each fetch takes 2 x 2 texels and each pass two rows. The last pair of columns overlaps the one before.
     vec4 low = vec4(1e9);
     vec4 high = vec4(-1e9);
-    // A loop that no compiler unrolls: all the fetches in flight at once would take most of the registers.
+    // A loop that no compiler unrolls: all fetches in flight at once would take most of the registers.
     for (float row = corner.y; row < corner.y + float(TILE.y); row += 2.0) {
         for (int i = 0; i <= TILE.x; i += 2) {
             vec4 depths = depth_quad(vec2(corner.x + float(min(i, TILE.x - 1)), row));

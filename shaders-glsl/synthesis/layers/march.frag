@@ -3,8 +3,8 @@
 //
 // Surfaces of neighbouring pixels that are displaced alike are linked: between their middles they cover the box by the
 // stripes of their masks. Where a surface ends, its stripes fade out; a back layer continues behind its front. From the
-// nearest candidate on, each surface covers a part of the rest of the pixel. What remains is a disocclusion, filled from its
-// background side.
+// nearest candidate on, each surface covers a part of the rest of the pixel. What remains is a disocclusion, filled
+// from its background side.
 
 #include "include/layers.glsl"
 #include "include/span.glsl"
@@ -21,7 +21,8 @@ layout(location = 1) out uint source_entry;
 // The search ends when less than this share of the pixel is uncovered.
 const float REST = 0.01;
 
-// Slope of the cubic kernel at its first zero: `a` of Keys, "Cubic Convolution Interpolation for Digital Image Processing" (1981).
+// Slope of the cubic kernel at its first zero: `a` of Keys, "Cubic Convolution Interpolation for Digital Image
+// Processing" (1981).
 const float SLOPE = -0.75;
 // Neighbouring colours that differ by no more than this are interpolated linearly.
 const float ALIKE = 8.0 / 255.0;
@@ -65,7 +66,7 @@ float nearness_at(int x, int row) {
 #include "include/history.glsl"
 #endif
 
-// Share of each stripe right of a place in the pixel, 0 to 1.
+// The share of each stripe that is right of a place in the pixel, 0 to 1.
 vec4 right_of(float place) {
     return clamp(STRIPES + 1.0 - 4.0 * place, 0.0, 1.0);
 }
@@ -74,7 +75,8 @@ float covered(vec4 mask, vec4 stripes) {
     return 0.25 * dot(mask, stripes);
 }
 
-// Colour at a fractional forward column inside of a surface: cubic along the row, clamped to the range of its two neighbours.
+// Colour at a fractional forward column inside a surface: cubic along the row, clamped to the range of its two
+// neighbours.
 vec4 sharp_color_at(float x, int row) {
     int last = source_size.x - 1;
     int column = int(x);
@@ -92,7 +94,7 @@ vec4 sharp_color_at(float x, int row) {
     return clamp(sum, min(here, next), max(here, next));
 }
 
-// Colour of a layer's front and back, by their weights.
+// Sum of the colours of a layer's front and back, with these weights.
 vec4 weighted(int column, int row, float of_front, float of_back) {
     vec4 mixture = texelFetch(color_map, TEXEL_PLACE(in_image(ivec2(column, row))), 0);
     vec4 behind = texelFetch(back_map, ivec2(column, row), 0);
@@ -104,7 +106,7 @@ vec4 weighted(int column, int row, float of_front, float of_back) {
 
 // A place where the background of a hole begins.
 struct Edge {
-    // Column of the source's image; negative for none.
+    // Column of the source's image; negative if there is none.
     int column;
     bool back;
     float reach;
@@ -120,8 +122,8 @@ struct Seen {
     bool hole;
 };
 
-// A surface covers a share of the uncovered rest. The visible surface is the one with which the coverage from the front
-// passes one half.
+// Covers a share of the uncovered rest with a surface, and returns the share of the pixel that it takes. The visible
+// surface is the one with which the coverage from the front passes one half.
 float cover(inout Seen seen, float share, float column, float reach) {
     float taken = seen.rest * share;
     bool passes = seen.rest > 0.5 && seen.rest - taken <= 0.5;
@@ -131,8 +133,8 @@ float cover(inout Seen seen, float share, float column, float reach) {
     return taken;
 }
 
-// Colour of a pixel beside a silhouette: what covers it from forward column `x` to `limit`, and the fill of what remains.
-// `column` is x in the source's image, `t` where the pixel is.
+// Returns the colour of a pixel beside a silhouette: what covers it from forward column `x` to `limit`, and the fill of
+// what remains. `column` is `x` as a column of the source's image, `t` is the place of the pixel.
 vec4 composed(int row, float t, float x, float limit, int column, inout Seen seen) {
     int sense = mirrored ? -1 : 1;
     vec4 color_sum = vec4(0.0);
@@ -143,7 +145,7 @@ vec4 composed(int row, float t, float x, float limit, int column, inout Seen see
     // Displacement of the foreground beside the edge.
     float beside = 1e9;
 #endif
-    // Left of all surfaces: the border of the image.
+    // Left of all surfaces, the border of the image is the background.
     if (x == 0.0) {
         if (here.front > t) {
             edge = Edge(column, false, here.front, 1.0);
@@ -152,7 +154,7 @@ vec4 composed(int row, float t, float x, float limit, int column, inout Seen see
             edge = Edge(column, true, here.back, 1.0);
         }
     }
-    // The surface to which the pixel's back is linked at the left: a front, or a back.
+    // Whether the pixel's back is linked, on the left, to a front or to a back.
     bool on_front = false;
     bool on_back = false;
     if (x > 0.0 && here.split) {
@@ -162,7 +164,7 @@ vec4 composed(int row, float t, float x, float limit, int column, inout Seen see
     }
     while (x < limit && seen.rest > REST) {
         COUNT_TRIP(1)
-        // Past pairs of columns that change nothing, to the next one that may.
+        // Skip pairs of columns that change nothing.
         Layer next = here;
         float a = 0.0;
         float b = 0.0;
@@ -223,7 +225,7 @@ vec4 composed(int row, float t, float x, float limit, int column, inout Seen see
         if (!front_front && (next.front < here.front || here.split) && !front_back && a <= 0.0 && a > -1.0) {
             fronts.x += cover(seen, covered(here_mask, right_of(-a)), x, here.front);
         }
-        // A surface that continues behind a front covers all.
+        // A surface that continues behind a front covers all that remains.
         if (front_back && a <= 0.0 && d > 0.0 && seen.rest > REST) {
             float g = -a / (d - a);
             float taken = cover(seen, 1.0, x + g, here.front);
@@ -289,7 +291,7 @@ vec4 composed(int row, float t, float x, float limit, int column, inout Seen see
     if (seen.rest > REST) {
         bool beyond = edge.column < 0;
         if (beyond) {
-            // Right of all surfaces, or the last column itself.
+            // The pixel is right of all surfaces, or on the last column itself.
             edge = Edge(column, here.split, here.split ? here.back : here.front, 1.0);
         }
         float edge_x = float(source_column(edge.column));
@@ -329,8 +331,8 @@ vec4 composed(int row, float t, float x, float limit, int column, inout Seen see
 void main() {
     float last = float(source_size.x - 1);
     int row = int(clamp(gl_FragCoord.y - first_row, 0.0, float(source_size.y - 1)));
-    // Displacements and target column are relative to the far plane's displacement. `farthest` contains a hundredth of a
-    // pixel for rounding.
+    // Displacements and target column are relative to the far plane's displacement. `farthest` contains a hundredth of
+    // a pixel for rounding.
     float t = origins.x * gl_FragCoord.x + origins.y - farthest + 0.01;
     uint span = pixel_span().x;
     float x = clamp(floor(t - uintBitsToFloat(span) - 1.01), 0.0, last);
@@ -367,7 +369,8 @@ void main() {
         color = composed(row, t, x, limit, column, seen);
     }
 #ifdef COUNT_TRIPS
-    // Columns of the first loop, pairs of columns with an event, pairs in all, and rows of the fill; and whether the source's pixel at this place shows two surfaces.
+    // The columns of the first loop, the pairs of columns with an event, all pairs, and the rows of the fill, whose
+    // highest bit is set if the source's pixel at this place shows two surfaces.
     bool split = !is_full(layer_bits(int(gl_FragCoord.x), row));
     color = vec4(min(ivec4(trips[0], trips[1], trips[2], trips[3] | (split ? 128 : 0)), 255)) / 255.0;
 #endif

@@ -1,10 +1,10 @@
 ## An [XRCamera3D] that renders one eye, and synthesizes the other from its colour and depth.
 ##
-## Put it in place of the [XRCamera3D] below the [XROrigin3D]. The whole scene is drawn once, for [member dominant_eye], a little
-## wider than it is shown. Only what is on [member stereo_layers] is drawn for both eyes by Godot, tested against the depth
-## of either eye: transparent objects, hands, interfaces.[br][br]
-## It needs one of the Vulkan renderers, Mobile or Forward+. Elsewhere, and for eyes that cannot be synthesized, it is an
-## [XRCamera3D] like any other: [method trouble] says why.
+## Use it instead of the [XRCamera3D] below the [XROrigin3D]. The whole scene is drawn once, for [member dominant_eye],
+## a little wider than it is shown. Godot draws only what is on [member stereo_layers] for both eyes, tested against the
+## depth of each eye: transparent objects, hands, interfaces.[br][br]
+## It needs one of the Vulkan renderers, Mobile or Forward+. With other renderers, and if an eye cannot be synthesized,
+## it is an [XRCamera3D] like any other: [method trouble] says why.
 @tool
 @icon("icon.svg")
 class_name YoroCamera3D
@@ -32,36 +32,37 @@ enum _Drawn {
 	STEREO_LAYERS, ## What is on the stereo layers, over the eyes that are put there.
 }
 
-## What is different where both eyes are shown: the sky and screen-space light are the rendered eye's.
+## The settings of the environment that differ where both eyes are shown: sky and screen-space light come with the
+## rendered eye.
 const SHOWN_OVERRIDES := {
 	background_mode = Environment.BG_COLOR, ssao_enabled = false, ssil_enabled = false, ssr_enabled = false, sdfgi_enabled = false,
 }
-## From this share of the view on that is near, Godot renders both eyes, and does so until less than the second is: yoro's
-## NearFieldPolicy.
+## Godot renders both eyes once this share of the view is near, and until less than [code]_SWITCH_OFF[/code] is: the
+## same as yoro's NearFieldPolicy.
 const _SWITCH_ON := 0.5
 const _SWITCH_OFF := 0.35
 
 ## How the eyes are made. Can be changed at any time.
 @export var mode := Mode.ONE_VIEW
-## The eye that is rendered; the other one is synthesized. People look more closely with one of their eyes, mostly the right one.
+## The eye that is rendered; the other one is synthesized. People look more closely with one eye, mostly the right one.
 @export var dominant_eye := Eye.RIGHT
-## From this distance on, in metres, nothing is missing at the outer border of the synthesized eye. The nearer, the wider is
-## the image that is rendered: by 4 to 14 % at 1 m. 0 is no band.
+## From this distance on, in metres, nothing is missing at the outer border of the synthesized eye. The nearer it is,
+## the wider is the rendered image: by 4 to 14 % at 1 m. 0 means no band.
 @export_range(0.0, 10.0, 0.05, "or_greater", "suffix:m") var guard_band := 1.0
-## The distance between the eyes, as a share of the headset's: 0 shows the same image to both. Things on [member stereo_layers]
-## keep the headset's in XR.
+## The distance between the eyes, as a share of the headset's: 0 shows the same image to both. In XR, things on
+## [member stereo_layers] keep the headset's distance.
 @export_range(0.0, 2.0, 0.01) var ipd_scale := 1.0
-## What is on these layers Godot draws for both eyes. Everything else is drawn once and moved, transparent things with what lies
-## behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu marks both. Without
-## any layer shadow maps are drawn once, which is cheaper.
+## Godot draws things on these layers for both eyes. Everything else is drawn once and moved; transparent things move
+## with what lies behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu
+## marks both. If no layer is set, shadow maps are drawn only once, which is cheaper.
 @export_flags_3d_render var stereo_layers := 0:
 	set(value):
 		stereo_layers = value
 		update_configuration_warnings()
-## While half of the view is nearer than this, in metres, Godot renders both eyes, until less than 35 % of it are: so near, much
-## of the other eye would be invented. 0 is never. With a headset only.
+## Once half of the view is nearer than this, in metres, Godot renders both eyes, until less than 35 % of it is: at such
+## distances, much of the other eye would be invented. 0 means never. Applies only with a headset.
 @export_range(0.0, 2.0, 0.05, "or_greater", "suffix:m") var near_limit := 0.4
-## Shows what the synthesis does.
+## Shows how the synthesis works.
 @export var debug_view := DebugView.NONE
 ## Shows both eyes side by side when there is no headset.
 @export var preview_without_headset := false
@@ -80,7 +81,8 @@ var _trouble := ""
 var _drawn := _Drawn.ALL
 
 
-## Returns why Godot renders both eyes although [member mode] is another, in one sentence; empty if it does not.
+## Returns one sentence that says why Godot renders both eyes although [member mode] is not [code]BOTH_VIEWS[/code], or
+## an empty text if it does not.
 func trouble() -> String:
 	return _trouble
 
@@ -90,7 +92,7 @@ func shown_environment() -> Environment:
 	return environment if environment != null or get_world_3d() == null else get_world_3d().environment
 
 
-## Returns the effects of the scene that are drawn after transparent objects, thus on both eyes, or those before.
+## Returns the scene's effects that are drawn after transparent objects, and thus on both eyes, or those drawn before.
 func effects(after_transparent: bool) -> Array[CompositorEffect]:
 	var all := _world_effects if compositor == null else compositor.compositor_effects
 	var of_kind: Array[CompositorEffect] = []
@@ -112,12 +114,13 @@ func source_viewport() -> SubViewport:
 	return _eye
 
 
-## Returns the preview, while there is one.
+## Returns the preview, or null if there is none.
 func preview() -> YoroPreview:
 	return _preview.get_child(0) if _preview != null else null
 
 
-## Follows each frame, after the scripts that move things. While the scene is paused it is still shown.
+## Calls the camera's [code]_follow[/code] in each frame, after the scripts that move things, and also while the scene
+## is paused, since it is still shown then.
 class _Follower:
 	extends Node
 	var camera: YoroCamera3D
@@ -157,7 +160,7 @@ func _follow() -> void:
 		_refuse("")
 		return
 	if interface is OpenXRInterface and not _is_shown(interface):
-		# Nobody sees anything: the session is paused. This camera's viewport is not drawn either, by Godot's doing.
+		# The session is paused, so nothing is visible. Godot does not draw this camera's viewport either.
 		_rest()
 		return
 	if _eye == null:
@@ -171,7 +174,7 @@ func _is_shown(interface: OpenXRInterface) -> bool:
 	return interface.get_session_state() >= OpenXRInterface.SESSION_STATE_VISIBLE
 
 
-## Makes everything that is drawn before the viewport with the headset.
+## Creates everything that is drawn before the headset's viewport.
 func _make() -> void:
 	_passes = YoroPasses.new()
 	_eye = YoroEye.new(_passes)
@@ -181,7 +184,7 @@ func _make() -> void:
 	_latch.camera = _eye.camera.get_camera_rid()
 	_latch_viewport = SubViewport.new()
 	_latch_viewport.size = Vector2i(2, 2)
-	# Without anything to be culled.
+	# A world of its own has nothing that would have to be culled.
 	_latch_viewport.own_world_3d = true
 	_latch_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	var nothing := Camera3D.new()
@@ -190,7 +193,7 @@ func _make() -> void:
 	nothing.compositor = Compositor.new()
 	nothing.compositor.compositor_effects = [_latch]
 	_latch_viewport.add_child(nothing)
-	# Viewports beside each other are drawn in this order, and before the one that they are in.
+	# Sibling viewports are drawn in this order, and before the viewport that contains them.
 	add_child(_latch_viewport, false, Node.INTERNAL_MODE_FRONT)
 	add_child(_eye, false, Node.INTERNAL_MODE_FRONT)
 
@@ -211,7 +214,7 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 		_refuse(views.trouble)
 		return
 	if _is_near():
-		# Not a fault: nobody is warned.
+		# This is not a fault, so there is no warning.
 		_trouble = "most of the view is near"
 		_draw_all(_Drawn.ALL_WATCHED)
 		return
@@ -226,7 +229,7 @@ func _draw(interface: XRInterface, viewport: Viewport) -> void:
 	_draw_stereo_layers()
 
 
-## True if the view is too near for the synthesis. What is near by the last frames counts.
+## True if the view is too near for the synthesis, as measured in the last frames.
 func _is_near() -> bool:
 	if not _watches():
 		_nearness.share = 0.0
@@ -239,19 +242,20 @@ func _is_near() -> bool:
 	return is_near
 
 
-## True if nearness is measured.
+## True if nearness is to be measured.
 func _watches() -> bool:
 	return near_limit > near and mode == Mode.ONE_VIEW
 
 
-## Sets effects in place of the user's. In each frame: a change of [member compositor] sets that again.
+## Sets effects instead of the user's. To be called in each frame, since a change of [member compositor] would set that
+## again.
 func _set_effects(wanted: Array[CompositorEffect]) -> void:
 	if _compositor.compositor_effects != wanted:
 		_compositor.compositor_effects = wanted
 	RenderingServer.camera_set_compositor(get_camera_rid(), _compositor.get_rid())
 
 
-## Tells the renderer what this camera draws itself. The properties stay what they are: they are the user's.
+## Tells the renderer what this camera itself draws. Its properties do not change, since they are the user's.
 func _draw_stereo_layers() -> void:
 	_environment.follow(shown_environment(), cull_mask & stereo_layers != 0)
 	var wanted := effects(true)
@@ -266,7 +270,7 @@ func _draw_stereo_layers() -> void:
 	_drawn = _Drawn.STEREO_LAYERS
 
 
-## Lets Godot render both eyes, because of [param reason].
+## Lets Godot render both eyes, and warns of [param reason] if there is one.
 func _refuse(reason: String) -> void:
 	if reason != "" and reason != _trouble:
 		push_warning("YoroCamera3D: Godot renders both eyes, since %s." % reason)
@@ -274,7 +278,7 @@ func _refuse(reason: String) -> void:
 	_draw_all()
 
 
-## Lets Godot draw all of both eyes.
+## Lets Godot draw everything for both eyes.
 func _draw_all(drawn := _Drawn.ALL) -> void:
 	var camera := get_camera_rid()
 	if _drawn == _Drawn.STEREO_LAYERS:
@@ -290,7 +294,7 @@ func _draw_all(drawn := _Drawn.ALL) -> void:
 	_drawn = drawn
 
 
-## Draws no eye to synthesize the other one from.
+## Stops drawing the eye from which the other one is synthesized.
 func _rest() -> void:
 	if _eye != null:
 		_eye.rest()

@@ -1,18 +1,19 @@
-## A copy of an environment that follows it but for some properties, which are overridden.
+## A copy of an environment that is kept up to date, except for some properties, which are overridden.
 @tool
 class_name YoroEnvironment
 extends RefCounted
 
-## Properties that are compared in a frame: all of them within a tenth of a second.
+## The number of properties that are compared in each frame: all of them are compared within a tenth of a second.
 const _EACH_FRAME := 12
 
-## Where nothing is lit. A sky that is used with different lights in each viewport is made anew for each, in each frame.
+## Overrides if nothing is lit. Godot updates a sky that viewports use with different lights for each of them, in each
+## frame.
 const _UNLIT := {
 	sky = null, ambient_light_source = Environment.AMBIENT_SOURCE_DISABLED,
 	reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED,
 }
 
-## The copy; null where there is nothing to copy.
+## The copy, or null if there is nothing to copy.
 var copy: Environment
 
 var _of: Environment
@@ -31,7 +32,7 @@ func _init(overrides: Dictionary) -> void:
 			_names.append(property.name)
 
 
-## To be called in each frame. [param lit]: what is drawn with the copy is lit by it.
+## Updates the copy. To be called in each frame. [param lit] is true if the copy lights what is drawn with it.
 func follow(environment: Environment, lit := true) -> void:
 	if environment != _of or lit != _lit:
 		_of = environment
@@ -52,7 +53,7 @@ func follow(environment: Environment, lit := true) -> void:
 			_keep_light()
 
 
-## Light that comes from the background keeps coming from it.
+## Keeps the light that comes from the sky in the background, although the copy's background is another.
 func _keep_light() -> void:
 	if _lit and _overrides.has("background_mode") and _of.background_mode == Environment.BG_SKY:
 		if _of.ambient_light_source == Environment.AMBIENT_SOURCE_BG:

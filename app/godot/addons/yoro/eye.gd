@@ -1,11 +1,11 @@
-## The viewport of the rendered eye, with the synthesis of the other one.
+## The viewport of the rendered eye, which also synthesizes the other one.
 @tool
 class_name YoroEye
 extends SubViewport
 
-## Done once, for both eyes, where these are shown.
+## Overrides for what is done later, once for both eyes, where these are shown.
 const _OVERRIDES := {glow_enabled = false, adjustment_enabled = false, tonemap_mode = Environment.TONE_MAPPER_LINEAR}
-## Settings of the viewport that is shown which concern how things are drawn.
+## The properties that are copied from the viewport that is shown, since they affect how things are drawn.
 const SHARED: PackedStringArray = [
 	"msaa_3d", "use_occlusion_culling", "mesh_lod_threshold", "positional_shadow_atlas_size", "positional_shadow_atlas_16_bits",
 	"positional_shadow_atlas_quad_0", "positional_shadow_atlas_quad_1", "positional_shadow_atlas_quad_2",
@@ -20,7 +20,8 @@ var _effects: Array[CompositorEffect] = []
 
 func _init(passes: YoroPasses) -> void:
 	synthesis = YoroSynthesis.new(passes)
-	# What Godot makes of the picture afterwards nobody sees: a quarter of it is cheaper. The synthesis takes all pixels.
+	# Godot's post-processed picture is not shown, so a quarter of its pixels is cheaper. The synthesis uses all
+	# rendered pixels.
 	scaling_3d_mode = Viewport.SCALING_3D_MODE_BILINEAR
 	scaling_3d_scale = 2.0
 	gui_disable_input = true
@@ -30,8 +31,8 @@ func _init(passes: YoroPasses) -> void:
 	add_child(camera)
 
 
-## Takes over how the camera [param like] draws, but for what Godot draws for both eyes, and how [param shown] is drawn to.
-## [param effects] are drawn before the synthesis.
+## Takes over the settings of the camera [param like], except for what Godot draws for both eyes, and those of the
+## viewport [param shown]. [param effects] are drawn before the synthesis.
 func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect]) -> void:
 	for name in SHARED:
 		if get(name) != shown.get(name):

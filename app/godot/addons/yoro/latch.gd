@@ -1,5 +1,6 @@
-## Places the rendered eye's camera when a frame is drawn. OpenXR locates the eyes anew after all scripts have run, so that what
-## they see is the last frame's. It is set for the camera of a tiny viewport that is drawn before the eye's.
+## Places the rendered eye's camera when a frame is drawn. OpenXR locates the eyes anew after all scripts have run, so
+## scripts see the poses of the last frame. This effect belongs to the camera of a tiny viewport that is drawn before
+## the eye's.
 @tool
 class_name YoroLatch
 extends CompositorEffect

@@ -1,13 +1,13 @@
-## Which things are transparent, and which of them, and of the lights, are on the layers that Godot draws for both eyes.
+## Finds transparent things, and which of them, and of the lights, are on the layers that Godot draws for both eyes.
 @tool
 class_name YoroMarks
 extends RefCounted
 
-## The layer that is used for it.
+## The layer for things that Godot draws for both eyes, if the user has chosen none.
 const LAYER := 1 << 19
 
 
-## Returns what will look wrong in a scene, in sentences.
+## Returns sentences about what will look wrong in a scene.
 static func warnings(scene: Node, layers: int) -> PackedStringArray:
 	var sentences := PackedStringArray()
 	if scene == null:
@@ -37,7 +37,7 @@ static func transparent(scene: Node) -> Array[VisualInstance3D]:
 	return _all(scene, func(node: VisualInstance3D) -> bool: return node is GeometryInstance3D and _is_transparent(node))
 
 
-## True if a material is drawn after opaque ones. Of shaders it is a guess, from their text.
+## True if a material is drawn after opaque ones. For shaders this is a guess from their code.
 static func is_transparent_material(material: Material) -> bool:
 	if material is BaseMaterial3D:
 		return (material.transparency in [BaseMaterial3D.TRANSPARENCY_ALPHA, BaseMaterial3D.TRANSPARENCY_ALPHA_DEPTH_PRE_PASS]
@@ -72,7 +72,7 @@ static func _is_transparent(thing: GeometryInstance3D) -> bool:
 	elif thing is MultiMeshInstance3D and thing.multimesh != null:
 		meshes.append(thing.multimesh.mesh)
 	elif &"material" in thing:
-		# CSG's shapes.
+		# CSG shapes.
 		return is_transparent_material(thing.get(&"material"))
 	for mesh in meshes:
 		for i in mesh.get_surface_count() if mesh != null else 0:

@@ -1,20 +1,21 @@
-## Measures which share of the view is near, of points on a coarse grid; the answer is read some frames later, without waiting.
+## Measures which share of the view is near, at the points of a coarse grid. The result is read some frames later,
+## without waiting.
 @tool
 class_name YoroNearness
 extends CompositorEffect
 
-## Points in a row and in a column.
+## The number of points in a row and in a column.
 const POINTS := 16
 
-## The frame's views are made by the synthesis; otherwise Godot renders both.
+## True if one eye is synthesized in this frame; otherwise Godot renders both.
 var synthesized := true:
 	set(value):
 		synthesized = value
-		# Those of the synthesis are.
+		# The synthesis resolves its own depth.
 		access_resolved_depth = not value
-## Depth from which on surfaces are near; it is 1 at the near plane.
+## Surfaces of at least this depth are near. Depth is 1 at the near plane.
 var depth_limit := 1.0
-## The share of the points that are near, as far as known.
+## The share of the points that are near, by the latest result.
 var share := 0.0
 
 var _synthesis: YoroSynthesis
@@ -53,7 +54,8 @@ func _render_callback(_type: int, data: RenderData) -> void:
 	_is_read = passes.device.texture_get_data_async(_grid, 0, _count) == OK
 
 
-## A function of this object, which does not keep it: what is still being read when the program ends is dropped.
+## Counts the near points. As a method of this object, it does not keep the object alive: a read that is still pending
+## when the program ends is dropped.
 func _count(bytes: PackedByteArray) -> void:
 	_is_read = false
 	var count := 0

@@ -1,10 +1,10 @@
-## The GPU's side of the add-on: shaders, samplers and pipelines, and how a pass is drawn. To be used on the render thread.
+## The GPU side of the add-on: shaders, samplers, pipelines, and drawing a pass. To be used on the render thread.
 @tool
 class_name YoroPasses
 extends RefCounted
 
 const _SHADERS: PackedStringArray = ["tiles", "spans", "march", "nearest", "put", "grid"]
-## Binding 1 is a picture that is interpolated; all others are read texel by texel.
+## The binding of the only texture that is interpolated; all others are read texel by texel.
 const _INTERPOLATED := 1
 
 var device: RenderingDevice
@@ -16,7 +16,7 @@ var _pipelines := {}
 
 func _init() -> void:
 	device = RenderingServer.get_rendering_device()
-	# Not preloaded: a project that is opened for the first time imports them after it has read its scripts.
+	# Not preloaded: a project that is opened for the first time imports the shaders after it has read its scripts.
 	for name in _SHADERS:
 		_files[name] = load("res://addons/yoro/shaders/%s.glsl" % name)
 	RenderingServer.call_on_render_thread(_make)
@@ -24,11 +24,11 @@ func _init() -> void:
 
 func _notification(what: int) -> void:
 	if what == NOTIFICATION_PREDELETE:
-		# Pipelines and uniform sets go with what they are made of.
+		# Pipelines and uniform sets are freed with what they are made of.
 		free_all(device, _samplers + Array(_shaders.values(), TYPE_RID, &"", null))
 
 
-## Frees textures and the like when the render thread no longer draws with them.
+## Frees GPU resources once the render thread no longer draws with them.
 static func free_all(from: RenderingDevice, ids: Array[RID]) -> void:
 	RenderingServer.call_on_render_thread(func() -> void:
 		for id in ids:

@@ -1,4 +1,4 @@
-## The editor's side: a menu above the 3D view, and a preview of both eyes.
+## The editor plugin: a menu above the 3D view, and a preview of both eyes.
 @tool
 extends EditorPlugin
 
@@ -49,7 +49,7 @@ func _choose(id: int) -> void:
 			_show_preview(_preview == null)
 
 
-## Puts a YoroCamera3D in place of a camera, by its script: name, children and properties stay.
+## Makes a camera a YoroCamera3D by setting its script. Its name, children and properties stay.
 func replace(camera: XRCamera3D) -> void:
 	var undo := get_undo_redo()
 	undo.create_action("Put YoroCamera3D in Place of XRCamera3D", UndoRedo.MERGE_DISABLE, camera)
@@ -59,7 +59,7 @@ func replace(camera: XRCamera3D) -> void:
 	camera.update_configuration_warnings()
 
 
-## Puts transparent things and lights onto the stereo layers, which are [constant YoroMarks.LAYER] if there was none.
+## Puts transparent things and lights onto the stereo layers, which become [constant YoroMarks.LAYER] if none was set.
 func mark(scene: Node, camera: YoroCamera3D) -> void:
 	var undo := get_undo_redo()
 	undo.create_action("Draw Transparent Things for Both Eyes", UndoRedo.MERGE_DISABLE, scene)

@@ -3,7 +3,7 @@
 class_name YoroPreview
 extends HBoxContainer
 
-## Metres between the eyes.
+## The distance between the eyes in metres.
 const IPD := 0.063
 
 var camera: YoroCamera3D
@@ -18,7 +18,7 @@ var _environment := YoroEnvironment.new(YoroCamera3D.SHOWN_OVERRIDES)
 func _init(of: YoroCamera3D) -> void:
 	camera = of
 	add_theme_constant_override("separation", 0)
-	# Viewports beside each other are drawn in this order: the source first.
+	# Sibling viewports are drawn in this order, so the source comes first.
 	source = YoroEye.new(YoroPasses.new())
 	add_child(source)
 	for eye in 2:

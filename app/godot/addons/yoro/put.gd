@@ -1,11 +1,11 @@
-## Puts eyes with their depth into the buffers of the camera that it is set for, before its transparent objects: both eyes into
-## a viewport with two views.
+## Draws the eyes with their depth into the buffers of the camera that has this effect, before its transparent objects.
+## A viewport with two views gets both eyes.
 @tool
 class_name YoroPut
 extends CompositorEffect
 
 var synthesis: YoroSynthesis
-## The eye of a viewport with one view: 0 left, 1 right.
+## The eye that a viewport with one view gets: 0 left, 1 right.
 var eye := 0
 ## One of [enum YoroCamera3D.DebugView].
 var debug_view := 0
@@ -38,11 +38,11 @@ func _render_callback(_type: int, data: RenderData) -> void:
 		push.encode_float(8, pitch.x)
 		push.encode_float(12, pitch.y)
 		push.encode_s32(16, 0 if is_rendered and debug_view == YoroCamera3D.DebugView.HOLES else debug_view)
-		# Disparity of depth 1, as a share of the image's tenth.
+		# The disparity at depth 1, as a share of a tenth of the image's width.
 		push.encode_float(20, views.max_disparity / (0.1 * views.eye_size.x))
 		var color := synthesis.rendered_color if is_rendered else synthesis.synthesized_color
 		var depth := synthesis.rendered_depth if is_rendered else synthesis.synthesized_depth
 		var map := synthesis.source_map if synthesis.source_map.is_valid() else synthesis._tiles
-		# What is there by then is nearer or farther by its depth, which is 1 at the near plane.
+		# Tested against the depth of what is already drawn. Depth is 1 at the near plane.
 		synthesis.passes.draw("put", [buffers.get_color_layer(view, multisampled), buffers.get_depth_layer(view, multisampled)],
 				[depth, color, map], push, RenderingDevice.COMPARE_OP_GREATER_OR_EQUAL)

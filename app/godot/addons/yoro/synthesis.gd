@@ -1,24 +1,25 @@
-## Makes the other eye of colour and depth of the camera that it is set for, after everything that the camera draws.
+## Synthesizes the other eye from the colour and depth of the camera that has this effect, after all that the camera
+## draws.
 @tool
 class_name YoroSynthesis
 extends CompositorEffect
 
-## Synthesizes by the way that is made for GPUs; the other one is for processors. Both give the same picture.
+## Uses the search for GPUs; the other one is for software rasterizers. Both give the same picture.
 var short_way := true
-## Also makes [member source_map], by which holes are known.
+## Also makes [member source_map], which marks holes.
 var map := false
-## The eyes of the frame; to be set before it is drawn.
+## The views of the frame, to be set before it is drawn.
 var views: YoroViews
 var passes: YoroPasses
-## The rendered eye as it was drawn, of [member YoroViews.size], and the other one, of [member YoroViews.eye_size].
+## The rendered eye as it was drawn, in [member YoroViews.size], and the other eye, in [member YoroViews.eye_size].
 var rendered_color: RID
 var rendered_depth: RID
 var synthesized_color: RID
 var synthesized_depth: RID
 var source_map: RID
-## Of the camera, when it was drawn.
+## The pose of the camera with which the eye was drawn.
 var pose: Transform3D
-## True if the textures are of a frame that was drawn with [member views].
+## True if the textures show a frame that was drawn with [member views].
 var ready := false
 
 var _tiles: RID
@@ -35,11 +36,11 @@ func _init(with: YoroPasses) -> void:
 
 func _notification(what: int) -> void:
 	if what == NOTIFICATION_PREDELETE and passes != null:
-		# An object that goes can no longer call its own functions.
+		# A static function, since an object can no longer call its own methods while it is deleted.
 		YoroPasses.free_all(passes.device, [synthesized_color, synthesized_depth, source_map, _tiles, _spans, _nearest])
 
 
-## Textures follow the sizes, which change when the viewport's do.
+## Creates the textures anew if their sizes have changed, which follow the viewport's.
 func _allocate(format: RenderingDevice.DataFormat, multisampled: bool) -> void:
 	var want := [views.size, views.eye_size, format, multisampled, map]
 	if want == _allocated_for:
@@ -66,7 +67,7 @@ func _render_callback(_type: int, data: RenderData) -> void:
 	_allocate(passes.device.texture_get_format(rendered_color).format, multisampled)
 	passes.device.draw_command_begin_label("yoro", Color.WHITE)
 	if multisampled:
-		# Colour is resolved, and depth to be the nearest of the samples: averages belong to no surface.
+		# Colour is already resolved. Depth becomes that of the nearest sample, since averages belong to no surface.
 		var samples := buffers.get_depth_layer(0, true)
 		var push := PackedByteArray()
 		push.resize(16)

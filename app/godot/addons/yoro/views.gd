@@ -1,39 +1,42 @@
-## What to render of two eyes, and the uniforms of the synthesis passes: [code]yoro_kit.h[/code] of yoro's shader kit in GDScript.
+## What to render for two eyes, and the uniforms of the synthesis passes: [code]yoro_kit.h[/code] of yoro's shader kit
+## in GDScript.
 @tool
 class_name YoroViews
 extends RefCounted
 
-## The furthest that a surface may move between the eyes, in pixels.
+## The largest distance that a surface may move between the eyes, in pixels.
 const MAX_MOVE := 4095.0
-## Eyes are parallel up to this, in radians: a script sees the last frame's eyes, and those of this frame may differ by rounding.
+## Eyes count as parallel up to this angle in radians: a script sees the last frame's eyes, and those of this frame may
+## differ by rounding.
 const _PARALLEL := 1e-3
 
-## Why the other eye cannot be synthesized, in one sentence, and then nothing else is set; empty if it can.
+## Why the other eye cannot be synthesized, in one sentence; nothing else is set then. It is empty if the eye can be.
 var trouble := ""
 ## The size of the image to render, in pixels.
 var size: Vector2i
 ## The frustum to render it with: tangents left, right, up, down.
 var frustum: Array[float]
-## Where the rendered eye's own image begins in it, from the topmost row.
+## Where the rendered eye's own image begins in the image to render, counted from its topmost row.
 var crop: Vector2i
 ## The size of each eye's image, in pixels.
 var eye_size: Vector2i
-## The share of the eyes' images that is shown, from the left and upper edges on.
+## The share of the eyes' images that is shown, counted from their left and upper edges.
 var covered: Vector2
 ## The eye that is rendered: 0 left, 1 right.
 var rendered: int
 ## The sizes of the intermediate images.
 var tile_map: Vector2i
 var span_map: Vector2i
-## The disparity of the nearest surfaces that there may be, in pixels.
+## The largest possible disparity of a surface, in pixels.
 var max_disparity: float
 ## The block of all passes, in std140.
 var uniforms: PackedByteArray
 
 
-## Returns the views of two eyes. [param frusta] has the left eye's and the right eye's tangents left, right, up, down;
-## [param between] is the right eye's pose as seen from the left eye; [param pixels] is the size of either image as it is shown;
-## lengths are in metres; from [param guard_band] on nothing is missing at the other eye's outer border (0: no band).
+## Returns the views of two eyes. [param frusta] has the tangents left, right, up and down of the left eye, then of the
+## right eye. [param between] is the pose of the right eye relative to the left eye. [param pixels] is the size of each
+## image as it is shown. Lengths are in metres. From [param guard_band] on, nothing is missing at the other eye's outer
+## border; 0 means no band.
 static func of(frusta: Array, between: Transform3D, near: float, far: float, rendered_eye: int, pixels: Vector2i,
 		guard_band: float) -> YoroViews:
 	var v := YoroViews.new()
@@ -55,12 +58,12 @@ func _fill(frusta: Array, between: Transform3D, near: float, far: float, rendere
 		return "the headset's eyes do not lie on a horizontal line"
 	var s: Array = frusta[rendered_eye]
 	var t: Array = frusta[1 - rendered_eye]
-	# Godot's cameras have square pixels, a headset's need not be: as fine as the finer side of the headset's, so that one side
-	# is not resampled, and up to one more than covers the eye.
+	# Godot's cameras have square pixels, but a headset's need not be square. Take the finer of the headset's two
+	# pitches, so that one axis is not resampled. The image then covers the eye and up to one pixel more.
 	var extent := Vector2(s[1] - s[0], s[2] - s[3])
 	var pitch := minf(extent.x / pixels.x, extent.y / pixels.y)
 	var row: float = (t[2] - s[2]) / pitch
-	# In this form tangents that are not finite fail, too.
+	# Written so that tangents that are not finite fail, too.
 	if not (pitch > 0.0 and extent.distance_to(Vector2(t[1] - t[0], t[2] - t[3])) <= 0.05 * pitch
 			and absf(row - roundf(row)) <= 0.05):
 		return "the eyes' fields of view differ in size, or by parts of a pixel's row"
@@ -68,14 +71,15 @@ func _fill(frusta: Array, between: Transform3D, near: float, far: float, rendere
 	eye_size = eye
 	covered = extent / (Vector2(eye) * pitch)
 	rendered = rendered_eye
-	# The rendered eye, grown by whole pixels to both frusta, and by the guard band on the side that the other eye sees more of.
+	# The rendered eye, grown by whole pixels to the union of both frusta, and by the guard band on the side of which
+	# the other eye sees more.
 	var to_left := rendered_eye != 0
 	var guard := _ceil(ipd / pitch / guard_band) if guard_band > 0.0 else 0
 	var left := _ceil((s[0] - t[0]) / pitch) + (guard if to_left else 0)
 	var right := _ceil((t[1] - s[1]) / pitch) + (0 if to_left else guard)
 	var above := _ceil(row)
 	var below := _ceil((s[3] - t[3]) / pitch)
-	# An even size: YoroEye draws at twice its viewport's.
+	# Make the size even: YoroEye draws at twice the size of its viewport.
 	right += (eye.x + left + right) % 2
 	below += (eye.y + above + below) % 2
 	size = eye + Vector2i(left + right, above + below)

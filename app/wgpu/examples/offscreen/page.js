@@ -1,4 +1,4 @@
-// Shows what the example draws, or says why it cannot.
+// Shows what the example draws, or says why it cannot draw.
 import start from "./offscreen.js";
 
 const say = (sentence) => (document.querySelector("p").textContent = sentence);

@@ -1,4 +1,4 @@
-// Stands for an engine's picture: rays into a tiled room with balls, with reversed depth.
+// Stands in for an engine's picture: rays into a tiled room with balls, with reversed depth.
 
 struct View {
     eye: vec3<f32>,

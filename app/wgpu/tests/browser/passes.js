@@ -1,5 +1,5 @@
-// Compiles all modules, and draws a picture by the passes for hard edges. Returns what the browser says, and the pixels;
-// null without WebGPU.
+// Compiles all modules, and draws a picture with the passes for hard edges. Returns the browser's messages and the
+// pixels, or null without WebGPU.
 async ({ modules, variant, uniforms, color, depth, source, target, tiles, spans }) => {
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) return null;

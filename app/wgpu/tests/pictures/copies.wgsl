@@ -1,4 +1,4 @@
-// Pixels of one texture into another one of any format that is rendered to.
+// Copies the pixels of one texture into another one of any renderable format.
 
 @group(0) @binding(0) var from_texture: texture_2d<f32>;
 
@@ -22,7 +22,7 @@ fn bits(@builtin(position) at: vec4<f32>) -> @location(0) u32 {
     return bitcast<u32>(textureLoad(from_texture, vec2<i32>(at.xy), 0).r);
 }
 
-// The pictures of the samples lie above each other, the first one on top.
+// The pictures of the samples are stacked, the first one at the top.
 fn of_sample(at: vec4<f32>, sample: u32) -> vec4<f32> {
     let rows = textureDimensions(from_texture).y / 4u;
     return textureLoad(from_texture, vec2<i32>(at.xy) + vec2<i32>(0, i32(sample * rows)), 0);

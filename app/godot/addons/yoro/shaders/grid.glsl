@@ -6,7 +6,7 @@
 // Depth at the points of a coarse grid.
 layout(set = 0, binding = 0) uniform sampler2D depth_map;
 layout(push_constant, std430) uniform Grid {
-    // Pixels of the depth for a point.
+    // The size of a point's cell in pixels of the depth map.
     vec2 pitch;
 };
 layout(location = 0) out float depth;
