@@ -4,7 +4,6 @@
 //! [`Compilers`] compile them. The results are compared with `docs/shader-cost.csv`. See docs/performance.md.
 
 mod compilers;
-mod gather;
 mod gpus;
 mod listing;
 mod table;
@@ -138,8 +137,7 @@ pub fn report(
         table.mesa = found.mesa;
         table.take_over(found.rows);
         write(&path, table.to_text())?;
-        write(&root().join(gather::FILE), gather::text(&table)?)?;
-        text += &format!("{TABLE} and {0} renewed: look at `git diff -- {TABLE} {0}`\n", gather::FILE);
+        text += &format!("{TABLE} renewed: look at `git diff -- {TABLE}`\n");
     }
     Ok((text, faults.is_empty()))
 }

@@ -8,15 +8,15 @@ use std::rc::Rc;
 
 use anyhow::ensure;
 
+use super::costs::Work;
 use super::record::metric;
 use super::views::synthesize;
+use super::waves::{combine, wave_size};
 use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
 use yoro::synthesis::{Gather, Synthesis, Uniforms};
 use yoro_gl::{Context, Filter, Format, RenderTarget};
 use yoro_render::{PreparedScene, ViewTargets};
 
-/// The costs of the passes' parts on each GPU, by name; written by `cargo tools shader-cost --bless`.
-const COSTS: &str = include_str!("gather-cost.csv");
 /// The size of a tile in pixels. The first two passes draw one fragment per tile.
 pub(super) const TILE: [u32; 2] = [16, 8];
 /// The number of row pairs of a tile, and thus of trips of its loop.
@@ -104,19 +104,6 @@ impl Trips {
     }
 }
 
-/// Issue slots and texture instructions.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Work {
-    slots: f64,
-    fetches: f64,
-}
-
-impl Work {
-    fn plus(self, times: f64, other: Work) -> Work {
-        Work { slots: self.slots + times * other.slots, fetches: self.fetches + times * other.fetches }
-    }
-}
-
 /// The costs of the parts of gather's passes on one GPU.
 struct Costs {
     /// The number of pixels in a wave of the march.
@@ -125,39 +112,60 @@ struct Costs {
 }
 
 impl Costs {
-    /// Reads the costs on a GPU.
+    /// Reads the costs on a GPU, and gives each loop a name for what it does in the shader.
     ///
     /// # Errors
-    /// If [`COSTS`] has no entry for this GPU, or one of its rows cannot be read.
+    /// If the table has no entry for this GPU, or a program has an unexpected number of loops.
     fn of(gpu: &str) -> anyhow::Result<Costs> {
-        let mut costs = Costs { lanes: 0, parts: Vec::new() };
-        for line in COSTS.lines() {
-            let [of, lanes, part, slots, fetches] = line.split(',').collect::<Vec<_>>()[..] else { continue };
-            if of == gpu {
-                if part == "march: law" {
-                    costs.lanes = lanes.parse()?;
-                }
-                costs.parts.push((part, Work { slots: slots.parse()?, fetches: fetches.parse()? }));
-            }
-        }
-        ensure!(costs.lanes > 0, "gather-cost.csv has nothing of {gpu}");
-        Ok(costs)
+        let table = super::costs::Costs::of(gpu)?;
+        let of = |pass: &str, more: &[&str], loops: usize| {
+            let parts = table.parts(
+                &format!("synthesis/gather/{pass}.frag"),
+                &[&["TEXTURE_GATHER", "SHORT_WAY"], more].concat(),
+            )?;
+            let found = parts.loops.len();
+            ensure!(
+                found == loops,
+                "{pass} {more:?} has {found} loops on {gpu}, and {loops} are named: name them anew in executed.rs"
+            );
+            Ok(parts)
+        };
+        let (tiles, spans, march) = (of("tiles", &[], 1)?, of("spans", &[], 3)?, of("march", &[], 3)?);
+        // Each program adds one part to the previous one: see tests/src/programs.rs.
+        let law = of("march", &["PARTS=1"], 0)?;
+        let short = of("march", &["PARTS=2"], 1)?;
+        let segments = of("march", &["PARTS=6"], 2)?;
+        let events = of("march", &["PARTS=14"], 2)?;
+        let fill = of("march", &["PARTS=30"], 2)?;
+        let all = of("march", &["PARTS=62"], 3)?;
+        // The loop over segments is the second one, the loop to a crossing is the last. Events are handled in two
+        // places, one of them before the loop.
+        let event = events.loops[1].plus(-1.0, segments.loops[1]);
+        let crossing = all.straight.plus(-1.0, fill.straight);
+        let long = events.straight.plus(1.0, crossing).plus(-1.0, event).plus(-1.0, short.straight);
+        let parts = vec![
+            ("tiles", tiles.straight),
+            ("tiles: two rows", tiles.loops[0]),
+            ("spans", spans.straight),
+            ("spans: tile", spans.loops[0]),
+            ("spans: plane", spans.loops[1]),
+            ("spans: joint", spans.loops[2]),
+            ("march: law", law.straight),
+            ("march: short way", short.straight),
+            ("march: short step", short.loops[0]),
+            ("march: long way", long),
+            ("march: segment", segments.loops[1]),
+            ("march: event", event),
+            ("march: fill", fill.total().plus(-1.0, events.total())),
+            ("march: crossing", all.loops[2]),
+        ];
+        Ok(Costs { lanes: march.lanes, parts })
     }
 
     /// Returns the cost of running a part once.
     fn part(&self, name: &str) -> Work {
         let found = self.parts.iter().find(|(part, _)| *part == name);
-        found.unwrap_or_else(|| panic!("gather-cost.csv has no part {name}")).1
-    }
-
-    /// Returns the columns and rows of pixels in a wave.
-    fn wave_size(&self) -> [u32; 2] {
-        match self.lanes {
-            128 => [16, 8],
-            64 => [8, 8],
-            16 => [4, 4],
-            _ => [4, 2],
-        }
+        found.unwrap_or_else(|| panic!("no part of gather is called {name}")).1
     }
 
     /// Returns a lower bound of what a wave executes for each of its pixels: each part as often as the pixel that runs
@@ -186,15 +194,10 @@ struct Counts<'a> {
 impl Counts<'_> {
     /// Returns the largest counts in each wave.
     fn waves(&self, wave: [u32; 2]) -> Vec<Trips> {
-        let [width, height] = self.size;
-        let across = width.div_ceil(wave[0]) as usize;
-        let mut waves = vec![Trips::default(); across * height.div_ceil(wave[1]) as usize];
-        for (i, pixel) in self.pixels.as_chunks().0.iter().enumerate() {
-            let (x, y) = (i as u32 % width, i as u32 / width);
-            let largest = &mut waves[(y / wave[1]) as usize * across + (x / wave[0]) as usize];
-            *largest = largest.max(Trips::of(*pixel));
-        }
-        waves
+        let pixels = self.pixels.as_chunks().0.iter();
+        combine(pixels, self.size[0], wave, |largest: &mut Trips, pixel| {
+            *largest = largest.max(Trips::of(*pixel))
+        })
     }
 }
 
@@ -298,7 +301,7 @@ impl Meter {
     pub fn values(&self, views: &SynthesisViews, pixels: &[u8], size: [u32; 2]) -> Vec<(&'static str, f64)> {
         let counts = Counts { pixels, size };
         let Meter { device, costs, .. } = self;
-        let waves = counts.waves(costs.wave_size());
+        let waves = counts.waves(wave_size(costs.lanes));
         let each = counts.waves([1, 1]);
         let march: Vec<Work> = waves.iter().map(|wave| costs.march(*wave)).collect();
         let march = Work {

@@ -8,6 +8,7 @@
 pub mod bandwidth;
 mod blank;
 mod contender;
+mod costs;
 mod entrant;
 mod executed;
 pub mod frame;
@@ -22,6 +23,7 @@ mod scenes;
 mod suite;
 mod summary;
 mod views;
+mod waves;
 
 pub use blank::BlankFinder;
 pub use contender::Contender;

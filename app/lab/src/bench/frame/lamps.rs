@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 
 use glam::{Vec3, vec3};
+
+use crate::bench::waves::{combine, wave_size};
 use yoro::eyes::View;
 use yoro_render::MAX_POINT_LIGHTS;
 use yoro_scene::PointLight;
@@ -13,16 +15,6 @@ pub struct Lamps {
     size: [u32; 2],
     /// Means by the number of lanes in a wave.
     means: HashMap<u32, f64>,
-}
-
-/// Returns the columns and rows of pixels in a wave.
-pub fn wave_size(lanes: u32) -> [u32; 2] {
-    match lanes {
-        128 => [16, 8],
-        64 => [8, 8],
-        16 => [4, 4],
-        _ => [4, 2],
-    }
 }
 
 impl Lamps {
@@ -58,15 +50,9 @@ impl Lamps {
 
     /// Returns the mean number of lights that reach at least one pixel of a wave with this many lanes.
     pub fn of_wave(&mut self, lanes: u32) -> f64 {
-        let (bits, [width, height]) = (&self.bits, self.size);
+        let (bits, width) = (&self.bits, self.size[0]);
         *self.means.entry(lanes).or_insert_with(|| {
-            let wave = wave_size(lanes);
-            let across = width.div_ceil(wave[0]) as usize;
-            let mut waves = vec![0u32; across * height.div_ceil(wave[1]) as usize];
-            for (i, bits) in bits.iter().enumerate() {
-                let (x, y) = (i as u32 % width, i as u32 / width);
-                waves[(y / wave[1]) as usize * across + (x / wave[0]) as usize] |= bits;
-            }
+            let waves = combine(bits.iter(), width, wave_size(lanes), |wave: &mut u32, bits| *wave |= bits);
             let lights: u32 = waves.iter().map(|bits| bits.count_ones().min(MAX_POINT_LIGHTS as u32)).sum();
             f64::from(lights) / waves.len().max(1) as f64
         })

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use super::costs::{Costs, Parts};
-use super::lamps::wave_size;
+use crate::bench::costs::{Costs, Parts};
 use crate::bench::executed::{Counting, TILE, span_trips};
+use crate::bench::waves::{combine, wave_size};
 use yoro::eyes::EyePair;
 use yoro::synthesis::{Edges, Layers};
 use yoro_gl::Context;
@@ -67,24 +67,24 @@ impl LayerCounts {
         // The trips of the loops at a pixel with two surfaces: taps of the estimates, taps if nothing else is found
         // (not counted), neighbours. If all samples are read: taps.
         let trips: &[f64] = if edges == Edges::Multisample { &[8.0] } else { &[12.0, 0.0, 2.0] };
-        let of_split = |wave: &Wave| split.straight + if wave.split { looped(&split, trips) } else { 0.0 };
+        let of_split =
+            |wave: &Wave| split.straight.slots + if wave.split { looped(&split, trips) } else { 0.0 };
         let tile = 1.0 / f64::from(TILE[0] * TILE[1]);
         Ok([
             ("layers split", self.wider * self.mean(split.lanes, of_split)),
-            ("layers tiles", self.wider * tile * (tiles.straight + looped(&tiles, &[f64::from(TILE[1])]))),
-            ("layers spans", tile * (spans.straight + looped(&spans, &[self.span_trips]))),
+            (
+                "layers tiles",
+                self.wider * tile * (tiles.straight.slots + looped(&tiles, &[f64::from(TILE[1])])),
+            ),
+            ("layers spans", tile * (spans.straight.slots + looped(&spans, &[self.span_trips]))),
             ("layers march", self.mean(march.lanes, |wave| march_slots(&march, wave))),
         ])
     }
 
     fn mean(&self, lanes: u32, slots: impl Fn(&Wave) -> f64) -> f64 {
-        let size = wave_size(lanes);
-        let across = self.size[0].div_ceil(size[0]) as usize;
-        let mut waves = vec![Wave::default(); across * self.size[1].div_ceil(size[1]) as usize];
-        for (i, pixel) in self.pixels.as_chunks::<4>().0.iter().enumerate() {
-            let (x, y) = (i as u32 % self.size[0], i as u32 / self.size[0]);
-            waves[(y / size[1]) as usize * across + (x / size[0]) as usize].include(*pixel);
-        }
+        let pixels = self.pixels.as_chunks::<4>().0.iter();
+        let waves =
+            combine(pixels, self.size[0], wave_size(lanes), |wave: &mut Wave, pixel| wave.include(*pixel));
         waves.iter().map(slots).sum::<f64>() / waves.len().max(1) as f64
     }
 }
@@ -110,25 +110,28 @@ impl Wave {
 }
 
 fn looped(parts: &Parts, trips: &[f64]) -> f64 {
-    parts.loops.iter().zip(trips).map(|(body, trips)| body * trips).sum()
+    parts.loops.iter().zip(trips).map(|(body, trips)| body.slots * trips).sum()
 }
 
 /// Returns the issue slots that a wave spends on the march.
 fn march_slots(march: &Parts, wave: &Wave) -> f64 {
     let goes_on = wave.events > 0 || wave.rows > 0;
-    let straight = march.straight * if goes_on { 1.0 } else { PLAIN_SHARE };
-    let trips = [wave.plain, wave.events, wave.rows].map(f64::from);
-    // The loop to the next event is nested in the loop over events.
-    straight + looped(march, &trips) + f64::from(wave.pairs) * march.inner.unwrap_or(0.0)
+    let straight = march.straight.slots * if goes_on { 1.0 } else { PLAIN_SHARE };
+    // The loop to the next event is nested in the loop over events, and follows it in the listing.
+    let trips = [wave.plain, wave.events, wave.pairs, wave.rows].map(f64::from);
+    straight + looped(march, &trips)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::costs::Work;
 
     #[test]
     fn a_wave_runs_each_loop_as_often_as_its_slowest_pixel() {
-        let march = Parts { straight: 200.0, loops: vec![10.0, 100.0, 30.0], inner: Some(20.0), lanes: 128 };
+        let work = |slots| Work { slots, fetches: 0.0 };
+        let march =
+            Parts { straight: work(200.0), loops: [10.0, 100.0, 20.0, 30.0].map(work).into(), lanes: 128 };
         let mut wave = Wave::default();
         wave.include([3, 0, 0, 0]);
         assert_eq!(march_slots(&march, &wave), 100.0 + 30.0);

@@ -5,7 +5,6 @@
 //! tile-based GPU moves between its tiles and memory, `lamps` the number of lights that a wave computes, and the module
 //! `executed` what the synthesis executes. `model` adds these up.
 
-mod costs;
 mod lamps;
 mod layers;
 mod model;

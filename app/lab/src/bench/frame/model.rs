@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::GPUS;
-use super::costs::Costs;
 use super::lamps::Lamps;
 use super::layers::LayerCounts;
 use super::traffic::{fragments, pieces};
+use crate::bench::costs::Costs;
 use crate::bench::executed::Device;
 use yoro::synthesis::Edges;
 use yoro_gl::{Command, Draw, ProgramRecipe, Shape};

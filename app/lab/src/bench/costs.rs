@@ -4,7 +4,7 @@ use anyhow::{Context as _, ensure};
 use yoro_gl::ProgramRecipe;
 
 /// The table that `cargo tools shader-cost --bless` writes.
-const TABLE: &str = include_str!("../../../../../docs/shader-cost.csv");
+const TABLE: &str = include_str!("../../../../docs/shader-cost.csv");
 /// The macros of maps. The table has materials without maps and with all of these.
 const MAPS: [&str; 4] = ["DIFFUSE_MAP", "SPECULAR_MAP", "EMISSIVE_MAP", "NORMAL_MAP"];
 
@@ -19,17 +19,38 @@ pub struct Fragment {
     pub lanes: u32,
 }
 
-/// The issue slots of a shader's code outside of loops and in each loop.
+/// Issue slots and texture instructions.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Issue slots.
+    pub slots: f64,
+    /// Texture instructions.
+    pub fetches: f64,
+}
+
+impl Work {
+    /// Adds other work, executed so many times.
+    pub fn plus(self, times: f64, other: Work) -> Work {
+        Work { slots: self.slots + times * other.slots, fetches: self.fetches + times * other.fetches }
+    }
+}
+
+/// The work of executing each part of a shader once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
-    /// Outside of all loops.
-    pub straight: f64,
-    /// The outermost loops in the order of the listing, without the loops inside them.
-    pub loops: Vec<f64>,
-    /// The loop inside another loop, if any.
-    pub inner: Option<f64>,
+    /// The code outside of all loops.
+    pub straight: Work,
+    /// The bodies of all loops in the order of the listing, each without the loops inside it.
+    pub loops: Vec<Work>,
     /// The number of pixels in a wave.
     pub lanes: u32,
+}
+
+impl Parts {
+    /// Returns the work of executing all parts once.
+    pub fn total(&self) -> Work {
+        self.loops.iter().fold(self.straight, |sum, body| sum.plus(1.0, *body))
+    }
 }
 
 /// A row of the table.
@@ -38,6 +59,7 @@ struct Row {
     macros: Vec<&'static str>,
     stage: &'static str,
     instructions: f64,
+    fetches: f64,
     fragment: Fragment,
     loops: &'static str,
 }
@@ -97,23 +119,21 @@ impl Costs {
             format!("docs/shader-cost.csv lacks {file} {macros:?}: run cargo tools shader-cost --bless")
         })?;
         let lanes = if row.fragment.lanes > 0 { row.fragment.lanes } else { self.lanes };
-        let mut parts = Parts { straight: row.fragment.slots, loops: Vec::new(), inner: None, lanes };
-        for text in row.loops.split(' ').filter(|text| !text.is_empty()) {
-            let body =
-                text.trim_start_matches('>').split('/').next().and_then(|slots| slots.parse::<f64>().ok());
+        let straight = Work { slots: row.fragment.slots, fetches: row.fetches };
+        let mut parts = Parts { straight, loops: Vec::new(), lanes };
+        let mut outermost = 0;
+        for text in row.loops.split_whitespace() {
+            let (is_inner, body) = text.strip_prefix('>').map_or((false, text), |body| (true, body));
+            let body = work(body).filter(|_| !is_inner || !parts.loops.is_empty());
             let body = body.with_context(|| {
                 format!("docs/shader-cost.csv has unreadable loops of {file}: {}", row.loops)
             })?;
-            match parts.loops.last_mut() {
-                Some(around) if text.starts_with('>') => {
-                    *around -= body;
-                    parts.inner = Some(body);
-                }
-                _ => {
-                    parts.straight -= body;
-                    parts.loops.push(body);
-                }
+            let around = if is_inner { &mut parts.loops[outermost] } else { &mut parts.straight };
+            *around = around.plus(-1.0, body);
+            if !is_inner {
+                outermost = parts.loops.len();
             }
+            parts.loops.push(body);
         }
         Ok(parts)
     }
@@ -152,7 +172,9 @@ impl Costs {
 /// Reads a line of the table if it belongs to this GPU.
 fn row(gpu: &str, line: &'static str) -> Option<Row> {
     let cells: Vec<&str> = line.split(',').collect();
-    let [of, program, stage, instructions, slots, _, _, lanes, .., loops] = cells[..] else { return None };
+    let [of, program, stage, instructions, slots, _, _, lanes, fetches, .., loops] = cells[..] else {
+        return None;
+    };
     if of != gpu {
         return None;
     }
@@ -161,7 +183,14 @@ fn row(gpu: &str, line: &'static str) -> Option<Row> {
     let number = |text: &str| text.parse().unwrap_or(0.0);
     let lamp = if is_lit(file) { loops.split(['/', ' ']).next().map_or(0.0, number) } else { 0.0 };
     let fragment = Fragment { slots: number(slots) - lamp, lamp, lanes: lanes.parse().unwrap_or(0) };
-    Some(Row { file, macros, stage, instructions: number(instructions), fragment, loops })
+    let (instructions, fetches) = (number(instructions), number(fetches));
+    Some(Row { file, macros, stage, instructions, fetches, fragment, loops })
+}
+
+/// Parses the work of a loop's body: slots and fetches, such as `64/1`.
+fn work(text: &str) -> Option<Work> {
+    let (slots, fetches) = text.split_once('/')?;
+    Some(Work { slots: slots.parse().ok()?, fetches: fetches.parse().ok()? })
 }
 
 /// True if the shader's only loop is the one over lamps.
@@ -172,6 +201,8 @@ fn is_lit(file: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const GPUS: [&str; 5] = ["a650", "a740", "g52", "g57", "g610"];
 
     fn recipe(file: &str, defines: &[&str]) -> ProgramRecipe {
         let define = |text: &&str| {
@@ -186,12 +217,12 @@ mod tests {
 
     #[test]
     fn a_program_with_some_maps_costs_something_between_none_and_all() {
-        for gpu in super::super::GPUS {
-            let costs = Costs::of(gpu.gpu).unwrap();
+        for gpu in GPUS {
+            let costs = Costs::of(gpu).unwrap();
             let slots =
                 |count: usize| costs.fragment(&recipe("render/geometry.frag", &MAPS[..count])).unwrap().slots;
-            assert!(slots(4) > slots(0) + 10.0, "{}", gpu.name);
-            assert!((slots(1) - (slots(0) + 0.25 * (slots(4) - slots(0)))).abs() < 1e-9, "{}", gpu.name);
+            assert!(slots(4) > slots(0) + 10.0, "{gpu}");
+            assert!((slots(1) - (slots(0) + 0.25 * (slots(4) - slots(0)))).abs() < 1e-9, "{gpu}");
         }
     }
 
@@ -206,6 +237,21 @@ mod tests {
         let Fragment { slots, lamp, lanes } =
             costs.fragment(&recipe("render/lighting.frag", &defines)).unwrap();
         assert!(lamp > 50.0 && (slots + lamp - total).abs() < 1e-9 && lanes == 128, "{slots} {lamp} {lanes}");
+    }
+
+    #[test]
+    fn parts_are_counted_once() {
+        for gpu in GPUS {
+            let costs = Costs::of(gpu).unwrap();
+            let march = costs.parts("synthesis/layers/march.frag", &["MULTISAMPLE"]).unwrap();
+            let fragment =
+                costs.find(&recipe("synthesis/layers/march.frag", &["MULTISAMPLE"]), "fragment", false);
+            assert_eq!(march.total().slots, fragment.unwrap().fragment.slots, "{gpu}");
+            assert_eq!(march.loops.len(), 4, "{gpu}: the third loop is the one inside of the second");
+            assert!(march.loops.iter().all(|body| body.slots > 0.0), "{gpu}: {march:?}");
+        }
+        assert_eq!(work("64/1"), Some(Work { slots: 64.0, fetches: 1.0 }));
+        assert_eq!((work("64"), work(">64/1")), (None, None));
     }
 
     #[test]
