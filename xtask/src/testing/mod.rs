@@ -248,6 +248,11 @@ impl<'a> Run<'a> {
             drop(sender);
             for (job, finished) in receiver {
                 let program = self.program(&job);
+                if job == Job::Documentation {
+                    // How many there are is not known before.
+                    summary.documentation = finished.tests.len();
+                }
+                let total = total + summary.documentation;
                 print_tests(program, &finished, |i| format!("[{:4}/{total}] ", summary.count() + i + 1));
                 summary.add(program, &finished);
             }

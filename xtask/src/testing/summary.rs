@@ -24,6 +24,8 @@ pub struct Summary {
     /// Tests that failed beside others, but passed alone.
     flaky: Vec<String>,
     ignored: usize,
+    /// The number of documentation tests that have run.
+    pub documentation: usize,
     /// Messages about missing equipment, and the number of tests that printed each.
     left_out: BTreeMap<String, usize>,
 }
@@ -39,6 +41,7 @@ impl Summary {
             failed: Vec::new(),
             flaky: Vec::new(),
             ignored: 0,
+            documentation: 0,
             left_out: BTreeMap::new(),
         }
     }
