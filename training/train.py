@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import onnx
 import torch
 import torch.nn.functional as F
 from PIL import Image
@@ -163,13 +164,24 @@ def export(generator, path):
                                 input_names=["input"], output_names=["output"], external_data=False)
     path.parent.mkdir(parents=True, exist_ok=True)
     program.save(str(path), external_data=False)
+    strip(path)
+
+
+def strip(path):
+    """Removes what the exporter notes of this machine: stack traces with the paths of its files."""
+    model = onnx.load(path)
+    graph = model.graph
+    for part in [model, graph, *graph.node, *graph.value_info, *graph.input, *graph.output, *graph.initializer]:
+        part.ClearField("doc_string")
+        part.ClearField("metadata_props")
+    onnx.save(model, path)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", type=Path, nargs="+", required=True, help="folders written by `yoro dataset`")
     parser.add_argument("--hold-out", nargs="*", default=["prototype"], help="scenes that are not trained on, but reported")
-    parser.add_argument("--out", type=Path, default=Path("app/models/patcher.onnx"))
+    parser.add_argument("--out", type=Path, default=Path("app/lab/models/patcher.onnx"))
     parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--minutes", type=float, default=1e9, help="stop after this time, whatever --steps says")
     parser.add_argument("--batch", type=int, default=4)
