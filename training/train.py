@@ -168,7 +168,7 @@ def export(generator, path):
 
 
 def strip(path):
-    """Removes what the exporter notes of this machine: stack traces with the paths of its files."""
+    """Removes the exporter's stack traces, which contain paths of this machine."""
     model = onnx.load(path)
     graph = model.graph
     for part in [model, graph, *graph.node, *graph.value_info, *graph.input, *graph.output, *graph.initializer]:

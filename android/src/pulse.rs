@@ -111,8 +111,9 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
-    let beat = RefreshLoop { shared, choreographer: Choreographer::of_thread(), is_posted: Cell::new(false) };
-    match &beat.choreographer {
+    let refresh_loop =
+        RefreshLoop { shared, choreographer: Choreographer::of_thread(), is_posted: Cell::new(false) };
+    match &refresh_loop.choreographer {
         None => log::info!("this device has no choreographer: eglSwapBuffers sets the pace"),
         Some(Choreographer { post: Post::Frame(_), .. }) => {
             log::info!(
@@ -130,7 +131,7 @@ fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
             if is_on {
                 // The device does not sleep while the activity is in the foreground.
                 slept = slept_ns();
-                beat.post();
+                refresh_loop.post();
             }
         }
         // SAFETY: the looper belongs to this thread, and null pointers ask for no results besides the return value.
@@ -277,15 +278,15 @@ impl RefreshLoop<'_> {
 
 unsafe extern "C" fn on_frame(frame_time_ns: i64, data: *mut c_void) {
     // SAFETY: the pointer is the one that `RefreshLoop::post` passed.
-    let beat = unsafe { &*data.cast::<RefreshLoop>() };
-    beat.on_refresh(Refresh { begin_ns: frame_time_ns, timeline: None });
+    let refresh_loop = unsafe { &*data.cast::<RefreshLoop>() };
+    refresh_loop.on_refresh(Refresh { begin_ns: frame_time_ns, timeline: None });
 }
 
 unsafe extern "C" fn on_vsync(frame: *const FrameData, data: *mut c_void) {
     // SAFETY: the pointer is the one that `RefreshLoop::post` passed.
-    let beat = unsafe { &*data.cast::<RefreshLoop>() };
-    if let Some(Choreographer { post: Post::Vsync(vsync), .. }) = &beat.choreographer {
+    let refresh_loop = unsafe { &*data.cast::<RefreshLoop>() };
+    if let Some(Choreographer { post: Post::Vsync(vsync), .. }) = &refresh_loop.choreographer {
         // SAFETY: the data belong to this callback.
-        beat.on_refresh(unsafe { vsync.refresh(frame) });
+        refresh_loop.on_refresh(unsafe { vsync.refresh(frame) });
     }
 }

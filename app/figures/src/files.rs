@@ -1,5 +1,6 @@
 //! The files of a report.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use yoro_files::FileError;
@@ -36,5 +37,14 @@ impl ReportFiles {
         yoro_files::write(&self.json, json.as_bytes())?;
         yoro_files::write(&self.markdown, markdown.as_bytes())?;
         yoro_files::write(&self.page, page.as_bytes())
+    }
+}
+
+impl fmt::Display for ReportFiles {
+    /// Writes a line for each file: what it is, and its path.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "page:   {}", self.page.display())?;
+        writeln!(f, "tables: {}", self.markdown.display())?;
+        writeln!(f, "json:   {}", self.json.display())
     }
 }

@@ -25,7 +25,7 @@ pub const DEPTH_BITS: [u32; 2] = [16, 32];
 pub struct ChoiceError(String);
 
 /// Implements parsing and serde by the names of a type's values.
-macro_rules! names {
+macro_rules! by_name {
     ($type:ident) => {
         impl FromStr for $type {
             type Err = ChoiceError;
@@ -76,7 +76,7 @@ macro_rules! choices {
 
         $( choices!(@default $type $value $($default)?); )+
 
-        names! { $type }
+        by_name! { $type }
 
         named! {
             $type: &[$(Choice::new($name, $help)),+], |text: &str| find(&$type::ALL, $type::name, text);
@@ -252,7 +252,7 @@ impl From<Method> for MethodChoice {
     }
 }
 
-names! { MethodChoice }
+by_name! { MethodChoice }
 
 named! {
     MethodChoice: &{

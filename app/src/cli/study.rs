@@ -275,9 +275,6 @@ fn analyse(args: &AnalyseArgs) -> anyhow::Result<()> {
     let study = Study::new(&ratings, options, machine::made_by())?;
     files::create_folder(&args.out)?;
     let written = study.write(&args.out)?;
-    print!("{}", study.to_text());
-    println!("page:   {}", written.page.display());
-    println!("tables: {}", written.markdown.display());
-    println!("json:   {}", written.json.display());
+    print!("{}{written}", study.to_text());
     Ok(())
 }

@@ -66,13 +66,13 @@ pub(crate) enum Hint {
 }
 
 impl Hint {
-    /// Returns the lines for the HUD; `made_up` names the synthesized eye.
-    pub fn text(self, made_up: &str) -> Option<String> {
+    /// Returns the lines for the HUD; `synthesized` names the synthesized eye.
+    pub fn text(self, synthesized: &str) -> Option<String> {
         let [before, after] = EXPLANATION;
         match self {
             Hint::None => None,
             Hint::Menu => Some("Hold, or look down: the menu".into()),
-            Hint::Explanation => Some([before, made_up, after].concat()),
+            Hint::Explanation => Some([before, synthesized, after].concat()),
         }
     }
 }
@@ -134,7 +134,7 @@ impl StartScreen {
     }
 
     /// Writes the texts: the viewers' names, which of them is chosen, and which eye is synthesized.
-    pub fn write(&mut self, viewers: &[[String; 2]], chosen: Option<usize>, made_up: &str) {
+    pub fn write(&mut self, viewers: &[[String; 2]], chosen: Option<usize>, synthesized: &str) {
         let cut = |name: &String| name.chars().take(TILE_COLUMNS).collect::<String>();
         let tile = |tile: &Tile| match *tile {
             Tile::Viewer(i) => viewers
@@ -162,7 +162,7 @@ impl StartScreen {
             return wrap(heading, &self.message, HEADING_COLUMNS);
         }
         heading.push_str(&format!(
-            "By yoro, the {made_up} eye's picture is made up.\n\
+            "By yoro, the {synthesized} eye's picture is made up.\n\
              Compare, in the menu: both eyes are rendered.\n\
              Figures: frames a second, a frame's ms, degrees C.\n\
              A tap changes the method; a hold opens the menu, as\n\

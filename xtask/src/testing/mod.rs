@@ -42,6 +42,8 @@ const INTEGRATION: usize = 4;
 const UNIT: usize = 60;
 /// Maximum number of failures that are retried. More of them are no coincidence.
 const RETRIED: usize = 8;
+/// The label of the tests in documentation, which have no program.
+const DOCUMENTATION: &str = "documentation";
 
 /// Which tests to run, and how.
 #[derive(Clone, Debug, Default)]
@@ -193,7 +195,7 @@ impl<'a> Run<'a> {
     fn program(&self, job: &Job) -> &'a str {
         match job {
             Job::Tests(program, _) => &self.programs[*program].0.label,
-            Job::Documentation => "documentation",
+            Job::Documentation => DOCUMENTATION,
         }
     }
 
@@ -248,13 +250,11 @@ impl<'a> Run<'a> {
             drop(sender);
             for (job, finished) in receiver {
                 let program = self.program(&job);
-                if job == Job::Documentation {
-                    // How many there are is not known before.
-                    summary.documentation = finished.tests.len();
-                }
-                let total = total + summary.documentation;
-                print_tests(program, &finished, |i| format!("[{:4}/{total}] ", summary.count() + i + 1));
+                let before = summary.count();
                 summary.add(program, &finished);
+                // The number of documentation tests is not known before they have run.
+                let total = total + summary.count_of(DOCUMENTATION);
+                print_tests(program, &finished, |i| format!("[{:4}/{total}] ", before + i + 1));
             }
         });
         summary.phase(what, start.elapsed());

@@ -24,8 +24,6 @@ pub struct Summary {
     /// Tests that failed beside others, but passed alone.
     flaky: Vec<String>,
     ignored: usize,
-    /// The number of documentation tests that have run.
-    pub documentation: usize,
     /// Messages about missing equipment, and the number of tests that printed each.
     left_out: BTreeMap<String, usize>,
 }
@@ -41,7 +39,6 @@ impl Summary {
             failed: Vec::new(),
             flaky: Vec::new(),
             ignored: 0,
-            documentation: 0,
             left_out: BTreeMap::new(),
         }
     }
@@ -93,6 +90,11 @@ impl Summary {
     /// Returns the number of finished tests.
     pub fn count(&self) -> usize {
         self.passed.len() + self.failed.len() + self.ignored
+    }
+
+    /// Returns the number of finished tests of a program.
+    pub fn count_of(&self, program: &str) -> usize {
+        self.programs.get(program).map_or(0, |(tests, _)| *tests)
     }
 }
 

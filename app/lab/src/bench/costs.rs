@@ -29,9 +29,14 @@ pub struct Work {
 }
 
 impl Work {
-    /// Adds other work, executed so many times.
+    /// Returns this work and `times` executions of other work.
     pub fn plus(self, times: f64, other: Work) -> Work {
         Work { slots: self.slots + times * other.slots, fetches: self.fetches + times * other.fetches }
+    }
+
+    /// Returns this work without one execution of other work.
+    pub fn minus(self, other: Work) -> Work {
+        self.plus(-1.0, other)
     }
 }
 
@@ -129,7 +134,7 @@ impl Costs {
                 format!("docs/shader-cost.csv has unreadable loops of {file}: {}", row.loops)
             })?;
             let around = if is_inner { &mut parts.loops[outermost] } else { &mut parts.straight };
-            *around = around.plus(-1.0, body);
+            *around = around.minus(body);
             if !is_inner {
                 outermost = parts.loops.len();
             }

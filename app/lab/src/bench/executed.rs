@@ -140,9 +140,9 @@ impl Costs {
         let all = of("march", &["PARTS=62"], 3)?;
         // The loop over segments is the second one, the loop to a crossing is the last. Events are handled in two
         // places, one of them before the loop.
-        let event = events.loops[1].plus(-1.0, segments.loops[1]);
-        let crossing = all.straight.plus(-1.0, fill.straight);
-        let long = events.straight.plus(1.0, crossing).plus(-1.0, event).plus(-1.0, short.straight);
+        let event = events.loops[1].minus(segments.loops[1]);
+        let crossing = all.straight.minus(fill.straight);
+        let long = events.straight.plus(1.0, crossing).minus(event).minus(short.straight);
         let parts = vec![
             ("tiles", tiles.straight),
             ("tiles: two rows", tiles.loops[0]),
@@ -156,7 +156,7 @@ impl Costs {
             ("march: long way", long),
             ("march: segment", segments.loops[1]),
             ("march: event", event),
-            ("march: fill", fill.total().plus(-1.0, events.total())),
+            ("march: fill", fill.total().minus(events.total())),
             ("march: crossing", all.loops[2]),
         ];
         Ok(Costs { lanes: march.lanes, parts })

@@ -7,7 +7,7 @@ use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
 
 use super::power::BatteryStatus;
-use super::text::{LineError, MISSING, Reader, VERSION, word};
+use super::text::{Field, LineError, MISSING, Reader, VERSION, word};
 
 /// The name in the table of the second number of `FPS=a/b`, the refresh rate.
 const REFRESH: &str = "FPS/";
@@ -343,8 +343,7 @@ impl FromStr for Line {
 
     fn from_str(text: &str) -> Result<Line, LineError> {
         let reader = Reader::new(text);
-        let version = VERSION.to_string();
-        if reader.first().is_none_or(|f| f.key != "v" || f.value != Some(version.as_str())) {
+        if !reader.first().is_some_and(Field::is_version) {
             return Err(LineError::Version);
         }
         let mut line = Line::default();

@@ -58,6 +58,13 @@ pub struct Field<'a> {
     pub value: Option<&'a str>,
 }
 
+impl Field<'_> {
+    /// True if this field is the version of all lines.
+    pub(super) fn is_version(self) -> bool {
+        self.key == "v" && self.value.is_some_and(|value| value == VERSION.to_string())
+    }
+}
+
 /// Splits a line at the commas outside parentheses. This also reads the lines of Meta's runtime (tag `VrApi`).
 pub fn fields(line: &str) -> impl Iterator<Item = Field<'_>> {
     let mut depth = 0u32;
@@ -87,12 +94,10 @@ impl<'a> Reader<'a> {
     /// Reads a line that starts with the field `begin` and the version.
     pub fn of(line: &'a str, begin: &str) -> Result<Reader<'a>, LineError> {
         let reader = Reader::new(line);
-        let version = VERSION.to_string();
-        let is_ours = match reader.0[..] {
-            [first, second, ..] => (first.key, second.key, second.value) == (begin, "v", Some(&version)),
-            _ => false,
-        };
-        if is_ours { Ok(reader) } else { Err(LineError::Version) }
+        match reader.0[..] {
+            [first, second, ..] if first.key == begin && second.is_version() => Ok(reader),
+            _ => Err(LineError::Version),
+        }
     }
 
     pub fn text(&self, key: &'static str) -> Result<&'a str, LineError> {

@@ -58,10 +58,7 @@ impl Subcommand for ReportArgs {
         files::create_folder(&self.out)?;
         let report = DeviceReport::new(&sets, &self.baseline, &cells, machine::made_by());
         let written = report.write(&self.out)?;
-        print!("{}", report.to_text());
-        println!("page:   {}", written.page.display());
-        println!("tables: {}", written.markdown.display());
-        println!("json:   {}", written.json.display());
+        print!("{}{written}", report.to_text());
         Ok(())
     }
 }

@@ -73,7 +73,7 @@ impl Access {
             let (socket, address) = match listener.accept() {
                 Ok(accepted) => accepted,
                 Err(error) => {
-                    // Such as no file descriptors being left: the next attempt would fail at once, too.
+                    // For example, no file descriptors are left: the next attempt would fail at once, too.
                     log::warn!("a connection is not accepted: {error}");
                     thread::sleep(ACCEPT_PAUSE);
                     continue;

@@ -205,7 +205,7 @@ impl Viewer {
         }
         let text =
             |key: &str| Setting::find(key).map_or_else(String::new, |setting| setting.text(&self.settings));
-        let made_up = self.synthesized_eye();
+        let synthesized = self.synthesized_eye();
         let quality = self.quality().map_or("own", |at| QUALITIES[at].0);
         let tiles = Item::ALL.map(|item| match item {
             Item::Recenter => "Recenter".into(),
@@ -223,7 +223,7 @@ impl Viewer {
         });
         self.menu.tiles.tiles = tiles.into();
         self.menu.tiles.heading = format!(
-            "By yoro, the {made_up} eye's picture is made up.\n\
+            "By yoro, the {synthesized} eye's picture is made up.\n\
              Compare, held or looked at: both eyes are rendered.\n\
              Figures: frames a second, a frame's ms, degrees C.\n\
              {}",

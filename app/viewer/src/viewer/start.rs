@@ -150,8 +150,8 @@ impl Viewer {
         let viewers = self.viewers();
         let chosen = viewers.iter().position(|viewer| *viewer == self.settings.viewer);
         let names: Vec<_> = viewers.iter().map(|viewer| self.viewer_name(viewer)).collect();
-        let made_up = self.synthesized_eye();
-        self.start.write(&names, chosen, made_up);
+        let synthesized = self.synthesized_eye();
+        self.start.write(&names, chosen, synthesized);
     }
 
     /// Fills a window with the start screen.

@@ -58,7 +58,7 @@ pub struct Gather {
     march: Program,
     tile_map: RenderTarget,
     span_map: RenderTarget,
-    recall: Option<HistoryBinding>,
+    history_binding: Option<HistoryBinding>,
 }
 
 impl Gather {
@@ -138,7 +138,7 @@ impl Gather {
             march: Program::new(gl, march_source("synthesis/gather/march.frag"), &march)?,
             tile_map: map()?,
             span_map: map()?,
-            recall: options.recall(gl)?,
+            history_binding: options.history_binding(gl)?,
         })
     }
 }
@@ -176,8 +176,8 @@ impl Synthesis for Gather {
             set_source(self.march.bind());
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());
-            if let Some(recall) = &self.recall {
-                recall.set(&self.march, source.history, 4);
+            if let Some(binding) = &self.history_binding {
+                binding.set(&self.march, source.history, 4);
             }
             draw_target(gl, target, self.outputs);
         });

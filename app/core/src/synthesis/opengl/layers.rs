@@ -38,7 +38,7 @@ pub struct Layers {
     layers: RenderTarget,
     tile_map: RenderTarget,
     span_map: RenderTarget,
-    recall: Option<HistoryBinding>,
+    history_binding: Option<HistoryBinding>,
 }
 
 /// The first pass, for sources without and with sample colours.
@@ -133,7 +133,7 @@ impl Layers {
             layers: RenderTarget::new(gl, [1, 1], &layers, None)?,
             tile_map: map()?,
             span_map: map()?,
-            recall: options.recall(gl)?,
+            history_binding: options.history_binding(gl)?,
         })
     }
 
@@ -201,9 +201,9 @@ impl Synthesis for Layers {
             program.texture("span_map", 2, self.span_map.color(0).raw());
             program.texture("layer_map", 3, layers).texture("back_map", 4, backs);
             uniforms.set(program);
-            if let Some(recall) = &self.recall {
+            if let Some(binding) = &self.history_binding {
                 // The march does not read the source's depth.
-                recall.set(program, source.history, 0);
+                binding.set(program, source.history, 0);
             }
             draw_target(gl, target, self.outputs);
         });

@@ -194,7 +194,7 @@ impl SynthesisOptions {
         defines([("HISTORY", self.history)])
     }
 
-    fn recall(&self, gl: &Rc<Context>) -> Result<Option<HistoryBinding>, GlError> {
+    fn history_binding(&self, gl: &Rc<Context>) -> Result<Option<HistoryBinding>, GlError> {
         self.history.then(|| HistoryBinding::new(gl)).transpose()
     }
 
