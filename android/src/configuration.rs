@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use android_activity::AndroidApp;
 use yoro_gl::Context;
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_scenes::BUILTINS;
 use yoro_viewer::{Cardboard, Viewer, ViewerError, list_scenes};
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use yoro_protocol::telemetry::{BatteryStatus, DeviceState};
+use yoro_settings::telemetry::{BatteryStatus, DeviceState};
 
 use crate::java::{BatteryProperty, Java};
 use crate::thermal::Thermal;

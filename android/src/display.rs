@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use yoro_context::android::WindowError;
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_viewer::openxr::{Headset, XrError};
 use yoro_viewer::{Cardboard, Viewer, ViewerError};
 

@@ -1,7 +1,7 @@
 //! Game loops of Firebase Test Lab: scenarios that play by themselves, write their log lines to a file, and end. The
 //! scenarios' labels are in the manifest.
 
-use yoro_protocol::Pipeline;
+use yoro_settings::Pipeline;
 
 use crate::settings::Pair;
 
@@ -70,7 +70,7 @@ impl GameLoop {
 
 #[cfg(test)]
 mod tests {
-    use yoro_protocol::Settings;
+    use yoro_settings::Settings;
 
     use super::*;
 

@@ -67,7 +67,7 @@ fn android_main(app: android_activity::AndroidApp) {
     results::init_log(
         android_logger::Config::default()
             .with_max_level(log::LevelFilter::Info)
-            .with_tag(yoro_protocol::telemetry::LOG_TAG)
+            .with_tag(yoro_settings::telemetry::LOG_TAG)
             .format(|writer, record| write!(writer, "{}", record.args())),
     );
     // A panic never unwinds into Android's code: the build aborts after this hook.

@@ -7,7 +7,7 @@ use std::ptr::NonNull;
 use std::time::Duration;
 
 use ndk::native_window::NativeWindow;
-use yoro_protocol::{Performance as Level, Settings};
+use yoro_settings::{Performance as Level, Settings};
 
 use crate::dynamic::Library;
 use crate::java::Java;
@@ -89,7 +89,7 @@ impl Performance {
         }
     }
 
-    /// Returns the modes in effect by name, for the [`DeviceState`](yoro_protocol::telemetry::DeviceState).
+    /// Returns the modes in effect by name, for the [`DeviceState`](yoro_settings::telemetry::DeviceState).
     pub fn name(&self) -> &'static str {
         match (self.sustained == Some((true, true)), self.hints.is_some()) {
             (true, true) => "sustained/hints",

@@ -6,8 +6,8 @@ use std::rc::Rc;
 
 use image::RgbImage;
 use yoro_gl::Context;
-use yoro_protocol::Pipeline;
-use yoro_protocol::telemetry::Pictures;
+use yoro_settings::Pipeline;
+use yoro_settings::telemetry::Pictures;
 use yoro_render::stereo::stills;
 
 /// The least PSNR against the stored picture, in dB. Two drivers that follow the specification differ in rounding and

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use yoro_protocol::{PROPERTY_PREFIX, SETTINGS, Setting, Settings};
+use yoro_settings::{PROPERTY_PREFIX, SETTINGS, Setting, Settings};
 
 /// The optional prefix of intent extras. Extras of the system contain other dots.
 const EXTRA_PREFIX: &str = "yoro.";
@@ -141,7 +141,7 @@ pub fn restore(bytes: &[u8]) -> Vec<Pair> {
 mod tests {
     use std::collections::HashMap;
 
-    use yoro_protocol::{Ipd, Method};
+    use yoro_settings::{Ipd, Method};
 
     use super::*;
 

@@ -11,7 +11,7 @@ use rand_pcg::Pcg32;
 use super::build::{ArchOpening, BoxFaces, SceneBuilder, around, moved, placed, random, viewpoints};
 use super::paint::{self, Canvas};
 use super::props::{self, fronds, glowing, metal, palette, pictured, plain, textured};
-use yoro_scene::{PointLight, Scene, Sky, TextureImage, Viewpoint};
+use yoro_assets::{PointLight, Scene, Sky, TextureImage, Viewpoint};
 
 /// Half the width and half the length of the court.
 const COURT: Vec2 = vec2(4.0, 15.0);

@@ -12,7 +12,7 @@ use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, vec2, vec3};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-use yoro_scene::{Material, Model, Part, TextureImage, Vertex, Viewpoint};
+use yoro_assets::{Material, Model, Part, TextureImage, Vertex, Viewpoint};
 
 /// Returns a random number generator that is equal for equal seed and purpose, and independent between purposes.
 pub fn random(seed: u64, purpose: &str) -> Pcg32 {

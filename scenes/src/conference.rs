@@ -12,7 +12,7 @@ use rand_pcg::Pcg32;
 use super::build::{BoxFaces, Railing, SceneBuilder, around, hanging, moved, placed, random, viewpoints};
 use super::paint::{self, Canvas};
 use super::props::{self, Tree, cup, fronds, glass, glowing, metal, palette, pictured, plain, textured};
-use yoro_scene::{Alpha, Material, PointLight, Scene, Sky, TextureImage, Viewpoint};
+use yoro_assets::{Alpha, Material, PointLight, Scene, Sky, TextureImage, Viewpoint};
 
 /// Half the size of the room; its height is `CEILING`.
 const ROOM: Vec2 = vec2(5.6, 4.0);

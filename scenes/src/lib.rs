@@ -8,7 +8,7 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use yoro_scene::{Scene, SceneError, ShadingStyle};
+use yoro_assets::{Scene, SceneError, ShadingStyle};
 
 use build::{Progress, SceneBuilder};
 
@@ -183,7 +183,7 @@ pub fn load(name: &str, seed: u64, style: Option<ShadingStyle>) -> Result<Scene,
     let looks_like_path = path.components().count() > 1 || path.extension().is_some() || path.exists();
     let mut scene = match build(name, seed) {
         Ok(scene) => scene,
-        Err(_) if looks_like_path => yoro_scene::load(path)?,
+        Err(_) if looks_like_path => yoro_assets::load(path)?,
         Err(error) => return Err(error.into()),
     };
     scene.style = style.unwrap_or(scene.style);
@@ -211,7 +211,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use yoro_scene::{Bounds, Model};
+    use yoro_assets::{Bounds, Model};
 
     /// The scenes with the default seed, generated once for all tests.
     static SCENES: LazyLock<Vec<Scene>> =
@@ -221,7 +221,7 @@ mod tests {
         BUILTINS.iter().zip(SCENES.iter()).for_each(|(builtin, scene)| check(builtin, scene));
     }
 
-    fn triangles(model: &Model) -> impl Iterator<Item = [yoro_scene::Vertex; 3]> + '_ {
+    fn triangles(model: &Model) -> impl Iterator<Item = [yoro_assets::Vertex; 3]> + '_ {
         model.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|i| model.vertices[i as usize]))
     }
 
@@ -256,7 +256,7 @@ mod tests {
             let model = &scene.model;
             let mut backwards = Vec::new();
             for part in model.parts.iter().filter(|p| !model.materials[p.material].double_sided) {
-                if matches!(model.materials[part.material].alpha, yoro_scene::Alpha::Cutout(_)) {
+                if matches!(model.materials[part.material].alpha, yoro_assets::Alpha::Cutout(_)) {
                     continue;
                 }
                 let wrong = model.indices[part.indices.clone()]
@@ -387,7 +387,7 @@ mod tests {
             );
             for part in &scene.model.parts {
                 let vertices = &scene.model.indices[part.indices.clone()];
-                let within = |mesh: &yoro_scene::motion::MovingMesh| {
+                let within = |mesh: &yoro_assets::motion::MovingMesh| {
                     vertices.iter().filter(|&&v| mesh.vertices.contains(&(v as usize))).count()
                 };
                 let moved: Vec<usize> = motion.meshes.iter().map(within).filter(|count| *count > 0).collect();

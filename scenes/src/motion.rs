@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use glam::{Affine3A, Quat, Vec3};
 
-use yoro_scene::motion::{Carrier, Influence, MovingLight, MovingMesh, Node, Track};
-use yoro_scene::{Model, Motion, PointLight, Vertex};
+use yoro_assets::motion::{Carrier, Influence, MovingLight, MovingMesh, Node, Track};
+use yoro_assets::{Model, Motion, PointLight, Vertex};
 
 /// Keys per loop.
 const KEYS: u32 = 24;

@@ -7,7 +7,7 @@
 use glam::{UVec2, Vec2, Vec3, Vec4, vec2, vec3};
 use rayon::prelude::*;
 
-use yoro_scene::TextureImage;
+use yoro_assets::TextureImage;
 
 /// A surface's colour and the normal map of its relief.
 #[derive(Clone, Debug)]

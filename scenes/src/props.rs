@@ -7,7 +7,7 @@ use rand::Rng;
 
 use super::build::{SceneBuilder, around, hanging};
 use super::paint;
-use yoro_scene::{Alpha, Material, TextureImage};
+use yoro_assets::{Alpha, Material, TextureImage};
 
 /// Declares the materials of a scene, as a struct with a field for each, and the function that makes them. The function
 /// runs the statements in its body first, then makes the fields in order. A field is a `usize`, the index of a material

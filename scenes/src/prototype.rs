@@ -10,7 +10,7 @@ use rand_pcg::Pcg32;
 use super::build::{Railing, SceneBuilder, around, hanging, moved, placed, random};
 use super::paint;
 use super::props::palette;
-use yoro_scene::{Alpha, Material, PointLight, Scene, Sky, Viewpoint};
+use yoro_assets::{Alpha, Material, PointLight, Scene, Sky, Viewpoint};
 
 fn grid(
     s: &mut SceneBuilder,

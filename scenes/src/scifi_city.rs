@@ -14,7 +14,7 @@ use super::paint;
 use super::props::{
     self, glass, glowing, metal, palette, pictured, plain, textured, tube_text, tube_text_width,
 };
-use yoro_scene::{PointLight, Scene, Sky, Viewpoint};
+use yoro_assets::{PointLight, Scene, Sky, Viewpoint};
 
 const FACADES: f32 = 9.0;
 const ROAD: f32 = 5.0;

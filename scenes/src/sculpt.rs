@@ -4,7 +4,7 @@ use glam::{IVec3, Mat3, Quat, Vec2, Vec3, Vec3Swizzles as _, ivec3, vec3};
 use rayon::prelude::*;
 
 use super::build::SceneBuilder;
-use yoro_scene::Bounds;
+use yoro_assets::Bounds;
 
 /// A shape, given by its signed distance in metres, negative inside.
 #[derive(Clone, Copy, Debug)]
@@ -207,7 +207,7 @@ const EDGES: [[usize; 2]; 12] =
 #[cfg(test)]
 mod tests {
     use super::*;
-    use yoro_scene::{Material, Model};
+    use yoro_assets::{Material, Model};
 
     fn meshed(clay: &Clay, cell: f32) -> Model {
         let mut s = SceneBuilder::new();

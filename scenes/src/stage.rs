@@ -12,7 +12,7 @@ use super::motion::{Movers, about};
 use super::paint::{self, Face};
 use super::props::{self, palette};
 use super::sculpt::Clay;
-use yoro_scene::{Alpha, Material, PointLight, Scene, Sky, Viewpoint};
+use yoro_assets::{Alpha, Material, PointLight, Scene, Sky, Viewpoint};
 
 /// Height of the stage in metres.
 const STAGE: f32 = 1.0;
@@ -95,7 +95,7 @@ palette! {
     fn outfit(s: &mut SceneBuilder, seed: u32) -> Outfit {
         let skin = vec3(0.98, 0.84, 0.76);
         // A little emission keeps the drawn face readable on its shadow side.
-        let fair = |s: &mut SceneBuilder, name: &str, image: Option<yoro_scene::TextureImage>| {
+        let fair = |s: &mut SceneBuilder, name: &str, image: Option<yoro_assets::TextureImage>| {
             let map = image.map(|image| s.texture(image));
             let tone = if map.is_some() { Vec3::ONE } else { skin };
             s.material(
@@ -144,7 +144,7 @@ palette! {
             let weave = 0.9 + 0.2 * (uv.x * 64.0 * PI).sin().abs();
             (vec3(0.16, 0.15, 0.22) * weave).extend(1.0)
         });
-        let double = |s: &mut SceneBuilder, image: yoro_scene::TextureImage| {
+        let double = |s: &mut SceneBuilder, image: yoro_assets::TextureImage| {
             let name = image.name.clone();
             let map = s.texture(image);
             s.material(

@@ -14,7 +14,7 @@ use super::paint::{self, Canvas};
 use super::props::{
     self, Tree, bulb_string, cup, foliage, glass, glowing, hedge, metal, palette, pictured, plain, textured,
 };
-use yoro_scene::{PointLight, Scene, Sky, Viewpoint};
+use yoro_assets::{PointLight, Scene, Sky, Viewpoint};
 
 const LEFT_FACADES: f32 = -7.0;
 const RIGHT_FACADES: f32 = 9.0;
@@ -152,7 +152,7 @@ fn striped(name: &str, seed: u32, color: Vec3) -> paint::Surface {
 }
 
 /// Paints the view through a window pane: curtains, and a dim or a lit room.
-fn window_picture(name: &str, lit: bool) -> yoro_scene::TextureImage {
+fn window_picture(name: &str, lit: bool) -> yoro_assets::TextureImage {
     let mut c =
         Canvas::new([256, 512], if lit { vec4(0.85, 0.62, 0.33, 1.0) } else { vec4(0.1, 0.12, 0.14, 1.0) });
     for i in 0..16 {

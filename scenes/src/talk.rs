@@ -12,7 +12,7 @@ use super::motion::{Movers, about};
 use super::paint::{self, Face};
 use super::props::{self, palette};
 use super::sculpt::Clay;
-use yoro_scene::{Material, PointLight, Scene, Sky, Viewpoint};
+use yoro_assets::{Material, PointLight, Scene, Sky, Viewpoint};
 
 /// One figure's materials and the shape of its head.
 struct Look {

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::build::{SceneBuilder, moved, random};
 use super::paint::{self, Block, Plant, hash_cell, smoothstep, unit};
-use yoro_scene::{Alpha, Material, Model, Part, PointLight, Scene, Sky, Vertex, Viewpoint};
+use yoro_assets::{Alpha, Material, Model, Part, PointLight, Scene, Sky, Vertex, Viewpoint};
 
 /// Edge length of a voxel in metres.
 const EDGE: f32 = 0.5;

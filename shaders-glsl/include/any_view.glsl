@@ -1,4 +1,4 @@
-// Inputs of the passes for any view. app/core/src/synthesis/uniforms.rs fills the block; docs/library.md has the table
+// Inputs of the passes for any view. app/engines/core/src/synthesis/uniforms.rs fills the block; docs/library.md has the table
 // of offsets.
 
 #include "include/interface.glsl"

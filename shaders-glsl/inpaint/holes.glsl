@@ -1,4 +1,4 @@
-// A reprojected image with holes; app/lab/src/inpaint/mod.rs, `Reprojected`.
+// A reprojected image with holes; app/lab/bench/src/inpaint/mod.rs, `Reprojected`.
 //
 // Columns are counted "forward", as in synthesis (include/warp.glsl): nearer surfaces have moved further along, so the
 // background of a disocclusion is on its left.

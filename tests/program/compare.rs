@@ -1,7 +1,7 @@
 //! `yoro compare`.
 
 use image::Rgb;
-use yoro_lab::picture;
+use yoro_bench::picture;
 
 use crate::pair;
 use crate::program::{run, succeed};

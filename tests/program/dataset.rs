@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use yoro_lab::metrics::{Channels, Psnr, psnr};
-use yoro_lab::picture;
+use yoro_bench::metrics::{Channels, Psnr, psnr};
+use yoro_bench::picture;
 
 use crate::program::{interrupt, run, succeed};
 
@@ -202,7 +202,7 @@ fn mistakes() {
     fs::write(dir.path().join("noise.onnx"), "noise").unwrap();
     refuses(
         "dataset prototype --groups 1 --size 32 --patcher neural --model noise.onnx",
-        &["noise.onnx is not a model", "training/train.py"],
+        &["noise.onnx is not a model", "app/lab/training/train.py"],
     );
     refuses("dataset prototype --patcher xiao --model noise.onnx", &["--model goes with --patcher neural"]);
     fs::create_dir_all(dir.path().join("dataset/prototype")).unwrap();

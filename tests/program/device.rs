@@ -10,7 +10,7 @@ use yoro_devices::capture::{self, Capture, FaultKind, Outcome, Sample};
 use crate::program::{finish, interrupt, run, succeed, yoro};
 
 /// The experiments in the repository.
-const EXPERIMENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../experiments");
+const EXPERIMENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../lab/devices/experiments");
 
 fn write(folder: &Path, name: &str, text: &str) {
     fs::write(folder.join(name), text).unwrap();

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use yoro_lab::picture;
+use yoro_bench::picture;
 
 use crate::pair;
 use crate::program::{run, succeed};

@@ -21,7 +21,7 @@ fn library(name: &str) -> PathBuf {
 
 /// Returns the path of the layer's library as an argument.
 fn own_library() -> String {
-    library("libyoro_layer.so").into_os_string().into_string().unwrap()
+    library("libyoro_openxr_layer.so").into_os_string().into_string().unwrap()
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_library_that_is_not_the_layer_is_refused() {
             layer(folder, &[task, &["--library", file], program].concat()).refuses(&[
                 file,
                 what,
-                "libyoro_layer.so",
+                "libyoro_openxr_layer.so",
             ]);
         }
     }
@@ -76,9 +76,9 @@ fn a_library_that_is_not_the_layer_is_refused() {
 
     // The same if the library is replaced later.
     assert_eq!(layer(folder, &["install", "--library", &own_library()]).code, Some(0));
-    let installed = folder.join("data/yoro/libyoro_layer.so");
+    let installed = folder.join("data/yoro/libyoro_openxr_layer.so");
     fs::copy(folder.join("runtime.so"), &installed).unwrap();
-    layer(folder, &["status"]).refuses(&["data/yoro/libyoro_layer.so", "no OpenXR API layer"]);
+    layer(folder, &["status"]).refuses(&["data/yoro/libyoro_openxr_layer.so", "no OpenXR API layer"]);
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_link_in_place_of_the_library_is_replaced() {
     let folder = folder.path();
     let target = folder.join("somebody's");
     fs::write(&target, "somebody's").unwrap();
-    let installed = folder.join("data/yoro/libyoro_layer.so");
+    let installed = folder.join("data/yoro/libyoro_openxr_layer.so");
     fs::create_dir_all(installed.parent().unwrap()).unwrap();
     std::os::unix::fs::symlink(&target, &installed).unwrap();
     assert_eq!(layer(folder, &["install", "--library", &own_library()]).code, Some(0));

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 use image::RgbImage;
-use yoro_lab::picture;
+use yoro_bench::picture;
 
 use crate::pair;
 use crate::program::{finish, run, yoro};

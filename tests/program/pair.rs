@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::{GrayImage, ImageBuffer, Luma, Rgb, RgbImage};
 use yoro::eyes::{DepthConvention, DepthRange};
-use yoro_lab::picture::{self, DepthImage};
+use yoro_bench::picture::{self, DepthImage};
 
 pub const WIDTH: u32 = 160;
 pub const HEIGHT: u32 = 120;

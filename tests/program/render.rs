@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use image::{Rgb, RgbImage};
-use yoro_lab::picture;
+use yoro_bench::picture;
 
 use crate::program::{run, succeed};
 

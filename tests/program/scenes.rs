@@ -1,7 +1,7 @@
 //! `yoro scenes` and `yoro info`.
 
-use yoro_lab::metrics::{Channels, SsimWindow, ssim};
-use yoro_lab::picture;
+use yoro_bench::metrics::{Channels, SsimWindow, ssim};
+use yoro_bench::picture;
 use yoro_scenes::BUILTINS;
 
 use crate::program::{run, succeed};

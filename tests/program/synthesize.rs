@@ -5,8 +5,8 @@ use std::path::Path;
 
 use image::RgbImage;
 use yoro::eyes::DepthConvention;
-use yoro_lab::metrics::{Channels, Psnr, psnr};
-use yoro_lab::picture::{self, DepthImage};
+use yoro_bench::metrics::{Channels, Psnr, psnr};
+use yoro_bench::picture::{self, DepthImage};
 
 use crate::pair::{self, FOV_Y_DEGREES, IPD, RANGE};
 use crate::program::{run, succeed};

@@ -3,8 +3,8 @@
 use std::fs;
 
 use image::{RgbImage, imageops};
-use yoro_lab::metrics::{Channels, psnr};
-use yoro_lab::picture;
+use yoro_bench::metrics::{Channels, psnr};
+use yoro_bench::picture;
 use yoro_video::{Format, Planes, Reader, VideoError};
 
 use crate::program::{run, succeed};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use image::RgbImage;
-use yoro_lab::picture;
+use yoro_bench::picture;
 
 use crate::program::{Run, finish, run, succeed, yoro};
 

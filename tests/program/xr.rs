@@ -13,14 +13,14 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use yoro::eyes::{Eye, EyePair, Frustum};
 use yoro_context::{Backend, Headless};
-use yoro_lab::metrics::{Channels, Quality};
-use yoro_lab::picture;
-use yoro_lab::picture::eye_image;
+use yoro_bench::metrics::{Channels, Quality};
+use yoro_bench::picture;
+use yoro_bench::picture::eye_image;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     Aim, At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
 };
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 
@@ -714,7 +714,7 @@ fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
     let mut command = yoro(["layer", "run", "--library"]);
     command
         // Cargo builds it for these tests, into the same folder.
-        .arg(std::env::current_exe().unwrap().with_file_name("libyoro_layer.so"))
+        .arg(std::env::current_exe().unwrap().with_file_name("libyoro_openxr_layer.so"))
         .arg("--")
         .arg(programs.join("run"))
         .arg(env!("CARGO_BIN_EXE_yoro"))

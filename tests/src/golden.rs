@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use image::RgbImage;
-use yoro_lab::metrics::{Channels, SsimWindow, ssim};
-use yoro_lab::picture;
+use yoro_bench::metrics::{Channels, SsimWindow, ssim};
+use yoro_bench::picture;
 
 /// The variable that renews the golden images instead of comparing with them.
 pub const BLESS: &str = "YORO_BLESS";

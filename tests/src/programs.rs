@@ -9,12 +9,12 @@ use serde::Serialize;
 use yoro::eyes::GuardBand;
 use yoro::synthesis::{self, AnyView, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
-use yoro_lab::inpaint::{self, PatcherKind, PatcherOptions};
+use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_render::stereo::{
     self, AntiAliasing, History, ImBufferSize, Method, Paper, PaperOptions, StereoOptions,
 };
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
-use yoro_scene::{Scene, ShadingStyle};
+use yoro_assets::{Scene, ShadingStyle};
 use yoro_shaders::{Assembled, MissingFile};
 
 use crate::{is_tested, scene};

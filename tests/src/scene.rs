@@ -1,8 +1,8 @@
 //! A scene that is cheap to render and uses every feature of materials.
 
 use glam::{Vec2, Vec3};
-use yoro_scene::Viewpoint;
-use yoro_scene::{Alpha, Material, Model, Part, PointLight, Scene, ShadingStyle, Sky, TextureImage, Vertex};
+use yoro_assets::Viewpoint;
+use yoro_assets::{Alpha, Material, Model, Part, PointLight, Scene, ShadingStyle, Sky, TextureImage, Vertex};
 
 /// Makes a texture of 2x2 texels.
 fn texture(name: &str, srgb: bool, rgba: [[u8; 4]; 4]) -> TextureImage {

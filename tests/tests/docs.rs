@@ -37,7 +37,7 @@ fn paths(text: &str) -> impl Iterator<Item = &str> {
         "app/",
         "android/",
         "docs/",
-        "experiments/",
+        "app/lab/devices/experiments/",
         "scenes/",
         "shaders-glsl/",
         "tests/",

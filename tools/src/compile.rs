@@ -8,7 +8,7 @@ use yoro_tools::cargo;
 /// # Errors
 /// Fails if glslang is missing, or if a shader does not compile.
 pub fn spirv() -> anyhow::Result<String> {
-    compile("yoro", "vulkan::shaders", "YORO_BLESS_SPIRV", "app/core/src/vulkan/spirv")
+    compile("yoro", "vulkan::shaders", "YORO_BLESS_SPIRV", "app/engines/core/src/vulkan/spirv")
 }
 
 /// Compiles all modules for wgpu, and returns a text on what to check next.
@@ -16,7 +16,7 @@ pub fn spirv() -> anyhow::Result<String> {
 /// # Errors
 /// Fails if glslang is missing, or if a shader does not compile.
 pub fn wgsl() -> anyhow::Result<String> {
-    compile("yoro-wgpu", "shaders", "YORO_BLESS_WGSL", "app/wgpu/src/wgsl")
+    compile("yoro-wgpu", "shaders", "YORO_BLESS_WGSL", "app/engines/wgpu/src/wgsl")
 }
 
 /// Runs the test that detects outdated modules. It knows their sources, and renews them if `bless` is set.

@@ -24,10 +24,10 @@ const PACKAGES: [&str; 4] = ["godot", "monado-service", "libopenxr1-monado", "me
 pub fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
-        "{folder}/godot --path app/godot --xr-mode off                 # needs a display: xvfb-run without one\n\
+        "{folder}/godot --path app/engines/godot --xr-mode off                 # needs a display: xvfb-run without one\n\
          export XDG_RUNTIME_DIR=$(mktemp -d)\n\
          {folder}/monado-service &\n\
-         {folder}/godot --path app/godot --xr-mode on\n"
+         {folder}/godot --path app/engines/godot --xr-mode on\n"
     ))
 }
 

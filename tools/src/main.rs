@@ -29,9 +29,9 @@ enum Task {
         #[arg(long)]
         bless: bool,
     },
-    /// Compile the synthesis shaders for Vulkan: app/core/src/vulkan/spirv
+    /// Compile the synthesis shaders for Vulkan: app/engines/core/src/vulkan/spirv
     Spirv,
-    /// Compile the synthesis shaders for wgpu: app/wgpu/src/wgsl
+    /// Compile the synthesis shaders for wgpu: app/engines/wgpu/src/wgsl
     Wgsl,
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,

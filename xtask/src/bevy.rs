@@ -60,7 +60,7 @@ pub fn test() -> anyhow::Result<()> {
 }
 
 fn perform(command: &str, more: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<()> {
-    let manifest = root().join("integrations/bevy/Cargo.toml").display().to_string();
+    let manifest = root().join("app/engines/bevy/Cargo.toml").display().to_string();
     let target = target_folder()?.join("bevy").display().to_string();
     // All commands select the same features, so that nothing is compiled twice.
     let mut arguments = vec![

@@ -29,7 +29,7 @@ pub fn lint() -> anyhow::Result<()> {
     package.extend(PUBLISHED.iter().flat_map(|name| ["--package", name]));
     checks.push(package);
     // The plugin for Bevy is a workspace of its own; `cargo xtask bevy test` compiles it.
-    let bevy = ["--manifest-path", "integrations/bevy/Cargo.toml"];
+    let bevy = ["--manifest-path", "app/engines/bevy/Cargo.toml"];
     checks.push([&["fmt", "--check"][..], &bevy].concat());
     checks.push(
         [&["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"][..], &bevy].concat(),
@@ -40,7 +40,7 @@ pub fn lint() -> anyhow::Result<()> {
         .map(|check| format!("cargo {}", check.join(" ")))
         .collect();
     if !web::check_types()? {
-        failed.push("the type checker (app/web/tsconfig.json)".into());
+        failed.push("the type checker (app/vr/web/tsconfig.json)".into());
     }
     if !failed.is_empty() {
         bail!("{} found something: see above", failed.join(", "));
@@ -68,7 +68,7 @@ mod tests {
     fn libraries_are_distinguished_from_programs() {
         let metadata = r#"{"packages": [
             {"name": "yoro", "targets": [{"kind": ["test"]}, {"kind": ["lib"]}]},
-            {"name": "yoro-app", "targets": [{"kind": ["bin"]}]},
+            {"name": "yoro-cli", "targets": [{"kind": ["bin"]}]},
             {"name": "yoro-android", "targets": [{"kind": ["cdylib"]}]}
         ]}"#;
         assert_eq!(libraries(metadata).unwrap(), ["yoro"]);

@@ -131,7 +131,7 @@ fn perform(task: Task) -> anyhow::Result<bool> {
         Task::Run { arguments } => {
             setup::ensure()?;
             cargo::run(
-                &["run", "--release", "--package", "yoro-app", "--bin", "yoro", "--", "run"],
+                &["run", "--release", "--package", "yoro-cli", "--bin", "yoro", "--", "run"],
                 &arguments,
             )?;
         }

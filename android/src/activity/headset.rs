@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use yoro_context::android::Window;
-use yoro_protocol::DisplayKind;
+use yoro_settings::DisplayKind;
 use yoro_viewer::Viewer;
 use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
 

@@ -15,7 +15,7 @@ use android_activity::{AndroidApp, MainEvent, PollEvent, WindowManagerFlags};
 use yoro_context::android::{Window, WindowError};
 use yoro_gl::{Context, Destination};
 use yoro_lenses::{MotionSample, Screen};
-use yoro_protocol::telemetry::DeviceState;
+use yoro_settings::telemetry::DeviceState;
 use yoro_viewer::{Action, Cardboard, Event, FrameReport, FrameTiming, ViewerError};
 
 use crate::camera::Scan;

@@ -46,7 +46,7 @@ def load_group(folder, index):
 
 def rough_fill(color, disparity, hole):
     """Each hole takes colour and disparity of the farther of its two ends in the row, the left one when equal.
-    `rough_fill` in app/lab/src/inpaint/neural.rs does the same."""
+    `rough_fill` in app/lab/bench/src/inpaint/neural.rs does the same."""
     height, width = hole.shape
     columns = np.broadcast_to(np.arange(width), hole.shape)
     left = np.maximum.accumulate(np.where(hole, -1, columns), axis=1)
@@ -181,7 +181,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", type=Path, nargs="+", required=True, help="folders written by `yoro dataset`")
     parser.add_argument("--hold-out", nargs="*", default=["prototype"], help="scenes that are not trained on, but reported")
-    parser.add_argument("--out", type=Path, default=Path("app/lab/models/patcher.onnx"))
+    parser.add_argument("--out", type=Path, default=Path("app/lab/training/patcher.onnx"))
     parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--minutes", type=float, default=1e9, help="stop after this time, whatever --steps says")
     parser.add_argument("--batch", type=int, default=4)

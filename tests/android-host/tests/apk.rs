@@ -10,10 +10,10 @@ use glam::{EulerRot, Quat};
 use image::RgbImage;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
-use yoro_lab::metrics::{Channels, psnr};
+use yoro_bench::metrics::{Channels, psnr};
 use yoro_lenses::{Rotation, Screen};
-use yoro_protocol::Settings;
-use yoro_protocol::telemetry::{self, Line};
+use yoro_settings::Settings;
+use yoro_settings::telemetry::{self, Line};
 use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};
 
 use yoro_android_host::summary::Summary;
@@ -583,7 +583,7 @@ fn assert_layered(run: &Run, folder: &Path) -> [RgbImage; 2] {
     assert_display(run, "headset, by OpenXR by the loader libopenxr_loader.so");
     let libraries: Vec<_> = run.summary.libraries.iter().map(|library| library.name.as_str()).collect();
     assert!(
-        matches!(libraries.as_slice(), [_, layer] if layer.ends_with("/libyoro_layer.so")),
+        matches!(libraries.as_slice(), [_, layer] if layer.ends_with("/libyoro_openxr_layer.so")),
         "{libraries:?}"
     );
     let log = log::read(&folder.join("log.jsonl"));

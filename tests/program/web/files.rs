@@ -7,7 +7,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use serde_json::{Value, json};
-use yoro_lab::picture::{DepthImage, save_depth};
+use yoro_bench::picture::{DepthImage, save_depth};
 
 use super::{Page, close, draw, sum};
 use crate::program::succeed;

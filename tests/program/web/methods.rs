@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use yoro::eyes::{Eye, EyeOptions};
 use yoro::synthesis::Edges;
 use yoro_context::{Backend, Headless};
-use yoro_lab::picture::rgb_image;
+use yoro_bench::picture::rgb_image;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 

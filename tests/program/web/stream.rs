@@ -20,8 +20,8 @@ use tungstenite::{Message, WebSocket};
 use yoro::eyes::{Eye, EyePair, Frustum, Pose};
 use yoro_context::{Backend, Headless};
 use yoro_files::http::{self, Request};
-use yoro_lab::metrics::{Channels, psnr};
-use yoro_lab::streaming::{FrameRenderer, Mode, Receiver};
+use yoro_bench::metrics::{Channels, psnr};
+use yoro_bench::streaming::{FrameRenderer, Mode, Receiver};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_stream::{Content, EyeView, FrameHeader, FromClient, FromServer, VERSION, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind, Planes};
@@ -136,9 +136,9 @@ impl Desktop {
     }
 
     fn real(&mut self, pair: &EyePair, eye: Eye) -> RgbImage {
-        let mut renderer = yoro_lab::dataset::GroupRenderer::new(
+        let mut renderer = yoro_bench::dataset::GroupRenderer::new(
             self._headless.gl(),
-            &yoro_lab::dataset::GroupOptions { anti_aliasing: true, ..Default::default() },
+            &yoro_bench::dataset::GroupOptions { anti_aliasing: true, ..Default::default() },
         )
         .unwrap();
         renderer.render_one(&mut self.prepared, &pair.view(eye)).unwrap().0

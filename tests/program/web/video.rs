@@ -6,8 +6,8 @@ use std::{fs, thread};
 use image::{Rgb, RgbImage, imageops};
 use serde_json::json;
 use yoro::eyes::Eye;
-use yoro_lab::metrics::{Channels, psnr};
-use yoro_lab::picture;
+use yoro_bench::metrics::{Channels, psnr};
+use yoro_bench::picture;
 use yoro_video::{Format, Planes, Rgbd, VideoError};
 
 use super::{Page, sum};

@@ -8,7 +8,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum};
 use yoro_gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
-use yoro_scene::{Scene, ShadingStyle};
+use yoro_assets::{Scene, ShadingStyle};
 use yoro_tests::{is_tested, on_every_backend, scene};
 
 const SIZE: [u32; 2] = [128, 96];

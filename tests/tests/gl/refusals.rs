@@ -5,7 +5,7 @@ use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, Pose};
 use yoro_context::Headless;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
-use yoro_scene::ShadingStyle;
+use yoro_assets::ShadingStyle;
 use yoro_tests::{backends, scene};
 
 #[test]

@@ -8,10 +8,10 @@ use yoro::eyes::{EyeOptions, GuardBand, Pose, Warp};
 use yoro::synthesis::{self, Edges, Layers, Outputs, Source, Synthesis, SynthesisOptions};
 use yoro_context::Headless;
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
-use yoro_lab::dataset::{GroupOptions, GroupRenderer, ImageGroup};
-use yoro_lab::metrics::{Channels, Quality};
+use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
+use yoro_bench::metrics::{Channels, Quality};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
-use yoro_scene::CameraPath;
+use yoro_assets::CameraPath;
 use yoro_tests::backends;
 use yoro_tests::samples::{Multisampled, STANDARD, Samples};
 
@@ -85,7 +85,7 @@ fn synthesized(
     let target = RenderTarget::new(gl, warp.target_size, &[(Format::Rgba8, Filter::Nearest)], None)?;
     pipeline.synthesize(source, warp, &Destination::whole(&target))?;
     let rgba = target.read_rgba8(0, [0, 0], warp.target_size);
-    Ok(yoro_lab::picture::rgb_image(&rgba, warp.target_size))
+    Ok(yoro_bench::picture::rgb_image(&rgba, warp.target_size))
 }
 
 fn quality(image: &RgbImage, truth: &RgbImage) -> anyhow::Result<[f64; 2]> {

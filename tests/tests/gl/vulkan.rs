@@ -1,6 +1,6 @@
 //! Checks that built-in scenes look the same on Vulkan and on OpenGL.
 
-#[path = "../../../app/core/tests/vulkan/harness.rs"]
+#[path = "../../../app/engines/core/tests/vulkan/harness.rs"]
 #[expect(dead_code, reason = "shared with the core's tests, which use all of it")]
 pub mod harness;
 
@@ -9,7 +9,7 @@ use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{Frame, Gather, ImageState, LayerImage, Options, SourceImages, TargetImages};
 use yoro_context::Headless;
-use yoro_lab::dataset::{GroupOptions, GroupRenderer, ImageGroup};
+use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_tests::backends;
 

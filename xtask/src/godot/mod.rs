@@ -48,7 +48,7 @@ pub fn project() -> anyhow::Result<PathBuf> {
 /// Fails if the kit does not compile, or a folder cannot be read.
 pub fn files() -> anyhow::Result<Vec<(String, PathBuf)>> {
     let mut files = Vec::new();
-    list(&root().join("app/godot"), "", &mut files)?;
+    list(&root().join("app/engines/godot"), "", &mut files)?;
     let mut kit = Vec::new();
     list(&kit::kit()?.join("godot"), "", &mut kit)?;
     for (name, file) in kit {

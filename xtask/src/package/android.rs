@@ -16,7 +16,7 @@ const LIBRARY: &str = "libyoro.so";
 
 /// Builds and packs `yoro-VERSION.aar`, and returns its path.
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
-    let header = read(&root().join("app/capi/include/yoro.h"))?;
+    let header = read(&root().join("app/engines/c/include/yoro.h"))?;
     let mut files: Vec<(String, Vec<u8>)> = vec![
         ("AndroidManifest.xml".into(), android_manifest("org.yoro.library").into()),
         ("prefab/prefab.json".into(), prefab().into()),

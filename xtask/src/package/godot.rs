@@ -21,7 +21,7 @@ pub fn zip(folder: &Path) -> anyhow::Result<PathBuf> {
         name.ends_with("plugin.cfg") && String::from_utf8_lossy(content).contains(&plugin)
     };
     if !packed.iter().any(names_version) {
-        bail!("app/godot/{ADDON}/plugin.cfg does not say {plugin}");
+        bail!("app/engines/godot/{ADDON}/plugin.cfg does not say {plugin}");
     }
     for name in ["LICENSE-APACHE", "LICENSE-MIT"] {
         packed.push((format!("{ADDON}/{name}"), read(&root().join(name))?));

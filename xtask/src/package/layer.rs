@@ -14,10 +14,10 @@ use super::{VERSION, compile};
 
 use crate::android::library_cargo;
 
-const LIBRARY: &str = "libyoro_layer.so";
+const LIBRARY: &str = "libyoro_openxr_layer.so";
 const MANIFEST: &str = "XR_APILAYER_YORO_one_view.json";
 
-/// Builds and packs `yoro-layer-VERSION.aar`, and returns its path.
+/// Builds and packs `yoro-openxr-layer-VERSION.aar`, and returns its path.
 pub fn aar(folder: &Path) -> anyhow::Result<PathBuf> {
     aar_for(&ARCHITECTURES, folder)
 }
@@ -34,7 +34,7 @@ pub fn aar_for_tests() -> anyhow::Result<PathBuf> {
 }
 
 fn aar_for(architectures: &[Architecture], folder: &Path) -> anyhow::Result<PathBuf> {
-    let manifest = read(&root().join("app/layer/android").join(MANIFEST))?;
+    let manifest = read(&root().join("app/engines/openxr-layer/android").join(MANIFEST))?;
     let mut files = vec![
         ("AndroidManifest.xml".to_owned(), android_manifest("org.yoro.layer").into()),
         (format!("assets/openxr/1/api_layers/implicit.d/{MANIFEST}"), manifest),
@@ -45,10 +45,10 @@ fn aar_for(architectures: &[Architecture], folder: &Path) -> anyhow::Result<Path
     for &architecture in architectures {
         let cargo = library_cargo(architecture)?;
         let target = Some(architecture.triple);
-        let (built, _) = compile(cargo, "yoro-layer", "cdylib", target, LIBRARY, &[], &build_folder)?;
+        let (built, _) = compile(cargo, "yoro-openxr-layer", "cdylib", target, LIBRARY, &[], &build_folder)?;
         files.push((format!("jni/{}/{LIBRARY}", architecture.abi), read(&built.join(LIBRARY))?));
     }
-    let packed = folder.join(format!("yoro-layer-{VERSION}.aar"));
+    let packed = folder.join(format!("yoro-openxr-layer-{VERSION}.aar"));
     pack(&files, &packed)?;
     Ok(packed)
 }

@@ -49,7 +49,7 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     let name = format!("yoro-{VERSION}-linux-{architecture}");
     let content = folder.join(&name);
     remove(&content)?;
-    let package = root().join("app/capi");
+    let package = root().join("app/engines/c");
     copy(&package.join("include/yoro.h"), &content.join("include/yoro.h"))?;
     let library = content.join("lib");
     let file = format!("libyoro.so.{VERSION}");
@@ -64,12 +64,12 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     write(&library.join("cmake/yoro/yoro-config.cmake"), cmake(&built.needs))?;
     write(&library.join("cmake/yoro/yoro-config-version.cmake"), cmake_version())?;
     let examples = package.join("examples");
-    for entry in fs::read_dir(&examples).context("app/capi/examples cannot be read")? {
-        let name = entry.context("app/capi/examples cannot be read")?.file_name();
+    for entry in fs::read_dir(&examples).context("app/engines/c/examples cannot be read")? {
+        let name = entry.context("app/engines/c/examples cannot be read")?.file_name();
         copy(&examples.join(&name), &content.join("share/yoro/examples").join(&name))?;
     }
     let documents = content.join("share/doc/yoro");
-    for document in ["LICENSE-APACHE", "LICENSE-MIT", "docs/integration-mistakes.png"] {
+    for document in ["LICENSE-APACHE", "LICENSE-MIT", "docs/pictures/integration-mistakes.png"] {
         let name = Path::new(document).file_name().unwrap_or_default();
         copy(&root().join(document), &documents.join(name))?;
     }
@@ -93,9 +93,9 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
 fn packaged(target: &str) -> Option<String> {
     let stays = target.starts_with('#') || target == "integration-mistakes.png";
     let example =
-        target.strip_prefix("../app/capi/examples/").map(|file| format!("../../yoro/examples/{file}"));
+        target.strip_prefix("../app/engines/c/examples/").map(|file| format!("../../yoro/examples/{file}"));
     match target {
-        "../app/capi/include/yoro.h" => Some("../../../include/yoro.h".into()),
+        "../app/engines/c/include/yoro.h" => Some("../../../include/yoro.h".into()),
         _ => example.or_else(|| stays.then(|| target.to_owned())),
     }
 }
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn the_first_page_has_a_line_for_each_sample() {
         let page = readme("x86_64", (2, 28));
-        let files = fs::read_dir(root().join("app/capi/examples")).unwrap();
+        let files = fs::read_dir(root().join("app/engines/c/examples")).unwrap();
         let names = files.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned());
         let samples: Vec<String> = names.filter(|name| name.ends_with(".c")).collect();
         assert!(samples.len() >= 2);
@@ -143,8 +143,8 @@ mod tests {
         let here = |file: &str| root().join(file).is_file();
         for target in kept.iter().filter(|target| !target.starts_with('#')) {
             let from = target
-                .replace("../../../include/", "app/capi/include/")
-                .replace("../../yoro/examples/", "app/capi/examples/");
+                .replace("../../../include/", "app/engines/c/include/")
+                .replace("../../yoro/examples/", "app/engines/c/examples/");
             assert!(here(&from) || here(&format!("docs/{target}")), "{target}");
         }
         assert!(kept.iter().any(|target| target.ends_with("vulkan.c")));

@@ -107,14 +107,14 @@ pub mod tests {
         let label = |id, kind, test, executable| {
             parse(&message(id, kind, test, executable)).map(|binary| binary.label)
         };
-        let (id, file) = ("path+file:///w/app#yoro-app@0.1.0", "\"/w/target/debug/deps/program-1\"");
-        assert_eq!(label(id, "test", true, file).as_deref(), Some("yoro-app::program"));
-        assert_eq!(label(id, "bin", true, file).as_deref(), Some("yoro-app::bin/program"));
+        let (id, file) = ("path+file:///w/app#yoro-cli@0.1.0", "\"/w/target/debug/deps/program-1\"");
+        assert_eq!(label(id, "test", true, file).as_deref(), Some("yoro-cli::program"));
+        assert_eq!(label(id, "bin", true, file).as_deref(), Some("yoro-cli::bin/program"));
         assert_eq!(label("path+file:///w/xtask#0.1.0", "lib", true, file).as_deref(), Some("xtask"));
         assert_eq!(label(id, "bin", false, file), None);
         assert_eq!(label(id, "lib", true, "null"), None);
         assert_eq!(parse("   Compiling yoro"), None);
-        let binary = binary("yoro-app", "test");
+        let binary = binary("yoro-cli", "test");
         assert!(binary.integration);
         assert_eq!(binary.command().get_current_dir(), Some(Path::new("/w/app")));
     }

@@ -30,7 +30,7 @@ static ITEMS: [Item; 11] = [
     Item {
         what: "the page",
         variable: "WEB",
-        users: &[("yoro-app", "web::")],
+        users: &[("yoro-cli", "web::")],
         fetch: page_can_be_built,
         build: Some(|| web::build().and_then(|_| Ok(std::env::current_exe()?))),
     },
@@ -44,7 +44,7 @@ static ITEMS: [Item; 11] = [
     Item {
         what: "the WebXR emulator",
         variable: "WEBXR",
-        users: &[("yoro-app", "web::")],
+        users: &[("yoro-cli", "web::")],
         fetch: web::emulator,
         build: None,
     },
@@ -52,14 +52,14 @@ static ITEMS: [Item; 11] = [
         what: "Chromium",
         variable: "CHROMIUM",
         // The test names of this program do not show which of them open a page.
-        users: &[("yoro-app", "")],
+        users: &[("yoro-cli", "")],
         fetch: || setup::browser().context("it cannot be installed"),
         build: None,
     },
     Item {
         what: "Monado",
         variable: "MONADO",
-        users: &[("yoro-app", "monado")],
+        users: &[("yoro-cli", "monado")],
         fetch: monado::make,
         build: None,
     },
@@ -74,7 +74,7 @@ static ITEMS: [Item; 11] = [
     Item {
         what: "hello_xr",
         variable: "HELLO_XR",
-        users: &[("yoro-layer", "hello_xr"), ("yoro-app", "through_the_layer")],
+        users: &[("yoro-openxr-layer", "hello_xr"), ("yoro-cli", "through_the_layer")],
         fetch: hello_xr::make,
         build: None,
     },
@@ -263,10 +263,10 @@ mod tests {
             let items = ITEMS.iter().filter(|item| item.is_for(package, name));
             items.map(|item| item.variable).collect::<Vec<_>>().join(" ")
         };
-        assert_eq!(needed("yoro-lab", "monado::arm64"), "");
+        assert_eq!(needed("yoro-bench", "monado::arm64"), "");
         assert_eq!(needed("yoro-android-host", "the_arm64_library"), "APK ARM64_HOST");
-        assert_eq!(needed("yoro-layer", "monado_and_hello_xr"), "HELLO_XR");
-        assert_eq!(needed("yoro-app", "web::a_headset"), "WEB WEBXR CHROMIUM");
+        assert_eq!(needed("yoro-openxr-layer", "monado_and_hello_xr"), "HELLO_XR");
+        assert_eq!(needed("yoro-cli", "web::a_headset"), "WEB WEBXR CHROMIUM");
     }
 
     #[test]

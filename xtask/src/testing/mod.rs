@@ -32,7 +32,7 @@ use summary::Summary;
 /// Almost all tests can: each has its own folders, ports are pipes, and time is either processor time or simulated.
 const ALONE: [&str; 2] = [
     // A small machine does not have enough memory for two large scenes.
-    "yoro-app::program memory::",
+    "yoro-cli::program memory::",
     // In qemu, beside other tests, the first frames take longer than a minute.
     "yoro-android-host::apk the_arm64_library",
 ];
@@ -310,7 +310,7 @@ mod tests {
         let programs = [
             (binary("yoro", "lib"), names(&["a", "b"])),
             (binary("yoro-render", "test"), names(&["1", "2", "3", "4", "5"])),
-            (binary("yoro-app", "test"), names(&["memory::largest", "xr::memory"])),
+            (binary("yoro-cli", "test"), names(&["memory::largest", "xr::memory"])),
         ];
         let plan = plan(&programs, &Options::default());
         let first = [

@@ -154,18 +154,18 @@ mod tests {
         assert_eq!(summary.measure("compiling", || 7), 7);
         summary.add("yoro", &finished(&["a", "b"], Outcome::Passed, 1.0));
         summary.add("yoro", &finished(&["c"], Outcome::Ignored, 2.0));
-        summary.add("yoro-app::program", &finished(&["bad", "worse"], Outcome::Failed, 9.0));
+        summary.add("yoro-cli::program", &finished(&["bad", "worse"], Outcome::Failed, 9.0));
         assert_eq!(summary.count(), 5);
-        summary.add_retry("yoro-app::program", &finished(&["bad"], Outcome::Passed, 100.0));
-        assert_eq!(summary.failed, ["yoro-app::program worse"]);
+        summary.add_retry("yoro-cli::program", &finished(&["bad"], Outcome::Passed, 100.0));
+        assert_eq!(summary.failed, ["yoro-cli::program worse"]);
         let text = summary.to_string();
         assert!(
             text.contains("\ntest result: FAILED. 3 passed; 1 failed; 1 ignored; finished in 0."),
             "{text}"
         );
-        assert!(text.contains("\nFLAKY: yoro-app::program bad failed"), "{text}");
+        assert!(text.contains("\nFLAKY: yoro-cli::program bad failed"), "{text}");
         assert!(
-            text.contains("slowest tests\n   100.0 s  yoro-app::program bad\n     1.0 s  yoro a\n"),
+            text.contains("slowest tests\n   100.0 s  yoro-cli::program bad\n     1.0 s  yoro a\n"),
             "{text}"
         );
         let yoro = text.lines().find(|line| line.starts_with("  yoro ")).unwrap();

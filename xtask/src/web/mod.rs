@@ -1,4 +1,4 @@
-//! The page: `app/web` compiled for browsers and its other files, for any static host.
+//! The page: `app/vr/web` compiled for browsers and its other files, for any static host.
 
 mod npm;
 mod serve;
@@ -55,7 +55,7 @@ fn as_built(name: &str, command: &str) -> anyhow::Result<PathBuf> {
 pub fn build_example() -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let module = compile(&["--package", "yoro-wgpu", "--example", EXAMPLE], &format!("examples/{EXAMPLE}"))?;
-    let page = root().join("app/wgpu/examples").join(EXAMPLE);
+    let page = root().join("app/engines/wgpu/examples").join(EXAMPLE);
     let folder = target_folder()?.join("web-wgpu");
     remove(&folder)?;
     let Sizes { transferred, .. } = bind(&module, &folder, &page)?;

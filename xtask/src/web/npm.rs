@@ -28,7 +28,7 @@ pub fn check_types() -> anyhow::Result<bool> {
             return Ok(true);
         }
     };
-    let project = root().join("app/web/tsconfig.json");
+    let project = root().join("app/vr/web/tsconfig.json");
     let status = Command::new("node").arg(compiler).arg("--project").arg(project).status();
     Ok(status.context("node cannot be started: apt-get install nodejs")?.success())
 }

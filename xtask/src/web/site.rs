@@ -39,7 +39,7 @@ const SEPARATE: [&str; 7] = [
 ];
 /// Returns the folder of the page's sources.
 pub fn sources() -> PathBuf {
-    root().join("app/web/page")
+    root().join("app/vr/web/page")
 }
 
 /// Completes a folder whose module is in [`VERSION`]: copies the page's sources, and names the version by a hash of it.
@@ -52,7 +52,7 @@ pub fn assemble(folder: &Path) -> anyhow::Result<()> {
         let name = name(&path);
         copy(&path, &if LASTING.contains(&&*name) { folder.join(name) } else { unnamed.join(name) })?;
     }
-    copy(&root().join("docs/web.jpg"), &folder.join("preview.jpg"))?;
+    copy(&root().join("docs/pictures/web.jpg"), &folder.join("preview.jpg"))?;
     let source = match REPOSITORY {
         "" => archive(&folder.join(ARCHIVE)).then_some(ARCHIVE),
         address => Some(address),

@@ -8,7 +8,7 @@
  *
  * Every function may also return YORO_ERROR_INTERNAL.
  *
- * Made of app/capi/src by cbindgen; `cargo xtask test the_header --bless` renews it.
+ * Made of app/engines/c/src by cbindgen; `cargo xtask test the_header --bless` renews it.
  */
 
 #ifndef YORO_H

@@ -9,7 +9,7 @@ use libloading::Library;
 #[derive(Debug, thiserror::Error)]
 pub enum LibraryError {
     /// The file is not a library for this system.
-    #[error("{}: it cannot be loaded ({reason}); give libyoro_layer.so of the package yoro-layer", path.display())]
+    #[error("{}: it cannot be loaded ({reason}); give libyoro_openxr_layer.so of the package yoro-openxr-layer", path.display())]
     NotLoaded {
         /// The file.
         path: PathBuf,
@@ -17,13 +17,13 @@ pub enum LibraryError {
         reason: String,
     },
     /// The library has no function for the OpenXR loader.
-    #[error("{}: it is a library, but no OpenXR API layer; give libyoro_layer.so of the package yoro-layer", path.display())]
+    #[error("{}: it is a library, but no OpenXR API layer; give libyoro_openxr_layer.so of the package yoro-openxr-layer", path.display())]
     NoLayer {
         /// The file.
         path: PathBuf,
     },
     /// The library is a different layer.
-    #[error("{}: it is another OpenXR API layer; give libyoro_layer.so of the package yoro-layer", path.display())]
+    #[error("{}: it is another OpenXR API layer; give libyoro_openxr_layer.so of the package yoro-openxr-layer", path.display())]
     AnotherLayer {
         /// The file.
         path: PathBuf,

@@ -52,7 +52,7 @@ mod tests {
     fn the_packaged_manifest_is_the_generated_one() {
         let json = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();
         let packaged = json(include_str!("../android/XR_APILAYER_YORO_one_view.json"));
-        assert_eq!(packaged, json(&manifest(Path::new("libyoro_layer.so"), Kind::Packaged)));
+        assert_eq!(packaged, json(&manifest(Path::new("libyoro_openxr_layer.so"), Kind::Packaged)));
     }
 
     #[test]
@@ -60,12 +60,12 @@ mod tests {
         for (kind, enable, disable) in
             [(Kind::Explicit, false, false), (Kind::Implicit, true, true), (Kind::Packaged, false, true)]
         {
-            let text = manifest(Path::new("/lib/libyoro_layer.so"), kind);
+            let text = manifest(Path::new("/lib/libyoro_openxr_layer.so"), kind);
             let json: serde_json::Value = serde_json::from_str(&text).unwrap();
             let layer = &json["api_layer"];
             assert_eq!(
                 (&layer["name"], &layer["library_path"]),
-                (&NAME.into(), &"/lib/libyoro_layer.so".into())
+                (&NAME.into(), &"/lib/libyoro_openxr_layer.so".into())
             );
             assert_eq!(layer["instance_extensions"][0]["name"], "XR_KHR_composition_layer_depth");
             assert_eq!(layer.get("enable_environment").is_some(), enable);

@@ -386,7 +386,7 @@ mod tests {
             format!("| `{key}` | {values} | `{default}` | {help} |\n")
         });
         let table = format!("| key | values | default | |\n|---|---|---|---|\n{}\n", rows.concat());
-        let document = include_str!("../../../docs/layer.md");
+        let document = include_str!("../../../../docs/layer.md");
         assert!(document.contains(&table), "docs/layer.md must have this table:\n{table}");
     }
 

@@ -1,6 +1,6 @@
 //! The layer between Debian's build of Khronos's hello_xr and Monado, alone and with Khronos's validation layer.
 
-#[path = "../../../tests/src/monado.rs"]
+#[path = "../../../../tests/src/monado.rs"]
 mod monado;
 
 use std::collections::BTreeSet;
@@ -47,7 +47,7 @@ impl Monado {
         let service = monado::start(&programs.join("monado-service"), folder.path()).unwrap();
         let monado = Monado { programs, folder, _service: service };
         let folder = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-        let layer = folder.join("libyoro_layer.so");
+        let layer = folder.join("libyoro_openxr_layer.so");
         // The library's name does not depend on its features, so a `cargo build` during the tests replaces it.
         let contains = |name: &[u8]| fs::read(&layer).unwrap().windows(name.len()).any(|part| part == name);
         assert!(
@@ -55,8 +55,8 @@ impl Monado {
             "{} lacks feature `capture`: compile the tests again",
             layer.display()
         );
-        let manifest = yoro_layer::manifest(&layer, yoro_layer::Kind::Explicit);
-        fs::write(monado.folder.path().join(yoro_layer::MANIFEST), manifest).unwrap();
+        let manifest = yoro_openxr_layer::manifest(&layer, yoro_openxr_layer::Kind::Explicit);
+        fs::write(monado.folder.path().join(yoro_openxr_layer::MANIFEST), manifest).unwrap();
         monado.add(MEASURED, &folder.join("../examples/libmeasured.so"));
         monado.add(VALIDATION, &monado.validation());
         monado
@@ -177,7 +177,7 @@ fn run_both(monado: &Monado, folder: &Path, size: Option<&str>) -> Run {
         let mut environment: Vec<(&'static str, OsString)> =
             vec![("YORO_LAYER_TIME", time.clone().into()), ("YORO_LAYER_CAPTURE", folder.into())];
         environment.extend(size.map(|size| ("YORO_MEASURED_SIZE", size.into())));
-        let layers = [yoro_layer::NAME, MEASURED];
+        let layers = [yoro_openxr_layer::NAME, MEASURED];
         let run = Hello { views, layers: &layers[..1 + usize::from(size.is_some())], environment };
         monado.hello(&run, folder, |log| has_pictures(folder) && synthesized(log) >= frames)
     };
@@ -201,7 +201,7 @@ fn monado_gets_two_views_of_one_that_hello_xr_renders() {
     let Some(programs) = programs() else { return };
     let monado = Monado::start(programs);
     // hello_xr asks for the size before a session exists.
-    let run = Hello { views: "Mono", layers: &[yoro_layer::NAME], environment: Vec::new() };
+    let run = Hello { views: "Mono", layers: &[yoro_openxr_layer::NAME], environment: Vec::new() };
     let first = monado.hello(&run, &monado.folder.path().join("first"), |log| synthesized(log) > 0);
     assert!(first.contains("dimensions Width=400 Height=240"), "the estimate: {first}");
     let ([own, made, same], Run { one, two, .. }) = compared(&monado, None);
@@ -237,7 +237,7 @@ fn hello_xr_is_valid_above_and_below_the_layer() {
     let monado = Monado::start(programs);
     let folder = monado.folder.path();
     if monado.validation().exists() {
-        for layers in [[VALIDATION, yoro_layer::NAME], [yoro_layer::NAME, VALIDATION]] {
+        for layers in [[VALIDATION, yoro_openxr_layer::NAME], [yoro_openxr_layer::NAME, VALIDATION]] {
             let run = Hello { views: "Mono", layers: &layers, environment: Vec::new() };
             let files = folder.join(layers[0]);
             let log = monado.hello(&run, &files, |log| synthesized(log) >= 10);
@@ -257,7 +257,7 @@ fn hello_xr_is_valid_above_and_below_the_layer() {
         folders.into_iter().flatten().map(|entry| entry.unwrap().path()).collect()
     };
     let environment = vec![("TMPDIR", temporary.clone().into_os_string())];
-    let run = Hello { views: "Mono", layers: &[yoro_layer::NAME], environment };
+    let run = Hello { views: "Mono", layers: &[yoro_openxr_layer::NAME], environment };
     let killed = folder.join("killed");
     fs::create_dir(&killed).unwrap();
     let before = left();
@@ -279,7 +279,7 @@ fn numbers<'a>(log: &'a str, before: &'a str, after: &'a str) -> impl Iterator<I
 }
 
 /// Measures hello_xr's frame time with two views, and with one view and the layer, alternately, and writes a picture:
-/// `cargo test --release -p yoro-layer hello_xr_measured -- --ignored --nocapture`.
+/// `cargo test --release -p yoro-openxr-layer hello_xr_measured -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures for some minutes"]
 fn hello_xr_measured() {
@@ -289,7 +289,7 @@ fn hello_xr_measured() {
     for (size, seconds) in [("320x240", 5), ("1680x1760", 20)] {
         let (mut times, mut synthesis) = ([vec![], vec![]], vec![]);
         for round in 0..ROUNDS {
-            let both = [("Stereo", &[MEASURED][..]), ("Mono", &[yoro_layer::NAME, MEASURED])];
+            let both = [("Stereo", &[MEASURED][..]), ("Mono", &[yoro_openxr_layer::NAME, MEASURED])];
             for (i, (views, layers)) in both.into_iter().enumerate() {
                 let environment =
                     vec![("YORO_MEASURED_SIZE", size.into()), ("VK_LOADER_LAYERS_DISABLE", "~all~".into())];

@@ -4,7 +4,7 @@ use image::RgbImage;
 use yoro::eyes::Eye;
 use yoro_render::stereo::StereoFrame;
 
-pub use yoro_pictures::*;
+pub use yoro_media::*;
 
 /// Returns the image of one eye of a finished frame.
 pub fn eye_image(frame: &StereoFrame, eye: Eye) -> RgbImage {

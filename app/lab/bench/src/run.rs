@@ -10,7 +10,7 @@ use crate::bench::{BlankFinder, Entrant, spread};
 use crate::picture;
 use crate::report::{Cost, MethodCost, PassTime, SceneReport, Viewpoint};
 use yoro::eyes::{Eye, EyeOptions, EyePair};
-use yoro_figures::stats::{Summary, median};
+use yoro_report::stats::{Summary, median};
 use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::stereo::{Method, StereoFrame, StereoOptions};

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use yoro_files::{self as files, FileError};
-use yoro_protocol::telemetry::{LOG_TAG, Line, Pictures};
+use yoro_settings::telemetry::{LOG_TAG, Line, Pictures};
 
 use crate::capture::{CaptureError, DeviceInfo, Fault, FaultKind, Outcome, RunInfo, Sample, VERSION, Writer};
 use crate::log::{self, Kind, SIMULATED_MARK};

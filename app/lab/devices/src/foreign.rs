@@ -8,7 +8,7 @@ use super::capture::Sample;
 use super::log::{self, Kind, VRAPI_TAG};
 use super::phone::{self, Battery};
 use super::reading::Reading;
-use yoro_protocol::telemetry::{CurrentNormalizer, Line};
+use yoro_settings::telemetry::{CurrentNormalizer, Line};
 
 /// Interval in seconds at which the battery is read. Each query costs the device some power.
 const BATTERY_PERIOD_S: f64 = 2.0;

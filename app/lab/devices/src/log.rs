@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use yoro_protocol::telemetry::{LOG_TAG, Pictures, Rating};
+use yoro_settings::telemetry::{LOG_TAG, Pictures, Rating};
 
 /// Tag of the line that Meta's runtime logs once a second.
 pub const VRAPI_TAG: &str = "VrApi";

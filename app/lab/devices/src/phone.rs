@@ -2,8 +2,8 @@
 
 use super::adb::{Device, DeviceError, serial_number};
 use super::capture::DeviceInfo;
-use yoro_protocol::telemetry::BatteryStatus;
-use yoro_protocol::{PROPERTY_PREFIX, Settings};
+use yoro_settings::telemetry::BatteryStatus;
+use yoro_settings::{PROPERTY_PREFIX, Settings};
 
 /// The application's package.
 pub const PACKAGE: &str = "io.github.yoro";

@@ -1,6 +1,6 @@
 //! Statistics of samples.
 
-pub use yoro_protocol::telemetry::stats::{Summary, median, percentile};
+pub use yoro_settings::telemetry::stats::{Summary, median, percentile};
 
 /// Returns the arithmetic mean; `None` if there are no values.
 pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {

@@ -17,15 +17,15 @@ use yoro::eyes::{Eye, EyeOptions};
 use yoro_context::{Backend, Headless};
 use yoro_files::interrupt::Interrupted;
 use yoro_gl::{Context, GlApi};
-use yoro_lab::bench::record::{Header, PassClock, VERSION};
-use yoro_lab::bench::{
+use yoro_bench::bench::record::{Header, PassClock, VERSION};
+use yoro_bench::bench::{
     self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, frame, process,
 };
-use yoro_lab::inpaint::PatcherOptions;
-use yoro_lab::report::bench::BenchReport;
-use yoro_protocol::Ipd;
+use yoro_bench::inpaint::PatcherOptions;
+use yoro_bench::report::bench::BenchReport;
+use yoro_settings::Ipd;
 use yoro_render::RenderSettings;
-use yoro_scene::load::sidecar_file;
+use yoro_assets::load::sidecar_file;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]
@@ -117,7 +117,7 @@ impl Subcommand for BenchArgs {
     fn run(&self) -> anyhow::Result<()> {
         let choices = self.choices()?;
         yoro_scenes::check(&choices.scenes, choices.seed)?;
-        let path = self.path.as_deref().map(yoro_scene::path::read).transpose()?;
+        let path = self.path.as_deref().map(yoro_assets::path::read).transpose()?;
         if path.is_none() {
             choices.scenes.iter().for_each(|scene| warn_without_camera(Path::new(scene)));
         }
@@ -274,7 +274,7 @@ fn header(args: &BenchArgs, choices: &Choices, gl: &Context) -> Header {
     let mut parameters = choices.parameters();
     let mut file = |name: &str, path: &Option<PathBuf>| {
         let value = path.as_ref().map_or_else(|| "none".to_owned(), |path| path.display().to_string());
-        parameters.push(yoro_lab::machine::Parameter { name: name.into(), value });
+        parameters.push(yoro_bench::machine::Parameter { name: name.into(), value });
     };
     file("camera path", &args.path);
     file("model", &args.model);

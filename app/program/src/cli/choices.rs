@@ -3,10 +3,10 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use yoro::synthesis::Edges;
 use yoro_context::Backend;
-use yoro_lab::bench::Suite;
-use yoro_lab::inpaint::PatcherKind;
-use yoro_protocol::Setting;
-use yoro_scene::ShadingStyle;
+use yoro_bench::bench::Suite;
+use yoro_bench::inpaint::PatcherKind;
+use yoro_settings::Setting;
+use yoro_assets::ShadingStyle;
 
 /// Returns a parser that accepts these values by their names.
 fn choice<T: Copy + Send + Sync + 'static>(

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::Subcommand;
 use super::outputs::Files;
-use yoro_lab::compare::{CompareReport, Inputs};
+use yoro_bench::compare::{CompareReport, Inputs};
 
 /// Compare two images, or two folders of images, by PSNR, SSIM and FLIP
 #[derive(clap::Args, Clone, Debug)]

@@ -10,9 +10,9 @@ use yoro::eyes::{
     DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose, full_overlap_distance,
     minimum_object_distance,
 };
-use yoro_protocol::Ipd;
-use yoro_scene::path::FARTHEST;
-use yoro_scene::{Scene, Viewpoint};
+use yoro_settings::Ipd;
+use yoro_assets::path::FARTHEST;
+use yoro_assets::{Scene, Viewpoint};
 use yoro_scenes::BUILTINS;
 
 /// The eyes and what they see of the world.

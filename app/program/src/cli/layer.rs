@@ -15,10 +15,10 @@ use super::outputs::Files;
 use anyhow::{Context as _, bail};
 use yoro_files as files;
 use yoro_files::xdg;
-use yoro_layer::library::version;
-use yoro_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME};
+use yoro_openxr_layer::library::version;
+use yoro_openxr_layer::{DISABLE, ENABLE, Kind, MANIFEST, NAME};
 
-const LIBRARY: &str = "libyoro_layer.so";
+const LIBRARY: &str = "libyoro_openxr_layer.so";
 /// The interval at which the log is checked for new lines.
 const PAUSE: Duration = Duration::from_millis(200);
 
@@ -62,7 +62,7 @@ enum Task {
 
 #[derive(clap::Args, Clone, Debug)]
 struct LibraryArgs {
-    /// The layer's library [default: libyoro_layer.so beside this program or in ../lib]
+    /// The layer's library [default: libyoro_openxr_layer.so beside this program or in ../lib]
     #[arg(long, value_name = "FILE")]
     library: Option<PathBuf>,
 }
@@ -79,7 +79,7 @@ impl LibraryArgs {
         if let Some(library) = &self.library {
             return library.canonicalize().with_context(|| {
                 format!(
-                    "{}: there is no such library; give that of the package yoro-layer",
+                    "{}: there is no such library; give that of the package yoro-openxr-layer",
                     library.display()
                 )
             });
@@ -92,7 +92,7 @@ impl LibraryArgs {
         let found = places.iter().find_map(|place| place.canonicalize().ok());
         found.with_context(|| {
             format!(
-                "{LIBRARY} is not beside {}; build it (cargo build --release -p yoro-layer), or give --library",
+                "{LIBRARY} is not beside {}; build it (cargo build --release -p yoro-openxr-layer), or give --library",
                 program.display()
             )
         })
@@ -195,7 +195,7 @@ fn install(implicit: bool, library: &Path) -> anyhow::Result<()> {
     let (manifest, own) = (manifest_path(&data, implicit), library_path(&data));
     let kind = if implicit { Kind::Implicit } else { Kind::Explicit };
     write(&own, &files::read(library)?)?;
-    write(&manifest, yoro_layer::manifest(&own, kind).as_bytes())?;
+    write(&manifest, yoro_openxr_layer::manifest(&own, kind).as_bytes())?;
     // Only one of the two manifests may exist, or loaders would find the layer twice.
     remove(&manifest_path(&data, !implicit))?;
     println!("{}\n{}", own.display(), manifest.display());
@@ -225,21 +225,21 @@ fn status() -> anyhow::Result<()> {
         }
         println!("library: {}, version {}", library.display(), version(&library)?);
     }
-    if let Some(path) = yoro_layer::log::path().filter(|path| path.is_file()) {
+    if let Some(path) = yoro_openxr_layer::log::path().filter(|path| path.is_file()) {
         println!("log: {}", path.display());
     }
-    if let Some(path) = yoro_layer::settings::path() {
+    if let Some(path) = yoro_openxr_layer::settings::path() {
         let there = if path.exists() { "" } else { " (not there)" };
         println!("settings: {}{there}", path.display());
     }
-    match yoro_layer::settings::mistakes().into_iter().next() {
+    match yoro_openxr_layer::settings::mistakes().into_iter().next() {
         Some(error) => Err(error.into()),
         None => Ok(()),
     }
 }
 
 fn show_log(follow: bool) -> anyhow::Result<()> {
-    let path = yoro_layer::log::path();
+    let path = yoro_openxr_layer::log::path();
     let path = path.context("neither XDG_STATE_HOME nor HOME is an absolute path; set one of them")?;
     let mut file = fs::File::open(&path).with_context(|| {
         format!("{}: no program has run with the layer yet; see `yoro layer run`", path.display())
@@ -264,7 +264,7 @@ fn show_log(follow: bool) -> anyhow::Result<()> {
 fn run_program(library: &Path, program: &[OsString]) -> anyhow::Result<()> {
     let folder = tempfile::tempdir()
         .context("no folder for the layer's manifest; set TMPDIR to one that can be written")?;
-    write(&folder.path().join(MANIFEST), yoro_layer::manifest(library, Kind::Explicit).as_bytes())?;
+    write(&folder.path().join(MANIFEST), yoro_openxr_layer::manifest(library, Kind::Explicit).as_bytes())?;
     let join = |first: OsString, variable: &str| {
         let rest = env::var_os(variable).filter(|rest| !rest.is_empty());
         rest.map_or(first.clone(), |rest| [first, rest].join(std::ffi::OsStr::new(":")))

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::{Duration, SystemTime};
 
 use yoro_gl::Capabilities;
-use yoro_lab::machine::Machine;
+use yoro_bench::machine::Machine;
 
 /// Describes this machine, the current time and this command line.
 pub fn describe(capabilities: &Capabilities) -> Machine {

@@ -5,7 +5,7 @@ use yoro_context::ContextError;
 use yoro_devices::adb::{DeviceError, quoted};
 use yoro_devices::experiment::ExperimentError;
 use yoro_files::FileError;
-use yoro_lab::bench::record::RecordError;
+use yoro_bench::bench::record::RecordError;
 
 /// The length of the longest message in characters, and that of the end, with the remedy, if its middle is left out.
 const LONGEST: usize = 2000;
@@ -73,7 +73,7 @@ mod tests {
     use std::io;
 
     use anyhow::Context as _;
-    use yoro_scene::SceneError;
+    use yoro_assets::SceneError;
 
     use super::*;
 

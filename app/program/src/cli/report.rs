@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::Subcommand;
 use super::outputs::Files;
 use yoro_files as files;
-use yoro_lab::bench::Results;
-use yoro_lab::report::bench::{self, BenchReport, Places};
+use yoro_bench::bench::Results;
+use yoro_bench::report::bench::{self, BenchReport, Places};
 
 /// Turn results of `yoro bench` into a self-contained page, Markdown tables and figures
 #[derive(clap::Args, Clone, Debug)]

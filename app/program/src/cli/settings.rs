@@ -8,7 +8,7 @@ use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
-use yoro_protocol::{RendererKind, Setting, Settings};
+use yoro_settings::{RendererKind, Setting, Settings};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
 

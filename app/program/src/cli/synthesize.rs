@@ -16,9 +16,9 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
 use yoro::synthesis::{Edges, SourceMapEntry};
 use yoro_files as files;
 use yoro_files::interrupt;
-use yoro_lab::inpaint::{Patcher, Reprojected};
-use yoro_lab::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
-use yoro_protocol::Ipd;
+use yoro_bench::inpaint::{Patcher, Reprojected};
+use yoro_bench::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
+use yoro_settings::Ipd;
 use yoro_render::stereo::{Offline, SynthesizedImage};
 use yoro_video::Reader;
 

@@ -14,9 +14,9 @@ use crate::cli::terminal::progress_bar;
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
-use yoro_lab::picture::{self, PictureError, rgb_image};
+use yoro_bench::picture::{self, PictureError, rgb_image};
 use yoro_lenses::{Rotation, Screen};
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_viewer::{Cardboard, Event, FrameTiming, HeldHead, SceneState};
 
 /// The refresh rate in Hz of the imagined display.

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use yoro_scene::{Model, Part, Vertex};
+use yoro_assets::{Model, Part, Vertex};
 
 /// Appends a parallelogram whose front faces along `across x up`.
 pub fn quad(model: &mut Model, material: usize, corner: Vec3, across: Vec3, up: Vec3) {

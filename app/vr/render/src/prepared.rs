@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use yoro_gl::{Context, GlError};
-use yoro_scene::Scene;
+use yoro_assets::Scene;
 
 use crate::render::{GpuScene, RenderSettings, Renderer};
 

@@ -502,7 +502,7 @@ mod tests {
     /// docs/viewer.md lists every setting. If YORO_BLESS is set in the environment, the list is rewritten.
     #[test]
     fn the_document_has_the_table() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/viewer.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/viewer.md");
         let text = std::fs::read_to_string(path).unwrap();
         let head = "| key | default | meaning |\n|---|---|---|\n";
         let begin = text.find(head).unwrap() + head.len();

@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 
 use yoro_lenses::COLUMNS;
-use yoro_protocol::telemetry::Line;
+use yoro_settings::telemetry::Line;
 use yoro_render::stereo::Auto;
 
 /// How long a message is shown per line of its text, in nanoseconds.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use yoro_protocol::{Ipd, MethodChoice};
+use yoro_settings::{Ipd, MethodChoice};
 
 /// An action of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -31,7 +31,7 @@ pub struct FrameReport {
     pub late_refreshes: u32,
     /// GPU time in milliseconds of a frame a few frames ago, if it is measured.
     pub gpu_ms: Option<f32>,
-    /// A second has passed: collect a [`DeviceState`](yoro_protocol::telemetry::DeviceState) and call
+    /// A second has passed: collect a [`DeviceState`](yoro_settings::telemetry::DeviceState) and call
     /// [`Viewer::telemetry`](crate::Viewer::telemetry).
     pub telemetry_due: bool,
     /// The session's `duration` has passed since the scene was first shown, and its questions are answered: log

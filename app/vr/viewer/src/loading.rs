@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
 use crate::error::ViewerError;
-use yoro_scene::Scene;
+use yoro_assets::Scene;
 use yoro_scenes::BUILTINS;
 
 /// File extensions of scenes.
@@ -77,7 +77,7 @@ impl SceneSource {
     fn load(&self) -> Result<Scene, String> {
         match self {
             SceneSource::Builtin { name, seed } => yoro_scenes::build(name, *seed).map_err(|e| e.to_string()),
-            SceneSource::File(path) => yoro_scene::load(path).map_err(|e| e.to_string()),
+            SceneSource::File(path) => yoro_assets::load(path).map_err(|e| e.to_string()),
         }
     }
 }

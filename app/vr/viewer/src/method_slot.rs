@@ -8,7 +8,7 @@ use crate::scene_slot::Shown;
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, EyesError};
 use yoro_gl::{Context, GlError};
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
     self, Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,

@@ -10,7 +10,7 @@ use crate::loading::{Loader, SceneSource};
 use yoro::eyes::Pose;
 use yoro_gl::{Context, GlError};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
-use yoro_scene::{Scene, Viewpoint};
+use yoro_assets::{Scene, Viewpoint};
 
 /// A scene on the GPU, and its renderer.
 pub(crate) struct Shown {

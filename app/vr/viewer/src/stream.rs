@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use yoro::eyes::{EyePair, Pose};
 use yoro_gl::{Context, GlError};
-use yoro_protocol::telemetry::StreamFigures;
+use yoro_settings::telemetry::StreamFigures;
 use yoro_render::stereo::EyeTarget;
 use yoro_render::{DecodedPicture, StreamedEyes};
 use yoro_stream::{FrameHeader, ViewRequest};

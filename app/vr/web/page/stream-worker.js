@@ -3,7 +3,7 @@
 import init, { StreamOrder } from './yoro_web.js';
 import * as decoding from './decoding.js';
 
-/** The kind of a frame's message. app/stream/src/messages.rs describes what precedes its header. */
+/** The kind of a frame's message. app/vr/stream/src/messages.rs describes what precedes its header. */
 const FRAME = 2;
 const PREFIX = 8;
 /** The decoder takes H.264's constrained baseline profile up to this level (5.1), as the server encodes it. */

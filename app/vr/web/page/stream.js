@@ -11,7 +11,7 @@ import { sentence } from './sentence.js';
 const REQUEST_INTERVAL = 100;
 /** The time from one line of figures to the next, in ms. */
 const FIGURES_INTERVAL = 1000;
-/** The answer of a server that serves another page. app/stream/src/messages.rs lists all answers. */
+/** The answer of a server that serves another page. app/vr/stream/src/messages.rs lists all answers. */
 const BUSY = [1, 1];
 
 let worker = null;

@@ -1,7 +1,7 @@
 //! The page's module: every method in a browser's WebGL 2.
 //!
 //! It takes a canvas's context, packed scenes, pictures and choices as JSON, and draws. The page's own JavaScript
-//! (`app/web/page`) handles the elements, the sensors and WebXR. A worker generates scenes and decodes files with the
+//! (`app/vr/web/page`) handles the elements, the sensors and WebXR. A worker generates scenes and decodes files with the
 //! functions of `work`; `Page` draws on the canvas. Every error that JavaScript receives is a sentence for the page.
 //!
 //! The module must not depend on HTML or request anything from a server.

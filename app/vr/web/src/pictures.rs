@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use yoro::eyes::{DepthConvention, DepthRange, Eye};
 use yoro::synthesis::Edges;
-use yoro_pictures::{DepthSamples, Nearness, StoredDepth, StoredDepthError, load_color, load_depth};
+use yoro_media::{DepthSamples, Nearness, StoredDepth, StoredDepthError, load_color, load_depth};
 
 /// The meaning of the values of a depth picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -97,7 +97,7 @@ pub enum PictureError {
     Option(String),
     /// A file is not a picture, or not of the required kind.
     #[error(transparent)]
-    File(#[from] yoro_pictures::PictureError),
+    File(#[from] yoro_media::PictureError),
     /// The pictures differ in size.
     #[error("the colour picture is {}x{} pixels and the depth picture {}x{}: both must have one size", .0[0], .0[1], .1[0], .1[1])]
     Sizes([u32; 2], [u32; 2]),
@@ -186,7 +186,7 @@ impl PicturePair {
 mod tests {
     use super::*;
     use image::{GrayImage, Luma, Rgb, RgbImage};
-    use yoro_pictures::{DepthImage, save_color, save_depth, save_gray};
+    use yoro_media::{DepthImage, save_color, save_depth, save_gray};
 
     #[test]
     fn a_pair_is_decoded_from_the_bottom() {

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
-use yoro_protocol::Ipd;
+use yoro_settings::Ipd;
 use yoro_render::stereo::{
     self, AntiAliasing, History, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
 };
@@ -83,7 +83,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        let yoro_protocol::Settings { renderer, msaa, history, dominant, .. } = Default::default();
+        let yoro_settings::Settings { renderer, msaa, history, dominant, .. } = Default::default();
         Settings {
             method: MethodChoice::default(),
             renderer,

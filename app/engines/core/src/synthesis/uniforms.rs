@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn the_guide_lists_the_layout() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/library.md");
         // The published package does not contain this file.
         let Ok(document) = std::fs::read_to_string(path) else { return };
         for (name, glsl, offset) in BLOCKS.iter().flat_map(|(_, layout, _)| *layout) {

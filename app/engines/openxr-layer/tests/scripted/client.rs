@@ -131,7 +131,7 @@ fn layer() -> sys::NegotiateApiLayerRequest {
     };
     // SAFETY: complete structures.
     let result =
-        unsafe { yoro_layer::xrNegotiateLoaderApiLayerInterface(&loader(), ptr::null(), &mut request) };
+        unsafe { yoro_openxr_layer::xrNegotiateLoaderApiLayerInterface(&loader(), ptr::null(), &mut request) };
     assert_eq!(result, sys::Result::SUCCESS);
     request
 }

@@ -13,7 +13,7 @@ use crate::world::{allocations, faulty, script, uncounted, watched, with_gpu, wi
 #[test]
 fn the_log_outlives_an_instance_but_not_its_descriptor() {
     with_gpu(|gpu| {
-        let path = yoro_layer::log::path().unwrap();
+        let path = yoro_openxr_layer::log::path().unwrap();
         let lines = || {
             let text = std::fs::read_to_string(&path).unwrap_or_default();
             text.matches("renders one view").count()
@@ -35,7 +35,7 @@ fn the_log_outlives_an_instance_but_not_its_descriptor() {
 fn the_recommended_size_stays_in_an_instance_and_is_right_in_the_next() {
     with_gpu(|gpu| {
         let habits = Habits { frames: 1, ..Habits::PLAIN };
-        let forget = || std::fs::remove_file(yoro_layer::sizes::path().unwrap()).ok();
+        let forget = || std::fs::remove_file(yoro_openxr_layer::sizes::path().unwrap()).ok();
         let asked = |script: Script| {
             let mut sizes = Vec::new();
             watched(script, || {
@@ -139,7 +139,7 @@ fn frames_allocate_nothing_and_leave_nothing_behind() {
     with_unwatched_gpu(|gpu| steady(gpu.into(), script(), &Habits::PLAIN, 300));
 }
 
-/// `cargo test -p yoro-layer --test scripted -- --ignored --nocapture`
+/// `cargo test -p yoro-openxr-layer --test scripted -- --ignored --nocapture`
 #[test]
 #[ignore = "takes a quarter of a minute"]
 fn ten_thousand_frames_leave_nothing_behind() {

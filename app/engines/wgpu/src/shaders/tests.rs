@@ -100,7 +100,7 @@ fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
 
 /// Returns the workspace's version of naga, or `None` without a lock file.
 fn naga_version() -> Option<String> {
-    let lock = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock")).ok()?;
+    let lock = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../Cargo.lock")).ok()?;
     let version = lock.split("name = \"naga\"\nversion = \"").nth(1)?.split('"').next()?;
     Some(version.to_owned())
 }

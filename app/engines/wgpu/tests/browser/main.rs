@@ -4,7 +4,7 @@
 #[path = "../../../core/tests/vulkan/against_opengl.rs"]
 #[expect(dead_code, reason = "shared with tests that use all of it")]
 mod against_opengl;
-#[path = "../../../../tests/program/browser.rs"]
+#[path = "../../../../../tests/program/browser.rs"]
 #[expect(dead_code, reason = "shared with the program's tests, which use all of it")]
 mod browser;
 #[path = "../../examples/offscreen/main.rs"]

@@ -1,6 +1,6 @@
 //! Anti-aliased sources give the same pictures on wgpu as on OpenGL.
 
-#[path = "../../../../tests/src/samples.rs"]
+#[path = "../../../../../tests/src/samples.rs"]
 mod samples;
 
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};

@@ -4,7 +4,7 @@ use anyhow::{Context as _, ensure};
 use yoro_gl::ProgramRecipe;
 
 /// The table that `cargo tools shader-cost --bless` writes.
-const TABLE: &str = include_str!("../../../../docs/shader-cost.csv");
+const TABLE: &str = include_str!("../../../../../docs/shader-cost.csv");
 /// The macros of maps. The table has materials without maps and with all of these.
 const MAPS: [&str; 4] = ["DIFFUSE_MAP", "SPECULAR_MAP", "EMISSIVE_MAP", "NORMAL_MAP"];
 

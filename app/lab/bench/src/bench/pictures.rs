@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::record::Setting;
-use yoro_figures::text::slug;
+use yoro_report::text::slug;
 
 /// Returns the folder for all pictures of a run, beside its file of `results`.
 pub fn pictures_beside(results: &Path) -> PathBuf {

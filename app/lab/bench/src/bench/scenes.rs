@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::{Affine3A, Mat3, Quat, Vec3, vec2, vec3};
 
-use yoro_scene::{self as scene, Model, PointLight, Scene, SceneError, ShadingStyle, Sky, Viewpoint};
+use yoro_assets::{self as scene, Model, PointLight, Scene, SceneError, ShadingStyle, Sky, Viewpoint};
 use yoro_scenes::build::SceneBuilder;
 use yoro_scenes::paint::{self, hash, unit};
 use yoro_scenes::props::textured;
@@ -227,7 +227,7 @@ fn append(to: &mut Model, from: &Model, first_material: usize, transform: Affine
 #[cfg(test)]
 mod tests {
     use super::*;
-    use yoro_scene::Bounds;
+    use yoro_assets::Bounds;
 
     /// Returns the largest angle, in radians, between the view's axis and a vertex of the object.
     fn reach_on_screen(scene: &Scene, object: &Object) -> f32 {

@@ -16,7 +16,7 @@ use yoro::eyes::EyeOptions;
 use yoro::synthesis::Edges;
 use yoro_render::stereo::{AntiAliasing, Pipeline};
 use yoro_render::{RenderSettings, RendererKind};
-use yoro_scene::ShadingStyle;
+use yoro_assets::ShadingStyle;
 use yoro_scenes::BUILTINS;
 
 /// Defines [`Suite`] from one list: the variant, its name on the command line and in files, and what it measures.

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use super::bandwidth;
 use super::contender::Contender;
 use super::record::{Measurement, Results, Setting, metric};
-use yoro_figures::stats::{self, median, unique};
+use yoro_report::stats::{self, median, unique};
 
 /// A column: heading, metric, number of decimals, and the function that combines its values.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);

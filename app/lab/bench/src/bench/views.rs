@@ -10,7 +10,7 @@ use yoro::synthesis::{self, Synthesis};
 use yoro_gl::{Destination, RenderTarget};
 use yoro_render::stereo::StereoError;
 use yoro_render::{PreparedScene, Selection, ViewTargets};
-use yoro_scene::CameraPath;
+use yoro_assets::CameraPath;
 use yoro_scenes::BUILTINS;
 
 /// The distance in metres between the frames of a sequence: walking pace at 30 frames per second.

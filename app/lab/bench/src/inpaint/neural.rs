@@ -1,6 +1,6 @@
 //! The neural patcher: a fully convolutional generator from an ONNX file, run by rten.
 //!
-//! The model (`training/train.py`) takes `[1, 5, height, width]`: RGB from 0 to 1 with roughly filled holes, a mask
+//! The model (`app/lab/training/train.py`) takes `[1, 5, height, width]`: RGB from 0 to 1 with roughly filled holes, a mask
 //! with 1 in holes and 0 elsewhere, and disparity from 0 (far plane) to 1 (the nearest pixel), with filled holes. It
 //! returns `[1, 3, height, width]`, RGB. Rows run from the top. Columns are forward columns, in which a disocclusion's
 //! background is on its left. Width and height are multiples of [`MULTIPLE`].
@@ -17,8 +17,8 @@ use super::patcher::{InpaintError, PatchTime, Patched, Patcher, Reprojected, nea
 use yoro::eyes::Eye;
 use yoro_files as files;
 
-/// The built-in model, made by `training/train.py`; `training/README.md` describes its data.
-static MODEL: &[u8] = include_bytes!("../../models/patcher.onnx");
+/// The built-in model, made by `app/lab/training/train.py`; `training/README.md` describes its data.
+static MODEL: &[u8] = include_bytes!("../../../training/patcher.onnx");
 
 /// The numbers of channels of the model's input and output.
 const CHANNELS: [usize; 2] = [5, 3];

@@ -43,7 +43,7 @@ pub enum InpaintError {
     File(#[from] FileError),
     /// The neural patcher cannot run the model.
     #[error(
-        "{model} is not a model for this patcher ({reason}): give an ONNX file made by training/train.py"
+        "{model} is not a model for this patcher ({reason}): give an ONNX file made by app/lab/training/train.py"
     )]
     Model {
         /// The file, or "the built-in model".

@@ -18,10 +18,10 @@ pub enum ReportError {
     Picture(#[from] image::ImageError),
     /// A page or a figure could not be made.
     #[error(transparent)]
-    Figures(#[from] yoro_figures::ReportError),
+    Figures(#[from] yoro_report::ReportError),
     /// A figure could not be drawn.
     #[error(transparent)]
-    Plot(#[from] yoro_figures::plot::PlotError),
+    Plot(#[from] yoro_report::plot::PlotError),
     /// A file of results holds no finished round.
     #[error("{} holds no finished round: let yoro bench finish one, then report", path.display())]
     Empty {

@@ -14,8 +14,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use yoro_figures::ReportFiles;
-use yoro_figures::paper::{self, PaperScene};
+use yoro_report::ReportFiles;
+use yoro_report::paper::{self, PaperScene};
 
 pub use error::ReportError;
 pub use run::{
@@ -77,7 +77,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::machine::{Machine, Parameter};
     use yoro::eyes::Eye;
-    use yoro_figures::stats::Summary;
+    use yoro_report::stats::Summary;
 
     use image::{Rgb, RgbImage};
 

@@ -11,10 +11,10 @@ use super::error::ReportError;
 use super::run::{PassTime, QUALITY_METHOD, Row, RunReport, SceneReport, Viewpoint};
 use crate::metrics::Quality;
 use crate::picture::encode_jpeg;
-use yoro_figures::page::{Template, figures, fill};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, DotRow, Figure, Mark, Panel};
-use yoro_figures::text::short_count;
+use yoro_report::page::{Template, figures, fill};
+use yoro_report::paper;
+use yoro_report::plot::{Axis, DotRow, Figure, Mark, Panel};
+use yoro_report::text::short_count;
 
 const TEMPLATE: Template = Template { name: "run.html.j2", text: include_str!("templates/run.html.j2") };
 

@@ -6,8 +6,8 @@ use serde::Serialize;
 use crate::machine::{Machine, Parameter};
 use crate::metrics::{Channels, MetricsError, Quality, error_map};
 use yoro::eyes::Eye;
-use yoro_figures::paper::{self, PaperScene};
-use yoro_figures::stats::{Summary, geometric_mean, unique};
+use yoro_report::paper::{self, PaperScene};
+use yoro_report::stats::{Summary, geometric_mean, unique};
 
 /// Explains how quality is measured; printed wherever it is shown.
 pub const QUALITY_METHOD: &str = "PSNR in dB over red, green and blue, data range 255. SSIM as the mean of red, \

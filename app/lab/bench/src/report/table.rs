@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::run::RunReport;
 use crate::metrics::Quality;
-use yoro_figures::paper;
-use yoro_figures::text::short_count;
+use yoro_report::paper;
+use yoro_report::text::short_count;
 
 fn pair(quality: &Quality) -> String {
     format!("{} / {:.4}", quality.psnr, quality.ssim_gaussian)

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::table::csv_text;
-use yoro_protocol::telemetry::{LINE_KEYS, Line};
+use yoro_settings::telemetry::{LINE_KEYS, Line};
 
 /// One second of a run. A value is `None` if the device does not give it.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::sample::COLUMNS;
 use super::*;
-use yoro_protocol::telemetry::{LINE_KEYS, Line};
+use yoro_settings::telemetry::{LINE_KEYS, Line};
 
 fn info() -> RunInfo {
     RunInfo {

@@ -36,7 +36,7 @@ use crate::latin_square::balanced_square;
 use crate::run::Plan;
 use crate::table::toml_mistake;
 use yoro_files::{self as files, FileError};
-use yoro_protocol::{Method, MethodChoice, Settings, SettingsError};
+use yoro_settings::{Method, MethodChoice, Settings, SettingsError};
 
 pub use conduct::{Progress, conduct};
 

@@ -83,7 +83,7 @@ fn mistakes_are_one_sentence() {
 
 #[test]
 fn the_repositorys_experiments_are_valid() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
     for (name, hours) in [("paper.toml", 24.0), ("five-minutes.toml", 1.0)] {
         let experiment = Experiment::read(&folder.join(name)).unwrap();
         let runs = experiment.plan("S1").len();

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use crate::capture::{Fault, FaultKind, Sample};
 use crate::log::{self, Entry, Kind, VRAPI_TAG};
 use crate::phone::LEAST_MILLIVOLTS;
-use yoro_protocol::telemetry::{BatteryStatus, LOG_TAG, Line, fields};
+use yoro_settings::telemetry::{BatteryStatus, LOG_TAG, Line, fields};
 
 /// A line is a clock jump if the device's clock and the session's time have advanced by amounts that differ by more
 /// than this many seconds. Lines are logged some frames after their second ends.

@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use yoro_protocol::telemetry::BatteryStatus;
+use yoro_settings::telemetry::BatteryStatus;
 
 fn line(time_s: f64) -> Line {
     Line {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::run::{Quantity, Run};
 use super::{CONFIDENCE, Device};
-use yoro_figures::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
+use yoro_report::inference::{Basis, BlockInterval, Blocks, Interval, Sample};
 
 /// The mean of a method in a scene over all runs that count.
 #[derive(Clone, Debug, PartialEq, Serialize)]

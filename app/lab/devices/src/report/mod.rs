@@ -21,7 +21,7 @@ use super::capture::{Capture, FaultKind};
 use super::mean_power::implausible;
 pub use compare::{Difference, Mean};
 pub use run::{ByLevel, Counted, Exclusion, Integrated, Quantity, Run};
-use yoro_figures::{ReportError, ReportFiles};
+use yoro_report::{ReportError, ReportFiles};
 use yoro_scenes::BUILTINS;
 
 /// Confidence of all intervals.

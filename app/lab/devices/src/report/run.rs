@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::capture::{Capture, Fault, FaultKind, Outcome, Sample};
 use crate::phone::LEAST_MILLIVOLTS;
-use yoro_figures::stats::median;
+use yoro_report::stats::median;
 
 /// Voltage that the paper uses to compute energy from battery percent.
 pub const PAPER_VOLTS: f64 = 3.7;
@@ -333,7 +333,7 @@ impl Run {
         let Some(value) = value else { return };
         self.values.insert(quantity, value);
         let values: Vec<f64> = seconds.iter().map(|(_, value)| *value).collect();
-        let std = yoro_figures::stats::Summary::of(&values).map(|summary| summary.std);
+        let std = yoro_report::stats::Summary::of(&values).map(|summary| summary.std);
         self.std_over_seconds.extend(std.map(|std| (quantity, std)));
     }
 

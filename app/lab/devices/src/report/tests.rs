@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::*;
 use crate::capture::{DeviceInfo, Fault, Outcome, RunInfo, Sample, VERSION};
-use yoro_figures::inference::{Basis, BlockInterval};
+use yoro_report::inference::{Basis, BlockInterval};
 
 const WARM_UP: u32 = 10;
 const DURATION: u32 = 100;
@@ -335,7 +335,7 @@ fn changes_agree_with_scipy() {
         interval: [f64; 2],
     }
     let vectors: Vectors =
-        serde_json::from_str(include_str!("../../../figures/src/vectors/inference.json")).unwrap();
+        serde_json::from_str(include_str!("../../../report/src/vectors/inference.json")).unwrap();
     for v in vectors.ratio {
         let mut captures = Vec::new();
         for (i, (a, b)) in v.a.iter().zip(&v.b).enumerate() {

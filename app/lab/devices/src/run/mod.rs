@@ -8,7 +8,7 @@ use crate::adb::{Device, DeviceError};
 use crate::capture::{DeviceInfo, Outcome, RunInfo, VERSION};
 use crate::foreign::Subject;
 use crate::phone::{self, PACKAGE};
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 
 pub(crate) use session::LOST_TIMEOUT_S;
 pub use session::capture;

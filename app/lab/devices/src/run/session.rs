@@ -15,7 +15,7 @@ use crate::mean_power::MeanPower;
 use crate::phone;
 use crate::reading::{LineContent, Reading};
 use yoro_files::interrupt;
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_scenes::BUILTINS;
 
 /// Maximum seconds that the application may take to load a scene and show it.

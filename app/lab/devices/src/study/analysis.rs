@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::error::StudyError;
 use super::ratings::Ratings;
-use yoro_figures::inference::{Equivalence, Interval, Sample, pairs_for_power};
-use yoro_figures::stats::unique;
+use yoro_report::inference::{Equivalence, Interval, Sample, pairs_for_power};
+use yoro_report::stats::unique;
 use yoro_files::interrupt;
 
 /// Lowest and highest rating.

@@ -12,7 +12,7 @@ mod ratings;
 
 use std::path::Path;
 
-use yoro_figures::{ReportError, ReportFiles};
+use yoro_report::{ReportError, ReportFiles};
 
 pub use analysis::{Excluded, Options, Question, Scale, Study, Verdict};
 pub use error::StudyError;

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use minijinja::context;
 
 use super::analysis::{Question, Study};
-use yoro_figures::ReportError;
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::inference::{Interval, Sample};
-use yoro_figures::page::{Template, figures, fill};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, DotRow, Figure, Mark, Panel};
-use yoro_figures::text::{fixed, slug};
+use yoro_report::ReportError;
+use yoro_report::grid::{Cell, Table};
+use yoro_report::inference::{Interval, Sample};
+use yoro_report::page::{Template, figures, fill};
+use yoro_report::paper;
+use yoro_report::plot::{Axis, DotRow, Figure, Mark, Panel};
+use yoro_report::text::{fixed, slug};
 
 const TEMPLATE: Template =
     Template { name: "study.html.j2", text: include_str!("../templates/study.html.j2") };

@@ -8,7 +8,7 @@ use super::plan::Trials;
 use crate::log::{self, Kind};
 use crate::table::{csv_mistake, csv_text};
 use yoro_files as files;
-use yoro_protocol::telemetry::{LOG_TAG, Rating};
+use yoro_settings::telemetry::{LOG_TAG, Rating};
 
 /// The columns of a table of ratings. Others are ignored.
 const COLUMNS: [&str; 5] = ["participant", "method", "scene", "question", "rating"];

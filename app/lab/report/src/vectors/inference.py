@@ -1,7 +1,7 @@
-"""Writes inference.json: reference values for app/figures/src/inference.rs.
+"""Writes inference.json: reference values for app/lab/report/src/inference.rs.
 
     python3 -m venv venv && venv/bin/pip install mpmath==1.4.1 scipy==1.17.1 statsmodels==0.15.0
-    venv/bin/python app/figures/src/vectors/inference.py > app/figures/src/vectors/inference.json
+    venv/bin/python app/lab/report/src/vectors/inference.py > app/lab/report/src/vectors/inference.json
 """
 
 import json

@@ -12,7 +12,7 @@ use yoro_devices::experiment::{self, Experiment, length, method_name};
 /// Make the runs of an experiment: methods, scenes and repetitions in a balanced order, with pauses to cool down
 #[derive(clap::Args, Clone, Debug)]
 pub struct ExperimentArgs {
-    /// The experiment, such as experiments/five-minutes.toml
+    /// The experiment, such as app/lab/devices/experiments/five-minutes.toml
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
     /// Folder of the captures. One that an interrupted experiment has left is continued

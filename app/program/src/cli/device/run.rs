@@ -14,7 +14,7 @@ use yoro_devices::foreign::Subject;
 use yoro_devices::held_settings::{HeldSettings, Wanted};
 use yoro_devices::run::{self, Other, Plan};
 use yoro_files::interrupt;
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 
 /// Make one run: a method in a scene for a time, captured into a folder
 #[derive(clap::Args, Clone, Debug)]

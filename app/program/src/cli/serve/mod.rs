@@ -27,7 +27,7 @@ use crate::cli::eyes;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
 use yoro_gl::Context;
-use yoro_lab::streaming::{FrameRenderer, Mode};
+use yoro_bench::streaming::{FrameRenderer, Mode};
 use yoro_render::PreparedScene;
 use yoro_stream::{FromServer, Token};
 use yoro_video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::ensure;
 
-use yoro_lab::streaming::{FrameRenderer, Picture};
+use yoro_bench::streaming::{FrameRenderer, Picture};
 use yoro_render::PreparedScene;
 use yoro_stream::{Content, EyeView, FromServer, ViewRequest};
 use yoro_video::Reader;

@@ -6,7 +6,7 @@ use glam::{Mat4, Vec3, Vec4};
 
 use super::uniforms::eye_to_clip;
 use yoro::eyes::View;
-use yoro_scene::{Bounds, Model, Vertex};
+use yoro_assets::{Bounds, Model, Vertex};
 
 /// Number of floats in the position, normal and uv of a [`Vertex`].
 pub(super) const VERTEX_ATTRIBUTES: [i32; 3] = [3, 3, 2];
@@ -243,7 +243,7 @@ mod tests {
 
     use super::*;
     use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose};
-    use yoro_scene::{Material, Part};
+    use yoro_assets::{Material, Part};
 
     fn random_model(rng: &mut Pcg64) -> Model {
         let mut model = Model { materials: vec![Material::default(); 5], ..Model::default() };

@@ -19,7 +19,7 @@ use super::settings::RenderSettings;
 use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, View};
 use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
-use yoro_scene::ShadingStyle;
+use yoro_assets::ShadingStyle;
 
 /// For images that are complete, whose samples are no longer needed.
 const NO_SAMPLES: KeptSamples = KeptSamples { color: false, depth: false };

@@ -9,7 +9,7 @@ use super::*;
 use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_gl::{Context, RenderTarget};
-use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
 
 const SIZE: [u32; 2] = [96, 64];
 

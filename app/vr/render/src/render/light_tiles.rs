@@ -92,7 +92,7 @@ mod tests {
     use crate::render::cluster::Culler;
     use glam::Quat;
     use yoro::eyes::{DepthRange, Pose};
-    use yoro_scene::PointLight;
+    use yoro_assets::PointLight;
 
     /// Every point that a light reaches must lie in a tile that lists it, and most tiles must not list it.
     #[test]

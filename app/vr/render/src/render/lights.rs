@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4};
 use super::cluster::Culler;
 use super::settings::MAX_POINT_LIGHTS;
 use yoro_gl::Program;
-use yoro_scene::{PointLight, Sky};
+use yoro_assets::{PointLight, Sky};
 
 /// The point lights of one view, or of both eyes, strongest first.
 pub struct Lights {

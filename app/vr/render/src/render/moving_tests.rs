@@ -9,8 +9,8 @@ use crate::PreparedScene;
 use crate::fixture::quad;
 use yoro::eyes::DepthConvention;
 use yoro_gl::Command;
-use yoro_scene::motion::{Carrier, MovingLight, MovingMesh, Node, Track};
-use yoro_scene::{Motion, Scene, ShadingStyle};
+use yoro_assets::motion::{Carrier, MovingLight, MovingMesh, Node, Track};
+use yoro_assets::{Motion, Scene, ShadingStyle};
 
 fn track(values: &[f32]) -> Option<Track> {
     Some(Track { times: vec![0.0, 2.0], values: values.to_vec(), ..Track::default() })

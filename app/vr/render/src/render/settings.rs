@@ -1,8 +1,8 @@
 //! Settings of the renderer.
 
 use yoro_gl::{Capabilities, Format, GlError};
-use yoro_protocol::{DEPTH_BITS, Settings, Ssao};
-pub use yoro_protocol::{MAX_POINT_LIGHTS, MSAA, RendererKind};
+use yoro_settings::{DEPTH_BITS, Settings, Ssao};
+pub use yoro_settings::{MAX_POINT_LIGHTS, MSAA, RendererKind};
 
 /// The depth format of samples in the forward renderer. Float for both conventions, since synthesized images, whose
 /// depth is loaded, have float depth. With 16 bits, surfaces that lie close together would show through one another.

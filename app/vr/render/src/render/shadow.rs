@@ -8,7 +8,7 @@ use super::cluster::{Culler, Selection};
 use super::scene::{Features, GpuScene};
 use yoro::eyes::Pose;
 use yoro_gl::{Blend, Context, DepthTest, Format, GlError, Program, RasterState, RenderTarget, ShaderSource};
-use yoro_scene::{Bounds, Viewpoint};
+use yoro_assets::{Bounds, Viewpoint};
 
 /// Distance from the viewpoints, in metres, within which a large scene has shadows.
 const REACH: f32 = 60.0;

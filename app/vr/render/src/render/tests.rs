@@ -12,7 +12,7 @@ use tonemap::TonemapPass;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Context, Destination, Filter, Format, Program, RenderTarget, ShaderSource, Texture};
-use yoro_scene::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
+use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 const SIZE: [u32; 2] = [144, 112];
 

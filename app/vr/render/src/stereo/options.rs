@@ -8,8 +8,8 @@ use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro::synthesis::{self, Edges, Outputs, Synthesis, SynthesisOptions};
 use yoro_gl::{Capabilities, Context, GlError};
-use yoro_protocol::Settings;
-pub use yoro_protocol::{AntiAliasing, History, Method, MethodChoice, Pipeline};
+use yoro_settings::Settings;
+pub use yoro_settings::{AntiAliasing, History, Method, MethodChoice, Pipeline};
 
 /// Returns what the forward renderer lacks for a method, if anything.
 fn lacking_forward(method: Method) -> Option<&'static str> {

@@ -8,8 +8,8 @@ use glow::HasContext;
 use yoro::eyes::Warp;
 use yoro::synthesis::{Outputs, Source, Synthesis, Uniforms, draw_target, set_source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
-use yoro_protocol::MAX_KERNEL_HEIGHT;
-pub use yoro_protocol::{ImBufferSize, ParseImBufferSizeError};
+use yoro_settings::MAX_KERNEL_HEIGHT;
+pub use yoro_settings::{ImBufferSize, ParseImBufferSizeError};
 
 /// Rows per workgroup of Algorithm 2, with one invocation for each row.
 const ROWS: u32 = 64;

@@ -3,7 +3,7 @@
 use super::method::StereoMethod;
 use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro_gl::GlError;
-use yoro_protocol::Method;
+use yoro_settings::Method;
 
 /// Renders both eyes if neither can be synthesized from the other, as with canted eyes. Compiled when first needed.
 #[derive(Default)]

@@ -15,8 +15,8 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Command, Destination, Filter, Format, Profiling, RenderTarget};
-use yoro_scene::motion::{Carrier, MovingMesh, Node, Track};
-use yoro_scene::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
+use yoro_assets::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
 
 const SIZE: [u32; 2] = [160, 120];
 

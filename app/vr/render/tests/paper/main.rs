@@ -1,8 +1,8 @@
 //! Tests the paper's pipeline against its f64 reference, and what every pipeline must fulfil, on all GL backends.
 
-#[path = "../../../core/tests/synthesis/in_memory.rs"]
+#[path = "../../../../engines/core/tests/synthesis/in_memory.rs"]
 mod in_memory;
-#[path = "../../../core/tests/synthesis/laws.rs"]
+#[path = "../../../../engines/core/tests/synthesis/laws.rs"]
 mod laws;
 
 use in_memory::OUTPUTS;

@@ -17,7 +17,7 @@ use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
 use yoro_lenses::{Optics, Screen, flat_hit};
-use yoro_protocol::{Ipd, Settings, Timewarp};
+use yoro_settings::{Ipd, Settings, Timewarp};
 use yoro_render::stereo::StereoFrame;
 
 /// Pixels per inch assumed for a screen that does not report any.

@@ -6,7 +6,7 @@ use super::{Viewer, profiling};
 use crate::error::ViewerError;
 use crate::loading::SceneSource;
 use yoro_gl::GlError;
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_render::stereo::StereoOptions;
 use yoro_render::{RenderSettings, Renderer};
 

@@ -3,8 +3,8 @@
 use super::{Viewer, gl_with_scene};
 use crate::error::ViewerError;
 use crate::event::{Action, Event};
-use yoro_protocol::telemetry::{Rating, ViewerState};
-use yoro_protocol::{Ipd, Settings};
+use yoro_settings::telemetry::{Rating, ViewerState};
+use yoro_settings::{Ipd, Settings};
 
 /// The step by which the IPD changes, in metres.
 pub(super) const IPD_STEP: f32 = 0.001;

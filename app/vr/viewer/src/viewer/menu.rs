@@ -7,7 +7,7 @@ use crate::event::Action;
 use crate::menu::{Choice, Item, Look};
 use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::Destination;
-use yoro_protocol::{Setting, Settings};
+use yoro_settings::{Setting, Settings};
 
 /// The quality levels: name, `render-scale`, `adaptive` and `msaa`.
 const QUALITIES: [(&str, f32, bool, u32); 3] =

@@ -40,10 +40,10 @@ use crate::stream::{Stream, StreamExchange};
 use yoro::eyes::Pose;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
-use yoro_protocol::{Ipd, Settings};
+use yoro_settings::{Ipd, Settings};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::MethodChoice;
-use yoro_scene::Scene;
+use yoro_assets::Scene;
 
 /// Capacity reserved for the times of a frame's passes.
 const MOST_PASSES: usize = 64;

@@ -13,7 +13,7 @@ use yoro::eyes::Frustum;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
-use yoro_protocol::telemetry::{DeviceState, Line};
+use yoro_settings::telemetry::{DeviceState, Line};
 use yoro_render::stereo::Method;
 use yoro_stream::{Content, EyeView, FrameHeader};
 

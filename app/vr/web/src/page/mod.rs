@@ -20,7 +20,7 @@ use web_sys::WebGl2RenderingContext;
 use yoro::eyes::{Eye, Pose};
 use yoro_gl::{Context, RenderTarget};
 use yoro_render::stereo::{Auto, MethodChoice, StereoFrame};
-use yoro_scene::Scene;
+use yoro_assets::Scene;
 use yoro_scenes::BUILTINS;
 
 use self::error::sentence;

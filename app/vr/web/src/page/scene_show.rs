@@ -7,7 +7,7 @@ use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::{Context, GlError, PassTime, Profiling, RenderTarget, Texture};
 use yoro_render::stereo::{Auto, Method, SelectedMethod, StereoError, StereoFrame, StereoMethod};
 use yoro_render::{PreparedScene, Renderer};
-use yoro_scene::Scene;
+use yoro_assets::Scene;
 
 use crate::settings::Settings;
 

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use js_sys::{Array, Function, Uint8Array};
 use wasm_bindgen::prelude::*;
-use yoro_scene::Scene;
+use yoro_assets::Scene;
 use yoro_scenes::build::Progress;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
 
@@ -87,7 +87,7 @@ pub fn load_scene(main: &str, names: Vec<String>, contents: &Array) -> Result<Ve
     let names = names.into_iter().map(PathBuf::from);
     let contents = contents.iter().map(|bytes| Uint8Array::from(bytes).to_vec());
     yoro_files::provide(names.zip(contents));
-    let scene = yoro_scene::load(Path::new(main));
+    let scene = yoro_assets::load(Path::new(main));
     yoro_files::provide([]);
     pack(&scene.map_err(sentence)?)
 }

@@ -326,7 +326,7 @@ pub fn draw_target(gl: &Context, target: &Destination, outputs: Outputs) {
 mod tests {
     #[test]
     fn the_guide_lists_the_state() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/library.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/library.md");
         // The published package does not contain this file.
         let Ok(guide) = std::fs::read_to_string(path) else { return };
         let rows = include_str!("mod.rs").lines().filter_map(|line| line.strip_prefix("/// | "));

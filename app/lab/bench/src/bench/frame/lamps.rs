@@ -7,7 +7,7 @@ use glam::{Vec3, vec3};
 use crate::bench::waves::{combine, wave_size};
 use yoro::eyes::View;
 use yoro_render::MAX_POINT_LIGHTS;
-use yoro_scene::PointLight;
+use yoro_assets::PointLight;
 
 /// The lights that reach each pixel of a view, as bits.
 pub struct Lamps {

@@ -168,7 +168,7 @@ mod tests {
         let model = FrameModel::new().unwrap();
         let frame = model.frame(&commands, size, &mut lamps).unwrap();
         let told = |file: &str, stage: &str, column: usize| {
-            let table = include_str!("../../../../../docs/shader-cost.csv");
+            let table = include_str!("../../../../../../docs/shader-cost.csv");
             let line = table.lines().find(|line| line.starts_with(&format!("a740,{file},{stage},"))).unwrap();
             line.split(',').nth(column).unwrap().parse::<f64>().unwrap()
         };

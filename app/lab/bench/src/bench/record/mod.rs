@@ -30,7 +30,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::machine::{Machine, Parameter};
-use yoro_scene::ShadingStyle;
+use yoro_assets::ShadingStyle;
 
 pub use file::{RecordError, Results, Writer};
 

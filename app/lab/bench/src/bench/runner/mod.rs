@@ -25,7 +25,7 @@ use crate::picture;
 use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_scene::{Scene, ShadingStyle, Viewpoint};
+use yoro_assets::{Scene, ShadingStyle, Viewpoint};
 
 /// The approximate number of bytes per triangle while a scene is built and uploaded, for the limit on memory.
 const BYTES_PER_TRIANGLE: f64 = 150.0;

@@ -13,7 +13,7 @@ use crate::picture;
 use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
 use image::RgbImage;
 use yoro::eyes::{Eye, EyePair};
-use yoro_figures::text::slug;
+use yoro_report::text::slug;
 use yoro_files::interrupt;
 use yoro_render::PreparedScene;
 use yoro_stream::{EyeView, ViewRequest};

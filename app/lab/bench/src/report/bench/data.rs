@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::bench::record::{Header, Results, SceneFacts, Setting, metric};
-use yoro_figures::stats::{Summary, geometric_mean, mean, median, percentile, unique};
+use yoro_report::stats::{Summary, geometric_mean, mean, median, percentile, unique};
 
 /// The name of the contender that costs are compared with: two full renders.
 pub const CONVENTIONAL: &str = "conventional";

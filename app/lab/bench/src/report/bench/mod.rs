@@ -18,9 +18,9 @@ use crate::report::run::{QUALITY_METHOD, Viewpoint};
 use data::Suite;
 use sections::Section;
 use yoro::eyes::Eye;
-use yoro_figures::page::{self, Template};
-use yoro_figures::stats::unique;
-use yoro_figures::text::slug;
+use yoro_report::page::{self, Template};
+use yoro_report::stats::unique;
+use yoro_report::text::slug;
 use yoro_files as files;
 
 const TEMPLATE: Template =

@@ -8,7 +8,7 @@ use super::*;
 use crate::bench::record::{Header, PassClock, RoundEnd, SceneFacts, Unsupported, VERSION};
 use crate::bench::{Measurement, Record, Setting, Writer, bandwidth, metric};
 use crate::machine::{Machine, Parameter};
-use yoro_scene::ShadingStyle;
+use yoro_assets::ShadingStyle;
 
 fn header(renderer: &str) -> Header {
     Header {

@@ -15,9 +15,9 @@ use crate::adb::{DeviceError, State};
 use crate::log;
 use yoro_files as files;
 use yoro_files::interrupt;
-use yoro_protocol::Method;
-use yoro_protocol::Settings;
-use yoro_protocol::telemetry::{BatteryStatus, CurrentNormalizer, Line};
+use yoro_settings::Method;
+use yoro_settings::Settings;
+use yoro_settings::telemetry::{BatteryStatus, CurrentNormalizer, Line};
 
 /// The start of every replay in seconds since 1970. It is fixed so that results do not depend on the date.
 const BEGIN: f64 = 1_750_000_000.0;
@@ -383,11 +383,11 @@ impl SimulatedDevice {
             if std::mem::take(&mut self.truncate) {
                 text.truncate(text.len() * 2 / 3);
             }
-            self.write_log(pid, "I", yoro_protocol::telemetry::LOG_TAG, &text);
+            self.write_log(pid, "I", yoro_settings::telemetry::LOG_TAG, &text);
         }
         if over {
             let text = format!("v=1,summary=1,t={time_s:.1}s,frames={:.0}", time_s * line.fps.unwrap_or(0.0));
-            self.write_log(pid, "I", yoro_protocol::telemetry::LOG_TAG, &text);
+            self.write_log(pid, "I", yoro_settings::telemetry::LOG_TAG, &text);
         }
     }
 

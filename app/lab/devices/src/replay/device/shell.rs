@@ -8,9 +8,9 @@ use crate::replay::script::Fault;
 use crate::{log, phone};
 use rand::Rng;
 use yoro_files as files;
-use yoro_protocol::PROPERTY_PREFIX;
-use yoro_protocol::Settings;
-use yoro_protocol::telemetry::{CurrentNormalizer, LOG_TAG, Line};
+use yoro_settings::PROPERTY_PREFIX;
+use yoro_settings::Settings;
+use yoro_settings::telemetry::{CurrentNormalizer, LOG_TAG, Line};
 
 impl SimulatedDevice {
     /// Installs the application.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::format::{NO_SCATTER, change, change_format, count, number, signed, without_scatter};
 use crate::report::{CONFIDENCE, DeviceReport, Quantity};
-use yoro_figures::inference::{Basis, BlockInterval, Interval};
+use yoro_report::inference::{Basis, BlockInterval, Interval};
 
 /// The result of a method on a device: how much a quantity has changed, from which value to which, and the interval.
 #[derive(Serialize)]

@@ -3,8 +3,8 @@
 use super::ALL_SCENES;
 use super::tables::papers_changes;
 use crate::report::{CONFIDENCE, Device, DeviceReport, Quantity, Run};
-use yoro_figures::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
-use yoro_figures::text::slug;
+use yoro_report::plot::{Axis, DotRow, Figure, Mark, Panel, Series};
+use yoro_report::text::slug;
 
 /// Returns figures of the changes of power, frame rate and temperature by scene, with intervals.
 pub fn change_figures(report: &DeviceReport, device: &Device, id: &str) -> Vec<Figure> {

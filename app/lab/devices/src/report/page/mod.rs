@@ -14,8 +14,8 @@ use super::{Device, DeviceReport, Difference, Quantity, Run};
 use answers::{Answer, answers};
 use figures::{change_figures, trace_figures};
 use tables::{device_tables, notes_table, overview_tables};
-use yoro_figures::ReportError;
-use yoro_figures::page::{Template, figures, fill};
+use yoro_report::ReportError;
+use yoro_report::page::{Template, figures, fill};
 
 pub(super) use format::count;
 

@@ -6,9 +6,9 @@ use super::format::{NO_SCATTER, OVER_BLOCKS, change, change_interval, number, wi
 use super::{ALL_SCENES, simulated_mark};
 use crate::report::run::{COUNTER_TOLERANCE, PAPER_VOLTS};
 use crate::report::{CONFIDENCE, Device, DeviceReport, Difference, Note, Quantity, Run};
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::paper;
-use yoro_figures::stats::unique;
+use yoro_report::grid::{Cell, Table};
+use yoro_report::paper;
+use yoro_report::stats::unique;
 use yoro_scenes::BUILTINS;
 
 const FIRST_HALF: [Quantity; 5] =

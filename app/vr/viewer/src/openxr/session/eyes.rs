@@ -7,7 +7,7 @@ use super::state::Session;
 use crate::openxr::error::{XrError, call};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_render::stereo::Substitute;
 
 /// The largest magnitude of a field of view's angles that is accepted, in radians.

@@ -13,7 +13,7 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Pose};
 use yoro_context::Graphics;
 use yoro_gl::Destination;
 use yoro_lenses::{Board, board_metres};
-use yoro_protocol::Ipd;
+use yoro_settings::Ipd;
 use yoro_render::stereo::{DepthTarget, EyeTarget};
 
 /// The layers of a frame.

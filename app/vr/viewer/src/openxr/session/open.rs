@@ -21,7 +21,7 @@ use yoro::eyes::Eye;
 use yoro_context::Graphics;
 use yoro_gl::Context;
 use yoro_lenses::{Board, Panel};
-use yoro_protocol::Settings;
+use yoro_settings::Settings;
 use yoro_render::DepthCopy;
 
 /// If the eyes' images are scaled, their sizes are multiples of this many pixels.

@@ -14,7 +14,7 @@ use crate::openxr::mask::Mask;
 use crate::openxr::storage::Storage;
 use yoro::eyes::EyesError;
 use yoro_gl::Context;
-use yoro_protocol::Performance;
+use yoro_settings::Performance;
 use yoro_render::DepthCopy;
 
 /// The result of [`Session::step`].

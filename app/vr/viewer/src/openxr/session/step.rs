@@ -15,7 +15,7 @@ use crate::openxr::error::{XrError, call, check, optional};
 use crate::openxr::graphics::make_current;
 use crate::viewer::Viewer;
 use yoro_context::Graphics;
-use yoro_protocol::{Performance, Settings};
+use yoro_settings::{Performance, Settings};
 
 impl Session {
     /// Handles the runtime's events and makes a frame if it wants one. New states go to `states`.

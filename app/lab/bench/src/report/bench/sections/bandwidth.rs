@@ -5,12 +5,12 @@ use super::section::Section;
 use super::tables::push_refusals;
 use crate::bench::bandwidth;
 use crate::report::bench::data::{Measured, SettingData, Suite};
-use yoro_figures::bd_rate::bd_rate;
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, Panel, Series};
-use yoro_figures::stats::mean;
-use yoro_figures::text::{fixed, slug};
+use yoro_report::bd_rate::bd_rate;
+use yoro_report::grid::{Cell, Table};
+use yoro_report::paper;
+use yoro_report::plot::{Axis, Panel, Series};
+use yoro_report::stats::mean;
+use yoro_report::text::{fixed, slug};
 
 /// The smallest share of the anchor's range of qualities that a curve must reach to be compared.
 const LEAST_OVERLAP: f64 = 0.1;

@@ -3,9 +3,9 @@
 use crate::bench::record::metric;
 pub use crate::report::bench::data::{CONVENTIONAL, MONO};
 use crate::report::bench::data::{Measured, SettingData};
-use yoro_figures::grid::Cell;
-use yoro_figures::paper;
-use yoro_figures::text::fixed;
+use yoro_report::grid::Cell;
+use yoro_report::paper;
+use yoro_report::text::fixed;
 
 /// The prefix of the labels of the paper's curves.
 pub const PAPERS: &str = "the paper's ";

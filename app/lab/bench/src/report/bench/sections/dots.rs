@@ -2,8 +2,8 @@
 
 use super::cells::PAPERS;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
+use yoro_report::paper;
+use yoro_report::plot::{Axis, DotRow, Mark, Panel};
 
 /// Returns a mark for the paper's figure of the system that a method here corresponds to.
 pub fn papers_mark(method: &str, value: f64) -> Mark {

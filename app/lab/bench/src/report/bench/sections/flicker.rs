@@ -6,9 +6,9 @@ use super::section::Section;
 use super::tables::{means_table, scene_table};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::grid::Cell;
-use yoro_figures::plot::Axis;
-use yoro_figures::text::fixed;
+use yoro_report::grid::Cell;
+use yoro_report::plot::Axis;
+use yoro_report::text::fixed;
 
 /// Returns the section of the suite `flicker`.
 pub fn section(suite: &Suite) -> Section {

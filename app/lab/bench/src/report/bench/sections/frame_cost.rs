@@ -3,8 +3,8 @@
 use super::section::Section;
 use crate::bench::frame::{self, SYNTHESIS};
 use crate::report::bench::data::{CONVENTIONAL, Measured, SettingData, Suite};
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::stats::{mean, unique};
+use yoro_report::grid::{Cell, Table};
+use yoro_report::stats::{mean, unique};
 
 /// The passes whose cost depends on the application's surfaces.
 const SURFACES: [&str; 3] = ["g-buffer", "lighting", "forward"];

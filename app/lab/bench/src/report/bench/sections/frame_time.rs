@@ -6,9 +6,9 @@ use super::section::Section;
 use super::tables::{scene_table, time_details};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
-use yoro_figures::text::fixed;
+use yoro_report::paper;
+use yoro_report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_report::text::fixed;
 
 fn paper_ratios(setting: &SettingData) -> Vec<(&'static str, f64)> {
     paper_scene(setting).map_or_else(Vec::new, |scene| {

@@ -7,10 +7,10 @@ use super::sweeps::QUALITY_FIGURES;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
-use yoro_figures::stats::mean;
+use yoro_report::grid::{Cell, Table};
+use yoro_report::paper;
+use yoro_report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_report::stats::mean;
 
 /// What differs between sections of this kind.
 struct Labels {

@@ -4,9 +4,9 @@ use super::cells::cell;
 use super::section::Section;
 use super::tables::push_refusals;
 use crate::report::bench::data::Suite;
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::stats::unique;
-use yoro_figures::text::{fixed, slug};
+use yoro_report::grid::{Cell, Table};
+use yoro_report::stats::unique;
+use yoro_report::text::{fixed, slug};
 
 /// Returns a section with every metric of a suite.
 pub fn section(suite: &Suite) -> Section {

@@ -7,11 +7,11 @@ use super::tables::means_table;
 use crate::bench::record::PassClock;
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::paper;
-use yoro_figures::plot::Axis;
-use yoro_figures::stats::{mean, unique};
-use yoro_figures::text::fixed;
+use yoro_report::grid::{Cell, Table};
+use yoro_report::paper;
+use yoro_report::plot::Axis;
+use yoro_report::stats::{mean, unique};
+use yoro_report::text::fixed;
 
 /// Returns the section on CPU time and memory of the suite `scenes`.
 pub fn section(suite: &Suite) -> Section {

@@ -5,11 +5,11 @@ use super::section::Section;
 use super::tables::{metric_table, push_refusals};
 use crate::bench::record::metric;
 use crate::report::bench::data::Suite;
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, DotRow, Mark, Panel};
-use yoro_figures::stats::mean;
-use yoro_figures::text::fixed;
+use yoro_report::grid::{Cell, Table};
+use yoro_report::paper;
+use yoro_report::plot::{Axis, DotRow, Mark, Panel};
+use yoro_report::stats::mean;
+use yoro_report::text::fixed;
 
 /// Returns the section of the suite `patchers`.
 pub fn section(suite: &Suite) -> Section {

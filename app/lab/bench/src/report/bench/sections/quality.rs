@@ -7,11 +7,11 @@ use super::sweeps::QUALITY_FIGURES;
 use super::tables::{means_table, metric_table, scene_table};
 use crate::bench::record::metric;
 use crate::report::bench::data::Suite;
-use yoro_figures::grid::Table;
-use yoro_figures::paper;
-use yoro_figures::plot::Axis;
-use yoro_figures::stats::mean;
-use yoro_figures::text::fixed;
+use yoro_report::grid::Table;
+use yoro_report::paper;
+use yoro_report::plot::Axis;
+use yoro_report::stats::mean;
+use yoro_report::text::fixed;
 
 fn paper_quality(scene: &paper::PaperScene, name: &str) -> Option<f64> {
     match name {

@@ -1,7 +1,7 @@
 //! An experiment on the page.
 
-use yoro_figures::grid::Table;
-use yoro_figures::plot::{Figure, Panel};
+use yoro_report::grid::Table;
+use yoro_report::plot::{Figure, Panel};
 
 /// An experiment on the page.
 #[derive(Debug)]

@@ -6,10 +6,10 @@ use super::tables::push_refusals;
 use crate::bench::bandwidth::metric::KBIT_S;
 use crate::bench::record::metric::SAVED;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::paper;
-use yoro_figures::stats::mean;
-use yoro_figures::text::fixed;
+use yoro_report::grid::{Cell, Table};
+use yoro_report::paper;
+use yoro_report::stats::mean;
+use yoro_report::text::fixed;
 
 /// Returns the section of the suite `stream`.
 pub fn section(suite: &Suite) -> Section {

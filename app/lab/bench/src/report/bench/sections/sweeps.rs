@@ -5,10 +5,10 @@ use super::section::Section;
 use super::tables::sweep_table;
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::grid::{Cell, Column};
-use yoro_figures::paper;
-use yoro_figures::plot::{Axis, Panel, Series};
-use yoro_figures::text::fixed;
+use yoro_report::grid::{Cell, Column};
+use yoro_report::paper;
+use yoro_report::plot::{Axis, Panel, Series};
+use yoro_report::text::fixed;
 
 /// The metrics of the eye that is not dominant that have a figure: metric, axis, and a note.
 pub const QUALITY_FIGURES: [(&str, &str, &str); 3] = [

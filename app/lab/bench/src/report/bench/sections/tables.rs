@@ -3,9 +3,9 @@
 use super::cells::{cell, milliseconds};
 use crate::bench::record::metric;
 use crate::report::bench::data::{SettingData, Suite};
-use yoro_figures::grid::{Cell, Table};
-use yoro_figures::stats::{mean, percentile};
-use yoro_figures::text::{fixed, short_count};
+use yoro_report::grid::{Cell, Table};
+use yoro_report::stats::{mean, percentile};
+use yoro_report::text::{fixed, short_count};
 
 /// Returns a table with a row for each setting and a column for each contender, followed by the means and by the
 /// contenders that were not measured.
