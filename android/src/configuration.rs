@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use android_activity::AndroidApp;
 use yoro_gl::Context;
-use yoro_settings::Settings;
 use yoro_scenes::BUILTINS;
+use yoro_settings::Settings;
 use yoro_viewer::{Cardboard, Viewer, ViewerError, list_scenes};
 
 use crate::display::Display;

@@ -6,9 +6,9 @@ use std::rc::Rc;
 
 use image::RgbImage;
 use yoro_gl::Context;
+use yoro_render::stereo::stills;
 use yoro_settings::Pipeline;
 use yoro_settings::telemetry::Pictures;
-use yoro_render::stereo::stills;
 
 /// The least PSNR against the stored picture, in dB. Two drivers that follow the specification differ in rounding and
 /// texture filtering; a wrong eye, a wrong shift or a missing pass costs more than that.

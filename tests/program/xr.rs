@@ -12,17 +12,17 @@ use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use yoro::eyes::{Eye, EyePair, Frustum};
-use yoro_context::{Backend, Headless};
 use yoro_bench::metrics::{Channels, Quality};
 use yoro_bench::picture;
 use yoro_bench::picture::eye_image;
+use yoro_context::{Backend, Headless};
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     Aim, At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
 };
-use yoro_settings::Settings;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_settings::Settings;
 
 use crate::monado::{self, Running};
 use crate::program::{Run, finish, yoro};

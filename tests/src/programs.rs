@@ -8,13 +8,13 @@ use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
 use yoro::synthesis::{self, AnyView, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
-use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
+use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
+use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro_render::stereo::{
     self, AntiAliasing, History, ImBufferSize, Method, Paper, PaperOptions, StereoOptions,
 };
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
-use yoro_assets::{Scene, ShadingStyle};
 use yoro_shaders::{Assembled, MissingFile};
 
 use crate::{is_tested, scene};

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 use yoro::eyes::{Eye, EyeOptions};
 use yoro::synthesis::Edges;
-use yoro_context::{Backend, Headless};
 use yoro_bench::picture::rgb_image;
+use yoro_context::{Backend, Headless};
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 

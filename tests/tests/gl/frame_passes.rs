@@ -4,16 +4,16 @@ use std::fs;
 use std::path::Path;
 
 use yoro::eyes::EyeOptions;
+use yoro_assets::ShadingStyle;
+use yoro_bench::bench::Entrant;
+use yoro_bench::bench::frame::{contenders, pass_table, pieces};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{
     Command, Filter, Format, GlApi, Program, RasterState, RenderTarget, ShaderSource, Shape, Texture,
 };
-use yoro_bench::bench::Entrant;
-use yoro_bench::bench::frame::{contenders, pass_table, pieces};
-use yoro_settings::Settings;
 use yoro_render::stereo::StereoFrame;
 use yoro_render::{PreparedScene, RenderSettings, RendererKind};
-use yoro_assets::ShadingStyle;
+use yoro_settings::Settings;
 use yoro_tests::{golden::BLESS, on_every_backend, scene};
 
 const BEGIN: &str = "<!-- passes: begin -->\n";

@@ -5,10 +5,10 @@ use std::rc::Rc;
 use anyhow::ensure;
 use glam::Quat;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum};
+use yoro_assets::{Scene, ShadingStyle};
 use yoro_gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
-use yoro_assets::{Scene, ShadingStyle};
 use yoro_tests::{is_tested, on_every_backend, scene};
 
 const SIZE: [u32; 2] = [128, 96];

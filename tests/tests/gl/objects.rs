@@ -3,11 +3,11 @@
 use std::rc::Rc;
 
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
+use yoro_assets::ShadingStyle;
 use yoro_context::Headless;
 use yoro_gl::Context;
 use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
-use yoro_assets::ShadingStyle;
 use yoro_tests::{backends, is_tested, scene};
 
 /// Returns every way to render a frame, by name.

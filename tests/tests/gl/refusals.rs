@@ -2,10 +2,10 @@
 
 use glam::Quat;
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, Pose};
+use yoro_assets::ShadingStyle;
 use yoro_context::Headless;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
-use yoro_assets::ShadingStyle;
 use yoro_tests::{backends, scene};
 
 #[test]

@@ -6,12 +6,12 @@ use std::rc::Rc;
 use image::{Rgb, RgbImage, imageops};
 use yoro::eyes::{EyeOptions, GuardBand, Pose, Warp};
 use yoro::synthesis::{self, Edges, Layers, Outputs, Source, Synthesis, SynthesisOptions};
-use yoro_context::Headless;
-use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
+use yoro_assets::CameraPath;
 use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_bench::metrics::{Channels, Quality};
+use yoro_context::Headless;
+use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
-use yoro_assets::CameraPath;
 use yoro_tests::backends;
 use yoro_tests::samples::{Multisampled, STANDARD, Samples};
 

@@ -8,8 +8,8 @@ use image::RgbImage;
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{Frame, Gather, ImageState, LayerImage, Options, SourceImages, TargetImages};
-use yoro_context::Headless;
 use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
+use yoro_context::Headless;
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_tests::backends;
 

@@ -10,11 +10,11 @@ use crate::bench::{BlankFinder, Entrant, spread};
 use crate::picture;
 use crate::report::{Cost, MethodCost, PassTime, SceneReport, Viewpoint};
 use yoro::eyes::{Eye, EyeOptions, EyePair};
-use yoro_report::stats::{Summary, median};
 use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::stereo::{Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
+use yoro_report::stats::{Summary, median};
 use yoro_scenes::BUILTINS;
 
 /// The measurements to be made in each scene.

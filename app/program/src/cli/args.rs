@@ -9,9 +9,9 @@ use std::str::FromStr;
 use anyhow::ensure;
 
 use crate::cli::choices;
+use yoro_bench::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
 use yoro_context::{Backend, ContextError, Headless};
 use yoro_gl::Context;
-use yoro_bench::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
 
 /// The source of the GL context.
 #[derive(clap::Args, Clone, Copy, Debug)]

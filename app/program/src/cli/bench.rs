@@ -14,18 +14,18 @@ use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyeOptions};
-use yoro_context::{Backend, Headless};
-use yoro_files::interrupt::Interrupted;
-use yoro_gl::{Context, GlApi};
+use yoro_assets::load::sidecar_file;
 use yoro_bench::bench::record::{Header, PassClock, VERSION};
 use yoro_bench::bench::{
     self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, frame, process,
 };
 use yoro_bench::inpaint::PatcherOptions;
 use yoro_bench::report::bench::BenchReport;
-use yoro_settings::Ipd;
+use yoro_context::{Backend, Headless};
+use yoro_files::interrupt::Interrupted;
+use yoro_gl::{Context, GlApi};
 use yoro_render::RenderSettings;
-use yoro_assets::load::sidecar_file;
+use yoro_settings::Ipd;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]

@@ -2,11 +2,11 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use yoro::synthesis::Edges;
-use yoro_context::Backend;
+use yoro_assets::ShadingStyle;
 use yoro_bench::bench::Suite;
 use yoro_bench::inpaint::PatcherKind;
+use yoro_context::Backend;
 use yoro_settings::Setting;
-use yoro_assets::ShadingStyle;
 
 /// Returns a parser that accepts these values by their names.
 fn choice<T: Copy + Send + Sync + 'static>(

@@ -18,15 +18,15 @@ use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
-use yoro_files as files;
-use yoro_files::interrupt;
-use yoro_gl::Context;
+use yoro_assets::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
 use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_bench::inpaint::{Patcher, PatcherKind};
 use yoro_bench::picture;
+use yoro_files as files;
+use yoro_files::interrupt;
+use yoro_gl::Context;
 use yoro_render::stereo::{ImBufferSize, Pipeline};
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_assets::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
 use yoro_scenes::{self, BUILTINS};
 
 /// The kinds of pictures in a group. Each has a folder of this name.

@@ -10,10 +10,10 @@ use yoro::eyes::{
     DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose, full_overlap_distance,
     minimum_object_distance,
 };
-use yoro_settings::Ipd;
 use yoro_assets::path::FARTHEST;
 use yoro_assets::{Scene, Viewpoint};
 use yoro_scenes::BUILTINS;
+use yoro_settings::Ipd;
 
 /// The eyes and what they see of the world.
 #[derive(clap::Args, Clone, Debug)]

@@ -3,8 +3,8 @@
 use std::fs;
 use std::time::{Duration, SystemTime};
 
-use yoro_gl::Capabilities;
 use yoro_bench::machine::Machine;
+use yoro_gl::Capabilities;
 
 /// Describes this machine, the current time and this command line.
 pub fn describe(capabilities: &Capabilities) -> Machine {

@@ -1,11 +1,11 @@
 //! Errors as messages of the command line: one sentence, followed by the option that provides its remedy, since
 //! libraries do not know the options.
 
+use yoro_bench::bench::record::RecordError;
 use yoro_context::ContextError;
 use yoro_devices::adb::{DeviceError, quoted};
 use yoro_devices::experiment::ExperimentError;
 use yoro_files::FileError;
-use yoro_bench::bench::record::RecordError;
 
 /// The length of the longest message in characters, and that of the end, with the remedy, if its middle is left out.
 const LONGEST: usize = 2000;

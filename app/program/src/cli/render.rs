@@ -17,14 +17,14 @@ use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use crate::cli::video::{self, EncodingArgs};
 use yoro::eyes::{Eye, Pose};
-use yoro_files::interrupt;
-use yoro_gl::Context;
+use yoro_assets::{CameraPath, ShadingStyle};
 use yoro_bench::bench::BlankFinder;
 use yoro_bench::metrics::{Channels, Quality, error_map};
 use yoro_bench::picture;
+use yoro_files::interrupt;
+use yoro_gl::Context;
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{self, Method, StereoFrame};
-use yoro_assets::{CameraPath, ShadingStyle};
 
 /// A picture made from the two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use super::Subcommand;
 use super::outputs::Files;
-use yoro_files as files;
 use yoro_bench::bench::Results;
 use yoro_bench::report::bench::{self, BenchReport, Places};
+use yoro_files as files;
 
 /// Turn results of `yoro bench` into a self-contained page, Markdown tables and figures
 #[derive(clap::Args, Clone, Debug)]

@@ -6,8 +6,8 @@ use serde_json::json;
 
 use super::Subcommand;
 use super::outputs::Files;
-use yoro_files as files;
 use yoro_assets::{self as scene, Scene};
+use yoro_files as files;
 use yoro_scenes::{self, BUILTINS, DEFAULT_SEED};
 
 /// List the built-in scenes, or export one as OBJ, MTL and PNG

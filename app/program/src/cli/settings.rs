@@ -8,9 +8,9 @@ use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
-use yoro_settings::{RendererKind, Setting, Settings};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
+use yoro_settings::{RendererKind, Setting, Settings};
 
 /// A group of settings that a subcommand has options for.
 pub trait Group {

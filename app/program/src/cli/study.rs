@@ -11,9 +11,9 @@ use crate::cli::machine;
 use crate::cli::outputs::Files;
 use yoro_devices::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
 use yoro_files as files;
-use yoro_settings::Settings;
 use yoro_render::stereo::Method;
 use yoro_scenes::{BUILTINS, DEFAULT_SEED};
+use yoro_settings::Settings;
 
 /// Plan a user study, collect its ratings, analyse them
 #[derive(clap::Args, Clone, Debug)]

@@ -14,12 +14,14 @@ use crate::cli::terminal::progress_bar;
 use crate::cli::video::{self, EncodingArgs};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
 use yoro::synthesis::{Edges, SourceMapEntry};
+use yoro_bench::inpaint::{Patcher, Reprojected};
+use yoro_bench::picture::{
+    self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image,
+};
 use yoro_files as files;
 use yoro_files::interrupt;
-use yoro_bench::inpaint::{Patcher, Reprojected};
-use yoro_bench::picture::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
-use yoro_settings::Ipd;
 use yoro_render::stereo::{Offline, SynthesizedImage};
+use yoro_settings::Ipd;
 use yoro_video::Reader;
 
 /// The meaning of a depth image's values.

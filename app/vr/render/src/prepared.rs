@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
-use yoro_gl::{Context, GlError};
 use yoro_assets::Scene;
+use yoro_gl::{Context, GlError};
 
 use crate::render::{GpuScene, RenderSettings, Renderer};
 

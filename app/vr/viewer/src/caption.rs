@@ -3,8 +3,8 @@
 use std::fmt::{self, Write};
 
 use yoro_lenses::COLUMNS;
-use yoro_settings::telemetry::Line;
 use yoro_render::stereo::Auto;
+use yoro_settings::telemetry::Line;
 
 /// How long a message is shown per line of its text, in nanoseconds.
 const MESSAGE_NS: i64 = 2_000_000_000;

@@ -8,12 +8,12 @@ use crate::scene_slot::Shown;
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, EyesError};
 use yoro_gl::{Context, GlError};
-use yoro_settings::Settings;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{
     self, Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,
     StereoOptions, Substitute,
 };
+use yoro_settings::Settings;
 
 /// The stereo method in use. It is created once a scene is loaded.
 pub(crate) struct MethodSlot {

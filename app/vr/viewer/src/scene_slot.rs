@@ -8,9 +8,9 @@ use glam::{Quat, Vec3};
 use crate::frame::SceneState;
 use crate::loading::{Loader, SceneSource};
 use yoro::eyes::Pose;
+use yoro_assets::{Scene, Viewpoint};
 use yoro_gl::{Context, GlError};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
-use yoro_assets::{Scene, Viewpoint};
 
 /// A scene on the GPU, and its renderer.
 pub(crate) struct Shown {

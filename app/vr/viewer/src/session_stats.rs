@@ -4,9 +4,9 @@ use glam::Quat;
 
 use crate::questionnaire::Questionnaire;
 use yoro_gl::PassTime;
+use yoro_render::stereo::GuardBandUse;
 use yoro_settings::Settings;
 use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, Telemetry, ViewerState};
-use yoro_render::stereo::GuardBandUse;
 
 /// Counts frames and asks questions, from the time at which a scene is first shown to the end of the session.
 #[derive(Default)]

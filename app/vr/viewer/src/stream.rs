@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use yoro::eyes::{EyePair, Pose};
 use yoro_gl::{Context, GlError};
-use yoro_settings::telemetry::StreamFigures;
 use yoro_render::stereo::EyeTarget;
 use yoro_render::{DecodedPicture, StreamedEyes};
+use yoro_settings::telemetry::StreamFigures;
 use yoro_stream::{FrameHeader, ViewRequest};
 
 /// Passes data between the platform's thread and the viewer. Only the newest value of each kind is kept.

@@ -5,11 +5,11 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
-use yoro_settings::Ipd;
 use yoro_render::stereo::{
     self, AntiAliasing, History, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
 };
 use yoro_render::{RenderSettings, RendererKind};
+use yoro_settings::Ipd;
 
 /// The way in which two images are shown on a flat screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -130,8 +130,9 @@ fn layer() -> sys::NegotiateApiLayerRequest {
         create_api_layer_instance: None,
     };
     // SAFETY: complete structures.
-    let result =
-        unsafe { yoro_openxr_layer::xrNegotiateLoaderApiLayerInterface(&loader(), ptr::null(), &mut request) };
+    let result = unsafe {
+        yoro_openxr_layer::xrNegotiateLoaderApiLayerInterface(&loader(), ptr::null(), &mut request)
+    };
     assert_eq!(result, sys::Result::SUCCESS);
     request
 }

@@ -14,9 +14,9 @@ use super::scenes::LazyObject;
 use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
 use yoro::synthesis::Edges;
+use yoro_assets::ShadingStyle;
 use yoro_render::stereo::{AntiAliasing, Pipeline};
 use yoro_render::{RenderSettings, RendererKind};
-use yoro_assets::ShadingStyle;
 use yoro_scenes::BUILTINS;
 
 /// Defines [`Suite`] from one list: the variant, its name on the command line and in files, and what it measures.

@@ -7,10 +7,10 @@ use super::record::SceneFacts;
 use super::suite::{Job, Source};
 use yoro::eyes::{EyePair, Pose, SynthesisViews};
 use yoro::synthesis::{self, Synthesis};
+use yoro_assets::CameraPath;
 use yoro_gl::{Destination, RenderTarget};
 use yoro_render::stereo::StereoError;
 use yoro_render::{PreparedScene, Selection, ViewTargets};
-use yoro_assets::CameraPath;
 use yoro_scenes::BUILTINS;
 
 /// The distance in metres between the frames of a sequence: walking pace at 30 frames per second.

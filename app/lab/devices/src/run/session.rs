@@ -15,8 +15,8 @@ use crate::mean_power::MeanPower;
 use crate::phone;
 use crate::reading::{LineContent, Reading};
 use yoro_files::interrupt;
-use yoro_settings::Settings;
 use yoro_scenes::BUILTINS;
+use yoro_settings::Settings;
 
 /// Maximum seconds that the application may take to load a scene and show it.
 const START_TIMEOUT_S: f64 = 180.0;

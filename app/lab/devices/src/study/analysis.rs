@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::error::StudyError;
 use super::ratings::Ratings;
+use yoro_files::interrupt;
 use yoro_report::inference::{Equivalence, Interval, Sample, pairs_for_power};
 use yoro_report::stats::unique;
-use yoro_files::interrupt;
 
 /// Lowest and highest rating.
 pub type Scale = [f64; 2];

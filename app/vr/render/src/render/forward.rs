@@ -18,8 +18,8 @@ use super::scene::GpuScene;
 use super::settings::RenderSettings;
 use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, View};
-use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
 use yoro_assets::ShadingStyle;
+use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
 
 /// For images that are complete, whose samples are no longer needed.
 const NO_SAMPLES: KeptSamples = KeptSamples { color: false, depth: false };

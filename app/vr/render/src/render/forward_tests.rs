@@ -8,8 +8,8 @@ use super::tests::{Rig, depths, open, picture, scene, settings, view};
 use super::*;
 use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
-use yoro_gl::{Context, RenderTarget};
 use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_gl::{Context, RenderTarget};
 
 const SIZE: [u32; 2] = [96, 64];
 

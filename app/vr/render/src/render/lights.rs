@@ -4,8 +4,8 @@ use glam::{Vec3, Vec4};
 
 use super::cluster::Culler;
 use super::settings::MAX_POINT_LIGHTS;
-use yoro_gl::Program;
 use yoro_assets::{PointLight, Sky};
+use yoro_gl::Program;
 
 /// The point lights of one view, or of both eyes, strongest first.
 pub struct Lights {

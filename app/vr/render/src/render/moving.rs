@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use super::cluster::{Batch, Cluster, VERTEX_ATTRIBUTES};
-use yoro_gl::{Context, GlError, Mesh};
 use yoro_assets::{Model, Moment, Motion, Part};
+use yoro_gl::{Context, GlError, Mesh};
 
 /// Vertices that are computed on the CPU and rewritten whenever the time changes. Each moving part of the model is a
 /// cluster with the bounds of the mesh it belongs to.

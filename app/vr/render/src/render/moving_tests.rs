@@ -8,9 +8,9 @@ use super::*;
 use crate::PreparedScene;
 use crate::fixture::quad;
 use yoro::eyes::DepthConvention;
-use yoro_gl::Command;
 use yoro_assets::motion::{Carrier, MovingLight, MovingMesh, Node, Track};
 use yoro_assets::{Motion, Scene, ShadingStyle};
+use yoro_gl::Command;
 
 fn track(values: &[f32]) -> Option<Track> {
     Some(Track { times: vec![0.0, 2.0], values: values.to_vec(), ..Track::default() })

@@ -8,8 +8,8 @@ use glam::{Vec3, Vec4};
 use super::cluster::{self, Batch, Cluster, Culler, VERTEX_ATTRIBUTES};
 use super::moving::Moving;
 use yoro::eyes::{DepthRange, View};
-use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
 use yoro_assets::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
+use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
 
 /// The features of a material. Each combination that a scene uses is a shader variant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

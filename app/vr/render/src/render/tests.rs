@@ -10,9 +10,9 @@ use bloom::BloomPass;
 use deferred::{first_renderable, hdr_format};
 use tonemap::TonemapPass;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
+use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Context, Destination, Filter, Format, Program, RenderTarget, ShaderSource, Texture};
-use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 
 const SIZE: [u32; 2] = [144, 112];
 

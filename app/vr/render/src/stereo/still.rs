@@ -5,8 +5,8 @@ use std::rc::Rc;
 use super::{Method, Pipeline, StereoError, StereoFrame, StereoOptions, create};
 use crate::render::{GpuScene, RenderSettings, Renderer};
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
-use yoro_gl::Context;
 use yoro_assets::Scene;
+use yoro_gl::Context;
 
 /// Renders the right eye of a scene's first viewpoint and synthesizes the left one with each pipeline at its default
 /// settings. Returns both images, left first: RGBA with rows from the bottom, `size` pixels square, 60 degrees wide.

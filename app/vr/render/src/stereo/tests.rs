@@ -13,10 +13,10 @@ use crate::render::{
 };
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews};
 use yoro::synthesis::{self, Edges, Outputs, Source, SynthesisOptions};
-use yoro_context::{Backend, Headless};
-use yoro_gl::{Command, Destination, Filter, Format, Profiling, RenderTarget};
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
+use yoro_context::{Backend, Headless};
+use yoro_gl::{Command, Destination, Filter, Format, Profiling, RenderTarget};
 
 const SIZE: [u32; 2] = [160, 120];
 

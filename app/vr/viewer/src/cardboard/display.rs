@@ -17,8 +17,8 @@ use yoro_lenses::LensPass;
 use yoro_lenses::ViewerParams;
 use yoro_lenses::{HeadTracker, MotionSample, neck_offset};
 use yoro_lenses::{Optics, Screen, flat_hit};
-use yoro_settings::{Ipd, Settings, Timewarp};
 use yoro_render::stereo::StereoFrame;
+use yoro_settings::{Ipd, Settings, Timewarp};
 
 /// Pixels per inch assumed for a screen that does not report any.
 const USUAL_DPI: f32 = 400.0;

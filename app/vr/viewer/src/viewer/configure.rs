@@ -6,9 +6,9 @@ use super::{Viewer, profiling};
 use crate::error::ViewerError;
 use crate::loading::SceneSource;
 use yoro_gl::GlError;
-use yoro_settings::Settings;
 use yoro_render::stereo::StereoOptions;
 use yoro_render::{RenderSettings, Renderer};
+use yoro_settings::Settings;
 
 impl Viewer {
     /// Applies new settings and recreates only the parts that changed. Changes that the user has made stay, unless the

@@ -10,10 +10,10 @@ use crate::frame::{FrameReport, FrameTiming, SceneState};
 use crate::stream::Stream;
 use yoro::choice::Cost;
 use yoro::eyes::EyePair;
-use yoro_lenses::{Content, Panel, Placement};
-use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, StreamFigures, ViewerState};
-use yoro_render::stereo::{DepthTarget, EyeTarget};
 use yoro_assets::Viewpoint;
+use yoro_lenses::{Content, Panel, Placement};
+use yoro_render::stereo::{DepthTarget, EyeTarget};
+use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, StreamFigures, ViewerState};
 
 /// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
 const SIZE_STEP: f32 = 16.0;

@@ -38,12 +38,12 @@ use crate::session_stats::SessionStats;
 use crate::start::StartScreen;
 use crate::stream::{Stream, StreamExchange};
 use yoro::eyes::Pose;
+use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
-use yoro_settings::{Ipd, Settings};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::MethodChoice;
-use yoro_assets::Scene;
+use yoro_settings::{Ipd, Settings};
 
 /// Capacity reserved for the times of a frame's passes.
 const MOST_PASSES: usize = 64;

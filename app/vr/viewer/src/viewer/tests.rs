@@ -13,8 +13,8 @@ use yoro::eyes::Frustum;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
-use yoro_settings::telemetry::{DeviceState, Line};
 use yoro_render::stereo::Method;
+use yoro_settings::telemetry::{DeviceState, Line};
 use yoro_stream::{Content, EyeView, FrameHeader};
 
 const WINDOW: [u32; 2] = [320, 180];

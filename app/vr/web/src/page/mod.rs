@@ -18,9 +18,9 @@ use glam::Vec3;
 use wasm_bindgen::prelude::*;
 use web_sys::WebGl2RenderingContext;
 use yoro::eyes::{Eye, Pose};
+use yoro_assets::Scene;
 use yoro_gl::{Context, RenderTarget};
 use yoro_render::stereo::{Auto, MethodChoice, StereoFrame};
-use yoro_assets::Scene;
 use yoro_scenes::BUILTINS;
 
 use self::error::sentence;

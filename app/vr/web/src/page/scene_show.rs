@@ -4,10 +4,10 @@ use std::rc::Rc;
 
 use yoro::choice::Cost;
 use yoro::eyes::{Eye, EyePair, Pose};
+use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling, RenderTarget, Texture};
 use yoro_render::stereo::{Auto, Method, SelectedMethod, StereoError, StereoFrame, StereoMethod};
 use yoro_render::{PreparedScene, Renderer};
-use yoro_assets::Scene;
 
 use crate::settings::Settings;
 

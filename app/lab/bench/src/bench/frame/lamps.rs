@@ -6,8 +6,8 @@ use glam::{Vec3, vec3};
 
 use crate::bench::waves::{combine, wave_size};
 use yoro::eyes::View;
-use yoro_render::MAX_POINT_LIGHTS;
 use yoro_assets::PointLight;
+use yoro_render::MAX_POINT_LIGHTS;
 
 /// The lights that reach each pixel of a view, as bits.
 pub struct Lamps {

@@ -22,10 +22,10 @@ use super::suite::{Choices, Displaced, Job, Measure, Source, Suite};
 use super::views::{self, Views};
 use crate::inpaint::PatcherOptions;
 use crate::picture;
+use yoro_assets::{Scene, ShadingStyle, Viewpoint};
 use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::{PreparedScene, RenderSettings};
-use yoro_assets::{Scene, ShadingStyle, Viewpoint};
 
 /// The approximate number of bytes per triangle while a scene is built and uploaded, for the limit on memory.
 const BYTES_PER_TRIANGLE: f64 = 150.0;

@@ -13,9 +13,9 @@ use crate::picture;
 use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
 use image::RgbImage;
 use yoro::eyes::{Eye, EyePair};
-use yoro_report::text::slug;
 use yoro_files::interrupt;
 use yoro_render::PreparedScene;
+use yoro_report::text::slug;
 use yoro_stream::{EyeView, ViewRequest};
 use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
 

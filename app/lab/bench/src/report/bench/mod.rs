@@ -18,10 +18,10 @@ use crate::report::run::{QUALITY_METHOD, Viewpoint};
 use data::Suite;
 use sections::Section;
 use yoro::eyes::Eye;
+use yoro_files as files;
 use yoro_report::page::{self, Template};
 use yoro_report::stats::unique;
 use yoro_report::text::slug;
-use yoro_files as files;
 
 const TEMPLATE: Template =
     Template { name: "bench.html.j2", text: include_str!("../templates/bench.html.j2") };

@@ -7,8 +7,8 @@ use super::state::Session;
 use crate::openxr::error::{XrError, call};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
-use yoro_settings::Settings;
 use yoro_render::stereo::Substitute;
+use yoro_settings::Settings;
 
 /// The largest magnitude of a field of view's angles that is accepted, in radians.
 const WIDEST: f32 = 1.55;

@@ -13,8 +13,8 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Pose};
 use yoro_context::Graphics;
 use yoro_gl::Destination;
 use yoro_lenses::{Board, board_metres};
-use yoro_settings::Ipd;
 use yoro_render::stereo::{DepthTarget, EyeTarget};
+use yoro_settings::Ipd;
 
 /// The layers of a frame.
 pub(super) struct Layers {

@@ -21,8 +21,8 @@ use yoro::eyes::Eye;
 use yoro_context::Graphics;
 use yoro_gl::Context;
 use yoro_lenses::{Board, Panel};
-use yoro_settings::Settings;
 use yoro_render::DepthCopy;
+use yoro_settings::Settings;
 
 /// If the eyes' images are scaled, their sizes are multiples of this many pixels.
 const SIZE_STEP: f32 = 16.0;

@@ -14,8 +14,8 @@ use crate::openxr::mask::Mask;
 use crate::openxr::storage::Storage;
 use yoro::eyes::EyesError;
 use yoro_gl::Context;
-use yoro_settings::Performance;
 use yoro_render::DepthCopy;
+use yoro_settings::Performance;
 
 /// The result of [`Session::step`].
 pub enum Progress {
