@@ -89,7 +89,7 @@ impl Setting {
         self.help.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned()
     }
 
-    /// Returns the setting's row in docs/viewer.md.
+    /// Returns the setting's row in docs/settings.md.
     #[cfg(test)]
     pub(crate) fn markdown(&self) -> String {
         let default = match (self.default().as_str(), self.auto) {

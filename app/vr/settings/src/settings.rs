@@ -87,7 +87,7 @@ macro_rules! settings {
         }
 
         /// The table of settings. Files, `key=value` texts, intent extras, system properties, options of the command
-        /// line and the table in docs/viewer.md follow it.
+        /// line and the table in docs/settings.md follow it.
         pub static SETTINGS: &[Setting] = &[$(
             Setting::new::<$type>(
                 $key,
@@ -499,10 +499,10 @@ mod tests {
         assert!(line.contains("duration=auto"), "{line}");
     }
 
-    /// docs/viewer.md lists every setting. If YORO_BLESS is set in the environment, the list is rewritten.
+    /// docs/settings.md lists every setting. If YORO_BLESS is set in the environment, the list is rewritten.
     #[test]
     fn the_document_has_the_table() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/viewer.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/settings.md");
         let text = std::fs::read_to_string(path).unwrap();
         let head = "| key | default | meaning |\n|---|---|---|\n";
         let begin = text.find(head).unwrap() + head.len();

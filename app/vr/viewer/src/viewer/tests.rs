@@ -262,8 +262,7 @@ fn auto_measures_both_methods_while_nothing_is_allocated_and_says_which_and_why(
     assert_eq!(run.viewer.event(Event::Tap).unwrap(), Action::Method(MethodChoice::Auto));
 }
 
-/// Prints what auto measures and chooses on this machine, and the memory of the targets; the times are in
-/// docs/viewer.md.
+/// Prints what auto measures and chooses on this machine, and the memory of the targets (docs/settings.md).
 #[test]
 #[ignore = "takes minutes, and prints what is the machine's matter"]
 fn choices_on_this_machine() {
