@@ -17,7 +17,7 @@ use super::patcher::{InpaintError, PatchTime, Patched, Patcher, Reprojected, nea
 use yoro::eyes::Eye;
 use yoro_files as files;
 
-/// The built-in model, made by `app/lab/training/train.py`; `training/README.md` describes its data.
+/// The built-in model, made by `app/lab/training/train.py`; the README beside it describes its data.
 static MODEL: &[u8] = include_bytes!("../../../training/patcher.onnx");
 
 /// The numbers of channels of the model's input and output.
