@@ -25,10 +25,24 @@ fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the targets of links, `](target)`, without anchors. Omits links to other sites.
-fn links(text: &str) -> impl Iterator<Item = &str> {
+/// Returns file and anchor of links, `](file#anchor)`. Omits links to other sites.
+fn links(text: &str) -> impl Iterator<Item = (&str, Option<&str>)> {
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target);
-    targets.filter(|target| !target.contains("://")).filter_map(|target| target.split('#').next())
+    targets.filter(|target| !target.contains("://")).map(|target| match target.split_once('#') {
+        Some((file, anchor)) => (file, Some(anchor)),
+        None => (target, None),
+    })
+}
+
+/// True if a document has a heading of this anchor: its words in lower case, without punctuation, joined by `-`.
+fn has_heading(text: &str, anchor: &str) -> bool {
+    let mut in_code = false;
+    text.lines().any(|line| {
+        in_code ^= line.starts_with("```");
+        let heading = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = heading.chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
+        !in_code && line.starts_with('#') && kept.map(|c| if c == ' ' { '-' } else { c }).eq(anchor.chars())
+    })
 }
 
 /// Returns the words in backticks that are paths from the root: they begin with one of its folders and end like a file.
@@ -51,10 +65,19 @@ fn every_link_and_path_leads_somewhere() {
     for file in &files {
         let text = fs::read_to_string(file).unwrap();
         let folder = file.parent().unwrap();
-        let linked = links(&text).filter(|link| !link.is_empty() && !folder.join(link).exists());
-        let named = paths(&text).filter(|path| !root().join(path).exists());
         let name = file.strip_prefix(root()).unwrap().display();
-        lost.extend(linked.chain(named).map(|path| format!("{name}: {path}")));
+        for (target, anchor) in links(&text) {
+            let path = if target.is_empty() { file.clone() } else { folder.join(target) };
+            if !path.exists() {
+                lost.push(format!("{name}: {target}"));
+            } else if let Some(anchor) = anchor
+                && !has_heading(&fs::read_to_string(path).unwrap(), anchor)
+            {
+                lost.push(format!("{name}: {target}#{anchor}"));
+            }
+        }
+        let named = paths(&text).filter(|path| !root().join(path).exists());
+        lost.extend(named.map(|path| format!("{name}: {path}")));
     }
     assert!(lost.is_empty(), "these do not exist:\n{}", lost.join("\n"));
 }
