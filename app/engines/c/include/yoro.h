@@ -1061,7 +1061,11 @@ typedef uint32_t YoroOutputFlags;
  */
 typedef uint32_t YoroGlState;
 /**
- * Some of it stays changed. For engines that set all the state they draw with. library.md lists each state.
+ * Some of it stays changed: program, vertex array, framebuffers, the first viewport, the textures of units 0 to 3 (two
+ * of them array textures for sources that are layers), their samplers, and the active unit. Depth mask and depth
+ * function are on and ALWAYS, the depth range is 0 to 1, the colour mask is open. Scissor, stencil and depth test, face
+ * culling, blending, dithering, polygon offset, rasterizer discard, primitive restart, coverage, clip distances and
+ * logic operation are off. For engines that set all the state they draw with.
  */
 #define YORO_GL_STATE_LEAVE 0
 /**
