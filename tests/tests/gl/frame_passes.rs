@@ -45,7 +45,7 @@ fn every_pass_reads_and_writes_what_the_table_says() {
         fs::write(&path, table).unwrap();
     } else {
         let there = fs::read_to_string(&path).unwrap();
-        assert_eq!(there, table, "run this test with {BLESS}=1, and look at git diff tests/golden/passes.txt");
+        assert_eq!(there, table, "run this test with {BLESS}=1, and look at its git diff");
     }
 }
 
