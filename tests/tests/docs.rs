@@ -81,25 +81,3 @@ fn every_link_and_path_leads_somewhere() {
     }
     assert!(lost.is_empty(), "these do not exist:\n{}", lost.join("\n"));
 }
-
-/// docs/performance.md begins with tables of the measured page on when synthesis pays. YORO_BLESS copies them again.
-#[test]
-fn when_it_pays_is_what_was_measured() {
-    const BEGIN: &str = "<!-- when it pays: begin -->\n";
-    const END: &str = "<!-- when it pays: end -->";
-    let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
-    let page = read("docs/results/shader-cost-frame.md");
-    let (_, tables) = page.split_once("**Executed slots").expect("the first table");
-    let (tables, rest) = tables.split_once("**Pass by pass").expect("the last table");
-    let source = rest.lines().rfind(|line| line.starts_with("`yoro bench")).expect("command and machine");
-    let expected = format!("**Executed slots{tables}{source}\n");
-    let text = read("docs/performance.md");
-    let (before, rest) = text.split_once(BEGIN).expect("the mark before the tables");
-    let (there, after) = rest.split_once(END).expect("the mark behind the tables");
-    if std::env::var_os("YORO_BLESS").is_some() {
-        let renewed = format!("{before}{BEGIN}{expected}{END}{after}");
-        fs::write(root().join("docs/performance.md"), renewed).unwrap();
-    } else {
-        assert_eq!(there, expected, "run this test with YORO_BLESS=1");
-    }
-}

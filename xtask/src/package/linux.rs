@@ -73,9 +73,9 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
         let name = Path::new(document).file_name().unwrap_or_default();
         copy(&root().join(document), &documents.join(name))?;
     }
-    let guide = root().join("docs/library.md");
+    let guide = root().join("docs/engines.md");
     let text = fs::read_to_string(&guide).with_context(|| format!("{} cannot be read", guide.display()))?;
-    write(&documents.join("library.md"), with_links(&manual(&text), packaged))?;
+    write(&documents.join("guide.md"), with_links(&manual(&text), packaged))?;
     write(&content.join("README.md"), readme(architecture, OLDEST_GLIBC))?;
     let packed = folder.join(format!("{name}.tar.xz"));
     let unfinished = folder.join(format!("{name}.tar.xz.tmp"));
@@ -89,14 +89,14 @@ fn archive(built: &Built, architecture: &str, strip: &str, folder: &Path) -> any
     Ok(packed)
 }
 
-/// Returns the path in the package for the target of a link in docs/library.md, or `None` if it is not packed.
+/// Returns the path in the package for the target of a link in docs/engines.md, or `None` if it is not packed.
 fn packaged(target: &str) -> Option<String> {
-    let stays = target.starts_with('#') || target == "integration-mistakes.png";
     let example =
         target.strip_prefix("../app/engines/c/examples/").map(|file| format!("../../yoro/examples/{file}"));
     match target {
         "../app/engines/c/include/yoro.h" => Some("../../../include/yoro.h".into()),
-        _ => example.or_else(|| stays.then(|| target.to_owned())),
+        "pictures/integration-mistakes.png" => Some("integration-mistakes.png".into()),
+        _ => example.or_else(|| target.starts_with('#').then(|| target.to_owned())),
     }
 }
 
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn every_link_of_the_packages_document_leads_into_the_package() {
-        let text = fs::read_to_string(root().join("docs/library.md")).unwrap();
+        let text = fs::read_to_string(root().join("docs/engines.md")).unwrap();
         let mut kept = Vec::new();
         let text = manual(&text);
         let packed = with_links(&text, |target| packaged(target).inspect(|to| kept.push(to.clone())));
@@ -145,8 +145,9 @@ mod tests {
             let from = target
                 .replace("../../../include/", "app/engines/c/include/")
                 .replace("../../yoro/examples/", "app/engines/c/examples/");
-            assert!(here(&from) || here(&format!("docs/{target}")), "{target}");
+            assert!(here(&from) || here(&format!("docs/pictures/{target}")), "{target}");
         }
         assert!(kept.iter().any(|target| target.ends_with("vulkan.c")));
+        assert!(kept.iter().any(|target| target == "integration-mistakes.png"));
     }
 }

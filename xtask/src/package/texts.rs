@@ -71,10 +71,18 @@ pub fn cmake_version() -> String {
     )
 }
 
-/// Returns the parts of docs/library.md that concern C: the chapter on C, then those that it refers to.
+/// Returns the parts of docs/engines.md that concern C: the chapter on C, then those that do not depend on a language.
 pub fn manual(text: &str) -> String {
-    const CHAPTERS: [&str; 4] =
-        ["## C and C++", "## GL state", "## Anti-aliased sources", "## When two renders are cheaper"];
+    const CHAPTERS: [&str; 8] = [
+        "## C and C++",
+        "## Where in a frame",
+        "## The guard band",
+        "## Colour and depth",
+        "## Poses",
+        "## Any view",
+        "## When two renders are cheaper",
+        "## When it looks wrong",
+    ];
     let mut manual = String::from("# yoro in C and C++\n");
     for chapter in CHAPTERS {
         let Some(start) = text.find(&format!("\n{chapter}\n")) else { continue };
@@ -96,8 +104,8 @@ pub fn readme(architecture: &str, (major, minor): (u32, u32)) -> String {
          \n\
          | | |\n\
          |---|---|\n\
-         | [include/yoro.h](include/yoro.h) | every function: arguments, threads, errors |\n\
-         | [share/doc/yoro/library.md](share/doc/yoro/library.md) | the guide |\n\
+         | [include/yoro.h](include/yoro.h) | step by step, then every function: arguments, threads, errors |\n\
+         | [share/doc/yoro/guide.md](share/doc/yoro/guide.md) | colour and depth, poses, when it looks wrong |\n\
          | [share/yoro/examples](share/yoro/examples) | samples, with a `CMakeLists.txt` |\n\
          | `lib` | `libyoro.so`, `libyoro.a`, files for pkg-config and CMake |\n\
          \n\
@@ -155,8 +163,8 @@ mod tests {
 
     #[test]
     fn the_manual_is_about_c() {
-        let text = "# All\n\n## GL state\n\nb\n\n## Vulkan\n\nc\n\n## C and C++\n\na\n### Depth\n\n## The shader kit\nd\n";
-        assert_eq!(manual(text), "# yoro in C and C++\n\n## C and C++\n\na\n### Depth\n\n## GL state\n\nb\n");
+        let text = "# All\n\n## Poses\n\nb\n\n## Vulkan\n\nc\n\n## C and C++\n\na\n### Depth\n\n## The shader kit\nd\n";
+        assert_eq!(manual(text), "# yoro in C and C++\n\n## C and C++\n\na\n### Depth\n\n## Poses\n\nb\n");
     }
 
     #[test]

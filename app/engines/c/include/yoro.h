@@ -3,10 +3,58 @@
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  *
- * For Vulkan define YORO_USE_VULKAN, or include <vulkan/vulkan.h> before this file; without it there is the rest. The file can
- * be included again with it.
+ * WHAT IT DOES
  *
- * Every function may also return YORO_ERROR_INTERNAL.
+ * Your engine renders one eye, a little wider than it is shown, and lends its colour and depth. yoro draws the other eye into your
+ * framebuffer or image, with its depth if you ask for it. Nothing is allocated, compiled or waited for in a frame.
+ *
+ * STEP BY STEP, on OpenGL ES 3.0 and desktop OpenGL 4.5. Fields left at 0 mean OpenGL's conventions and the defaults.
+ *
+ *   Once, with the engine's context current:
+ *
+ *     YoroContext *yoro;
+ *     YoroGlInfo info = {.struct_size = sizeof info, .outputs = YORO_OUTPUT_DEPTH, .state = YORO_GL_STATE_PRESERVE,
+ *                        .check = 1, .loader = eglGetProcAddress, .messages = {on_error, NULL}};
+ *     yoro_gl_create(&info, &yoro);
+ *
+ *   Each frame: poses and angles are laid out as XrPosef and XrFovf. Without OpenXR, put the positions 0.032 m to either side of
+ *   the head; both orientations are the head's, {0, 0, 0, 1} is identity. angle_left and angle_down are negative.
+ *
+ *     YoroEyes eyes = {.struct_size = sizeof eyes, .rendered = YORO_EYE_RIGHT, .width = 1832, .height = 1920,
+ *                      .near_z = 0.1f, .far_z = INFINITY, .depth = YORO_DEPTH_REVERSED, .guard_band = YORO_GUARD_BAND,
+ *                      .messages = {on_error, NULL}};
+ *     for (int i = 0; i < 2; ++i) {
+ *       memcpy(&eyes.poses[i], &located[i].pose, sizeof eyes.poses[i]);
+ *       memcpy(&eyes.fovs[i], &located[i].fov, sizeof eyes.fovs[i]);
+ *     }
+ *     YoroViews views = {.struct_size = sizeof views};
+ *     yoro_views_from_eyes(&eyes, &views);
+ *     render(views.source.view, views.source.projection, views.source.width, views.source.height);
+ *     YoroGlImages images = {.struct_size = sizeof images, .color_texture = color, .depth_texture = depth,
+ *                            .framebuffer = framebuffer_of_the_left_eye};
+ *     yoro_gl_synthesize(yoro, &views.warp, &images);
+ *
+ *   Draw transparent objects into the source with views.source, and into the other eye with views.synthesized, each against its own
+ *   depth. The rendered eye's image is the part of the source that begins at (views.crop_x, views.crop_y), counted from the bottom,
+ *   with the size of views.rendered: blit it, or give the compositor that rectangle. At the end: yoro_destroy.
+ *
+ * ON VULKAN 1.1, define YORO_USE_VULKAN, or include <vulkan/vulkan.h> before this file; without it there is the rest. The file can
+ * be included again with it. yoro_vk_create once, yoro_vk_register_source and yoro_vk_register_target once for each pair of images,
+ * with their use before and after; then in each frame, outside of render passes, with eyes.rows = YORO_ROWS_DOWN and eyes.clip =
+ * YORO_CLIP_VULKAN: yoro_vk_record(yoro, commands, &views.warp, &frame).
+ *
+ * A VIEW IN ANY POSE near the rendered one: warp_kind = YORO_WARP_KIND_POSE at creation, yoro_guarded_view for what to render,
+ * yoro_pose_warp for the newest pose, and the calls that end in _pose.
+ *
+ * RULES. Structures begin with their size, so that a program keeps working with later versions: set struct_size, or call
+ * YORO_INIT(eyes), which C89 and C++ before 20 need. Each function returns 0 or a negative YoroResult, and may also return
+ * YORO_ERROR_INTERNAL. yoro_result_text names it, and the callback in messages gets a sentence with the mistake and the remedy.
+ * In development set check: every call then validates textures and framebuffer. Cast loaders of other types: (YoroGlLoader)f.
+ *
+ * IT DOES NOT create a context, a device, a window or an image of yours; submit or wait; change GL state if you ask it to preserve it;
+ * synthesize between eyes that look in different directions (YORO_EYES_PARALLEL and YORO_EYES_EVEN replace them), or with depth that is
+ * not affine in the inverse distance (linear or logarithmic depth). What the rendered eye does not see is invented. Once, render the
+ * other eye with your own camera, too, and compare: a wrong sign, a flipped row or misread depth costs more than 10 dB.
  *
  * Made of app/engines/c/src by cbindgen; `cargo xtask test the_header --bless` renews it.
  */
@@ -1013,7 +1061,11 @@ typedef uint32_t YoroOutputFlags;
  */
 typedef uint32_t YoroGlState;
 /**
- * Some of it stays changed. For engines that set all the state they draw with. library.md lists each state.
+ * Some of it stays changed: program, vertex array, framebuffers, the first viewport, the textures of units 0 to 3 (two
+ * of them array textures for sources that are layers), their samplers, and the active unit. Depth mask and depth
+ * function are on and ALWAYS, the depth range is 0 to 1, the colour mask is open. Scissor, stencil and depth test, face
+ * culling, blending, dithering, polygon offset, rasterizer discard, primitive restart, coverage, clip distances and
+ * logic operation are off. For engines that set all the state they draw with.
  */
 #define YORO_GL_STATE_LEAVE 0
 /**

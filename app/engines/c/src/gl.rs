@@ -40,7 +40,11 @@ pub type YoroGlLoader = Option<unsafe extern "C" fn(name: *const c_char) -> Yoro
 
 /// What happens to GL state that a call changes.
 pub type YoroGlState = u32;
-/// Some of it stays changed. For engines that set all the state they draw with. library.md lists each state.
+/// Some of it stays changed: program, vertex array, framebuffers, the first viewport, the textures of units 0 to 3 (two
+/// of them array textures for sources that are layers), their samplers, and the active unit. Depth mask and depth
+/// function are on and ALWAYS, the depth range is 0 to 1, the colour mask is open. Scissor, stencil and depth test, face
+/// culling, blending, dithering, polygon offset, rasterizer discard, primitive restart, coverage, clip distances and
+/// logic operation are off. For engines that set all the state they draw with.
 pub const YORO_GL_STATE_LEAVE: YoroGlState = 0;
 /// All of it is restored, except that a program that was deleted while it was current goes at the first call, as GL
 /// requires. None is current then.

@@ -379,15 +379,15 @@ mod tests {
         (settings, errors.iter().map(ToString::to_string).collect())
     }
 
-    /// The table in docs/layer.md has the rows of [`SETTINGS`], and no others.
+    /// The table in docs/openxr-layer.md has the rows of [`SETTINGS`], and no others.
     #[test]
     fn the_document_has_the_table_of_settings() {
         let rows = SETTINGS.map(|Setting { key, values, default, help, .. }| {
             format!("| `{key}` | {values} | `{default}` | {help} |\n")
         });
         let table = format!("| key | values | default | |\n|---|---|---|---|\n{}\n", rows.concat());
-        let document = include_str!("../../../../docs/layer.md");
-        assert!(document.contains(&table), "docs/layer.md must have this table:\n{table}");
+        let document = include_str!("../../../../docs/openxr-layer.md");
+        assert!(document.contains(&table), "docs/openxr-layer.md must have this table:\n{table}");
     }
 
     #[test]

@@ -626,7 +626,7 @@ fn srgb_is_encoded_where_asked_for() {
     });
 }
 
-/// Measures the cost of `GlState::Preserve`; docs/library.md has the figures.
+/// Measures the cost of `GlState::Preserve`.
 #[test]
 #[ignore = "measures: cargo test -p yoro --test synthesis -- --ignored --nocapture cost"]
 fn cost_of_preserving_state() {

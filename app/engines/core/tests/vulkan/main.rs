@@ -567,7 +567,7 @@ fn passes_are_timed() {
     });
 }
 
-/// Measures the passes; docs/library.md has the figures.
+/// Measures the passes.
 #[test]
 #[ignore = "measures: cargo test -p yoro --test vulkan -- --ignored --nocapture cost"]
 fn cost_of_the_passes() {

@@ -436,7 +436,7 @@ fn a_lost_device_is_an_error() {
     assert_eq!(lost, Err(WgpuError::DeviceLost));
 }
 
-/// Measures the passes; docs/library.md has the results.
+/// Measures the passes.
 #[test]
 #[ignore = "measures: cargo test -p yoro-wgpu --test pictures -- --ignored --nocapture cost"]
 fn cost_of_the_passes() {
