@@ -26,6 +26,7 @@ use yoro_files::interrupt::Interrupted;
 use yoro_gl::{Context, GlApi};
 use yoro_render::RenderSettings;
 use yoro_settings::Ipd;
+use yoro_viewer::render_settings;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]
@@ -46,9 +47,6 @@ pub struct BenchArgs {
     /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     viewpoints: Option<u32>,
-    /// bandwidth: frames of the sequence that is encoded [default: 30; quick: 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
-    frames: Option<u32>,
     /// Size of each eye's image in pixels [default: 1024x1024; --frame: 1680x1760; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
     size: Option<[u32; 2]>,
@@ -208,13 +206,12 @@ impl BenchArgs {
             eyes,
             // Phones render with the viewer's settings.
             render: if self.frame {
-                RenderSettings::of_settings(self.renderer.settings())
+                render_settings(self.renderer.settings())
             } else {
                 self.renderer.render_settings()?
             },
             rounds: self.rounds.unwrap_or(of(5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
-            sequence: self.frames.unwrap_or(of(30, 8)) as usize,
             scenes: self.scenes.clone(),
             contenders: self.contenders.clone(),
             seed: self.seed,

@@ -14,7 +14,6 @@ use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
 use yoro_bench::machine::Parameter;
-use yoro_bench::picture;
 use yoro_bench::report::RunReport;
 use yoro_bench::run::{Candidate, Plan};
 use yoro_files as files;
@@ -174,11 +173,11 @@ fn write_pictures(args: &RunArgs, report: &RunReport) -> anyhow::Result<()> {
     for scene in &report.scenes {
         for viewpoint in scene.viewpoints.iter().take(PICTURED) {
             let save = |kind: &str, image: &RgbImage| {
-                picture::save_color(&eyes::picture_path(&args.out, &scene.name, kind), image)
+                yoro_media::save_color(&eyes::picture_path(&args.out, &scene.name, kind), image)
             };
             let pair = |other: &RgbImage| match dominant {
-                Eye::Left => picture::side_by_side(&viewpoint.dominant, other),
-                Eye::Right => picture::side_by_side(other, &viewpoint.dominant),
+                Eye::Left => yoro_media::side_by_side(&viewpoint.dominant, other),
+                Eye::Right => yoro_media::side_by_side(other, &viewpoint.dominant),
             };
             save("conventional", &pair(&viewpoint.ground_truth)?)?;
             for view in &viewpoint.views {

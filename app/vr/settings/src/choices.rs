@@ -121,17 +121,6 @@ choices! {
         Paper = "paper",
     }
 
-    /// Disocclusions filled by what the other eye has really seen: strips of it that are rendered besides.
-    History {
-        /// Never: from the background's edge
-        #[default]
-        Off = "off",
-        /// Half of the width and height
-        Half = "half",
-        /// Full resolution
-        Full = "full",
-    }
-
     /// When anti-aliasing runs.
     AntiAliasing {
         /// After synthesis, on each eye

@@ -7,14 +7,13 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DEPTH_BITS, DisplayKind, History, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method,
-    MethodChoice, Performance, Pipeline, RendererKind, Ssao, Timewarp,
+    AntiAliasing, DEPTH_BITS, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice,
+    Performance, Pipeline, RendererKind, Ssao, Timewarp,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
 use crate::value::SettingValue;
 use yoro::eyes::{Eye, GuardBand};
-use yoro::synthesis::Edges;
 
 /// The largest settings file in bytes.
 const MAX_FILE: u64 = 1 << 20;
@@ -136,12 +135,6 @@ settings! {
         auto("1.0; paper: none"),
     /// When to anti-alias.
     "anti-aliasing" anti_aliasing: Option<AntiAliasing> = None; auto("after; paper: before"),
-    /// How the synthesis reads the rendered eye's edges.
-    "edges" edges: Option<Edges> = None;
-        auto("hard; sample with several samples on OpenGL ES 3.0"),
-    /// Fill disocclusions with what the other eye has really seen: strips of an eighth of its rows are rendered in
-    /// frames that uncover more. Not with the paper's pipeline.
-    "history" history: History = History::Off,
     /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;
         value_name("METRES");
@@ -150,8 +143,8 @@ settings! {
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
     /// yoro: renders a second. Frames between two renders show the last one at the newest head pose, both eyes synthesized from
-    /// it; what moves in the scene stands still meanwhile. `method=auto` then means `yoro`. Only with hard edges, and without near
-    /// field, history, the switch to two renders and the paper's pipeline.
+    /// it; what moves in the scene stands still meanwhile. `method=auto` then means `yoro`. Without near
+    /// field, the switch to two renders and the paper's pipeline.
     "render-rate" render_rate: Option<f32> = None;
         value_name("HZ");
         range(|s| s.render_rate.is_none_or(|hz| (5.0..=1000.0).contains(&hz)), "give renders per second from 5 to 1000, or auto");

@@ -1,7 +1,7 @@
 // The settings in the address's fragment. Settings with their default value are left out.
 
 export const defaults = {
-  scene: 'prototype', viewpoint: 0, method: 'auto', renderer: 'deferred', 'anti-aliasing': 'after', history: 'off', ipd: 63,
+  scene: 'prototype', viewpoint: 0, method: 'auto', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 63,
   dominant: 'right', display: 'divider', divider: 50, scale: 1, at: null, stream: null,
 };
 
@@ -13,7 +13,6 @@ export const antiAliasing = {
 
 const allowed = {
   renderer: Object.keys(antiAliasing),
-  history: ['off', 'half', 'full'],
   dominant: ['right', 'left'],
   display: ['divider', 'difference', 'side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'flicker'],
   scale: ['1', '0.75', '0.5'],

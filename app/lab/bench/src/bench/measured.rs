@@ -1,7 +1,7 @@
 //! Conversion of a comparison's metrics into those of a measurement.
 
 use super::record::{Measurement, Setting, metric};
-use crate::metrics::{Comparison, Flicker, PartQuality};
+use yoro_metrics::{Comparison, Flicker, PartQuality};
 
 impl Measurement {
     pub(super) fn new(setting: &Setting, contender: impl Into<String>, round: u32) -> Measurement {

@@ -5,17 +5,16 @@
 //! measured against a real render of the same eye, and shown beside "the same image to both eyes"
 //! ([`Contender::MONO`]); cost is compared with two full renders ([`Contender::CONVENTIONAL`]).
 
-pub mod bandwidth;
 mod blank;
 mod contender;
 mod costs;
-mod entrant;
 mod executed;
 pub mod frame;
 mod holes;
 mod measured;
 mod motion;
 mod pictures;
+mod prepared;
 pub mod process;
 pub mod record;
 mod runner;
@@ -27,10 +26,10 @@ mod waves;
 
 pub use blank::BlankFinder;
 pub use contender::Contender;
-pub use entrant::{Entrant, FrameTime};
 pub use holes::HoleFinder;
 pub use motion::Motion;
 pub use pictures::{picture_folder, pictures_beside};
+pub use prepared::{FrameTime, PreparedContender};
 pub use record::{Measurement, Record, RecordError, Results, Setting, Writer, metric};
 pub use runner::{Bounds, Inputs, Runner};
 pub use scenes::{LazyObject, Object};

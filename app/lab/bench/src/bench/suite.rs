@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 
-use super::bandwidth::{self, BandwidthOptions};
 use super::contender::Contender;
 use super::executed::{DEVICES, Device};
 use super::frame;
@@ -13,7 +12,6 @@ use super::record::Setting;
 use super::scenes::LazyObject;
 use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
-use yoro::synthesis::Edges;
 use yoro_assets::ShadingStyle;
 use yoro_render::stereo::{AntiAliasing, Pipeline};
 use yoro_render::{RenderSettings, RendererKind};
@@ -63,12 +61,10 @@ suites! {
     Imbuffer "imbuffer" "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation",
     Lights "lights" "Frame time of every method with four lights: the paper's setting for single-pass instancing",
     Resolution "resolution" "Frame time and quality of every method from 512 to 2048 pixels per eye",
-    AntiAliasing "anti-aliasing" "Quality and frame time by anti-aliasing: one sample per pixel, FXAA, MSAA with each kind of depth",
+    AntiAliasing "anti-aliasing" "Quality and frame time by anti-aliasing: one sample per pixel, FXAA, MSAA",
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
-    History "history" "Quality, flicker and frame time with what the other eye has seen, as the head moves",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
-    Bandwidth "bandwidth" "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on five, none of which need be here",
 }
@@ -87,14 +83,10 @@ pub enum Measure {
     Flicker,
     /// Use of the guard band along a part of the camera path.
     GuardBand,
-    /// Frames of a moving head.
-    History(Motion),
     /// Patchers on reprojected images.
     Patchers,
     /// One render shown at another pose.
     Reprojection(Displaced),
-    /// Encoded sequences along a part of the camera path.
-    Bandwidth,
     /// A stream whose frames are shown this number of frames later, at 72 frames per second.
     Stream(usize),
     /// Instructions that `gather` executes: an estimate for a GPU that is not available here.
@@ -145,8 +137,6 @@ pub struct Job {
     pub anti_aliasing: Option<AntiAliasing>,
     /// The divisor of the ImBuffer's resolution.
     pub imbuffer: u32,
-    /// The quantizers of encoded sequences.
-    pub bandwidth: BandwidthOptions,
     /// The kind of measurement.
     pub measure: Measure,
     /// The contenders. If frames are measured, the conventional method is the first.
@@ -160,9 +150,6 @@ pub struct Job {
 impl Job {
     /// Returns the number of steps of progress: the preparation, and each contender's frames in each round.
     pub fn steps(&self) -> u64 {
-        if self.measure == Measure::Bandwidth {
-            return bandwidth::steps(self.frames, &self.bandwidth);
-        }
         if let Measure::Stream(_) = self.measure {
             return (self.frames * 3 * STREAM_QUANTIZERS.len()) as u64;
         }
@@ -191,8 +178,6 @@ pub struct Choices {
     pub rounds: u32,
     /// The number of viewpoints per scene.
     pub viewpoints: usize,
-    /// The number of frames in the sequences of `bandwidth`.
-    pub sequence: usize,
     /// Scenes that replace the suites' own.
     pub scenes: Vec<String>,
     /// Contenders that replace the suites' own.
@@ -221,10 +206,6 @@ const SMOOTHING: [(&str, RendererKind, AntiAliasing); 3] = [
 ];
 /// The number of frames of the suite `flicker`, and in the short form.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
-/// The scenes of the suite `history`: those in which the most is uncovered, near and far.
-const HISTORY_SCENES: [&str; 6] = ["talk", "street", "stage", "conference", "atrium", "voxel"];
-/// The number of frames of the suite `history`, and in the short form.
-const HISTORY_FRAMES: [usize; 2] = [24, 4];
 /// The scenes of the suite `stream`.
 const STREAM_SCENES: [&str; 3] = ["talk", "street", "atrium"];
 /// The numbers of frames by which the suite `stream` shows frames late, at 72 per second: at once, after 28 and 69 ms.
@@ -284,31 +265,22 @@ impl Choices {
             }),
             Suite::Resolution => self.resolution(plan(both, all)),
             Suite::AntiAliasing => {
-                let baselines = vec![Contender::CONVENTIONAL, Contender::MONO];
-                self.anti_aliasing(plan(both, [baselines, Contender::edges()].concat()), &every)
+                let contenders =
+                    vec![Contender::CONVENTIONAL, Contender::MONO, Contender::Yoro(Pipeline::Gather)];
+                self.anti_aliasing(plan(both, contenders), &every)
             }
-            Suite::Flicker => {
-                // With samples at the edges, flicker depends on how the synthesis reads them: one pipeline is enough.
-                let edges = || [vec![Contender::MONO], Contender::edges()].concat();
-                let contenders = if self.render.is_forward() { edges() } else { synthesis() };
-                plan(Measure::Flicker, contenders).over(self.varied(), [()], |job, ()| {
-                    job.frames = FLICKER_FRAMES[usize::from(self.quick)];
-                })
-            }
+            Suite::Flicker => plan(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {
+                job.frames = FLICKER_FRAMES[usize::from(self.quick)];
+            }),
             Suite::GuardBand => {
                 let contenders = [vec![Contender::MONO], Contender::bands()].concat();
                 plan(Measure::GuardBand, contenders).over(self.scenes(&every), [()], |job, ()| {
                     job.frames = GUARD_BAND_FRAMES[usize::from(self.quick)];
                 })
             }
-            Suite::History => {
-                let contenders = [vec![Contender::MONO], Contender::histories()].concat();
-                self.history(plan(Measure::History(Motion::Still), contenders))
-            }
             Suite::Reprojection => {
                 self.reprojection(plan(Measure::Reprojection(Displaced::Canted), Vec::new()))
             }
-            Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
             Suite::Stream => self.stream(plan(Measure::Stream(0), Vec::new())),
             Suite::ShaderCost if self.whole_frames => {
                 self.whole_frames(plan(Measure::WholeFrames, vec![Contender::CONVENTIONAL]), &every)
@@ -364,19 +336,6 @@ impl Choices {
             job.setting.label = Some(label.to_owned());
             job.render.renderer = renderer;
             job.anti_aliasing = Some(anti_aliasing);
-            // Without multisampling, only hard edges are measured.
-            let needs_multisampling =
-                |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
-            job.contenders.retain(|c| renderer == RendererKind::Forward || !needs_multisampling(c));
-        })
-    }
-
-    fn history(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
-        let scenes = if self.quick { &QUICK_SCENES[..] } else { &HISTORY_SCENES };
-        plan.over(self.scenes(scenes), Motion::ALL, |job, motion| {
-            job.measure = Measure::History(motion);
-            job.setting.label = Some(motion.name().to_owned());
-            job.frames = HISTORY_FRAMES[usize::from(self.quick)];
         })
     }
 
@@ -392,17 +351,6 @@ impl Choices {
                 Displaced::Canted => "canted eyes".to_owned(),
                 Displaced::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
             });
-        })
-    }
-
-    fn bandwidth(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        plan.over(self.scenes(scenes), [()], |job, ()| {
-            // Streams take part, not methods.
-            job.contenders.clear();
-            job.frames = self.sequence;
-            if self.quick {
-                job.bandwidth.quantizers = vec![22, 28, 34, 40];
-            }
         })
     }
 
@@ -467,7 +415,6 @@ impl Choices {
             ("dominant eye", eyes.dominant.name().into()),
             ("rounds", self.rounds.to_string()),
             ("viewpoints per scene", self.viewpoints.to_string()),
-            ("frames of encoded sequences", self.sequence.to_string()),
             ("seed", self.seed.to_string()),
             ("scenes", list(self.scenes.clone())),
             ("contenders", list(self.contenders.iter().map(|c| c.name()).collect())),
@@ -533,7 +480,6 @@ impl Plan<'_> {
                     eyes: choices.eyes,
                     anti_aliasing: None,
                     imbuffer: 1,
-                    bandwidth: BandwidthOptions::default(),
                     measure: self.measure,
                     contenders: contenders.clone(),
                     rounds,

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::bandwidth;
 use super::contender::Contender;
 use super::record::{Measurement, Results, Setting, metric};
 use yoro_report::stats::{self, median, unique};
@@ -11,7 +10,7 @@ use yoro_report::stats::{self, median, unique};
 /// A column: heading, metric, number of decimals, and the function that combines its values.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
-const COLUMNS: [Column; 19] = [
+const COLUMNS: [Column; 17] = [
     ("frame ms", metric::FRAME_MS, 1, median),
     ("CPU ms", metric::CPU_MS, 1, median),
     ("GPU ms", metric::GPU_MS, 2, median),
@@ -27,10 +26,8 @@ const COLUMNS: [Column; 19] = [
     ("ALU ms", metric::ALU_MS, 2, mean),
     ("fetch ms", metric::FETCH_MS, 2, mean),
     ("memory ms", metric::MEMORY_MS, 2, mean),
-    ("kbit/s", bandwidth::metric::KBIT_S, 0, mean),
+    ("kbit/s", metric::KBIT_S, 0, mean),
     ("saved %", metric::SAVED, 1, mean),
-    ("dominant", bandwidth::metric::PSNR_DOMINANT, 2, mean),
-    ("other dB", bandwidth::metric::PSNR_OTHER, 2, mean),
 ];
 
 fn mean(values: &[f64]) -> Option<f64> {

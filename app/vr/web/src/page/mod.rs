@@ -206,7 +206,7 @@ impl Page {
         let options = parse_options(options)?;
         match &mut self.content {
             Content::Pictures(pictures) => {
-                pictures.set_options(&self.gl, &self.show, options, self.settings.ipd.metres())
+                pictures.set_options(&self.show, options, self.settings.ipd.metres())
             }
             _ => Ok(()),
         }

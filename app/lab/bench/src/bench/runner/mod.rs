@@ -21,10 +21,11 @@ use super::scenes::LazyObject;
 use super::suite::{Choices, Displaced, Job, Measure, Source, Suite};
 use super::views::{self, Views};
 use crate::inpaint::PatcherOptions;
-use crate::picture;
+use yoro::eyes::Eye;
 use yoro_assets::{Scene, ShadingStyle, Viewpoint};
 use yoro_files::interrupt;
 use yoro_gl::Context;
+use yoro_render::stereo::StereoFrame;
 use yoro_render::{PreparedScene, RenderSettings};
 
 /// The approximate number of bytes per triangle while a scene is built and uploaded, for the limit on memory.
@@ -105,10 +106,8 @@ impl<'a> Runner<'a> {
             Measure::Frames { .. } => self.frames(job, &mut prepared, done),
             Measure::Flicker => self.flicker(job, &mut prepared),
             Measure::GuardBand => self.guard_band(job, &mut prepared),
-            Measure::History(motion) => self.history(job, motion, &mut prepared),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
-            Measure::Bandwidth => self.bandwidth(job, &mut prepared),
             Measure::Stream(late) => self.stream(job, late, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
             Measure::WholeFrames => self.whole_frames(job, &mut prepared),
@@ -140,10 +139,8 @@ impl<'a> Runner<'a> {
             // Only the start of the path has to show something; a later frame may look past the scene.
             Measure::Flicker
             | Measure::GuardBand
-            | Measure::History(_)
             | Measure::Reprojection(Displaced::Late(..))
-            | Measure::Stream(_)
-            | Measure::Bandwidth => Views::along_path(job, prepared, views::STEP)?.first(),
+            | Measure::Stream(_) => Views::along_path(job, prepared, views::STEP)?.first(),
         };
         BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))
     }
@@ -188,7 +185,7 @@ impl<'a> Runner<'a> {
 
     /// Saves a contender's other eye in the first view for the report, in the suites that show pictures.
     fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
-        if ![Suite::Scenes, Suite::AntiAliasing, Suite::History, Suite::Patchers]
+        if ![Suite::Scenes, Suite::AntiAliasing, Suite::Patchers]
             .iter()
             .any(|suite| suite.name() == job.setting.suite)
         {
@@ -200,7 +197,7 @@ impl<'a> Runner<'a> {
             other => other.name(),
         };
         let folder = picture_folder(&self.before.path, &job.setting);
-        Ok(picture::save_color(&folder.join(format!("{name}.png")), image)?)
+        Ok(yoro_media::save_color(&folder.join(format!("{name}.png")), image)?)
     }
 
     /// Writes a round: the records that come with the first round, and all measurements with values.
@@ -232,6 +229,11 @@ fn unsupported(job: &Job, contender: Contender, reason: String) -> Record {
 fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
     log::info!("{}: {contender} is left out: {error}", job.setting);
     unsupported(job, contender, error.to_string())
+}
+
+/// Returns one eye of a finished frame.
+fn eye_image(frame: &StereoFrame, eye: Eye) -> RgbImage {
+    yoro_media::rgb_image(&frame.rgba(eye), frame.size())
 }
 
 fn milliseconds(time: Duration) -> f64 {

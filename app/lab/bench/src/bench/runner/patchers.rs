@@ -9,8 +9,8 @@ use crate::bench::suite::Job;
 use crate::bench::views::Views;
 use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use crate::inpaint::{self, Patcher};
-use crate::metrics::Comparison;
 use yoro_files::interrupt;
+use yoro_metrics::Comparison;
 use yoro_render::PreparedScene;
 
 impl Runner<'_> {

@@ -12,12 +12,11 @@ use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::suite::{Displaced, Job};
 use crate::bench::views::Views;
-use crate::metrics::{Channels, SsimWindow, psnr, ssim};
-use crate::picture;
 use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
 use yoro::synthesis::{AnyView, Outputs, Source, Synthesis, SynthesisOptions};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
 use yoro_render::stereo::{self, Method, StereoFrame, StereoMethod, StereoOptions};
 use yoro_render::{PreparedScene, ViewTargets};
 
@@ -56,7 +55,7 @@ impl Runner<'_> {
             Displaced::Late(motion, late) => {
                 // The frames are spread over the motion, so that neighbours are not alike.
                 let all = Job { frames: job.frames * SPREAD + late, ..job.clone() };
-                (Views::of_motion(&all, prepared, motion)?.split_at_last(all.frames)[1].clone(), Some(late))
+                (Views::of_motion(&all, prepared, motion)?, Some(late))
             }
             Displaced::Canted => (Views::spread(job, prepared)?, None),
         };
@@ -74,7 +73,7 @@ impl Runner<'_> {
                 let folder = picture_folder(&self.before.path, &job.setting);
                 for (name, image) in shown.iter().map(|(way, image)| (*way, image)).chain([("truth", &truth)])
                 {
-                    picture::save_color(&folder.join(format!("{name}.png")), image)?;
+                    yoro_media::save_color(&folder.join(format!("{name}.png")), image)?;
                 }
             }
             for (way, image) in shown {
@@ -188,7 +187,7 @@ impl Reprojector {
 
     fn render(&mut self, prepared: &PreparedScene, view: &View) -> Result<(RgbImage, Source), GlError> {
         let rendered = prepared.renderer.render_all(&mut self.rendered, &prepared.scene, view)?;
-        let image = picture::rgb_image(&rendered.color.read_rgba8(0, [0, 0], view.size), view.size);
+        let image = yoro_media::rgb_image(&rendered.color.read_rgba8(0, [0, 0], view.size), view.size);
         Ok((image, Source::new(rendered.color.color(0).raw(), rendered.depth.raw())))
     }
 
@@ -196,7 +195,7 @@ impl Reprojector {
         self.shown.resize(warp.target_size)?;
         self.any_view.synthesize(source, warp, &Destination::whole(&self.shown))?;
         self.gl.finish();
-        Ok(picture::rgb_image(&self.shown.read_rgba8(0, [0, 0], warp.target_size), warp.target_size))
+        Ok(yoro_media::rgb_image(&self.shown.read_rgba8(0, [0, 0], warp.target_size), warp.target_size))
     }
 
     /// Shows the dominant eye of one frame at its pose in a later frame.

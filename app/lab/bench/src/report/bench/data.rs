@@ -66,11 +66,6 @@ impl Measured {
         values.flatten().filter_map(|value| *value).filter(|value| value.is_finite()).collect()
     }
 
-    /// Returns the values of a metric in the first round that has it, in the order of the setting's frames.
-    pub fn by_frame(&self, metric: &str) -> &[Option<f64>] {
-        self.rounds.iter().find_map(|(_, values)| values.get(metric)).map_or(&[], Vec::as_slice)
-    }
-
     /// Returns the names of the metrics with values.
     pub fn metrics(&self) -> impl Iterator<Item = &str> {
         self.rounds.iter().flat_map(|(_, values)| values.keys()).map(String::as_str)

@@ -11,7 +11,6 @@ use std::path::{Component, Path, PathBuf};
 use minijinja::context;
 
 use crate::bench::{Results, picture_folder};
-use crate::picture;
 use crate::report::error::ReportError;
 use crate::report::page::{PICTURE_BUDGET, Pictures};
 use crate::report::run::{QUALITY_METHOD, Viewpoint};
@@ -317,7 +316,7 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
         if !["truth.png", "dominant.png"].iter().all(|name| folder.join(name).is_file()) {
             continue;
         }
-        let load = |name: &str| picture::load_color(&folder.join(format!("{name}.png")));
+        let load = |name: &str| yoro_media::load_color(&folder.join(format!("{name}.png")));
         let names = file.measurements().filter(|m| m.setting == facts.setting && m.round == 0);
         let names = names.map(|measurement| measurement.contender.as_str());
         let mut views = Vec::new();

@@ -240,10 +240,10 @@ fn passes(entries: &[Entry]) -> Table {
             table.push_grouped(cells, i == 0);
         }
     }
-    let synthesis = SYNTHESIS.map(str::trim_end).join(" and ");
     let [width, height] = frame::SIZE;
     table.note = format!(
-        "Passes of the synthesis begin with {synthesis}. Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels."
+        "Passes of the synthesis begin with {}. Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels.",
+        SYNTHESIS.trim_end()
     );
     table
 }

@@ -3,8 +3,7 @@
 use super::cells::{cell, percent, psnr_ssim};
 use super::section::Section;
 use super::tables::push_refusals;
-use crate::bench::bandwidth::metric::KBIT_S;
-use crate::bench::record::metric::SAVED;
+use crate::bench::record::metric::{KBIT_S, SAVED};
 use crate::report::bench::data::{SettingData, Suite};
 use yoro_report::grid::{Cell, Table};
 use yoro_report::paper;

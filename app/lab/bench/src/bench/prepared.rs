@@ -7,12 +7,12 @@ use super::process;
 use yoro::eyes::{EyePair, GuardBand};
 use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
-    self, GuardBandUse, HistoryUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
+    self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
 };
 use yoro_render::{PreparedScene, RenderSettings};
 
 /// A stereo method with its programs and targets, ready to be measured.
-pub struct Entrant {
+pub struct PreparedContender {
     gl: Rc<Context>,
     method: Box<dyn StereoMethod>,
     /// The number of frames that the method needs to settle at a new place.
@@ -28,18 +28,22 @@ pub struct FrameTime {
     pub cpu: Duration,
 }
 
-impl Entrant {
+impl PreparedContender {
     /// Compiles the method's programs.
     pub fn new(
         gl: &Rc<Context>,
         method: Method,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<Entrant, GlError> {
+    ) -> Result<PreparedContender, GlError> {
         // The third frame is the first to use the results of the first: the guard band's width, or that all is near.
         let looks = matches!(options.guard_band, GuardBand::Auto(_)) || options.policy.is_some();
         let unsettled = if method == Method::Yoro && looks { 2 } else { 0 };
-        Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)?, unsettled })
+        Ok(PreparedContender {
+            gl: gl.clone(),
+            method: stereo::create(gl, method, settings, options)?,
+            unsettled,
+        })
     }
 
     /// Renders a frame at a new place after the method has settled there, and waits for it.
@@ -81,11 +85,6 @@ impl Entrant {
     /// Returns [`StereoMethod::guard_band`].
     pub fn guard_band(&self) -> Option<GuardBandUse> {
         self.method.guard_band()
-    }
-
-    /// Returns [`StereoMethod::history`].
-    pub fn history(&self) -> Option<HistoryUse> {
-        self.method.history()
     }
 
     /// Renders a frame after settling, with a timer around each pass. Returns the passes' names in the order of their
