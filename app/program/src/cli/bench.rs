@@ -126,7 +126,7 @@ impl Subcommand for BenchArgs {
         let gl = headless.gl();
         let out = self.out();
         let (writer, before) = Writer::open(&out, &header(self, &choices, gl))?;
-        let finished = jobs.iter().filter(|job| before.rounds(&job.setting) >= job.rounds).count();
+        let finished = jobs.iter().filter(|job| before.rounds(&job.conditions) >= job.rounds).count();
         if finished > 0 {
             log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
         }
@@ -151,7 +151,7 @@ impl Subcommand for BenchArgs {
                         out.display()
                     );
                 }
-                return Err(error.context(format!("cannot measure {}", job.setting)));
+                return Err(error.context(format!("cannot measure {}", job.conditions)));
             }
         }
         bar.finish_and_clear();
@@ -250,11 +250,11 @@ fn jobs(args: &BenchArgs, choices: &Choices, object: &LazyObject) -> anyhow::Res
     let mut jobs: Vec<Job> = Vec::new();
     for suite in &args.suites {
         for job in choices.jobs(*suite, object)? {
-            let twin = jobs.iter().find(|other| other.setting == job.setting);
+            let twin = jobs.iter().find(|other| other.conditions == job.conditions);
             ensure!(
                 twin.is_none(),
                 "{} would be measured twice: give each suite once, and scenes of different names",
-                job.setting
+                job.conditions
             );
             jobs.push(job);
         }

@@ -2,15 +2,12 @@
 
 use anyhow::{bail, ensure};
 
+use super::job::{Job, Source};
 use super::motion::Motion;
 use super::record::SceneFacts;
-use super::suite::{Job, Source};
-use yoro::eyes::{EyePair, Pose, SynthesisViews};
-use yoro::synthesis::{self, Synthesis};
+use yoro::eyes::{EyePair, Pose};
 use yoro_assets::CameraPath;
-use yoro_gl::{Destination, RenderTarget};
-use yoro_render::stereo::StereoError;
-use yoro_render::{PreparedScene, Selection, ViewTargets};
+use yoro_render::PreparedScene;
 use yoro_scenes::BUILTINS;
 
 /// The distance in metres between the frames of a sequence: walking pace at 30 frames per second.
@@ -24,24 +21,6 @@ pub(super) const HEADSET_RATE: f64 = 72.0;
 
 /// The number of frames for which a head moves before the first one.
 const UNDER_WAY: usize = 12;
-
-/// Renders the source of some views and synthesizes the other eye into `to`, which is resized to that eye.
-///
-/// # Errors
-/// [`StereoError`] if GL refuses.
-pub(super) fn synthesize(
-    pipeline: &mut dyn Synthesis,
-    targets: &mut ViewTargets,
-    prepared: &mut PreparedScene,
-    views: &SynthesisViews,
-    to: &mut RenderTarget,
-) -> Result<(), StereoError> {
-    let PreparedScene { renderer, scene } = prepared;
-    let rendered = renderer.render(targets, scene, &views.source, Selection::All)?;
-    to.resize(views.target.size)?;
-    let source = synthesis::Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
-    Ok(pipeline.synthesize(source, &views.warp, &Destination::whole(to))?)
-}
 
 /// Returns `wanted` of `count` indices, evenly spread and starting from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
@@ -101,7 +80,7 @@ impl Views {
     }
 
     fn new(job: &Job, heads: Vec<(String, Pose)>) -> anyhow::Result<Views> {
-        ensure!(!heads.is_empty(), "{} has no viewpoint: give it one or more", job.setting.scene);
+        ensure!(!heads.is_empty(), "{} has no viewpoint: give it one or more", job.conditions.scene);
         let (names, poses): (Vec<_>, Vec<_>) = heads.into_iter().unzip();
         Ok(Views { names, pairs: poses.into_iter().map(|pose| job.eyes.pair(pose)).collect() })
     }
@@ -118,7 +97,7 @@ impl Views {
         let scene = &prepared.scene;
         let builtin = BUILTINS.iter().find(|b| matches!(&job.source, Source::Named(name) if name == b.name));
         SceneFacts {
-            setting: job.setting.clone(),
+            conditions: job.conditions.clone(),
             stands_for: builtin.map_or("", |b| b.stands_for).to_owned(),
             style: scene.style,
             triangles: scene.triangle_count() as u64,

@@ -6,10 +6,10 @@ use image::RgbImage;
 use super::{Runner, eye_image, left_out, milliseconds};
 use crate::bench::contender::Contender;
 use crate::bench::holes::HoleFinder;
+use crate::bench::job::{Job, Measure, Source};
 use crate::bench::prepared::{FrameTime, PreparedContender};
 use crate::bench::process;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::{Job, Measure, Source};
 use crate::bench::views::Views;
 use yoro_files::interrupt;
 use yoro_metrics::Comparison;
@@ -29,7 +29,7 @@ impl Field {
     pub fn measurements(&self, job: &Job, round: u32) -> Vec<Measurement> {
         self.contenders
             .iter()
-            .map(|(contender, _)| Measurement::new(&job.setting, contender.name(), round))
+            .map(|(contender, _)| Measurement::new(&job.conditions, contender.name(), round))
             .collect()
     }
 }
@@ -48,7 +48,7 @@ impl Runner<'_> {
             return Ok(());
         }
         for round in done..job.rounds {
-            self.bar.set_message(format!("{}: round {} of {}", job.setting, round + 1, job.rounds));
+            self.bar.set_message(format!("{}: round {} of {}", job.conditions, round + 1, job.rounds));
             let mut measurements = field.measurements(job, round);
             let keep = quality && round == 0;
             let images = self.render_round(
@@ -186,7 +186,7 @@ impl Runner<'_> {
             self.bar.inc(1);
             match made {
                 Ok(ready) => {
-                    let mut memory = Measurement::new(&job.setting, contender.name(), 0);
+                    let mut memory = Measurement::new(&job.conditions, contender.name(), 0);
                     if cost {
                         let own = (self.gl.texture_bytes() - before) as f64 / f64::from(1 << 20);
                         memory.push(metric::TEXTURE_MIB, own);

@@ -15,10 +15,11 @@ use indicatif::ProgressBar;
 
 use super::blank::BlankFinder;
 use super::contender::Contender;
+use super::job::{Displaced, Job, Measure, Source};
 use super::pictures::picture_folder;
 use super::record::{Measurement, Record, Results, RoundEnd, Unsupported, Writer};
 use super::scenes::LazyObject;
-use super::suite::{Choices, Displaced, Job, Measure, Source, Suite};
+use super::suite::{Choices, Suite};
 use super::views::{self, Views};
 use crate::inpaint::PatcherOptions;
 use yoro::eyes::Eye;
@@ -90,12 +91,12 @@ impl<'a> Runner<'a> {
     /// [`interrupt::Interrupted`] after Ctrl-C, and one sentence for any error that a user can remedy. The finished
     /// rounds are in the file in both cases.
     pub fn run(&mut self, job: &Job) -> anyhow::Result<()> {
-        let done = self.before.rounds(&job.setting);
-        if done >= job.rounds || self.before.is_left_out(&job.setting) {
+        let done = self.before.rounds(&job.conditions);
+        if done >= job.rounds || self.before.is_left_out(&job.conditions) {
             self.bar.inc(job.steps());
             return Ok(());
         }
-        self.bar.set_message(format!("{}: {}", job.setting, "preparing"));
+        self.bar.set_message(format!("{}: {}", job.conditions, "preparing"));
         interrupt::check()?;
         if let Some(reason) = self.too_large(job) {
             return self.leave_out(job, reason);
@@ -147,9 +148,9 @@ impl<'a> Runner<'a> {
 
     /// Records for every contender that the setting was left out, and why.
     fn leave_out(&mut self, job: &Job, reason: String) -> anyhow::Result<()> {
-        log::warn!("{} is left out: {reason}", job.setting);
+        log::warn!("{} is left out: {reason}", job.conditions);
         let records = job.contenders.iter().map(|contender| unsupported(job, *contender, reason.clone()));
-        self.writer.append(records.collect(), RoundEnd { setting: job.setting.clone(), round: 0 })?;
+        self.writer.append(records.collect(), RoundEnd { conditions: job.conditions.clone(), round: 0 })?;
         self.bar.inc(job.steps());
         Ok(())
     }
@@ -187,7 +188,7 @@ impl<'a> Runner<'a> {
     fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
         if ![Suite::Scenes, Suite::AntiAliasing, Suite::Patchers]
             .iter()
-            .any(|suite| suite.name() == job.setting.suite)
+            .any(|suite| suite.name() == job.conditions.suite)
         {
             return Ok(());
         }
@@ -196,7 +197,7 @@ impl<'a> Runner<'a> {
             Contender::MONO => "dominant".to_owned(),
             other => other.name(),
         };
-        let folder = picture_folder(&self.before.path, &job.setting);
+        let folder = picture_folder(&self.before.path, &job.conditions);
         Ok(yoro_media::save_color(&folder.join(format!("{name}.png")), image)?)
     }
 
@@ -210,7 +211,7 @@ impl<'a> Runner<'a> {
     ) -> anyhow::Result<()> {
         let filled = measurements.into_iter().filter(|measurement| !measurement.values.is_empty());
         records.extend(filled.map(Record::Measurement));
-        self.writer.append(records, RoundEnd { setting: job.setting.clone(), round })?;
+        self.writer.append(records, RoundEnd { conditions: job.conditions.clone(), round })?;
         Ok(())
     }
 }
@@ -222,12 +223,16 @@ impl SceneKey {
 }
 
 fn unsupported(job: &Job, contender: Contender, reason: String) -> Record {
-    Record::Unsupported(Unsupported { setting: job.setting.clone(), contender: contender.name(), reason })
+    Record::Unsupported(Unsupported {
+        conditions: job.conditions.clone(),
+        contender: contender.name(),
+        reason,
+    })
 }
 
 /// Returns the record of a contender that could not be created.
 fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
-    log::info!("{}: {contender} is left out: {error}", job.setting);
+    log::info!("{}: {contender} is left out: {error}", job.conditions);
     unsupported(job, contender, error.to_string())
 }
 

@@ -8,9 +8,9 @@ use glam::Quat;
 use image::RgbImage;
 
 use super::{Runner, milliseconds};
+use crate::bench::job::{Displaced, Job};
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::{Displaced, Job};
 use crate::bench::views::Views;
 use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
 use yoro::synthesis::{AnyView, Outputs, Source, Synthesis, SynthesisOptions};
@@ -48,7 +48,7 @@ impl Runner<'_> {
         displaced: Displaced,
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
-        self.bar.set_message(job.setting.to_string());
+        self.bar.set_message(job.conditions.to_string());
         let mut reprojector = Reprojector::new(self.gl)?;
         let mut timer = Timer::new(self.gl, job)?;
         let (views, late) = match displaced {
@@ -70,7 +70,7 @@ impl Runner<'_> {
                 None => reprojector.canted(prepared, &canted(&views.pairs[i]))?,
             };
             if i == 0 {
-                let folder = picture_folder(&self.before.path, &job.setting);
+                let folder = picture_folder(&self.before.path, &job.conditions);
                 for (name, image) in shown.iter().map(|(way, image)| (*way, image)).chain([("truth", &truth)])
                 {
                     yoro_media::save_color(&folder.join(format!("{name}.png")), image)?;
@@ -96,7 +96,7 @@ impl Runner<'_> {
 /// Returns the measurement of a contender, and creates it if there is none yet.
 fn measurement_of<'a>(all: &'a mut Vec<Measurement>, job: &Job, name: &str) -> &'a mut Measurement {
     let at = all.iter().position(|m| m.contender == name).unwrap_or_else(|| {
-        all.push(Measurement::new(&job.setting, name, 0));
+        all.push(Measurement::new(&job.conditions, name, 0));
         all.len() - 1
     });
     &mut all[at]

@@ -6,8 +6,8 @@ use super::{Runner, eye_image, milliseconds};
 use crate::bench::contender::Band;
 use crate::bench::executed::{Device, Meter};
 use crate::bench::holes::HoleFinder;
+use crate::bench::job::Job;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::Job;
 use crate::bench::views::{self, Views};
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
@@ -21,7 +21,7 @@ impl Runner<'_> {
         let mut finder = HoleFinder::new(self.gl)?;
         let mut measurements = field.measurements(job, 0);
         let mut last: Option<(Vec<RgbImage>, Vec<bool>)> = None;
-        self.bar.set_message(job.setting.to_string());
+        self.bar.set_message(job.conditions.to_string());
         for (i, pair) in views.pairs.iter().enumerate() {
             prepared.set_time(i as f64 / views::STEP_RATE)?;
             let holes = finder.find(prepared, pair)?;
@@ -52,7 +52,7 @@ impl Runner<'_> {
         let views = Views::along_path(job, prepared, views::HEADSET_STEP)?;
         let mut field = self.field(job, prepared, &views, true)?;
         let mut measurements = field.measurements(job, 0);
-        self.bar.set_message(job.setting.to_string());
+        self.bar.set_message(job.conditions.to_string());
         let count = field.contenders.len();
         for (i, pair) in views.pairs.iter().enumerate() {
             prepared.set_time(i as f64 / views::HEADSET_RATE)?;
@@ -89,8 +89,8 @@ impl Runner<'_> {
     ) -> anyhow::Result<()> {
         let views = Views::spread(job, prepared)?;
         let mut meter = Meter::new(self.gl, *device)?;
-        let mut measurement = Measurement::new(&job.setting, device.name, 0);
-        self.bar.set_message(job.setting.to_string());
+        let mut measurement = Measurement::new(&job.conditions, device.name, 0);
+        self.bar.set_message(job.conditions.to_string());
         for pair in &views.pairs {
             interrupt::check()?;
             for (name, value) in meter.measure(prepared, pair)? {

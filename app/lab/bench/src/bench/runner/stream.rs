@@ -1,10 +1,10 @@
 //! The bits of a stream, and the quality of what it shows some frames later.
 
 use super::Runner;
+use crate::bench::job::{Job, STREAM_QUANTIZERS};
 use crate::bench::motion::Motion;
 use crate::bench::pictures::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::{Job, STREAM_QUANTIZERS};
 use crate::bench::views::{HEADSET_RATE, Views};
 use crate::dataset::{GroupOptions, GroupRenderer};
 use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
@@ -33,7 +33,7 @@ impl Runner<'_> {
         late: usize,
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
-        self.bar.set_message(job.setting.to_string());
+        self.bar.set_message(job.conditions.to_string());
         let all = Job { frames: job.frames + late, ..job.clone() };
         let views = Views::of_motion(&all, prepared, Motion::Walk)?;
         let then = &views.pairs[..job.frames];
@@ -45,7 +45,7 @@ impl Runner<'_> {
             interrupt::check()?;
             Ok(groups.render_one(prepared, &pair.view(eye))?.0)
         };
-        let mut same = Measurement::new(&job.setting, "same image, not encoded", 0);
+        let mut same = Measurement::new(&job.conditions, "same image, not encoded", 0);
         let mut truths = Vec::new();
         for (then, now) in then.iter().zip(now) {
             let truth = [eye(prepared, now, Eye::Left)?, eye(prepared, now, Eye::Right)?];
@@ -54,7 +54,7 @@ impl Runner<'_> {
             truths.push(truth);
         }
         // The pictures that are saved show the left eye in the last frame.
-        let folder = picture_folder(&self.before.path, &job.setting);
+        let folder = picture_folder(&self.before.path, &job.conditions);
         let place = |name: &str| folder.join(format!("{}.png", slug(name)));
         if let Some([left, _]) = truths.last() {
             yoro_media::save_color(&place("truth"), left)?;
@@ -66,7 +66,7 @@ impl Runner<'_> {
             let mut baseline = None;
             for ((_, name), pictures) in MODES.iter().zip(&pictures) {
                 let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
-                let mut measurement = Measurement::new(&job.setting, format!("{name}, QP {quantizer}"), 0);
+                let mut measurement = Measurement::new(&job.conditions, format!("{name}, QP {quantizer}"), 0);
                 let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, HEADSET_RATE as f32)?;
                 let mut decoder = Decoder::new()?;
                 let mut bytes = 0;

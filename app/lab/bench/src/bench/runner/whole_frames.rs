@@ -6,9 +6,9 @@ use super::{Runner, left_out};
 use crate::bench::contender::Contender;
 use crate::bench::executed::Meter;
 use crate::bench::frame::{FrameModel, GPUS, Lamps, MULTIVIEW};
+use crate::bench::job::Job;
 use crate::bench::prepared::PreparedContender;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::Job;
 use crate::bench::views::Views;
 use crate::depth::DepthReader;
 use yoro::eyes::EyePair;
@@ -51,12 +51,12 @@ impl Runner<'_> {
         let mut measurements: Vec<Measurement> = Vec::new();
         let mut push = |name: &str, metric: String, value: f64| {
             let at = measurements.iter().position(|m| m.contender == name).unwrap_or_else(|| {
-                measurements.push(Measurement::new(&job.setting, name, 0));
+                measurements.push(Measurement::new(&job.conditions, name, 0));
                 measurements.len() - 1
             });
             measurements[at].push(metric, value);
         };
-        self.bar.set_message(job.setting.to_string());
+        self.bar.set_message(job.conditions.to_string());
         for pair in &views.pairs {
             let mut lamps = self.lamps(prepared, pair)?;
             for (contender, ready) in &mut contenders {

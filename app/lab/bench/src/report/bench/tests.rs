@@ -6,7 +6,7 @@ use image::{Rgb, RgbImage};
 
 use super::*;
 use crate::bench::record::{Header, PassClock, RoundEnd, SceneFacts, Unsupported, VERSION};
-use crate::bench::{Measurement, Record, Setting, Writer, metric};
+use crate::bench::{Conditions, Measurement, Record, Writer, metric};
 use crate::machine::{Machine, Parameter};
 use yoro_assets::ShadingStyle;
 
@@ -33,8 +33,8 @@ fn header(renderer: &str) -> Header {
     }
 }
 
-fn setting(suite: &str, scene: &str, label: Option<&str>, point: Option<f64>) -> Setting {
-    Setting { suite: suite.into(), scene: scene.into(), label: label.map(str::to_owned), point }
+fn conditions(suite: &str, scene: &str, label: Option<&str>, point: Option<f64>) -> Conditions {
+    Conditions { suite: suite.into(), scene: scene.into(), label: label.map(str::to_owned), point }
 }
 
 /// The values of a contender in one round: `(contender, [(metric, values)])`.
@@ -43,7 +43,7 @@ type Figures<'a> = (&'a str, Vec<(&'a str, Vec<f64>)>);
 /// Appends rounds of a setting. Multiview is never supported.
 fn append<'a>(
     writer: &mut Writer,
-    setting: &Setting,
+    conditions: &Conditions,
     stands_for: &str,
     triangles: u64,
     rounds: u32,
@@ -53,7 +53,7 @@ fn append<'a>(
         let mut records = Vec::new();
         if round == 0 {
             records.push(Record::Scene(SceneFacts {
-                setting: setting.clone(),
+                conditions: conditions.clone(),
                 stands_for: stands_for.into(),
                 style: ShadingStyle::Realistic,
                 triangles,
@@ -61,14 +61,14 @@ fn append<'a>(
                 frames: vec!["viewpoint 0".into(), "viewpoint 1".into()],
             }));
             records.push(Record::Unsupported(Unsupported {
-                setting: setting.clone(),
+                conditions: conditions.clone(),
                 contender: "multiview".into(),
                 reason: "this driver has no GL_OVR_multiview2".into(),
             }));
         }
         for (contender, values) in figures(round) {
             let mut measurement = Measurement {
-                setting: setting.clone(),
+                conditions: conditions.clone(),
                 contender: contender.into(),
                 round,
                 values: Default::default(),
@@ -78,7 +78,7 @@ fn append<'a>(
             }
             records.push(Record::Measurement(measurement));
         }
-        writer.append(records, RoundEnd { setting: setting.clone(), round }).unwrap();
+        writer.append(records, RoundEnd { conditions: conditions.clone(), round }).unwrap();
     }
 }
 
@@ -142,46 +142,53 @@ fn write_results(path: &Path, header: &Header) {
     let scenes = [("street <b>&\"café\"</b>", "Bistro", 1_240_000), ("atrium | columns", "Sponza", 365_000)];
     for (i, (scene, stands_for, triangles)) in scenes.iter().enumerate() {
         let ms = 100.0 * (i + 1) as f64;
-        append(w, &setting("scenes", scene, None, None), stands_for, *triangles, 3, |round| {
+        append(w, &conditions("scenes", scene, None, None), stands_for, *triangles, 3, |round| {
             both(ms, 30.0 + i as f64, round)
         });
-        append(w, &setting("lights", scene, None, Some(4.0)), stands_for, *triangles, 1, |round| {
+        append(w, &conditions("lights", scene, None, Some(4.0)), stands_for, *triangles, 1, |round| {
             times(ms, round)
         });
-        append(w, &setting("flicker", scene, None, None), stands_for, *triangles, 1, |_| {
+        append(w, &conditions("flicker", scene, None, None), stands_for, *triangles, 1, |_| {
             vec![
                 ("conventional", vec![(metric::CHANGE, vec![9.0]), (metric::CHANGE_HOLES, vec![12.0])]),
                 ("mono", vec![(metric::FLICKER, vec![3.0]), (metric::FLICKER_HOLES, vec![5.0])]),
                 ("yoro-gather", vec![(metric::FLICKER, vec![1.0]), (metric::FLICKER_HOLES, vec![2.0])]),
             ]
         });
-        append(w, &setting("stream", scene, Some("0 late"), None), stands_for, *triangles, 1, |_| streams());
+        append(w, &conditions("stream", scene, Some("0 late"), None), stands_for, *triangles, 1, |_| {
+            streams()
+        });
     }
     for i in 1..=5 {
         let triangles = 1e6 * f64::from(i);
-        append(w, &setting("complexity", "swarm", None, Some(triangles)), "", triangles as u64, 1, |round| {
-            times(40.0 * f64::from(i) / 1.25, round)
-        });
+        append(
+            w,
+            &conditions("complexity", "swarm", None, Some(triangles)),
+            "",
+            triangles as u64,
+            1,
+            |round| times(40.0 * f64::from(i) / 1.25, round),
+        );
     }
     for (style, psnr) in [("realistic", 33.0), ("cartoon", 35.0), ("anime", 31.0)] {
-        append(w, &setting("styles", "talk", Some(style), None), "Chat", 117_000, 1, |_| qualities(psnr));
+        append(w, &conditions("styles", "talk", Some(style), None), "Chat", 117_000, 1, |_| qualities(psnr));
     }
     for (label, psnr) in [("one sample", 29.0), ("FXAA", 31.0), ("MSAA", 34.0)] {
-        append(w, &setting("anti-aliasing", "talk", Some(label), None), "Chat", 117_000, 1, |round| {
+        append(w, &conditions("anti-aliasing", "talk", Some(label), None), "Chat", 117_000, 1, |round| {
             both(80.0, psnr, round)
         });
     }
     for point in [50.0, 55.0, 60.0, 65.0, 70.0, 75.0] {
-        append(w, &setting("ipd", "talk", None, Some(point)), "Chat", 117_000, 1, |_| {
+        append(w, &conditions("ipd", "talk", None, Some(point)), "Chat", 117_000, 1, |_| {
             qualities(40.0 - point / 10.0)
         });
     }
     for point in [0.5, 1.0, 2.0, 3.0] {
-        append(w, &setting("distance", "hare", None, Some(point)), "", 70_000, 1, |_| {
+        append(w, &conditions("distance", "hare", None, Some(point)), "", 70_000, 1, |_| {
             qualities(30.0 + point)
         });
     }
-    append(w, &setting("patchers", "talk", None, None), "Chat", 117_000, 1, |_| {
+    append(w, &conditions("patchers", "talk", None, None), "Chat", 117_000, 1, |_| {
         let of = |psnr: f64, ms: f64| {
             vec![(metric::PSNR, vec![psnr]), (metric::SSIM, vec![psnr / 40.0]), (metric::PATCH_MS, vec![ms])]
         };
@@ -193,16 +200,16 @@ fn write_results(path: &Path, header: &Header) {
         ]
     });
     for point in [1.0, 2.0, 4.0, 8.0, 16.0] {
-        append(w, &setting("imbuffer", "talk", None, Some(point)), "Chat", 117_000, 1, |round| {
+        append(w, &conditions("imbuffer", "talk", None, Some(point)), "Chat", 117_000, 1, |round| {
             both(50.0, 34.0 - point / 4.0, round)
         });
     }
     for point in [512.0, 1024.0, 2048.0] {
-        append(w, &setting("resolution", "talk", None, Some(point)), "Chat", 117_000, 1, |round| {
+        append(w, &conditions("resolution", "talk", None, Some(point)), "Chat", 117_000, 1, |round| {
             both(point / 4.0, 30.0, round)
         });
     }
-    append(w, &setting("new suite", "talk", None, None), "", 117_000, 1, |_| {
+    append(w, &conditions("new suite", "talk", None, None), "", 117_000, 1, |_| {
         vec![("x", vec![("apples", vec![3.0])])]
     });
 }
@@ -215,7 +222,7 @@ fn report(dir: &Path) -> BenchReport {
             Rgb([((x + shift) * 5) as u8, (y * 7) as u8, ((x + shift) * y) as u8])
         })
     };
-    let folder = picture_folder(&path, &setting("scenes", "atrium | columns", None, None));
+    let folder = picture_folder(&path, &conditions("scenes", "atrium | columns", None, None));
     for (name, shift) in [("dominant", 4), ("truth", 0), ("yoro-gather", 1)] {
         yoro_media::save_color(&folder.join(format!("{name}.png")), &picture(shift)).unwrap();
     }

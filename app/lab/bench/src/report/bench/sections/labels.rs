@@ -66,7 +66,7 @@ pub fn anti_aliasing(suite: &Suite) -> Section {
 fn fill(mut section: Section, suite: &Suite, labels: &Labels) -> Section {
     let contenders = suite.compared(metric::SSIM);
     let labelled = |label: &str| -> Vec<&SettingData> {
-        suite.settings.iter().filter(|setting| setting.setting.label.as_deref() == Some(label)).collect()
+        suite.settings.iter().filter(|setting| setting.conditions.label.as_deref() == Some(label)).collect()
     };
     let value = |label: &str, contender: &str, name: &str| {
         mean(labelled(label).iter().filter_map(|setting| setting.find(contender)?.mean(name)))

@@ -36,7 +36,7 @@ fn bits(suite: &Suite) -> Table {
     for name in suite.measured(KBIT_S) {
         let mut cells = vec![Cell::plain(name)];
         for scene in &scenes {
-            let setting = suite.settings.iter().find(|setting| setting.setting.scene == *scene);
+            let setting = suite.settings.iter().find(|setting| setting.conditions.scene == *scene);
             let measured = setting.and_then(|setting| setting.find(name));
             let value = |metric: &str| measured.and_then(|measured| measured.mean(metric));
             let share = value(SAVED);
