@@ -762,7 +762,7 @@ fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
     };
     let settings =
         Settings::resolve(None, CHEAP.into_iter().chain([UNSMOOTHED, scale]).map(str::to_owned)).unwrap();
-    let own = desktop("prototype", Method::Yoro, &pair, &settings);
+    let own = desktop("prototype", Method::Synthesized, &pair, &settings);
     for eye in Eye::BOTH {
         let quality = rgb(&simulated.picture(&format!("view-{}.png", eye.index())), &own[eye.index()]);
         println!("{scale}: {eye:?}: {quality:?}");

@@ -69,7 +69,7 @@ pub struct RenderArgs {
     /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
     scene: String,
     /// The stereo method
-    #[arg(long, value_parser = settings::value_of::<Method>("method"), default_value = Method::Yoro.name())]
+    #[arg(long, value_parser = settings::value_of::<Method>("method"), default_value = Method::Synthesized.name())]
     method: Method,
     /// Number of the scene's viewpoint, from 0
     #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_name = "N")]

@@ -37,7 +37,7 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
     rounds: u32,
     /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
-    #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Yoro.name(), value_name = "METHODS")]
+    #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Synthesized.name(), value_name = "METHODS")]
     methods: Vec<Method>,
     /// Pipelines to compare
     #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = list(Pipeline::ALL.map(Pipeline::name)))]
@@ -146,7 +146,7 @@ fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
             _ if args.methods[..i].contains(&method) => {}
             // The reference is always measured.
             Method::Conventional => {}
-            Method::Yoro => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
+            Method::Synthesized => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
                 name: pipeline.name(),
                 method,
                 options: args.stereo.options_of(pipeline),

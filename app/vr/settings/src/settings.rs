@@ -113,7 +113,7 @@ settings! {
     "method" method: MethodChoice = MethodChoice::Auto,
     /// The methods that a tap goes through.
     "methods" methods: Vec<MethodChoice> =
-        [MethodChoice::Auto].into_iter().chain([Method::Yoro, Method::Conventional, Method::Mono].map(Into::into)).collect();
+        [MethodChoice::Auto].into_iter().chain([Method::Synthesized, Method::Conventional, Method::Mono].map(Into::into)).collect();
         range(|s| !s.methods.is_empty(), "name at least one method, such as yoro,mono"),
     /// The pipeline that synthesizes the other eye.
     "pipeline" pipeline: Pipeline = Pipeline::default(),
@@ -241,7 +241,7 @@ fn is_positive(number: f32) -> bool {
 impl Settings {
     /// Returns the defaults for measurements and pictures, in which nothing depends on the device: the method is yoro.
     pub fn measured() -> Settings {
-        Settings { method: Method::Yoro.into(), ..Settings::default() }
+        Settings { method: Method::Synthesized.into(), ..Settings::default() }
     }
 
     /// Returns the defaults, changed as by [`Settings::changed`].
@@ -397,7 +397,7 @@ mod tests {
         .unwrap();
         assert_eq!(settings.scene, "/sdcard/a room.obj");
         assert_eq!(settings.method, Method::Conventional.into());
-        assert_eq!(settings.methods, [Method::Mono, Method::Yoro].map(MethodChoice::from));
+        assert_eq!(settings.methods, [Method::Mono, Method::Synthesized].map(MethodChoice::from));
         assert_eq!(settings.imbuffer, ImBufferSize::Fixed([256, 128]));
         assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(Ipd::nearest(0.06))));
         assert_eq!(settings.screen.unwrap().metres(), [0.158, 0.0705]);

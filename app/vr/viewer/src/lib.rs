@@ -14,14 +14,12 @@ mod error;
 mod event;
 mod frame;
 mod loading;
-mod menu;
 mod method_slot;
 pub mod openxr;
 mod options;
 mod questionnaire;
 mod scene_slot;
 mod session_stats;
-mod start;
 mod stream;
 mod viewer;
 

@@ -106,7 +106,7 @@ impl MethodSlot {
 
     /// Returns the pipeline's name if the method synthesizes.
     pub fn pipeline_name(&self) -> Option<&'static str> {
-        (self.method() == Method::Yoro).then(|| self.pipeline.name())
+        (self.method() == Method::Synthesized).then(|| self.pipeline.name())
     }
 
     /// Returns the factor by which the quality reduces the render scale.
@@ -117,7 +117,9 @@ impl MethodSlot {
     /// Returns the divisor of the ImBuffer's resolution, if the method has an ImBuffer sized relative to the eye.
     pub fn imbuffer_divisor(&self, settings: &Settings) -> Option<u32> {
         match self.options(settings).synthesis.paper.imbuffer {
-            ImBufferSize::Divisor(n) if self.method() == Method::Yoro && self.pipeline == Pipeline::Paper => {
+            ImBufferSize::Divisor(n)
+                if self.method() == Method::Synthesized && self.pipeline == Pipeline::Paper =>
+            {
                 Some(n)
             }
             _ => None,
@@ -154,9 +156,13 @@ impl MethodSlot {
     /// Compiles the method for the first time, or synthesis if the driver does not support the method.
     pub fn make_first(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
         let made = match self.create(gl, settings) {
-            Err(GlError::Unsupported(reason)) if self.choice != Method::Yoro.into() => {
-                log::warn!("{} is used instead of {}: {reason}", Method::Yoro.name(), self.choice.name());
-                self.choice = Method::Yoro.into();
+            Err(GlError::Unsupported(reason)) if self.choice != Method::Synthesized.into() => {
+                log::warn!(
+                    "{} is used instead of {}: {reason}",
+                    Method::Synthesized.name(),
+                    self.choice.name()
+                );
+                self.choice = Method::Synthesized.into();
                 self.create(gl, settings)
             }
             made => made,

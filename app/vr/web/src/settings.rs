@@ -182,7 +182,7 @@ mod tests {
         // Displays with a comparison do not use the automatic choice.
         let chosen = |json| Settings::parse(json).unwrap().choice();
         assert_eq!(chosen(r#"{"display":"anaglyph"}"#), MethodChoice::Auto);
-        assert_eq!(chosen(r#"{"display":"divider"}"#), Method::Yoro.into());
+        assert_eq!(chosen(r#"{"display":"divider"}"#), Method::Synthesized.into());
         let forward = Settings::parse(r#"{"renderer":"forward","msaa":1}"#).unwrap();
         assert_eq!(forward.render_settings().summary(), "forward, 1 samples a pixel");
         for wrong in [

@@ -12,7 +12,7 @@ pub enum Contender {
     /// A method other than synthesis.
     Method(Method),
     /// Synthesis of the other eye by this pipeline.
-    Yoro(Pipeline),
+    Synthesized(Pipeline),
     /// The pipeline gather with this guard band.
     Band(Band),
     /// The paper's pipeline without interpolation between ImBuffer entries.
@@ -80,13 +80,13 @@ impl Contender {
 
     /// Returns the stereo methods, with synthesis once for each of its pipelines.
     pub fn methods() -> Vec<Contender> {
-        let others = Method::ALL.into_iter().filter(|method| *method != Method::Yoro);
+        let others = Method::ALL.into_iter().filter(|method| *method != Method::Synthesized);
         others.map(Contender::Method).chain(Contender::pipelines()).collect()
     }
 
     /// Returns synthesis with each of its pipelines.
     pub fn pipelines() -> Vec<Contender> {
-        Pipeline::ALL.map(Contender::Yoro).to_vec()
+        Pipeline::ALL.map(Contender::Synthesized).to_vec()
     }
 
     /// Returns the patchers.
@@ -99,7 +99,7 @@ impl Contender {
     pub fn name(self) -> String {
         match self {
             Contender::Method(method) => method.name().into(),
-            Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
+            Contender::Synthesized(pipeline) => format!("yoro-{}", pipeline.name()),
             Contender::Band(band) => format!("yoro-guard-{}", band.name()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
@@ -117,9 +117,9 @@ impl Contender {
     pub fn method(self) -> Option<(Method, StereoOptions)> {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
-            Contender::Yoro(pipeline) => (Method::Yoro, pipeline),
-            Contender::Band(_) => (Method::Yoro, Pipeline::Gather),
-            Contender::PaperNearest | Contender::PaperStrict => (Method::Yoro, Pipeline::Paper),
+            Contender::Synthesized(pipeline) => (Method::Synthesized, pipeline),
+            Contender::Band(_) => (Method::Synthesized, Pipeline::Gather),
+            Contender::PaperNearest | Contender::PaperStrict => (Method::Synthesized, Pipeline::Paper),
             Contender::Patcher(_) => return None,
         };
         let mut options = StereoOptions::of_pipeline(pipeline);
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn variants_differ_in_their_options_only() {
         let options = |contender: Contender| contender.method().unwrap().1;
-        let paper = options(Contender::Yoro(Pipeline::Paper));
+        let paper = options(Contender::Synthesized(Pipeline::Paper));
         assert!(paper.synthesis.paper.linear_interpolation && paper.policy.is_none());
         assert!(!options(Contender::PaperNearest).synthesis.paper.linear_interpolation);
         assert!(options(Contender::PaperStrict).synthesis.paper.strict);

@@ -39,7 +39,7 @@ impl PreparedContender {
     ) -> Result<PreparedContender, GlError> {
         // The third frame is the first to use the results of the first: the guard band's width, or that all is near.
         let looks = matches!(options.guard_band, GuardBand::Auto(_)) || options.policy.is_some();
-        let unsettled = if method == Method::Yoro && looks { 2 } else { 0 };
+        let unsettled = if method == Method::Synthesized && looks { 2 } else { 0 };
         Ok(PreparedContender {
             gl: gl.clone(),
             method: stereo::create(gl, method, settings, options)?,

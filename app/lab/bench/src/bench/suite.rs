@@ -155,7 +155,7 @@ impl Choices {
                 let contenders = vec![
                     Contender::CONVENTIONAL,
                     Contender::MONO,
-                    Contender::Yoro(Pipeline::Paper),
+                    Contender::Synthesized(Pipeline::Paper),
                     Contender::PaperNearest,
                     Contender::PaperStrict,
                 ];
@@ -171,7 +171,7 @@ impl Choices {
             Suite::Resolution => self.resolution(sweep(both, all)),
             Suite::AntiAliasing => {
                 let contenders =
-                    vec![Contender::CONVENTIONAL, Contender::MONO, Contender::Yoro(Pipeline::Gather)];
+                    vec![Contender::CONVENTIONAL, Contender::MONO, Contender::Synthesized(Pipeline::Gather)];
                 self.anti_aliasing(sweep(both, contenders), &every)
             }
             Suite::Flicker => sweep(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {

@@ -76,7 +76,7 @@ fn create_for<R: StereoRenderer>(method: Method, setup: &Setup) -> Result<Box<dy
         Method::ShadingReprojection => Box::new(ShadingReprojection::new(setup)?),
         Method::Hybrid => Box::new(Hybrid::<R::Fields>::new(setup)?),
         Method::Mono => Box::new(Mono::<R>::new(setup)?),
-        Method::Yoro => match setup.options.render_rate {
+        Method::Synthesized => match setup.options.render_rate {
             Some(rate) => Box::new(Reprojected::<R>::new(setup, rate)?),
             None => Box::new(Synthesized::<R>::new(setup)?),
         },

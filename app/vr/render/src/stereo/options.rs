@@ -22,7 +22,7 @@ fn lacking_forward(method: Method) -> Option<&'static str> {
 }
 
 impl RenderSettings {
-    /// Checks that a driver can run a method with this renderer. The pipelines of [`Method::Yoro`] check their own
+    /// Checks that a driver can run a method with this renderer. The pipelines of [`Method::Synthesized`] check their own
     /// requirements.
     ///
     /// # Errors

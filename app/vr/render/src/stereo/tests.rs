@@ -267,7 +267,7 @@ fn an_automatic_band_gives_the_picture_of_a_whole_one() {
             asymmetric.frusta[0].left *= 1.2;
             asymmetric.frusta[1].right *= 1.2;
             for pair in [pair(dominant, DepthConvention::Standard), asymmetric.row_aligned()] {
-                let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
+                let mut method = create(gl, Method::Synthesized, &settings, &auto_band()).unwrap();
                 // The result of a frame arrives two frames later.
                 let [whole, _, part] = [(); 3].map(|()| rig.render(&mut *method, &pair));
                 let looked = method.guard_band().unwrap();
@@ -293,7 +293,7 @@ fn an_automatic_band_keeps_up_with_a_moving_head() {
     let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
     for (dominant, sense) in [(Eye::Left, 1.0), (Eye::Left, -1.0), (Eye::Right, 1.0), (Eye::Right, -1.0)] {
         let [mut whole, mut auto] =
-            [whole, auto_band()].map(|options| create(gl, Method::Yoro, &local(), &options).unwrap());
+            [whole, auto_band()].map(|options| create(gl, Method::Synthesized, &local(), &options).unwrap());
         let mut narrow = 0;
         for frame in 0..20 {
             // 0.4 degrees and 3 mm per frame.
@@ -334,7 +334,7 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
         let settings = RenderSettings { renderer, ..local() };
         let mut rigs = [far.clone(), near.clone()].map(|scene| Rig::of(gl, &settings, scene));
         let pair = pair(Eye::Right, DepthConvention::Standard);
-        let mut method = create(gl, Method::Yoro, &settings, &auto_band()).unwrap();
+        let mut method = create(gl, Method::Synthesized, &settings, &auto_band()).unwrap();
         for _ in 0..5 {
             rigs[0].render(&mut *method, &pair);
         }
@@ -366,7 +366,7 @@ fn what_moves_at_the_border_is_drawn_at_once() {
     let pair = pair(Eye::Right, DepthConvention::Standard);
     let whole = StereoOptions { guard_band: GuardBand::Distance(0.2), ..StereoOptions::default() };
     let [mut whole, mut auto] =
-        [whole, auto_band()].map(|options| create(gl, Method::Yoro, &local(), &options).unwrap());
+        [whole, auto_band()].map(|options| create(gl, Method::Synthesized, &local(), &options).unwrap());
     let mut narrow = 0;
     for frame in 0..24 {
         rig.renderer.set_time(&mut rig.scene, f64::from(frame) / 60.0).unwrap();
@@ -438,13 +438,13 @@ fn the_nearest_depth_is_resolved_once_for_each_image_that_is_read() {
         (near, both, 3),
         (auto_band(), dominant, 1),
     ] {
-        let mut method = create(gl, Method::Yoro, &forward(), &options).unwrap();
+        let mut method = create(gl, Method::Synthesized, &forward(), &options).unwrap();
         let taken = count_passes(gl, &mut rig, &mut *method, wanted, "nearest depth");
         assert_eq!(taken, expected, "{wanted:?}, {options:?}");
     }
     // Everything is too near: the third frame is rendered twice, and the switch reads the dominant eye's depth.
     let policy = Some(NearFieldPolicy { distance: 400.0, ..NearFieldPolicy::default() });
-    let mut method = create(gl, Method::Yoro, &forward(), &StereoOptions { policy, ..plain }).unwrap();
+    let mut method = create(gl, Method::Synthesized, &forward(), &StereoOptions { policy, ..plain }).unwrap();
     assert_eq!(
         [nobody, nobody, nobody, both].map(|wanted| count_passes(
             gl,
@@ -470,7 +470,7 @@ fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
     let mut pictures = Vec::new();
     for (scene, wanted, copies) in [(scene(), nobody, 2), (opaque.clone(), nobody, 1), (opaque, other, 2)] {
         let mut rig = Rig::of(gl, &forward(), scene);
-        let mut method = create(gl, Method::Yoro, &forward(), &StereoOptions::default()).unwrap();
+        let mut method = create(gl, Method::Synthesized, &forward(), &StereoOptions::default()).unwrap();
         assert_eq!(count_passes(gl, &mut rig, &mut *method, wanted, "copy"), copies);
         pictures.push(Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE)));
     }
@@ -488,7 +488,7 @@ fn glass_out_of_view_costs_nothing() {
     opaque.model.parts.pop();
     let mut rigs = [scene(), opaque].map(|scene| Rig::of(gl, &forward(), scene));
     let options = StereoOptions { policy: None, ..StereoOptions::default() };
-    let mut methods = [(); 2].map(|()| create(gl, Method::Yoro, &forward(), &options).unwrap());
+    let mut methods = [(); 2].map(|()| create(gl, Method::Synthesized, &forward(), &options).unwrap());
     let mut free = 0;
     for turn in 0..24 {
         let orientation = Quat::from_rotation_y(turn as f32 * std::f32::consts::TAU / 24.0);
@@ -523,7 +523,7 @@ fn reading_the_nearest_depth_changes_no_picture() {
     for near_field in [None, Some(1.6)] {
         let options = StereoOptions { near_field, ..StereoOptions::default() };
         let mut rig = Rig::new(gl, &forward());
-        let mut method = create(gl, Method::Yoro, &forward(), &options).unwrap();
+        let mut method = create(gl, Method::Synthesized, &forward(), &options).unwrap();
         let [unread, read] = [[false; 2], [true; 2]].map(|wanted| {
             count_passes(gl, &mut rig, &mut *method, wanted, "nearest depth");
             Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE))

@@ -31,13 +31,13 @@ use crate::caption::Caption;
 use crate::error::ViewerError;
 use crate::frame::SceneState;
 use crate::loading::SceneSource;
-use crate::menu::Menu;
 use crate::method_slot::MethodSlot;
 use crate::options::render_settings;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
-use crate::start::StartScreen;
 use crate::stream::{Stream, StreamExchange};
+use menu::Menu;
+use start::StartScreen;
 use yoro::eyes::Pose;
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
@@ -59,7 +59,7 @@ struct Attached {
 /// The sources of the distance between the eyes.
 #[derive(Clone, Copy, Debug)]
 struct IpdSources {
-    /// SelectedMethod in the settings or by the user.
+    /// Chosen in the settings or by the user.
     chosen: Option<Ipd>,
     /// The display's own.
     native: Ipd,

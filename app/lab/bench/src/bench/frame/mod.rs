@@ -50,6 +50,6 @@ pub fn contenders(renderer: RendererKind) -> Vec<Contender> {
     if renderer == RendererKind::Deferred {
         contenders.push(Contender::Method(Method::ShadingReprojection));
     }
-    contenders.extend([Contender::MONO, Contender::Yoro(Pipeline::Gather)]);
+    contenders.extend([Contender::MONO, Contender::Synthesized(Pipeline::Gather)]);
     contenders
 }

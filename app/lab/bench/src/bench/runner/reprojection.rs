@@ -127,7 +127,7 @@ impl Timer {
         let options =
             StereoOptions { render_rate: Some(RENDER_RATE), policy: None, ..StereoOptions::default() };
         let create = |method| stereo::create(gl, method, &job.render, &options);
-        let methods = [create(Method::Conventional)?, create(Method::Yoro)?];
+        let methods = [create(Method::Conventional)?, create(Method::Synthesized)?];
         Ok(Timer { gl: gl.clone(), methods, frame: StereoFrame::new(gl, job.eyes.size)? })
     }
 

@@ -17,7 +17,7 @@ use yoro_render::stereo::{Method, Pipeline, StereoFrame};
 use yoro_render::{PreparedScene, Selection, ViewTargets};
 
 /// The contender whose passes are counted.
-const GATHER: Contender = Contender::Yoro(Pipeline::Gather);
+const GATHER: Contender = Contender::Synthesized(Pipeline::Gather);
 /// The slots of the passes of `gather` as [`Meter`] names them, and the names of the passes.
 const PASSES: [(&str, &str); 3] = [
     (metric::SLOTS_TILES, "gather tiles"),
