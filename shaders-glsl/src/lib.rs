@@ -85,7 +85,6 @@ static FILES: &[(&str, &str)] = embed![
     "stereo/paper/patch.frag",
     "stereo/paper/reproject.frag",
     "stereo/paper/scatter.comp",
-    "stereo/uncovered.frag",
     "synthesis/any_view/march.frag",
     "synthesis/any_view/spans.frag",
     "synthesis/any_view/tiles.frag",

@@ -1,12 +1,8 @@
 #version 310 es
 // The share of a depth image that is nearer than a given depth: each of 16 x 16 texels counts 8 x 8 pixels of its part
-// of the image. In a multisample image the first sample counts.
+// of the image.
 
-#ifdef MULTISAMPLE
-uniform highp sampler2DMS depth_map;
-#else
 uniform sampler2D depth_map;
-#endif
 uniform ivec2 origin;
 uniform ivec2 size;
 uniform float near_depth;

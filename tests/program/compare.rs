@@ -1,7 +1,6 @@
 //! `yoro compare`.
 
 use image::Rgb;
-use yoro_bench::picture;
 
 use crate::pair;
 use crate::program::{run, succeed};
@@ -15,7 +14,7 @@ fn files_and_folders_are_compared() {
     for (name, image) in
         [("a/one.png", &color), ("a/two.png", &color), ("b/one.png", &color), ("b/two.png", &other)]
     {
-        picture::save_color(&dir.path().join(name), image).unwrap();
+        yoro_media::save_color(&dir.path().join(name), image).unwrap();
     }
     let same = succeed(dir.path(), "compare a/one.png b/one.png --json").json();
     assert_eq!(same["pairs"][0]["identical"], true);
@@ -30,11 +29,11 @@ fn files_and_folders_are_compared() {
     assert_eq!(both["mean"]["identical_pairs"], 1);
     let psnr = both["pairs"][1]["rgb"]["psnr"].as_f64().unwrap();
     assert!((40.0..60.0).contains(&psnr), "{psnr}");
-    let map = picture::load_color(&dir.path().join("maps/two.png")).unwrap();
+    let map = yoro_media::load_color(&dir.path().join("maps/two.png")).unwrap();
     assert_eq!(map.dimensions(), color.dimensions());
     assert!(map.get_pixel(80, 60).0[0] > map.get_pixel(10, 10).0[0]);
 
     run(dir.path(), "compare a b/one.png").refuses(&["a is a folder and b/one.png is a file"]);
-    picture::save_color(&dir.path().join("small.png"), &image::RgbImage::new(50, 50)).unwrap();
+    yoro_media::save_color(&dir.path().join("small.png"), &image::RgbImage::new(50, 50)).unwrap();
     run(dir.path(), "compare a/one.png small.png").refuses(&["small.png", "160x120", "50x50"]);
 }

@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use yoro_bench::picture;
-
 use crate::pair;
 use crate::program::{run, succeed};
 
@@ -22,7 +20,7 @@ fn no_output_replaces_an_input() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     for name in ["a.png", "b.png", "left/one.png", "left/sub/one.png", "right/one.png", "right/sub/one.png"] {
-        picture::save_color(&at.join(name), &pair::color(0.5)).unwrap();
+        yoro_media::save_color(&at.join(name), &pair::color(0.5)).unwrap();
     }
     fs::create_dir_all(at.join("data/prototype/group")).unwrap();
     for (name, text) in [

@@ -5,14 +5,13 @@ use std::path::Path;
 use std::process::Stdio;
 
 use image::RgbImage;
-use yoro_bench::picture;
 
 use crate::pair;
 use crate::program::{finish, run, yoro};
 
 fn color_and_depth(dir: &Path) {
-    picture::save_color(&dir.join("color.png"), &pair::color(0.5)).unwrap();
-    picture::save_depth(&dir.join("depth.png"), &pair::metres(0.5)).unwrap();
+    yoro_media::save_color(&dir.join("color.png"), &pair::color(0.5)).unwrap();
+    yoro_media::save_depth(&dir.join("depth.png"), &pair::metres(0.5)).unwrap();
 }
 
 const PALETTE_OF_FOUR_BYTES: &[u8] =
@@ -28,7 +27,7 @@ fn files_that_are_no_pictures_are_refused() {
     fs::write(at.join("text.png"), "this is no picture").unwrap();
     let whole = fs::read(at.join("color.png")).unwrap();
     fs::write(at.join("half.png"), &whole[..whole.len() / 2]).unwrap();
-    picture::save_color(&at.join("small.png"), &RgbImage::new(64, 48)).unwrap();
+    yoro_media::save_color(&at.join("small.png"), &RgbImage::new(64, 48)).unwrap();
     fs::write(at.join("out.png"), "made earlier").unwrap();
     for (color, depth, naming) in [
         ("nowhere.png", "depth.png", &["nowhere.png does not exist", "check the path"][..]),
@@ -134,11 +133,8 @@ fn options_out_of_range() {
         ("render prototype --fov-y-degrees 190", &["--fov-y-degrees", "1 to 170"]),
         ("render prototype --frames 0", &["--frames"]),
         ("render prototype --pipeline magic", &["--pipeline", "gather"]),
-        ("render prototype --pipeline rowgroup", &["--pipeline", "was taken out", "choose gather"]),
-        (
-            "view prototype --png view.png --set pipeline=rowgroup",
-            &["pipeline", "was taken out", "choose gather"],
-        ),
+        ("view prototype --png view.png --set pipeline=magic", &["pipeline", "choose one of gather"]),
+        ("view prototype --png view.png --set history=full", &["no setting \"history\"", "choose one of"]),
         ("render prototype --imbuffer 0", &["--imbuffer", "512x512"]),
         ("render prototype --position 1,2", &["--position", "three numbers"]),
         ("render prototype --position 1e38,0,0", &["--position", "up to 100000 m from the origin"]),
@@ -147,10 +143,6 @@ fn options_out_of_range() {
         ("render", &["<SCENE>"]),
         ("rendr prototype", &["rendr", "render"]),
         ("synthesize --color color.png --depth depth.png --out o.png --near 5 --far 1", &["--near 5"]),
-        (
-            "synthesize --color color.png --depth depth.png --out o.png --pipeline paper --edges nearest",
-            &["one sample per pixel", "gather"],
-        ),
         ("synthesize --color color.png --depth depth.png --out o.png --depth-gamma 0", &["--depth-gamma"]),
     ] {
         run(at, line).refuses(naming);

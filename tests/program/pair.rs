@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::{GrayImage, ImageBuffer, Luma, Rgb, RgbImage};
 use yoro::eyes::{DepthConvention, DepthRange};
-use yoro_bench::picture::{self, DepthImage};
+use yoro_media::DepthImage;
 
 pub const WIDTH: u32 = 160;
 pub const HEIGHT: u32 = 120;
@@ -71,7 +71,7 @@ pub fn buffer(eye: f32, convention: DepthConvention, gamma: f32) -> DepthImage {
 
 /// Writes disparity as an 8-bit grey PNG.
 pub fn save_disparity_8(path: &Path, eye: f32) {
-    picture::save_gray(path, &levels(eye)).unwrap();
+    yoro_media::save_gray(path, &levels(eye)).unwrap();
 }
 
 /// Writes disparity as a PNG with three equal 16-bit channels.
@@ -84,5 +84,5 @@ pub fn save_disparity_rgb_16(path: &Path, eye: f32) {
 
 /// Writes the distance as a 16-bit PNG in which white is 20 m.
 pub fn save_metres_16(path: &Path, eye: f32) {
-    picture::save_depth(path, &map(&metres(eye), |z| z / 20.0)).unwrap();
+    yoro_media::save_depth(path, &map(&metres(eye), |z| z / 20.0)).unwrap();
 }

@@ -4,7 +4,6 @@ use std::fs;
 use std::path::Path;
 
 use image::{Rgb, RgbImage};
-use yoro_bench::picture;
 
 use crate::program::{run, succeed};
 
@@ -31,11 +30,11 @@ const MOVING: &str = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
 fn write_texture(dir: &Path) {
     let texture =
         RgbImage::from_fn(64, 64, |x, _| if x < 32 { Rgb([20, 220, 40]) } else { Rgb([30, 60, 230]) });
-    picture::save_color(&dir.join("picture.png"), &texture).unwrap();
+    yoro_media::save_color(&dir.join("picture.png"), &texture).unwrap();
 }
 
 fn right_eye(dir: &Path) -> RgbImage {
-    picture::load_color(&dir.join("out/room.right.png")).unwrap()
+    yoro_media::load_color(&dir.join("out/room.right.png")).unwrap()
 }
 
 /// Returns the index of the largest channel.
@@ -81,7 +80,7 @@ fn materials_and_textures_of_an_obj_file() {
     assert_eq!(image.dimensions(), (96, 64));
     // The right eye is 31.5 mm to the right, so the near wall's centre is slightly to the left of the image's centre.
     assert_eq!([hue(&image, 40, 32), hue(&image, 56, 32), hue(&image, 5, 32)], [1, 2, 0]);
-    let both = picture::load_color(&dir.path().join("out/room.side-by-side.png")).unwrap();
+    let both = yoro_media::load_color(&dir.path().join("out/room.side-by-side.png")).unwrap();
     assert_eq!(both.dimensions(), (192, 64));
 }
 
@@ -107,7 +106,7 @@ fn every_output_and_measure() {
     let ssim = |quality: &serde_json::Value| quality["ssim_gaussian"].as_f64().unwrap();
     assert!(ssim(quality) > ssim(baseline) + 0.05, "{json:#}");
     for output in outputs {
-        let image = picture::load_color(&dir.path().join(format!("out/prototype.{output}.png"))).unwrap();
+        let image = yoro_media::load_color(&dir.path().join(format!("out/prototype.{output}.png"))).unwrap();
         let width = if output.contains("side") || output.contains("cross") { 192 } else { 96 };
         assert_eq!(image.dimensions(), (width, 96), "{output}");
         let first = image.get_pixel(0, 0);
@@ -122,7 +121,7 @@ fn every_output_and_measure() {
 #[test]
 fn features_left_out_of_a_gltf_file_are_reported() {
     let dir = tempfile::tempdir().unwrap();
-    picture::save_color(&dir.path().join("pic.png"), &RgbImage::new(4, 4)).unwrap();
+    yoro_media::save_color(&dir.path().join("pic.png"), &RgbImage::new(4, 4)).unwrap();
     let corners = [[0f32, 0., 0.], [1., 0., 0.], [0., 1., 0.]];
     let (uvs, colors) = ([[0f32, 0.], [2., 0.], [0., 2.]], [[1f32, 0., 0.]; 3]);
     let floats = corners.iter().flatten().chain(uvs.iter().flatten()).chain(colors.iter().flatten());
@@ -155,7 +154,7 @@ fn what_moves_is_rendered_at_a_time() {
     fs::write(dir.path().join("camera.json"), camera).unwrap();
     let render = |options: &str, name: &str| {
         succeed(dir.path(), &format!("render m.gltf --size 96x64 --outputs right {options}"));
-        picture::load_color(&dir.path().join(format!("out/{name}.right.png"))).unwrap()
+        yoro_media::load_color(&dir.path().join(format!("out/{name}.right.png"))).unwrap()
     };
     let [start, half] = ["", "--time 0.5"].map(|options| render(options, "m"));
     assert!(start != half);

@@ -1,7 +1,6 @@
 //! `yoro scenes` and `yoro info`.
 
-use yoro_bench::metrics::{Channels, SsimWindow, ssim};
-use yoro_bench::picture;
+use yoro_metrics::{Channels, SsimWindow, ssim};
 use yoro_scenes::BUILTINS;
 
 use crate::program::{run, succeed};
@@ -29,7 +28,7 @@ fn an_exported_scene_renders_as_the_built_in_one() {
     succeed(dir.path(), &format!("render exported/prototype.obj --out b {options}"));
     for eye in ["left", "right"] {
         let load = |folder: &str| {
-            picture::load_color(&dir.path().join(format!("{folder}/prototype.{eye}.png"))).unwrap()
+            yoro_media::load_color(&dir.path().join(format!("{folder}/prototype.{eye}.png"))).unwrap()
         };
         let likeness = ssim(&load("b"), &load("a"), SsimWindow::Gaussian11, Channels::Rgb).unwrap();
         assert!(likeness > 0.99, "{eye}: SSIM {likeness:.4}");

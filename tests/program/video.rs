@@ -3,8 +3,7 @@
 use std::fs;
 
 use image::{RgbImage, imageops};
-use yoro_bench::metrics::{Channels, psnr};
-use yoro_bench::picture;
+use yoro_metrics::{Channels, psnr};
 use yoro_video::{Format, Planes, Reader, VideoError};
 
 use crate::program::{run, succeed};
@@ -28,7 +27,7 @@ fn both_eyes_come_out_of_an_rgbd_video() {
         let both = stereo.read().unwrap().unwrap().rgb((256, 96));
         let shown = |x: u32| -> RgbImage { imageops::crop_imm(&both, x, 0, 128, 96).to_image() };
         let load = |folder: &str, eye: &str| {
-            picture::load_color(&at.join(format!("{folder}/prototype-{frame:04}.{eye}.png"))).unwrap()
+            yoro_media::load_color(&at.join(format!("{folder}/prototype-{frame:04}.{eye}.png"))).unwrap()
         };
         let [left, right] = ["left", "right"].map(|eye| load("truth", eye));
         let picture_left = load("pictures", "left");
@@ -88,7 +87,7 @@ fn a_video_of_record3d_becomes_stereo() {
     let [mut phone, mut own] = stereo;
     for frame in 0..2 {
         let [left, right] = ["left", "right"].map(|eye| {
-            picture::load_color(&at.join(format!("truth/prototype-{frame:04}.{eye}.png"))).unwrap()
+            yoro_media::load_color(&at.join(format!("truth/prototype-{frame:04}.{eye}.png"))).unwrap()
         });
         let synthesized = |reader: &mut Reader| {
             let both = reader.read().unwrap().unwrap().rgb((256, 96));

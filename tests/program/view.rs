@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use image::RgbImage;
-use yoro_bench::picture;
 
 use crate::program::{Run, finish, run, succeed, yoro};
 
@@ -14,7 +13,7 @@ const SMALL: &str =
 fn view(folder: &Path, line: &str) -> RgbImage {
     let run = succeed(folder, &format!("view --png view.png {SMALL} {line}"));
     assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("view.png\n", ""));
-    picture::load_color(&folder.join("view.png")).unwrap()
+    yoro_media::load_color(&folder.join("view.png")).unwrap()
 }
 
 /// Returns the mean difference of two pictures in a square around the left lens's centre, in grey levels.
@@ -92,7 +91,7 @@ fn opengl_es_3_0_shows_the_same_by_gather() {
         matches!(warnings.as_slice(), [line] if line.contains("paper") && line.contains("gather")),
         "{warnings:?}"
     );
-    let image = picture::load_color(&dir.path().join("es.png")).unwrap();
+    let image = yoro_media::load_color(&dir.path().join("es.png")).unwrap();
     let expected = view(dir.path(), "--gl egl --no-hud");
     assert!(difference(&image, &expected) < 0.5);
 }

@@ -12,10 +12,9 @@ use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use yoro::eyes::{Eye, EyePair, Frustum};
-use yoro_bench::metrics::{Channels, Quality};
-use yoro_bench::picture;
-use yoro_bench::picture::eye_image;
 use yoro_context::{Backend, Headless};
+use yoro_media::rgb_image;
+use yoro_metrics::{Channels, Quality};
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     Aim, At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
@@ -23,6 +22,7 @@ use yoro_openxr_stub::script::{
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_settings::Settings;
+use yoro_viewer::{render_settings, stereo_options};
 
 use crate::monado::{self, Running};
 use crate::program::{Run, finish, yoro};
@@ -120,7 +120,7 @@ impl Simulated {
     }
 
     fn picture(&self, name: &str) -> RgbImage {
-        picture::load_color(&self.path(name)).unwrap()
+        yoro_media::load_color(&self.path(name)).unwrap()
     }
 
     /// Returns the number and the views of each frame that has views.
@@ -562,14 +562,13 @@ fn desktop(scene: &str, method: Method, pair: &EyePair, settings: &Settings) -> 
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     let scene = GpuScene::upload(gl, yoro_scenes::build(scene, yoro_scenes::DEFAULT_SEED).unwrap()).unwrap();
-    let (render, options) =
-        (RenderSettings::of_settings(settings), StereoOptions::of_settings(settings, settings.pipeline));
+    let (render, options) = (render_settings(settings), stereo_options(settings, settings.pipeline));
     let mut renderer = Renderer::new(gl, &render, &scene).unwrap();
     let mut method = stereo::create(gl, method, &render, &options).unwrap();
     method.prepare(&mut renderer, &scene).unwrap();
     let mut frame = StereoFrame::new(gl, pair.size).unwrap();
     method.render(&mut renderer, &scene, pair, &mut frame).unwrap();
-    Eye::BOTH.map(|eye| eye_image(&frame, eye))
+    Eye::BOTH.map(|eye| rgb_image(&frame.rgba(eye), frame.size()))
 }
 
 fn captured(folder: &Path, summary: &Value) -> Vec<(Method, EyePair, [RgbImage; 2])> {
@@ -578,7 +577,8 @@ fn captured(folder: &Path, summary: &Value) -> Vec<(Method, EyePair, [RgbImage; 
         let name = m["method"].as_str().unwrap();
         let method = Method::ALL.into_iter().find(|method| method.name() == name).unwrap();
         let pair = serde_json::from_value(m["capture"]["eyes"].clone()).unwrap();
-        let eye = |eye: &str| picture::load_color(&folder.join(m["capture"][eye].as_str().unwrap())).unwrap();
+        let eye =
+            |eye: &str| yoro_media::load_color(&folder.join(m["capture"][eye].as_str().unwrap())).unwrap();
         (method, pair, [eye("left"), eye("right")])
     };
     methods.map(load).collect()
@@ -762,7 +762,7 @@ fn assert_synthesized_through_the_layer(programs: &Path, scale: &'static str) {
     };
     let settings =
         Settings::resolve(None, CHEAP.into_iter().chain([UNSMOOTHED, scale]).map(str::to_owned)).unwrap();
-    let own = desktop("prototype", Method::Yoro, &pair, &settings);
+    let own = desktop("prototype", Method::Synthesized, &pair, &settings);
     for eye in Eye::BOTH {
         let quality = rgb(&simulated.picture(&format!("view-{}.png", eye.index())), &own[eye.index()]);
         println!("{scale}: {eye:?}: {quality:?}");

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use image::RgbImage;
-use yoro_bench::metrics::{Channels, SsimWindow, ssim};
-use yoro_bench::picture;
+use yoro_metrics::{Channels, SsimWindow, ssim};
 
 /// The variable that renews the golden images instead of comparing with them.
 pub const BLESS: &str = "YORO_BLESS";
@@ -49,18 +48,18 @@ pub fn check(name: &str, image: &RgbImage) -> anyhow::Result<()> {
     let workspace = root.parent().unwrap_or(root);
     let golden = root.join("golden").join(name).with_extension("png");
     if std::env::var_os(BLESS).is_some() {
-        return Ok(picture::save_color(&golden, image)?);
+        return Ok(yoro_media::save_color(&golden, image)?);
     }
     let reference =
-        picture::load_color(&golden).context("`cargo xtask test --bless` makes missing golden images")?;
+        yoro_media::load_color(&golden).context("`cargo xtask test --bless` makes missing golden images")?;
     compare(image, &reference).or_else(|error| {
         let target =
             std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);
         let path = target.join("golden-diff").join(name);
         let (difference, new) = (path.with_extension("png"), path.with_extension("new.png"));
-        picture::save_color(&new, image)?;
-        if let Ok(image) = picture::difference(image, &reference) {
-            picture::save_color(&difference, &image)?;
+        yoro_media::save_color(&new, image)?;
+        if let Ok(image) = yoro_media::difference(image, &reference) {
+            yoro_media::save_color(&difference, &image)?;
         }
         Err(error.context(format!(
             "{name} is not as it was: see {} and {}; if it is better, `cargo xtask test --bless`",

@@ -7,13 +7,11 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
-use yoro::synthesis::{self, AnyView, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
+use yoro::synthesis::{self, AnyView, Outputs, SynthesisOptions};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
-use yoro_render::stereo::{
-    self, AntiAliasing, History, ImBufferSize, Method, Paper, PaperOptions, StereoOptions,
-};
+use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
 use yoro_shaders::{Assembled, MissingFile};
 
@@ -38,8 +36,6 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     synthesis(gl, variants)?;
     rendering(gl, variants)?;
     stereo(gl)?;
-    let options = StereoOptions { history: History::Full, ..StereoOptions::default() };
-    stereo::create(gl, Method::Yoro, &RenderSettings::default(), &options)?;
     patchers(gl)?;
     viewer(gl)
 }
@@ -52,9 +48,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let outputs = [(false, false), (false, true), (true, false), (true, true)]
         .map(|(depth, source_map)| Outputs { depth, source_map, ..Outputs::default() });
     for outputs in outputs {
-        for edges in Edges::ALL {
-            synthesis::create(gl, &SynthesisOptions { edges, ..SynthesisOptions::default() }, outputs)?;
-        }
+        synthesis::create(gl, &SynthesisOptions::default(), outputs)?;
         for (strict, linear_interpolation) in [(false, true), (false, false), (true, false), (true, true)] {
             for (divisor, kernel_height) in [(1, 1), (4, 15)] {
                 let imbuffer = ImBufferSize::Divisor(divisor);
@@ -66,38 +60,13 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
             }
         }
     }
-    for depth in [false, true] {
-        let outputs = Outputs { depth, ..Outputs::default() };
-        AnyView::new(gl, &SynthesisOptions::default(), outputs)?;
-        if variants == Variants::Every {
-            for (parts, layers) in [(true, false), (false, true), (true, true)] {
-                AnyView::new(
-                    gl,
-                    &SynthesisOptions { parts, array_textures: layers, ..SynthesisOptions::default() },
-                    outputs,
-                )?;
-            }
-        }
-    }
-    // The library would only use one of these variants on this driver.
-    for variant in GatherVariant::ALL {
+    let places = [(false, false), (true, false), (false, true), (true, true)];
+    let built = if variants == Variants::Every { &places[..] } else { &places[..1] };
+    for &(parts, array_textures) in built {
+        let options = SynthesisOptions { parts, array_textures, ..SynthesisOptions::default() };
+        synthesis::create(gl, &options, Outputs::default())?;
         for depth in [false, true] {
-            Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
-        }
-    }
-    for (parts, layers, history) in
-        [(false, false, true), (true, false, false), (false, true, false), (true, true, false)]
-    {
-        if variants == Variants::Extreme && !history {
-            continue;
-        }
-        let options =
-            SynthesisOptions { parts, array_textures: layers, history, ..SynthesisOptions::default() };
-        for variant in GatherVariant::ALL {
-            Gather::with_variant_of(gl, Outputs::default(), variant, &options)?;
-        }
-        for edges in [Edges::Nearest, Edges::Sample] {
-            synthesis::create(gl, &SynthesisOptions { edges, ..options }, Outputs::default())?;
+            AnyView::new(gl, &options, Outputs { depth, ..Outputs::default() })?;
         }
     }
     // The march split into parts, to determine the cost of each.

@@ -16,7 +16,13 @@ const PUBLISHED: [&str; 4] = ["yoro-shaders", "yoro-gl", "yoro", "yoro-wgpu"];
 pub fn lint() -> anyhow::Result<()> {
     let mut checks: Vec<Vec<&str>> = vec![
         vec!["fmt", "--all", "--check"],
-        vec!["clippy", "--quiet", "--workspace", "--all-targets", "--", "--deny", "warnings"],
+        [
+            &["clippy", "--quiet", "--workspace", "--all-targets", "--features", "yoro-cli/neural"][..],
+            &["--", "--deny", "warnings"],
+        ]
+        .concat(),
+        // Users build without the neural patcher, and so do the tests.
+        vec!["test", "--quiet", "--package", "yoro-bench", "--features", "neural", "--lib", "inpaint"],
         vec!["doc", "--quiet", "--workspace", "--no-deps"],
     ];
     let metadata = cargo::output(&["metadata", "--no-deps", "--format-version", "1"])?;

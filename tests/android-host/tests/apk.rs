@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use glam::{EulerRot, Quat};
 use image::RgbImage;
-use yoro_bench::metrics::{Channels, psnr};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{Rotation, Screen};
+use yoro_metrics::{Channels, psnr};
 use yoro_settings::Settings;
 use yoro_settings::telemetry::{self, Line};
 use yoro_viewer::{Cardboard, FrameTiming, HeldHead, SceneState};

@@ -7,7 +7,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use serde_json::{Value, json};
-use yoro_bench::picture::{DepthImage, save_depth};
+use yoro_media::{DepthImage, save_depth};
 
 use super::{Page, close, draw, sum};
 use crate::program::succeed;
@@ -159,24 +159,23 @@ fn dropped_files_are_shown_or_refused() {
     save_depth(&path("tenths-depth.png"), &tenths).unwrap();
     color.save(path("view.png")).unwrap();
     // The encoding of the depth is guessed from a brighter bottom, the file format, or 16 bits per value.
-    for (depth, encoding, key, value, edges) in [
-        ("depth.png", "disparity", "disparity-scale", "12", "hard"),
-        ("metres.exr", "metres", "metres-at-white", "3", "hard"),
-        ("tenths-depth.png", "metres", "metres-at-white", "10", "sample"),
+    for (depth, encoding, key, value) in [
+        ("depth.png", "disparity", "disparity-scale", "12"),
+        ("metres.exr", "metres", "metres-at-white", "3"),
+        ("tenths-depth.png", "metres", "metres-at-white", "10"),
     ] {
         let files = ["view.png", depth].map(|name| (name, std::fs::read(path(name)).unwrap()));
         page.drop_files(&files);
         assert_eq!(page.message(), None, "{depth}");
         assert_eq!(page.evaluate("yoro.source.depth.name"), depth);
         assert_eq!(page.evaluate("document.getElementById('picture-encoding').value"), encoding, "{depth}");
-        page.choose("picture-edges", edges);
         page.choose("picture-encoding", encoding);
         page.evaluate(&format!(
             "document.getElementById('picture-{key}').value = {value}; \
              document.getElementById('picture-options').dispatchEvent(new Event('change')); 0"
         ));
         assert_eq!(page.message(), None, "{depth}");
-        let options = format!("--depth-encoding {encoding} --{key} {value} --edges {edges}");
+        let options = format!("--depth-encoding {encoding} --{key} {value}");
         succeed(
             folder.path(),
             &format!("synthesize --color view.png --depth {depth} --out left.png {options}"),

@@ -8,8 +8,8 @@ use base64::engine::general_purpose::STANDARD;
 use image::RgbImage;
 use serde_json::{Value, json};
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
-use yoro_bench::picture::rgb_image;
 use yoro_context::{Backend, Headless};
+use yoro_media::rgb_image;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
 

@@ -2,9 +2,8 @@
 
 use serde_json::{Value, json};
 use yoro::eyes::{Eye, EyeOptions};
-use yoro::synthesis::Edges;
-use yoro_bench::picture::rgb_image;
 use yoro_context::{Backend, Headless};
+use yoro_media::rgb_image;
 use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 
@@ -30,9 +29,7 @@ fn every_method_shows_what_the_desktop_shows() {
         let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
         let pose = prepared.scene.viewpoints[1].pose();
         let pair = EyeOptions { size: SIZE, ..EyeOptions::default() }.pair(pose);
-        // WebGL has no multisample textures.
-        let edges = settings.is_forward().then_some(Edges::Sample);
-        let options = StereoOptions { policy: None, edges, ..StereoOptions::default() };
+        let options = StereoOptions { policy: None, ..StereoOptions::default() };
         page.choose("renderer", renderer.name());
         assert_eq!(page.evaluate("yoro.page.renderer"), settings.summary());
         let mut compared = 0;
@@ -59,20 +56,6 @@ fn every_method_shows_what_the_desktop_shows() {
         assert!(compared >= 5, "{}: {compared} methods", renderer.name());
     }
 
-    // Pixels seen while walking fill disocclusions better than invented ones.
-    page.choose("renderer", "deferred");
-    page.choose("method", "yoro");
-    page.choose("display", "divider");
-    page.evaluate("yoro.busy = { name: 'test', end: 'The test draws.', stop() {} }; 0");
-    let mut walked = |history: &str| {
-        page.choose("history", history);
-        let walk = "(async () => { yoro.page.goTo(1); for (let i = 0; i < 32; i++) { yoro.page.walk(-0.01, 0, 0); \
-                    yoro.page.draw(480, 320, 0.5); await new Promise((done) => setTimeout(done)); } return yoro.page.psnr[0]; })()";
-        page.evaluate(walk).as_f64().unwrap()
-    };
-    let [off, full] = ["off", "full"].map(&mut walked);
-    eprintln!("the other eye after a walk: {off:.2} dB, with a history {full:.2} dB");
-    assert!(full > off, "{full} dB with a history, {off} dB without");
     page.browser.expect_silence();
 }
 

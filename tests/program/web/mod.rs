@@ -19,8 +19,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use image::RgbImage;
 use serde_json::{Value, json};
-use yoro_bench::metrics::{Channels, Quality};
-use yoro_bench::picture::rgb_image;
+use yoro_media::rgb_image;
+use yoro_metrics::{Channels, Quality};
 
 use crate::browser::Browser;
 

@@ -6,8 +6,7 @@ use std::{fs, thread};
 use image::{Rgb, RgbImage, imageops};
 use serde_json::json;
 use yoro::eyes::Eye;
-use yoro_bench::metrics::{Channels, psnr};
-use yoro_bench::picture;
+use yoro_metrics::{Channels, psnr};
 use yoro_video::{Format, Planes, Rgbd, VideoError};
 
 use super::{Page, sum};
@@ -54,7 +53,7 @@ fn an_rgbd_video_plays_over_and_over_until_it_is_paused() {
     let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, SIZE[0] - 8, SIZE[1] - 8).to_image();
     let db = |a: &RgbImage, b: &RgbImage| psnr(&inner(a), &inner(b), Channels::Luma).unwrap().0;
     let truth = |frame: u32, eye: &str| {
-        picture::load_color(&at.join(format!("truth/prototype-{frame:04}.{eye}.png"))).unwrap()
+        yoro_media::load_color(&at.join(format!("truth/prototype-{frame:04}.{eye}.png"))).unwrap()
     };
     let [left, right] = Eye::BOTH.map(|eye| &eyes[eye.index()]);
     let rendered = |frame: &u32| db(right, &truth(*frame, "right"));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
-use yoro_bench::bench::Entrant;
+use yoro_bench::bench::PreparedContender;
 use yoro_bench::bench::frame::{contenders, pass_table, pieces};
 use yoro_context::{Backend, Headless};
 use yoro_gl::{
@@ -15,6 +15,7 @@ use yoro_render::stereo::StereoFrame;
 use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 use yoro_settings::Settings;
 use yoro_tests::{golden::BLESS, on_every_backend, scene};
+use yoro_viewer::render_settings;
 
 /// Records frames of every method. Their passes must be those of the table, which YORO_BLESS rewrites.
 #[test]
@@ -24,7 +25,7 @@ fn every_pass_reads_and_writes_what_the_table_says() {
     let mut frames = Vec::new();
     for renderer in RendererKind::ALL {
         let settings = Settings { renderer, shadow_map: 64, ..Settings::default() };
-        let settings = RenderSettings::of_settings(&settings);
+        let settings = render_settings(&settings);
         let mut scene = scene::every_material(ShadingStyle::Realistic);
         scene::keep_plain_and_full(&mut scene);
         let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
@@ -33,9 +34,9 @@ fn every_pass_reads_and_writes_what_the_table_says() {
         let mut frame = StereoFrame::new(gl, pair.size).unwrap();
         for contender in contenders(renderer) {
             let (method, options) = contender.method().unwrap();
-            let mut entrant = Entrant::new(gl, method, &settings, &options).unwrap();
+            let mut ready = PreparedContender::new(gl, method, &settings, &options).unwrap();
             gl.record();
-            entrant.render(&mut prepared, &pair, &mut frame).unwrap();
+            ready.render(&mut prepared, &pair, &mut frame).unwrap();
             frames.push((renderer, contender.name(), pieces(&gl.take_record())));
         }
     }

@@ -2,13 +2,10 @@
 
 mod frame_passes;
 mod golden;
-mod layers;
 mod methods;
 mod multiview;
 mod objects;
 mod refusals;
 mod shader_cost;
 mod shaders;
-mod supersampled;
 mod vulkan;
-mod vulkan_layers;

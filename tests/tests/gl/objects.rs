@@ -32,10 +32,10 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
         ("hybrid", Method::Hybrid, split),
         ("shading reprojection", Method::ShadingReprojection, default),
         ("mono", Method::Mono, default),
-        ("gather", Method::Yoro, of(Pipeline::Gather)),
-        ("paper", Method::Yoro, of(Pipeline::Paper)),
-        ("paper 1/4", Method::Yoro, small_imbuffer),
-        ("near field", Method::Yoro, near_field),
+        ("gather", Method::Synthesized, of(Pipeline::Gather)),
+        ("paper", Method::Synthesized, of(Pipeline::Paper)),
+        ("paper 1/4", Method::Synthesized, small_imbuffer),
+        ("near field", Method::Synthesized, near_field),
     ]
     .into_iter()
     .filter(|(_, method, _)| is_tested(*method, settings, gl))

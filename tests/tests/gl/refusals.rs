@@ -28,7 +28,7 @@ fn canted_eyes_are_rendered_but_not_synthesized() {
     for method in [Method::Conventional, Method::Instanced, Method::Mono] {
         render(method).unwrap();
     }
-    for method in [Method::Yoro, Method::Hybrid, Method::ShadingReprojection] {
+    for method in [Method::Synthesized, Method::Hybrid, Method::ShadingReprojection] {
         let refusal = render(method).unwrap_err().to_string();
         assert!(refusal.starts_with("the eyes are canted by 10.00 degrees"), "{refusal}");
         assert!(refusal.contains("render both eyes"), "{refusal}");

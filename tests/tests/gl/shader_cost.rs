@@ -29,6 +29,6 @@ fn synthesis_programs_neither_spill_nor_starve_mobile_gpus() {
     for gpu in GPUS {
         assert!(text.contains(&format!("({gpu})\n")), "{text}");
     }
-    // One each for OpenGL ES 3.0, for CPU rasterizers, for GPUs, and with a source map.
-    assert_eq!(text.matches("synthesis/gather/march.frag WRITE_DEPTH ").count(), 4 * GPUS.len());
+    // One without and one with a source map.
+    assert_eq!(text.matches("synthesis/gather/march.frag WRITE_DEPTH ").count(), 2 * GPUS.len());
 }

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use crate::metrics::{Comparison, MetricsError, PartQuality, Psnr, Quality, error_map, holes_of_mask};
-use crate::picture::{self, PictureError};
 use yoro_files::interrupt::{self, Interrupted};
 use yoro_files::{self as files, FileError};
+use yoro_media::PictureError;
+use yoro_metrics::{Comparison, MetricsError, PartQuality, Psnr, Quality, error_map, holes_of_mask};
 
 /// The error when nothing can be compared.
 #[derive(Debug, thiserror::Error)]
@@ -164,8 +164,8 @@ impl Inputs {
     }
 
     fn pairs_of_folders(&self) -> Result<(Vec<PairFiles>, Vec<PathBuf>), CompareError> {
-        let a = files::find(&self.a, &picture::EXTENSIONS)?;
-        let b = files::find(&self.b, &picture::EXTENSIONS)?;
+        let a = files::find(&self.a, &yoro_media::EXTENSIONS)?;
+        let b = files::find(&self.b, &yoro_media::EXTENSIONS)?;
         let (names, only_a): (Vec<_>, Vec<_>) = a.into_iter().partition(|name| b.binary_search(name).is_ok());
         if names.is_empty() {
             return Err(CompareError::NoPairs { a: self.a.clone(), b: self.b.clone() });
@@ -262,12 +262,12 @@ impl CompareReport {
 
 fn compare_pair(files: PairFiles, bright_holes: bool) -> Result<Pair, CompareError> {
     let both = |what| CompareError::Pair { a: files.a.clone(), b: files.b.clone(), what };
-    let (a, b) = (picture::load_color(&files.a)?, picture::load_color(&files.b)?);
-    let mask = files.mask.as_deref().map(picture::load_mask).transpose()?;
+    let (a, b) = (yoro_media::load_color(&files.a)?, yoro_media::load_color(&files.b)?);
+    let mask = files.mask.as_deref().map(yoro_media::load_mask).transpose()?;
     let holes = mask.map(|mask| holes_of_mask(&mask, !bright_holes));
     let comparison = Comparison::of(&a, &b, holes.as_deref()).map_err(both)?;
     if let Some(map) = &files.map {
-        picture::save_color(map, &error_map(&a, &b).map_err(both)?)?;
+        yoro_media::save_color(map, &error_map(&a, &b).map_err(both)?)?;
     }
     Ok(Pair { name: files.name, comparison })
 }
@@ -316,7 +316,7 @@ mod tests {
             (a.join("only-a.png"), 1),
             (b.join("sub/only-b.png"), 1),
         ] {
-            picture::save_color(&path, &image(32, 24, seed)).unwrap();
+            yoro_media::save_color(&path, &image(32, 24, seed)).unwrap();
         }
         (dir, a, b)
     }
@@ -332,7 +332,7 @@ mod tests {
         assert_eq!(report.mean.identical_pairs, 1);
         assert_eq!(report.mean.rgb.psnr, report.pairs[1].comparison.rgb.psnr);
         assert_eq!(report.mean.rgb.ssim_gaussian, (1.0 + report.pairs[1].comparison.rgb.ssim_gaussian) / 2.0);
-        assert_eq!(picture::load_color(&maps.join("sub/other.png")).unwrap().dimensions(), (32, 24));
+        assert_eq!(yoro_media::load_color(&maps.join("sub/other.png")).unwrap().dimensions(), (32, 24));
 
         let text = report.to_text();
         assert!(
@@ -348,7 +348,7 @@ mod tests {
     fn two_files_with_a_mask() {
         let (dir, a, b) = folders();
         let mask = dir.path().join("mask.png");
-        picture::save_gray(
+        yoro_media::save_gray(
             &mask,
             &image::GrayImage::from_fn(32, 24, |x, _| image::Luma([if x < 8 { 0 } else { 255 }])),
         )
@@ -372,11 +372,11 @@ mod tests {
         files::create_folder(&empty).unwrap();
         assert!(says(&a, &empty).contains("no images of the same name"));
         let other = dir.path().join("other.png");
-        picture::save_color(&other, &image(33, 24, 1)).unwrap();
+        yoro_media::save_color(&other, &image(33, 24, 1)).unwrap();
         let error = says(&other, &a.join("same.png"));
         assert!(error.contains("other.png with") && error.contains("33x24 and 32x24"), "{error}");
         let tiny = dir.path().join("tiny.png");
-        picture::save_color(&tiny, &image(5, 5, 1)).unwrap();
+        yoro_media::save_color(&tiny, &image(5, 5, 1)).unwrap();
         assert!(says(&tiny, &tiny).contains("at least 11x11"));
     }
 }

@@ -8,10 +8,9 @@ use image::{Luma, RgbImage};
 
 use crate::depth::DepthReader;
 use crate::inpaint::{InpaintError, Reprojected};
-use crate::picture::{self, DepthImage};
 use yoro::eyes::{DepthConvention, DepthRange, EyePair, EyesError, GuardBand, SynthesisViews, View};
-use yoro::synthesis::Edges;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_media::DepthImage;
 use yoro_render::stereo::{Offline, PipelineOptions};
 use yoro_render::{Fxaa, GpuScene, PreparedScene, Renderer, ViewTargets};
 
@@ -123,7 +122,7 @@ impl GroupRenderer {
             fxaa: options.anti_aliasing.then(|| Fxaa::new(gl)).transpose()?,
             smooth: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?,
             depth: DepthReader::new(gl)?,
-            offline: Offline::new(gl, &options.synthesis, Edges::Hard)?,
+            offline: Offline::new(gl, &options.synthesis)?,
         })
     }
 
@@ -145,11 +144,11 @@ impl GroupRenderer {
         let result = self.offline.run(&source, &depth, &views.warp)?;
         Ok(ImageGroup {
             pair: *pair,
-            color: picture::rgb_image(&source, views.source.size),
+            color: yoro_media::rgb_image(&source, views.source.size),
             depth: depth_image(&depth, views.source.size),
-            truth: picture::rgb_image(&truth, views.target.size),
+            truth: yoro_media::rgb_image(&truth, views.target.size),
             reprojected: Reprojected::from_synthesis(&result, &views.warp)?,
-            synthesized: picture::rgb_image(&result.rgba, views.target.size),
+            synthesized: yoro_media::rgb_image(&result.rgba, views.target.size),
             views,
         })
     }
@@ -188,7 +187,7 @@ impl GroupRenderer {
         view: &View,
     ) -> Result<(RgbImage, DepthImage), GlError> {
         let color = self.render_view(renderer, scene, view)?;
-        Ok((picture::rgb_image(&color, view.size), depth_image(&self.depth.read(), view.size)))
+        Ok((yoro_media::rgb_image(&color, view.size), depth_image(&self.depth.read(), view.size)))
     }
 
     /// Returns the RGBA of a view, rows from the bottom, and leaves its depth in `self.depth`.

@@ -1,8 +1,7 @@
 //! Measures how good a synthesized eye is, and what it costs.
 //!
-//! The crate turns images, scenes and stereo methods into figures, image groups and reports. [`metrics`] compares
-//! images, [`compare`] files and folders of them, [`picture`] reads and writes them; [`inpaint`] has patchers that fill
-//! holes by methods of other papers; [`dataset`] renders image groups; [`run`] compares methods with rendering both
+//! The crate turns images, scenes and stereo methods into figures, image groups and reports. [`compare`]
+//! compares files and folders of images; [`inpaint`] has patchers that fill holes by methods of other papers; [`dataset`] renders image groups; [`run`] compares methods with rendering both
 //! eyes, [`mod@bench`] compares every method with every other, and [`report`] makes pages from the results of both.
 //! [`streaming`] has both ends of a stream.
 //!
@@ -16,9 +15,6 @@ pub mod dataset;
 mod depth;
 pub mod inpaint;
 pub mod machine;
-pub mod picture;
 pub mod report;
 pub mod run;
 pub mod streaming;
-
-pub use yoro_metrics as metrics;

@@ -6,12 +6,12 @@ use anyhow::Context as _;
 use image::RgbImage;
 use indicatif::ProgressBar;
 
-use crate::bench::{BlankFinder, Entrant, spread};
-use crate::picture;
+use crate::bench::{BlankFinder, PreparedContender, spread};
 use crate::report::{Cost, MethodCost, PassTime, SceneReport, Viewpoint};
 use yoro::eyes::{Eye, EyeOptions, EyePair};
 use yoro_files::interrupt;
 use yoro_gl::Context;
+use yoro_media::rgb_image;
 use yoro_render::stereo::{Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings};
 use yoro_report::stats::{Summary, median};
@@ -73,7 +73,7 @@ impl Plan {
 /// A method under measurement.
 struct Timed {
     name: &'static str,
-    entrant: Entrant,
+    contender: PreparedContender,
     milliseconds: Vec<f64>,
     /// The samples of each pass, in the order of the first frame.
     passes: Vec<(&'static str, Vec<f64>)>,
@@ -110,7 +110,7 @@ struct Field<'a> {
     /// Indices of the viewpoints.
     keys: Vec<usize>,
     pairs: Vec<EyePair>,
-    entrants: Vec<Timed>,
+    contenders: Vec<Timed>,
     frame: StereoFrame,
 }
 
@@ -135,26 +135,26 @@ impl<'a> Field<'a> {
             method: Method::Conventional,
             options: plan.conventional,
         };
-        let mut entrants = Vec::new();
+        let mut contenders = Vec::new();
         for candidate in [conventional].iter().chain(&plan.candidates) {
-            let entrant = Entrant::new(gl, candidate.method, settings, &candidate.options)?;
-            entrants.push(Timed {
+            let contender = PreparedContender::new(gl, candidate.method, settings, &candidate.options)?;
+            contenders.push(Timed {
                 name: candidate.name,
-                entrant,
+                contender,
                 milliseconds: Vec::new(),
                 passes: Vec::new(),
             });
         }
         let frame = StereoFrame::new(gl, plan.eyes.size)?;
         bar.inc(1);
-        Ok(Field { plan, scene, bar, prepared, keys, pairs, entrants, frame })
+        Ok(Field { plan, scene, bar, prepared, keys, pairs, contenders, frame })
     }
 
     fn warm_up(&mut self) -> anyhow::Result<()> {
         self.bar.set_message(format!("{}: warming up", self.scene));
-        for timed in &mut self.entrants {
+        for timed in &mut self.contenders {
             interrupt::check()?;
-            timed.entrant.render(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
+            timed.contender.render(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
         }
         self.bar.inc(1);
         Ok(())
@@ -164,18 +164,18 @@ impl<'a> Field<'a> {
     /// equally often. The first round also measures the images.
     fn round(&mut self, round: u32) -> anyhow::Result<Vec<Viewpoint>> {
         self.bar.set_message(format!("{}: round {} of {}", self.scene, round + 1, self.plan.rounds));
-        let count = self.entrants.len();
+        let count = self.contenders.len();
         let mut viewpoints = Vec::new();
         for (i, pair) in self.pairs.iter().enumerate() {
             let mut images = vec![<[RgbImage; 2]>::default(); count];
             for turn in 0..count {
                 interrupt::check()?;
                 let at = (turn + i + round as usize) % count;
-                let timed = &mut self.entrants[at];
-                let time = timed.entrant.render_settled(&mut self.prepared, pair, &mut self.frame)?;
+                let timed = &mut self.contenders[at];
+                let time = timed.contender.render_settled(&mut self.prepared, pair, &mut self.frame)?;
                 timed.milliseconds.push(time.wall.as_secs_f64() * 1e3);
                 if round == 0 {
-                    images[at] = Eye::BOTH.map(|eye| picture::eye_image(&self.frame, eye));
+                    images[at] = Eye::BOTH.map(|eye| rgb_image(&self.frame.rgba(eye), self.frame.size()));
                 }
             }
             if round == 0 {
@@ -195,7 +195,7 @@ impl<'a> Field<'a> {
         };
         let mut images = images.into_iter().map(in_order);
         let [rendered, truth] = images.next().context("the conventional method comes first")?;
-        let names = self.entrants.iter().skip(1).map(|timed| timed.name.to_owned());
+        let names = self.contenders.iter().skip(1).map(|timed| timed.name.to_owned());
         let others = names.zip(images.map(|[_, other]| other)).collect();
         Ok(Viewpoint::measure(format!("viewpoint {key}"), dominant, rendered, truth, others)?)
     }
@@ -203,9 +203,10 @@ impl<'a> Field<'a> {
     fn time_passes(&mut self) -> anyhow::Result<()> {
         self.bar.set_message(format!("{}: timing passes", self.scene));
         for _ in 0..self.plan.rounds {
-            for timed in &mut self.entrants {
+            for timed in &mut self.contenders {
                 interrupt::check()?;
-                let times = timed.entrant.pass_times(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
+                let times =
+                    timed.contender.pass_times(&mut self.prepared, &self.pairs[0], &mut self.frame)?;
                 timed.add_passes(times);
             }
         }
@@ -214,7 +215,8 @@ impl<'a> Field<'a> {
     }
 
     fn report(self, viewpoints: Vec<Viewpoint>) -> anyhow::Result<SceneReport> {
-        let costs: Vec<MethodCost> = self.entrants.into_iter().map(Timed::cost).collect::<Result<_, _>>()?;
+        let costs: Vec<MethodCost> =
+            self.contenders.into_iter().map(Timed::cost).collect::<Result<_, _>>()?;
         let mut costs = costs.into_iter();
         let conventional = costs.next().context("the conventional method comes first")?.cost;
         let scene = &self.prepared.scene;

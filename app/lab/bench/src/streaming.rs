@@ -5,7 +5,6 @@ use std::rc::Rc;
 use image::{GrayImage, Luma, RgbImage};
 
 use crate::dataset::{GroupError, GroupOptions, GroupRenderer};
-use crate::picture;
 use yoro::eyes::{DepthRange, Eye, EyePair, GuardBand, HeadMotion, View};
 use yoro_gl::{Context, Destination, GlError};
 use yoro_render::stereo::StereoFrame;
@@ -155,7 +154,8 @@ impl Receiver {
         self.frame.resize(pair.size)?;
         let to = Eye::BOTH.map(|eye| Destination::whole(self.frame.eye(eye)));
         self.streamed.render(pair, &to)?;
-        Ok(Eye::BOTH
-            .map(|eye| picture::rgb_image(&self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size), pair.size)))
+        Ok(Eye::BOTH.map(|eye| {
+            yoro_media::rgb_image(&self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size), pair.size)
+        }))
     }
 }

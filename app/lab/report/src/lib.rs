@@ -1,12 +1,11 @@
 //! Statistics, plots, tables and self-contained pages for measurements.
 //!
 //! The crate turns numbers, titles and captions into SVG, HTML and Markdown. [`inference`] has intervals and tests,
-//! [`bd_rate`] compares rate-distortion curves, [`plot`] draws, [`grid`] holds tables, [`page`] fills in templates, and
+//! [`stats`] summarizes samples, [`plot`] draws, [`grid`] holds tables, [`page`] fills in templates, and
 //! [`paper`] has the paper's figures, which are printed beside ours.
 //!
 //! This crate must never know how anything is rendered or measured.
 
-pub mod bd_rate;
 mod error;
 mod files;
 pub mod grid;

@@ -26,6 +26,7 @@ use yoro_files::interrupt::Interrupted;
 use yoro_gl::{Context, GlApi};
 use yoro_render::RenderSettings;
 use yoro_settings::Ipd;
+use yoro_viewer::render_settings;
 
 /// Measure every method side by side: the experiments of the paper, on built-in scenes or your own
 #[derive(clap::Args, Clone, Debug)]
@@ -46,9 +47,6 @@ pub struct BenchArgs {
     /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     viewpoints: Option<u32>,
-    /// bandwidth: frames of the sequence that is encoded [default: 30; quick: 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
-    frames: Option<u32>,
     /// Size of each eye's image in pixels [default: 1024x1024; --frame: 1680x1760; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
     size: Option<[u32; 2]>,
@@ -128,7 +126,7 @@ impl Subcommand for BenchArgs {
         let gl = headless.gl();
         let out = self.out();
         let (writer, before) = Writer::open(&out, &header(self, &choices, gl))?;
-        let finished = jobs.iter().filter(|job| before.rounds(&job.setting) >= job.rounds).count();
+        let finished = jobs.iter().filter(|job| before.rounds(&job.conditions) >= job.rounds).count();
         if finished > 0 {
             log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
         }
@@ -153,7 +151,7 @@ impl Subcommand for BenchArgs {
                         out.display()
                     );
                 }
-                return Err(error.context(format!("cannot measure {}", job.setting)));
+                return Err(error.context(format!("cannot measure {}", job.conditions)));
             }
         }
         bar.finish_and_clear();
@@ -208,13 +206,12 @@ impl BenchArgs {
             eyes,
             // Phones render with the viewer's settings.
             render: if self.frame {
-                RenderSettings::of_settings(self.renderer.settings())
+                render_settings(self.renderer.settings())
             } else {
                 self.renderer.render_settings()?
             },
             rounds: self.rounds.unwrap_or(of(5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,
-            sequence: self.frames.unwrap_or(of(30, 8)) as usize,
             scenes: self.scenes.clone(),
             contenders: self.contenders.clone(),
             seed: self.seed,
@@ -253,11 +250,11 @@ fn jobs(args: &BenchArgs, choices: &Choices, object: &LazyObject) -> anyhow::Res
     let mut jobs: Vec<Job> = Vec::new();
     for suite in &args.suites {
         for job in choices.jobs(*suite, object)? {
-            let twin = jobs.iter().find(|other| other.setting == job.setting);
+            let twin = jobs.iter().find(|other| other.conditions == job.conditions);
             ensure!(
                 twin.is_none(),
                 "{} would be measured twice: give each suite once, and scenes of different names",
-                job.setting
+                job.conditions
             );
             jobs.push(job);
         }

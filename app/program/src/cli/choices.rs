@@ -1,12 +1,10 @@
 //! Parsers of named values on the command line, with a line of help for each value.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use yoro::synthesis::Edges;
 use yoro_assets::ShadingStyle;
 use yoro_bench::bench::Suite;
 use yoro_bench::inpaint::PatcherKind;
 use yoro_context::Backend;
-use yoro_settings::Setting;
 
 /// Returns a parser that accepts these values by their names.
 fn choice<T: Copy + Send + Sync + 'static>(
@@ -28,15 +26,6 @@ pub fn backend() -> impl TypedValueParser<Value = Backend> {
         Backend::Egl => "OpenGL ES by EGL, without a window",
         Backend::Osmesa => "Mesa's off-screen library, desktop GL on the CPU",
     })
-}
-
-/// Parses `--edges` of pictures, which have one depth per pixel.
-pub fn stored_edges() -> impl TypedValueParser<Value = Edges> {
-    let help = |edges: Edges| {
-        let choices = Setting::find("edges").map_or(&[][..], |setting| setting.choices);
-        choices.iter().find(|choice| choice.name == edges.name()).map_or("", |choice| choice.help())
-    };
-    choice([Edges::Hard, Edges::Nearest, Edges::Sample], Edges::name, help)
 }
 
 /// Parses `--style`.

@@ -21,7 +21,6 @@ use yoro::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
 use yoro_assets::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
 use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_bench::inpaint::{Patcher, PatcherKind};
-use yoro_bench::picture;
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_gl::Context;
@@ -310,13 +309,13 @@ impl<'a> Job<'a> {
         PICTURES.par_iter().try_for_each(|&kind| {
             let file = self.folder.join(picture_name(kind, index));
             match kind {
-                "rgb" => picture::save_color(&file, &group.color),
-                "depth" => picture::save_depth(&file, &group.depth),
-                "truth" => picture::save_color(&file, &group.truth),
-                "reprojected" => picture::save_color(&file, group.reprojected.color()),
-                "reprojected-depth" => picture::save_depth(&file, &group.reprojected_depth()),
-                "mask" => picture::save_gray(&file, group.reprojected.mask()),
-                _ => picture::save_color(&file, patched),
+                "rgb" => yoro_media::save_color(&file, &group.color),
+                "depth" => yoro_media::save_depth(&file, &group.depth),
+                "truth" => yoro_media::save_color(&file, &group.truth),
+                "reprojected" => yoro_media::save_color(&file, group.reprojected.color()),
+                "reprojected-depth" => yoro_media::save_depth(&file, &group.reprojected_depth()),
+                "mask" => yoro_media::save_gray(&file, group.reprojected.mask()),
+                _ => yoro_media::save_color(&file, patched),
             }
         })?;
         let (pair, depth) = (&group.pair, group.pair.depth);

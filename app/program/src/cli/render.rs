@@ -19,10 +19,10 @@ use crate::cli::video::{self, EncodingArgs};
 use yoro::eyes::{Eye, Pose};
 use yoro_assets::{CameraPath, ShadingStyle};
 use yoro_bench::bench::BlankFinder;
-use yoro_bench::metrics::{Channels, Quality, error_map};
-use yoro_bench::picture;
 use yoro_files::interrupt;
 use yoro_gl::Context;
+use yoro_media::rgb_image;
+use yoro_metrics::{Channels, Quality, error_map};
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{self, Method, StereoFrame};
 
@@ -69,7 +69,7 @@ pub struct RenderArgs {
     /// A built-in scene (see `yoro scenes`), or an OBJ, glTF or GLB file
     scene: String,
     /// The stereo method
-    #[arg(long, value_parser = settings::value_of::<Method>("method"), default_value = Method::Yoro.name())]
+    #[arg(long, value_parser = settings::value_of::<Method>("method"), default_value = Method::Synthesized.name())]
     method: Method,
     /// Number of the scene's viewpoint, from 0
     #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_name = "N")]
@@ -201,13 +201,13 @@ impl Subcommand for RenderArgs {
             method.render(&mut renderer, &scene, &pair, &mut frame)?;
             gl.finish();
             let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-            let eyes = Eye::BOTH.map(|eye| picture::eye_image(&frame, eye));
+            let eyes = Eye::BOTH.map(|eye| rgb_image(&frame.rgba(eye), frame.size()));
             let second = pair.dominant.other();
             let mut quality = None;
             let mut truth_image = None;
             if let Some(truth) = &mut truth {
                 truth.render(&mut renderer, &scene, &pair, &mut frame)?;
-                let real = picture::eye_image(&frame, second);
+                let real = rgb_image(&frame.rgba(second), frame.size());
                 quality = Some([
                     Quality::of(&eyes[second.index()], &real, Channels::Rgb)?,
                     Quality::of(&eyes[pair.dominant.index()], &real, Channels::Rgb)?,
@@ -218,7 +218,7 @@ impl Subcommand for RenderArgs {
             let mut pictures = Vec::new();
             for &output in &self.outputs {
                 let path = eyes::picture_path(&self.out, &stem, output.name());
-                picture::save_color(&path, &compose(output, &eyes, second, truth_image.as_ref())?)?;
+                yoro_media::save_color(&path, &compose(output, &eyes, second, truth_image.as_ref())?)?;
                 pictures.push(path);
             }
             let [quality, same_image] = quality.map_or([None, None], |q| q.map(Some));
@@ -267,10 +267,10 @@ fn compose(
     Ok(match output {
         Output::Left => left.clone(),
         Output::Right => right.clone(),
-        Output::SideBySide => picture::side_by_side(left, right)?,
-        Output::CrossEyed => picture::cross_eyed(left, right)?,
-        Output::Anaglyph => picture::anaglyph(left, right)?,
-        Output::Difference => against(|a, b| Ok(picture::difference(a, b)?))?,
+        Output::SideBySide => yoro_media::side_by_side(left, right)?,
+        Output::CrossEyed => yoro_media::cross_eyed(left, right)?,
+        Output::Anaglyph => yoro_media::anaglyph(left, right)?,
+        Output::Difference => against(|a, b| Ok(yoro_media::difference(a, b)?))?,
         Output::ErrorMap => against(|a, b| Ok(error_map(a, b)?))?,
     })
 }

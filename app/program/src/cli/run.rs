@@ -14,7 +14,6 @@ use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::Eye;
 use yoro_bench::machine::Parameter;
-use yoro_bench::picture;
 use yoro_bench::report::RunReport;
 use yoro_bench::run::{Candidate, Plan};
 use yoro_files as files;
@@ -38,7 +37,7 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
     rounds: u32,
     /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
-    #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Yoro.name(), value_name = "METHODS")]
+    #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Synthesized.name(), value_name = "METHODS")]
     methods: Vec<Method>,
     /// Pipelines to compare
     #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = list(Pipeline::ALL.map(Pipeline::name)))]
@@ -147,7 +146,7 @@ fn plan(args: &RunArgs, settings: &RenderSettings) -> Plan {
             _ if args.methods[..i].contains(&method) => {}
             // The reference is always measured.
             Method::Conventional => {}
-            Method::Yoro => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
+            Method::Synthesized => candidates.extend(args.pipelines.iter().map(|&pipeline| Candidate {
                 name: pipeline.name(),
                 method,
                 options: args.stereo.options_of(pipeline),
@@ -174,11 +173,11 @@ fn write_pictures(args: &RunArgs, report: &RunReport) -> anyhow::Result<()> {
     for scene in &report.scenes {
         for viewpoint in scene.viewpoints.iter().take(PICTURED) {
             let save = |kind: &str, image: &RgbImage| {
-                picture::save_color(&eyes::picture_path(&args.out, &scene.name, kind), image)
+                yoro_media::save_color(&eyes::picture_path(&args.out, &scene.name, kind), image)
             };
             let pair = |other: &RgbImage| match dominant {
-                Eye::Left => picture::side_by_side(&viewpoint.dominant, other),
-                Eye::Right => picture::side_by_side(other, &viewpoint.dominant),
+                Eye::Left => yoro_media::side_by_side(&viewpoint.dominant, other),
+                Eye::Right => yoro_media::side_by_side(other, &viewpoint.dominant),
             };
             save("conventional", &pair(&viewpoint.ground_truth)?)?;
             for view in &viewpoint.views {

@@ -11,6 +11,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
 use yoro_settings::{RendererKind, Setting, Settings};
+use yoro_viewer::stereo_options;
 
 /// A group of settings that a subcommand has options for.
 pub trait Group {
@@ -48,8 +49,6 @@ impl Group for Stereo {
         "strict",
         "guard-band",
         "anti-aliasing",
-        "edges",
-        "history",
         "near-field",
         "switch",
         "split-disparity",
@@ -104,7 +103,7 @@ impl SettingOptions<Renderer> {
 impl SettingOptions<Synthesis> {
     /// Returns the options of the pipeline.
     pub fn options(&self) -> PipelineOptions {
-        StereoOptions::of_settings(&self.settings, self.settings.pipeline).synthesis
+        stereo_options(&self.settings, self.settings.pipeline).synthesis
     }
 }
 
@@ -116,7 +115,7 @@ impl SettingOptions<Stereo> {
 
     /// Returns the options with any pipeline.
     pub fn options_of(&self, pipeline: Pipeline) -> StereoOptions {
-        StereoOptions::of_settings(&self.settings, pipeline)
+        stereo_options(&self.settings, pipeline)
     }
 }
 

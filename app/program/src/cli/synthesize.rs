@@ -13,13 +13,11 @@ use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use crate::cli::video::{self, EncodingArgs};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, Warp};
-use yoro::synthesis::{Edges, SourceMapEntry};
+use yoro::synthesis::SourceMapEntry;
 use yoro_bench::inpaint::{Patcher, Reprojected};
-use yoro_bench::picture::{
-    self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image,
-};
 use yoro_files as files;
 use yoro_files::interrupt;
+use yoro_media::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
 use yoro_render::stereo::{Offline, SynthesizedImage};
 use yoro_settings::Ipd;
 use yoro_video::Reader;
@@ -53,7 +51,7 @@ pub enum SourceEye {
 pub struct SynthesizeArgs {
     /// An RGBD video from `yoro render --video` or Record3D; --out is then a video of both eyes side by side
     #[arg(conflicts_with_all = ["color", "depth", "dominant", "depth_encoding", "depth_gamma", "near", "far", "metres_at_white",
-        "disparity_offset", "disparity_scale", "fov_y", "ipd", "mask_out", "disparity_out", "source_out", "edges", "patcher"])]
+        "disparity_offset", "disparity_scale", "fov_y", "ipd", "mask_out", "disparity_out", "source_out", "patcher"])]
     video: Option<PathBuf>,
     /// Colour image of the rendered eye, or a folder
     #[arg(long, required_unless_present = "video", value_name = "FILE|FOLDER")]
@@ -103,9 +101,6 @@ pub struct SynthesizeArgs {
     /// Also write the column in the colour image that each pixel comes from, as EXR
     #[arg(long, value_name = "FILE|FOLDER")]
     source_out: Option<PathBuf>,
-    /// Content of pixels on silhouettes: one surface, or a mixture of two
-    #[arg(long, value_parser = choices::stored_edges(), default_value = Edges::Hard.name())]
-    edges: Edges,
     #[command(flatten)]
     encoding: EncodingArgs,
     #[command(flatten)]
@@ -202,7 +197,7 @@ impl Subcommand for SynthesizeArgs {
         }
         let jobs = jobs(self)?;
         let headless = self.gl.open()?;
-        let mut offline = Offline::new(headless.gl(), &self.synthesis.options(), self.edges)?;
+        let mut offline = Offline::new(headless.gl(), &self.synthesis.options())?;
         let mut patcher = self.patcher.create(headless.gl())?;
         let bar = progress_bar(jobs.len() as u64);
         let mut written = Vec::new();
@@ -250,9 +245,14 @@ fn jobs(args: &SynthesizeArgs) -> anyhow::Result<Vec<Job>> {
         color.display(),
         depth.display()
     );
-    let colors = files::find(color, &picture::EXTENSIONS)?;
-    let depths = files::find(depth, &picture::EXTENSIONS)?;
-    ensure!(!colors.is_empty(), "{} holds no images ({})", color.display(), picture::EXTENSIONS.join(", "));
+    let colors = files::find(color, &yoro_media::EXTENSIONS)?;
+    let depths = files::find(depth, &yoro_media::EXTENSIONS)?;
+    ensure!(
+        !colors.is_empty(),
+        "{} holds no images ({})",
+        color.display(),
+        yoro_media::EXTENSIONS.join(", ")
+    );
     colors
         .iter()
         .map(|name| {
@@ -286,8 +286,8 @@ fn run_job(
     offline: &mut Offline,
     patcher: &mut Option<Box<dyn Patcher>>,
 ) -> anyhow::Result<Vec<PathBuf>> {
-    let color = picture::load_color(&job.color)?;
-    let depth = picture::load_depth(&job.depth)?;
+    let color = yoro_media::load_color(&job.color)?;
+    let depth = yoro_media::load_depth(&job.depth)?;
     if color.dimensions() != depth.image.dimensions() {
         let ((cw, ch), (dw, dh)) = (color.dimensions(), depth.image.dimensions());
         bail!(
@@ -316,18 +316,18 @@ fn run_job(
             }
             None => rgb_image(&result.rgba, size),
         };
-        picture::save_color(&named(&job.out), &image)?;
+        yoro_media::save_color(&named(&job.out), &image)?;
         if let Some(path) = &job.mask {
             let holes = GrayImage::from_fn(size[0], size[1], |x, y| {
                 Luma([if entries[(y * size[0] + x) as usize].hole { 0 } else { 255 }])
             });
-            picture::save_gray(&named(path), &holes)?;
+            yoro_media::save_gray(&named(path), &holes)?;
         }
         if let Some(path) = &job.disparity {
-            picture::save_depth(&named(path), &map(|e| e.displacement))?;
+            yoro_media::save_depth(&named(path), &map(|e| e.displacement))?;
         }
         if let Some(path) = &job.source {
-            picture::save_depth(&named(path), &map(|e| e.column))?;
+            yoro_media::save_depth(&named(path), &map(|e| e.column))?;
         }
     }
     Ok(written)

@@ -11,11 +11,11 @@ use crate::cli::args::{self, GlArgs};
 use crate::cli::outputs::Files;
 use crate::cli::settings::{Lenses, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
-use yoro_bench::picture::{self, PictureError, rgb_image};
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{Rotation, Screen};
+use yoro_media::{PictureError, rgb_image};
 use yoro_settings::Settings;
 use yoro_viewer::{Cardboard, Event, FrameTiming, HeldHead, SceneState};
 
@@ -143,7 +143,7 @@ impl Subcommand for ViewArgs {
             bail!("the GL driver reports {errors}: please report this as a bug");
         }
         let pixels = window.read_rgba8(0, [0, 0], self.screen);
-        picture::save_color(&self.png, &rgb_image(&pixels, self.screen))?;
+        yoro_media::save_color(&self.png, &rgb_image(&pixels, self.screen))?;
         println!("{}", self.png.display());
         Ok(())
     }

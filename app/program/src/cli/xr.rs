@@ -13,7 +13,6 @@ use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, EyePair};
-use yoro_bench::picture;
 use yoro_context::HeadlessGraphics;
 use yoro_files as files;
 use yoro_files::interrupt;
@@ -24,6 +23,7 @@ use yoro_settings::telemetry::DeviceState;
 use yoro_settings::telemetry::stats::median;
 use yoro_viewer::openxr::runtime::{self, NoBroker, Place, Runtime};
 use yoro_viewer::openxr::{Capture, Description, Frame, Headset, Options, Step};
+use yoro_viewer::render_settings;
 use yoro_viewer::{SceneState, Viewer};
 
 /// The pause before polling a runtime again that wants no frame.
@@ -194,7 +194,7 @@ impl Subcommand for XrArgs {
         let headless = self.gl.open()?;
         let gl = headless.gl();
         for method in &self.methods {
-            RenderSettings::of_settings(&settings).supports(method.first(), gl.capabilities())?;
+            render_settings(&settings).supports(method.first(), gl.capabilities())?;
         }
         let mut viewer = Viewer::new(settings, &[])?;
         viewer.attach(gl.clone())?;
@@ -341,7 +341,7 @@ fn check_end(frames: Option<u32>, methods: usize, summaries: &[MethodSummary]) -
 fn write(folder: &Path, method: MethodChoice, capture: &Capture) -> anyhow::Result<Captured> {
     let path = |eye| capture_path(folder, method, eye);
     for (eye, pixels) in Eye::BOTH.into_iter().zip(&capture.eyes) {
-        picture::save_color(&path(eye), &picture::rgb_image(pixels, capture.pair.size))?;
+        yoro_media::save_color(&path(eye), &yoro_media::rgb_image(pixels, capture.pair.size))?;
     }
     Ok(Captured { left: path(Eye::Left), right: path(Eye::Right), eyes: capture.pair })
 }

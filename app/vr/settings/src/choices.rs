@@ -109,7 +109,7 @@ choices! {
         Mono = "mono",
         /// The dominant eye rendered, the other synthesized
         #[default]
-        Yoro = "yoro",
+        Synthesized = "yoro",
     }
 
     /// The pipeline that synthesizes the other eye.
@@ -119,17 +119,6 @@ choices! {
         Gather = "gather",
         /// Algorithms 1 to 3 of the paper
         Paper = "paper",
-    }
-
-    /// Disocclusions filled by what the other eye has really seen: strips of it that are rendered besides.
-    History {
-        /// Never: from the background's edge
-        #[default]
-        Off = "off",
-        /// Half of the width and height
-        Half = "half",
-        /// Full resolution
-        Full = "full",
     }
 
     /// When anti-aliasing runs.
@@ -232,7 +221,7 @@ impl MethodChoice {
     /// Returns the method that is used until something has been measured.
     pub fn first(self) -> Method {
         match self {
-            MethodChoice::Auto => Method::Yoro,
+            MethodChoice::Auto => Method::Synthesized,
             MethodChoice::Named(method) => method,
         }
     }
@@ -240,7 +229,7 @@ impl MethodChoice {
     /// True if this choice can result in `method`.
     pub fn may_be(self, method: Method) -> bool {
         match self {
-            MethodChoice::Auto => matches!(method, Method::Conventional | Method::Yoro),
+            MethodChoice::Auto => matches!(method, Method::Conventional | Method::Synthesized),
             MethodChoice::Named(named) => named == method,
         }
     }
@@ -270,6 +259,6 @@ impl Method {
     /// True if the method shows pixels of one eye to the other, which requires eyes that look in the same direction
     /// ([`yoro::eyes::EyePair::synthesis_views`]).
     pub fn needs_aligned_eyes(self) -> bool {
-        matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Yoro)
+        matches!(self, Method::Hybrid | Method::ShadingReprojection | Method::Mono | Method::Synthesized)
     }
 }

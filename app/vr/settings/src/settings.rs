@@ -7,14 +7,13 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DEPTH_BITS, DisplayKind, History, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method,
-    MethodChoice, Performance, Pipeline, RendererKind, Ssao, Timewarp,
+    AntiAliasing, DEPTH_BITS, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice,
+    Performance, Pipeline, RendererKind, Ssao, Timewarp,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
 use crate::value::SettingValue;
 use yoro::eyes::{Eye, GuardBand};
-use yoro::synthesis::Edges;
 
 /// The largest settings file in bytes.
 const MAX_FILE: u64 = 1 << 20;
@@ -114,7 +113,7 @@ settings! {
     "method" method: MethodChoice = MethodChoice::Auto,
     /// The methods that a tap goes through.
     "methods" methods: Vec<MethodChoice> =
-        [MethodChoice::Auto].into_iter().chain([Method::Yoro, Method::Conventional, Method::Mono].map(Into::into)).collect();
+        [MethodChoice::Auto].into_iter().chain([Method::Synthesized, Method::Conventional, Method::Mono].map(Into::into)).collect();
         range(|s| !s.methods.is_empty(), "name at least one method, such as yoro,mono"),
     /// The pipeline that synthesizes the other eye.
     "pipeline" pipeline: Pipeline = Pipeline::default(),
@@ -136,12 +135,6 @@ settings! {
         auto("1.0; paper: none"),
     /// When to anti-alias.
     "anti-aliasing" anti_aliasing: Option<AntiAliasing> = None; auto("after; paper: before"),
-    /// How the synthesis reads the rendered eye's edges.
-    "edges" edges: Option<Edges> = None;
-        auto("hard; sample with several samples on OpenGL ES 3.0"),
-    /// Fill disocclusions with what the other eye has really seen: strips of an eighth of its rows are rendered in
-    /// frames that uncover more. Not with the paper's pipeline.
-    "history" history: History = History::Off,
     /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;
         value_name("METRES");
@@ -150,8 +143,8 @@ settings! {
     "switch" switch: bool = true;
         off_help("Never switch to two real renders, however near everything is"),
     /// yoro: renders a second. Frames between two renders show the last one at the newest head pose, both eyes synthesized from
-    /// it; what moves in the scene stands still meanwhile. `method=auto` then means `yoro`. Only with hard edges, and without near
-    /// field, history, the switch to two renders and the paper's pipeline.
+    /// it; what moves in the scene stands still meanwhile. `method=auto` then means `yoro`. Without near
+    /// field, the switch to two renders and the paper's pipeline.
     "render-rate" render_rate: Option<f32> = None;
         value_name("HZ");
         range(|s| s.render_rate.is_none_or(|hz| (5.0..=1000.0).contains(&hz)), "give renders per second from 5 to 1000, or auto");
@@ -248,7 +241,7 @@ fn is_positive(number: f32) -> bool {
 impl Settings {
     /// Returns the defaults for measurements and pictures, in which nothing depends on the device: the method is yoro.
     pub fn measured() -> Settings {
-        Settings { method: Method::Yoro.into(), ..Settings::default() }
+        Settings { method: Method::Synthesized.into(), ..Settings::default() }
     }
 
     /// Returns the defaults, changed as by [`Settings::changed`].
@@ -404,7 +397,7 @@ mod tests {
         .unwrap();
         assert_eq!(settings.scene, "/sdcard/a room.obj");
         assert_eq!(settings.method, Method::Conventional.into());
-        assert_eq!(settings.methods, [Method::Mono, Method::Yoro].map(MethodChoice::from));
+        assert_eq!(settings.methods, [Method::Mono, Method::Synthesized].map(MethodChoice::from));
         assert_eq!(settings.imbuffer, ImBufferSize::Fixed([256, 128]));
         assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(Ipd::nearest(0.06))));
         assert_eq!(settings.screen.unwrap().metres(), [0.158, 0.0705]);

@@ -2,7 +2,6 @@
 
 use toml::Value;
 use yoro::eyes::{Eye, GuardBand};
-use yoro::synthesis::Edges;
 
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 
@@ -171,22 +170,9 @@ macro_rules! named {
     )+ };
 }
 
-/// Names that earlier versions accepted, and what to do about them.
-const FORMER: &[(&str, &str)] = &[(
-    "rowgroup",
-    "the pipeline rowgroup was taken out: choose gather, which is closer to the truth on every scene",
-)];
-
-/// Names that are still accepted: those of the Boolean that `timewarp` was.
-const RENAMED: &[(&str, &str)] = &[("false", "off"), ("true", "rotation")];
-
 /// Returns the value with a name; the error lists all names.
 pub(crate) fn find<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, text: &str) -> Result<T, String> {
-    let text = RENAMED.iter().find(|(former, _)| *former == text).map_or(text, |(_, now)| now);
     all.iter().copied().find(|value| name(*value) == text).ok_or_else(|| {
-        if let Some((_, remedy)) = FORMER.iter().find(|(former, _)| *former == text) {
-            return (*remedy).to_owned();
-        }
         let names: Vec<_> = all.iter().map(|value| name(*value)).collect();
         format!("choose one of {}", names.join(", "))
     })
@@ -195,12 +181,6 @@ pub(crate) fn find<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, text: &
 named! {
     Eye: &[Choice::new("left", "The left eye"), Choice::new("right", "The right eye")],
         |text| find(&Eye::BOTH, Eye::name, text);
-    Edges: &[
-        Choice::new("hard", "One surface per pixel: colour that was not anti-aliased, or was filtered afterwards"),
-        Choice::new("nearest", "Anti-aliased colour, and the depth of each pixel's nearest sample: the better of the two"),
-        Choice::new("sample", "Anti-aliased colour, and the depth of each pixel's first or middle sample"),
-        Choice::new("multisample", "Anti-aliased colour, and the depth of every sample, of the forward renderer"),
-    ], |text| find(&Edges::ALL, Edges::name, text);
 }
 
 pub(crate) use named;

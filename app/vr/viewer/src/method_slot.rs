@@ -4,11 +4,11 @@ use std::rc::Rc;
 
 use crate::adaptive::{Controller, Load, Quality};
 use crate::error::ViewerError;
+use crate::options::{render_settings, stereo_options};
 use crate::scene_slot::Shown;
 use yoro::choice::Cost;
 use yoro::eyes::{EyePair, EyesError};
 use yoro_gl::{Context, GlError};
-use yoro_render::RenderSettings;
 use yoro_render::stereo::{
     self, Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,
     StereoOptions, Substitute,
@@ -106,7 +106,7 @@ impl MethodSlot {
 
     /// Returns the pipeline's name if the method synthesizes.
     pub fn pipeline_name(&self) -> Option<&'static str> {
-        (self.method() == Method::Yoro).then(|| self.pipeline.name())
+        (self.method() == Method::Synthesized).then(|| self.pipeline.name())
     }
 
     /// Returns the factor by which the quality reduces the render scale.
@@ -117,7 +117,9 @@ impl MethodSlot {
     /// Returns the divisor of the ImBuffer's resolution, if the method has an ImBuffer sized relative to the eye.
     pub fn imbuffer_divisor(&self, settings: &Settings) -> Option<u32> {
         match self.options(settings).synthesis.paper.imbuffer {
-            ImBufferSize::Divisor(n) if self.method() == Method::Yoro && self.pipeline == Pipeline::Paper => {
+            ImBufferSize::Divisor(n)
+                if self.method() == Method::Synthesized && self.pipeline == Pipeline::Paper =>
+            {
                 Some(n)
             }
             _ => None,
@@ -126,7 +128,7 @@ impl MethodSlot {
 
     /// Returns the settings' options with the pipeline and the ImBuffer in use.
     fn options(&self, settings: &Settings) -> StereoOptions {
-        let mut options = StereoOptions::of_settings(settings, self.pipeline);
+        let mut options = stereo_options(settings, self.pipeline);
         let (imbuffer, divisor) = (&mut options.synthesis.paper.imbuffer, self.quality.imbuffer);
         *imbuffer = match *imbuffer {
             ImBufferSize::Divisor(n) => ImBufferSize::Divisor(n * divisor),
@@ -137,7 +139,7 @@ impl MethodSlot {
 
     /// Compiles the chosen method with the present options.
     fn create(&self, gl: &Rc<Context>, settings: &Settings) -> Result<SelectedMethod, GlError> {
-        SelectedMethod::new(gl, self.choice, &RenderSettings::of_settings(settings), &self.options(settings))
+        SelectedMethod::new(gl, self.choice, &render_settings(settings), &self.options(settings))
     }
 
     /// Compiles the chosen method, if there is a context with a scene.
@@ -154,9 +156,13 @@ impl MethodSlot {
     /// Compiles the method for the first time, or synthesis if the driver does not support the method.
     pub fn make_first(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
         let made = match self.create(gl, settings) {
-            Err(GlError::Unsupported(reason)) if self.choice != Method::Yoro.into() => {
-                log::warn!("{} is used instead of {}: {reason}", Method::Yoro.name(), self.choice.name());
-                self.choice = Method::Yoro.into();
+            Err(GlError::Unsupported(reason)) if self.choice != Method::Synthesized.into() => {
+                log::warn!(
+                    "{} is used instead of {}: {reason}",
+                    Method::Synthesized.name(),
+                    self.choice.name()
+                );
+                self.choice = Method::Synthesized.into();
                 self.create(gl, settings)
             }
             made => made,
@@ -218,7 +224,7 @@ impl MethodSlot {
 
     /// Compiles two real renders, so that the first frame of a comparison does not have to.
     pub fn prepare_comparison(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
-        let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
+        let (render, options) = (render_settings(settings), self.options(settings));
         self.substitute.get(|method| stereo::create(gl, method, &render, &options)).map(drop)
     }
 
@@ -259,7 +265,7 @@ impl MethodSlot {
         pair: &EyePair,
         to: &[EyeTarget; 2],
     ) -> Result<(), ViewerError> {
-        let (render, options) = (RenderSettings::of_settings(settings), self.options(settings));
+        let (render, options) = (render_settings(settings), self.options(settings));
         let method = match &mut self.made {
             // The automatic choice handles unfit eyes itself.
             Some(SelectedMethod::Auto(auto)) if !self.is_comparing => auto.as_mut(),

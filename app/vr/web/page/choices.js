@@ -10,11 +10,11 @@ import { sentence } from './sentence.js';
 
 /** The settings that have an element of the same name. */
 const choices = [
-  'scene', 'viewpoint', 'method', 'renderer', 'anti-aliasing', 'history', 'dominant', 'display', 'scale', 'ipd',
+  'scene', 'viewpoint', 'method', 'renderer', 'anti-aliasing', 'dominant', 'display', 'scale', 'ipd',
 ];
 const numbers = ['viewpoint', 'scale', 'ipd'];
 /** The settings that do not apply to pictures. */
-const ofScenes = ['viewpoint', 'method', 'renderer', 'anti-aliasing', 'history', 'dominant'];
+const ofScenes = ['viewpoint', 'method', 'renderer', 'anti-aliasing', 'dominant'];
 /** The displays that compare with a real render, which pictures lack. */
 const comparing = ['divider', 'difference', 'flicker'];
 let offered = null;
@@ -53,7 +53,7 @@ export function apply() {
   if (!app.page) return;
   const smoothing = settings['anti-aliasing'];
   app.page.configure(JSON.stringify({
-    method: settings.method, renderer: settings.renderer, history: settings.history, ipd: settings.ipd / 1000, dominant: settings.dominant,
+    method: settings.method, renderer: settings.renderer, ipd: settings.ipd / 1000, dominant: settings.dominant,
     // A viewer and a headset show both eyes, whatever the screen shows.
     display: app.busy?.immersive ? 'side-by-side' : settings.display,
     ...(smoothing === 'msaa' ? { msaa: 4 } : { 'anti-aliasing': smoothing, msaa: 1 }),

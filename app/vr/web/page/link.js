@@ -1,8 +1,9 @@
 // The settings in the address's fragment. Settings with their default value are left out.
 
+/** The defaults. Those of method, IPD and dominant eye are the module's. */
 export const defaults = {
-  scene: 'prototype', viewpoint: 0, method: 'auto', renderer: 'deferred', 'anti-aliasing': 'after', history: 'off', ipd: 63,
-  dominant: 'right', display: 'divider', divider: 50, scale: 1, at: null, stream: null,
+  scene: 'prototype', viewpoint: 0, method: '', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 0,
+  dominant: '', display: 'divider', divider: 50, scale: 1, at: null, stream: null,
 };
 
 /** The kinds of anti-aliasing of each renderer, its default first. */
@@ -13,14 +14,20 @@ export const antiAliasing = {
 
 const allowed = {
   renderer: Object.keys(antiAliasing),
-  history: ['off', 'half', 'full'],
   dominant: ['right', 'left'],
   display: ['divider', 'difference', 'side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'flicker'],
   scale: ['1', '0.75', '0.5'],
 };
 
-/** The largest values of numbers; the smallest is 0. */
-const most = { ipd: 80, divider: 100 };
+/** The largest values of numbers; the smallest is 0. That of the IPD is the module's. */
+export const most = { ipd: 0, divider: 100 };
+
+/** Takes the module's defaults and bounds, as JSON. @param {string} json */
+export function learn(json) {
+  const { mostIpd, ...told } = JSON.parse(json);
+  Object.assign(defaults, told);
+  most.ipd = mostIpd;
+}
 
 /** The largest coordinate of the head in metres, which is the module's limit. */
 const FARTHEST = 1e6;

@@ -8,7 +8,7 @@ import { changed, listenToPicture, savePicture, saveWiggle, startLoop } from './
 import { listenToFiles, take } from './files.js';
 import { offerHeadset } from './headset.js';
 import { listenToKeys } from './keys.js';
-import { antiAliasing } from './link.js';
+import { antiAliasing, learn, most } from './link.js';
 import { offerMeasure } from './measure.js';
 import { clear, loading, say } from './messages.js';
 import { offerPhone } from './phone.js';
@@ -139,6 +139,8 @@ export async function start() {
   listenToFiles();
   app.module = await compile();
   await init({ module_or_path: app.module });
+  learn(Page.defaultChoices());
+  element('ipd').max = String(most.ipd);
   if (!attach()) return;
   app.scenes = JSON.parse(builtinScenes());
   element('scene').replaceChildren(...app.scenes.map(({ name, title, kiloTriangles }) => {

@@ -3,7 +3,7 @@
 import { element } from './app.js';
 
 const keys = [
-  'source', 'encoding', 'near', 'far', 'metres-at-white', 'disparity-offset', 'disparity-scale', 'gamma', 'fov-y-degrees', 'edges',
+  'source', 'encoding', 'near', 'far', 'metres-at-white', 'disparity-offset', 'disparity-scale', 'gamma', 'fov-y-degrees',
 ];
 /** The fields that only some encodings need. */
 const needed = {

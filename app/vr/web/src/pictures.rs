@@ -4,7 +4,6 @@ use std::path::Path;
 
 use serde::Deserialize;
 use yoro::eyes::{DepthConvention, DepthRange, Eye};
-use yoro::synthesis::Edges;
 use yoro_media::{DepthSamples, Nearness, StoredDepth, StoredDepthError, load_color, load_depth};
 
 /// The meaning of the values of a depth picture.
@@ -68,8 +67,6 @@ pub struct PictureOptions {
     pub disparity_scale: f64,
     /// Vertical field of view in degrees.
     pub fov_y_degrees: f64,
-    /// How the colours of silhouettes' pixels are interpreted.
-    pub edges: Edges,
 }
 
 impl Default for PictureOptions {
@@ -84,7 +81,6 @@ impl Default for PictureOptions {
             disparity_offset: 0.0,
             disparity_scale: 1.0,
             fov_y_degrees: 60.0,
-            edges: Edges::default(),
         }
     }
 }

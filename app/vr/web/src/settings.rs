@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
 use yoro_render::stereo::{
-    self, AntiAliasing, History, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
+    self, AntiAliasing, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
 };
 use yoro_render::{RenderSettings, RendererKind};
 use yoro_settings::Ipd;
@@ -71,8 +71,6 @@ pub struct Settings {
     pub msaa: u32,
     /// Anti-aliasing of images with one sample per pixel: before synthesis, after it, or none.
     pub anti_aliasing: AntiAliasing,
-    /// The resolution of the other eye's rendered strips, which fill disocclusions.
-    pub history: History,
     /// Distance between the eyes in metres.
     pub ipd: Ipd,
     /// The eye that is rendered.
@@ -83,13 +81,12 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        let yoro_settings::Settings { renderer, msaa, history, dominant, .. } = Default::default();
+        let yoro_settings::Settings { renderer, msaa, dominant, .. } = Default::default();
         Settings {
             method: MethodChoice::default(),
             renderer,
             msaa,
             anti_aliasing: AntiAliasing::After,
-            history,
             ipd: Ipd::DEFAULT,
             dominant,
             display: Display::SideBySide,
@@ -114,8 +111,7 @@ impl Settings {
     /// Returns the methods' options. They differ from the desktop's in one: frames are never rendered twice because
     /// much of the view is near, since detecting that would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
-        let &Settings { anti_aliasing, history, .. } = self;
-        StereoOptions { anti_aliasing, history, policy: None, ..StereoOptions::default() }
+        StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
     }
 
     /// Returns the method in use, or the automatic choice between two. Displays that compare with a real render never
@@ -186,7 +182,7 @@ mod tests {
         // Displays with a comparison do not use the automatic choice.
         let chosen = |json| Settings::parse(json).unwrap().choice();
         assert_eq!(chosen(r#"{"display":"anaglyph"}"#), MethodChoice::Auto);
-        assert_eq!(chosen(r#"{"display":"divider"}"#), Method::Yoro.into());
+        assert_eq!(chosen(r#"{"display":"divider"}"#), Method::Synthesized.into());
         let forward = Settings::parse(r#"{"renderer":"forward","msaa":1}"#).unwrap();
         assert_eq!(forward.render_settings().summary(), "forward, 1 samples a pixel");
         for wrong in [

@@ -4,8 +4,7 @@ use std::fmt;
 
 use crate::inpaint::PatcherKind;
 use yoro::eyes::GuardBand;
-use yoro::synthesis::Edges;
-use yoro_render::stereo::{History, Method, Pipeline, StereoOptions};
+use yoro_render::stereo::{Method, Pipeline, StereoOptions};
 
 /// A stereo method, synthesis with one of its pipelines, or a patcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,13 +12,9 @@ pub enum Contender {
     /// A method other than synthesis.
     Method(Method),
     /// Synthesis of the other eye by this pipeline.
-    Yoro(Pipeline),
-    /// The pipeline gather with this information about the rendered eye's edges.
-    Edges(Edges),
+    Synthesized(Pipeline),
     /// The pipeline gather with this guard band.
     Band(Band),
-    /// The pipeline gather with this history.
-    History(History),
     /// The paper's pipeline without interpolation between ImBuffer entries.
     PaperNearest,
     /// The paper's pipeline with whole source columns and one depth sample per ImBuffer pixel, as in its text.
@@ -74,13 +69,8 @@ impl Contender {
     /// Returns every contender in the order of tables.
     pub fn all() -> Vec<Contender> {
         let variants = [Contender::PaperNearest, Contender::PaperStrict];
-        let told = Contender::edges().into_iter().chain(Contender::bands()).chain(Contender::histories());
-        Contender::methods().into_iter().chain(variants).chain(told).chain(Contender::patchers()).collect()
-    }
-
-    /// Returns synthesis with each kind of information about the rendered eye's edges.
-    pub fn edges() -> Vec<Contender> {
-        Edges::ALL.map(Contender::Edges).to_vec()
+        let synthesis = Contender::methods().into_iter().chain(variants).chain(Contender::bands());
+        synthesis.chain(Contender::patchers()).collect()
     }
 
     /// Returns synthesis with each guard band.
@@ -88,20 +78,15 @@ impl Contender {
         Band::ALL.map(Contender::Band).to_vec()
     }
 
-    /// Returns synthesis without a history and with each kind of history.
-    pub fn histories() -> Vec<Contender> {
-        History::ALL.map(Contender::History).to_vec()
-    }
-
     /// Returns the stereo methods, with synthesis once for each of its pipelines.
     pub fn methods() -> Vec<Contender> {
-        let others = Method::ALL.into_iter().filter(|method| *method != Method::Yoro);
+        let others = Method::ALL.into_iter().filter(|method| *method != Method::Synthesized);
         others.map(Contender::Method).chain(Contender::pipelines()).collect()
     }
 
     /// Returns synthesis with each of its pipelines.
     pub fn pipelines() -> Vec<Contender> {
-        Pipeline::ALL.map(Contender::Yoro).to_vec()
+        Pipeline::ALL.map(Contender::Synthesized).to_vec()
     }
 
     /// Returns the patchers.
@@ -114,10 +99,8 @@ impl Contender {
     pub fn name(self) -> String {
         match self {
             Contender::Method(method) => method.name().into(),
-            Contender::Yoro(pipeline) => format!("yoro-{}", pipeline.name()),
-            Contender::Edges(edges) => format!("yoro-edges-{}", edges.name()),
+            Contender::Synthesized(pipeline) => format!("yoro-{}", pipeline.name()),
             Contender::Band(band) => format!("yoro-guard-{}", band.name()),
-            Contender::History(history) => format!("yoro-history-{}", history.name()),
             Contender::PaperNearest => "yoro-paper-nearest".into(),
             Contender::PaperStrict => "yoro-paper-strict".into(),
             Contender::Patcher(kind) => format!("patcher-{}", kind.name()),
@@ -134,23 +117,15 @@ impl Contender {
     pub fn method(self) -> Option<(Method, StereoOptions)> {
         let (method, pipeline) = match self {
             Contender::Method(method) => (method, Pipeline::default()),
-            Contender::Yoro(pipeline) => (Method::Yoro, pipeline),
-            Contender::Edges(_) | Contender::Band(_) | Contender::History(_) => {
-                (Method::Yoro, Pipeline::Gather)
-            }
-            Contender::PaperNearest | Contender::PaperStrict => (Method::Yoro, Pipeline::Paper),
+            Contender::Synthesized(pipeline) => (Method::Synthesized, pipeline),
+            Contender::Band(_) => (Method::Synthesized, Pipeline::Gather),
+            Contender::PaperNearest | Contender::PaperStrict => (Method::Synthesized, Pipeline::Paper),
             Contender::Patcher(_) => return None,
         };
         let mut options = StereoOptions::of_pipeline(pipeline);
         options.policy = None;
-        if let Contender::Edges(edges) = self {
-            options.edges = Some(edges);
-        }
         if let Contender::Band(band) = self {
             options.guard_band = band.guard_band();
-        }
-        if let Contender::History(history) = self {
-            options.history = history;
         }
         let paper = &mut options.synthesis.paper;
         paper.linear_interpolation &= self != Contender::PaperNearest;
@@ -186,7 +161,7 @@ mod tests {
     #[test]
     fn variants_differ_in_their_options_only() {
         let options = |contender: Contender| contender.method().unwrap().1;
-        let paper = options(Contender::Yoro(Pipeline::Paper));
+        let paper = options(Contender::Synthesized(Pipeline::Paper));
         assert!(paper.synthesis.paper.linear_interpolation && paper.policy.is_none());
         assert!(!options(Contender::PaperNearest).synthesis.paper.linear_interpolation);
         assert!(options(Contender::PaperStrict).synthesis.paper.strict);

@@ -9,8 +9,8 @@ use std::rc::Rc;
 use anyhow::ensure;
 
 use super::costs::Work;
+use super::prepared::synthesize;
 use super::record::metric;
-use super::views::synthesize;
 use super::waves::{combine, wave_size};
 use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
 use yoro::synthesis::{Gather, Synthesis, Uniforms};

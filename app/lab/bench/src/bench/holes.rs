@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::views::synthesize;
+use super::prepared::synthesize;
 use yoro::eyes::{EyePair, GuardBand};
 use yoro::synthesis::{self, Outputs, SOURCE_MAP_HOLE, Synthesis, SynthesisOptions};
 use yoro_gl::{Context, Filter, Format, GlError, RenderTarget};

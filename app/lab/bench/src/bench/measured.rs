@@ -1,12 +1,12 @@
 //! Conversion of a comparison's metrics into those of a measurement.
 
-use super::record::{Measurement, Setting, metric};
-use crate::metrics::{Comparison, Flicker, PartQuality};
+use super::record::{Conditions, Measurement, metric};
+use yoro_metrics::{Comparison, Flicker, PartQuality};
 
 impl Measurement {
-    pub(super) fn new(setting: &Setting, contender: impl Into<String>, round: u32) -> Measurement {
+    pub(super) fn new(conditions: &Conditions, contender: impl Into<String>, round: u32) -> Measurement {
         Measurement {
-            setting: setting.clone(),
+            conditions: conditions.clone(),
             contender: contender.into(),
             round,
             values: Default::default(),

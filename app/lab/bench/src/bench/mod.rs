@@ -5,17 +5,17 @@
 //! measured against a real render of the same eye, and shown beside "the same image to both eyes"
 //! ([`Contender::MONO`]); cost is compared with two full renders ([`Contender::CONVENTIONAL`]).
 
-pub mod bandwidth;
 mod blank;
 mod contender;
 mod costs;
-mod entrant;
 mod executed;
 pub mod frame;
 mod holes;
+mod job;
 mod measured;
 mod motion;
 mod pictures;
+mod prepared;
 pub mod process;
 pub mod record;
 mod runner;
@@ -27,13 +27,14 @@ mod waves;
 
 pub use blank::BlankFinder;
 pub use contender::Contender;
-pub use entrant::{Entrant, FrameTime};
 pub use holes::HoleFinder;
+pub use job::{Displaced, Job, Measure, Source};
 pub use motion::Motion;
 pub use pictures::{picture_folder, pictures_beside};
-pub use record::{Measurement, Record, RecordError, Results, Setting, Writer, metric};
+pub use prepared::{FrameTime, PreparedContender};
+pub use record::{Conditions, Measurement, Record, RecordError, Results, Writer, metric};
 pub use runner::{Bounds, Inputs, Runner};
 pub use scenes::{LazyObject, Object};
-pub use suite::{Choices, Displaced, Job, Measure, Source, Suite};
+pub use suite::{Choices, Suite};
 pub use summary::text;
 pub use views::spread;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::record::Setting;
+use super::record::Conditions;
 use yoro_report::text::slug;
 
 /// Returns the folder for all pictures of a run, beside its file of `results`.
@@ -12,13 +12,13 @@ pub fn pictures_beside(results: &Path) -> PathBuf {
 
 /// Returns the folder for the pictures of a setting, beside the file `results`: `RUN.pictures/SUITE/SCENE`, with
 /// `.LABEL` or `.POINT` appended. It contains `dominant.png`, `truth.png` and `CONTENDER.png`.
-pub fn picture_folder(results: &Path, setting: &Setting) -> PathBuf {
-    let mut name = slug(&setting.scene);
-    if let Some(label) = &setting.label {
+pub fn picture_folder(results: &Path, conditions: &Conditions) -> PathBuf {
+    let mut name = slug(&conditions.scene);
+    if let Some(label) = &conditions.label {
         name += &format!(".{}", slug(label));
     }
-    if let Some(point) = setting.point {
+    if let Some(point) = conditions.point {
         name += &format!(".{point}");
     }
-    pictures_beside(results).join(slug(&setting.suite)).join(name)
+    pictures_beside(results).join(slug(&conditions.suite)).join(name)
 }

@@ -4,16 +4,15 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 
-use super::bandwidth::{self, BandwidthOptions};
 use super::contender::Contender;
-use super::executed::{DEVICES, Device};
+use super::executed::DEVICES;
 use super::frame;
+use super::job::{Displaced, Job, Measure, Source};
 use super::motion::Motion;
-use super::record::Setting;
+use super::record::Conditions;
 use super::scenes::LazyObject;
 use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
-use yoro::synthesis::Edges;
 use yoro_assets::ShadingStyle;
 use yoro_render::stereo::{AntiAliasing, Pipeline};
 use yoro_render::{RenderSettings, RendererKind};
@@ -63,117 +62,12 @@ suites! {
     Imbuffer "imbuffer" "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation",
     Lights "lights" "Frame time of every method with four lights: the paper's setting for single-pass instancing",
     Resolution "resolution" "Frame time and quality of every method from 512 to 2048 pixels per eye",
-    AntiAliasing "anti-aliasing" "Quality and frame time by anti-aliasing: one sample per pixel, FXAA, MSAA with each kind of depth",
+    AntiAliasing "anti-aliasing" "Quality and frame time by anti-aliasing: one sample per pixel, FXAA, MSAA",
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
-    History "history" "Quality, flicker and frame time with what the other eye has seen, as the head moves",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
-    Bandwidth "bandwidth" "Bit rate and quality as H.264 of one eye with depth, against both eyes, along a camera path",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
     ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on five, none of which need be here",
-}
-
-/// The kind of measurement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Measure {
-    /// Frames at viewpoints.
-    Frames {
-        /// Frame times, pass times, CPU time and memory.
-        cost: bool,
-        /// The similarity to the ground truth.
-        quality: bool,
-    },
-    /// Flicker along a part of the camera path.
-    Flicker,
-    /// Use of the guard band along a part of the camera path.
-    GuardBand,
-    /// Frames of a moving head.
-    History(Motion),
-    /// Patchers on reprojected images.
-    Patchers,
-    /// One render shown at another pose.
-    Reprojection(Displaced),
-    /// Encoded sequences along a part of the camera path.
-    Bandwidth,
-    /// A stream whose frames are shown this number of frames later, at 72 frames per second.
-    Stream(usize),
-    /// Instructions that `gather` executes: an estimate for a GPU that is not available here.
-    Executed(Device),
-    /// The cost of whole frames: an estimate for several GPUs.
-    WholeFrames,
-}
-
-/// The pose at which a render is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Displaced {
-    /// The pose of the same eye this number of frames later, at 72 frames per second.
-    Late(Motion, usize),
-    /// The pose of the other of two canted eyes.
-    Canted,
-}
-
-/// The source of a scene.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Source {
-    /// A built-in scene or a file.
-    Named(String),
-    /// The scene of [`super::Object::swarm`].
-    Swarm {
-        /// The number of objects.
-        copies: usize,
-        /// The number of objects in the largest swarm of the suite.
-        places: usize,
-    },
-    /// The scene of [`super::Object::at_distance`], with the distance in metres.
-    Object(f32),
-}
-
-/// One setting with everything that is needed to measure it.
-#[derive(Clone, Debug)]
-pub struct Job {
-    /// The name in the results.
-    pub setting: Setting,
-    /// The source of the scene.
-    pub source: Source,
-    /// A style that replaces the scene's own.
-    pub style: Option<ShadingStyle>,
-    /// The renderer's settings.
-    pub render: RenderSettings,
-    /// The eyes.
-    pub eyes: EyeOptions,
-    /// The anti-aliasing of all contenders; `None` leaves it to each method.
-    pub anti_aliasing: Option<AntiAliasing>,
-    /// The divisor of the ImBuffer's resolution.
-    pub imbuffer: u32,
-    /// The quantizers of encoded sequences.
-    pub bandwidth: BandwidthOptions,
-    /// The kind of measurement.
-    pub measure: Measure,
-    /// The contenders. If frames are measured, the conventional method is the first.
-    pub contenders: Vec<Contender>,
-    /// The number of rounds.
-    pub rounds: u32,
-    /// The number of frames: viewpoints spread over the camera path, or frames along it.
-    pub frames: usize,
-}
-
-impl Job {
-    /// Returns the number of steps of progress: the preparation, and each contender's frames in each round.
-    pub fn steps(&self) -> u64 {
-        if self.measure == Measure::Bandwidth {
-            return bandwidth::steps(self.frames, &self.bandwidth);
-        }
-        if let Measure::Stream(_) = self.measure {
-            return (self.frames * 3 * STREAM_QUANTIZERS.len()) as u64;
-        }
-        if let Measure::Executed(_) | Measure::Reprojection(_) = self.measure {
-            return self.frames as u64;
-        }
-        if self.measure == Measure::WholeFrames {
-            return (self.frames * self.contenders.len()) as u64;
-        }
-        (u64::from(self.rounds) * self.frames as u64 + 1) * self.contenders.len() as u64
-    }
 }
 
 /// The user's choices for all suites.
@@ -191,8 +85,6 @@ pub struct Choices {
     pub rounds: u32,
     /// The number of viewpoints per scene.
     pub viewpoints: usize,
-    /// The number of frames in the sequences of `bandwidth`.
-    pub sequence: usize,
     /// Scenes that replace the suites' own.
     pub scenes: Vec<String>,
     /// Contenders that replace the suites' own.
@@ -221,16 +113,10 @@ const SMOOTHING: [(&str, RendererKind, AntiAliasing); 3] = [
 ];
 /// The number of frames of the suite `flicker`, and in the short form.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
-/// The scenes of the suite `history`: those in which the most is uncovered, near and far.
-const HISTORY_SCENES: [&str; 6] = ["talk", "street", "stage", "conference", "atrium", "voxel"];
-/// The number of frames of the suite `history`, and in the short form.
-const HISTORY_FRAMES: [usize; 2] = [24, 4];
 /// The scenes of the suite `stream`.
 const STREAM_SCENES: [&str; 3] = ["talk", "street", "atrium"];
 /// The numbers of frames by which the suite `stream` shows frames late, at 72 per second: at once, after 28 and 69 ms.
 const STREAM_DELAYS: [usize; 3] = [0, 2, 5];
-/// H.264's quantizers in the suite `stream`.
-pub(super) const STREAM_QUANTIZERS: [u8; 3] = [20, 26, 32];
 /// The number of frames of the suite `stream`, and in the short form.
 const STREAM_FRAMES: [usize; 2] = [8, 3];
 /// The number of frames of the suite `guard-band`, and in the short form.
@@ -249,71 +135,62 @@ impl Choices {
         let all = Contender::methods();
         let synthesis = || [vec![Contender::MONO], Contender::pipelines()].concat();
         let every: Vec<&str> = BUILTINS.iter().map(|b| b.name).collect();
-        let plan = |measure, contenders: Vec<Contender>| Plan { choices: self, suite, measure, contenders };
+        let sweep = |measure, contenders: Vec<Contender>| Sweep { choices: self, suite, measure, contenders };
         match suite {
-            Suite::Scenes => plan(both, all).over(self.scenes(&every), [()], |_, ()| {}),
-            Suite::Complexity => self.complexity(plan(time, all), object),
+            Suite::Scenes => sweep(both, all).over(self.scenes(&every), [()], |_, ()| {}),
+            Suite::Complexity => self.complexity(sweep(time, all), object),
             Suite::Styles => {
-                plan(quality, synthesis()).over(self.varied(), ShadingStyle::ALL, |job, style| {
+                sweep(quality, synthesis()).over(self.varied(), ShadingStyle::ALL, |job, style| {
                     job.style = Some(style);
-                    job.setting.label = Some(style.name().to_owned());
+                    job.conditions.label = Some(style.name().to_owned());
                 })
             }
-            Suite::Ipd => self.ipd(plan(quality, synthesis())),
-            Suite::Distance => self.distance(plan(quality, synthesis()), object),
+            Suite::Ipd => self.ipd(sweep(quality, synthesis())),
+            Suite::Distance => self.distance(sweep(quality, synthesis()), object),
             Suite::Patchers => {
                 let patchers = [vec![Contender::MONO], Contender::patchers()].concat();
-                plan(Measure::Patchers, patchers).over(self.varied(), [()], |_, ()| {})
+                sweep(Measure::Patchers, patchers).over(self.varied(), [()], |_, ()| {})
             }
             Suite::Imbuffer => {
                 let contenders = vec![
                     Contender::CONVENTIONAL,
                     Contender::MONO,
-                    Contender::Yoro(Pipeline::Paper),
+                    Contender::Synthesized(Pipeline::Paper),
                     Contender::PaperNearest,
                     Contender::PaperStrict,
                 ];
-                plan(both, contenders).over(self.varied(), [1, 2, 4, 8, 16], |job, divisor| {
+                sweep(both, contenders).over(self.varied(), [1, 2, 4, 8, 16], |job, divisor| {
                     job.imbuffer = divisor;
-                    job.setting.point = Some(f64::from(divisor));
+                    job.conditions.point = Some(f64::from(divisor));
                 })
             }
-            Suite::Lights => plan(time, all).over(self.scenes(&every), [FEW_LIGHTS], |job, lights| {
+            Suite::Lights => sweep(time, all).over(self.scenes(&every), [FEW_LIGHTS], |job, lights| {
                 job.render.point_lights = lights;
-                job.setting.point = Some(lights as f64);
+                job.conditions.point = Some(lights as f64);
             }),
-            Suite::Resolution => self.resolution(plan(both, all)),
+            Suite::Resolution => self.resolution(sweep(both, all)),
             Suite::AntiAliasing => {
-                let baselines = vec![Contender::CONVENTIONAL, Contender::MONO];
-                self.anti_aliasing(plan(both, [baselines, Contender::edges()].concat()), &every)
+                let contenders =
+                    vec![Contender::CONVENTIONAL, Contender::MONO, Contender::Synthesized(Pipeline::Gather)];
+                self.anti_aliasing(sweep(both, contenders), &every)
             }
-            Suite::Flicker => {
-                // With samples at the edges, flicker depends on how the synthesis reads them: one pipeline is enough.
-                let edges = || [vec![Contender::MONO], Contender::edges()].concat();
-                let contenders = if self.render.is_forward() { edges() } else { synthesis() };
-                plan(Measure::Flicker, contenders).over(self.varied(), [()], |job, ()| {
-                    job.frames = FLICKER_FRAMES[usize::from(self.quick)];
-                })
-            }
+            Suite::Flicker => sweep(Measure::Flicker, synthesis()).over(self.varied(), [()], |job, ()| {
+                job.frames = FLICKER_FRAMES[usize::from(self.quick)];
+            }),
             Suite::GuardBand => {
                 let contenders = [vec![Contender::MONO], Contender::bands()].concat();
-                plan(Measure::GuardBand, contenders).over(self.scenes(&every), [()], |job, ()| {
+                sweep(Measure::GuardBand, contenders).over(self.scenes(&every), [()], |job, ()| {
                     job.frames = GUARD_BAND_FRAMES[usize::from(self.quick)];
                 })
             }
-            Suite::History => {
-                let contenders = [vec![Contender::MONO], Contender::histories()].concat();
-                self.history(plan(Measure::History(Motion::Still), contenders))
-            }
             Suite::Reprojection => {
-                self.reprojection(plan(Measure::Reprojection(Displaced::Canted), Vec::new()))
+                self.reprojection(sweep(Measure::Reprojection(Displaced::Canted), Vec::new()))
             }
-            Suite::Bandwidth => self.bandwidth(plan(Measure::Bandwidth, Vec::new()), &every),
-            Suite::Stream => self.stream(plan(Measure::Stream(0), Vec::new())),
+            Suite::Stream => self.stream(sweep(Measure::Stream(0), Vec::new())),
             Suite::ShaderCost if self.whole_frames => {
-                self.whole_frames(plan(Measure::WholeFrames, vec![Contender::CONVENTIONAL]), &every)
+                self.whole_frames(sweep(Measure::WholeFrames, vec![Contender::CONVENTIONAL]), &every)
             }
-            Suite::ShaderCost => self.executed(plan(Measure::Executed(DEVICES[0]), Vec::new()), &every),
+            Suite::ShaderCost => self.executed(sweep(Measure::Executed(DEVICES[0]), Vec::new()), &every),
             Suite::All => {
                 let each = Suite::EACH.iter().map(|suite| self.jobs(*suite, object));
                 Ok(each.collect::<anyhow::Result<Vec<_>>>()?.concat())
@@ -321,113 +198,89 @@ impl Choices {
         }
     }
 
-    fn complexity(&self, plan: Plan, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
+    fn complexity(&self, sweep: Sweep, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
         // Sizes grow in even steps, the first of which is one step. Slopes are measurable only if all else is equal.
         let sizes = SIZES[usize::from(self.quick)];
         let step = (self.max_triangles / sizes / object.triangles()).max(1);
         let places = step * sizes;
         let copies: Vec<usize> = (1..=sizes).map(|i| i * step).collect();
-        plan.over(vec!["swarm".into()], copies, |job, copies| {
+        sweep.over(vec!["swarm".into()], copies, |job, copies| {
             job.source = Source::Swarm { copies, places };
-            job.setting.point = Some(object.swarm_triangles(copies) as f64);
+            job.conditions.point = Some(object.swarm_triangles(copies) as f64);
             job.frames = 1;
         })
     }
 
-    fn ipd(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+    fn ipd(&self, sweep: Sweep) -> anyhow::Result<Vec<Job>> {
         let millimetres: &[u32] = if self.quick { &[50, 63, 75] } else { &[50, 55, 60, 65, 70, 75] };
-        plan.over(self.varied(), millimetres.iter().copied(), |job, mm| {
+        sweep.over(self.varied(), millimetres.iter().copied(), |job, mm| {
             job.eyes.ipd = mm as f32 * 1e-3;
-            job.setting.point = Some(f64::from(mm));
+            job.conditions.point = Some(f64::from(mm));
         })
     }
 
-    fn distance(&self, plan: Plan, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
+    fn distance(&self, sweep: Sweep, object: &LazyObject) -> anyhow::Result<Vec<Job>> {
         let metres: &[f32] = if self.quick { &[0.5, 1.0, 3.0] } else { &[0.5, 1.0, 1.5, 2.0, 2.5, 3.0] };
-        plan.over(vec![object.name.clone()], metres.iter().copied(), |job, metres| {
+        sweep.over(vec![object.name.clone()], metres.iter().copied(), |job, metres| {
             job.source = Source::Object(metres);
-            job.setting.point = Some(f64::from(metres));
+            job.conditions.point = Some(f64::from(metres));
         })
     }
 
-    fn resolution(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+    fn resolution(&self, sweep: Sweep) -> anyhow::Result<Vec<Job>> {
         let pixels: &[u32] = if self.quick { &[256, 512] } else { &[512, 1024, 1536, 2048] };
-        plan.over(self.varied(), pixels.iter().copied(), |job, pixels| {
+        sweep.over(self.varied(), pixels.iter().copied(), |job, pixels| {
             job.eyes.size = [pixels; 2];
-            job.setting.point = Some(f64::from(pixels));
+            job.conditions.point = Some(f64::from(pixels));
             job.frames = 1;
         })
     }
 
-    fn anti_aliasing(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        plan.over(self.scenes(scenes), SMOOTHING, |job, (label, renderer, anti_aliasing)| {
-            job.setting.label = Some(label.to_owned());
+    fn anti_aliasing(&self, sweep: Sweep, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        sweep.over(self.scenes(scenes), SMOOTHING, |job, (label, renderer, anti_aliasing)| {
+            job.conditions.label = Some(label.to_owned());
             job.render.renderer = renderer;
             job.anti_aliasing = Some(anti_aliasing);
-            // Without multisampling, only hard edges are measured.
-            let needs_multisampling =
-                |c: &Contender| matches!(c, Contender::Edges(edges) if *edges != Edges::Hard);
-            job.contenders.retain(|c| renderer == RendererKind::Forward || !needs_multisampling(c));
         })
     }
 
-    fn history(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
-        let scenes = if self.quick { &QUICK_SCENES[..] } else { &HISTORY_SCENES };
-        plan.over(self.scenes(scenes), Motion::ALL, |job, motion| {
-            job.measure = Measure::History(motion);
-            job.setting.label = Some(motion.name().to_owned());
-            job.frames = HISTORY_FRAMES[usize::from(self.quick)];
-        })
-    }
-
-    fn reprojection(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+    fn reprojection(&self, sweep: Sweep) -> anyhow::Result<Vec<Job>> {
         let late = |motion| [1, 2, 3, 4].map(|frames| Displaced::Late(motion, frames));
         let poses = [vec![Displaced::Canted], late(Motion::Sway).into(), late(Motion::Walk).into()];
         let scenes = if self.quick { &QUICK_SCENES[..] } else { &VARIED_SCENES };
-        plan.over(self.scenes(scenes), poses.concat(), |job, displaced| {
+        sweep.over(self.scenes(scenes), poses.concat(), |job, displaced| {
             // Ways of showing a render take part, not methods.
             job.contenders.clear();
             job.measure = Measure::Reprojection(displaced);
-            job.setting.label = Some(match displaced {
+            job.conditions.label = Some(match displaced {
                 Displaced::Canted => "canted eyes".to_owned(),
                 Displaced::Late(motion, frames) => format!("{}, {frames} late", motion.name()),
             });
         })
     }
 
-    fn bandwidth(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        plan.over(self.scenes(scenes), [()], |job, ()| {
-            // Streams take part, not methods.
-            job.contenders.clear();
-            job.frames = self.sequence;
-            if self.quick {
-                job.bandwidth.quantizers = vec![22, 28, 34, 40];
-            }
-        })
-    }
-
-    fn stream(&self, plan: Plan) -> anyhow::Result<Vec<Job>> {
+    fn stream(&self, sweep: Sweep) -> anyhow::Result<Vec<Job>> {
         let scenes = if self.quick { &QUICK_SCENES[..] } else { &STREAM_SCENES };
-        plan.over(self.scenes(scenes), STREAM_DELAYS, |job, late| {
+        sweep.over(self.scenes(scenes), STREAM_DELAYS, |job, late| {
             // Modes take part, not methods.
             job.contenders.clear();
             job.measure = Measure::Stream(late);
-            job.setting.label = Some(format!("{late} late"));
+            job.conditions.label = Some(format!("{late} late"));
             job.frames = STREAM_FRAMES[usize::from(self.quick)];
         })
     }
 
-    fn whole_frames(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        plan.over(self.scenes(scenes), RendererKind::ALL, |job, renderer| {
-            job.setting.suite = frame::SUITE.to_owned();
-            job.setting.label = Some(renderer.name().to_owned());
+    fn whole_frames(&self, sweep: Sweep, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        sweep.over(self.scenes(scenes), RendererKind::ALL, |job, renderer| {
+            job.conditions.suite = frame::SUITE.to_owned();
+            job.conditions.label = Some(renderer.name().to_owned());
             job.render.renderer = renderer;
             job.contenders = frame::contenders(renderer);
         })
     }
 
-    fn executed(&self, plan: Plan, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        plan.over(self.scenes(scenes), DEVICES, |job, device| {
+    fn executed(&self, sweep: Sweep, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
+        sweep.over(self.scenes(scenes), DEVICES, |job, device| {
             // GPUs take part, not methods.
             job.contenders.clear();
             job.measure = Measure::Executed(device);
@@ -435,7 +288,7 @@ impl Choices {
             job.render =
                 RenderSettings { ssao: false, bloom: false, shadow_map_size: 0, ..job.render.clone() };
             job.eyes.size = device.size;
-            job.setting.label = Some(device.name.to_owned());
+            job.conditions.label = Some(device.name.to_owned());
         })
     }
 
@@ -467,7 +320,6 @@ impl Choices {
             ("dominant eye", eyes.dominant.name().into()),
             ("rounds", self.rounds.to_string()),
             ("viewpoints per scene", self.viewpoints.to_string()),
-            ("frames of encoded sequences", self.sequence.to_string()),
             ("seed", self.seed.to_string()),
             ("scenes", list(self.scenes.clone())),
             ("contenders", list(self.contenders.iter().map(|c| c.name()).collect())),
@@ -482,14 +334,14 @@ impl Choices {
 }
 
 /// A suite that is about to be expanded into its settings.
-struct Plan<'a> {
+struct Sweep<'a> {
     choices: &'a Choices,
     suite: Suite,
     measure: Measure,
     contenders: Vec<Contender>,
 }
 
-impl Plan<'_> {
+impl Sweep<'_> {
     /// Returns a job for each scene and point of the sweep; `vary` adapts it to the point.
     fn over<P: Clone>(
         self,
@@ -526,14 +378,13 @@ impl Plan<'_> {
             for point in &points {
                 let suite = self.suite.name().to_owned();
                 let mut job = Job {
-                    setting: Setting { suite, scene: scene_name(&scene), label: None, point: None },
+                    conditions: Conditions { suite, scene: scene_name(&scene), label: None, point: None },
                     source: Source::Named(scene.clone()),
                     style: None,
                     render: choices.render.clone(),
                     eyes: choices.eyes,
                     anti_aliasing: None,
                     imbuffer: 1,
-                    bandwidth: BandwidthOptions::default(),
                     measure: self.measure,
                     contenders: contenders.clone(),
                     rounds,

@@ -3,15 +3,14 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::bandwidth;
 use super::contender::Contender;
-use super::record::{Measurement, Results, Setting, metric};
+use super::record::{Conditions, Measurement, Results, metric};
 use yoro_report::stats::{self, median, unique};
 
 /// A column: heading, metric, number of decimals, and the function that combines its values.
 type Column = (&'static str, &'static str, usize, fn(&[f64]) -> Option<f64>);
 
-const COLUMNS: [Column; 19] = [
+const COLUMNS: [Column; 17] = [
     ("frame ms", metric::FRAME_MS, 1, median),
     ("CPU ms", metric::CPU_MS, 1, median),
     ("GPU ms", metric::GPU_MS, 2, median),
@@ -27,10 +26,8 @@ const COLUMNS: [Column; 19] = [
     ("ALU ms", metric::ALU_MS, 2, mean),
     ("fetch ms", metric::FETCH_MS, 2, mean),
     ("memory ms", metric::MEMORY_MS, 2, mean),
-    ("kbit/s", bandwidth::metric::KBIT_S, 0, mean),
+    ("kbit/s", metric::KBIT_S, 0, mean),
     ("saved %", metric::SAVED, 1, mean),
-    ("dominant", bandwidth::metric::PSNR_DOMINANT, 2, mean),
-    ("other dB", bandwidth::metric::PSNR_OTHER, 2, mean),
 ];
 
 fn mean(values: &[f64]) -> Option<f64> {
@@ -41,8 +38,8 @@ fn mean(values: &[f64]) -> Option<f64> {
 pub fn text(results: &Results) -> String {
     let mut out = String::new();
     for facts in results.scenes() {
-        let _ = writeln!(out, "{} ({} triangles)", facts.setting, facts.triangles);
-        out += &block(results, &facts.setting);
+        let _ = writeln!(out, "{} ({} triangles)", facts.conditions, facts.triangles);
+        out += &block(results, &facts.conditions);
     }
     let mut reasons = BTreeSet::new();
     for unsupported in results.unsupported() {
@@ -50,15 +47,16 @@ pub fn text(results: &Results) -> String {
             let _ = writeln!(
                 out,
                 "not measured: {} in {}: {}",
-                unsupported.contender, unsupported.setting, unsupported.reason
+                unsupported.contender, unsupported.conditions, unsupported.reason
             );
         }
     }
     out
 }
 
-fn block(results: &Results, setting: &Setting) -> String {
-    let measured: Vec<&Measurement> = results.measurements().filter(|m| m.setting == *setting).collect();
+fn block(results: &Results, conditions: &Conditions) -> String {
+    let measured: Vec<&Measurement> =
+        results.measurements().filter(|m| m.conditions == *conditions).collect();
     let values = |contender: &str, metric: &str| -> Vec<f64> {
         let of_contender = measured.iter().filter(|m| m.contender == contender);
         of_contender.flat_map(|m| m.finite(metric)).collect()

@@ -2,15 +2,12 @@
 
 use anyhow::{bail, ensure};
 
+use super::job::{Job, Source};
 use super::motion::Motion;
 use super::record::SceneFacts;
-use super::suite::{Job, Source};
-use yoro::eyes::{EyePair, Pose, SynthesisViews};
-use yoro::synthesis::{self, Synthesis};
+use yoro::eyes::{EyePair, Pose};
 use yoro_assets::CameraPath;
-use yoro_gl::{Destination, RenderTarget};
-use yoro_render::stereo::StereoError;
-use yoro_render::{PreparedScene, Selection, ViewTargets};
+use yoro_render::PreparedScene;
 use yoro_scenes::BUILTINS;
 
 /// The distance in metres between the frames of a sequence: walking pace at 30 frames per second.
@@ -22,26 +19,8 @@ pub(super) const HEADSET_STEP: f32 = 0.01875;
 /// The frame rate of a headset in Hz.
 pub(super) const HEADSET_RATE: f64 = 72.0;
 
-/// The number of frames before the measured ones of a moving head, after which the history is filled.
-const SETTLING: usize = 12;
-
-/// Renders the source of some views and synthesizes the other eye into `to`, which is resized to that eye.
-///
-/// # Errors
-/// [`StereoError`] if GL refuses.
-pub(super) fn synthesize(
-    pipeline: &mut dyn Synthesis,
-    targets: &mut ViewTargets,
-    prepared: &mut PreparedScene,
-    views: &SynthesisViews,
-    to: &mut RenderTarget,
-) -> Result<(), StereoError> {
-    let PreparedScene { renderer, scene } = prepared;
-    let rendered = renderer.render(targets, scene, &views.source, Selection::All)?;
-    to.resize(views.target.size)?;
-    let source = synthesis::Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
-    Ok(pipeline.synthesize(source, &views.warp, &Destination::whole(to))?)
-}
+/// The number of frames for which a head moves before the first one.
+const UNDER_WAY: usize = 12;
 
 /// Returns `wanted` of `count` indices, evenly spread and starting from the first.
 pub fn spread(count: usize, wanted: usize) -> Vec<usize> {
@@ -81,26 +60,27 @@ impl Views {
         Views::new(job, (0..job.frames).map(pose).collect())
     }
 
-    /// Returns frames of a moving head that start in the middle of the camera path: the job's, after some for settling.
+    /// Returns frames of a head that moves from the middle of the camera path on.
     pub fn of_motion(job: &Job, prepared: &PreparedScene, motion: Motion) -> anyhow::Result<Views> {
-        let frames = SETTLING + job.frames;
+        let frames = UNDER_WAY + job.frames;
         let walk = Views::along_path(&Job { frames, ..job.clone() }, prepared, HEADSET_STEP)?;
         let path = CameraPath::new(&prepared.scene.viewpoints);
         let pose = |i: usize| motion.pose(path.pose(0.5), i as f32 / HEADSET_RATE as f32);
         let heads: Option<Vec<_>> = (0..frames).map(|i| Some((format!("frame {i}"), pose(i)?))).collect();
-        heads.map_or(Ok(walk), |heads| Views::new(job, heads))
+        let views = heads.map_or(Ok(walk), |heads| Views::new(job, heads))?;
+        Ok(views.last(job.frames))
     }
 
-    /// Splits off the last `count` frames.
-    pub fn split_at_last(self, count: usize) -> [Views; 2] {
-        let Views { mut names, mut pairs } = self;
-        let at = names.len().saturating_sub(count);
-        let last = Views { names: names.split_off(at), pairs: pairs.split_off(at) };
-        [Views { names, pairs }, last]
+    /// Returns the last `count` frames.
+    pub fn last(mut self, count: usize) -> Views {
+        let before = self.names.len().saturating_sub(count);
+        self.names.drain(..before);
+        self.pairs.drain(..before);
+        self
     }
 
     fn new(job: &Job, heads: Vec<(String, Pose)>) -> anyhow::Result<Views> {
-        ensure!(!heads.is_empty(), "{} has no viewpoint: give it one or more", job.setting.scene);
+        ensure!(!heads.is_empty(), "{} has no viewpoint: give it one or more", job.conditions.scene);
         let (names, poses): (Vec<_>, Vec<_>) = heads.into_iter().unzip();
         Ok(Views { names, pairs: poses.into_iter().map(|pose| job.eyes.pair(pose)).collect() })
     }
@@ -117,7 +97,7 @@ impl Views {
         let scene = &prepared.scene;
         let builtin = BUILTINS.iter().find(|b| matches!(&job.source, Source::Named(name) if name == b.name));
         SceneFacts {
-            setting: job.setting.clone(),
+            conditions: job.conditions.clone(),
             stands_for: builtin.map_or("", |b| b.stands_for).to_owned(),
             style: scene.style,
             triangles: scene.triangle_count() as u64,
@@ -136,20 +116,14 @@ mod tests {
     #[test]
     fn heads_move_as_far_as_their_motion_says() {
         let from = Pose::look_at(Vec3::new(1.0, 1.6, 2.0), Vec3::new(4.0, 1.2, -3.0));
-        for (motion, metres, degrees) in
-            [(Motion::Still, 0.004, 0.66f32), (Motion::Sway, 0.064, 19.0), (Motion::Turn, 0.0, 240.0)]
-        {
-            let poses: Vec<Pose> =
-                (0..=144).map(|i| motion.pose(from, i as f32 / HEADSET_RATE as f32).unwrap()).collect();
-            let widest = poses.iter().map(|p| p.position.distance(poses[36].position)).fold(0.0, f32::max);
-            assert!((widest - metres).abs() < 1e-4, "{motion:?}: {widest} m");
-            let turned: f32 = poses.windows(2).map(|p| p[0].forward().distance(p[1].forward())).sum();
-            // The head turns to both sides and back.
-            let there = if motion == Motion::Turn { turned } else { turned / 2.0 };
-            let level = from.forward().with_y(0.0).length();
-            let expected = level * degrees.to_radians();
-            assert!((there / expected - 1.0).abs() < 0.02, "{motion:?}: {there} for {expected}");
-        }
+        let poses: Vec<Pose> =
+            (0..=144).map(|i| Motion::Sway.pose(from, i as f32 / HEADSET_RATE as f32).unwrap()).collect();
+        let widest = poses.iter().map(|p| p.position.distance(poses[36].position)).fold(0.0, f32::max);
+        assert!((widest - 0.064).abs() < 1e-4, "{widest} m");
+        let turned: f32 = poses.windows(2).map(|p| p[0].forward().distance(p[1].forward())).sum();
+        // The head turns to both sides and back.
+        let expected = 2.0 * from.forward().with_y(0.0).length() * 19f32.to_radians();
+        assert!((turned / expected - 1.0).abs() < 0.02, "{turned} for {expected}");
         assert_eq!(Motion::Walk.pose(from, 1.0), None);
     }
 }

@@ -11,7 +11,7 @@
 //! | [`PatcherKind::Xiao`] | Xiao et al. 2022: background filter of 29x29 pixels | GPU |
 //! | [`PatcherKind::Telea`] | Telea 2004: fast marching | CPU, holes in parallel |
 //! | [`PatcherKind::NavierStokes`] | Bertalmio et al. 2001, in fast marching order | CPU, holes in parallel |
-//! | [`PatcherKind::Neural`] | a small pix2pix-style generator from an ONNX file | CPU, rten's threads |
+//! | [`PatcherKind::Neural`] | a small pix2pix-style generator from an ONNX file; needs the feature `neural` | CPU, rten's threads |
 
 mod march;
 #[cfg(feature = "neural")]

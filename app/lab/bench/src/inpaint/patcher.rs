@@ -4,11 +4,11 @@ use std::time::Duration;
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
 
-use crate::picture::{DepthImage, rgb_image};
 use yoro::eyes::{DepthConvention, Eye, Warp};
 use yoro::synthesis::SourceMapEntry;
 use yoro_files::FileError;
 use yoro_gl::GlError;
+use yoro_media::{DepthImage, rgb_image};
 use yoro_render::stereo::SynthesizedImage;
 
 /// The mask's value where nothing of the source is visible.
@@ -52,7 +52,7 @@ pub enum InpaintError {
         reason: String,
     },
     /// This build does not contain the neural patcher.
-    #[error("this build has no neural patcher: build with the feature neural, or choose another patcher")]
+    #[error("this build has no neural patcher: build it with --features neural, or choose another patcher")]
     NotBuilt,
     /// GL refused.
     #[error(transparent)]

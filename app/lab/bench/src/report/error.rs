@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::metrics::MetricsError;
-use crate::picture::PictureError;
 use yoro_files::FileError;
+use yoro_media::PictureError;
+use yoro_metrics::MetricsError;
 
 /// The error when a report cannot be made.
 #[derive(Debug, thiserror::Error)]

@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::error::ReportError;
 use super::run::{PassTime, QUALITY_METHOD, Row, RunReport, SceneReport, Viewpoint};
-use crate::metrics::Quality;
-use crate::picture::encode_jpeg;
+use yoro_media::encode_jpeg;
+use yoro_metrics::Quality;
 use yoro_report::page::{Template, figures, fill};
 use yoro_report::paper;
 use yoro_report::plot::{Axis, DotRow, Figure, Mark, Panel};
@@ -398,7 +398,7 @@ mod tests {
     fn an_empty_or_perfect_run_renders() {
         let mut report = synthetic(24, 1);
         for viewpoint in &mut report.scenes[0].viewpoints {
-            viewpoint.views[0].quality.psnr = crate::metrics::Psnr(f64::INFINITY);
+            viewpoint.views[0].quality.psnr = yoro_metrics::Psnr(f64::INFINITY);
         }
         assert!(report.to_html().unwrap().contains("inf"));
         report.scenes.clear();

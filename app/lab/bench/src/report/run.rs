@@ -4,8 +4,8 @@ use image::RgbImage;
 use serde::Serialize;
 
 use crate::machine::{Machine, Parameter};
-use crate::metrics::{Channels, MetricsError, Quality, error_map};
 use yoro::eyes::Eye;
+use yoro_metrics::{Channels, MetricsError, Quality, error_map};
 use yoro_report::paper::{self, PaperScene};
 use yoro_report::stats::{Summary, geometric_mean, unique};
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::run::RunReport;
-use crate::metrics::Quality;
+use yoro_metrics::Quality;
 use yoro_report::paper;
 use yoro_report::text::short_count;
 

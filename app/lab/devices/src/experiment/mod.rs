@@ -390,7 +390,7 @@ pub fn file_name(text: &str) -> String {
 /// Returns the stereo method in the settings, for a table of the plan.
 pub fn method_name(plan: &Plan) -> String {
     match plan.settings.method {
-        MethodChoice::Named(Method::Yoro) => format!("yoro, {}", plan.settings.pipeline.name()),
+        MethodChoice::Named(Method::Synthesized) => format!("yoro, {}", plan.settings.pipeline.name()),
         method => method.name().into(),
     }
 }

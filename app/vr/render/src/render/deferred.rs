@@ -8,7 +8,7 @@ use super::common::Common;
 use super::g_buffer::{GBuffer, Layout};
 use super::geometry::{GeometryPass, Part};
 use super::lighting::LightingPass;
-use super::request::{Columns, ViewRequest};
+use super::request::{Columns, DrawRequest};
 use super::role::{Role, RoleKind};
 use super::scene::{FREE_UNIT, GpuScene};
 use super::settings::RenderSettings;
@@ -286,7 +286,7 @@ impl ViewRenderer for DeferredRenderer {
         targets: &mut DeferredTargets,
         scene: &GpuScene,
         view: &View,
-        request: &ViewRequest,
+        request: &DrawRequest,
     ) -> Result<(), GlError> {
         targets.g_buffer.fit(view.size, view.depth.convention)?;
         targets.light.resize(view.size)?;
@@ -310,7 +310,7 @@ impl ViewRenderer for DeferredRenderer {
         view: &View,
         _depth: bool,
     ) -> Result<(), GlError> {
-        self.render(targets, scene, view, &ViewRequest::default())?;
+        self.render(targets, scene, view, &DrawRequest::default())?;
         let (to, depth) = (Destination::whole(targets.color()), DepthImage::whole(targets.depth()));
         self.draw_transparent(&to, depth, scene, view);
         Ok(())

@@ -13,16 +13,13 @@ use super::g_buffer::Layout;
 use super::geometry::{GeometryPass, Part};
 use super::light_tiles::LightTiles;
 use super::lighting::shading_defines;
-use super::request::{KeptSamples, PixelDepth, ViewRequest};
+use super::request::DrawRequest;
 use super::scene::GpuScene;
 use super::settings::RenderSettings;
 use super::view::{ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, View};
 use yoro_assets::ShadingStyle;
 use yoro_gl::{Context, GlError, Program, RenderTarget, ShaderSource};
-
-/// For images that are complete, whose samples are no longer needed.
-const NO_SAMPLES: KeptSamples = KeptSamples { color: false, depth: false };
 
 /// The forward renderer of one scene: passes made for the scene's style and materials.
 pub struct ForwardRenderer {
@@ -126,7 +123,7 @@ impl ViewRenderer for ForwardRenderer {
         targets: &mut ForwardTargets,
         scene: &GpuScene,
         view: &View,
-        request: &ViewRequest,
+        request: &DrawRequest,
     ) -> Result<(), GlError> {
         targets.fit(view.size, self.develops(), false)?;
         targets.request = *request;
@@ -135,7 +132,7 @@ impl ViewRenderer for ForwardRenderer {
         self.common.gl.within_columns(drawn, || {
             self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         });
-        self.resolve(targets, view, request.depth != PixelDepth::Unread, request.samples);
+        self.resolve(targets, view, true, request.keeps_samples);
         if let Some(drawn) = drawn {
             targets.repeat_columns(drawn)?;
         }
@@ -154,7 +151,7 @@ impl ViewRenderer for ForwardRenderer {
         let culler = Culler::of_view(view);
         self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         self.draw_transparent(targets, scene, &[*view]);
-        self.resolve(targets, view, depth, NO_SAMPLES);
+        self.resolve(targets, view, depth, false);
         self.develop(targets, view, Eye::Left, false);
         Ok(())
     }
@@ -165,7 +162,7 @@ impl ForwardRenderer {
     /// Fits targets to a view that is completed at once, so that no sample is needed afterwards. With `depth`, each
     /// pixel's depth is needed.
     fn fit_for_all(&self, targets: &mut ForwardTargets, view: &View, depth: bool) -> Result<(), GlError> {
-        targets.request = ViewRequest::default();
+        targets.request = DrawRequest::default();
         // Outlines read the samples; and depth is lost in tiles, since EXT_multisampled_render_to_texture2 discards it.
         targets.fit(view.size, self.develops(), !self.ink && !depth)
     }
@@ -186,7 +183,7 @@ impl ForwardRenderer {
         depth: bool,
     ) {
         self.draw_after_synthesis(targets, scene, view, near);
-        self.resolve(targets, view, depth, NO_SAMPLES);
+        self.resolve(targets, view, depth, false);
         self.develop(targets, view, Eye::Left, near.is_none());
     }
 
@@ -206,7 +203,7 @@ impl ForwardRenderer {
             self.soften(targets, image.depth(), view);
         });
         self.draw_after_synthesis(targets, scene, view, near);
-        self.resolve_to(targets, image, view, depth, NO_SAMPLES);
+        self.resolve_to(targets, image, view, depth, false);
     }
 
     /// Draws near objects and transparent surfaces into the targets of one view.
@@ -239,7 +236,7 @@ impl ForwardRenderer {
     ) -> Result<(), GlError> {
         targets.fit(view.size, false, false)?;
         self.draw_on_sky(targets, scene, &[*view], &Part::Slice(slice));
-        self.resolve(targets, view, true, NO_SAMPLES);
+        self.resolve(targets, view, true, false);
         Ok(())
     }
 
@@ -264,7 +261,7 @@ impl ForwardRenderer {
             }
         });
         self.draw_transparent(targets, scene, views);
-        self.resolve(targets, view, depth, NO_SAMPLES);
+        self.resolve(targets, view, depth, false);
         self.develop(targets, view, Eye::Left, false);
         Ok(())
     }
@@ -282,7 +279,7 @@ impl ForwardRenderer {
         self.fit_for_all(targets, view, depth)?;
         self.draw_on_sky(targets, scene, views, &Part::Slice([view.depth.near, view.depth.far]));
         self.draw_transparent(targets, scene, views);
-        self.resolve(targets, view, depth, NO_SAMPLES);
+        self.resolve(targets, view, depth, false);
         Ok(())
     }
 }

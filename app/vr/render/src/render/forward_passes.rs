@@ -11,7 +11,6 @@ use super::geometry::Part;
 use super::light_tiles::LightTiles;
 use super::lighting::line_width;
 use super::lights::Lights;
-use super::request::{KeptSamples, PixelDepth};
 use super::scene::{FREE_UNIT, GpuScene};
 use super::shadow::ShadowMap;
 use super::transparent::Onto;
@@ -171,8 +170,8 @@ impl ForwardRenderer {
     }
 
     /// Averages the samples, and takes their nearest depth if `depth` is set or outlines need it. Discards the samples
-    /// that `keep` does not name.
-    pub(super) fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool, keep: KeptSamples) {
+    /// unless `keep` is set.
+    pub(super) fn resolve(&self, targets: &ForwardTargets, view: &View, depth: bool, keep: bool) {
         let depth = depth || (self.ink && !targets.is_readable());
         if let Some(tile) = targets.tile() {
             debug_assert!(!depth, "depth of tiles is lost");
@@ -193,7 +192,7 @@ impl ForwardRenderer {
         to: &RenderTarget,
         view: &View,
         depth: bool,
-        keep: KeptSamples,
+        keep: bool,
     ) {
         let gl = &self.common.gl;
         let Some(samples) = targets.samples() else {
@@ -204,15 +203,14 @@ impl ForwardRenderer {
             });
             return;
         };
-        targets.keeps(keep);
-        let nearest = depth && targets.is_readable() && targets.request.depth != PixelDepth::FirstSample;
+        let nearest = depth && targets.is_readable();
         let reads_depth = self.ink || nearest;
         gl.pass("resolve", || {
             samples.resolve_color(to);
             if depth && !nearest {
                 samples.resolve_depth(to);
             }
-            samples.discard(!(keep.color || self.ink), !(keep.depth || reads_depth));
+            samples.discard(!(keep || self.ink), !(keep || reads_depth));
         });
         if let (true, Some(program), Some(map)) = (nearest, &self.nearest, samples.depth()) {
             gl.pass("nearest depth", || {

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::bloom::BloomTargets;
 use super::deferred::hdr_format;
 use super::g_buffer::Layout;
-use super::request::{KeptSamples, ViewRequest};
+use super::request::DrawRequest;
 use super::settings::{RenderSettings, SAMPLE_DEPTH};
 use super::view::ViewImages;
 use yoro::eyes::Eye;
@@ -33,11 +33,9 @@ pub struct ForwardTargets {
     /// Colour of one eye with bloom and outlines, if there are any.
     pub(super) developed: Option<RenderTarget>,
     /// The request that the view in the targets was rendered for.
-    pub(super) request: ViewRequest,
+    pub(super) request: DrawRequest,
     /// True if the resolved depth belongs to what was drawn last.
     has_depth: Cell<bool>,
-    /// The samples that still hold what was drawn last.
-    kept: Cell<KeptSamples>,
     /// One column of colour, copied into the columns beside those that are drawn.
     column: Option<RenderTarget>,
 }
@@ -77,9 +75,8 @@ impl ForwardTargets {
             resolved: RenderTarget::new(gl, size, &formats, Some(settings.depth_format(readable)))?,
             bloom: bloom.transpose()?,
             developed: None,
-            request: ViewRequest::default(),
+            request: DrawRequest::default(),
             has_depth: Cell::new(false),
-            kept: Cell::new(KeptSamples::default()),
             column: None,
         })
     }
@@ -165,17 +162,11 @@ impl ForwardTargets {
     /// Notes that something is drawn. With several samples, the resolved depth is out of date until the next resolve.
     pub(super) fn draws_depth(&self) {
         self.has_depth.set(self.samples.is_none());
-        self.kept.set(KeptSamples::default());
     }
 
     /// Notes that the resolved depth is up to date.
     pub(super) fn has_resolved_depth(&self) {
         self.has_depth.set(true);
-    }
-
-    /// Notes which samples still hold what was drawn last.
-    pub(super) fn keeps(&self, samples: KeptSamples) {
-        self.kept.set(samples);
     }
 
     /// Binds the image that is drawn into, with a viewport of `size` pixels.
@@ -202,14 +193,5 @@ impl ViewImages for ForwardTargets {
     fn depth(&self) -> &Texture {
         assert!(self.has_depth.get(), "this view was rendered without its depth");
         self.resolved.depth()
-    }
-
-    fn depth_samples(&self) -> Option<glow::Texture> {
-        self.samples().filter(|_| self.kept.get().depth)?.depth()
-    }
-
-    /// Returns the colour of the samples, unless bloom or outlines are added to their average.
-    fn color_samples(&self) -> Option<glow::Texture> {
-        self.samples().filter(|_| self.kept.get().color && self.developed.is_none())?.color()
     }
 }

@@ -9,7 +9,7 @@ use super::*;
 use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
-use yoro_gl::{Context, RenderTarget};
+use yoro_gl::{Command, Context, RenderTarget};
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -19,12 +19,7 @@ fn with_samples(msaa: u32) -> RenderSettings {
 }
 
 /// A view in whose samples drawing resumes.
-const RESUMED: ViewRequest = ViewRequest {
-    selection: Selection::All,
-    columns: None,
-    depth: PixelDepth::Nearest,
-    samples: KeptSamples { color: true, depth: true },
-};
+const RESUMED: DrawRequest = DrawRequest { selection: Selection::All, columns: None, keeps_samples: true };
 
 /// A scene with its forward renderer and targets.
 fn forward(
@@ -156,7 +151,6 @@ fn without_multisample_textures_only_depth_at_edges_differs() {
             let renderer = ForwardRenderer::build(gl, &settings, &scene, readable).unwrap();
             let mut targets = ForwardTargets::build(gl, Layout::Single, &settings, readable).unwrap();
             renderer.render(&mut targets, &scene, &view, &RESUMED).unwrap();
-            assert_eq!(targets.depth_samples().is_some(), readable);
             let color = targets.color().read_rgba8(0, [0, 0], view.size);
             (color, depths(gl, targets.depth(), &view))
         });
@@ -211,10 +205,19 @@ fn samples_are_given_up_once_drawing_has_resumed() {
     let head = open();
     let (scene, renderer, mut targets) = forward(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
     let view = view(DepthConvention::Standard);
-    renderer.render(&mut targets, &scene, &view, &RESUMED).unwrap();
-    assert!(targets.depth_samples().is_some() && targets.color_samples().is_some());
-    renderer.resume_samples(&targets, &scene, &view, None, false);
-    assert!(targets.depth_samples().is_none() && targets.color_samples().is_none());
+    let gl = head.gl();
+    let discarded = |draw: &mut dyn FnMut()| {
+        gl.record();
+        draw();
+        let record = gl.take_record();
+        record.iter().any(|command| matches!(command, Command::Discard(_, [true, true])))
+    };
+    let mut draw = |request: &DrawRequest| {
+        discarded(&mut || renderer.render(&mut targets, &scene, &view, request).unwrap())
+    };
+    assert!(!draw(&DrawRequest::default()), "synthesis reads their depth first");
+    assert!(!draw(&RESUMED));
+    assert!(discarded(&mut || renderer.resume_samples(&targets, &scene, &view, None, false)));
 }
 
 /// The samples' own depth stays float: rounding it would let surfaces show through one another.
@@ -281,7 +284,7 @@ fn surfaces_over_a_loaded_image_have_soft_edges() {
             let settings = with_samples(samples);
             let renderer = ForwardRenderer::new(gl, &settings, &scene).unwrap();
             let mut targets = ForwardRenderer::targets(gl, &settings).unwrap();
-            renderer.render(&mut targets, &scene, &view, &ViewRequest::default()).unwrap();
+            renderer.render(&mut targets, &scene, &view, &DrawRequest::default()).unwrap();
             (renderer, targets)
         });
         let before = image.resolved.read_rgba8(0, [0, 0], SIZE);
@@ -409,9 +412,8 @@ fn outlines_work_without_readable_samples() {
 fn reading_a_depth_that_was_not_requested_panics() {
     let head = open();
     let (scene, renderer, mut targets) = forward(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
-    for depth in [PixelDepth::Nearest, PixelDepth::Unread] {
-        let request = ViewRequest { depth, ..ViewRequest::default() };
-        renderer.render(&mut targets, &scene, &view(DepthConvention::Standard), &request).unwrap();
+    for depth in [true, false] {
+        renderer.render_all(&mut targets, &scene, &view(DepthConvention::Standard), depth).unwrap();
         targets.depth();
     }
 }

@@ -51,7 +51,7 @@ pub(crate) use g_buffer::{GBuffer, Layout, Seam};
 pub(crate) use geometry::Part;
 pub(crate) use renderer::RendererOfKind;
 pub use renderer::{RenderedView, Renderer, ViewTargets};
-pub(crate) use request::{Columns, KeptSamples, PixelDepth, ViewRequest, of_columns};
+pub(crate) use request::{Columns, DrawRequest, of_columns};
 pub(crate) use role::{Reprojection, Role, RoleKind};
 pub use scene::GpuScene;
 pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings, RendererKind};

@@ -7,7 +7,7 @@ use super::common::Common;
 use super::deferred::{DeferredRenderer, DeferredTargets};
 use super::forward::ForwardRenderer;
 use super::forward_targets::ForwardTargets;
-use super::request::ViewRequest;
+use super::request::DrawRequest;
 use super::scene::GpuScene;
 use super::settings::{RenderSettings, RendererKind};
 use super::view::{ViewImages, ViewRenderer};
@@ -111,7 +111,7 @@ impl Renderer {
         view: &View,
         selection: Selection,
     ) -> Result<RenderedView<'a>, GlError> {
-        self.draw(targets, scene, view, Some(ViewRequest { selection, ..ViewRequest::default() }))
+        self.draw(targets, scene, view, Some(DrawRequest { selection, ..DrawRequest::default() }))
     }
 
     /// Renders all of a scene, including transparent surfaces. Depth is that of opaque surfaces.
@@ -133,7 +133,7 @@ impl Renderer {
         targets: &'a mut ViewTargets,
         scene: &GpuScene,
         view: &View,
-        request: Option<ViewRequest>,
+        request: Option<DrawRequest>,
     ) -> Result<RenderedView<'a>, GlError> {
         match self {
             Renderer::Deferred(renderer) => {
@@ -150,7 +150,7 @@ fn draw_with<'a, R: ViewRenderer>(
     made: &'a mut Option<(RenderSettings, R::Targets)>,
     scene: &GpuScene,
     view: &View,
-    request: Option<ViewRequest>,
+    request: Option<DrawRequest>,
 ) -> Result<RenderedView<'a>, GlError> {
     let Common { gl, settings, .. } = renderer.common();
     renderer.common().check_scene(scene)?;

@@ -13,44 +13,19 @@ pub struct Columns {
     pub always: [u32; 2],
 }
 
-/// The depth that is read after a view is rendered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PixelDepth {
-    /// None. A renderer with several samples in each pixel then spends nothing on depth.
-    Unread,
-    /// The nearest of each pixel's samples.
-    #[default]
-    Nearest,
-    /// The depth of each pixel's first sample, as drivers resolve it; the only choice without multisample textures. Not
-    /// available with [`RenderSettings::depth_bits`](super::RenderSettings::depth_bits) of 16, because drivers copy
-    /// between equal formats only.
-    FirstSample,
-}
-
-/// The samples that are needed after a view is rendered, to be read or drawn into. The others stay in the tiles of a
-/// tile-based GPU, if its driver can do that.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct KeptSamples {
-    /// The samples' colour.
-    pub color: bool,
-    /// The samples' depth.
-    pub depth: bool,
-}
-
-/// The part of a scene to draw, and what is read of it afterwards. The default is all opaque surfaces and their depth.
+/// The part of a scene to draw. The default is all opaque surfaces.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ViewRequest {
+pub struct DrawRequest {
     /// The objects to draw.
     pub selection: Selection,
     /// The columns to draw; all if `None`.
     pub columns: Option<Columns>,
-    /// The depth to provide.
-    pub depth: PixelDepth,
-    /// The samples to keep.
-    pub samples: KeptSamples,
+    /// True if drawing resumes in the samples. Otherwise they stay in the tiles of a tile-based GPU, if its driver can
+    /// do that.
+    pub keeps_samples: bool,
 }
 
-impl ViewRequest {
+impl DrawRequest {
     /// Returns the columns to which drawing is limited, or `None` for the whole view.
     pub(super) fn bounds(&self, view: &View) -> Option<[u32; 2]> {
         self.columns.map(|columns| columns.drawn).filter(|drawn| *drawn != [0, view.size[0]])

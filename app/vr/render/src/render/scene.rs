@@ -134,7 +134,6 @@ pub struct GpuScene {
     triangle_count: usize,
     mesh: Mesh,
     moving: Option<Moving>,
-    times_moved: u64,
     pub(super) materials: Vec<GpuMaterial>,
     textures: Vec<Texture>,
     pub(super) clusters: Vec<Cluster>,
@@ -147,11 +146,6 @@ const MAP_NAMES: [&str; 4] = ["diffuse_map", "specular_map", "emissive_map", "no
 pub(super) const FREE_UNIT: u32 = MAP_NAMES.len() as u32;
 
 impl GpuScene {
-    /// Returns a number that is unique in this process.
-    pub(crate) fn id(&self) -> u64 {
-        self.id
-    }
-
     /// Uploads a scene in its state at time 0 and sorts its triangles into clusters. Frees the scene's memory as soon
     /// as GL has copied it.
     ///
@@ -193,7 +187,6 @@ impl GpuScene {
             triangle_count,
             mesh,
             moving,
-            times_moved: 0,
             materials,
             textures,
             clusters,
@@ -216,18 +209,12 @@ impl GpuScene {
         self.moving.is_some()
     }
 
-    /// Returns how many times the scene has moved.
-    pub(crate) fn times_moved(&self) -> u64 {
-        self.times_moved
-    }
-
     /// Moves everything to its place at a time in seconds. False if it is there already; otherwise the renderer's
     /// shadow map must be redrawn.
     pub(super) fn set_time(&mut self, seconds: f64) -> bool {
         let Some(moving) = &mut self.moving else { return false };
         let moved = moving.set_time(seconds, &mut self.clusters);
         if moved {
-            self.times_moved += 1;
             moving.moment.light(&moving.motion, &mut self.lights, &mut self.sky);
         }
         moved

@@ -1,7 +1,7 @@
 //! Settings of the renderer.
 
 use yoro_gl::{Capabilities, Format, GlError};
-use yoro_settings::{DEPTH_BITS, Settings, Ssao};
+use yoro_settings::DEPTH_BITS;
 pub use yoro_settings::{MAX_POINT_LIGHTS, MSAA, RendererKind};
 
 /// The depth format of samples in the forward renderer. Float for both conventions, since synthesized images, whose
@@ -52,21 +52,6 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// Returns the renderer settings for the viewer's settings.
-    pub fn of_settings(settings: &Settings) -> RenderSettings {
-        RenderSettings {
-            renderer: settings.renderer,
-            msaa: settings.msaa,
-            depth_bits: settings.depth_bits,
-            shadow_map_size: settings.shadow_map,
-            ssao: settings.ssao != Ssao::Off,
-            ssao_half_size: settings.ssao == Ssao::Half,
-            bloom: settings.bloom,
-            point_lights: settings.point_lights,
-            ..RenderSettings::default()
-        }
-    }
-
     /// True for the forward renderer.
     pub fn is_forward(&self) -> bool {
         self.renderer == RendererKind::Forward

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::common::Common;
-use super::request::ViewRequest;
+use super::request::DrawRequest;
 use super::scene::GpuScene;
 use super::settings::RenderSettings;
 use yoro::eyes::View;
@@ -32,7 +32,7 @@ pub(crate) trait ViewRenderer: Sized {
         targets: &mut Self::Targets,
         scene: &GpuScene,
         view: &View,
-        request: &ViewRequest,
+        request: &DrawRequest,
     ) -> Result<(), GlError>;
 
     /// Renders all of a scene, including transparent surfaces. With `depth`, the targets then hold the depth of opaque
@@ -56,16 +56,4 @@ pub(crate) trait ViewImages {
 
     /// Returns window depth in the view's convention.
     fn depth(&self) -> &Texture;
-
-    /// Returns the window depth of every sample: a float `TEXTURE_2D_MULTISAMPLE` of [`RenderSettings::msaa`] samples.
-    /// `None` with one sample per pixel, on drivers without such textures, and if samples are not kept. It covers only
-    /// opaque surfaces until drawing resumes.
-    fn depth_samples(&self) -> Option<glow::Texture> {
-        None
-    }
-
-    /// Returns the colour of every sample, under the same conditions.
-    fn color_samples(&self) -> Option<glow::Texture> {
-        None
-    }
 }

@@ -17,7 +17,7 @@ use yoro::eyes::EyePair;
 use yoro_gl::{Context, GlError};
 
 /// The methods by [`Way::index`].
-const METHODS: [Method; 2] = [Method::Conventional, Method::Yoro];
+const METHODS: [Method; 2] = [Method::Conventional, Method::Synthesized];
 
 /// A named method, or the cheaper of two.
 pub enum SelectedMethod {
@@ -44,7 +44,7 @@ impl SelectedMethod {
             }
             // Two renders cannot show a frame again.
             MethodChoice::Auto if options.render_rate.is_some() => {
-                SelectedMethod::Named(super::create(gl, Method::Yoro, settings, options)?)
+                SelectedMethod::Named(super::create(gl, Method::Synthesized, settings, options)?)
             }
             MethodChoice::Auto => SelectedMethod::Auto(Box::new(Auto::new(gl, settings, options)?)),
         })
@@ -155,7 +155,7 @@ impl StereoMethod for Auto {
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
         let wanted = self.chooser.way();
-        let is_fit = Substitute::reason(Method::Yoro, pair).is_none();
+        let is_fit = Substitute::reason(Method::Synthesized, pair).is_none();
         let way = if is_fit { wanted } else { Way::TwoViews };
         if std::mem::take(&mut self.is_new) && is_fit {
             // Makes everything that the other method needs now, while the scene comes into view, rather than in its

@@ -25,14 +25,14 @@ impl<R: RendererOfKind> Conventional<R> {
         &mut self,
         frame: &Frame<R>,
         reads_depth: impl Fn(Eye) -> bool,
-        mut rendered: impl FnMut(Eye, &R::Targets) -> Result<(), GlError>,
+        mut rendered: impl FnMut(Eye, &R::Targets),
     ) -> Result<(), GlError> {
         let dominant = frame.pair.dominant;
         for eye in [dominant.other(), dominant] {
             let depth = frame.wants_depth(eye) || reads_depth(eye);
             frame.renderer.render_all(&mut self.targets, frame.scene, &frame.pair.view(eye), depth)?;
             self.finish.run(&EyeImage::whole(&self.targets, depth), frame.to(eye));
-            rendered(eye, &self.targets)?;
+            rendered(eye, &self.targets);
         }
         Ok(())
     }
@@ -42,6 +42,6 @@ impl<R: RendererOfKind> FrameMethod for Conventional<R> {
     type Renderer = R;
 
     fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
-        Ok(self.render_eyes(frame, |_| false, |_, _| Ok(()))?)
+        Ok(self.render_eyes(frame, |_| false, |_, _| ())?)
     }
 }

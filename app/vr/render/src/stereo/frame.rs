@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::method::{EyeTarget, GuardBandUse, HistoryUse, StereoError, StereoMethod};
+use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
 use super::options::StereoOptions;
 use crate::render::{GpuScene, RenderSettings, Renderer, RendererOfKind};
 use yoro::eyes::{Eye, EyePair};
@@ -64,11 +64,6 @@ pub(super) trait FrameMethod: Sized {
         None
     }
 
-    /// See [`StereoMethod::history`].
-    fn history_use(&self) -> Option<HistoryUse> {
-        None
-    }
-
     /// See [`StereoMethod::is_substituted`].
     fn has_rendered_both(&self) -> bool {
         false
@@ -97,10 +92,6 @@ impl<M: FrameMethod> StereoMethod for M {
 
     fn guard_band(&self) -> Option<GuardBandUse> {
         self.guard_band_use()
-    }
-
-    fn history(&self) -> Option<HistoryUse> {
-        self.history_use()
     }
 
     fn is_substituted(&self) -> bool {

@@ -46,6 +46,16 @@ impl StereoFrame {
         &self.eyes[eye.index()]
     }
 
+    /// Returns the width and height of the images in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.eyes[0].size()
+    }
+
+    /// Returns one eye's pixels, 4 bytes each, rows from the bottom.
+    pub fn rgba(&self, eye: Eye) -> Vec<u8> {
+        self.eye(eye).read_rgba8(0, [0, 0], self.size())
+    }
+
     /// Returns both images, left and right.
     pub fn images(&self) -> [&Texture; 2] {
         self.eyes.each_ref().map(|eye| eye.color(0))
@@ -87,17 +97,6 @@ pub struct GuardBandUse {
     pub undrawn: u32,
 }
 
-/// What a method with [`super::StereoOptions::history`] rendered of the other eye, and how much it was needed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct HistoryUse {
-    /// Pixels of the other eye that were rendered in addition in the last frame.
-    pub rendered: u32,
-    /// Pixels that were uncovered two frames earlier, in the rows that are counted; an estimate from the rendered eye.
-    pub uncovered: u32,
-    /// Those of the uncovered pixels that the history did not show.
-    pub unknown: u32,
-}
-
 /// A method with its own programs and targets.
 pub trait StereoMethod {
     /// Compiles what the method needs for the materials of a scene, so that the first frame of that scene need not.
@@ -111,11 +110,6 @@ pub trait StereoMethod {
     /// Returns the use of the guard band two frames before the last one, the newest that is measured. `None` for
     /// methods and settings that always draw the whole band, and before the first measurement.
     fn guard_band(&self) -> Option<GuardBandUse> {
-        None
-    }
-
-    /// Returns the use of the history. `None` for methods and settings that have no history.
-    fn history(&self) -> Option<HistoryUse> {
         None
     }
 

@@ -16,7 +16,6 @@ mod offline;
 mod options;
 mod overlay;
 mod paper;
-mod past;
 mod readback;
 mod reprojected;
 mod shading_reprojection;
@@ -37,11 +36,11 @@ use conventional::Conventional;
 use frame::Setup;
 use hybrid::Hybrid;
 use kinds::StereoRenderer;
-pub use method::{DepthTarget, EyeTarget, GuardBandUse, HistoryUse, StereoError, StereoFrame, StereoMethod};
+pub use method::{DepthTarget, EyeTarget, GuardBandUse, StereoError, StereoFrame, StereoMethod};
 use mono::Mono;
 pub use near_field_policy::{FrameMode, NearFieldPolicy};
 pub use offline::{Offline, SynthesizedImage};
-pub use options::{AntiAliasing, History, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
+pub use options::{AntiAliasing, Method, MethodChoice, Pipeline, PipelineOptions, StereoOptions};
 pub use paper::{ImBufferSize, Paper, PaperOptions, ParseImBufferSizeError};
 use reprojected::Reprojected;
 use shading_reprojection::ShadingReprojection;
@@ -77,7 +76,7 @@ fn create_for<R: StereoRenderer>(method: Method, setup: &Setup) -> Result<Box<dy
         Method::ShadingReprojection => Box::new(ShadingReprojection::new(setup)?),
         Method::Hybrid => Box::new(Hybrid::<R::Fields>::new(setup)?),
         Method::Mono => Box::new(Mono::<R>::new(setup)?),
-        Method::Yoro => match setup.options.render_rate {
+        Method::Synthesized => match setup.options.render_rate {
             Some(rate) => Box::new(Reprojected::<R>::new(setup, rate)?),
             None => Box::new(Synthesized::<R>::new(setup)?),
         },

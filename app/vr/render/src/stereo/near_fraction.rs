@@ -11,38 +11,25 @@ use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
 /// Texels per side of the image that [`NearFraction`] reads back, as in `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
 
-/// A depth image to measure.
-#[derive(Clone, Copy)]
-pub(super) enum DepthMap<'a> {
-    Resolved(&'a Texture),
-    /// A `TEXTURE_2D_MULTISAMPLE`, of which the first sample of each pixel is measured.
-    Samples(glow::Texture),
-}
-
 /// Measures the fraction of a view that is nearer than a distance. The result is two frames late, so that nothing waits
 /// for it.
 pub(super) struct NearFraction {
     gl: Rc<Context>,
-    resolved: Program,
-    /// Compiled on request.
-    samples: Option<Program>,
+    program: Program,
     readback: Readback<()>,
 }
 
 impl NearFraction {
-    /// Compiles the pass for resolved depth, and with `samples` also the pass for the depth of all samples.
-    pub(super) fn new(gl: &Rc<Context>, samples: bool) -> Result<NearFraction, GlError> {
-        let program =
-            |defines: &[_]| Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), defines);
-        let resolved = program(&[])?;
-        let samples = samples.then(|| program(&[("MULTISAMPLE", String::new())])).transpose()?;
-        Ok(NearFraction { gl: gl.clone(), resolved, samples, readback: Readback::new(gl, [GRID; 2])? })
+    /// Compiles the pass.
+    pub(super) fn new(gl: &Rc<Context>) -> Result<NearFraction, GlError> {
+        let program = Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), &[])?;
+        Ok(NearFraction { gl: gl.clone(), program, readback: Readback::new(gl, [GRID; 2])? })
     }
 
     /// Starts to measure the part of a depth image that has its lower left corner at `origin` and `size` pixels.
     pub(super) fn measure(
         &mut self,
-        depth: DepthMap,
+        depth: &Texture,
         origin: [u32; 2],
         size: [u32; 2],
         range: &DepthRange,
@@ -52,14 +39,9 @@ impl NearFraction {
         self.gl.pass("near fraction", || {
             self.gl.set_raster_state(&RasterState::SCREEN);
             self.readback.image().bind();
-            let program = match depth {
-                DepthMap::Resolved(depth) => self.resolved.bind().texture("depth_map", 0, depth.raw()),
-                DepthMap::Samples(depth) => {
-                    let program = self.samples.as_ref().expect("made for samples");
-                    program.bind().texture_multisample("depth_map", 0, depth)
-                }
-            };
-            program
+            self.program
+                .bind()
+                .texture("depth_map", 0, depth.raw())
                 .set("origin", to_ivec(origin))
                 .set("size", to_ivec(size))
                 .set("near_depth", range.depth(distance))

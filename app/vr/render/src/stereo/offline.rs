@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::options::PipelineOptions;
 use yoro::eyes::Warp;
-use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
+use yoro::synthesis::{Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
 /// A pipeline with its own textures. In all arrays rows run from the bottom, as in GL. The result does not depend on
@@ -27,16 +27,16 @@ pub struct SynthesizedImage {
 }
 
 impl Offline {
-    /// Compiles the pipeline, for a source with these edges.
+    /// Compiles the pipeline.
     ///
     /// # Errors
     /// As [`PipelineOptions::create`].
-    pub fn new(gl: &Rc<Context>, options: &PipelineOptions, edges: Edges) -> Result<Offline, GlError> {
+    pub fn new(gl: &Rc<Context>, options: &PipelineOptions) -> Result<Offline, GlError> {
         let outputs = Outputs { source_map: true, ..Outputs::default() };
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         Ok(Offline {
             gl: gl.clone(),
-            pipeline: options.create(gl, edges, false, outputs)?,
+            pipeline: options.create(gl, outputs)?,
             color: None,
             depth: None,
             target: RenderTarget::new(gl, [1, 1], &formats, None)?,

@@ -5,8 +5,8 @@ use std::rc::Rc;
 use super::finish::EyeImage;
 use super::frame::{Frame, Setup};
 use crate::render::{
-    DeferredRenderer, DepthImage, ForwardRenderer, Fxaa, RendererOfKind, Selection, ViewImages, ViewRenderer,
-    ViewRequest,
+    DeferredRenderer, DepthImage, DrawRequest, ForwardRenderer, Fxaa, RendererOfKind, Selection, ViewImages,
+    ViewRenderer,
 };
 use yoro::eyes::{DepthConvention, SynthesisViews};
 use yoro_gl::{
@@ -120,7 +120,7 @@ impl Overlay for DeferredOverlay {
             }
         };
         if let (Some(near), Some(selection), Some(far)) = (&mut self.near, over.near, depth) {
-            let request = ViewRequest { selection, ..ViewRequest::default() };
+            let request = DrawRequest { selection, ..DrawRequest::default() };
             renderer.render(&mut near.targets, scene, view, &request)?;
             let layer = &mut near.layers[eye.index()];
             layer.resize(view.size)?;

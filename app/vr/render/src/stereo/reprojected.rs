@@ -156,7 +156,7 @@ mod tests {
         let mut rig = Rig::new(gl, &settings);
         let create = |method, options| super::super::create(gl, method, &settings, options).unwrap();
         let mut truth = create(Method::Conventional, &options);
-        let mut method = create(Method::Yoro, &options);
+        let mut method = create(Method::Synthesized, &options);
         let mut shown = StereoFrame::new(gl, [1, 1]).unwrap();
         for (dominant, convention) in
             [(Eye::Left, DepthConvention::Standard), (Eye::Right, DepthConvention::Reversed)]

@@ -7,6 +7,7 @@ use crate::render::{GpuScene, RenderSettings, Renderer};
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro_assets::Scene;
 use yoro_gl::Context;
+use yoro_settings::Ipd;
 
 /// Renders the right eye of a scene's first viewpoint and synthesizes the left one with each pipeline at its default
 /// settings. Returns both images, left first: RGBA with rows from the bottom, `size` pixels square, 60 degrees wide.
@@ -21,7 +22,7 @@ pub fn stills(
 ) -> Result<Vec<[Vec<u8>; 2]>, StereoError> {
     let (head, size) = (scene.viewpoints[0].pose(), [size; 2]);
     let frustum = Frustum::symmetric(60f32.to_radians(), 1.0);
-    let pair = EyePair::parallel(head, frustum, 0.063, DepthRange::PAPER, size, Eye::Right);
+    let pair = EyePair::parallel(head, frustum, Ipd::DEFAULT.metres(), DepthRange::PAPER, size, Eye::Right);
     let settings = RenderSettings::default();
     let scene = GpuScene::upload(gl, scene)?;
     let mut renderer = Renderer::new(gl, &settings, &scene)?;
@@ -29,7 +30,7 @@ pub fn stills(
     let mut both = |&pipeline: &Pipeline| {
         // Never two renders, however near everything is.
         let options = StereoOptions { policy: None, ..StereoOptions::of_pipeline(pipeline) };
-        let mut method = create(gl, Method::Yoro, &settings, &options)?;
+        let mut method = create(gl, Method::Synthesized, &settings, &options)?;
         method.render(&mut renderer, &scene, &pair, &mut frame)?;
         Ok(Eye::BOTH.map(|eye| frame.eye(eye).read_rgba8(0, [0, 0], size)))
     };

@@ -7,25 +7,22 @@ use super::finish::Finish;
 use super::frame::{Frame, FrameMethod, Setup};
 use super::guard_band::AutoGuardBand;
 use super::kinds::StereoRenderer;
-use super::method::{GuardBandUse, HistoryUse, StereoError};
+use super::method::{GuardBandUse, StereoError};
 use super::near_field_policy::{FrameMode, NearFieldPolicy};
-use super::near_fraction::{DepthMap, NearFraction};
-use super::options::{AntiAliasing, History, Pipeline, PipelineOptions, StereoOptions};
+use super::near_fraction::NearFraction;
+use super::options::{AntiAliasing, PipelineOptions, StereoOptions};
 use super::overlay::{EyeSource, Overlay, OverlaySurfaces, SmoothedEye};
-use super::past::Past;
-use crate::render::{GpuScene, KeptSamples, PixelDepth, RenderSettings, Selection, ViewImages, ViewRequest};
+use crate::render::{DrawRequest, GpuScene, Selection, ViewImages};
 use yoro::eyes::{GuardBand, SynthesisViews};
-use yoro::synthesis::{Edges, Outputs, Source, Synthesis};
+use yoro::synthesis::{Outputs, Source, Synthesis};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects and near frames.
 pub struct Synthesized<R: StereoRenderer> {
     options: StereoOptions,
-    edges: Edges,
     targets: R::Targets,
     synthesizers: Synthesizers,
     auto_guard_band: Option<AutoGuardBand>,
-    past: Option<Past<R>>,
     /// Anti-aliasing before synthesis, if the options ask for that.
     smooth: Option<SmoothedEye>,
     overlay: R::Overlay,
@@ -37,9 +34,6 @@ pub struct Synthesized<R: StereoRenderer> {
 struct Synthesizers {
     gl: Rc<Context>,
     options: PipelineOptions,
-    edges: Edges,
-    /// True if the pipelines take a history.
-    history: bool,
     made: [Option<Synthesizer>; 2],
 }
 
@@ -68,7 +62,7 @@ impl Synthesizers {
         // A float depth texture can hold both conventions.
         let format = depth.then_some(Format::Depth32F);
         let image = RenderTarget::new(&self.gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], format)?;
-        let synthesis = self.options.create(&self.gl, self.edges, self.history, outputs)?;
+        let synthesis = self.options.create(&self.gl, outputs)?;
         Ok(slot.insert(Synthesizer { synthesis, image }))
     }
 }
@@ -77,42 +71,25 @@ impl<R: StereoRenderer> Synthesized<R> {
     /// Compiles the pipeline and makes the targets.
     pub(super) fn new(setup: &Setup) -> Result<Synthesized<R>, GlError> {
         let Setup { gl, settings, options } = *setup;
-        let edges = options.edges(settings, gl.capabilities())?;
-        // Drivers resolve the first sample's depth without conversion.
-        let depth_bits = if edges == Edges::Sample { 32 } else { settings.depth_bits };
-        let reads_samples = edges == Edges::Multisample && gl.capabilities().multisample_textures;
         let switch = options.policy.map(|policy| -> Result<_, GlError> {
             Ok(Switch {
                 policy,
                 mode: FrameMode::default(),
-                fraction: NearFraction::new(gl, reads_samples)?,
+                fraction: NearFraction::new(gl)?,
                 conventional: Conventional::new(setup)?,
             })
         });
         let has_near = options.near_field.is_some();
         let is_smooth = options.anti_aliasing == AntiAliasing::Before && settings.samples() == 1;
         let is_auto = matches!(options.guard_band, GuardBand::Auto(_));
-        let past = match options.history {
-            _ if options.synthesis.pipeline != Pipeline::Gather => None,
-            History::Off => None,
-            History::Half => Some(Past::new(setup, 2)?),
-            History::Full => Some(Past::new(setup, 1)?),
-        };
-        let mut synthesizers = Synthesizers {
-            gl: gl.clone(),
-            options: options.synthesis,
-            edges,
-            history: past.is_some(),
-            made: [None, None],
-        };
+        let mut synthesizers =
+            Synthesizers { gl: gl.clone(), options: options.synthesis, made: [None, None] };
         synthesizers.get(has_near)?;
         Ok(Synthesized {
             options: *options,
-            edges,
-            targets: R::targets(gl, &RenderSettings { depth_bits, ..settings.clone() })?,
+            targets: R::targets(gl, settings)?,
             synthesizers,
             auto_guard_band: is_auto.then(|| AutoGuardBand::new(gl)).transpose()?,
-            past,
             smooth: is_smooth.then(|| SmoothedEye::new(gl)).transpose()?,
             overlay: R::Overlay::new(setup)?,
             finish: Finish::smoothing(setup, options.anti_aliasing == AntiAliasing::After)?,
@@ -121,7 +98,7 @@ impl<R: StereoRenderer> Synthesized<R> {
     }
 
     /// Renders both eyes if the last frames were mostly too near. Returns true if it did.
-    fn render_both(&mut self, frame: &Frame<R>, views: &SynthesisViews) -> Result<bool, StereoError> {
+    fn render_both(&mut self, frame: &Frame<R>) -> Result<bool, StereoError> {
         let Some(Switch { policy, mode, fraction, conventional }) = &mut self.switch else {
             return Ok(false);
         };
@@ -134,25 +111,14 @@ impl<R: StereoRenderer> Synthesized<R> {
         if let Some(auto) = &mut self.auto_guard_band {
             auto.interrupt();
         }
-        if let Some(past) = &mut self.past {
-            past.interrupt();
-        }
         let pair = frame.pair;
-        // The history must not contain near objects, which are not synthesized.
-        let all = self.options.near_field.is_none();
-        let mut past = self.past.as_mut().filter(|past| all && past.takes_whole(frame, views));
-        let takes = past.is_some();
         conventional.render_eyes(
             frame,
-            |eye| eye == pair.dominant || takes,
-            |eye, targets| match &mut past {
-                _ if eye == pair.dominant => {
-                    let depth = DepthMap::Resolved(targets.depth());
-                    fraction.measure(depth, [0, 0], pair.size, &pair.depth, policy.distance);
-                    Ok(())
+            |eye| eye == pair.dominant,
+            |eye, targets| {
+                if eye == pair.dominant {
+                    fraction.measure(targets.depth(), [0, 0], pair.size, &pair.depth, policy.distance);
                 }
-                Some(past) => past.take_whole(frame, views, targets),
-                None => Ok(()),
             },
         )?;
         Ok(true)
@@ -171,21 +137,10 @@ impl<R: StereoRenderer> Synthesized<R> {
         views: &SynthesisViews,
         over: &OverlaySurfaces,
     ) -> Result<(), GlError> {
-        let near_field = self.options.near_field;
-        let multisample = self.edges == Edges::Multisample;
-        // Near objects are drawn after synthesis, and update the depth that is passed on.
-        let hands_on = frame.wants_depth(frame.pair.dominant) && near_field.is_none();
-        let measures = self.auto_guard_band.is_some() || self.past.is_some();
-        let reads_depth = !multisample || measures || hands_on;
-        let request = ViewRequest {
+        let request = DrawRequest {
             selection: self.selection(frame),
             columns: self.auto_guard_band.as_mut().map(|auto| auto.columns(frame.pair, views, frame.scene)),
-            depth: match self.edges {
-                _ if !reads_depth => PixelDepth::Unread,
-                Edges::Sample => PixelDepth::FirstSample,
-                _ => PixelDepth::Nearest,
-            },
-            samples: KeptSamples { color: over.is_any(), depth: over.is_any() || multisample },
+            keeps_samples: over.is_any(),
         };
         frame.renderer.render(&mut self.targets, frame.scene, &views.source, &request)?;
         if let Some(smooth) = &mut self.smooth {
@@ -195,27 +150,22 @@ impl<R: StereoRenderer> Synthesized<R> {
         Ok(())
     }
 
-    /// Returns the depth of every sample, if synthesis reads the samples.
-    fn depth_samples(&self) -> Option<glow::Texture> {
-        self.targets.depth_samples().filter(|_| self.edges == Edges::Multisample)
-    }
-
     /// Starts the measurements that later frames depend on: how wide the guard band must be, and how much of the view
     /// is near.
     fn measure(&mut self, frame: &Frame<R>, views: &SynthesisViews) {
-        let samples = self.depth_samples();
         if let Some(auto) = &mut self.auto_guard_band {
             auto.measure(self.targets.depth(), views);
         }
-        if let Some(past) = &mut self.past {
-            past.measure(self.targets.depth(), views);
-        }
         if let Some(switch) = &mut self.switch {
             // If near objects have their own layer, this is the far one: surfaces behind them are not too near.
-            let resolved = || DepthMap::Resolved(self.targets.depth());
-            let depth = samples.map_or_else(resolved, DepthMap::Samples);
             let (pair, distance) = (frame.pair, switch.policy.distance);
-            switch.fraction.measure(depth, views.dominant_crop, pair.size, &pair.depth, distance);
+            switch.fraction.measure(
+                self.targets.depth(),
+                views.dominant_crop,
+                pair.size,
+                &pair.depth,
+                distance,
+            );
         }
     }
 }
@@ -233,22 +183,16 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
         let pair = frame.pair;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let views = pair.synthesis_views(self.options.guard_band)?;
-        if self.render_both(frame, &views)? {
+        if self.render_both(frame)? {
             return Ok(());
         }
         let from = pair.middle();
         let near = self.options.near_field.map(|distance| Selection::Nearer { from, distance });
         let transparent = [&views.source, &views.target].iter().any(|v| frame.scene.is_transparent_in(v));
         let over = OverlaySurfaces { near, transparent };
-        let selection = self.selection(frame);
-        let past = self.past.as_mut();
-        let history = past.map(|past| past.history(frame, &views, selection)).transpose()?;
         self.render_dominant(frame, &views, &over)?;
-        let depth_samples = self.depth_samples();
         let color = self.smooth.as_ref().map_or(self.targets.color(), |smooth| &smooth.image);
-        let depth = depth_samples.unwrap_or_else(|| self.targets.depth().raw());
-        let samples = self.targets.color_samples();
-        let source = Source { samples, history, ..Source::new(color.color(0).raw(), depth) };
+        let source = Source::new(color.color(0).raw(), self.targets.depth().raw());
         // Depends on the scene, not on the view: glass that comes into view then changes neither program nor targets.
         let has_glass = frame.scene.has_transparent();
         let reads_depth = over.is_any() || frame.wants_depth(other);
@@ -273,10 +217,6 @@ impl<R: StereoRenderer> FrameMethod for Synthesized<R> {
 
     fn guard_band_use(&self) -> Option<GuardBandUse> {
         self.auto_guard_band.as_ref()?.last()
-    }
-
-    fn history_use(&self) -> Option<HistoryUse> {
-        self.past.as_ref().map(Past::last)
     }
 
     fn has_rendered_both(&self) -> bool {

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use super::{Viewer, profiling};
 use crate::error::ViewerError;
 use crate::loading::SceneSource;
+use crate::options::{render_settings, stereo_options};
 use yoro_gl::GlError;
-use yoro_render::stereo::StereoOptions;
-use yoro_render::{RenderSettings, Renderer};
+use yoro_render::Renderer;
 use yoro_settings::Settings;
 
 impl Viewer {
@@ -27,10 +27,9 @@ impl Viewer {
     pub(crate) fn change(&mut self, settings: Settings, folders: &[PathBuf]) -> Result<(), ViewerError> {
         // Everything that a mistake in the settings can make fail comes first.
         let source = self.other_scene(&settings, folders)?;
-        let (render, method_differs) =
-            (RenderSettings::of_settings(&settings), settings.method != self.settings.method);
+        let (render, method_differs) = (render_settings(&settings), settings.method != self.settings.method);
         if let Some(attached) = &self.attached
-            && (method_differs || render != RenderSettings::of_settings(&self.settings))
+            && (method_differs || render != render_settings(&self.settings))
         {
             let choice = if method_differs { settings.method } else { self.method() };
             render.supports(choice.first(), attached.gl.capabilities())?;
@@ -93,16 +92,16 @@ impl Viewer {
         if let Some(attached) = &self.attached {
             self.method.choose_pipeline(&attached.gl, settings);
         }
-        let render = RenderSettings::of_settings(settings);
-        let renderer_differs = render != RenderSettings::of_settings(before);
+        let render = render_settings(settings);
+        let renderer_differs = render != render_settings(before);
         if let Some(attached) = &self.attached
             && let Some(shown) = self.scene.shown()
             && renderer_differs
         {
             shown.renderer = Renderer::new(&attached.gl, &render, &shown.scene)?;
         }
-        let options_differ = StereoOptions::of_settings(settings, settings.pipeline)
-            != StereoOptions::of_settings(before, before.pipeline);
+        let options_differ =
+            stereo_options(settings, settings.pipeline) != stereo_options(before, before.pipeline);
         if renderer_differs || options_differ || method_differs {
             self.make_method()?;
         }

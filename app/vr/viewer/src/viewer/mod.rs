@@ -31,17 +31,17 @@ use crate::caption::Caption;
 use crate::error::ViewerError;
 use crate::frame::SceneState;
 use crate::loading::SceneSource;
-use crate::menu::Menu;
 use crate::method_slot::MethodSlot;
+use crate::options::render_settings;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
-use crate::start::StartScreen;
 use crate::stream::{Stream, StreamExchange};
+use menu::Menu;
+use start::StartScreen;
 use yoro::eyes::Pose;
 use yoro_assets::Scene;
 use yoro_gl::{Context, GlError, PassTime, Profiling};
 use yoro_lenses::{Board, Hud};
-use yoro_render::RenderSettings;
 use yoro_render::stereo::MethodChoice;
 use yoro_settings::{Ipd, Settings};
 
@@ -59,7 +59,7 @@ struct Attached {
 /// The sources of the distance between the eyes.
 #[derive(Clone, Copy, Debug)]
 struct IpdSources {
-    /// SelectedMethod in the settings or by the user.
+    /// Chosen in the settings or by the user.
     chosen: Option<Ipd>,
     /// The display's own.
     native: Ipd,
@@ -286,7 +286,7 @@ impl Viewer {
         self.method.drop_made();
         self.scene.drop_shown();
         self.scene.set_viewpoints(&scene.viewpoints);
-        let shown = Shown::new(gl, scene, &RenderSettings::of_settings(&self.settings))?;
+        let shown = Shown::new(gl, scene, &render_settings(&self.settings))?;
         self.method.make_first(gl, &self.settings)?;
         log::info!("{}: {} triangles", shown.scene.name, shown.scene.triangle_count());
         self.scene.show(shown);

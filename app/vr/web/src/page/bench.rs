@@ -29,7 +29,7 @@ pub struct Bench {
 /// Returns a method's name in result files, the same as that of `yoro bench`.
 fn contender(method: Method) -> String {
     match method {
-        Method::Yoro => format!("{}-{}", method.name(), Pipeline::Gather.name()),
+        Method::Synthesized => format!("{}-{}", method.name(), Pipeline::Gather.name()),
         _ => method.name().to_owned(),
     }
 }

@@ -22,6 +22,7 @@ use yoro_assets::Scene;
 use yoro_gl::{Context, RenderTarget};
 use yoro_render::stereo::{Auto, MethodChoice, StereoFrame};
 use yoro_scenes::BUILTINS;
+use yoro_settings::Ipd;
 
 use self::error::sentence;
 use self::picture_show::PictureShow;
@@ -100,6 +101,21 @@ impl Page {
     #[wasm_bindgen(getter)]
     pub fn held(&self) -> Vec<f64> {
         vec![self.gl.object_count() as f64, self.gl.texture_bytes() as f64 / f64::from(1 << 20)]
+    }
+
+    /// Returns the defaults of the choices that all programs have, and the largest distance between the eyes, as JSON:
+    /// `{"method", "dominant", "ipd", "mostIpd"}`. Distances are in millimetres.
+    #[wasm_bindgen(js_name = defaultChoices)]
+    pub fn default_choices() -> String {
+        let Settings { method, dominant, ipd, .. } = Settings::default();
+        let millimetres = |ipd: Ipd| (ipd.metres() * 1e3).round();
+        serde_json::json!({
+            "method": method,
+            "dominant": dominant,
+            "ipd": millimetres(ipd),
+            "mostIpd": millimetres(Ipd::MAX),
+        })
+        .to_string()
     }
 
     /// Returns the methods for the renderer of these choices (JSON as for [`Page::configure`]) as JSON: `[{"name",
@@ -206,7 +222,7 @@ impl Page {
         let options = parse_options(options)?;
         match &mut self.content {
             Content::Pictures(pictures) => {
-                pictures.set_options(&self.gl, &self.show, options, self.settings.ipd.metres())
+                pictures.set_options(&self.show, options, self.settings.ipd.metres())
             }
             _ => Ok(()),
         }

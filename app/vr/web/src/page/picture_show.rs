@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use wasm_bindgen::JsError;
 use yoro::eyes::Eye;
-use yoro::synthesis::{self, Edges, Outputs, Source, Synthesis, SynthesisOptions};
+use yoro::synthesis::{self, Outputs, Source, Synthesis, SynthesisOptions};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Texture};
 use yoro_render::stereo::StereoFrame;
 
@@ -24,12 +24,6 @@ pub struct PictureShow {
     pub frame: StereoFrame,
 }
 
-/// Compiles the synthesis of eyes for this kind of edges.
-fn pipeline(gl: &Rc<Context>, edges: Edges) -> Result<Box<dyn Synthesis>, GlError> {
-    let options = SynthesisOptions { edges, ..SynthesisOptions::default() };
-    synthesis::create(gl, &options, Outputs::default())
-}
-
 impl PictureShow {
     /// Uploads the pictures and synthesizes the eyes.
     ///
@@ -47,7 +41,8 @@ impl PictureShow {
         let mut pictures = PictureShow {
             color: texture(Format::Rgba8, Filter::Linear)?,
             depth: texture(Format::R32F, Filter::Nearest)?,
-            pipeline: pipeline(gl, options.edges).map_err(sentence)?,
+            pipeline: synthesis::create(gl, &SynthesisOptions::default(), Outputs::default())
+                .map_err(sentence)?,
             frame: StereoFrame::new(gl, pair.size).map_err(sentence)?,
             pair,
             options,
@@ -61,20 +56,11 @@ impl PictureShow {
     ///
     /// # Errors
     /// A sentence; the options then stay unchanged.
-    pub fn set_options(
-        &mut self,
-        gl: &Rc<Context>,
-        show: &Show,
-        options: PictureOptions,
-        ipd: f32,
-    ) -> Result<(), JsError> {
-        if options.edges != self.options.edges {
-            self.pipeline = pipeline(gl, options.edges).map_err(sentence)?;
-        }
+    pub fn set_options(&mut self, show: &Show, options: PictureOptions, ipd: f32) -> Result<(), JsError> {
         let before = std::mem::replace(&mut self.options, options);
         let made = self.synthesize(show, ipd);
         if made.is_err() {
-            self.options = PictureOptions { edges: options.edges, ..before };
+            self.options = before;
         }
         made
     }

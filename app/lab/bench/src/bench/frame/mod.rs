@@ -6,19 +6,16 @@
 //! `executed` what the synthesis executes. `model` adds these up.
 
 mod lamps;
-mod layers;
 mod model;
 mod pass_table;
 mod traffic;
 
 use super::contender::Contender;
 use super::executed::Device;
-use yoro::synthesis::Edges;
 use yoro_render::RendererKind;
 use yoro_render::stereo::{Method, Pipeline};
 
 pub use lamps::Lamps;
-pub use layers::LayersMeter;
 pub use model::{FrameModel, SYNTHESIS, VERTICES, VERTICES_ONCE};
 pub use pass_table::pass_table;
 pub use traffic::{Piece, Traffic, pieces};
@@ -49,15 +46,10 @@ pub fn contenders(renderer: RendererKind) -> Vec<Contender> {
         Contender::Method(Method::Instanced),
         Contender::Method(Method::Hybrid),
     ];
-    match renderer {
-        RendererKind::Deferred => {
-            contenders.push(Contender::Method(Method::ShadingReprojection));
-            contenders.extend([Contender::MONO, Contender::Yoro(Pipeline::Gather)]);
-        }
-        RendererKind::Forward => {
-            contenders.push(Contender::MONO);
-            contenders.extend([Edges::Hard, Edges::Nearest, Edges::Multisample].map(Contender::Edges));
-        }
+    // Only the deferred renderer has it.
+    if renderer == RendererKind::Deferred {
+        contenders.push(Contender::Method(Method::ShadingReprojection));
     }
+    contenders.extend([Contender::MONO, Contender::Synthesized(Pipeline::Gather)]);
     contenders
 }

@@ -4,15 +4,13 @@ use std::collections::BTreeMap;
 
 use super::GPUS;
 use super::lamps::Lamps;
-use super::layers::LayerCounts;
 use super::traffic::{fragments, pieces};
 use crate::bench::costs::Costs;
 use crate::bench::executed::Device;
-use yoro::synthesis::Edges;
 use yoro_gl::{Command, Draw, ProgramRecipe, Shape};
 
-/// Prefixes of the names of synthesis passes. Their execution is counted by `bench::executed`.
-pub const SYNTHESIS: [&str; 2] = ["gather ", "layers "];
+/// The prefix of the names of synthesis passes. Their execution is counted by `bench::executed`.
+pub const SYNTHESIS: &str = "gather ";
 /// The name under which vertices are counted, like a pass.
 pub const VERTICES: &str = "vertices";
 /// The same with each vertex shaded once for both eyes, as multiview allows.
@@ -55,7 +53,7 @@ impl FrameModel {
             let Command::Draw(draw) = command else { continue };
             let count = shaded(draw);
             add(format!("fragments/{}", draw.pass), count);
-            if SYNTHESIS.iter().any(|prefix| draw.pass.starts_with(prefix)) {
+            if draw.pass.starts_with(SYNTHESIS) {
                 continue;
             }
             for (gpu, costs) in &self.costs {
@@ -69,19 +67,6 @@ impl FrameModel {
             }
         }
         Ok(frame)
-    }
-
-    /// Returns the cost of synthesis from layers per pixel of an eye, by metric.
-    ///
-    /// # Errors
-    /// If the table lacks a shader.
-    pub fn layers(&self, counts: &LayerCounts, edges: Edges) -> anyhow::Result<Vec<(String, f64)>> {
-        let mut metrics = Vec::new();
-        for (gpu, costs) in &self.costs {
-            let slots = counts.slots(costs, edges)?.into_iter();
-            metrics.extend(slots.map(|(pass, slots)| (format!("slots/{}/{pass}", gpu.gpu), slots)));
-        }
-        Ok(metrics)
     }
 
     /// Returns the costs of the same frame by multiview, from the record of [`yoro_render::stereo::Method::Instanced`],

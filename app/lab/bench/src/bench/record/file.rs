@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::{Header, Measurement, Record, RoundEnd, SceneFacts, Setting, Unsupported, VERSION};
+use super::{Conditions, Header, Measurement, Record, RoundEnd, SceneFacts, Unsupported, VERSION};
 use yoro_files::{self as files, FileError};
 
 /// The error when a file of results cannot be used.
@@ -146,15 +146,16 @@ impl Results {
     }
 
     /// Returns the number of finished rounds of a setting.
-    pub fn rounds(&self, setting: &Setting) -> u32 {
-        let ends = self.records.iter().filter(|r| matches!(r, Record::Round(end) if end.setting == *setting));
+    pub fn rounds(&self, conditions: &Conditions) -> u32 {
+        let ends =
+            self.records.iter().filter(|r| matches!(r, Record::Round(end) if end.conditions == *conditions));
         ends.count() as u32
     }
 
     /// True if a setting was left out, for example because it is too large for this machine. Then no contender was
     /// measured, and the file gives the reason.
-    pub fn is_left_out(&self, setting: &Setting) -> bool {
-        self.rounds(setting) > 0 && !self.measurements().any(|m| m.setting == *setting)
+    pub fn is_left_out(&self, conditions: &Conditions) -> bool {
+        self.rounds(conditions) > 0 && !self.measurements().any(|m| m.conditions == *conditions)
     }
 }
 

@@ -18,6 +18,8 @@ pub const MEMORY_MIB: &str = "memory_mib";
 
 /// PSNR of red, green and blue in dB; null for identical images.
 pub const PSNR: &str = "psnr";
+/// Bit rate of a stream in kbit/s (1000 bits) at 72 frames per second, without the first, intra frame; one value.
+pub const KBIT_S: &str = "kbit_s";
 /// Bits that a stream saves compared with two eyes at the same quantizer, in per cent; one value.
 pub const SAVED: &str = "saved";
 /// PSNR of luma in dB.
@@ -45,7 +47,7 @@ pub const VISIBLE_SSIM: &str = "visible_ssim";
 /// FLIP outside of the holes.
 pub const VISIBLE_FLIP: &str = "visible_flip";
 
-/// Flicker over all pixels, out of 255; see [`crate::metrics::Flicker`]. This metric and the following have one value
+/// Flicker over all pixels, out of 255; see [`yoro_metrics::Flicker`]. This metric and the following have one value
 /// per pair of consecutive frames, so one less than there are frames.
 pub const FLICKER: &str = "flicker";
 /// Flicker in the holes of either frame.
@@ -74,11 +76,6 @@ pub const GUARD_COLUMNS: &str = "guard_columns";
 pub const UNDRAWN: &str = "undrawn";
 /// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
 pub const BORDER_PSNR: &str = "border_psnr";
-
-/// Share of the uncovered pixels that the history shows, 0 to 1, as counted by the method two frames earlier.
-pub const SERVED: &str = "served";
-/// Number of additionally rendered pixels of the other eye, as a share of an eye's pixels.
-pub const RENDERED_BESIDES: &str = "rendered_besides";
 
 /// Share of the pixels whose tile has a law, 0 to 1.
 pub const LAW_PIXEL: &str = "law_pixel";

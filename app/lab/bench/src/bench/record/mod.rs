@@ -69,7 +69,7 @@ pub struct Header {
 
 /// The conditions that stay fixed while the contenders take turns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Setting {
+pub struct Conditions {
     /// Name of the suite.
     pub suite: String,
     /// Name of the scene.
@@ -83,7 +83,7 @@ pub struct Setting {
 }
 
 /// Writes the setting in the form `ipd, atrium, 65`.
-impl fmt::Display for Setting {
+impl fmt::Display for Conditions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {}", self.suite, self.scene)?;
         self.label.iter().try_for_each(|label| write!(f, ", {label}"))?;
@@ -94,9 +94,9 @@ impl fmt::Display for Setting {
 /// Facts about a setting's scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
-    /// The setting.
+    /// The conditions.
     #[serde(flatten)]
-    pub setting: Setting,
+    pub conditions: Conditions,
     /// The paper's scene that it corresponds to, or empty.
     pub stands_for: String,
     /// The shading style in use.
@@ -112,9 +112,9 @@ pub struct SceneFacts {
 /// The measurement of a contender in one round.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
-    /// The setting.
+    /// The conditions.
     #[serde(flatten)]
-    pub setting: Setting,
+    pub conditions: Conditions,
     /// The [name](crate::bench::Contender::name) of the contender.
     pub contender: String,
     /// The number of the round, counted from 0.
@@ -138,9 +138,9 @@ impl Measurement {
 /// A contender that cannot take part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unsupported {
-    /// The setting.
+    /// The conditions.
     #[serde(flatten)]
-    pub setting: Setting,
+    pub conditions: Conditions,
     /// The [name](crate::bench::Contender::name) of the contender.
     pub contender: String,
     /// The reason, as a sentence or a clause.
@@ -150,9 +150,9 @@ pub struct Unsupported {
 /// The end of a round, all of whose records are in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RoundEnd {
-    /// The setting.
+    /// The conditions.
     #[serde(flatten)]
-    pub setting: Setting,
+    pub conditions: Conditions,
     /// The number of the round, counted from 0.
     pub round: u32,
 }

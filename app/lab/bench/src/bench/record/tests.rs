@@ -22,20 +22,24 @@ fn header() -> Header {
     }
 }
 
-fn setting(point: f64) -> Setting {
-    Setting { suite: "ipd".into(), scene: "talk".into(), label: None, point: Some(point) }
+fn conditions(point: f64) -> Conditions {
+    Conditions { suite: "ipd".into(), scene: "talk".into(), label: None, point: Some(point) }
 }
 
 fn round(point: f64, round: u32) -> (Vec<Record>, RoundEnd) {
-    let mut measurement =
-        Measurement { setting: setting(point), contender: "mono".into(), round, values: BTreeMap::new() };
+    let mut measurement = Measurement {
+        conditions: conditions(point),
+        contender: "mono".into(),
+        round,
+        values: BTreeMap::new(),
+    };
     measurement.push(metric::PSNR, f64::INFINITY);
     measurement.push(metric::PSNR, 31.5);
     measurement.push(metric::SSIM, 0.95);
     let reason = "no GL_OVR_multiview2".into();
-    let unsupported = Unsupported { setting: setting(point), contender: "multiview".into(), reason };
+    let unsupported = Unsupported { conditions: conditions(point), contender: "multiview".into(), reason };
     let records = vec![Record::Unsupported(unsupported), Record::Measurement(measurement)];
-    (records, RoundEnd { setting: setting(point), round })
+    (records, RoundEnd { conditions: conditions(point), round })
 }
 
 fn append(writer: &mut Writer, point: f64, number: u32) {
@@ -54,7 +58,7 @@ fn rounds_come_back_as_they_were_written() {
     drop(writer);
     let results = Results::read(&path).unwrap();
     assert_eq!(results.header, header());
-    assert_eq!((results.rounds(&setting(62.5)), results.rounds(&setting(63.0))), (2, 0));
+    assert_eq!((results.rounds(&conditions(62.5)), results.rounds(&conditions(63.0))), (2, 0));
     let measurement = results.measurements().next().unwrap();
     assert_eq!(measurement.values[metric::PSNR], [None, Some(31.5)]);
     assert_eq!(measurement.finite(metric::PSNR).collect::<Vec<_>>(), [31.5]);
@@ -76,7 +80,11 @@ fn a_run_cut_off_anywhere_resumes() {
     for length in finished..whole.len() {
         fs::write(&path, &whole[..length]).unwrap();
         let (mut writer, results) = Writer::open(&path, &header()).unwrap();
-        assert_eq!((results.rounds(&setting(50.0)), results.rounds(&setting(55.0))), (1, 0), "{length}");
+        assert_eq!(
+            (results.rounds(&conditions(50.0)), results.rounds(&conditions(55.0))),
+            (1, 0),
+            "{length}"
+        );
         append(&mut writer, 55.0, 0);
         assert_eq!(fs::read(&path).unwrap(), whole, "{length}");
     }

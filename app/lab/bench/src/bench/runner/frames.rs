@@ -3,23 +3,22 @@
 use anyhow::Context as _;
 use image::RgbImage;
 
-use super::{Runner, left_out, milliseconds};
+use super::{Runner, eye_image, left_out, milliseconds};
 use crate::bench::contender::Contender;
-use crate::bench::entrant::{Entrant, FrameTime};
 use crate::bench::holes::HoleFinder;
+use crate::bench::job::{Job, Measure, Source};
+use crate::bench::prepared::{FrameTime, PreparedContender};
 use crate::bench::process;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::{Job, Measure, Source};
 use crate::bench::views::Views;
-use crate::metrics::Comparison;
-use crate::picture;
 use yoro_files::interrupt;
+use yoro_metrics::Comparison;
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{ImBufferSize, StereoFrame};
 
 /// The contenders that render the frames of a setting, and records of those that cannot.
 pub(super) struct Field {
-    pub entrants: Vec<(Contender, Entrant)>,
+    pub contenders: Vec<(Contender, PreparedContender)>,
     pub frame: StereoFrame,
     /// Records for the first round: facts, missing contenders, memory.
     pub first: Vec<Record>,
@@ -28,9 +27,9 @@ pub(super) struct Field {
 
 impl Field {
     pub fn measurements(&self, job: &Job, round: u32) -> Vec<Measurement> {
-        self.entrants
+        self.contenders
             .iter()
-            .map(|(contender, _)| Measurement::new(&job.setting, contender.name(), round))
+            .map(|(contender, _)| Measurement::new(&job.conditions, contender.name(), round))
             .collect()
     }
 }
@@ -49,7 +48,7 @@ impl Runner<'_> {
             return Ok(());
         }
         for round in done..job.rounds {
-            self.bar.set_message(format!("{}: round {} of {}", job.setting, round + 1, job.rounds));
+            self.bar.set_message(format!("{}: round {} of {}", job.conditions, round + 1, job.rounds));
             let mut measurements = field.measurements(job, round);
             let keep = quality && round == 0;
             let images = self.render_round(
@@ -62,7 +61,7 @@ impl Runner<'_> {
             )?;
             if keep {
                 self.compare(prepared, &views, &field, &images, &mut measurements)?;
-                for ((contender, _), images) in field.entrants.iter().zip(&images) {
+                for ((contender, _), images) in field.contenders.iter().zip(&images) {
                     self.save_picture(job, *contender, &images[0])?;
                 }
             }
@@ -92,19 +91,19 @@ impl Runner<'_> {
         mut times: Option<&mut Vec<Measurement>>,
         keep: bool,
     ) -> anyhow::Result<Vec<Vec<RgbImage>>> {
-        let count = field.entrants.len();
+        let count = field.contenders.len();
         let mut images = vec![Vec::new(); count];
         for (i, pair) in views.pairs.iter().enumerate() {
             for turn in 0..count {
                 interrupt::check()?;
                 let at = (turn + i + round as usize) % count;
-                let time = field.entrants[at].1.render_settled(prepared, pair, &mut field.frame)?;
+                let time = field.contenders[at].1.render_settled(prepared, pair, &mut field.frame)?;
                 if let Some(measurements) = &mut times {
                     measurements[at].push(metric::FRAME_MS, milliseconds(time.wall));
                     measurements[at].push(metric::CPU_MS, milliseconds(time.cpu));
                 }
                 if keep {
-                    images[at].push(picture::eye_image(&field.frame, pair.dominant.other()));
+                    images[at].push(eye_image(&field.frame, pair.dominant.other()));
                 }
                 self.bar.inc(1);
             }
@@ -124,7 +123,7 @@ impl Runner<'_> {
         let mut finder = HoleFinder::new(self.gl)?;
         for (i, pair) in views.pairs.iter().enumerate() {
             let holes = finder.find(prepared, pair)?;
-            for at in 1..field.entrants.len() {
+            for at in 1..field.contenders.len() {
                 interrupt::check()?;
                 let comparison = Comparison::of(&images[at][i], &images[0][i], Some(&holes))?;
                 measurements[at].push_comparison(&comparison);
@@ -140,9 +139,9 @@ impl Runner<'_> {
         field: &mut Field,
         measurements: &mut [Measurement],
     ) -> anyhow::Result<()> {
-        for ((_, entrant), measurement) in field.entrants.iter_mut().zip(measurements) {
+        for ((_, ready), measurement) in field.contenders.iter_mut().zip(measurements) {
             interrupt::check()?;
-            let passes = entrant.pass_times(prepared, &views.pairs[0], &mut field.frame)?;
+            let passes = ready.pass_times(prepared, &views.pairs[0], &mut field.frame)?;
             if self.gl.capabilities().timer_queries && !passes.is_empty() {
                 measurement.push(metric::GPU_MS, passes.iter().map(|(_, ms)| ms).sum());
             }
@@ -162,7 +161,7 @@ impl Runner<'_> {
         cost: bool,
     ) -> anyhow::Result<Field> {
         let mut field = Field {
-            entrants: Vec::new(),
+            contenders: Vec::new(),
             frame: StereoFrame::new(self.gl, job.eyes.size)?,
             first: vec![Record::Scene(views.facts(job, prepared))],
             memory: Vec::new(),
@@ -176,24 +175,25 @@ impl Runner<'_> {
             }
             options.anti_aliasing = job.anti_aliasing.unwrap_or(options.anti_aliasing);
             let before = self.gl.texture_bytes();
-            let ready = Entrant::new(self.gl, method, &job.render, &options).map_err(anyhow::Error::from);
-            let ready = ready.and_then(|mut entrant| {
+            let made =
+                PreparedContender::new(self.gl, method, &job.render, &options).map_err(anyhow::Error::from);
+            let made = made.and_then(|mut ready| {
                 if cost {
-                    entrant.render(prepared, &views.pairs[0], &mut field.frame)?;
+                    ready.render(prepared, &views.pairs[0], &mut field.frame)?;
                 }
-                Ok(entrant)
+                Ok(ready)
             });
             self.bar.inc(1);
-            match ready {
-                Ok(entrant) => {
-                    let mut memory = Measurement::new(&job.setting, contender.name(), 0);
+            match made {
+                Ok(ready) => {
+                    let mut memory = Measurement::new(&job.conditions, contender.name(), 0);
                     if cost {
                         let own = (self.gl.texture_bytes() - before) as f64 / f64::from(1 << 20);
                         memory.push(metric::TEXTURE_MIB, own);
                         memory.push(metric::MEMORY_MIB, base.map_or(f64::NAN, |base| base + own));
                     }
                     field.memory.push(memory);
-                    field.entrants.push((contender, entrant));
+                    field.contenders.push((contender, ready));
                 }
                 // Without the ground truth the others cannot be compared.
                 Err(error) if contender == Contender::CONVENTIONAL => return Err(error),
@@ -217,7 +217,8 @@ impl Runner<'_> {
         if !matches!(job.source, Source::Swarm { .. }) {
             return Ok(false);
         }
-        let (_, conventional) = field.entrants.first_mut().context("the conventional method comes first")?;
+        let (_, conventional) =
+            field.contenders.first_mut().context("the conventional method comes first")?;
         let FrameTime { wall, .. } = conventional.render(prepared, &views.pairs[0], &mut field.frame)?;
         if wall <= self.inputs.bounds.frame {
             return Ok(false);

@@ -15,16 +15,18 @@ use indicatif::ProgressBar;
 
 use super::blank::BlankFinder;
 use super::contender::Contender;
+use super::job::{Displaced, Job, Measure, Source};
 use super::pictures::picture_folder;
 use super::record::{Measurement, Record, Results, RoundEnd, Unsupported, Writer};
 use super::scenes::LazyObject;
-use super::suite::{Choices, Displaced, Job, Measure, Source, Suite};
+use super::suite::{Choices, Suite};
 use super::views::{self, Views};
 use crate::inpaint::PatcherOptions;
-use crate::picture;
+use yoro::eyes::Eye;
 use yoro_assets::{Scene, ShadingStyle, Viewpoint};
 use yoro_files::interrupt;
 use yoro_gl::Context;
+use yoro_render::stereo::StereoFrame;
 use yoro_render::{PreparedScene, RenderSettings};
 
 /// The approximate number of bytes per triangle while a scene is built and uploaded, for the limit on memory.
@@ -89,12 +91,12 @@ impl<'a> Runner<'a> {
     /// [`interrupt::Interrupted`] after Ctrl-C, and one sentence for any error that a user can remedy. The finished
     /// rounds are in the file in both cases.
     pub fn run(&mut self, job: &Job) -> anyhow::Result<()> {
-        let done = self.before.rounds(&job.setting);
-        if done >= job.rounds || self.before.is_left_out(&job.setting) {
+        let done = self.before.rounds(&job.conditions);
+        if done >= job.rounds || self.before.is_left_out(&job.conditions) {
             self.bar.inc(job.steps());
             return Ok(());
         }
-        self.bar.set_message(format!("{}: {}", job.setting, "preparing"));
+        self.bar.set_message(format!("{}: {}", job.conditions, "preparing"));
         interrupt::check()?;
         if let Some(reason) = self.too_large(job) {
             return self.leave_out(job, reason);
@@ -105,10 +107,8 @@ impl<'a> Runner<'a> {
             Measure::Frames { .. } => self.frames(job, &mut prepared, done),
             Measure::Flicker => self.flicker(job, &mut prepared),
             Measure::GuardBand => self.guard_band(job, &mut prepared),
-            Measure::History(motion) => self.history(job, motion, &mut prepared),
             Measure::Patchers => self.patchers(job, &mut prepared, done),
             Measure::Reprojection(displaced) => self.reprojection(job, displaced, &mut prepared),
-            Measure::Bandwidth => self.bandwidth(job, &mut prepared),
             Measure::Stream(late) => self.stream(job, late, &mut prepared),
             Measure::Executed(device) => self.executed(job, &device, &mut prepared),
             Measure::WholeFrames => self.whole_frames(job, &mut prepared),
@@ -140,19 +140,17 @@ impl<'a> Runner<'a> {
             // Only the start of the path has to show something; a later frame may look past the scene.
             Measure::Flicker
             | Measure::GuardBand
-            | Measure::History(_)
             | Measure::Reprojection(Displaced::Late(..))
-            | Measure::Stream(_)
-            | Measure::Bandwidth => Views::along_path(job, prepared, views::STEP)?.first(),
+            | Measure::Stream(_) => Views::along_path(job, prepared, views::STEP)?.first(),
         };
         BlankFinder::new(self.gl)?.refuse_blank(prepared, views.names.iter().cloned().zip(&views.pairs))
     }
 
     /// Records for every contender that the setting was left out, and why.
     fn leave_out(&mut self, job: &Job, reason: String) -> anyhow::Result<()> {
-        log::warn!("{} is left out: {reason}", job.setting);
+        log::warn!("{} is left out: {reason}", job.conditions);
         let records = job.contenders.iter().map(|contender| unsupported(job, *contender, reason.clone()));
-        self.writer.append(records.collect(), RoundEnd { setting: job.setting.clone(), round: 0 })?;
+        self.writer.append(records.collect(), RoundEnd { conditions: job.conditions.clone(), round: 0 })?;
         self.bar.inc(job.steps());
         Ok(())
     }
@@ -188,9 +186,9 @@ impl<'a> Runner<'a> {
 
     /// Saves a contender's other eye in the first view for the report, in the suites that show pictures.
     fn save_picture(&self, job: &Job, contender: Contender, image: &RgbImage) -> anyhow::Result<()> {
-        if ![Suite::Scenes, Suite::AntiAliasing, Suite::History, Suite::Patchers]
+        if ![Suite::Scenes, Suite::AntiAliasing, Suite::Patchers]
             .iter()
-            .any(|suite| suite.name() == job.setting.suite)
+            .any(|suite| suite.name() == job.conditions.suite)
         {
             return Ok(());
         }
@@ -199,8 +197,8 @@ impl<'a> Runner<'a> {
             Contender::MONO => "dominant".to_owned(),
             other => other.name(),
         };
-        let folder = picture_folder(&self.before.path, &job.setting);
-        Ok(picture::save_color(&folder.join(format!("{name}.png")), image)?)
+        let folder = picture_folder(&self.before.path, &job.conditions);
+        Ok(yoro_media::save_color(&folder.join(format!("{name}.png")), image)?)
     }
 
     /// Writes a round: the records that come with the first round, and all measurements with values.
@@ -213,7 +211,7 @@ impl<'a> Runner<'a> {
     ) -> anyhow::Result<()> {
         let filled = measurements.into_iter().filter(|measurement| !measurement.values.is_empty());
         records.extend(filled.map(Record::Measurement));
-        self.writer.append(records, RoundEnd { setting: job.setting.clone(), round })?;
+        self.writer.append(records, RoundEnd { conditions: job.conditions.clone(), round })?;
         Ok(())
     }
 }
@@ -225,13 +223,22 @@ impl SceneKey {
 }
 
 fn unsupported(job: &Job, contender: Contender, reason: String) -> Record {
-    Record::Unsupported(Unsupported { setting: job.setting.clone(), contender: contender.name(), reason })
+    Record::Unsupported(Unsupported {
+        conditions: job.conditions.clone(),
+        contender: contender.name(),
+        reason,
+    })
 }
 
 /// Returns the record of a contender that could not be created.
 fn left_out(job: &Job, contender: Contender, error: &impl std::fmt::Display) -> Record {
-    log::info!("{}: {contender} is left out: {error}", job.setting);
+    log::info!("{}: {contender} is left out: {error}", job.conditions);
     unsupported(job, contender, error.to_string())
+}
+
+/// Returns one eye of a finished frame.
+fn eye_image(frame: &StereoFrame, eye: Eye) -> RgbImage {
+    yoro_media::rgb_image(&frame.rgba(eye), frame.size())
 }
 
 fn milliseconds(time: Duration) -> f64 {

@@ -4,13 +4,13 @@ use anyhow::ensure;
 
 use super::{Runner, left_out, milliseconds};
 use crate::bench::contender::Contender;
+use crate::bench::job::Job;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::Job;
 use crate::bench::views::Views;
 use crate::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use crate::inpaint::{self, Patcher};
-use crate::metrics::Comparison;
 use yoro_files::interrupt;
+use yoro_metrics::Comparison;
 use yoro_render::PreparedScene;
 
 impl Runner<'_> {
@@ -42,10 +42,10 @@ impl Runner<'_> {
             patcher.patch(&groups[0].reprojected)?;
         }
         for round in done..job.rounds {
-            self.bar.set_message(format!("{}: round {} of {}", job.setting, round + 1, job.rounds));
+            self.bar.set_message(format!("{}: round {} of {}", job.conditions, round + 1, job.rounds));
             let mut measurements: Vec<Measurement> =
-                patchers.iter().map(|(c, _)| Measurement::new(&job.setting, c.name(), round)).collect();
-            let mut mono = Measurement::new(&job.setting, Contender::MONO.name(), round);
+                patchers.iter().map(|(c, _)| Measurement::new(&job.conditions, c.name(), round)).collect();
+            let mut mono = Measurement::new(&job.conditions, Contender::MONO.name(), round);
             for (i, group) in groups.iter().enumerate() {
                 let holes: Vec<bool> = group.reprojected.mask().iter().map(|m| *m == inpaint::HOLE).collect();
                 for turn in 0..patchers.len() {

@@ -8,16 +8,15 @@ use glam::Quat;
 use image::RgbImage;
 
 use super::{Runner, milliseconds};
+use crate::bench::job::{Displaced, Job};
 use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::{Displaced, Job};
 use crate::bench::views::Views;
-use crate::metrics::{Channels, SsimWindow, psnr, ssim};
-use crate::picture;
 use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
 use yoro::synthesis::{AnyView, Outputs, Source, Synthesis, SynthesisOptions};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
+use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
 use yoro_render::stereo::{self, Method, StereoFrame, StereoMethod, StereoOptions};
 use yoro_render::{PreparedScene, ViewTargets};
 
@@ -49,14 +48,14 @@ impl Runner<'_> {
         displaced: Displaced,
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
-        self.bar.set_message(job.setting.to_string());
+        self.bar.set_message(job.conditions.to_string());
         let mut reprojector = Reprojector::new(self.gl)?;
         let mut timer = Timer::new(self.gl, job)?;
         let (views, late) = match displaced {
             Displaced::Late(motion, late) => {
                 // The frames are spread over the motion, so that neighbours are not alike.
                 let all = Job { frames: job.frames * SPREAD + late, ..job.clone() };
-                (Views::of_motion(&all, prepared, motion)?.split_at_last(all.frames)[1].clone(), Some(late))
+                (Views::of_motion(&all, prepared, motion)?, Some(late))
             }
             Displaced::Canted => (Views::spread(job, prepared)?, None),
         };
@@ -71,10 +70,10 @@ impl Runner<'_> {
                 None => reprojector.canted(prepared, &canted(&views.pairs[i]))?,
             };
             if i == 0 {
-                let folder = picture_folder(&self.before.path, &job.setting);
+                let folder = picture_folder(&self.before.path, &job.conditions);
                 for (name, image) in shown.iter().map(|(way, image)| (*way, image)).chain([("truth", &truth)])
                 {
-                    picture::save_color(&folder.join(format!("{name}.png")), image)?;
+                    yoro_media::save_color(&folder.join(format!("{name}.png")), image)?;
                 }
             }
             for (way, image) in shown {
@@ -97,7 +96,7 @@ impl Runner<'_> {
 /// Returns the measurement of a contender, and creates it if there is none yet.
 fn measurement_of<'a>(all: &'a mut Vec<Measurement>, job: &Job, name: &str) -> &'a mut Measurement {
     let at = all.iter().position(|m| m.contender == name).unwrap_or_else(|| {
-        all.push(Measurement::new(&job.setting, name, 0));
+        all.push(Measurement::new(&job.conditions, name, 0));
         all.len() - 1
     });
     &mut all[at]
@@ -128,7 +127,7 @@ impl Timer {
         let options =
             StereoOptions { render_rate: Some(RENDER_RATE), policy: None, ..StereoOptions::default() };
         let create = |method| stereo::create(gl, method, &job.render, &options);
-        let methods = [create(Method::Conventional)?, create(Method::Yoro)?];
+        let methods = [create(Method::Conventional)?, create(Method::Synthesized)?];
         Ok(Timer { gl: gl.clone(), methods, frame: StereoFrame::new(gl, job.eyes.size)? })
     }
 
@@ -188,7 +187,7 @@ impl Reprojector {
 
     fn render(&mut self, prepared: &PreparedScene, view: &View) -> Result<(RgbImage, Source), GlError> {
         let rendered = prepared.renderer.render_all(&mut self.rendered, &prepared.scene, view)?;
-        let image = picture::rgb_image(&rendered.color.read_rgba8(0, [0, 0], view.size), view.size);
+        let image = yoro_media::rgb_image(&rendered.color.read_rgba8(0, [0, 0], view.size), view.size);
         Ok((image, Source::new(rendered.color.color(0).raw(), rendered.depth.raw())))
     }
 
@@ -196,7 +195,7 @@ impl Reprojector {
         self.shown.resize(warp.target_size)?;
         self.any_view.synthesize(source, warp, &Destination::whole(&self.shown))?;
         self.gl.finish();
-        Ok(picture::rgb_image(&self.shown.read_rgba8(0, [0, 0], warp.target_size), warp.target_size))
+        Ok(yoro_media::rgb_image(&self.shown.read_rgba8(0, [0, 0], warp.target_size), warp.target_size))
     }
 
     /// Shows the dominant eye of one frame at its pose in a later frame.

@@ -1,19 +1,17 @@
 //! The bits of a stream, and the quality of what it shows some frames later.
 
 use super::Runner;
-use crate::bench::bandwidth::metric::KBIT_S;
+use crate::bench::job::{Job, STREAM_QUANTIZERS};
 use crate::bench::motion::Motion;
 use crate::bench::pictures::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
-use crate::bench::suite::{Job, STREAM_QUANTIZERS};
 use crate::bench::views::{HEADSET_RATE, Views};
 use crate::dataset::{GroupOptions, GroupRenderer};
-use crate::metrics::{Channels, SsimWindow, psnr, ssim};
-use crate::picture;
 use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
 use image::RgbImage;
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
+use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
 use yoro_render::PreparedScene;
 use yoro_report::text::slug;
 use yoro_stream::{EyeView, ViewRequest};
@@ -35,18 +33,19 @@ impl Runner<'_> {
         late: usize,
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
-        self.bar.set_message(job.setting.to_string());
+        self.bar.set_message(job.conditions.to_string());
         let all = Job { frames: job.frames + late, ..job.clone() };
-        let views = Views::of_motion(&all, prepared, Motion::Walk)?.split_at_last(all.frames)[1].clone();
-        let [_, shown] = views.clone().split_at_last(job.frames);
-        let (then, now) = (&views.pairs[..job.frames], &shown.pairs);
+        let views = Views::of_motion(&all, prepared, Motion::Walk)?;
+        let then = &views.pairs[..job.frames];
+        let shown = views.clone().last(job.frames);
+        let now = &shown.pairs;
         let mut groups =
             GroupRenderer::new(self.gl, &GroupOptions { anti_aliasing: true, ..GroupOptions::default() })?;
         let mut eye = |prepared: &mut PreparedScene, pair: &EyePair, eye| -> anyhow::Result<RgbImage> {
             interrupt::check()?;
             Ok(groups.render_one(prepared, &pair.view(eye))?.0)
         };
-        let mut same = Measurement::new(&job.setting, "same image, not encoded", 0);
+        let mut same = Measurement::new(&job.conditions, "same image, not encoded", 0);
         let mut truths = Vec::new();
         for (then, now) in then.iter().zip(now) {
             let truth = [eye(prepared, now, Eye::Left)?, eye(prepared, now, Eye::Right)?];
@@ -55,10 +54,10 @@ impl Runner<'_> {
             truths.push(truth);
         }
         // The pictures that are saved show the left eye in the last frame.
-        let folder = picture_folder(&self.before.path, &job.setting);
+        let folder = picture_folder(&self.before.path, &job.conditions);
         let place = |name: &str| folder.join(format!("{}.png", slug(name)));
         if let Some([left, _]) = truths.last() {
-            picture::save_color(&place("truth"), left)?;
+            yoro_media::save_color(&place("truth"), left)?;
         }
         let mut measurements = vec![same];
         let mut receiver = Receiver::new(self.gl)?;
@@ -67,7 +66,7 @@ impl Runner<'_> {
             let mut baseline = None;
             for ((_, name), pictures) in MODES.iter().zip(&pictures) {
                 let pictures = pictures.as_ref().map_err(|error| anyhow::anyhow!("{error}"))?;
-                let mut measurement = Measurement::new(&job.setting, format!("{name}, QP {quantizer}"), 0);
+                let mut measurement = Measurement::new(&job.conditions, format!("{name}, QP {quantizer}"), 0);
                 let mut encoder = LiveEncoder::new(LiveEncoderKind::OpenH264, HEADSET_RATE as f32)?;
                 let mut decoder = Decoder::new()?;
                 let mut bytes = 0;
@@ -81,12 +80,12 @@ impl Runner<'_> {
                     let eyes = receiver.eyes(&decoded, &picture.content, picture.size, &now[i])?;
                     measure(&mut measurement, &eyes, &truths[i])?;
                     if i + 1 == pictures.len() {
-                        picture::save_color(&place(&measurement.contender), &eyes[0])?;
+                        yoro_media::save_color(&place(&measurement.contender), &eyes[0])?;
                     }
                     self.bar.inc(1);
                 }
                 let rate = bytes as f64 * 8e-3 * HEADSET_RATE / (pictures.len() - 1) as f64;
-                measurement.push(KBIT_S, rate);
+                measurement.push(metric::KBIT_S, rate);
                 match baseline {
                     Some(baseline) => measurement.push(metric::SAVED, (1.0 - rate / baseline) * 100.0),
                     None => baseline = Some(rate),

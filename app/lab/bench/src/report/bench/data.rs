@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::bench::record::{Header, Results, SceneFacts, Setting, metric};
+use crate::bench::record::{Conditions, Header, Results, SceneFacts, metric};
 use yoro_report::stats::{Summary, geometric_mean, mean, median, percentile, unique};
 
 /// The name of the contender that costs are compared with: two full renders.
@@ -23,7 +23,7 @@ pub struct Suite {
 /// One setting of a suite.
 pub struct SettingData {
     /// Suite, scene, and the point of a sweep.
-    pub setting: Setting,
+    pub conditions: Conditions,
     /// Triangles, style and frames; `None` if the file does not have them.
     pub facts: Option<SceneFacts>,
     /// The contenders in the order of measurement.
@@ -64,11 +64,6 @@ impl Measured {
     pub fn samples(&self, metric: &str) -> Vec<f64> {
         let values = self.rounds.iter().filter_map(|(_, values)| values.get(metric));
         values.flatten().filter_map(|value| *value).filter(|value| value.is_finite()).collect()
-    }
-
-    /// Returns the values of a metric in the first round that has it, in the order of the setting's frames.
-    pub fn by_frame(&self, metric: &str) -> &[Option<f64>] {
-        self.rounds.iter().find_map(|(_, values)| values.get(metric)).map_or(&[], Vec::as_slice)
     }
 
     /// Returns the names of the metrics with values.
@@ -123,7 +118,7 @@ impl SettingData {
 
     /// Returns the name for tables: the scene, and the point of a sweep.
     pub fn label(&self) -> String {
-        let Setting { suite, scene, label, point } = &self.setting;
+        let Conditions { suite, scene, label, point } = &self.conditions;
         match (label, point) {
             (Some(label), _) => format!("{scene}, {label}"),
             // All settings of this suite have the same number of lights.
@@ -186,7 +181,8 @@ impl Suite {
 
     /// Returns the points of a sweep in ascending order, each once.
     pub fn points(&self) -> Vec<f64> {
-        let mut points: Vec<f64> = self.settings.iter().filter_map(|setting| setting.setting.point).collect();
+        let mut points: Vec<f64> =
+            self.settings.iter().filter_map(|setting| setting.conditions.point).collect();
         points.sort_by(f64::total_cmp);
         points.dedup();
         points
@@ -194,18 +190,18 @@ impl Suite {
 
     /// Returns the labels of a sweep over something without numbers, in order.
     pub fn labels(&self) -> Vec<&str> {
-        unique(self.settings.iter().filter_map(|setting| setting.setting.label.as_deref()))
+        unique(self.settings.iter().filter_map(|setting| setting.conditions.label.as_deref()))
     }
 
     /// Returns the scenes, in order.
     pub fn scenes(&self) -> Vec<&str> {
-        unique(self.settings.iter().map(|setting| setting.setting.scene.as_str()))
+        unique(self.settings.iter().map(|setting| setting.conditions.scene.as_str()))
     }
 
     /// Returns a curve over the points of a sweep, with the mean over the scenes at each.
     pub fn curve(&self, value: impl Fn(&SettingData) -> Option<f64>) -> Vec<(f64, f64)> {
         let at = |point: f64| {
-            let here = self.settings.iter().filter(|setting| setting.setting.point == Some(point));
+            let here = self.settings.iter().filter(|setting| setting.conditions.point == Some(point));
             mean(here.filter_map(&value))
         };
         self.points().into_iter().filter_map(|point| Some((point, at(point)?))).collect()
@@ -228,9 +224,9 @@ pub fn suites(files: &[Results]) -> Vec<Suite> {
     for file in files {
         // The numbers of rounds continue from those of earlier files with the same settings.
         let mut first_round: BTreeMap<String, u32> = BTreeMap::new();
-        let settings = file.scenes().map(|facts| &facts.setting);
-        let settings = settings.chain(file.measurements().map(|m| &m.setting));
-        let settings: Vec<&Setting> = settings.chain(file.unsupported().map(|u| &u.setting)).collect();
+        let settings = file.scenes().map(|facts| &facts.conditions);
+        let settings = settings.chain(file.measurements().map(|m| &m.conditions));
+        let settings: Vec<&Conditions> = settings.chain(file.unsupported().map(|u| &u.conditions)).collect();
         for setting in settings {
             let key = format!("{setting:?}");
             if first_round.contains_key(&key) {
@@ -241,11 +237,11 @@ pub fn suites(files: &[Results]) -> Vec<Suite> {
             first_round.insert(key, rounds.max().unwrap_or(0));
         }
         for facts in file.scenes() {
-            entry(&mut suites, &file.header, &facts.setting).facts.get_or_insert_with(|| facts.clone());
+            entry(&mut suites, &file.header, &facts.conditions).facts.get_or_insert_with(|| facts.clone());
         }
         for measurement in file.measurements() {
-            let first = first_round.get(&format!("{:?}", measurement.setting)).copied().unwrap_or(0);
-            let data = entry(&mut suites, &file.header, &measurement.setting);
+            let first = first_round.get(&format!("{:?}", measurement.conditions)).copied().unwrap_or(0);
+            let data = entry(&mut suites, &file.header, &measurement.conditions);
             let at = data.contenders.iter().position(|m| m.name == measurement.contender);
             let at = at.unwrap_or_else(|| {
                 data.contenders.push(Measured { name: measurement.contender.clone(), rounds: Vec::new() });
@@ -254,7 +250,7 @@ pub fn suites(files: &[Results]) -> Vec<Suite> {
             data.contenders[at].rounds.push((first + measurement.round, measurement.values.clone()));
         }
         for refused in file.unsupported() {
-            let data = entry(&mut suites, &file.header, &refused.setting);
+            let data = entry(&mut suites, &file.header, &refused.conditions);
             if !data.unsupported.iter().any(|(name, _)| *name == refused.contender) {
                 data.unsupported.push((refused.contender.clone(), refused.reason.clone()));
             }
@@ -263,17 +259,22 @@ pub fn suites(files: &[Results]) -> Vec<Suite> {
     suites
 }
 
-fn entry<'a>(suites: &'a mut Vec<Suite>, header: &Header, setting: &Setting) -> &'a mut SettingData {
-    let found = suites.iter().position(|s| s.name == setting.suite && same_conditions(&s.header, header));
+fn entry<'a>(suites: &'a mut Vec<Suite>, header: &Header, conditions: &Conditions) -> &'a mut SettingData {
+    let found = suites.iter().position(|s| s.name == conditions.suite && same_conditions(&s.header, header));
     let suite = found.unwrap_or_else(|| {
-        suites.push(Suite { name: setting.suite.clone(), header: header.clone(), settings: Vec::new() });
+        suites.push(Suite { name: conditions.suite.clone(), header: header.clone(), settings: Vec::new() });
         suites.len() - 1
     });
     let settings = &mut suites[suite].settings;
-    let found = settings.iter().position(|s| s.setting == *setting);
+    let found = settings.iter().position(|s| s.conditions == *conditions);
     let index = found.unwrap_or_else(|| {
-        let setting = setting.clone();
-        settings.push(SettingData { setting, facts: None, contenders: Vec::new(), unsupported: Vec::new() });
+        let conditions = conditions.clone();
+        settings.push(SettingData {
+            conditions,
+            facts: None,
+            contenders: Vec::new(),
+            unsupported: Vec::new(),
+        });
         settings.len() - 1
     });
     &mut settings[index]

@@ -11,7 +11,6 @@ use std::path::{Component, Path, PathBuf};
 use minijinja::context;
 
 use crate::bench::{Results, picture_folder};
-use crate::picture;
 use crate::report::error::ReportError;
 use crate::report::page::{PICTURE_BUDGET, Pictures};
 use crate::report::run::{QUALITY_METHOD, Viewpoint};
@@ -312,13 +311,13 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
         _ => Eye::Right,
     };
     for facts in file.scenes() {
-        let folder = picture_folder(&file.path, &facts.setting);
+        let folder = picture_folder(&file.path, &facts.conditions);
         // The pictures of a stream do not include the dominant eye.
         if !["truth.png", "dominant.png"].iter().all(|name| folder.join(name).is_file()) {
             continue;
         }
-        let load = |name: &str| picture::load_color(&folder.join(format!("{name}.png")));
-        let names = file.measurements().filter(|m| m.setting == facts.setting && m.round == 0);
+        let load = |name: &str| yoro_media::load_color(&folder.join(format!("{name}.png")));
+        let names = file.measurements().filter(|m| m.conditions == facts.conditions && m.round == 0);
         let names = names.map(|measurement| measurement.contender.as_str());
         let mut views = Vec::new();
         for name in names.filter(|name| ![sections::CONVENTIONAL, sections::MONO].contains(name)) {
@@ -330,7 +329,7 @@ fn load_pictures(file: &Results) -> Result<Vec<Pictured>, ReportError> {
         let (dominant, truth) = (load("dominant")?, load("truth")?);
         let viewpoint = Viewpoint::measure(frame, dominant_eye, dominant, truth, views)
             .map_err(|source| ReportError::Sizes { path: folder.clone(), source })?;
-        let setting = &facts.setting;
+        let setting = &facts.conditions;
         let point = setting.label.clone().or(setting.point.map(|point| point.to_string()));
         let note = match point {
             Some(point) => format!("{}, {point}", setting.suite),

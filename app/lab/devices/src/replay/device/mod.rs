@@ -417,7 +417,7 @@ impl SimulatedDevice {
         let plugged = Some(i32::from(plugged) * 2);
         let current_ma = current_raw.and_then(|raw| application.normalizer.add(raw, Some(status), plugged));
         let settings = &application.settings;
-        let is_yoro = application.method == Method::Yoro.name();
+        let is_yoro = application.method == Method::Synthesized.name();
         Line {
             time_s: 0.0,
             method: application.method.clone(),

@@ -5,11 +5,10 @@ use super::section::Section;
 use super::tables::{push_refusals, sweep_table};
 use crate::bench::record::metric;
 use crate::report::bench::data::Suite;
-use yoro_report::bd_rate::line_through;
 use yoro_report::grid::{Cell, Table};
 use yoro_report::paper::{self, COMPLEXITY};
 use yoro_report::plot::{Axis, Panel, Series};
-use yoro_report::stats::{geometric_mean, mean};
+use yoro_report::stats::{geometric_mean, line_through, mean};
 use yoro_report::text::{fixed, short_count};
 
 /// The paper's frame times of conventional rendering, for the triangles of [`COMPLEXITY`].

@@ -23,7 +23,8 @@ impl<'a> Entry<'a> {
     fn all(suite: &'a Suite) -> Vec<Entry<'a>> {
         let mut entries = Vec::new();
         for renderer in suite.labels() {
-            let of_renderer = suite.settings.iter().filter(|s| s.setting.label.as_deref() == Some(renderer));
+            let of_renderer =
+                suite.settings.iter().filter(|s| s.conditions.label.as_deref() == Some(renderer));
             for name in unique(of_renderer.flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()))) {
                 let entry = Entry { suite, renderer, name, once: false };
                 if name == frame::MULTIVIEW {
@@ -50,7 +51,7 @@ impl<'a> Entry<'a> {
 
     fn settings(&self) -> impl Iterator<Item = &'a SettingData> {
         let renderer = self.renderer;
-        self.suite.settings.iter().filter(move |s| s.setting.label.as_deref() == Some(renderer))
+        self.suite.settings.iter().filter(move |s| s.conditions.label.as_deref() == Some(renderer))
     }
 
     /// Returns the value of each scene.
@@ -240,10 +241,10 @@ fn passes(entries: &[Entry]) -> Table {
             table.push_grouped(cells, i == 0);
         }
     }
-    let synthesis = SYNTHESIS.map(str::trim_end).join(" and ");
     let [width, height] = frame::SIZE;
     table.note = format!(
-        "Passes of the synthesis begin with {synthesis}. Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels."
+        "Passes of the synthesis begin with {}. Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels.",
+        SYNTHESIS.trim_end()
     );
     table
 }

@@ -1,4 +1,4 @@
-//! Suites whose settings have a label: the shading style, or the content of edges.
+//! Suites whose settings have a label: the shading style, or the kind of anti-aliasing.
 
 use super::cells::{CONVENTIONAL, cell};
 use super::dots::papers_mark;
@@ -49,11 +49,11 @@ pub fn anti_aliasing(suite: &Suite) -> Section {
         "anti-aliasing",
         "Anti-aliasing",
         "Each synthesized eye against the same eye rendered in the same way: with one sample per pixel, with FXAA \
-         after synthesis, and with MSAA, where the synthesis takes edges as hard, or reads the nearest or the first \
-         sample's depth, or the depth of all samples.",
+         after synthesis, and with MSAA, where synthesis takes the mean colour and the nearest depth of each pixel's \
+         samples.",
     );
     let labels = Labels {
-        column: "<edges",
+        column: "<anti-aliasing",
         title: "PSNR in dB / SSIM / frame time over two renders, means over the scenes",
         details: "Every scene in full",
         papers: &[],
@@ -66,7 +66,7 @@ pub fn anti_aliasing(suite: &Suite) -> Section {
 fn fill(mut section: Section, suite: &Suite, labels: &Labels) -> Section {
     let contenders = suite.compared(metric::SSIM);
     let labelled = |label: &str| -> Vec<&SettingData> {
-        suite.settings.iter().filter(|setting| setting.setting.label.as_deref() == Some(label)).collect()
+        suite.settings.iter().filter(|setting| setting.conditions.label.as_deref() == Some(label)).collect()
     };
     let value = |label: &str, contender: &str, name: &str| {
         mean(labelled(label).iter().filter_map(|setting| setting.find(contender)?.mean(name)))

@@ -1,6 +1,5 @@
 //! The report's sections, one file per experiment: figures with the paper's curves beside ours, and tables.
 
-mod bandwidth;
 mod cells;
 mod complexity;
 mod dots;
@@ -27,7 +26,7 @@ type MakeSection = fn(&Suite) -> Section;
 
 /// The suites in the paper's order, with the functions that make their sections. A suite can have several, because the
 /// paper treats frame time, quality and overhead of the same eight scenes in three places.
-const ORDER: [(bench::Suite, MakeSection); 15] = [
+const ORDER: [(bench::Suite, MakeSection); 14] = [
     (bench::Suite::Scenes, frame_time::section),
     (bench::Suite::Complexity, complexity::section),
     (bench::Suite::Scenes, quality::section),
@@ -41,7 +40,6 @@ const ORDER: [(bench::Suite, MakeSection); 15] = [
     (bench::Suite::Resolution, sweeps::resolution),
     (bench::Suite::AntiAliasing, labels::anti_aliasing),
     (bench::Suite::Flicker, flicker::section),
-    (bench::Suite::Bandwidth, bandwidth::section),
     (bench::Suite::Stream, stream::section),
 ];
 

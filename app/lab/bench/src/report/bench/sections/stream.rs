@@ -3,8 +3,7 @@
 use super::cells::{cell, percent, psnr_ssim};
 use super::section::Section;
 use super::tables::push_refusals;
-use crate::bench::bandwidth::metric::KBIT_S;
-use crate::bench::record::metric::SAVED;
+use crate::bench::record::metric::{KBIT_S, SAVED};
 use crate::report::bench::data::{SettingData, Suite};
 use yoro_report::grid::{Cell, Table};
 use yoro_report::paper;
@@ -37,7 +36,7 @@ fn bits(suite: &Suite) -> Table {
     for name in suite.measured(KBIT_S) {
         let mut cells = vec![Cell::plain(name)];
         for scene in &scenes {
-            let setting = suite.settings.iter().find(|setting| setting.setting.scene == *scene);
+            let setting = suite.settings.iter().find(|setting| setting.conditions.scene == *scene);
             let measured = setting.and_then(|setting| setting.find(name));
             let value = |metric: &str| measured.and_then(|measured| measured.mean(metric));
             let share = value(SAVED);

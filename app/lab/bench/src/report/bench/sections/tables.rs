@@ -125,7 +125,7 @@ pub fn sweep_table(
     for point in suite.points() {
         let mut cells = vec![Cell::plain(label(point))];
         for name in &contenders {
-            let here = suite.settings.iter().filter(|setting| setting.setting.point == Some(point));
+            let here = suite.settings.iter().filter(|setting| setting.conditions.point == Some(point));
             let value = |setting: &SettingData| {
                 let measured = setting.find(name)?;
                 if times { measured.median(metric_name) } else { measured.mean(metric_name) }

@@ -1,10 +1,13 @@
 //! The start screen: handles touches, draws itself, and lists the viewers to choose from.
 
+mod logic;
+
 use glam::{Vec2, Vec3};
 
 use super::Viewer;
 use crate::event::Action;
-use crate::start::{Hint, OTHER, Tile, VIEWERS};
+pub(super) use logic::StartScreen;
+use logic::{Hint, OTHER, Tile, VIEWERS};
 use yoro_gl::Destination;
 use yoro_lenses::{Rotation, ViewerParams, tile_at};
 

@@ -1,10 +1,13 @@
 //! The menu: opens it, performs what the user chooses, and draws it.
 
+mod logic;
+
 use super::input::IPD_STEP;
 use super::{Viewer, gl_with_scene};
 use crate::error::ViewerError;
 use crate::event::Action;
-use crate::menu::{Choice, Item, Look};
+pub(super) use logic::Menu;
+use logic::{Choice, Item, Look};
 use yoro::eyes::{Eye, EyePair, Pose};
 use yoro_gl::Destination;
 use yoro_settings::{Setting, Settings};

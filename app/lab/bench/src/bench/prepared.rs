@@ -1,18 +1,19 @@
-//! A contender that is ready to render.
+//! What is ready to be measured: a stereo method, and a synthesis alone.
 
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::process;
-use yoro::eyes::{EyePair, GuardBand};
-use yoro_gl::{Context, GlError, Profiling};
+use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
+use yoro::synthesis::{Source, Synthesis};
+use yoro_gl::{Context, Destination, GlError, Profiling, RenderTarget};
 use yoro_render::stereo::{
-    self, GuardBandUse, HistoryUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
+    self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
 };
-use yoro_render::{PreparedScene, RenderSettings};
+use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
 
 /// A stereo method with its programs and targets, ready to be measured.
-pub struct Entrant {
+pub struct PreparedContender {
     gl: Rc<Context>,
     method: Box<dyn StereoMethod>,
     /// The number of frames that the method needs to settle at a new place.
@@ -28,18 +29,22 @@ pub struct FrameTime {
     pub cpu: Duration,
 }
 
-impl Entrant {
+impl PreparedContender {
     /// Compiles the method's programs.
     pub fn new(
         gl: &Rc<Context>,
         method: Method,
         settings: &RenderSettings,
         options: &StereoOptions,
-    ) -> Result<Entrant, GlError> {
+    ) -> Result<PreparedContender, GlError> {
         // The third frame is the first to use the results of the first: the guard band's width, or that all is near.
         let looks = matches!(options.guard_band, GuardBand::Auto(_)) || options.policy.is_some();
-        let unsettled = if method == Method::Yoro && looks { 2 } else { 0 };
-        Ok(Entrant { gl: gl.clone(), method: stereo::create(gl, method, settings, options)?, unsettled })
+        let unsettled = if method == Method::Synthesized && looks { 2 } else { 0 };
+        Ok(PreparedContender {
+            gl: gl.clone(),
+            method: stereo::create(gl, method, settings, options)?,
+            unsettled,
+        })
     }
 
     /// Renders a frame at a new place after the method has settled there, and waits for it.
@@ -83,11 +88,6 @@ impl Entrant {
         self.method.guard_band()
     }
 
-    /// Returns [`StereoMethod::history`].
-    pub fn history(&self) -> Option<HistoryUse> {
-        self.method.history()
-    }
-
     /// Renders a frame after settling, with a timer around each pass. Returns the passes' names in the order of their
     /// first run, and milliseconds. The runs of a pass within a frame are added up. Empty if the driver cannot measure
     /// passes ([`Context::take_pass_times`]).
@@ -113,4 +113,22 @@ impl Entrant {
         }
         Ok(times)
     }
+}
+
+/// Renders the source of some views and synthesizes the other eye into `to`, which is resized to that eye.
+///
+/// # Errors
+/// [`StereoError`] if GL refuses.
+pub(super) fn synthesize(
+    pipeline: &mut dyn Synthesis,
+    targets: &mut ViewTargets,
+    prepared: &mut PreparedScene,
+    views: &SynthesisViews,
+    to: &mut RenderTarget,
+) -> Result<(), StereoError> {
+    let PreparedScene { renderer, scene } = prepared;
+    let rendered = renderer.render(targets, scene, &views.source, Selection::All)?;
+    to.resize(views.target.size)?;
+    let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
+    Ok(pipeline.synthesize(source, &views.warp, &Destination::whole(to))?)
 }

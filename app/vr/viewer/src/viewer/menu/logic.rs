@@ -16,7 +16,7 @@ const STEPS: f32 = 24.0;
 
 /// A tile of the menu. The variants are in the order of the tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Item {
+pub(in crate::viewer) enum Item {
     Recenter,
     Scene,
     Viewpoint,
@@ -49,11 +49,11 @@ impl Item {
 }
 
 /// A tile and which half of it: 1 for the right half (next, more), -1 for the left half (previous, less).
-pub(crate) type Choice = (Item, isize);
+pub(in crate::viewer) type Choice = (Item, isize);
 
 /// The menu, whether open or not.
 #[derive(Default)]
-pub(crate) struct Menu {
+pub(in crate::viewer) struct Menu {
     /// The pose of the open panel, relative to the viewpoint.
     board: Option<Pose>,
     /// The head's pose in the last frame.
@@ -174,7 +174,7 @@ impl Menu {
 
 /// The outcome of [`Menu::look`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Look {
+pub(in crate::viewer) enum Look {
     Nothing,
     /// The menu was opened.
     Open,

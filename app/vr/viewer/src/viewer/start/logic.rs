@@ -17,9 +17,9 @@ const FLAT: f32 = 0.94;
 /// How long the phone has to be upright for the start screen to appear, in nanoseconds.
 const UPRIGHT_NS: i64 = 1_000_000_000;
 /// The number of viewers for which the start screen has tiles.
-pub(crate) const VIEWERS: usize = 4;
+pub(in crate::viewer) const VIEWERS: usize = 4;
 /// Tells the user how to choose another viewer without yoro's own scan.
-pub(crate) const OTHER: &str = "Another viewer: scan the code on it with your camera application and share its address \
+pub(in crate::viewer) const OTHER: &str = "Another viewer: scan the code on it with your camera application and share its address \
     with yoro, or share a picture of the code. It has no code: try v2, then v1.";
 /// Tells the user what to do while yoro scans.
 const SCAN: &str = "Hold the phone a hand's width before the code on the viewer, in even light. Or scan it with your \
@@ -32,7 +32,7 @@ const EXPLANATION: [&str; 2] = [
 
 /// A tile of the start screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tile {
+pub(in crate::viewer) enum Tile {
     /// The viewer with this index.
     Viewer(usize),
     Scan,
@@ -56,7 +56,7 @@ impl Tile {
 
 /// What the HUD tells the user once the scene is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Hint {
+pub(in crate::viewer) enum Hint {
     #[default]
     None,
     /// How the menu is opened.
@@ -79,7 +79,7 @@ impl Hint {
 
 /// The start screen, whether shown or not.
 #[derive(Default)]
-pub(crate) struct StartScreen {
+pub(in crate::viewer) struct StartScreen {
     /// True if a person has started the application by hand; the start screen appears only then.
     pub is_offered: bool,
     pub is_shown: bool,

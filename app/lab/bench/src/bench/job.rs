@@ -1,0 +1,107 @@
+//! A job: what is measured under one set of conditions.
+
+use super::contender::Contender;
+use super::executed::Device;
+use super::motion::Motion;
+use super::record::Conditions;
+use yoro::eyes::EyeOptions;
+use yoro_assets::ShadingStyle;
+use yoro_render::RenderSettings;
+use yoro_render::stereo::AntiAliasing;
+
+/// H.264's quantizers in the suite `stream`.
+pub(super) const STREAM_QUANTIZERS: [u8; 3] = [20, 26, 32];
+
+/// The kind of measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measure {
+    /// Frames at viewpoints.
+    Frames {
+        /// Frame times, pass times, CPU time and memory.
+        cost: bool,
+        /// The similarity to the ground truth.
+        quality: bool,
+    },
+    /// Flicker along a part of the camera path.
+    Flicker,
+    /// Use of the guard band along a part of the camera path.
+    GuardBand,
+    /// Patchers on reprojected images.
+    Patchers,
+    /// One render shown at another pose.
+    Reprojection(Displaced),
+    /// A stream whose frames are shown this number of frames later, at 72 frames per second.
+    Stream(usize),
+    /// Instructions that `gather` executes: an estimate for a GPU that is not available here.
+    Executed(Device),
+    /// The cost of whole frames: an estimate for several GPUs.
+    WholeFrames,
+}
+
+/// The pose at which a render is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Displaced {
+    /// The pose of the same eye this number of frames later, at 72 frames per second.
+    Late(Motion, usize),
+    /// The pose of the other of two canted eyes.
+    Canted,
+}
+
+/// The source of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A built-in scene or a file.
+    Named(String),
+    /// The scene of [`super::Object::swarm`].
+    Swarm {
+        /// The number of objects.
+        copies: usize,
+        /// The number of objects in the largest swarm of the suite.
+        places: usize,
+    },
+    /// The scene of [`super::Object::at_distance`], with the distance in metres.
+    Object(f32),
+}
+
+/// One setting with everything that is needed to measure it.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The name in the results.
+    pub conditions: Conditions,
+    /// The source of the scene.
+    pub source: Source,
+    /// A style that replaces the scene's own.
+    pub style: Option<ShadingStyle>,
+    /// The renderer's settings.
+    pub render: RenderSettings,
+    /// The eyes.
+    pub eyes: EyeOptions,
+    /// The anti-aliasing of all contenders; `None` leaves it to each method.
+    pub anti_aliasing: Option<AntiAliasing>,
+    /// The divisor of the ImBuffer's resolution.
+    pub imbuffer: u32,
+    /// The kind of measurement.
+    pub measure: Measure,
+    /// The contenders. If frames are measured, the conventional method is the first.
+    pub contenders: Vec<Contender>,
+    /// The number of rounds.
+    pub rounds: u32,
+    /// The number of frames: viewpoints spread over the camera path, or frames along it.
+    pub frames: usize,
+}
+
+impl Job {
+    /// Returns the number of steps of progress: the preparation, and each contender's frames in each round.
+    pub fn steps(&self) -> u64 {
+        if let Measure::Stream(_) = self.measure {
+            return (self.frames * 3 * STREAM_QUANTIZERS.len()) as u64;
+        }
+        if let Measure::Executed(_) | Measure::Reprojection(_) = self.measure {
+            return self.frames as u64;
+        }
+        if self.measure == Measure::WholeFrames {
+            return (self.frames * self.contenders.len()) as u64;
+        }
+        (u64::from(self.rounds) * self.frames as u64 + 1) * self.contenders.len() as u64
+    }
+}

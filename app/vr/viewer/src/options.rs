@@ -1,0 +1,81 @@
+//! What the renderer and the stereo methods get from the viewer's settings.
+
+use yoro_render::RenderSettings;
+use yoro_render::stereo::{NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions};
+use yoro_settings::{Settings, Ssao};
+
+/// Returns the renderer's settings for those of the viewer.
+pub fn render_settings(settings: &Settings) -> RenderSettings {
+    RenderSettings {
+        renderer: settings.renderer,
+        msaa: settings.msaa,
+        depth_bits: settings.depth_bits,
+        shadow_map_size: settings.shadow_map,
+        ssao: settings.ssao != Ssao::Off,
+        ssao_half_size: settings.ssao == Ssao::Half,
+        bloom: settings.bloom,
+        point_lights: settings.point_lights,
+        ..RenderSettings::default()
+    }
+}
+
+/// Returns the options of the methods for the viewer's settings. `pipeline` may differ from that of the settings if the
+/// driver does not support the latter.
+pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions {
+    let options = StereoOptions::of_pipeline(pipeline);
+    let paper = PaperOptions {
+        imbuffer: settings.imbuffer,
+        linear_interpolation: settings.linear_interpolation,
+        kernel_height: settings.kernel_height,
+        strict: settings.strict,
+    };
+    StereoOptions {
+        synthesis: PipelineOptions { paper, ..options.synthesis },
+        guard_band: settings.guard_band.unwrap_or(options.guard_band),
+        anti_aliasing: settings.anti_aliasing.unwrap_or(options.anti_aliasing),
+        near_field: settings.near_field,
+        policy: settings.switch.then(NearFieldPolicy::default),
+        render_rate: settings.render_rate,
+        split_disparity: settings.split_disparity,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every option of the methods must have a setting.
+    #[test]
+    fn every_stereo_option_has_a_setting() {
+        let changed = Settings::resolve(
+            None,
+            [
+                "imbuffer=4",
+                "linear-interpolation=false",
+                "kernel-height=5",
+                "strict=true",
+                "guard-band=40px",
+                "anti-aliasing=off",
+                "near-field=1",
+                "switch=false",
+                "render-rate=36",
+                "split-disparity=2.5",
+            ],
+        );
+        let [changed, default] = [changed.unwrap(), Settings::default()]
+            .map(|s| serde_json::json!(stereo_options(&s, Pipeline::Paper)));
+        assert_eq!(
+            serde_json::json!(stereo_options(&Settings::default(), Pipeline::Gather)),
+            serde_json::json!(StereoOptions::default())
+        );
+        fn unchanged(path: &str, a: &serde_json::Value, b: &serde_json::Value) -> Vec<String> {
+            match (a.as_object(), b.as_object()) {
+                (Some(a), Some(b)) => {
+                    a.iter().flat_map(|(key, a)| unchanged(&format!("{path}.{key}"), a, &b[key])).collect()
+                }
+                _ => (a == b).then(|| path.to_owned()).into_iter().collect(),
+            }
+        }
+        assert_eq!(unchanged("", &changed, &default), [".synthesis.pipeline"]);
+    }
+}
