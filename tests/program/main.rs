@@ -1,8 +1,6 @@
 //! The program `yoro` from end to end.
 
 mod browser;
-#[path = "../src/monado.rs"]
-mod monado;
 mod program;
 
 mod bench;

@@ -41,7 +41,6 @@ fn paths(text: &str) -> impl Iterator<Item = &str> {
         "scenes/",
         "shaders-glsl/",
         "tests/",
-        "tools/",
         "training/",
         "xtask/",
     ];

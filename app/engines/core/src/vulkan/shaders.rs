@@ -1,4 +1,4 @@
-//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo tools spirv`.
+//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain spirv`.
 
 use crate::synthesis::{Edges, PassSet};
 
@@ -70,7 +70,7 @@ pub(super) fn march(edges: Edges, passes: PassSet, depth: bool, history: bool) -
 mod tests {
     use std::path::Path;
 
-    use yoro_tools::compiled::{self, Compiled, Source};
+    use yoro_test_support::compiled::{self, Compiled, Source};
 
     use crate::vulkan::modules::{MODULES, Module};
 
@@ -90,7 +90,7 @@ mod tests {
             folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv"),
             ending: "spv",
             compiler: compiled::glslang(&ARGUMENTS),
-            command: "cargo tools spirv",
+            command: "cargo xtask maintain spirv",
             compile: |source: &Source| compiled::spirv(source, &ARGUMENTS),
         };
         let sources = MODULES.each_ref().map(source);
