@@ -1,6 +1,5 @@
 //! The program `yoro` from end to end.
 
-mod browser;
 mod program;
 
 mod bench;
@@ -24,3 +23,5 @@ mod video;
 mod view;
 mod web;
 mod xr;
+
+use yoro_test_support::browser;

@@ -1,9 +1,8 @@
-//! Code shared by the tests in `tests/tests`: contexts, a small scene, golden images, all shader programs, multisample
-//! textures. It takes a context and returns pictures and programs. No crate of the product may depend on it.
+//! Code shared by the tests in `tests/tests`: contexts, a small scene, golden images, all shader programs. It takes a
+//! context and returns pictures and programs. No crate of the product may depend on it.
 
 pub mod golden;
 pub mod programs;
-pub mod samples;
 pub mod scene;
 
 use std::rc::Rc;

@@ -5,8 +5,8 @@ use std::rc::Rc;
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::synthesis::{Edges, SOURCE_MAP_HOLE};
 use yoro_gl::Context;
+use yoro_test_support::samples::{GIVEN, STANDARD, Samples, example, on_opengl};
 use yoro_tests::on_every_backend;
-use yoro_tests::samples::{GIVEN, STANDARD, Samples, example, on_opengl};
 
 const LINK: f64 = 0.5;
 const TILE: [usize; 2] = [16, 8];

@@ -12,8 +12,8 @@ use yoro_bench::metrics::{Channels, Quality};
 use yoro_context::Headless;
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget, Texture};
 use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_test_support::samples::{Multisampled, STANDARD, Samples};
 use yoro_tests::backends;
-use yoro_tests::samples::{Multisampled, STANDARD, Samples};
 
 use super::layers::{forward, march, multisample_layers, spans};
 

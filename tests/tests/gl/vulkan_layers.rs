@@ -11,10 +11,9 @@ use yoro::vulkan::{
     Frame, Gather, Host, ImageState, LayerImage, Options, SourceImages, TargetImages, VulkanError,
 };
 use yoro_context::Headless;
+use yoro_test_support::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
+use yoro_test_support::samples::{GIVEN, Samples, example, on_opengl};
 use yoro_tests::backends;
-use yoro_tests::samples::{GIVEN, Samples, example, on_opengl};
-
-use super::vulkan::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
 
 const COLOR: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;

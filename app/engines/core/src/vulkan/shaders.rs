@@ -71,8 +71,7 @@ mod tests {
     use std::path::Path;
 
     use yoro_test_support::compiled::{self, Compiled, Source};
-
-    use crate::vulkan::modules::{MODULES, Module};
+    use yoro_test_support::modules::{MODULES, Module};
 
     /// SPIR-V for Vulkan 1.0, optimized for size, without names and line numbers.
     const ARGUMENTS: [&str; 3] = ["-V", "-Os", "-g0"];

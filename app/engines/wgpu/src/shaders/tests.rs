@@ -1,15 +1,12 @@
 //! The modules match the present shaders, and every back end accepts them.
 
-#[path = "../../../core/src/vulkan/modules.rs"]
-mod modules;
-
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context as _, anyhow};
-use modules::{MODULES, Module};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use yoro_test_support::compiled::{self, Compiled, Source};
+use yoro_test_support::modules::{MODULES, Module};
 
 /// The modules for sources with two samples. In SPIR-V a specialization constant selects the number.
 const OF_TWO_SAMPLES: [Module; 2] = [
