@@ -1,8 +1,5 @@
 //! The program `yoro` from end to end.
 
-mod browser;
-#[path = "../src/monado.rs"]
-mod monado;
 mod program;
 
 mod bench;
@@ -26,3 +23,5 @@ mod video;
 mod view;
 mod web;
 mod xr;
+
+use yoro_test_support::browser;

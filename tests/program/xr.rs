@@ -11,6 +11,7 @@ use glam::{Quat, Vec3};
 use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use xtask::maintain::monado::{self, Running};
 use yoro::eyes::{Eye, EyePair, Frustum};
 use yoro_context::{Backend, Headless};
 use yoro_media::rgb_image;
@@ -24,7 +25,6 @@ use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_settings::Settings;
 use yoro_viewer::{render_settings, stereo_options};
 
-use crate::monado::{self, Running};
 use crate::program::{Run, finish, yoro};
 
 /// Settings that make rendering cheap.
@@ -674,7 +674,7 @@ impl Monado {
             let without = std::env::var_os("YORO_TEST_WITHOUT_MONADO").is_some();
             assert!(
                 without,
-                "set YORO_TEST_MONADO to the folder of `cargo tools monado`, or YORO_TEST_WITHOUT_MONADO=1"
+                "set YORO_TEST_MONADO to the folder of `cargo xtask maintain monado`, or YORO_TEST_WITHOUT_MONADO=1"
             );
             return None;
         };
@@ -696,7 +696,7 @@ fn one_view_through_the_layer_is_what_the_desktop_synthesizes() {
         let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
         assert!(
             without,
-            "set YORO_TEST_HELLO_XR to the folder of `cargo tools hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
+            "set YORO_TEST_HELLO_XR to the folder of `cargo xtask maintain hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
         );
         return;
     };

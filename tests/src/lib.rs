@@ -1,5 +1,5 @@
-//! Code shared by the tests in `tests/tests`: contexts, a small scene, golden images, all shader programs. It
-//! takes a context and returns pictures and programs. No crate of the product may depend on it.
+//! Code shared by the tests in `tests/tests`: contexts, a small scene, golden images, all shader programs. It takes a
+//! context and returns pictures and programs. No crate of the product may depend on it.
 
 pub mod golden;
 pub mod programs;

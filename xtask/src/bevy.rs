@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use anyhow::bail;
 use clap::Subcommand;
-use yoro_tools::folders::{make_parent, remove, root, target_folder};
-use yoro_tools::{cargo, hello_xr, monado as monado_packages};
 
-use crate::{monado, setup};
+use crate::folders::{make_parent, remove, root, target_folder};
+use crate::maintain::{hello_xr, monado};
+use crate::{cargo, setup};
 
 #[derive(Subcommand)]
 pub enum Task {
@@ -43,7 +43,7 @@ pub fn test() -> anyhow::Result<()> {
             let _runtime =
                 monado::start(&programs.join("monado-service"), &folder).map_err(anyhow::Error::msg)?;
             let runner = format!("target.'cfg(all())'.runner=[{:?}]", programs.join("run"));
-            let drivers = monado_packages::make()?.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
+            let drivers = monado::make()?.join("root/usr/share/vulkan/icd.d/lvp_icd.json");
             let environment = [
                 ("XDG_RUNTIME_DIR", folder.display().to_string()),
                 ("VK_DRIVER_FILES", drivers.display().to_string()),

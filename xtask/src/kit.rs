@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use anyhow::bail;
-use yoro_tools::cargo;
-use yoro_tools::folders::target_folder;
+
+use crate::cargo;
+use crate::folders::target_folder;
 
 /// Writes the kit to `target/kit`, and returns the folder.
 ///

@@ -2,8 +2,8 @@
 
 use anyhow::{Context as _, bail};
 use serde_json::Value;
-use yoro_tools::cargo;
 
+use crate::cargo;
 use crate::web;
 
 /// The packages that could be published to a registry: the library's core and its dependencies.

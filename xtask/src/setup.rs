@@ -8,7 +8,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{anyhow, bail};
-use yoro_tools::apt;
+
+use crate::apt;
 
 /// A system requirement, and the packages that contain it.
 struct Need {

@@ -1,9 +1,9 @@
 //! Compiles the synthesis programs for mobile GPUs.
 
 use serde_json::Value;
+use xtask::maintain::shader_cost::{Compilers, Options, report};
 use yoro_context::{Backend, Headless};
 use yoro_tests::programs::{self, Variants};
-use yoro_tools::shader_cost::{Compilers, Options, report};
 
 /// Two generations of Adreno and one of Mali. All programs on all GPUs would take minutes.
 const GPUS: [&str; 3] = ["a650", "a740", "g57"];

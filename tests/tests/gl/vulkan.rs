@@ -1,9 +1,5 @@
 //! Checks that built-in scenes look the same on Vulkan and on OpenGL.
 
-#[path = "../../../app/engines/core/tests/vulkan/harness.rs"]
-#[expect(dead_code, reason = "shared with the core's tests, which use all of it")]
-pub mod harness;
-
 use image::RgbImage;
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro::vulkan::ash::vk;
@@ -11,9 +7,8 @@ use yoro::vulkan::{Frame, Gather, ImageState, LayerImage, Options, SourceImages,
 use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
 use yoro_context::Headless;
 use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_test_support::harness::{Gpu, Image, READ, Rendering, WRITTEN, flipped, with_gpu};
 use yoro_tests::backends;
-
-use harness::{Gpu, Image, READ, Rendering, WRITTEN, flipped, with_gpu};
 
 const SIZE: [u32; 2] = [256, 256];
 

@@ -6,10 +6,11 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::folders::{root, target_folder, write};
-use yoro_tools::ndk::stand_in::StandIn;
-use yoro_tools::ndk::target::{PAGE, TARGET_API};
-use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
+
+use crate::folders::{root, target_folder, write};
+use crate::ndk::stand_in::StandIn;
+use crate::ndk::target::{PAGE, TARGET_API};
+use crate::rust::{Panic, Rust, anonymous_paths, build_std};
 
 use super::cargo_apk;
 use super::check;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::folders::target_folder;
+
+use crate::folders::target_folder;
 
 use super::keystore;
 

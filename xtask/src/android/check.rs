@@ -5,7 +5,8 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf, absolute};
 
 use anyhow::{Context as _, bail};
-use yoro_tools::{cargo, console};
+
+use crate::{cargo, console};
 
 /// Returns the program's output, and true if it found no fault.
 ///

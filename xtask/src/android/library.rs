@@ -4,10 +4,11 @@ use std::fs;
 use std::process::Command;
 
 use anyhow::Context as _;
-use yoro_tools::folders::target_folder;
-use yoro_tools::ndk::stand_in::{StandIn, make_libraries, make_unwinder};
-use yoro_tools::ndk::target::Architecture;
-use yoro_tools::rust::{Panic, Rust, build_std};
+
+use crate::folders::target_folder;
+use crate::ndk::stand_in::{StandIn, make_libraries, make_unwinder};
+use crate::ndk::target::Architecture;
+use crate::rust::{Panic, Rust, build_std};
 
 use super::build::link_flags;
 use super::toolchain::{self, Surroundings, Toolchain};

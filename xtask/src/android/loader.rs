@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
-use yoro_tools::ndk::target::LOADER;
+
+use crate::ndk::target::LOADER;
 
 /// Copies in the folder that cargo-apk packs, with a subfolder per architecture. They are deleted when this is dropped.
 pub struct Loaders(Vec<PathBuf>);

@@ -1,7 +1,8 @@
 //! The parts of the manifest that cargo-apk cannot express.
 
 use anyhow::Context as _;
-use yoro_tools::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
+
+use crate::ndk::target::{NATIVE_LIBRARIES, PROPERTIES};
 
 /// Completes the manifest written by cargo-apk. Adds [`NATIVE_LIBRARIES`] and [`PROPERTIES`] to the application, and
 /// declares it a game: from API level 36 on, Android lets only games fix their orientation on large screens.

@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 
 use super::keystore::Keystore;
 use super::manifest;
-use yoro_tools::ndk::sdk::build_tool;
+use crate::ndk::sdk::build_tool;
 
 /// Packs, aligns and signs an APK from cargo-apk's output in `folder`: its manifest, which is completed, and the
 /// libraries in its APK `name`. Returns the path of the new APK, in the same folder.

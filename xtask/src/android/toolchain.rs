@@ -4,11 +4,12 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
-use yoro_tools::apt::{self, Need};
-use yoro_tools::ndk::sdk;
-use yoro_tools::ndk::stand_in::FRAMEWORK;
-use yoro_tools::ndk::target::{ARCHITECTURES, MIN_API, TARGET_API};
-use yoro_tools::rust::{Rust, source};
+
+use crate::apt::{self, Need};
+use crate::ndk::sdk;
+use crate::ndk::stand_in::FRAMEWORK;
+use crate::ndk::target::{ARCHITECTURES, MIN_API, TARGET_API};
+use crate::rust::{Rust, source};
 
 use super::cargo_apk;
 
@@ -17,7 +18,7 @@ use super::cargo_apk;
 pub struct Surroundings {
     android_home: Option<PathBuf>,
     ndk_root: Option<PathBuf>,
-    /// The targets that the user's Rust has std for, as [`yoro_tools::ndk::target::Architecture::triple`].
+    /// The targets that the user's Rust has std for, as [`crate::ndk::target::Architecture::triple`].
     targets: Vec<&'static str>,
 }
 

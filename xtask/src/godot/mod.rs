@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::Subcommand;
-use yoro_tools::folders::{copy, remove, root, target_folder};
 
+use crate::folders::{copy, remove, root, target_folder};
 use crate::kit;
 
 pub use test::test;

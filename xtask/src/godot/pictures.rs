@@ -5,7 +5,8 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 use serde_json::Value;
-use yoro_tools::folders::copy;
+
+use crate::folders::copy;
 
 /// The similarity of two pictures.
 #[derive(Clone, Copy, Debug)]

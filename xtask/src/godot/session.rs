@@ -8,9 +8,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
-use yoro_tools::{apt, godot};
 
-use crate::monado::{self, Running};
+use crate::apt;
+use crate::maintain::godot;
+use crate::maintain::monado::{self, Running};
 
 /// Godot and Monado, with a virtual display.
 pub struct Session {

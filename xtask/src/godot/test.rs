@@ -5,8 +5,9 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
-use yoro_tools::cargo;
-use yoro_tools::folders::{make_parent, remove, target_folder};
+
+use crate::cargo;
+use crate::folders::{make_parent, remove, target_folder};
 
 use super::pictures::{Case, Quality, compare};
 use super::project;

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use yoro_tools::folders::{remove, root, target_folder, write};
-use yoro_tools::ndk::target::{ARCHITECTURES, Architecture};
+
+use crate::folders::{remove, root, target_folder, write};
+use crate::ndk::target::{ARCHITECTURES, Architecture};
 
 use super::{VERSION, build};
 

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
-use yoro_tools::folders::root;
+
+use crate::folders::root;
 
 use super::VERSION;
 use super::android::{pack, read};

@@ -6,8 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use yoro_tools::folders::{root, target_folder};
-use yoro_tools::ndk::target::{ARCHITECTURES, Architecture};
+
+use crate::folders::{root, target_folder};
+use crate::ndk::target::{ARCHITECTURES, Architecture};
 
 use super::android::{android_manifest, licences, pack, read};
 use super::{VERSION, compile};

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::arm64;
-use yoro_tools::cargo::cargo;
-use yoro_tools::folders::{copy, remove, root, target_folder, write};
+
+use crate::arm64;
+use crate::cargo::cargo;
+use crate::folders::{copy, remove, root, target_folder, write};
 
 use super::portable::{self, OLDEST_GLIBC};
 use super::texts::{cmake, cmake_version, manual, pkg_config, readme, soname, with_links};

@@ -13,7 +13,8 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 use clap::ValueEnum;
-use yoro_tools::folders::{root, target_folder};
+
+use crate::folders::{root, target_folder};
 
 pub use layer::aar_for_tests as layer_for_tests;
 

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::folders::{root, write};
-use yoro_tools::rust::anonymous_paths;
+
+use crate::folders::{root, write};
+use crate::rust::anonymous_paths;
 
 /// The oldest supported glibc, which Debian 10, Ubuntu 18.10 and RHEL 8 have.
 pub const OLDEST_GLIBC: (u32, u32) = (2, 28);

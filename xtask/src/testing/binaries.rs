@@ -6,7 +6,8 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 use serde_json::Value;
-use yoro_tools::cargo;
+
+use crate::cargo;
 
 /// A test program.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,12 +5,13 @@ use std::process::Command;
 use std::thread::{Scope, ScopedJoinHandle};
 
 use anyhow::{Context as _, anyhow, bail};
-use yoro_tools::shader_cost::Compilers;
-use yoro_tools::{apt, arm64, hello_xr, monado};
+
+use crate::maintain::shader_cost::Compilers;
 
 use super::binaries::Program;
 use super::summary::Summary;
-use crate::{android, package, setup, web};
+use crate::maintain::{hello_xr, monado};
+use crate::{android, apt, arm64, package, setup, web};
 
 /// A program or package that some tests need.
 struct Item {

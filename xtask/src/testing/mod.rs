@@ -19,8 +19,9 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
 
 use anyhow::bail;
-use yoro_tools::cargo::cargo;
-use yoro_tools::folders::target_folder;
+
+use crate::cargo::cargo;
+use crate::folders::target_folder;
 
 use binaries::Program;
 use equipment::{Equipment, Preparation};

@@ -10,9 +10,10 @@ use std::process::Stdio;
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::cargo::{self, announce};
-use yoro_tools::folders::{copy, remove, root, target_folder};
-use yoro_tools::rust::{Panic, Rust, anonymous_paths, build_std};
+
+use crate::cargo::{self, announce};
+use crate::folders::{copy, remove, root, target_folder};
+use crate::rust::{Panic, Rust, anonymous_paths, build_std};
 
 pub use npm::{check_types, emulator};
 pub use serve::serve;

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::folders::{make_once, root, target_folder};
+
+use crate::folders::{make_once, root, target_folder};
 
 /// Returns the script of the Immersive Web Emulation Runtime, which emulates a headset in the page's tests.
 ///

@@ -17,7 +17,7 @@ pub fn serve(folder: &Path, port: u16) -> anyhow::Result<()> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
         .with_context(|| format!("port {port} cannot be served: name another one with --port"))?;
     let port = listener.local_addr().map_or(port, |address| address.port());
-    yoro_tools::console::print(&format!(
+    crate::console::print(&format!(
         "serving on http://localhost:{port}/ until Ctrl-C\n\
          on a phone or headset by cable: adb reverse tcp:{port} tcp:{port}, then the same address there\n"
     ));

@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 
 use anyhow::Context as _;
 use yoro_files::http::POLICY;
-use yoro_tools::folders::{self, copy, root};
+
+use crate::folders::{self, copy, root};
 
 /// The placeholder for the version in the page's sources.
 pub const VERSION: &str = "VERSION";

@@ -1,8 +1,5 @@
 //! The layer between Debian's build of Khronos's hello_xr and Monado, alone and with Khronos's validation layer.
 
-#[path = "../../../../tests/src/monado.rs"]
-mod monado;
-
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
@@ -12,19 +9,18 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
-
-use monado::Running;
+use xtask::maintain::monado::{self, Running};
 
 /// The longest duration of a run. Large images can take seconds at times.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// Returns the folder of `cargo tools hello-xr`, or `None` if the tests are told to skip it.
+/// Returns the folder of `cargo xtask maintain hello-xr`, or `None` if the tests are told to skip it.
 fn programs() -> Option<PathBuf> {
     let programs = std::env::var_os("YORO_TEST_HELLO_XR").map(PathBuf::from);
     let without = std::env::var_os("YORO_TEST_WITHOUT_HELLO_XR").is_some();
     assert!(
         programs.is_some() || without,
-        "set YORO_TEST_HELLO_XR to the folder of `cargo tools hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
+        "set YORO_TEST_HELLO_XR to the folder of `cargo xtask maintain hello-xr`, or YORO_TEST_WITHOUT_HELLO_XR=1"
     );
     programs
 }

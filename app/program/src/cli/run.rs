@@ -31,7 +31,7 @@ pub struct RunArgs {
     /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
     scenes: Vec<String>,
     /// Viewpoints of each scene that are measured, spread over its camera path
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64), value_name = "N")]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64), value_name = "N")]
     viewpoints: u32,
     /// Timed rounds; in each, every method renders one frame at each viewpoint
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]

@@ -46,8 +46,6 @@ mod barriers;
 mod commands;
 mod formats;
 mod images;
-#[cfg(test)]
-mod modules;
 mod objects;
 mod passes;
 mod pipeline;

@@ -1,4 +1,4 @@
-//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo tools spirv`.
+//! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain spirv`.
 
 use crate::synthesis::{Edges, PassSet};
 
@@ -70,9 +70,8 @@ pub(super) fn march(edges: Edges, passes: PassSet, depth: bool, history: bool) -
 mod tests {
     use std::path::Path;
 
-    use yoro_tools::compiled::{self, Compiled, Source};
-
-    use crate::vulkan::modules::{MODULES, Module};
+    use yoro_test_support::compiled::{self, Compiled, Source};
+    use yoro_test_support::modules::{MODULES, Module};
 
     /// SPIR-V for Vulkan 1.0, optimized for size, without names and line numbers.
     const ARGUMENTS: [&str; 3] = ["-V", "-Os", "-g0"];
@@ -90,7 +89,7 @@ mod tests {
             folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("src/vulkan/spirv"),
             ending: "spv",
             compiler: compiled::glslang(&ARGUMENTS),
-            command: "cargo tools spirv",
+            command: "cargo xtask maintain spirv",
             compile: |source: &Source| compiled::spirv(source, &ARGUMENTS),
         };
         let sources = MODULES.each_ref().map(source);

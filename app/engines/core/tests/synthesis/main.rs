@@ -3,12 +3,8 @@
 mod any_view;
 mod history;
 mod host;
-mod in_memory;
-mod laws;
 mod parts;
-mod posed;
 mod reference;
-mod sheets;
 mod state;
 
 use std::rc::Rc;
@@ -21,6 +17,7 @@ use reference::Entry;
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
 use yoro::synthesis::*;
 use yoro_gl::Context;
+use yoro_test_support::{in_memory, laws, posed, sheets};
 
 laws!(variants());
 

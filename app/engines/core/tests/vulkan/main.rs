@@ -1,9 +1,7 @@
 //! Pictures of the Vulkan passes equal those of the OpenGL passes, under the validation layer.
 
-mod against_opengl;
 mod any_view;
 mod failures;
-mod harness;
 mod history;
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -25,6 +23,7 @@ use yoro::vulkan::{
 };
 use yoro_context::{Backend, Headless};
 use yoro_gl::{self as gl, Destination};
+use yoro_test_support::{against_opengl, harness};
 
 /// An allocator that counts this thread's allocations.
 struct Counting;

@@ -1,15 +1,12 @@
 //! The modules match the present shaders, and every back end accepts them.
 
-#[path = "../../../core/src/vulkan/modules.rs"]
-mod modules;
-
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context as _, anyhow};
-use modules::{MODULES, Module};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use yoro_tools::compiled::{self, Compiled, Source};
+use yoro_test_support::compiled::{self, Compiled, Source};
+use yoro_test_support::modules::{MODULES, Module};
 
 /// The modules for sources with two samples. In SPIR-V a specialization constant selects the number.
 const OF_TWO_SAMPLES: [Module; 2] = [
@@ -95,7 +92,7 @@ fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
     let info = validated(&module).with_context(|| source.name)?;
     let flags = naga::back::wgsl::WriterFlags::empty();
     let text = naga::back::wgsl::write_string(&module, &info, flags)?;
-    Ok(format!("// Made of yoro's GLSL by `cargo tools wgsl`.\n{text}").into_bytes())
+    Ok(format!("// Made of yoro's GLSL by `cargo xtask maintain wgsl`.\n{text}").into_bytes())
 }
 
 /// Returns the workspace's version of naga, or `None` without a lock file.
@@ -112,7 +109,7 @@ fn modules_are_compiled_from_the_present_shaders() {
         folder: folder().to_owned(),
         ending: "wgsl",
         compiler: compiler.map(|(glslang, naga)| format!("{glslang}, naga {naga}")),
-        command: "cargo tools wgsl",
+        command: "cargo xtask maintain wgsl",
         compile: wgsl,
     };
     let sources: Vec<Source> = all_modules().into_iter().map(source).collect();

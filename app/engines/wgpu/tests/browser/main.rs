@@ -1,12 +1,6 @@
 //! A browser's own compiler accepts all modules, and its WebGPU draws OpenGL's picture with them. The page runs the
 //! passes from JavaScript. The example is the crate itself, compiled for browsers.
 
-#[path = "../../../core/tests/vulkan/against_opengl.rs"]
-#[expect(dead_code, reason = "shared with tests that use all of it")]
-mod against_opengl;
-#[path = "../../../../../tests/program/browser.rs"]
-#[expect(dead_code, reason = "shared with the program's tests, which use all of it")]
-mod browser;
 #[path = "../../examples/offscreen/main.rs"]
 #[expect(dead_code, reason = "the test does without what saves the picture")]
 mod offscreen;
@@ -21,9 +15,9 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
-use against_opengl::{Gl, Picture, assert_equal, picture, warps};
-use browser::Browser;
 use yoro::synthesis::{Places, Uniforms, tiles};
+use yoro_test_support::against_opengl::{Gl, Picture, assert_equal, picture, warps};
+use yoro_test_support::browser::Browser;
 use yoro_wgpu::wgpu;
 
 /// Runs Chromium's WebGPU on the CPU.

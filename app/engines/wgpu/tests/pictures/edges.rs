@@ -1,8 +1,5 @@
 //! Anti-aliased sources give the same pictures on wgpu as on OpenGL.
 
-#[path = "../../../../../tests/src/samples.rs"]
-mod samples;
-
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
 use yoro::synthesis::Edges;
 use yoro_context::{Backend, Headless};
@@ -11,7 +8,7 @@ use yoro_wgpu::{Gather, Options, Source, Target, WgpuError};
 
 use super::against_opengl::{Picture, expected_depth};
 use super::harness::{Gpu, depth_of, one_layer, with_gpus};
-use samples::{GIVEN, Samples, example, on_opengl};
+use yoro_test_support::samples::{GIVEN, Samples, example, on_opengl};
 
 /// A source, and what OpenGL draws from it: colour and the source map.
 struct Wanted {

@@ -1,7 +1,5 @@
 //! The pictures of the passes on wgpu equal those of the OpenGL passes, both on wgpu's Vulkan and on its OpenGL.
 
-#[path = "../../../core/tests/vulkan/against_opengl.rs"]
-mod against_opengl;
 mod any_view;
 mod edges;
 mod harness;
@@ -18,6 +16,7 @@ use against_opengl::{
 use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
 use yoro::synthesis::{self, Edges, Outputs, PassSet, Strips, SynthesisOptions, WarpKind};
+use yoro_test_support::against_opengl;
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
 use yoro_wgpu::{AnyView, Gather, History, Options, Pipeline, Source, Target, WgpuError};
 

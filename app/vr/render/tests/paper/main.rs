@@ -1,15 +1,11 @@
 //! Tests the paper's pipeline against its f64 reference, and what every pipeline must fulfil, on all GL backends.
 
-#[path = "../../../../engines/core/tests/synthesis/in_memory.rs"]
-mod in_memory;
-#[path = "../../../../engines/core/tests/synthesis/laws.rs"]
-mod laws;
-
-use in_memory::OUTPUTS;
-use laws::{Subject, on_every_backend, pair, positions, row, scene};
 use yoro::eyes::{DepthConvention, Eye, GuardBand};
 use yoro::synthesis::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE};
 use yoro_render::stereo::{ImBufferSize, Paper, PaperOptions};
+use yoro_test_support::in_memory::OUTPUTS;
+use yoro_test_support::laws;
+use yoro_test_support::laws::{Subject, on_every_backend, pair, positions, row, scene};
 
 laws!([
     subject(PaperOptions::default()),

@@ -6,7 +6,7 @@ use goblin::elf::program_header::{PF_W, PF_X, PT_GNU_RELRO, PT_LOAD, PT_TLS};
 use goblin::elf::section_header::SHN_UNDEF;
 use goblin::elf::sym::STB_WEAK;
 use goblin::elf::{Elf, Sym, dynamic, header};
-use yoro_tools::ndk::target::{ARCHITECTURES, Architecture, LOADER, MIN_API, PAGE};
+use xtask::ndk::target::{ARCHITECTURES, Architecture, LOADER, MIN_API, PAGE};
 
 use super::loader;
 use super::public::Public;
@@ -142,7 +142,7 @@ fn symbols(
     let unknown: Vec<&str> = undefined.iter().filter(|name| !offered.contains(**name)).copied().collect();
     let problem = (!unknown.is_empty()).then(|| {
         let lists = match public {
-            Public::Lists => " (or missing in tools/ndk/symbols)",
+            Public::Lists => " (or missing in xtask/ndk/symbols)",
             Public::Stubs(_) => "",
         };
         format!("{} not public since API {MIN_API} in what it needs{lists}", some(&unknown))

@@ -1,6 +1,6 @@
 //! Godot, a game engine, with the runtime and the Vulkan driver that its tests need.
 //!
-//! The Debian release that [Monado](crate::monado) comes from has an older Godot. This one comes from Debian's
+//! The Debian release that [Monado](super::monado) comes from has an older Godot. This one comes from Debian's
 //! development release, in whatever version it has, with all of its dependencies: the C library, Monado and Mesa of the
 //! same day. The packages are only unpacked. There are two programs: `godot`, and `monado-service`, its OpenXR runtime.
 //! They find each other through XDG_RUNTIME_DIR.
@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
+use super::monado;
 use crate::folders::{make_once, target_folder};
-use crate::monado;
 use crate::packages::{quoted, write_launcher};
 
 const RELEASE: &str = "sid";

@@ -7,9 +7,9 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context as _, bail, ensure};
-use yoro_tools::folders::write;
-use yoro_tools::ndk::sdk;
-use yoro_tools::ndk::target::ARCHITECTURES;
+use xtask::folders::write;
+use xtask::ndk::sdk;
+use xtask::ndk::target::ARCHITECTURES;
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 

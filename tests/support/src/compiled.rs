@@ -3,12 +3,10 @@
 
 use std::env;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{self, Command};
 
 use anyhow::{Context as _, bail, ensure};
-
-use crate::folders;
 
 const GLSLANG: &str = "glslangValidator";
 
@@ -44,9 +42,9 @@ impl<F: Fn(&Source) -> anyhow::Result<Vec<u8>>> Compiled<F> {
     pub fn renew(&self, sources: &[Source]) -> anyhow::Result<()> {
         let compiler = self.compiler.as_ref().context("glslangValidator is needed: `cargo xtask setup`")?;
         for source in sources {
-            folders::write(&self.file(source), (self.compile)(source)?)?;
+            write(&self.file(source), &(self.compile)(source)?)?;
         }
-        folders::write(&self.folder.join("SOURCES"), listed(compiler, sources))
+        write(&self.folder.join("SOURCES"), listed(compiler, sources).as_bytes())
     }
 
     /// Checks that the folder was made from these shaders. Compiles them again if the compiler is the one that made the
@@ -87,6 +85,10 @@ impl<F: Fn(&Source) -> anyhow::Result<Vec<u8>>> Compiled<F> {
     }
 }
 
+fn write(file: &Path, content: &[u8]) -> anyhow::Result<()> {
+    fs::write(file, content).with_context(|| format!("{} cannot be written", file.display()))
+}
+
 /// Returns the content of the file `SOURCES`.
 fn listed(compiler: &str, sources: &[Source]) -> String {
     let line = |source: &Source| format!("{:016x} {}\n", hash(&source.text), source.name);
@@ -125,7 +127,7 @@ pub fn spirv(source: &Source, arguments: &[&str]) -> anyhow::Result<Vec<u8>> {
         Ok(fs::read(&compiled)?)
     };
     let result = run();
-    folders::remove(&work)?;
+    fs::remove_dir_all(&work).with_context(|| format!("{} cannot be removed", work.display()))?;
     result
 }
 
@@ -140,7 +142,7 @@ mod tests {
             folder: folder.path().to_owned(),
             ending: "txt",
             compiler: Some(version.to_owned()),
-            command: "cargo tools x",
+            command: "cargo xtask maintain x",
             compile: |source: &Source| Ok(source.text.to_uppercase().into_bytes()),
         };
         let sources = |text: &str| [Source { name: "a", vertex: false, text: text.to_owned() }];
@@ -149,10 +151,10 @@ mod tests {
         assert_eq!(fs::read_to_string(folder.path().join("a.txt")).unwrap(), "ONE");
         compiled("1").check(&sources("one")).unwrap();
         let error = compiled("1").check(&sources("two")).unwrap_err().to_string();
-        assert_eq!(error, "the shaders are not those that were compiled: run `cargo tools x`");
+        assert_eq!(error, "the shaders are not those that were compiled: run `cargo xtask maintain x`");
         fs::write(folder.path().join("a.txt"), "other").unwrap();
         let error = compiled("1").check(&sources("one")).unwrap_err().to_string();
-        assert_eq!(error, "a is not what 1 makes: run `cargo tools x`");
+        assert_eq!(error, "a is not what 1 makes: run `cargo xtask maintain x`");
         // Only the compiler that made a file can detect the difference.
         compiled("2").check(&sources("one")).unwrap();
     }

@@ -1,4 +1,4 @@
-//! `cargo tools shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers alone.
+//! `cargo xtask maintain shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers alone.
 //!
 //! The library builds all programs in a context on this machine, `shader-programs` of tests/ prints their texts, and
 //! [`Compilers`] compile them. The results are compared with `docs/shader-cost.csv`. See docs/performance.md.
@@ -56,7 +56,7 @@ enum Fault {
 }
 
 /// The file that contains `EXCEPTIONS`, for messages.
-const EXCEPTIONS_IN: &str = "tools/src/shader_cost/mod.rs";
+const EXCEPTIONS_IN: &str = "xtask/src/maintain/shader_cost/mod.rs";
 
 const EXCEPTIONS: [Exception; 3] = [
     Exception { gpu: "g52", program: LAYERS_HISTORY, fault: Fault::Spills, reason: LOOK_UP },

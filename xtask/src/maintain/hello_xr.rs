@@ -1,7 +1,7 @@
 //! For the tests of the API layer: hello_xr, Khronos's example of an OpenXR application, its loader, and Khronos's
 //! layer that validates calls.
 //!
-//! They come from Debian packages, which are unpacked beside [Monado](crate::monado), and use Monado's libraries. The
+//! They come from Debian packages, which are unpacked beside [Monado](super::monado), and use Monado's libraries. The
 //! Debian release with Monado has an older hello_xr that supports neither a single view nor depth, so this one comes
 //! from Debian's development release.
 
@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
+use super::monado;
 use crate::folders::{copy, make_once, target_folder};
-use crate::monado;
 use crate::packages::{PrivateApt, debian_sources, quoted, unpack, write_launcher};
 
 const RELEASE: &str = "sid";
@@ -36,7 +36,7 @@ pub fn usage() -> anyhow::Result<String> {
 }
 
 /// Returns the folder with the programs `hello_xr` and `monado-service`, the launcher `run PROGRAM ...`, which is
-/// [Monado's](crate::monado) with the loader's libraries, and the loader `libopenxr_loader.so.1`. Fetches what is
+/// [Monado's](super::monado) with the loader's libraries, and the loader `libopenxr_loader.so.1`. Fetches what is
 /// missing.
 ///
 /// # Errors

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::Context as _;
-use yoro_tools::ndk::sdk;
+use xtask::ndk::sdk;
 
 use super::report::Report;
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::ndk::sdk;
+use xtask::ndk::sdk;
 
 use crate::archive::Archive;
 use crate::public::Public;

@@ -5,8 +5,12 @@
 //! and `run PROGRAM ...` runs one of this machine's programs with these libraries and this runtime. They find each
 //! other through XDG_RUNTIME_DIR.
 
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use anyhow::bail;
 
@@ -35,13 +39,16 @@ const WITHOUT: [&str; 12] = [
     "./etc/*",
 ];
 /// The runtime's manifest, relative to the root.
-pub const MANIFEST: &str = "usr/share/openxr/1/openxr_monado.json";
+pub(crate) const MANIFEST: &str = "usr/share/openxr/1/openxr_monado.json";
+
+/// The longest wait for the service, which other processes may slow down.
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Sets up Monado, and returns how to use it.
 ///
 /// # Errors
 /// Fails if it cannot be obtained on this machine.
-pub fn usage() -> anyhow::Result<String> {
+pub(crate) fn usage() -> anyhow::Result<String> {
     let folder = make()?.display().to_string();
     Ok(format!(
         "export XDG_RUNTIME_DIR=$(mktemp -d)\n\
@@ -54,8 +61,8 @@ pub fn usage() -> anyhow::Result<String> {
 ///
 /// # Errors
 /// Fails if they cannot be obtained on this machine.
-pub fn make() -> anyhow::Result<PathBuf> {
-    /// Locked, since [`hello_xr`](crate::hello_xr) sets up Monado as well.
+pub(crate) fn make() -> anyhow::Result<PathBuf> {
+    /// Locked, since [`hello_xr`](super::hello_xr) sets up Monado as well.
     static TURN: Mutex<()> = Mutex::new(());
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     if !cfg!(target_arch = "x86_64") {
@@ -76,7 +83,7 @@ pub fn make() -> anyhow::Result<PathBuf> {
 ///
 /// # Errors
 /// Fails if they cannot be obtained.
-pub fn unpack_with_needs(
+pub(crate) fn unpack_with_needs(
     folder: &Path,
     root: &Path,
     release: &str,
@@ -92,7 +99,7 @@ pub fn unpack_with_needs(
 }
 
 /// Returns the beginning of a command line that runs a program with the libraries in `first`, then those of this root.
-pub fn linker(root: &Path, first: &[PathBuf]) -> String {
+pub(crate) fn linker(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");
     let own = [
@@ -112,7 +119,7 @@ pub fn linker(root: &Path, first: &[PathBuf]) -> String {
 
 /// Returns the text of a launcher that runs this machine's programs with the libraries in `first`, then those of this
 /// root. The runtime is Monado unless XR_RUNTIME_JSON names another one.
-pub fn run(root: &Path, first: &[PathBuf]) -> String {
+pub(crate) fn run(root: &Path, first: &[PathBuf]) -> String {
     let usr = root.join("usr");
     let libraries = usr.join("lib/x86_64-linux-gnu");
     format!(
@@ -141,7 +148,7 @@ fn write_programs(folder: &Path, root: &Path) -> anyhow::Result<()> {
 ///
 /// # Errors
 /// Fails if the runtime is missing, or the launcher cannot be written.
-pub fn write_service(folder: &Path, root: &Path) -> anyhow::Result<()> {
+pub(crate) fn write_service(folder: &Path, root: &Path) -> anyhow::Result<()> {
     let usr = root.join("usr");
     let service = format!(
         "# Monado with a simulated headset, on the CPU and without a display.\n\
@@ -157,4 +164,39 @@ pub fn write_service(folder: &Path, root: &Path) -> anyhow::Result<()> {
         }
     }
     write_launcher(&folder.join("monado-service"), &service)
+}
+
+/// A process that is killed when this is dropped.
+pub struct Running(pub Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+/// Starts the service. Programs with `folder` as XDG_RUNTIME_DIR find it. Its log is `service.log` in that folder.
+///
+/// # Errors
+/// Fails with one sentence and the log if the service does not start.
+pub fn start(service: &Path, folder: &Path) -> Result<Running, String> {
+    let name = service.display();
+    let path = folder.join("service.log");
+    let spawn = || {
+        let log = File::create(&path)?;
+        let mut command = Command::new(service);
+        command.env("XDG_RUNTIME_DIR", folder).stdin(Stdio::null());
+        command.stdout(log.try_clone()?).stderr(log).spawn()
+    };
+    let mut running = Running(spawn().map_err(|error| format!("{name} cannot be started: {error}"))?);
+    let start = Instant::now();
+    while !folder.join("monado_comp_ipc").exists() {
+        let has_ended = running.0.try_wait().is_ok_and(|status| status.is_some());
+        if has_ended || start.elapsed() > TIMEOUT {
+            return Err(format!("{name} does not start: {}", fs::read_to_string(&path).unwrap_or_default()));
+        }
+        thread::sleep(Duration::from_millis(50));
+    }
+    Ok(running)
 }

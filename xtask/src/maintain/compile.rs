@@ -1,7 +1,8 @@
 //! The synthesis shaders as SPIR-V and WGSL. They are committed, so that building the libraries requires no compiler.
 
 use anyhow::bail;
-use yoro_tools::cargo;
+
+use crate::cargo;
 
 /// Compiles all modules for Vulkan, and returns a text on what to check next.
 ///

@@ -1,19 +1,13 @@
 //! Compares pictures of the passes on another graphics interface with those of OpenGL. All rows are counted from the
 //! bottom, places in images from the top.
 
-#[path = "../synthesis/in_memory.rs"]
-mod in_memory;
-#[path = "../synthesis/posed.rs"]
-mod posed;
-#[path = "../synthesis/sheets.rs"]
-mod sheets;
-
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use rand::{Rng, SeedableRng};
 
-use in_memory::{Former, InMemory, SynthesizedImage};
+use crate::in_memory::{self, Former, InMemory, SynthesizedImage};
+use crate::{posed, sheets};
 use yoro::eyes::{
     DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, PoseWarp, View, Warp,
 };

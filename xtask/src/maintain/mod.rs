@@ -1,22 +1,17 @@
-//! `cargo tools`: the commands that only maintainers run.
+//! `cargo xtask maintain`: the commands that only maintainers run, and the programs that tests use.
 
 mod compile;
+pub(crate) mod godot;
+pub(crate) mod hello_xr;
+pub mod monado;
+pub mod shader_cost;
 
-use std::process::ExitCode;
+use clap::Subcommand;
 
-use clap::{Parser, Subcommand};
-use yoro_tools::{console, godot, hello_xr, monado, shader_cost};
-
-/// Commands for maintainers of yoro
-#[derive(Parser)]
-#[command(name = "cargo tools", bin_name = "cargo tools", arg_required_else_help = true)]
-struct Arguments {
-    #[command(subcommand)]
-    task: Task,
-}
+use crate::console;
 
 #[derive(Subcommand)]
-enum Task {
+pub(crate) enum Task {
     /// Print the cost of the shader programs on mobile GPUs, by Mesa's compilers: instructions, registers, waves,
     /// fetches, spills
     ShaderCost {
@@ -41,12 +36,8 @@ enum Task {
     Godot,
 }
 
-fn main() -> ExitCode {
-    console::exit_code(perform(Arguments::parse().task))
-}
-
 /// Runs a task. Returns false if a shader has a fault.
-fn perform(task: Task) -> anyhow::Result<bool> {
+pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
     let (text, passed) = match task {
         Task::ShaderCost { filter, gpus, bless } => {
             let compilers = shader_cost::Compilers::make()?;

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context as _, bail};
-use yoro_tools::ndk::sdk;
-use yoro_tools::ndk::target::{ARCHITECTURES, MIN_API, NATIVE_LIBRARIES, PROPERTIES, TARGET_API};
+use xtask::ndk::sdk;
+use xtask::ndk::target::{ARCHITECTURES, MIN_API, NATIVE_LIBRARIES, PROPERTIES, TARGET_API};
 
 use super::archive::Archive;
 use super::report::Report;

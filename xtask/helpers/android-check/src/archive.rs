@@ -6,8 +6,8 @@ use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 
 use anyhow::Context as _;
-use yoro_tools::folders::write;
-use yoro_tools::ndk::target::{ARCHITECTURES, PAGE};
+use xtask::folders::write;
+use xtask::ndk::target::{ARCHITECTURES, PAGE};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, bail};
 use goblin::elf::{Elf, header};
-use yoro_tools::ndk::target::ARCHITECTURES;
+use xtask::ndk::target::ARCHITECTURES;
 
 /// The function that every loader exports.
 pub const ENTRY: &str = "xrGetInstanceProcAddr";

@@ -7,8 +7,8 @@ use std::path::Path;
 use anyhow::Context as _;
 use goblin::elf::Elf;
 use goblin::elf::section_header::SHN_UNDEF;
-use yoro_tools::ndk::symbols::{LISTS, listed};
-use yoro_tools::ndk::target::{Architecture, MIN_API};
+use xtask::ndk::symbols::{LISTS, listed};
+use xtask::ndk::target::{Architecture, MIN_API};
 
 /// The source of the public symbols.
 #[derive(Debug)]
@@ -59,7 +59,7 @@ impl Public {
 
 #[cfg(test)]
 mod tests {
-    use yoro_tools::ndk::target::ARCHITECTURES;
+    use xtask::ndk::target::ARCHITECTURES;
 
     use super::*;
 

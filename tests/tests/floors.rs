@@ -1,0 +1,98 @@
+//! Keeps the floors of `app`: a crate uses crates of its own floor and of those below, never of one above.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Each floor, and the one that it stands on. It may use that floor and whatever that one may use.
+const FLOORS: [(&str, &str); 7] = [
+    ("app/program", "app/lab"),
+    ("app/lab", "app/vr"),
+    ("android", "app/vr"),
+    ("app/vr", "scenes"),
+    ("scenes", "app/base"),
+    ("app/base", "app/engines"),
+    ("app/engines", "shaders-glsl"),
+];
+const CELLAR: &str = "shaders-glsl";
+/// What stands beside the house: it may use everything, and no floor may use it.
+const BESIDE: [&str; 2] = ["tests", "xtask"];
+/// The workspaces.
+const MANIFESTS: [&str; 2] = ["Cargo.toml", "app/engines/bevy/Cargo.toml"];
+
+/// A package, and what it compiles of this repository's packages, as folders.
+struct Package {
+    folder: String,
+    uses: Vec<String>,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
+}
+
+/// Returns a folder relative to the repository.
+fn relative(path: &str) -> String {
+    let path = Path::new(path);
+    path.strip_prefix(root()).unwrap().display().to_string()
+}
+
+/// Reads the packages of a workspace. Dependencies of tests alone do not count.
+fn packages(manifest: &str) -> Vec<Package> {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(["metadata", "--no-deps", "--format-version=1", "--manifest-path"]);
+    let output = cargo.arg(root().join(manifest)).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let package = |package: &Value| {
+        let compiled = |dependency: &&Value| dependency["kind"] != "dev";
+        let uses = package["dependencies"].as_array().unwrap().iter().filter(compiled);
+        Package {
+            folder: relative(package["manifest_path"].as_str().unwrap().trim_end_matches("/Cargo.toml")),
+            uses: uses.filter_map(|dependency| dependency["path"].as_str()).map(relative).collect(),
+        }
+    };
+    metadata["packages"].as_array().unwrap().iter().map(package).collect()
+}
+
+/// Returns the floor that a folder belongs to, or `None` for what stands beside the house.
+fn floor(folder: &str) -> Option<&'static str> {
+    let floors = FLOORS.map(|(floor, _)| floor);
+    let all = [&floors[..], &[CELLAR], &BESIDE].concat();
+    let found = all.into_iter().find(|floor| Path::new(folder).starts_with(floor));
+    let found = found.unwrap_or_else(|| panic!("{folder} is on no floor: name it in tests/tests/floors.rs"));
+    (!BESIDE.contains(&found)).then_some(found)
+}
+
+/// True if a crate of one floor may use a crate of the other.
+fn may_use(floor: &str, other: &str) -> bool {
+    let below = || FLOORS.iter().find(|(above, _)| *above == floor);
+    floor == other || below().is_some_and(|(_, below)| may_use(below, other))
+}
+
+#[test]
+fn a_floor_uses_the_floors_below_it() {
+    let mut wrong = Vec::new();
+    for Package { folder, uses } in MANIFESTS.into_iter().flat_map(packages) {
+        let Some(own) = floor(&folder) else { continue };
+        let allowed = |used: &&String| floor(used).is_some_and(|other| may_use(own, other));
+        let above = uses.iter().filter(|used| !allowed(used));
+        wrong.extend(above.map(|used| format!("{folder} uses {used}")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_house_is_as_it_is_drawn() {
+    for (above, below) in [
+        ("app/program", "app/lab"),
+        ("app/lab", "app/engines"),
+        ("android", "app/base"),
+        ("app/vr", "scenes"),
+        ("app/engines", "shaders-glsl"),
+    ] {
+        assert!(may_use(above, below), "{above} {below}");
+        assert!(!may_use(below, above), "{below} {above}");
+    }
+    assert!(!may_use("android", "app/lab") && !may_use("app/lab", "android"));
+}

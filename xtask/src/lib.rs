@@ -1,0 +1,208 @@
+//! `cargo xtask`: set-up, runs, tests, packages, and what only maintainers run ([`maintain`]).
+//!
+//! This is a library so that its helpers and some tests can use parts of it. The inputs are the workspace's sources and
+//! Debian packages, the outputs are folders below `target`. It runs cargo and other programs, and compiles in seconds:
+//! what needs larger dependencies is in `helpers`.
+
+mod android;
+mod apt;
+mod arm64;
+mod bevy;
+mod cargo;
+pub mod console;
+pub mod folders;
+mod godot;
+mod kit;
+mod lint;
+pub mod maintain;
+pub mod ndk;
+mod package;
+mod packages;
+mod rust;
+mod setup;
+mod testing;
+mod web;
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// What to try after a first run.
+const NEXT: &str = "
+next:
+  cargo xtask run model.glb    the same with a scene of yours (OBJ, glTF, GLB)
+  cargo xtask web --serve      walk through the scenes in a browser, by cable on a phone or headset, too
+  cargo xtask bevy run         the plugin for Bevy: a room in both eyes
+";
+
+/// Set up, run and test yoro
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Install missing system libraries with apt, or say what to install
+    Setup,
+    /// Set up, then run `yoro run`: renders the built-in scenes in both ways and writes pictures and a report
+    Run {
+        /// Passed on to `yoro run`
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+    /// Set up, then run all tests
+    Test {
+        /// Run only tests whose names contain one of these; tests in documentation only if no other test fits
+        filters: Vec<String>,
+        /// Run only the tests of these packages, without those in documentation
+        #[arg(long = "package", short, value_name = "NAME")]
+        packages: Vec<String>,
+        /// Renew the golden images of tests/golden instead of comparing with them
+        #[arg(long)]
+        bless: bool,
+        /// Run this many test processes at a time [default: one for each processor]
+        #[arg(long, value_name = "N")]
+        jobs: Option<NonZeroUsize>,
+    },
+    /// Build, sign and check the Android application
+    Apk {
+        /// Build a small and fast release instead of a debuggable build
+        #[arg(long)]
+        release: bool,
+        /// Install missing packages (apt) without asking
+        #[arg(long)]
+        yes: bool,
+        /// Pack this libopenxr_loader.so into the APK; at most one for each processor
+        #[arg(long = "openxr-loader", value_name = "FILE")]
+        openxr_loaders: Vec<PathBuf>,
+        /// Make an application bundle (.aab) for a store, too
+        #[arg(long)]
+        bundle: bool,
+    },
+    /// Print what builds the Android application, what is missing, and how to get it
+    Doctor,
+    /// Check that Android will install and start an APK, or what a store makes of a bundle
+    CheckApk {
+        /// The APK or the bundle
+        file: PathBuf,
+    },
+    /// Pack the C library into target/package: with pkg-config and CMake files for Linux, as an AAR for
+    /// Android; the OpenXR layer for Android; the add-on for Godot
+    Package {
+        /// Make only these packages [default: all]
+        #[arg(long = "target", value_name = "NAME", value_delimiter = ',')]
+        targets: Vec<package::Target>,
+    },
+    /// Write the shader kit into target/kit: synthesis for engines that want no library
+    Kit,
+    /// The plugin for Bevy: an example, its tests
+    Bevy {
+        #[command(subcommand)]
+        task: bevy::Task,
+    },
+    /// The add-on for Godot: its project, its tests
+    Godot {
+        #[command(subcommand)]
+        task: godot::Task,
+    },
+    /// Build the page, which shows every method in a browser's WebGL 2, as files for any static host
+    Web {
+        /// Build the example of yoro-wgpu for browsers with WebGPU instead
+        #[arg(long, conflicts_with = "out")]
+        wgpu: bool,
+        /// Then serve it to browsers on this machine and, by `adb reverse tcp:8080 tcp:8080`, on a phone or headset
+        #[arg(long)]
+        serve: bool,
+        /// Do not build it again
+        #[arg(long)]
+        as_built: bool,
+        /// Port to serve at; 0 for any free one
+        #[arg(long, default_value_t = 8080, value_name = "NUMBER")]
+        port: u16,
+        /// Copy it into this folder, too, beside earlier versions, whose open tabs keep working
+        #[arg(long, value_name = "FOLDER")]
+        out: Option<PathBuf>,
+    },
+    /// What only maintainers run: costs of shaders, compiled shaders, programs to test with
+    Maintain {
+        #[command(subcommand)]
+        task: maintain::Task,
+    },
+    /// Check formatting, clippy, documentation, each library without its default features, the packages to publish, and
+    /// the types of the page's scripts
+    Lint,
+}
+
+/// Runs the task that the command line names. Returns the program's exit code.
+pub fn main() -> ExitCode {
+    console::exit_code(perform(Arguments::parse().task))
+}
+
+/// Runs a task. Returns false if a check has failed.
+fn perform(task: Task) -> anyhow::Result<bool> {
+    match task {
+        Task::Setup => {
+            if setup::ensure()?.complete() & setup::vulkan() {
+                println!("everything is there");
+            }
+        }
+        Task::Run { arguments } => {
+            setup::ensure()?;
+            cargo::run(
+                &["run", "--release", "--package", "yoro-cli", "--bin", "yoro", "--", "run"],
+                &arguments,
+            )?;
+            if arguments.is_empty() {
+                console::print(NEXT);
+            }
+        }
+        Task::Test { filters, packages, bless, jobs } => {
+            testing::test(&testing::Options { filters, packages, bless, jobs })?;
+        }
+        Task::Apk { release, yes, openxr_loaders, bundle } => {
+            android::apk(&android::Options { release, yes, openxr_loaders, bundle })?;
+        }
+        Task::Doctor => {
+            let (text, complete) = android::doctor()?;
+            console::print(&text);
+            return Ok(complete);
+        }
+        Task::CheckApk { file } => {
+            return android::check::check(&file);
+        }
+        Task::Package { targets } => {
+            package::package(&targets)?;
+        }
+        Task::Kit => {
+            kit::kit()?;
+        }
+        Task::Bevy { task: bevy::Task::Run } => bevy::run()?,
+        Task::Bevy { task: bevy::Task::Test } => bevy::test()?,
+        Task::Godot { task: godot::Task::Project } => {
+            godot::project()?;
+        }
+        Task::Godot { task: godot::Task::Test } => godot::test()?,
+        Task::Web { wgpu, serve, as_built, port, out } => {
+            let folder = match (wgpu, as_built) {
+                (false, false) => web::build()?,
+                (false, true) => web::built()?,
+                (true, false) => web::build_example()?,
+                (true, true) => web::built_example()?,
+            };
+            if let Some(out) = out {
+                web::publish(&folder, &out)?;
+            }
+            if serve {
+                web::serve(&folder, port)?;
+            }
+        }
+        Task::Maintain { task } => return maintain::perform(task),
+        Task::Lint => lint::lint()?,
+    }
+    Ok(true)
+}
