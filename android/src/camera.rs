@@ -60,7 +60,7 @@ impl Scan {
         lock(&self.found).picture.take()
     }
 
-    /// Returns the viewer or the stream that was found, or the reason why the scan has failed.
+    /// Returns the viewer that was found, or the reason why the scan has failed.
     pub fn outcome(&self) -> Option<Result<Shared, String>> {
         lock(&self.found).outcome.take()
     }

@@ -16,7 +16,6 @@ use crate::pictures;
 use crate::results;
 use crate::settings::{self, Pair, Sources};
 use crate::shared::{self, Reading, Shared};
-use crate::stream;
 use crate::system;
 use crate::writer::Writer;
 
@@ -111,18 +110,6 @@ impl Configuration {
         self.game_loop.is_none() && self.sources.is_by_hand()
     }
 
-    /// Shows the stream that the settings name, if any.
-    pub fn show_stream(&self, viewer: &mut Viewer) {
-        let Some(address) = &self.settings.stream else { return };
-        let found = stream::find(address).unwrap_or_else(|| {
-            Err(format!("{address} is not the address of a stream: take the one that yoro serve prints."))
-        });
-        match found {
-            Ok(address) => _ = show_stream(viewer, address),
-            Err(mistake) => log::warn!("{mistake}"),
-        }
-    }
-
     /// Shows the explanation if a person has started the application by hand, for the first time.
     pub fn greet(&mut self, viewer: &mut Viewer) {
         if self.is_by_hand() && std::mem::take(&mut self.is_first_start) {
@@ -167,10 +154,6 @@ impl Configuration {
                     None => String::new(),
                 }
             }
-            Ok(Shared::Stream(address)) => match display.viewer_mut() {
-                Some(viewer) => show_stream(viewer, address),
-                None => String::new(),
-            },
             // Saved only when the user leaves: a model too large for the memory would end every later start.
             Ok(Shared::Scene(name)) => {
                 log::info!("shared: the model {name}");
@@ -341,15 +324,6 @@ impl Configuration {
 pub fn choose_viewer(cardboard: &mut Cardboard, uri: &str) -> String {
     match cardboard.choose_viewer(uri) {
         Ok(()) => "This is your viewer now. Touch Start.".into(),
-        Err(error) => error.to_string(),
-    }
-}
-
-/// Switches to a stream, and returns a sentence for the user.
-pub fn show_stream(viewer: &mut Viewer, address: stream::Address) -> String {
-    log::info!("stream: {address}");
-    match viewer.show_stream(stream::follow(address)) {
-        Ok(()) => "The stream is shown: touch Start.".into(),
         Err(error) => error.to_string(),
     }
 }

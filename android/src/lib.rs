@@ -19,8 +19,6 @@ mod settings;
 #[cfg(any(target_os = "android", test))]
 mod shared;
 #[cfg(any(target_os = "android", test))]
-mod stream;
-#[cfg(any(target_os = "android", test))]
 mod writer;
 
 #[cfg(target_os = "android")]
@@ -31,8 +29,6 @@ mod bindings;
 mod camera;
 #[cfg(target_os = "android")]
 mod configuration;
-#[cfg(target_os = "android")]
-mod decoder;
 #[cfg(target_os = "android")]
 mod device;
 #[cfg(target_os = "android")]

@@ -10,8 +10,6 @@ use std::thread;
 
 use yoro_lenses::{ViewerParams, read_qr};
 
-use crate::stream;
-
 /// The largest picture and the largest model, in bytes.
 const MAX_PICTURE: u64 = 64 << 20;
 const MAX_MODEL: u64 = 1 << 30;
@@ -37,8 +35,6 @@ pub enum Given {
 pub enum Shared {
     /// A viewer's URI.
     Viewer(String),
-    /// The address of a stream.
-    Stream(stream::Address),
     /// The file name of a model, which is now in the scene folder.
     Scene(String),
 }
@@ -118,14 +114,11 @@ impl<R: Read> Read for Counted<R> {
 /// The longest address accepted, in bytes.
 const MAX_ADDRESS: usize = 2048;
 
-/// Finds the address of a stream, or a viewer's URI, among the words of a text.
+/// Finds a viewer's URI among the words of a text.
 ///
 /// # Errors
 /// A sentence with the remedy.
 pub fn address_in_text(text: &str) -> Result<Shared, String> {
-    if let Some(stream) = stream::find(text) {
-        return stream.map(Shared::Stream);
-    }
     let is_address = |word: &&str| word.contains('.') && word.contains('/');
     let is_viewer = |word: &&str| is_address(word) && word.contains("/cardboard");
     // Without surrounding brackets and punctuation, and without anything after the first parameter.

@@ -38,7 +38,6 @@ impl Activity {
                 log::info!("scanned: the viewer {uri}");
                 configuration::choose_viewer(cardboard, &uri)
             }
-            Some(Ok(Shared::Stream(address))) => configuration::show_stream(cardboard.viewer_mut(), address),
             // A code cannot be a file.
             Some(Ok(Shared::Scene(_))) => String::new(),
             Some(Err(sentence)) => sentence,

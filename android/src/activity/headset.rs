@@ -78,7 +78,6 @@ impl Activity {
         let mut viewer = self.configuration.make_viewer(Viewer::new)?;
         viewer.attach(gl.clone())?;
         self.configuration.greet(&mut viewer);
-        self.configuration.show_stream(&mut viewer);
         let options = Options { android: Some(android) };
         let headset = Headset::open(found, &*window, gl, viewer, options)?;
         self.display = Display::Headset(Box::new(headset));

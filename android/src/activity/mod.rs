@@ -360,7 +360,6 @@ impl Activity {
             match self.configuration.make_viewer(new) {
                 Ok(mut cardboard) => {
                     self.configuration.begin(&mut cardboard);
-                    self.configuration.show_stream(cardboard.viewer_mut());
                     self.display = Display::Cardboard(Box::new(cardboard));
                 }
                 Err(error) => return self.fail(error.to_string()),

@@ -21,7 +21,6 @@ mod questionnaire;
 mod scene_slot;
 mod session_stats;
 mod start;
-mod stream;
 mod viewer;
 
 pub use cardboard::{Cardboard, HeldHead};
@@ -29,5 +28,4 @@ pub use error::ViewerError;
 pub use event::{Action, Event};
 pub use frame::{FrameReport, FrameTiming, SceneState};
 pub use loading::{SceneSource, list_scenes};
-pub use stream::StreamExchange;
 pub use viewer::Viewer;

@@ -93,10 +93,6 @@ pub struct Line {
     pub undrawn: Option<u64>,
     /// With `method=auto`, the reason for [`Line::method`], such as `6.1/8.9ms`; missing for a named method.
     pub auto: Option<String>,
-    /// Frames per second of a stream that arrived and were shown; missing without a stream.
-    pub stream_fps: Option<f64>,
-    /// Mean time from requesting a pose to showing its picture, in milliseconds; missing without frames of a stream.
-    pub latency_ms: Option<f64>,
 }
 
 /// One key of the line, and its value.
@@ -237,8 +233,6 @@ pub const LINE_KEYS: &[LineKey] = &[
     LineKey { may_be_absent: true, ..number!("guard", Real, guard_columns, 1, "") },
     LineKey { may_be_absent: true, ..number!("undrawn", Integer, undrawn, 0, "") },
     LineKey { may_be_absent: true, ..optional_name!("auto", auto) },
-    LineKey { may_be_absent: true, ..number!("stream", Real, stream_fps, 1, "") },
-    LineKey { may_be_absent: true, ..number!("latency", Real, latency_ms, 1, "ms") },
 ];
 
 impl LineKey {
@@ -386,8 +380,6 @@ mod tests {
             guard_columns: Some(17.5),
             undrawn: Some(0),
             auto: Some("6.1/8.9ms".into()),
-            stream_fps: Some(58.9),
-            latency_ms: Some(41.5),
             ..Line::default()
         }
     }
@@ -396,7 +388,7 @@ mod tests {
     fn a_line_is_written_and_read_in_its_documented_form() {
         assert_eq!(
             example().to_string(),
-            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms,stream=58.9,latency=41.5ms"
+            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms"
         );
         assert_eq!(example().to_string().parse(), Ok(example()));
     }
@@ -434,7 +426,7 @@ mod tests {
         assert_eq!(
             text,
             format!(
-                "{expected}{},perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms,stream=58.9,latency=41.5ms",
+                "{expected}{},perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms",
                 "r".repeat(64)
             )
         );
@@ -470,8 +462,6 @@ mod tests {
             ("frames", 72.0),
             ("guard", 17.5),
             ("undrawn", 0.0),
-            ("stream", 58.9),
-            ("latency", 41.5),
         ];
         assert_eq!(numbers, expected);
     }
@@ -480,7 +470,7 @@ mod tests {
     fn unknown_values_are_na_and_not_zero() {
         let empty = Line { method: "yoro".into(), scene: "x".into(), ..Line::default() };
         let text = empty.to_string();
-        assert_eq!(text.matches("na").count(), 29, "{text}");
+        assert_eq!(text.matches("na").count(), 27, "{text}");
         assert_eq!(text.parse(), Ok(empty));
     }
 
@@ -503,8 +493,6 @@ mod tests {
                 guard_columns: None,
                 undrawn: None,
                 auto: None,
-                stream_fps: None,
-                latency_ms: None,
                 ..early
             }
         );
