@@ -8,7 +8,7 @@ use yoro_viewer::Viewer;
 use yoro_viewer::openxr::{Android, Headset, Options, Step, runtime};
 
 use super::{Activity, context};
-use crate::display::{Display, DisplayError};
+use crate::platform::display::{Display, DisplayError};
 
 /// The OpenXR runtime. Its library stays in the process and is initialised only once for all activities.
 static RUNTIME: OnceLock<runtime::Runtime> = OnceLock::new();

@@ -1,5 +1,7 @@
 //! Queries and requests that only Java can serve.
 
+mod bindings;
+
 use std::ffi::c_void;
 use std::fs::File;
 use std::os::fd::FromRawFd as _;
@@ -14,11 +16,11 @@ use jni::vm::JavaVM;
 use jni::{jni_sig, jni_str};
 use yoro_viewer::openxr::runtime::{Broker, Rows};
 
-use crate::bindings::{
+use crate::share::Given;
+use bindings::{
     Activity, BatteryManager, Cursor, DisplayMetrics as Metrics, Intent, IntentFilter, PowerManager, Toast,
     Uri,
 };
-use crate::shared::Given;
 
 /// `BatteryManager.BATTERY_PROPERTY_*`.
 #[derive(Clone, Copy, Debug)]

@@ -3,10 +3,10 @@
 use yoro_lenses::Rotation;
 
 use super::Activity;
-use crate::camera::{REFUSED, Scan};
-use crate::configuration;
-use crate::display::Display;
-use crate::shared::Shared;
+use crate::platform::camera::{REFUSED, Scan};
+use crate::platform::configuration;
+use crate::platform::display::Display;
+use crate::share::Shared;
 
 impl Activity {
     /// Starts a scan, or first asks for the permission.

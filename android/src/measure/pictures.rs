@@ -17,7 +17,7 @@ const LEAST_DB: f64 = 30.0;
 /// Returns a stored picture by its name.
 macro_rules! stored {
     ($name:literal) => {
-        include_bytes!(concat!("../../tests/golden/prototype-", $name, ".png"))
+        include_bytes!(concat!("../../../tests/golden/prototype-", $name, ".png"))
     };
 }
 

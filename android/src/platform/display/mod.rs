@@ -1,4 +1,7 @@
-//! The display in use.
+//! The display in use; the phone's own screen, and the performance that it asks for.
+
+mod performance;
+mod screen;
 
 use std::path::PathBuf;
 
@@ -6,6 +9,9 @@ use yoro_context::android::WindowError;
 use yoro_settings::Settings;
 use yoro_viewer::openxr::{Headset, XrError};
 use yoro_viewer::{Cardboard, Viewer, ViewerError};
+
+pub use performance::Performance;
+pub use screen::ScreenState;
 
 /// The display in use. It owns the application that draws on it.
 #[derive(Default)]

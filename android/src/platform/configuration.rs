@@ -9,15 +9,15 @@ use yoro_scenes::BUILTINS;
 use yoro_settings::Settings;
 use yoro_viewer::{Cardboard, Viewer, ViewerError, list_scenes};
 
-use crate::display::Display;
-use crate::game_loop::GameLoop;
-use crate::java::Java;
-use crate::pictures;
-use crate::results;
+use crate::measure::game_loop::GameLoop;
+use crate::measure::pictures;
+use crate::platform::display::Display;
+use crate::platform::java::Java;
+use crate::platform::measure::results;
+use crate::platform::system;
+use crate::settings::writer::Writer;
 use crate::settings::{self, Pair, Sources};
-use crate::shared::{self, Reading, Shared};
-use crate::system;
-use crate::writer::Writer;
+use crate::share::{self, Reading, Shared};
 
 /// The file with the menu's changes, in the application's internal folder.
 const MENU_FILE_NAME: &str = "settings-user";

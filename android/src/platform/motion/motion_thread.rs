@@ -17,18 +17,18 @@ use ndk::looper::{ForeignLooper, ThreadLooper};
 use ndk_sys as ffi;
 use yoro_lenses::MotionSample;
 
-use crate::dynamic::Library;
-use crate::pace::{self, Refresh, Timeline};
-use crate::sensors::Sensors;
-use crate::system::{now_ns, slept_ns};
+use super::sensors::Sensors;
+use crate::frame_timing::{self, Refresh, Timeline};
+use crate::platform::system::Library;
+use crate::platform::system::{now_ns, slept_ns};
 
 /// The most samples that are kept if the main loop takes none: more than a tenth of a second. Older ones are dropped.
 const MAX_SAMPLES: usize = 256;
 
-static PULSE: OnceLock<Option<Pulse>> = OnceLock::new();
+static MOTION_THREAD: OnceLock<Option<MotionThread>> = OnceLock::new();
 
 /// The thread and its looper.
-pub struct Pulse {
+pub struct MotionThread {
     shared: Arc<Shared>,
     looper: ForeignLooper,
 }
@@ -46,13 +46,13 @@ struct Shared {
     waker: Mutex<Option<AndroidAppWaker>>,
 }
 
-impl Pulse {
-    /// Returns the process's pulse, which the first call starts; `None` if no thread can be started.
-    pub fn get() -> Option<&'static Pulse> {
-        PULSE.get_or_init(Pulse::start).as_ref()
+impl MotionThread {
+    /// Returns the process's thread, which the first call starts; `None` if no thread can be started.
+    pub fn get() -> Option<&'static MotionThread> {
+        MOTION_THREAD.get_or_init(MotionThread::start).as_ref()
     }
 
-    fn start() -> Option<Pulse> {
+    fn start() -> Option<MotionThread> {
         let shared = Arc::new(Shared::default());
         let (sender, receiver) = mpsc::channel();
         let of_thread = shared.clone();
@@ -63,11 +63,11 @@ impl Pulse {
                 run(&of_thread, ptr);
             }
         };
-        if let Err(error) = thread::Builder::new().name("yoro-pulse".into()).spawn(work) {
+        if let Err(error) = thread::Builder::new().name("yoro-motion".into()).spawn(work) {
             log::error!("no thread for the sensors ({error}): the picture does not follow the head");
             return None;
         }
-        Some(Pulse { shared, looper: receiver.recv().ok()? })
+        Some(MotionThread { shared, looper: receiver.recv().ok()? })
     }
 
     /// Starts sensors and refreshes for a main loop, which is woken at each refresh.
@@ -144,7 +144,7 @@ fn run(shared: &Shared, looper: NonNull<ffi::ALooper>) {
             let mut samples = lock(&shared.samples);
             let now = now_ns();
             sensors.drain(|sample, time| {
-                let time = pace::sample_time_ns(time, now, slept);
+                let time = frame_timing::sample_time_ns(time, now, slept);
                 if samples.len() == MAX_SAMPLES {
                     samples.remove(0);
                 }

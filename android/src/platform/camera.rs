@@ -8,9 +8,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crate::dynamic::Library;
-use crate::scan::{Luma, best_size};
-use crate::shared::{Shared, address_in_text};
+use crate::platform::system::Library;
+use crate::share::scan::{Luma, best_size};
+use crate::share::{Shared, address_in_text};
 
 /// The interval at which a new picture is looked for.
 const PERIOD: Duration = Duration::from_millis(40);

@@ -1,5 +1,7 @@
 //! Reads what another application shares with yoro: a viewer's code as text or as a picture, or a model.
 
+pub mod scan;
+
 use std::fs::File;
 use std::io::{self, Read, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};

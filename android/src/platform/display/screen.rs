@@ -2,7 +2,7 @@
 
 use yoro_lenses::{Rotation, Screen};
 
-use crate::java::{DisplayMetrics, Java};
+use crate::platform::java::{DisplayMetrics, Java};
 
 /// The screen as Android last described it.
 pub struct ScreenState {

@@ -1,6 +1,10 @@
-//! Calls of the C library.
+//! The C library, and Android's libraries by name.
+
+mod dynamic;
 
 use std::ffi::CString;
+
+pub use dynamic::Library;
 
 /// Returns the time on the clock of Android's events and refreshes, in nanoseconds.
 pub fn now_ns() -> i64 {

@@ -9,9 +9,9 @@ use std::time::Duration;
 use ndk::native_window::NativeWindow;
 use yoro_settings::{Performance as Level, Settings};
 
-use crate::dynamic::Library;
-use crate::java::Java;
-use crate::system::thread_id;
+use crate::platform::java::Java;
+use crate::platform::system::Library;
+use crate::platform::system::thread_id;
 
 /// `ANATIVEWINDOW_FRAME_RATE_COMPATIBILITY_DEFAULT`: the frames are suitable for any rate.
 const ANY_RATE: i8 = 0;

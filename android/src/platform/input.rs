@@ -4,13 +4,13 @@ use android_activity::input::{InputEvent, KeyAction, KeyEvent, Keycode, MotionAc
 use android_activity::{AndroidApp, InputStatus};
 use yoro_viewer::Event;
 
-use crate::press::Press;
+use crate::touch::Touch;
 
 /// The user's input by touch screen, buttons and keys.
 #[derive(Default)]
 pub struct Input {
-    touch: Press,
-    trigger: Press,
+    touch: Touch,
+    trigger: Touch,
     /// Events that have not been handled yet.
     pub events: Vec<Event>,
     /// The position of the finger that pressed last, in pixels from the upper left corner; `None` if it was a key.
@@ -47,7 +47,7 @@ impl Input {
 
     /// Forgets presses in progress, since the window is gone.
     pub fn cancel(&mut self) {
-        (self.touch, self.trigger) = (Press::default(), Press::default());
+        (self.touch, self.trigger) = (Touch::default(), Touch::default());
     }
 
     fn motion(&mut self, motion: &MotionEvent, dpi: f32) -> InputStatus {

@@ -1,6 +1,8 @@
 //! Settings from outside, from the weakest to the strongest source: defaults < file < menu < intent extras < system
 //! properties < the user's changes before Android stopped the activity.
 
+pub mod writer;
+
 use std::path::PathBuf;
 
 use yoro_settings::{PROPERTY_PREFIX, SETTINGS, Setting, Settings};

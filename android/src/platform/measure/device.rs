@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use yoro_settings::telemetry::{BatteryStatus, DeviceState};
 
-use crate::java::{BatteryProperty, Java};
-use crate::thermal::Thermal;
+use super::thermal::Thermal;
+use crate::platform::java::{BatteryProperty, Java};
 
 const PERIOD: Duration = Duration::from_secs(1);
 

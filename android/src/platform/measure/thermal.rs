@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::ptr::NonNull;
 use std::time::{Duration, Instant};
 
-use crate::dynamic::Library;
+use crate::platform::system::Library;
 
 /// Time between queries of the headroom. The forecast changes slowly, and Android answers frequent queries with NaN.
 const HEADROOM_PERIOD: Duration = Duration::from_secs(10);

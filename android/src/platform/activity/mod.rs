@@ -18,18 +18,18 @@ use yoro_lenses::{MotionSample, Screen};
 use yoro_settings::telemetry::DeviceState;
 use yoro_viewer::{Action, Cardboard, Event, FrameReport, FrameTiming, ViewerError};
 
-use crate::camera::Scan;
-use crate::configuration::Configuration;
-use crate::device::Device;
-use crate::display::{Display, DisplayError};
-use crate::input::Input;
-use crate::java::Java;
-use crate::pace::Refresh;
-use crate::performance::Performance;
-use crate::pulse::Pulse;
-use crate::results;
-use crate::screen::ScreenState;
-use crate::system::now_ns;
+use crate::frame_timing::Refresh;
+use crate::platform::camera::Scan;
+use crate::platform::configuration::Configuration;
+use crate::platform::display::Performance;
+use crate::platform::display::ScreenState;
+use crate::platform::display::{Display, DisplayError};
+use crate::platform::input::Input;
+use crate::platform::java::Java;
+use crate::platform::measure::Device;
+use crate::platform::measure::results;
+use crate::platform::motion::MotionThread;
+use crate::platform::system::now_ns;
 
 /// The longest wait for a refresh. After this, a frame is drawn without one.
 const REFRESH_TIMEOUT: Duration = Duration::from_millis(100);
@@ -71,7 +71,7 @@ struct Activity {
     java: Java,
     configuration: Configuration,
     screen: ScreenState,
-    pulse: Option<&'static Pulse>,
+    motion: Option<&'static MotionThread>,
     device: Option<Device>,
     input: Input,
     performance: Performance,
@@ -112,7 +112,7 @@ impl Activity {
             configuration: Configuration::new(app, &java),
             java,
             screen: ScreenState::new(),
-            pulse: Pulse::get(),
+            motion: MotionThread::get(),
             device: None,
             input: Input::default(),
             performance: Performance::new(),
@@ -156,7 +156,7 @@ impl Activity {
             Some(REFRESH_TIMEOUT)
         } else if !self.is_drawing() {
             None
-        } else if self.pulse.is_some_and(Pulse::has_refreshes) {
+        } else if self.motion.is_some_and(MotionThread::has_refreshes) {
             Some(REFRESH_TIMEOUT)
         } else {
             Some(Duration::ZERO)
@@ -221,9 +221,9 @@ impl Activity {
         self.last_frame = Instant::now();
         self.device = Some(Device::watch(&self.java));
         if !self.display.is_headset()
-            && let Some(pulse) = self.pulse
+            && let Some(motion) = self.motion
         {
-            pulse.resume(self.app.create_waker());
+            motion.resume(self.app.create_waker());
         }
         if let Some(cardboard) = self.display.cardboard_mut() {
             cardboard.resume();
@@ -242,8 +242,8 @@ impl Activity {
             self.say("The camera was given back: touch the tile again.");
         }
         self.input.cancel();
-        if let Some(pulse) = self.pulse {
-            pulse.pause();
+        if let Some(motion) = self.motion {
+            motion.pause();
         }
         if let Some(cardboard) = self.display.cardboard_mut() {
             cardboard.pause();
@@ -444,13 +444,13 @@ impl Activity {
         {
             self.attach_viewer();
         }
-        let refresh = self.pulse.and_then(Pulse::take_refresh);
+        let refresh = self.motion.and_then(MotionThread::take_refresh);
         if !self.is_drawing() {
             self.input.events.clear();
             return;
         }
         self.input.hold(now_ns());
-        let is_paced = self.pulse.is_some_and(Pulse::has_refreshes);
+        let is_paced = self.motion.is_some_and(MotionThread::has_refreshes);
         if refresh.is_none() && is_paced && self.last_frame.elapsed() < REFRESH_TIMEOUT {
             return;
         }
@@ -523,8 +523,8 @@ impl Activity {
             refresh_hz,
         };
         let mut feed = |cardboard: &mut Cardboard| {
-            if let Some(pulse) = self.pulse {
-                pulse.drain(&mut self.samples, |sample, time| cardboard.sensor(sample, time));
+            if let Some(motion) = self.motion {
+                motion.drain(&mut self.samples, |sample, time| cardboard.sensor(sample, time));
             }
         };
         feed(cardboard);

@@ -16,11 +16,11 @@ struct Down {
 
 /// Recognises presses. All times are nanoseconds of one clock; positions are in pixels.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Press {
+pub struct Touch {
     down: Option<Down>,
 }
 
-impl Press {
+impl Touch {
     /// Records that the first finger, or a button, went down.
     pub fn down(&mut self, now_ns: i64, position: [f32; 2]) {
         self.down = Some(Down { since_ns: now_ns, position });
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn short_is_a_tap() {
-        let mut press = Press::default();
+        let mut press = Touch::default();
         press.down(0, [100.0, 100.0]);
         press.moved([105.0, 103.0], 400.0);
         assert_eq!(press.held(100 * MS), None);
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn long_counts_once_and_while_it_lasts() {
-        let mut press = Press::default();
+        let mut press = Touch::default();
         press.down(5 * MS, [0.0, 0.0]);
         assert_eq!(press.held(604 * MS), None);
         assert_eq!(press.held(606 * MS), Some(Event::LongPress));
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn drags_and_second_fingers_are_nothing() {
-        let mut press = Press::default();
+        let mut press = Touch::default();
         press.down(0, [100.0, 100.0]);
         press.moved([141.0, 100.0], 400.0);
         assert_eq!(press.up(50 * MS), None);
