@@ -425,10 +425,7 @@ mod tests {
         let expected = "v=1,t=3600.0s,method=yoro,pipeline=gather,scene=prototype,FPS=60.0/60,Stale=4000000000,frame=16.68ms,p99=17.00ms,App=6.10ms(geometry=1.250,gather-march=0.500),CPU=141.1%,RSS=212.4MB,mA_raw=-9223372036854775808,mA=-512.0,mV=-1,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=-3.0C,thermal=6,headroom=0.42,scale=0.80,imbuffer=4,frames=72,status=not-charging,run=";
         assert_eq!(
             text,
-            format!(
-                "{expected}{},perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms",
-                "r".repeat(64)
-            )
+            format!("{expected}{},perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms", "r".repeat(64))
         );
         let read: Line = text.parse().unwrap();
         assert_eq!(read.to_string(), text);
@@ -487,15 +484,7 @@ mod tests {
         let (early, _) = text.split_once(",frames=").unwrap();
         let read: Line = early.parse().unwrap();
         let early = Line { frames: None, status: None, run: None, performance: None, ..example() };
-        assert_eq!(
-            read,
-            Line {
-                guard_columns: None,
-                undrawn: None,
-                auto: None,
-                ..early
-            }
-        );
+        assert_eq!(read, Line { guard_columns: None, undrawn: None, auto: None, ..early });
         assert!(text.replace("discharging", "disch").parse::<Line>().is_err());
     }
 

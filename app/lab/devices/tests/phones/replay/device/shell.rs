@@ -1,16 +1,16 @@
 //! A simulated device's answers to commands.
 
-use std::path::Path;
-
+use super::super::script::Fault;
 use super::{Application, BOOT_S, LOADING_S, SimulatedDevice, VARIATION, WORN};
-use crate::adb::DeviceError;
-use crate::replay::script::Fault;
-use crate::{log, phone};
 use rand::Rng;
-use yoro_files as files;
+use yoro_devices::adb::DeviceError;
+use yoro_devices::phone;
 use yoro_settings::PROPERTY_PREFIX;
 use yoro_settings::Settings;
-use yoro_settings::telemetry::{CurrentNormalizer, LOG_TAG, Line};
+use yoro_settings::telemetry::{CurrentNormalizer, LOG_TAG};
+
+/// The kernel's file with the battery's values.
+const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
 
 impl SimulatedDevice {
     /// Installs the application.
@@ -30,12 +30,7 @@ impl SimulatedDevice {
             return Err(self.refused(&["cat", ">", path], "No space left on device"));
         }
         self.stored.files.insert(path.into(), text.into());
-        self.store_state()
-    }
-
-    fn store_state(&self) -> Result<(), DeviceError> {
-        let Some(path) = &self.store else { return Ok(()) };
-        Ok(files::write_with(path, |out| Ok(serde_json::to_writer(out, &self.stored)?))?)
+        Ok(())
     }
 
     fn refused(&self, words: &[&str], reason: &str) -> DeviceError {
@@ -53,14 +48,14 @@ impl SimulatedDevice {
             ["getprop", name] => Ok(self.property(name) + "\n"),
             ["setprop", name, value] => {
                 self.stored.properties.insert((*name).into(), (*value).into());
-                self.store_state().map(|()| String::new())
+                Ok(String::new())
             }
             ["settings", verb, table, key, value @ ..] => {
                 let name = if *table == "system" { (*key).to_owned() } else { format!("{table}/{key}") };
                 self.setting(words, verb, name, value.first().copied())
             }
             ["cat", "/proc/sys/kernel/random/boot_id"] => Ok(format!("{:08}-simulated\n", self.boots)),
-            ["cat", path] if *path == phone::KERNEL_BATTERY => self.kernel_battery(words),
+            ["cat", path] if *path == KERNEL_BATTERY => self.kernel_battery(words),
             ["cat", path] => self
                 .stored
                 .files
@@ -69,7 +64,7 @@ impl SimulatedDevice {
                 .ok_or_else(|| self.refused(words, "No such file or directory")),
             ["rm", "-f", path] => {
                 self.stored.files.remove(*path);
-                self.store_state().map(|()| String::new())
+                Ok(String::new())
             }
             ["date", "+%s.%N"] => Ok(format!("{:.9}\n", self.now + self.clock_offset)),
             ["dumpsys", "battery"] => Ok(self.battery()),
@@ -82,11 +77,11 @@ impl SimulatedDevice {
             )),
             ["am", "broadcast", "-a", "com.oculus.vrpowermanager.prox_close"] => {
                 self.stored.properties.insert(WORN.into(), "yes".into());
-                self.store_state().map(|()| String::new())
+                Ok(String::new())
             }
             ["am", "broadcast", "-a", "com.oculus.vrpowermanager.automation_disable"] => {
                 self.stored.properties.remove(WORN);
-                self.store_state().map(|()| String::new())
+                Ok(String::new())
             }
             ["dumpsys", "package", name] if self.script.others.iter().any(|other| other == name) => {
                 Ok("Packages:\n    versionName=7.1\n".into())
@@ -108,7 +103,7 @@ impl SimulatedDevice {
             }
             ["am", "start", "-S", "-W", "-n", activity, extras @ ..] => self.start(activity, extras),
             ["input", ..] | ["wm", ..] | ["logcat", "-G", _] => Ok(String::new()),
-            _ => Err(self.refused(words, "a replay does not know it")),
+            _ => Err(self.refused(words, "a simulated device does not know it")),
         }
     }
 
@@ -141,7 +136,7 @@ impl SimulatedDevice {
             Some(value) => self.stored.settings.insert(name, value.into()),
             None => self.stored.settings.remove(&name),
         };
-        self.store_state().map(|()| String::new())
+        Ok(String::new())
     }
 
     fn battery(&self) -> String {
@@ -169,7 +164,7 @@ impl SimulatedDevice {
     }
 
     /// Starts the application with the settings in `extras`, overridden by system properties.
-    pub(super) fn start(&mut self, activity: &str, extras: &[&str]) -> Result<String, DeviceError> {
+    fn start(&mut self, activity: &str, extras: &[&str]) -> Result<String, DeviceError> {
         let package = activity.split('/').next().unwrap_or_default();
         let other = self.script.others.iter().find(|other| *other == package).cloned();
         if !self.installed && other.is_none() {
@@ -185,7 +180,6 @@ impl SimulatedDevice {
                 return Ok(format!("Error: {error}\n"));
             }
         }
-        let recorded = if self.script.logs.is_empty() { None } else { Some(self.recorded(&settings)?) };
         self.starts += 1;
         let pid = 4000 + self.starts;
         let mut faults: Vec<Fault> =
@@ -198,7 +192,6 @@ impl SimulatedDevice {
             method: settings.method.first().name().into(),
             settings,
             first_frame: self.now + LOADING_S,
-            recorded,
             lines: 0,
             variation: 1.0 + VARIATION * self.random.random_range(-1.0..1.0),
             normalizer: CurrentNormalizer::default(),
@@ -207,38 +200,4 @@ impl SimulatedDevice {
         Ok("Starting: Intent { cmp=io.github.yoro/android.app.NativeActivity (has extras) }\nStatus: ok\n"
             .into())
     }
-
-    /// Returns the recorded lines of a method, pipeline and scene.
-    fn recorded(&self, settings: &Settings) -> Result<Vec<Line>, DeviceError> {
-        let is_wanted = |line: &Line| {
-            let pipeline =
-                line.pipeline.as_deref().is_none_or(|pipeline| pipeline == settings.pipeline.name());
-            line.method == settings.method.first().name() && line.scene == settings.scene && pipeline
-        };
-        for path in &self.script.logs {
-            let lines: Vec<Line> = read_recording(path)?.into_iter().filter(is_wanted).collect();
-            if !lines.is_empty() {
-                return Ok(lines);
-            }
-        }
-        Err(self.refused(
-            &["am", "start"],
-            &format!(
-                "the replay has no recorded log of {} in {}",
-                settings.method.first().name(),
-                settings.scene
-            ),
-        ))
-    }
-}
-
-/// Reads the telemetry lines of a log.
-fn read_recording(path: &Path) -> Result<Vec<Line>, DeviceError> {
-    let bytes = files::read(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    let line = |line: &str| match log::parse(line) {
-        log::Kind::Entry(entry) if entry.tag == LOG_TAG => entry.message.parse().ok(),
-        _ => None,
-    };
-    Ok(text.lines().filter_map(line).collect())
 }

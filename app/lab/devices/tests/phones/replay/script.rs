@@ -17,14 +17,8 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-
-use crate::adb::DeviceError;
-use crate::capture;
-use crate::table::toml_mistake;
-use yoro_files as files;
 
 /// The devices of a replay and their faults.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -33,11 +27,6 @@ pub struct Script {
     /// Seed of everything that is generated.
     #[serde(default)]
     pub seed: u64,
-    /// Simulated seconds per real second. `None` means as fast as possible.
-    pub speed: Option<f64>,
-    /// A folder, relative to the script, in which the devices keep settings, properties and files from one replay to
-    /// the next. With `None`, every replay starts from the initial state.
-    pub state: Option<PathBuf>,
     /// The devices.
     #[serde(default)]
     pub device: Vec<Phone>,
@@ -59,8 +48,6 @@ pub struct Phone {
     pub state: String,
     /// True if the application is installed at the start.
     pub installed: bool,
-    /// The settings of the application if it runs at the start.
-    pub running: Option<BTreeMap<String, String>>,
     /// True if there is no storage left to install anything.
     pub storage_full: bool,
     /// Capacity of the battery in mAh. 0 if the device does not report it; then the level never changes.
@@ -95,19 +82,12 @@ pub struct Phone {
     /// Packages of other applications on the device. While one of them runs, Meta's runtime logs one line per second
     /// for it, and one for another process.
     pub others: Vec<String>,
-    /// The other application that runs at the start.
-    pub foreground: Option<String>,
     /// Android's settings by name. Names outside the table `system` have the form `global/low_power`.
     pub settings: BTreeMap<String, String>,
     /// Names of the settings that cannot be changed.
     pub fixed_settings: Vec<String>,
     /// System properties.
     pub properties: BTreeMap<String, String>,
-    /// Files on the device by path.
-    pub files: BTreeMap<String, String>,
-    /// Recorded logs, relative to the script. If there are any, no lines are generated, and the application does not
-    /// start with a method and scene that is in none of them.
-    pub logs: Vec<PathBuf>,
     /// Made-up costs for a generated log, by method.
     pub load: BTreeMap<String, Load>,
     /// Faults that occur.
@@ -123,7 +103,6 @@ impl Default for Phone {
             android: "14".into(),
             state: "device".into(),
             installed: true,
-            running: None,
             storage_full: false,
             capacity_mah: 4500.0,
             level_percent: 90.0,
@@ -140,15 +119,12 @@ impl Default for Phone {
             refresh_hz: 60.0,
             vr_api: false,
             others: Vec::new(),
-            foreground: None,
             settings: BTreeMap::from([
                 ("screen_brightness".into(), "102".into()),
                 ("screen_brightness_mode".into(), "1".into()),
             ]),
             fixed_settings: Vec::new(),
             properties: BTreeMap::new(),
-            files: BTreeMap::new(),
-            logs: Vec::new(),
             load: BTreeMap::new(),
             fault: Vec::new(),
         }
@@ -245,86 +221,4 @@ pub struct Fault {
 
 fn first() -> u32 {
     1
-}
-
-impl Phone {
-    /// Returns a sentence on a number that is out of range. Within the ranges, time and power stay finite.
-    fn mistake(&self) -> Option<String> {
-        let numbers = [
-            ("capacity-mah", self.capacity_mah, 0.0..=1e6),
-            ("level-percent", self.level_percent, 0.0..=100.0),
-            ("celsius", self.celsius, -100.0..=200.0),
-            ("ambient-celsius", self.ambient_celsius, -100.0..=200.0),
-            ("charged-below", self.charged_below.unwrap_or(0.0), 0.0..=100.0),
-            ("refresh-hz", self.refresh_hz, 1.0..=1000.0),
-        ];
-        let loads = self.load.values().flat_map(|load| {
-            [("frame-ms", load.frame_ms, 1e-3..=1e6), ("milliwatts", load.milliwatts, 0.0..=1e6)]
-        });
-        let faults = self.fault.iter().flat_map(|fault| {
-            let seconds = fault.seconds.unwrap_or(0.0);
-            [("at", fault.at, 0.0..=1e9), ("seconds", seconds, 0.0..=1e9), ("by", fault.by, -1e9..=1e9)]
-        });
-        let mut all = numbers.into_iter().chain(loads).chain(faults);
-        let (name, value, range) = all.find(|(_, value, range)| !range.contains(value))?;
-        Some(format!("{name} is {value}: give a number from {} to {}", range.start(), range.end()))
-    }
-}
-
-impl Script {
-    /// Reads a script, or makes one from the captures in a folder, whose logs are replayed.
-    pub fn read(path: &Path) -> Result<Script, DeviceError> {
-        let script = if path.is_dir() { Script::of_captures(path)? } else { Script::of_file(path)? };
-        let refuse = |reason: &str| Err(DeviceError::Replay { path: path.into(), reason: reason.into() });
-        if script.speed.is_some_and(|speed| !(speed > 0.0 && speed.is_finite())) {
-            return refuse("speed must be above 0");
-        }
-        if let Some((phone, what)) = script.device.iter().find_map(|phone| Some((phone, phone.mistake()?))) {
-            return refuse(&format!("the device {}: {what}", phone.serial));
-        }
-        let mut serials: Vec<&str> = script.device.iter().map(|phone| phone.serial.as_str()).collect();
-        serials.sort_unstable();
-        serials.dedup();
-        if serials.len() < script.device.len() {
-            return refuse("two devices have the same serial: give each its own");
-        }
-        Ok(script)
-    }
-
-    fn of_file(path: &Path) -> Result<Script, DeviceError> {
-        let bytes = files::read(path)?;
-        let refused = |reason: String| DeviceError::Replay { path: path.into(), reason };
-        let text =
-            String::from_utf8(bytes).map_err(|_| refused("this is no text: give a TOML file".into()))?;
-        let mut script: Script =
-            toml::from_str(&text).map_err(|error| refused(toml_mistake(&text, &error)))?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        script.state = script.state.map(|state| folder.join(state));
-        for log in script.device.iter_mut().flat_map(|phone| &mut phone.logs) {
-            *log = folder.join(&*log);
-        }
-        Ok(script)
-    }
-
-    fn of_captures(folder: &Path) -> Result<Script, DeviceError> {
-        let mut script = Script::default();
-        for run in capture::find(&[folder.into()])? {
-            let info = capture::read_info(&run)?.device;
-            let log = run.join(capture::LOG_FILE);
-            if let Some(phone) = script.device.iter_mut().find(|phone| phone.serial == info.serial) {
-                phone.logs.push(log);
-                continue;
-            }
-            script.device.push(Phone {
-                serial: info.serial,
-                manufacturer: info.manufacturer,
-                model: info.model,
-                android: info.android,
-                capacity_mah: info.capacity_mah.unwrap_or(0.0),
-                logs: vec![log],
-                ..Phone::default()
-            });
-        }
-        Ok(script)
-    }
 }

@@ -3,18 +3,13 @@
 mod shell;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::time::Duration;
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use serde::{Deserialize, Serialize};
 
 use super::script::{Current, Fault, FaultKind, Load, Phone, Voltage};
-use crate::adb::{DeviceError, State};
-use crate::log;
-use yoro_files as files;
-use yoro_files::interrupt;
+use yoro_devices::adb::{DeviceError, State};
+use yoro_devices::log;
 use yoro_settings::Method;
 use yoro_settings::Settings;
 use yoro_settings::telemetry::{BatteryStatus, CurrentNormalizer, Line};
@@ -41,7 +36,7 @@ const CHARGED_PERCENT: f64 = 95.0;
 /// A process of Meta's runtime that is not an application.
 const RUNTIME_PID: u32 = 2072;
 /// Property that records whether a simulated headset was told that it is worn.
-const WORN: &str = "simulated.worn";
+pub const WORN: &str = "simulated.worn";
 
 /// A line of the log.
 struct Logged {
@@ -57,8 +52,6 @@ struct Application {
     settings: Settings,
     method: String,
     first_frame: f64,
-    /// Lines of a recorded log, played in a loop. `None` if lines are generated.
-    recorded: Option<Vec<Line>>,
     lines: u32,
     /// Random factor on the cost in this start of the application.
     variation: f64,
@@ -79,7 +72,6 @@ impl Application {
 }
 
 /// The state that a device keeps while it is turned off.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Stored {
     settings: BTreeMap<String, String>,
     properties: BTreeMap<String, String>,
@@ -89,7 +81,6 @@ struct Stored {
 /// A simulated device.
 pub struct SimulatedDevice {
     script: Phone,
-    speed: Option<f64>,
     /// This computer's clock.
     now: f64,
     /// The device's clock minus this computer's, in seconds.
@@ -108,8 +99,6 @@ pub struct SimulatedDevice {
     /// Incremented whenever readers of the log are cut off.
     generation: u32,
     stored: Stored,
-    /// The file that keeps `stored` from one replay to the next.
-    store: Option<PathBuf>,
     charge_mah: f64,
     celsius: f64,
     plugged_until: f64,
@@ -120,24 +109,14 @@ pub struct SimulatedDevice {
 }
 
 impl SimulatedDevice {
-    /// Creates the device of a script, in its initial state except for what an earlier replay has stored in a file.
-    pub fn new(script: Phone, seed: u64, speed: Option<f64>, store: Option<PathBuf>) -> SimulatedDevice {
-        let first = || Stored {
-            settings: script.settings.clone(),
-            properties: script.properties.clone(),
-            files: script.files.clone(),
-        };
-        let earlier = store.as_ref().and_then(|path| serde_json::from_slice(&files::read(path).ok()?).ok());
+    /// Creates the device of a script.
+    pub fn new(script: Phone, seed: u64) -> SimulatedDevice {
         // Give each device of a script its own random numbers.
         let own = script
             .serial
             .bytes()
             .fold(seed, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
-        let activity =
-            script.foreground.as_ref().map(|package| format!("{package}/.Main")).unwrap_or_default();
-        let running = script.running.clone().or(script.foreground.as_ref().map(|_| BTreeMap::new()));
-        let mut device = SimulatedDevice {
-            speed,
+        SimulatedDevice {
             now: BEGIN,
             clock_offset: 0.25,
             gone_until: f64::NEG_INFINITY,
@@ -150,8 +129,11 @@ impl SimulatedDevice {
             log: Vec::new(),
             forgotten: 0,
             generation: 0,
-            stored: earlier.unwrap_or_else(first),
-            store,
+            stored: Stored {
+                settings: script.settings.clone(),
+                properties: script.properties.clone(),
+                files: BTreeMap::new(),
+            },
             charge_mah: script.capacity_mah * script.level_percent / 100.0,
             celsius: script.celsius,
             plugged_until: if script.plugged { f64::INFINITY } else { f64::NEG_INFINITY },
@@ -160,18 +142,7 @@ impl SimulatedDevice {
             truncate: false,
             random: Pcg64Mcg::seed_from_u64(own),
             script,
-        };
-        if let Some(settings) = running {
-            let words: Vec<String> =
-                settings.iter().flat_map(|(k, v)| ["--es".into(), k.clone(), v.clone()]).collect();
-            let words: Vec<&str> = words.iter().map(String::as_str).collect();
-            match device.start(&activity, &words) {
-                Ok(said) if !said.starts_with("Error") => {}
-                Ok(said) => ::log::warn!("the replay starts nothing: {}", said.trim()),
-                Err(error) => ::log::warn!("the replay starts nothing: {error}"),
-            }
         }
-        device
     }
 
     /// Returns this computer's clock in seconds since 1970.
@@ -203,9 +174,9 @@ impl SimulatedDevice {
         }
     }
 
-    /// Lets time pass until `to`, or until the user interrupts the program.
+    /// Lets time pass until `to`.
     pub fn advance(&mut self, to: f64) {
-        while self.now < to && !(self.speed.is_some() && interrupt::requested()) {
+        while self.now < to {
             self.step(to);
         }
     }
@@ -213,13 +184,8 @@ impl SimulatedDevice {
     /// Lets time pass until something happens, at most until `limit`.
     fn step(&mut self, limit: f64) {
         let next = |a: &Application| a.next_line().min(a.next_fault());
-        // With a limited speed, take small steps so that the user can interrupt.
-        let glance = self.speed.map_or(f64::INFINITY, |speed| self.now + 0.05 * speed);
-        let to = self.application.as_ref().map_or(f64::INFINITY, next).min(limit).min(glance).max(self.now);
+        let to = self.application.as_ref().map_or(f64::INFINITY, next).min(limit).max(self.now);
         let passed = to - self.now;
-        if let Some(speed) = self.speed {
-            std::thread::sleep(Duration::from_secs_f64(passed / speed));
-        }
         self.now = to;
         self.discharge(passed);
         let is_due = |time: fn(&Application) -> f64| self.application.as_ref().is_some_and(|a| time(a) <= to);
@@ -244,12 +210,6 @@ impl SimulatedDevice {
             return self.script.level_percent;
         }
         100.0 * self.charge_mah / self.script.capacity_mah
-    }
-
-    /// True if somebody plugs in and unplugs the charger when needed.
-    pub fn is_attended(&self) -> bool {
-        let charger_goes = self.plugged_until.is_finite() && self.now < self.plugged_until;
-        self.script.charged_below.is_some_and(|percent| percent > 0.0) || charger_goes
     }
 
     /// Returns the voltage as the device reports it.
@@ -348,10 +308,7 @@ impl SimulatedDevice {
         let Some(mut application) = self.application.take() else { return };
         application.lines += 1;
         let time_s = f64::from(application.lines);
-        let mut line = match &application.recorded {
-            Some(recorded) => recorded[(application.lines as usize - 1) % recorded.len()].clone(),
-            None => self.generate(&mut application),
-        };
+        let mut line = self.generate(&mut application);
         line.time_s = time_s;
         line.run.clone_from(&application.settings.run);
         let pid = application.pid;
@@ -450,8 +407,6 @@ impl SimulatedDevice {
             performance: None,
             guard_columns: None,
             undrawn: None,
-            stream_fps: None,
-            latency_ms: None,
             auto: None,
         }
     }
@@ -487,7 +442,7 @@ impl SimulatedDevice {
                 *at += 1;
                 return Ok(Some(logged.text.clone()));
             }
-            if self.now >= limit || (self.speed.is_some() && interrupt::requested()) {
+            if self.now >= limit {
                 return Ok(None);
             }
             self.step(limit);

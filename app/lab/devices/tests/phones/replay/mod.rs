@@ -1,20 +1,18 @@
-//! Simulated devices, for tests and for people without a phone. They run a script in virtual time, so that ten minutes
-//! pass in a moment. All of their results are marked as simulated.
-//!
-//! A device plays recorded logs, or generates a log from a seed and made-up values. The script lists the faults.
+//! Simulated phones and headsets. They run a script in virtual time, so that ten minutes pass in a moment: a device
+//! generates a log from a seed and made-up values, and the script lists the faults.
 
 mod device;
 mod script;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use device::SimulatedDevice;
-pub use script::{Current, Fault, FaultKind, Load, Phone, Script, Voltage};
+use script::{Phone, Script};
+use yoro_devices::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream};
 
-use super::adb::{Adb, Device, DeviceError, Listed, LogEvent, LogStream};
-use super::log::SIMULATED_MARK;
+pub use device::WORN;
 
 type Shared = Arc<Mutex<SimulatedDevice>>;
 
@@ -24,24 +22,18 @@ fn lock(device: &Shared) -> MutexGuard<'_, SimulatedDevice> {
 
 /// The devices of a script.
 pub struct Replay {
-    path: PathBuf,
     devices: Vec<(String, Shared)>,
 }
 
 impl Replay {
-    /// Reads a script, or a folder of captures whose logs are replayed.
-    pub fn read(path: &Path) -> Result<Replay, DeviceError> {
-        Ok(Replay::new(path, Script::read(path)?))
-    }
-
-    /// Makes the devices of a script that was read from `path`.
-    pub fn new(path: &Path, script: Script) -> Replay {
-        let (seed, speed) = (script.seed, script.speed);
+    /// Makes the devices of a script in TOML.
+    #[track_caller]
+    pub fn new(script: &str) -> Replay {
+        let script: Script = toml::from_str(script).unwrap_or_else(|error| panic!("{error}: {script}"));
         let device = |phone: Phone| {
-            let kept = script.state.as_ref().map(|folder| folder.join(format!("{}.json", phone.serial)));
-            (phone.serial.clone(), Arc::new(Mutex::new(SimulatedDevice::new(phone, seed, speed, kept))))
+            (phone.serial.clone(), Arc::new(Mutex::new(SimulatedDevice::new(phone, script.seed))))
         };
-        Replay { path: path.into(), devices: script.device.into_iter().map(device).collect() }
+        Replay { devices: script.device.into_iter().map(device).collect() }
     }
 }
 
@@ -55,14 +47,8 @@ impl Adb for Replay {
 
     fn open(&self, serial: &str) -> Box<dyn Device> {
         let known = self.devices.iter().find(|(known, _)| known == serial);
-        let device = known.map_or_else(
-            || {
-                ::log::debug!("{} has no device {serial}", self.path.display());
-                let phone = Phone { serial: serial.into(), state: "offline".into(), ..Phone::default() };
-                Arc::new(Mutex::new(SimulatedDevice::new(phone, 0, None, None)))
-            },
-            |(_, device)| device.clone(),
-        );
+        let (_, device) = known.unwrap_or_else(|| panic!("the script has no device {serial}"));
+        let device = device.clone();
         Box::new(ReplayDevice { serial: serial.into(), device })
     }
 }
@@ -75,10 +61,6 @@ struct ReplayDevice {
 impl Device for ReplayDevice {
     fn serial(&self) -> &str {
         &self.serial
-    }
-
-    fn is_simulated(&self) -> bool {
-        true
     }
 
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError> {
@@ -97,11 +79,7 @@ impl Device for ReplayDevice {
         let mut device = lock(&self.device);
         device.reach()?;
         let (at, generation) = device.reader(since);
-        Ok(Box::new(ReplayLog { device: self.device.clone(), at, generation, is_new: true }))
-    }
-
-    fn is_attended(&self) -> bool {
-        lock(&self.device).is_attended()
+        Ok(Box::new(ReplayLog { device: self.device.clone(), at, generation }))
     }
 
     fn reconnect(&self) {}
@@ -121,14 +99,10 @@ struct ReplayLog {
     device: Shared,
     at: usize,
     generation: u32,
-    is_new: bool,
 }
 
 impl LogStream for ReplayLog {
     fn next(&mut self, wait: Duration) -> LogEvent {
-        if std::mem::take(&mut self.is_new) {
-            return LogEvent::Line(format!("{SIMULATED_MARK} by a replay of yoro\n").into());
-        }
         match lock(&self.device).read_log(&mut self.at, self.generation, wait.as_secs_f64()) {
             Ok(Some(line)) => LogEvent::Line((line + "\n").into()),
             Ok(None) => LogEvent::Quiet,
