@@ -31,7 +31,9 @@ fn is_given_back(device: &dyn Device) {
     let setting = |key: &str| device.shell(&["settings", "get", "system", key]).unwrap();
     assert_eq!([setting("screen_brightness"), setting("screen_brightness_mode")], ["102\n", "1\n"]);
     assert_eq!([setting("peak_refresh_rate"), setting("screen_off_timeout")], ["null\n", "null\n"]);
-    assert_eq!(device.shell(&["getprop"]).unwrap(), "[debug.yoro.hud]: [true]\n");
+    let property = |name: &str| device.shell(&["getprop", name]).unwrap();
+    // A property cannot be deleted; an empty one counts as missing.
+    assert_eq!([property("debug.yoro.hud"), property("debug.oculus.refreshRate")], ["true\n", "\n"]);
     device.shell(&["cat", "/data/local/tmp/yoro-restore.txt"]).unwrap_err();
 }
 
