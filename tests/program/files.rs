@@ -68,16 +68,4 @@ fn one_process_at_a_time_appends_to_a_file() {
     let bench = "bench scenes --quick --rounds 1 --size 32x32 --scene prototype --out results.jsonl";
     run(at, bench).refuses(&["results.jsonl is being written by another yoro", "--out"]);
     drop(held);
-
-    fs::write(
-        at.join("e.toml"),
-        "name = \"e\"\nseconds = 1\nscenes = [\"talk\"]\n[[method]]\nname = \"mono\"\n",
-    )
-    .unwrap();
-    fs::write(at.join("s.toml"), "[[device]]\nserial = \"SIM1\"\n").unwrap();
-    let held = yoro_files::append(&at.join("out/experiment.toml")).unwrap();
-    let experiment = "device experiment e.toml --replay s.toml --out out";
-    run(at, experiment).refuses(&["out/experiment.toml is being written by another yoro"]);
-    drop(held);
-    succeed(at, experiment);
 }

@@ -99,7 +99,6 @@ fn table() -> &'static HashMap<(System, &'static str), Export> {
             crate::android::activity::exports(),
             crate::android::camera::exports(),
             crate::android::choreographer::exports(),
-            crate::android::codec::exports(),
             crate::android::configuration::exports(),
             crate::android::input::exports(),
             crate::android::log::exports(),

@@ -4,7 +4,6 @@
 mod host;
 
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use glam::{EulerRot, Quat};
 use image::RgbImage;
@@ -20,7 +19,7 @@ use yoro_android_host::summary::Summary;
 use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headset, What};
 
-use host::{READY, Run, Server, device, layer, play, play_arm64, show};
+use host::{READY, Run, device, layer, play, play_arm64, show};
 
 /// The settings of all devices, and of the desktop for comparison. A CPU renders this scene and quality quickly.
 const SETTINGS: [(&str, &str); 9] = [
@@ -153,58 +152,6 @@ fn the_phone_draws_the_same_picture_as_the_desktop() {
         share * 100.0,
         run.folder()
     );
-}
-
-/// The phone shows what a server renders, reports that the server is gone, and connects to its successor.
-#[test]
-fn a_stream_is_shown_and_its_end_is_said() {
-    let Some(server) = Server::start("stream", "0") else { return };
-    let link = server.link.clone();
-    let port = link.split([':', '/']).nth(4).unwrap().to_owned();
-    let device =
-        phone(&[("render-scale", "1")], "sensors = []") + &format!("\n[device.extras]\nstream = \"{link}\"");
-    let capture = host::folder("stream").join("stream.png");
-    _ = std::fs::remove_file(&capture);
-    // After the picture has been taken, the server ends and another one starts.
-    let successor = std::thread::spawn(move || {
-        let start = Instant::now();
-        while !capture.exists() && start.elapsed() < Duration::from_secs(60) {
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        drop(server);
-        std::thread::sleep(Duration::from_secs(1));
-        Server::start("stream", &port)
-    });
-    let steps = r#""launch", { wait-log = { text = "stream: the first frame", frames = 4000 } }, { seconds = 2.5 },
-        { capture = "stream.png" }, { wait-log = { text = "is lost", frames = 4000 } },
-        { wait-log = { text = "has been started again", frames = 4000 } }, { frames = 2 }, { capture = "message.png" }, "quit""#;
-    let run = play("stream", &device, steps);
-    drop(successor.join());
-    let Some(run) = run else { return };
-    run.assert_clean();
-    let stream = run.picture("stream.png");
-    // The server renders with its own quality, which is the default.
-    let full = [
-        ("shadow-map", "2048"),
-        ("ssao", "half"),
-        ("bloom", "true"),
-        ("point-lights", "12"),
-        ("anti-aliasing", "auto"),
-    ];
-    let desktop = |method| desktop(&[&full[..], &[("render-scale", "1"), ("method", method)]].concat(), None);
-    let (real, same) = (desktop("conventional"), desktop("mono"));
-    run.keep("same.png", &same);
-    run.keep("real.png", &real);
-    let (streamed, baseline) = (decibels(&stream, &real), decibels(&same, &real));
-    assert!(
-        streamed > 28.0 && streamed > baseline + 3.0,
-        "{streamed:.1} dB, the same image to both eyes {baseline:.1} dB: {}",
-        run.folder()
-    );
-    let lines = lines(&run);
-    let last =
-        lines.iter().rfind(|line| line.stream_fps > Some(0.0)).expect("a line with frames of the stream");
-    assert!(last.method == "stream" && last.scene == "stream" && last.latency_ms.is_some(), "{last}");
 }
 
 #[test]

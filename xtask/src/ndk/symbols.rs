@@ -2,7 +2,7 @@
 
 /// The lists from which the stand-in NDK is made. Those of EGL, GLES and libandroid are complete; the others contain
 /// what Rust's std and this project use.
-pub const LISTS: [(&str, &str); 9] = [
+pub const LISTS: [(&str, &str); 8] = [
     ("libEGL", include_str!("../../ndk/symbols/libEGL.txt")),
     ("libGLESv2", include_str!("../../ndk/symbols/libGLESv2.txt")),
     ("libGLESv3", include_str!("../../ndk/symbols/libGLESv3.txt")),
@@ -10,7 +10,6 @@ pub const LISTS: [(&str, &str); 9] = [
     ("libc", include_str!("../../ndk/symbols/libc.txt")),
     ("libdl", include_str!("../../ndk/symbols/libdl.txt")),
     ("liblog", include_str!("../../ndk/symbols/liblog.txt")),
-    ("libmediandk", include_str!("../../ndk/symbols/libmediandk.txt")),
     ("libm", include_str!("../../ndk/symbols/libm.txt")),
 ];
 

@@ -1,5 +1,5 @@
-//! The interface to devices. [`AdbProgram`](super::adb_program::AdbProgram) implements it with the program adb,
-//! [`Replay`](super::replay::Replay) with simulated devices.
+//! The interface to devices. [`AdbProgram`](super::adb_program::AdbProgram) implements it with the program adb; tests
+//! have phones of their own.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -207,16 +207,6 @@ pub enum DeviceError {
         "{0} is locked by PIN, pattern or password, which ends a measurement as soon as its screen goes off: set its screen lock to none or swipe for the time of the measurement"
     )]
     Locked(String),
-    /// A replay waits for somebody to plug in or unplug a charger, but its script says that nobody does.
-    #[error(
-        "{serial} has {level:.0} %, and nobody in the script of this simulated device plugs a charger in or takes it off: give it charged-below, or the experiment power = false"
-    )]
-    Unattended {
-        /// The device's serial number.
-        serial: String,
-        /// The battery's level in percent.
-        level: f64,
-    },
     /// The device does not cool down.
     #[error(
         "{serial} has {celsius:.1} C and does not cool down to {wanted:.1} C: let it rest in a cooler place, then give the same command"
@@ -248,14 +238,6 @@ pub enum DeviceError {
         command: String,
         /// The time waited, in seconds.
         seconds: u64,
-    },
-    /// The script or folder of a replay cannot be used.
-    #[error("{}: {reason}", path.display())]
-    Replay {
-        /// The script or folder.
-        path: PathBuf,
-        /// The mistake and the remedy.
-        reason: String,
     },
     /// The user has asked to stop.
     #[error("interrupted: what was captured is kept, and the same command goes on")]
@@ -351,14 +333,6 @@ pub trait LogStream {
 pub trait Device: Send {
     /// The device's serial number, as adb lists it.
     fn serial(&self) -> &str;
-
-    /// True for a replay, whose results must all be marked as simulated.
-    fn is_simulated(&self) -> bool;
-
-    /// False if nobody will ever plug in or unplug a charger.
-    fn is_attended(&self) -> bool {
-        true
-    }
 
     /// Runs a command on the device, given as words, and returns its output.
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError>;

@@ -266,10 +266,6 @@ impl Device for ProgramDevice {
         &self.serial
     }
 
-    fn is_simulated(&self) -> bool {
-        false
-    }
-
     fn shell(&self, words: &[&str]) -> Result<String, DeviceError> {
         let line = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
         let said = self.finish(self.command(["shell", &line]), None, &line, COMMAND_TIMEOUT)?;

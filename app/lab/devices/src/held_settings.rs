@@ -278,36 +278,6 @@ pub fn restore_leftovers(device: &dyn Device) -> Result<(), DeviceError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::adb::Adb;
-    use crate::replay::{Fault, FaultKind, Phone, Replay, Script};
-    use std::path::Path;
-    use std::time::Duration;
-
-    #[test]
-    fn a_headset_is_told_that_it_is_worn_until_restored() {
-        let reboot = Fault { kind: FaultKind::Reboot, start: 1, at: 1.0, seconds: Some(2.0), by: 0.0 };
-        let headset = Phone {
-            manufacturer: "Oculus".into(),
-            serial: "HEADSET".into(),
-            fault: vec![reboot],
-            ..Phone::default()
-        };
-        let replay = Replay::new(Path::new(""), Script { device: vec![headset], ..Script::default() });
-        let device = &*replay.open("HEADSET");
-        let told =
-            || ["simulated.worn", QUEST_BOUNDARY].map(|name| device.shell(&["getprop", name]).unwrap());
-        let info = phone::info(device).unwrap();
-        let mut settings = HeldSettings::new(device, &info, &Wanted::default()).unwrap();
-        assert_eq!((told(), settings.refused()), (["yes\n".into(), "1\n".into()], &[][..]));
-        // Both are lost when the headset restarts.
-        phone::start(device, &Default::default()).unwrap();
-        device.sleep(Duration::from_secs(30));
-        assert_eq!(told(), ["\n", "\n"]);
-        settings.renew(device).unwrap();
-        assert_eq!(told(), ["yes\n", "1\n"]);
-        settings.restore(device).unwrap();
-        assert_eq!(told(), ["\n", "\n"]);
-    }
 
     #[test]
     fn pins_survive_writing_and_reading() {

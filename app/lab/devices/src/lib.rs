@@ -1,12 +1,12 @@
 //! Measuring on phones and headsets over adb, and user studies.
 //!
 //! ```text
-//! adb or a replay ──> capture (a folder for each run) ──> report (power, FPS, ... by method and scene)
+//! adb ──> capture (a folder for each run) ──> report (power, FPS, ... by method and scene)
 //! plan of a study ──> ratings (CSV, or lines of the log) ──> analysis
 //! ```
 //!
 //! The inputs are devices, plans of experiments and captures; the outputs are captures and reports. [`adb`] is the
-//! interface to devices: [`adb_program`] implements it with the program adb, [`replay`] with a script. [`follow`] reads a
+//! interface to devices, which [`adb_program`] implements with the program adb. [`follow`] reads a
 //! log across lost connections, [`reading`] parses its lines into samples ([`foreign`] finds the lines of other
 //! applications), [`run`] captures one run, [`experiment`] many, [`farm`] reads what device farms give back, and
 //! [`report`] computes figures from them. [`study`] plans and analyses user studies.
@@ -26,7 +26,6 @@ pub mod log;
 pub mod mean_power;
 pub mod phone;
 pub mod reading;
-pub mod replay;
 pub mod report;
 pub mod run;
 pub mod study;

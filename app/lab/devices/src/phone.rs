@@ -13,7 +13,7 @@ const ACTIVITY: &str = "io.github.yoro/android.app.NativeActivity";
 const LOG_BUFFER: &str = "8M";
 
 /// The kernel's file about the battery. Not every shell may read it.
-pub(super) const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
+const KERNEL_BATTERY: &str = "/sys/class/power_supply/battery/uevent";
 /// Minimum voltage that is taken for millivolts. Some phones give whole volts, which are too coarse for power.
 pub const LEAST_MILLIVOLTS: f64 = 100.0;
 
@@ -57,7 +57,7 @@ pub fn info(device: &dyn Device) -> Result<DeviceInfo, DeviceError> {
         android: property("ro.build.version.release")?,
         // Some devices refuse this. The capacity is only needed for an additional figure.
         capacity_mah: device.shell(&["dumpsys", "batterystats"]).ok().and_then(|text| capacity(&text)),
-        simulated: device.is_simulated(),
+        simulated: false,
     })
 }
 

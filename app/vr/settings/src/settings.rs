@@ -211,9 +211,6 @@ settings! {
     "auto-exit" auto_exit: bool = false,
     /// The display that shows the eyes; read at start-up only.
     "display" display: DisplayKind = DisplayKind::Auto,
-    /// Phones and headsets with Android: the address of a stream, as `yoro serve` prints it, to show in place of the scene; read at
-    /// start-up only.
-    "stream" stream: Option<String> = None,
     /// Refreshes per second. Headsets: the nearest of the rates that the runtime offers. Phones: the rate that Android is
     /// asked for (Android 11).
     "refresh-rate" refresh_rate: Option<f32> = None;

@@ -20,7 +20,6 @@ mod options;
 mod questionnaire;
 mod scene_slot;
 mod session_stats;
-mod stream;
 mod viewer;
 
 pub use cardboard::{Cardboard, HeldHead};
@@ -29,5 +28,4 @@ pub use event::{Action, Event};
 pub use frame::{FrameReport, FrameTiming, SceneState};
 pub use loading::{SceneSource, list_scenes};
 pub use options::{render_settings, stereo_options};
-pub use stream::StreamExchange;
 pub use viewer::Viewer;

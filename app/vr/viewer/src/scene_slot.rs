@@ -77,11 +77,6 @@ impl SceneSlot {
         self.viewpoint = viewpoint;
     }
 
-    /// Removes the scene and stops loading.
-    pub fn put_away(&mut self) {
-        (self.loader, self.failure, self.shown) = (None, None, None);
-    }
-
     /// Loads the scene again for a new GL context, unless it is being loaded or has failed.
     pub fn reload(&mut self) {
         if self.loader.is_none() && self.failure.is_none() {

@@ -3,7 +3,6 @@
 pub mod activity;
 pub mod camera;
 pub mod choreographer;
-pub mod codec;
 pub mod configuration;
 pub mod input;
 pub mod log;

@@ -1,8 +1,8 @@
 //! Runs the simulated Android host, and reads its results.
 
-use std::io::{BufRead as _, BufReader, Write};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 
 use image::RgbImage;
 use yoro_android_host::summary::Summary;
@@ -46,47 +46,8 @@ pub fn play(name: &str, device: &str, steps: &str) -> Option<Run> {
     Some(run(Path::new(env!("CARGO_BIN_EXE_yoro-android-host")), &apk, name, device, steps))
 }
 
-/// A running `yoro serve` of the tests' scene, which is ended when this is dropped.
-pub struct Server {
-    child: Child,
-    /// The link that it prints.
-    pub link: String,
-}
-
-impl Server {
-    /// Starts the server. Prints a message and returns `None` if the program was not built.
-    pub fn start(name: &str, port: &str) -> Option<Server> {
-        let program = Path::new(env!("CARGO_BIN_EXE_yoro-android-host")).with_file_name("yoro");
-        let program = program.exists().then_some(program);
-        let program =
-            program.or_else(|| left_out(name, "there is no program beside the host", "yoro", "builds it"))?;
-        // The server needs a page, which no test opens.
-        let page = folder("page");
-        std::fs::create_dir_all(&page).unwrap();
-        std::fs::write(page.join("index.html"), "").unwrap();
-        let mut child = Command::new(program)
-            .args(["serve", "prototype", "--port", port, "--quantizer", "16", "--page"])
-            .arg(page)
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-        let first = lines.next().expect("it says where it is").unwrap();
-        std::thread::spawn(move || lines.for_each(drop));
-        Some(Server { child, link: first.strip_prefix("open ").expect("a link").to_owned() })
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        _ = self.child.kill();
-        _ = self.child.wait();
-    }
-}
-
 /// Returns the folder of a run.
-pub fn folder(name: &str) -> PathBuf {
+fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 

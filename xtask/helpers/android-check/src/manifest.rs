@@ -15,7 +15,7 @@ const PACKAGE: &str = "io.github.yoro";
 const LIBRARY: &str = "yoro_android";
 /// Permissions that the application requests. It uses the camera to scan a viewer's code, and OpenXR runtimes may
 /// require permissions of their own.
-const PERMISSIONS: &str = "android.permission.CAMERA android.permission.INTERNET org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
+const PERMISSIONS: &str = "android.permission.CAMERA org.khronos.openxr.permission.OPENXR org.khronos.openxr.permission.OPENXR_SYSTEM";
 /// Meta headsets that the manifest must name, and `all` for headsets that do not know the later names.
 const DEVICES: [&str; 2] = ["all", "quest3"];
 /// Changes that must not restart the activity: locale, touchscreen, keyboard, keyboardHidden, navigation, orientation,

@@ -112,7 +112,7 @@ pub struct DeviceInfo {
     pub android: String,
     /// Nominal capacity of the battery in milliampere-hours, if the device reports it.
     pub capacity_mah: Option<f64>,
-    /// True for a replay of logs. All of its results are marked as simulated.
+    /// True if the log says that it comes from a simulated device. All of its results are marked as simulated.
     pub simulated: bool,
 }
 

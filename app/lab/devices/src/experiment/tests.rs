@@ -2,7 +2,6 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use super::*;
-use crate::replay::{Phone, Script};
 
 fn read(text: &str) -> Result<Experiment, String> {
     let dir = tempfile::tempdir().unwrap();
@@ -90,9 +89,5 @@ fn the_repositorys_experiments_are_valid() {
         assert!(experiment.length(runs)[0] < hours * 3600.0, "{name}");
     }
     let paper = Experiment::read(&folder.join("paper.toml")).unwrap();
-    // The simulated devices are charged before the plan has to wait for it.
-    let simulated = Script::read(&folder.join("simulated.toml")).unwrap();
-    let is_charged = |phone: &Phone| phone.charged_below.is_some_and(|percent| percent >= paper.min_level);
-    assert!(simulated.device.iter().all(is_charged));
     assert_eq!((paper.seconds, paper.scenes.len()), (600.0, 8));
 }

@@ -202,16 +202,6 @@ fn raw_logs_may_contain_other_words() {
 }
 
 #[test]
-fn a_damaged_second_is_not_missing_as_well() {
-    let mut reading = Reading::default();
-    for i in 1..=5 {
-        let text = logged(1e9 + i as f64, 7, &line(i as f64));
-        reading.line(if i == 3 { &text[..80] } else { &text }, None);
-    }
-    assert_eq!(kinds(&reading), [FaultKind::DamagedLines]);
-}
-
-#[test]
 fn a_senseless_device_clock_is_replaced_by_this_computers() {
     let mut reading = Reading::default();
     reading.line(&logged(1e9, 7, &line(50.0)), None);

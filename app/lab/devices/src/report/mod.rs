@@ -38,7 +38,7 @@ pub struct Device {
     pub capacity_mah: Option<f64>,
     /// Number of battery cells, if the device reports the current of one cell; otherwise 1.
     pub cells: u32,
-    /// True for a replay.
+    /// True for a simulated device.
     pub simulated: bool,
     /// Versions of the application in the runs.
     pub applications: BTreeSet<String>,
@@ -62,7 +62,7 @@ pub struct Note {
 /// The figures of several captures.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceReport {
-    /// True if any of the runs was replayed rather than measured.
+    /// True if any of the runs was simulated rather than measured.
     pub simulated: bool,
     /// The method that the others are compared with.
     pub baseline: String,
@@ -122,7 +122,7 @@ impl DeviceReport {
         let means = devices.iter().flat_map(|device| compare::means(&runs, device)).collect();
         let mut differences: Vec<Difference> =
             devices.iter().flat_map(|device| compare::differences(&runs, device, baseline)).collect();
-        // Replayed and measured runs are never averaged together.
+        // Simulated and measured runs are never averaged together.
         for simulated in [false, true] {
             let alike: Vec<&Device> = devices.iter().filter(|d| d.simulated == simulated).collect();
             differences.extend(compare::over_devices(&differences, &alike));

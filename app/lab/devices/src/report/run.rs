@@ -175,7 +175,7 @@ pub struct Run {
     pub set: usize,
     /// The device's name in tables.
     pub device: String,
-    /// True for a replay.
+    /// True for a simulated device.
     pub simulated: bool,
     /// Experiment.
     pub experiment: Option<String>,

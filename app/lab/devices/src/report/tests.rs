@@ -475,7 +475,7 @@ fn simulated_results_are_marked() {
     for title in markdown.lines().filter(|line| line.starts_with("**") || line.starts_with('#')) {
         assert!(title.to_lowercase().contains("simulated") || title == "## How to read this", "{title}");
     }
-    assert!(report.to_text().contains("replayed logs"));
+    assert!(report.to_text().contains("come from simulated devices"));
     for foreign in ["http://", "https://", "<link", "url(", " src=\""] {
         assert!(!html.contains(foreign), "{foreign}");
     }

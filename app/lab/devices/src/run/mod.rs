@@ -3,10 +3,14 @@
 mod session;
 
 use std::collections::BTreeMap;
+use std::path::Path;
+
+use indicatif::ProgressBar;
 
 use crate::adb::{Device, DeviceError};
 use crate::capture::{DeviceInfo, Outcome, RunInfo, VERSION};
 use crate::foreign::Subject;
+use crate::held_settings::{HeldSettings, Wanted};
 use crate::phone::{self, PACKAGE};
 use yoro_settings::Settings;
 
@@ -137,4 +141,30 @@ pub fn refuse_charger(device: &dyn Device) -> Result<(), DeviceError> {
         return Err(DeviceError::PluggedIn { serial, address: phone::wifi_address(device) });
     }
     Ok(())
+}
+
+/// Makes one run: looks at the device, holds its settings, captures the run into a new folder, and restores the
+/// settings.
+///
+/// # Errors
+/// [`DeviceError`], if the run could not begin.
+pub fn make(
+    device: &dyn Device,
+    plan: &Plan,
+    wanted: &Wanted,
+    folder: &Path,
+    bar: &ProgressBar,
+) -> Result<RunInfo, DeviceError> {
+    let found = look(device, plan.package())?;
+    if plan.power {
+        refuse_charger(device)?;
+    }
+    let mut held = HeldSettings::new(device, &found.info, wanted)?;
+    let made = capture(device, &found, plan, &mut held, folder, bar);
+    let restored = held.restore(device);
+    let info = made?;
+    if let Err(error) = restored {
+        log::warn!("{error}; the next measurement gives brightness and refresh rate back");
+    }
+    Ok(info)
 }

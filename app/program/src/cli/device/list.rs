@@ -3,7 +3,7 @@
 use super::which::SourceArgs;
 use crate::cli::Subcommand;
 use crate::cli::outputs::Files;
-use yoro_devices::adb::{Device, DeviceError, State};
+use yoro_devices::adb::{Adb as _, Device, DeviceError, State};
 use yoro_devices::phone;
 
 /// List the devices, their batteries and the yoro on them
@@ -47,8 +47,7 @@ fn details(device: &dyn Device) -> Result<String, DeviceError> {
     let info = phone::info(device)?;
     let battery = phone::battery(device)?;
     let version = phone::version(device, phone::PACKAGE)?;
-    let name =
-        format!("{} {}{}", info.manufacturer, info.model, if info.simulated { " (simulated)" } else { "" });
+    let name = format!("{} {}", info.manufacturer, info.model);
     let number = |value: Option<f64>, decimals: usize, unit: &str| {
         value.map_or("na".into(), |value| format!("{value:.decimals$} {unit}"))
     };

@@ -83,8 +83,8 @@ impl Subcommand for LogcatArgs {
 fn saved(args: &LogcatArgs, file: &Path) -> anyhow::Result<()> {
     let given = &args.which;
     ensure!(
-        given.serials.is_empty() && !given.all && given.source.adb.is_none() && given.source.replay.is_none(),
-        "a saved log needs no device: leave --serial, --all, --adb and --replay out"
+        given.serials.is_empty() && !given.all && given.source.adb.is_none(),
+        "a saved log needs no device: leave --serial, --all and --adb out"
     );
     let is_stdin = file == Path::new("-");
     let failed = |source| FileError::Read { path: file.into(), source };
@@ -198,7 +198,6 @@ impl<'a> Table<'a> {
         started_unix_s: f64,
         application: Option<String>,
     ) -> anyhow::Result<Table<'a>> {
-        let simulated = device.simulated;
         let info = RunInfo {
             version: VERSION,
             device,
@@ -227,7 +226,7 @@ impl<'a> Table<'a> {
             own_faults: Vec::new(),
             rows: 0,
             is_terminal,
-            simulated,
+            simulated: false,
             named: None,
         })
     }

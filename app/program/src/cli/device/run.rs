@@ -11,7 +11,7 @@ use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::Outcome;
 use yoro_devices::foreign::Subject;
-use yoro_devices::held_settings::{HeldSettings, Wanted};
+use yoro_devices::held_settings::Wanted;
 use yoro_devices::run::{self, Other, Plan};
 use yoro_files::interrupt;
 use yoro_settings::Settings;
@@ -126,17 +126,7 @@ fn one(
     folder: &Path,
     bar: &indicatif::ProgressBar,
 ) -> anyhow::Result<String> {
-    let found = run::look(device, plan.package())?;
-    if plan.power {
-        run::refuse_charger(device)?;
-    }
-    let mut held = HeldSettings::new(device, &found.info, wanted)?;
-    let made = run::capture(device, &found, plan, &mut held, folder, bar);
-    let restored = held.restore(device);
-    let info = made?;
-    if let Err(error) = restored {
-        log::warn!("{error}; the next measurement gives brightness and refresh rate back");
-    }
+    let info = run::make(device, plan, wanted, folder, bar)?;
     let faults: String = info.faults.iter().map(|fault| format!("\n  {}", fault.detail)).collect();
     match info.outcome {
         Outcome::Complete => Ok(format!("complete, captured into {}{faults}", folder.display())),

@@ -6,9 +6,8 @@ use std::thread;
 use anyhow::bail;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-use yoro_devices::adb::{self, Adb, Device, DeviceError};
+use yoro_devices::adb::{self, Device, DeviceError};
 use yoro_devices::adb_program::AdbProgram;
-use yoro_devices::replay::Replay;
 use yoro_files::interrupt;
 
 use crate::cli::message;
@@ -19,18 +18,12 @@ pub struct SourceArgs {
     /// The program adb [default: the one in PATH, or below ANDROID_HOME or ANDROID_SDK_ROOT]
     #[arg(long, value_name = "FILE")]
     pub adb: Option<PathBuf>,
-    /// Simulated devices: a script, or a folder of captures to replay. Their results are marked as simulated
-    #[arg(long, value_name = "SCRIPT.toml|FOLDER", conflicts_with = "adb")]
-    pub replay: Option<PathBuf>,
 }
 
 impl SourceArgs {
     /// Opens the source of devices.
-    pub fn open(&self) -> Result<Box<dyn Adb>, DeviceError> {
-        let Some(replay) = &self.replay else { return Ok(Box::new(AdbProgram::find(self.adb.as_deref())?)) };
-        let adb = Replay::read(replay)?;
-        println!("SIMULATED: the devices of {} do not exist, nothing here is measured", replay.display());
-        Ok(Box::new(adb))
+    pub fn open(&self) -> Result<AdbProgram, DeviceError> {
+        AdbProgram::find(self.adb.as_deref())
     }
 }
 
@@ -53,7 +46,7 @@ impl WhichArgs {
     /// # Errors
     /// [`DeviceError`] if there is no device, or if there are several and none was named.
     pub fn choose(&self) -> Result<Vec<Box<dyn Device>>, DeviceError> {
-        adb::choose(&*self.source.open()?, &self.serials, self.all)
+        adb::choose(&self.source.open()?, &self.serials, self.all)
     }
 }
 

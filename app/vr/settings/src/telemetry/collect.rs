@@ -31,17 +31,6 @@ pub struct ViewerState {
     pub run: Option<String>,
     /// [`Line::auto`].
     pub auto: Option<String>,
-    /// Statistics of the stream, if one is shown.
-    pub stream: Option<StreamFigures>,
-}
-
-/// The frames of a stream since the last line.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StreamFigures {
-    /// Number of frames that arrived and were shown.
-    pub frames: u32,
-    /// The sum of their latencies in milliseconds, each from requesting a pose to showing its picture.
-    pub latency_ms: f64,
 }
 
 /// Sum of one stage's GPU times.
@@ -142,7 +131,6 @@ impl Telemetry {
 
     /// Ends a period and returns its line.
     pub fn line(&mut self, now_ns: i64, viewer: &ViewerState, device: &DeviceState) -> Line {
-        let seconds = self.second.elapsed_ns(now_ns) as f64 * 1e-9;
         let frames = self.second.take();
         let process = ProcessSample::take();
         let since_sample = self.process_ns.map_or(0.0, |then| (now_ns - then) as f64 * 1e-9);
@@ -191,8 +179,6 @@ impl Telemetry {
             guard_columns: guard_band.map(|sum| sum.columns as f64 / f64::from(sum.frames)),
             undrawn: guard_band.map(|sum| sum.undrawn),
             auto: viewer.auto.clone(),
-            stream_fps: viewer.stream.filter(|_| seconds > 0.0).map(|s| f64::from(s.frames) / seconds),
-            latency_ms: viewer.stream.filter(|s| s.frames > 0).map(|s| s.latency_ms / f64::from(s.frames)),
         }
     }
 

@@ -93,10 +93,6 @@ pub struct Line {
     pub undrawn: Option<u64>,
     /// With `method=auto`, the reason for [`Line::method`], such as `6.1/8.9ms`; missing for a named method.
     pub auto: Option<String>,
-    /// Frames per second of a stream that arrived and were shown; missing without a stream.
-    pub stream_fps: Option<f64>,
-    /// Mean time from requesting a pose to showing its picture, in milliseconds; missing without frames of a stream.
-    pub latency_ms: Option<f64>,
 }
 
 /// One key of the line, and its value.
@@ -237,8 +233,6 @@ pub const LINE_KEYS: &[LineKey] = &[
     LineKey { may_be_absent: true, ..number!("guard", Real, guard_columns, 1, "") },
     LineKey { may_be_absent: true, ..number!("undrawn", Integer, undrawn, 0, "") },
     LineKey { may_be_absent: true, ..optional_name!("auto", auto) },
-    LineKey { may_be_absent: true, ..number!("stream", Real, stream_fps, 1, "") },
-    LineKey { may_be_absent: true, ..number!("latency", Real, latency_ms, 1, "ms") },
 ];
 
 impl LineKey {
@@ -386,8 +380,6 @@ mod tests {
             guard_columns: Some(17.5),
             undrawn: Some(0),
             auto: Some("6.1/8.9ms".into()),
-            stream_fps: Some(58.9),
-            latency_ms: Some(41.5),
             ..Line::default()
         }
     }
@@ -396,7 +388,7 @@ mod tests {
     fn a_line_is_written_and_read_in_its_documented_form() {
         assert_eq!(
             example().to_string(),
-            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms,stream=58.9,latency=41.5ms"
+            "v=1,t=12.0s,method=yoro,pipeline=gather,scene=prototype,FPS=71.9/72,Stale=1,frame=13.91ms,p99=15.20ms,App=4.49ms(geometry=1.250,gather-march=0.500),CPU=na,RSS=na,mA_raw=-512,mA=na,mV=3921,level=na,uAh=na,plug=0,Tbat=na,Tskin=na,thermal=na,headroom=na,scale=0.80,imbuffer=na,frames=72,status=discharging,run=first,perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms"
         );
         assert_eq!(example().to_string().parse(), Ok(example()));
     }
@@ -433,10 +425,7 @@ mod tests {
         let expected = "v=1,t=3600.0s,method=yoro,pipeline=gather,scene=prototype,FPS=60.0/60,Stale=4000000000,frame=16.68ms,p99=17.00ms,App=6.10ms(geometry=1.250,gather-march=0.500),CPU=141.1%,RSS=212.4MB,mA_raw=-9223372036854775808,mA=-512.0,mV=-1,level=87%,uAh=2712000,plug=2,Tbat=31.2C,Tskin=-3.0C,thermal=6,headroom=0.42,scale=0.80,imbuffer=4,frames=72,status=not-charging,run=";
         assert_eq!(
             text,
-            format!(
-                "{expected}{},perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms,stream=58.9,latency=41.5ms",
-                "r".repeat(64)
-            )
+            format!("{expected}{},perf=sustained,guard=17.5,undrawn=0,auto=6.1/8.9ms", "r".repeat(64))
         );
         let read: Line = text.parse().unwrap();
         assert_eq!(read.to_string(), text);
@@ -470,8 +459,6 @@ mod tests {
             ("frames", 72.0),
             ("guard", 17.5),
             ("undrawn", 0.0),
-            ("stream", 58.9),
-            ("latency", 41.5),
         ];
         assert_eq!(numbers, expected);
     }
@@ -480,7 +467,7 @@ mod tests {
     fn unknown_values_are_na_and_not_zero() {
         let empty = Line { method: "yoro".into(), scene: "x".into(), ..Line::default() };
         let text = empty.to_string();
-        assert_eq!(text.matches("na").count(), 29, "{text}");
+        assert_eq!(text.matches("na").count(), 27, "{text}");
         assert_eq!(text.parse(), Ok(empty));
     }
 
@@ -497,17 +484,7 @@ mod tests {
         let (early, _) = text.split_once(",frames=").unwrap();
         let read: Line = early.parse().unwrap();
         let early = Line { frames: None, status: None, run: None, performance: None, ..example() };
-        assert_eq!(
-            read,
-            Line {
-                guard_columns: None,
-                undrawn: None,
-                auto: None,
-                stream_fps: None,
-                latency_ms: None,
-                ..early
-            }
-        );
+        assert_eq!(read, Line { guard_columns: None, undrawn: None, auto: None, ..early });
         assert!(text.replace("discharging", "disch").parse::<Line>().is_err());
     }
 

@@ -1,19 +1,15 @@
 //! Frames: from the loaded scene to the frame's report, and a log line every second.
 
-use glam::Vec3;
-
 use super::{Attached, Viewer};
 use crate::adaptive::Load;
 use crate::caption::Status;
 use crate::error::ViewerError;
 use crate::frame::{FrameReport, FrameTiming, SceneState};
-use crate::stream::Stream;
 use yoro::choice::Cost;
 use yoro::eyes::EyePair;
-use yoro_assets::Viewpoint;
 use yoro_lenses::{Content, Panel, Placement};
 use yoro_render::stereo::{DepthTarget, EyeTarget};
-use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, StreamFigures, ViewerState};
+use yoro_settings::telemetry::{DeviceState, Line, Rating, SessionSummary, ViewerState};
 
 /// The sizes of the eyes' images are multiples of this many pixels, so that small changes need no new targets.
 const SIZE_STEP: f32 = 16.0;
@@ -41,17 +37,6 @@ impl Viewer {
     pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
         self.stats.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
-        if let Some(stream) = &mut self.stream {
-            let was_shown = stream.is_shown();
-            if let Some(home) = stream.take(self.now_ns)? {
-                let target = home.position + home.orientation * Vec3::NEG_Z;
-                self.scene.set_viewpoints(&[Viewpoint { position: home.position, target }]);
-            }
-            if stream.is_shown() && !was_shown {
-                self.stats.begin(self.now_ns);
-            }
-            return Ok(stream.render(gl, pair, to, self.now_ns)?);
-        }
         self.method.judge(pair);
         let Some(shown) = self.scene.shown() else {
             for EyeTarget { color, depth } in to {
@@ -83,7 +68,6 @@ impl Viewer {
         self.write_caption();
         let is_shown = self.scene_state() == SceneState::Ready;
         let is_loading = self.is_loading();
-        let has_sentence = self.stream.as_ref().is_some_and(|stream| stream.sentence().is_some());
         let attached = self.attached.as_mut().ok_or(ViewerError::NoContext)?;
         let text = self.caption.text();
         if let Some(question) = self.stats.question() {
@@ -91,7 +75,7 @@ impl Viewer {
             return Ok(Some(attached.hud.set(Content { text, progress }, Placement::Middle)));
         }
         let is_empty = !is_shown;
-        if !is_empty && !has_sentence && !self.caption.is_in_view(self.now_ns) {
+        if !is_empty && !self.caption.is_in_view(self.now_ns) {
             return Ok(None);
         }
         // Back and forth once every two seconds.
@@ -106,21 +90,16 @@ impl Viewer {
         if let Some(question) = self.stats.question() {
             return question.write(self.caption.text_mut());
         }
-        let sentence = self.stream.as_ref().and_then(Stream::sentence);
-        if let Some(sentence) = self.scene.failure().or(sentence) {
+        if let Some(sentence) = self.scene.failure() {
             return self.caption.write_sentence(sentence);
         }
-        let loading = match &self.stream {
-            Some(stream) => (!stream.is_shown()).then_some("stream"),
-            None => self.scene.is_loading().then(|| self.scene.name()),
-        };
         let status = Status {
             frames: self.stats.last_line(),
             celsius: self.stats.celsius(),
             method: self.method_name(),
             auto: self.method.auto(),
             pipeline: self.pipeline_name(),
-            loading,
+            loading: self.scene.is_loading().then(|| self.scene.name()),
         };
         self.caption.write_status(&status, self.now_ns);
     }
@@ -168,9 +147,6 @@ impl Viewer {
         self.method.set_thermal_headroom(device.thermal_headroom);
         let state = self.state();
         self.method.begin_second();
-        if let Some(stream) = &mut self.stream {
-            stream.figures = StreamFigures::default();
-        }
         self.stats.line(now_ns, &state, device)
     }
 
@@ -184,16 +160,15 @@ impl Viewer {
             imbuffer: self.method.imbuffer_divisor(&self.settings),
             run: self.settings.run.clone(),
             auto: self.method.reason(),
-            stream: self.stream.as_ref().map(|stream| stream.figures),
         }
     }
 
     fn method_name(&self) -> &'static str {
-        if self.stream.is_some() { "stream" } else { self.method.method().name() }
+        self.method.method().name()
     }
 
     fn pipeline_name(&self) -> Option<&'static str> {
-        self.method.pipeline_name().filter(|_| self.stream.is_none())
+        self.method.pipeline_name()
     }
 
     /// Returns the summary of the session since the scene was first shown, for the log.

@@ -131,9 +131,6 @@ impl Viewer {
 
     /// Switches to the next (1) or previous (-1) method of the list that the driver supports.
     pub(super) fn other_method(&mut self, step: isize) -> Result<Action, ViewerError> {
-        if self.stream.is_some() {
-            return Ok(Action::Nothing);
-        }
         let gl = gl_with_scene(&self.attached, &self.scene);
         let other = self.method.switch(gl, &self.settings, step)?;
         Ok(other.map_or(Action::Nothing, Action::Method))

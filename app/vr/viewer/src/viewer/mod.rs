@@ -25,7 +25,6 @@ mod tests;
 
 use std::path::PathBuf;
 use std::rc::Rc;
-use std::sync::Arc;
 
 use crate::caption::Caption;
 use crate::error::ViewerError;
@@ -35,7 +34,6 @@ use crate::method_slot::MethodSlot;
 use crate::options::render_settings;
 use crate::scene_slot::{SceneSlot, Shown};
 use crate::session_stats::SessionStats;
-use crate::stream::{Stream, StreamExchange};
 use menu::Menu;
 use start::StartScreen;
 use yoro::eyes::Pose;
@@ -70,8 +68,6 @@ pub struct Viewer {
     settings: Settings,
     folders: Vec<PathBuf>,
     scene: SceneSlot,
-    /// The stream that is shown instead of the scene.
-    stream: Option<Stream>,
     method: MethodSlot,
     stats: SessionStats,
     caption: Caption,
@@ -101,7 +97,6 @@ impl Viewer {
         Ok(Viewer {
             folders: folders.to_vec(),
             scene: SceneSlot::new(source, settings.viewpoint),
-            stream: None,
             method: MethodSlot::new(&settings),
             stats: SessionStats::default(),
             caption: Caption::new(settings.hud),
@@ -129,10 +124,7 @@ impl Viewer {
         // Drops what lived in an earlier context.
         self.detach();
         let (hud, board) = (Hud::new(&gl)?, Board::new(&gl)?);
-        match &mut self.stream {
-            Some(stream) => stream.attach(&gl)?,
-            None => self.scene.reload(),
-        }
+        self.scene.reload();
         self.attached = Some(Attached { hud, board, pass_times: Vec::with_capacity(MOST_PASSES), gl });
         Ok(())
     }
@@ -142,9 +134,6 @@ impl Viewer {
     pub fn detach(&mut self) {
         self.method.drop_made();
         self.scene.drop_shown();
-        if let Some(stream) = &mut self.stream {
-            stream.detach();
-        }
         self.attached = None;
     }
 
@@ -153,24 +142,7 @@ impl Viewer {
         self.attached.is_some()
     }
 
-    /// Shows a stream instead of the scene, until another scene is chosen.
-    ///
-    /// # Errors
-    /// [`ViewerError::Gl`].
-    pub fn show_stream(&mut self, exchange: Arc<StreamExchange>) -> Result<(), ViewerError> {
-        let mut stream = Stream::new(exchange);
-        if let Some(attached) = &self.attached {
-            stream.attach(&attached.gl)?;
-        }
-        self.method.drop_made();
-        self.scene.put_away();
-        self.stats.expect_scene();
-        self.stream = Some(stream);
-        Ok(())
-    }
-
     fn replace_scene(&mut self, source: SceneSource, viewpoint: usize) {
-        self.stream = None;
         self.scene.replace(source, viewpoint);
         self.stats.expect_scene();
     }
@@ -230,9 +202,9 @@ impl Viewer {
         &self.folders
     }
 
-    /// Returns the name of the scene that is shown or being loaded; `stream` for a stream.
+    /// Returns the name of the scene that is shown or being loaded.
     pub fn scene_name(&self) -> &str {
-        if self.stream.is_some() { "stream" } else { self.scene.name() }
+        self.scene.name()
     }
 
     /// Returns the time of the last frame in nanoseconds.
@@ -247,19 +219,12 @@ impl Viewer {
 
     /// Returns the state of the scene.
     pub fn scene_state(&self) -> SceneState {
-        match &self.stream {
-            Some(stream) if stream.is_shown() => SceneState::Ready,
-            Some(_) => SceneState::Loading,
-            None => self.scene.state(),
-        }
+        self.scene.state()
     }
 
     /// True while a scene is being loaded, even if another one is shown.
     pub fn is_loading(&self) -> bool {
-        match &self.stream {
-            Some(stream) => !stream.is_shown(),
-            None => self.scene.is_loading(),
-        }
+        self.scene.is_loading()
     }
 
     /// Returns the reason why the scene cannot be shown, in one sentence.

@@ -15,7 +15,6 @@ use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
 use yoro_render::stereo::Method;
 use yoro_settings::telemetry::{DeviceState, Line};
-use yoro_stream::{Content, EyeView, FrameHeader};
 
 const WINDOW: [u32; 2] = [320, 180];
 const PERIOD_NS: i64 = 16_666_667;
@@ -117,50 +116,6 @@ fn a_session_runs_from_loading_to_its_summary() {
     assert!(differing > 0 && differing < before.len() / 8, "only the HUD is gone: {differing}");
     drop(run);
     assert_eq!((gl.object_count(), gl.take_errors()), (0, None));
-}
-
-#[test]
-fn a_stream_is_in_the_scenes_place_until_a_scene_is_chosen() {
-    let headless = Headless::open(Backend::Egl).unwrap();
-    let gl = headless.gl();
-    let mut run = Run::new(gl, &["hud=false"]);
-    run.load();
-    let exchange = Arc::<StreamExchange>::default();
-    run.viewer.viewer_mut().show_stream(exchange.clone()).unwrap();
-    exchange.say("The server does not answer.");
-    assert_eq!((run.frame().scene, run.viewer.viewer().scene_name()), (SceneState::Loading, "stream"));
-    let waiting = run.image();
-    assert!(waiting.chunks_exact(4).any(|p| p[0] > 200), "the sentence");
-    let request = exchange.take_request(Duration::ZERO).expect("the eyes are asked for");
-
-    // A picture without colour, 2 m away.
-    let frustum = Frustum { left: -2.0, right: 2.0, bottom: -2.0, top: 2.0 };
-    let content = Content::Depth(EyeView { frustum, ..request.eyes[1] }, [1.0, 4.0]);
-    let header = FrameHeader {
-        time_ms: request.time_ms,
-        content,
-        size: [64, 64],
-        render_ms: 1.0,
-        encode_ms: 1.0,
-        quantizer: 20,
-    };
-    let mut planes = [vec![150; 128 * 64], vec![128; 64 * 64]].concat();
-    for line in planes[..128 * 64].chunks_mut(128) {
-        line[64..].fill(85);
-    }
-    exchange.put(header, &mut planes);
-    assert_eq!(run.frame().scene, SceneState::Ready);
-    let middle = |image: &[u8]| image[(90 * WINDOW[0] as usize + 80) * 4..][..3].to_vec();
-    assert!(middle(&run.image()).iter().all(|byte| byte.abs_diff(150) < 3), "{:?}", middle(&run.image()));
-    let line = run.viewer.viewer_mut().telemetry(run.now_ns, &DeviceState::default());
-    assert_eq!(line.method, "stream");
-    assert!((line.latency_ms.unwrap() - PERIOD_NS as f64 * 1e-6).abs() < 0.01, "{line}");
-
-    run.viewer.event(Event::NextScene).unwrap();
-    run.load();
-    run.frame();
-    assert_ne!(run.viewer.viewer().scene_name(), "stream");
-    assert_eq!((Arc::strong_count(&exchange), gl.take_errors()), (1, None));
 }
 
 #[test]

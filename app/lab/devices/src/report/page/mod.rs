@@ -112,7 +112,7 @@ fn title(report: &DeviceReport) -> String {
     }
 }
 
-/// Returns the mark that titles get if values are replayed.
+/// Returns the mark that titles get if values are simulated.
 fn simulated_mark(report: &DeviceReport) -> &'static str {
     if !report.simulated {
         ""
@@ -129,7 +129,7 @@ fn warnings(report: &DeviceReport) -> Vec<String> {
         report.devices.iter().filter(|device| device.simulated).map(|d| d.name.as_str()).collect();
     if !names.is_empty() {
         warnings.push(format!(
-            "Simulated: the figures of {} come from replayed logs and say nothing about any device.",
+            "Simulated: the figures of {} come from simulated devices and say nothing about any device.",
             names.join(", ")
         ));
     }
