@@ -9,7 +9,8 @@ use super::traffic::{fragments, pieces};
 use crate::bench::costs::Costs;
 use crate::bench::executed::Device;
 use yoro::synthesis::Edges;
-use yoro_gl::{Command, Draw, ProgramRecipe, Shape};
+use yoro_estimate::{Command, Draw};
+use yoro_gl::{ProgramRecipe, Shape};
 
 /// Prefixes of the names of synthesis passes. Their execution is counted by `bench::executed`.
 pub const SYNTHESIS: [&str; 2] = ["gather ", "layers "];
