@@ -10,6 +10,7 @@ use yoro::eyes::GuardBand;
 use yoro::synthesis::{self, AnyView, Outputs, SynthesisOptions};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
+use yoro_estimate::Recorder;
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
 use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
 use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
@@ -28,16 +29,18 @@ pub enum Variants {
     Extreme,
 }
 
-/// Builds all programs in a context, which keeps their recipes ([`Context::program_recipes`]).
+/// Builds all programs in a context, and returns their files and defines.
 ///
 /// # Errors
 /// Fails if the driver rejects a program.
-pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
+pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<BTreeSet<ProgramRecipe>> {
+    let recorder = Recorder::new(gl);
     synthesis(gl, variants)?;
     rendering(gl, variants)?;
     stereo(gl)?;
     patchers(gl)?;
-    viewer(gl)
+    viewer(gl)?;
+    Ok(recorder.programs().iter().map(|recipe| recipe.as_ref().clone()).collect())
 }
 
 /// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the short way; the long way to
@@ -208,13 +211,13 @@ pub struct StageText {
 const COUNTERPARTS: [(&str, &str); 3] =
     [("CLIP_DISTANCE", "MULTIVIEW"), ("CLIP_DISTANCE", "SEAM_DISCARD"), ("HALF", "LAYER")];
 
-/// Returns the texts of the programs built in `gl` and of their counterparts for other drivers, sorted by name.
+/// Returns the texts of the [made](make) programs and of their counterparts for other drivers, sorted by name.
 ///
 /// # Errors
 /// Fails if a program refers to a file that does not exist.
-pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
+pub fn texts(made: &BTreeSet<ProgramRecipe>) -> anyhow::Result<Vec<ProgramText>> {
     let mut recipes: BTreeSet<ProgramRecipe> = BTreeSet::new();
-    for recipe in gl.program_recipes() {
+    for recipe in made {
         for (from, to) in COUNTERPARTS {
             // The forward renderer does not render into layers.
             if to == "MULTIVIEW" && recipe.defines.iter().any(|(name, _)| name == "FORWARD") {
@@ -226,7 +229,7 @@ pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
                 recipes.insert(counterpart);
             }
         }
-        recipes.insert(recipe);
+        recipes.insert(recipe.clone());
     }
     let mut texts = BTreeMap::new();
     for recipe in recipes {
@@ -236,13 +239,13 @@ pub fn texts(gl: &Context) -> anyhow::Result<Vec<ProgramText>> {
     Ok(texts.into_values().collect())
 }
 
-/// Returns the files of all programs built in `gl`, including the included ones.
+/// Returns the files of the [made](make) programs, including the included ones.
 ///
 /// # Errors
 /// Fails if a file does not exist.
-pub fn files(gl: &Context) -> anyhow::Result<BTreeSet<String>> {
+pub fn files(made: &BTreeSet<ProgramRecipe>) -> anyhow::Result<BTreeSet<String>> {
     let mut files = BTreeSet::new();
-    for recipe in gl.program_recipes() {
+    for recipe in made {
         for file in &recipe.files {
             files.extend(assemble(file, &[])?.files().iter().cloned());
         }

@@ -7,6 +7,6 @@ use yoro_tests::programs::{self, Variants};
 
 fn main() -> anyhow::Result<()> {
     let headless = Headless::open(Backend::Egl)?;
-    programs::make(headless.gl(), Variants::Extreme)?;
-    Ok(serde_json::to_writer(io::stdout().lock(), &programs::texts(headless.gl())?)?)
+    let made = programs::make(headless.gl(), Variants::Extreme)?;
+    Ok(serde_json::to_writer(io::stdout().lock(), &programs::texts(&made)?)?)
 }

@@ -8,9 +8,8 @@ use yoro_assets::ShadingStyle;
 use yoro_bench::bench::PreparedContender;
 use yoro_bench::bench::frame::{contenders, pass_table, pieces};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{
-    Command, Filter, Format, GlApi, Program, RasterState, RenderTarget, ShaderSource, Shape, Texture,
-};
+use yoro_estimate::{Command, Recorder};
+use yoro_gl::{Filter, Format, GlApi, Program, RasterState, RenderTarget, ShaderSource, Shape, Texture};
 use yoro_render::stereo::StereoFrame;
 use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 use yoro_settings::Settings;
@@ -22,6 +21,7 @@ use yoro_viewer::render_settings;
 fn every_pass_reads_and_writes_what_the_table_says() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
+    let recorder = Recorder::new(gl);
     let mut frames = Vec::new();
     for renderer in RendererKind::ALL {
         let settings = Settings { renderer, shadow_map: 64, ..Settings::default() };
@@ -35,9 +35,9 @@ fn every_pass_reads_and_writes_what_the_table_says() {
         for contender in contenders(renderer) {
             let (method, options) = contender.method().unwrap();
             let mut ready = PreparedContender::new(gl, method, &settings, &options).unwrap();
-            gl.record();
+            recorder.start();
             ready.render(&mut prepared, &pair, &mut frame).unwrap();
-            frames.push((renderer, contender.name(), pieces(&gl.take_record())));
+            frames.push((renderer, contender.name(), pieces(&recorder.take())));
         }
     }
     let table = pass_table(&frames);
@@ -54,6 +54,7 @@ fn every_pass_reads_and_writes_what_the_table_says() {
 #[test]
 fn a_record_says_what_was_drawn() {
     let done = on_every_backend(|gl| {
+        let recorder = Recorder::new(gl);
         let formats = [(Format::Rgba8, Filter::Nearest)];
         let target = RenderTarget::new(gl, [8, 4], &formats, Some(Format::Depth24))?;
         let source = Texture::new(gl, [16, 2], Format::Rgba8, Filter::Linear)?;
@@ -67,10 +68,10 @@ fn a_record_says_what_was_drawn() {
             });
         };
         draw();
-        assert_eq!(gl.take_record(), [], "only what comes after the start");
-        gl.record();
+        assert_eq!(recorder.take(), [], "only what comes after the start");
+        recorder.start();
         gl.within_columns(Some([2, 5]), draw);
-        let commands = gl.take_record();
+        let commands = recorder.take();
         let [Command::Draw(drawn)] = &commands[..] else { panic!("{commands:?}") };
         assert_eq!((drawn.pass, drawn.area, drawn.shape), ("smooth", [3, 4], Shape::Screen));
         assert_eq!(drawn.program.files, ["screen.vert", "render/fxaa.frag"]);

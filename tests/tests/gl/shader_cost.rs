@@ -16,8 +16,8 @@ fn synthesis_programs_neither_spill_nor_starve_mobile_gpus() {
         return;
     };
     let headless = Headless::open(Backend::Egl).unwrap();
-    programs::make(headless.gl(), Variants::Extreme).unwrap();
-    let texts = serde_json::to_value(programs::texts(headless.gl()).unwrap()).unwrap();
+    let made = programs::make(headless.gl(), Variants::Extreme).unwrap();
+    let texts = serde_json::to_value(programs::texts(&made).unwrap()).unwrap();
     let Value::Array(programs) = texts else { panic!("no list") };
     let options = Options {
         filter: Some("synthesis/".to_owned()),

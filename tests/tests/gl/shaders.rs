@@ -7,10 +7,10 @@ use yoro_tests::programs::{self, Variants};
 #[test]
 fn every_shader_compiles_in_every_variant() {
     on_every_backend(|gl| {
-        programs::make(gl, Variants::Every)?;
+        let made = programs::make(gl, Variants::Every)?;
         // Only unit tests of the renderer use this shader, to read depth back.
         Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?;
-        let used = programs::files(gl)?;
+        let used = programs::files(&made)?;
         let unused: Vec<_> = yoro_shaders::files().filter(|file| !used.contains(*file)).collect();
         anyhow::ensure!(unused.is_empty(), "no construction of this test uses {}", unused.join(", "));
         Ok(())

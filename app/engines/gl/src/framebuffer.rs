@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use crate::{Attachments, Context, Filter, Format, GlApi, GlError, PixelBuffer, Texture};
+use crate::{Attachments, Context, Event, Filter, Format, GlApi, GlError, PixelBuffer, Texture};
 
 /// A rectangle of a framebuffer to draw into.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl Context {
     /// Copies a rectangle of colour to another one, stretched without filtering if the sizes differ. Values are copied
     /// bit by bit, unless only one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
-        self.record_copy(from.framebuffer, to.framebuffer, to.size, false);
+        self.tell(Event::Copied { from: from.framebuffer, to: to.framebuffer, size: to.size, depth: false });
         let gl = self.raw();
         let [x, y] = from.origin.map(|n| n as i32);
         let [w, h] = from.size.map(|n| n as i32);
@@ -64,7 +64,7 @@ impl Framebuffer {
 
 impl Drop for Framebuffer {
     fn drop(&mut self) {
-        self.gl.forget_framebuffer(self.raw);
+        self.gl.tell(Event::FramebufferDeleted(self.raw));
         // SAFETY: created in `new`, deleted once.
         unsafe { self.gl.raw().delete_framebuffer(self.raw) };
         self.gl.count(-1);
@@ -197,7 +197,7 @@ impl RenderTarget {
             color: color.iter().map(Texture::image).collect(),
             depth: depth.map(Texture::image),
         };
-        self.gl.note_framebuffer(framebuffer.raw, images);
+        self.gl.tell(Event::FramebufferMade(framebuffer.raw, images));
         // SAFETY: the attachments are textures of this object.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer.raw));

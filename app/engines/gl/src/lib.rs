@@ -12,16 +12,15 @@ mod framebuffer;
 mod host;
 mod mesh;
 mod multisample;
+mod observer;
 mod pixel_buffer;
 mod profiler;
 mod program;
-mod record;
 mod state;
 mod texture;
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeSet, HashMap};
 use std::ffi::{CStr, c_void};
 use std::rc::Rc;
 
@@ -32,10 +31,10 @@ pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
 pub use host::{HostState, Touched};
 pub use mesh::Mesh;
 pub use multisample::{MultisampleTarget, TileTarget};
+pub use observer::{Attachments, Event, Image, Observer, Shape};
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
-pub use record::{Attachments, Command, Draw, Image, Shape};
 pub use state::{Blend, DepthTest, RasterState};
 pub use texture::{Filter, Format, Texture};
 
@@ -131,14 +130,10 @@ pub struct Context {
     profiler: RefCell<profiler::Profiler>,
     objects: Cell<usize>,
     texture_bytes: Cell<usize>,
-    recipes: RefCell<BTreeSet<ProgramRecipe>>,
     /// The argument of [`Context::within_columns`].
     columns: Cell<Option<[u32; 2]>>,
     empty_vertex_array: glow::VertexArray,
-    /// Sizes and formats of the textures, for records.
-    images: RefCell<HashMap<glow::Texture, Image>>,
-    framebuffers: RefCell<HashMap<glow::Framebuffer, Rc<Attachments>>>,
-    recorder: RefCell<Option<record::Recorder>>,
+    observer: RefCell<Option<Box<dyn Observer>>>,
     /// The last field, since fields are dropped in order of declaration.
     _owner: Option<Rc<dyn Any>>,
 }
@@ -229,7 +224,6 @@ impl Context {
         let empty_vertex_array = unsafe { raw.create_vertex_array() }
             .map_err(|reason| GlError::Object { what: "a vertex array".into(), reason })?;
         let profiler = RefCell::new(profiler::Profiler::new(&capabilities));
-        let recipes = RefCell::default();
         Ok(Rc::new(Context {
             raw,
             #[cfg(not(target_arch = "wasm32"))]
@@ -239,12 +233,9 @@ impl Context {
             profiler,
             objects: Cell::new(0),
             texture_bytes: Cell::new(0),
-            recipes,
             columns: Cell::new(None),
             empty_vertex_array,
-            images: RefCell::default(),
-            framebuffers: RefCell::default(),
-            recorder: RefCell::default(),
+            observer: RefCell::default(),
             _owner: owner,
         }))
     }
@@ -263,11 +254,6 @@ impl Context {
     /// arrays.
     pub fn object_count(&self) -> usize {
         self.objects.get()
-    }
-
-    /// Returns the files and defines of all programs compiled so far, sorted and without duplicates.
-    pub fn program_recipes(&self) -> Vec<ProgramRecipe> {
-        self.recipes.borrow().iter().cloned().collect()
     }
 
     fn count(&self, change: isize) {
@@ -294,9 +280,9 @@ impl Context {
             }
         }
         self.profiler.borrow_mut().begin(&self.raw, name);
-        self.recorded(|recorder| recorder.enter(name));
+        self.tell(Event::PassBegins(name));
         let result = body();
-        self.recorded(record::Recorder::leave);
+        self.tell(Event::PassEnds);
         self.profiler.borrow_mut().end(&self.raw);
         // SAFETY: pops the group pushed above.
         unsafe {

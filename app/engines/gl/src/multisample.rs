@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glow::HasContext;
 
 use crate::framebuffer::Framebuffer;
-use crate::{Attachments, Context, Format, GlError, RenderTarget};
+use crate::{Attachments, Context, Event, Format, GlError, RenderTarget};
 
 /// A colour or depth attachment.
 enum Image {
@@ -82,11 +82,11 @@ impl MultisampleTarget {
         let [color, depth] = self.formats.map(|format| self.describe(format));
         for (image, what) in self.images.iter().flatten().zip([color, depth]) {
             if let Image::Texture(raw) = *image {
-                self.gl.note_texture(raw, what);
+                self.gl.tell(Event::TextureMade(raw, what));
             }
         }
         let images = Attachments { color: vec![color], depth: Some(depth) };
-        self.gl.note_framebuffer(self.framebuffer.raw, images);
+        self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, images));
         let gl = self.gl.raw();
         // SAFETY: the attachments were created for this target above.
         let (status, error) = unsafe {
@@ -157,7 +157,7 @@ impl MultisampleTarget {
         self.size = [0, 0];
         for image in self.images.take().into_iter().flatten() {
             if let Image::Texture(raw) = image {
-                self.gl.forget_texture(raw);
+                self.gl.tell(Event::TextureDeleted(raw));
             }
             // SAFETY: created in `image`, deleted once.
             unsafe {
@@ -188,8 +188,8 @@ impl MultisampleTarget {
     }
 
     fn blit(&self, to: &RenderTarget, mask: u32) {
-        let is_depth = mask == glow::DEPTH_BUFFER_BIT;
-        self.gl.record_copy(Some(self.framebuffer.raw), Some(to.raw()), to.size(), is_depth);
+        let (from, depth) = (self.framebuffer.raw, mask == glow::DEPTH_BUFFER_BIT);
+        self.gl.tell(Event::Copied { from: Some(from), to: Some(to.raw()), size: to.size(), depth });
         let [w, h] = to.size().map(|n| n as i32);
         let gl = self.gl.raw();
         // SAFETY: both targets own their framebuffers; the rectangles are equal, as GL demands for multisampled ones.
@@ -211,7 +211,7 @@ impl MultisampleTarget {
             (false, true) => &attachments[1..],
             (false, false) => return,
         };
-        self.gl.record_discard(self.framebuffer.raw, [color, depth]);
+        self.gl.tell(Event::Discarded { framebuffer: self.framebuffer.raw, color, depth });
         // SAFETY: this target's framebuffer has these attachments.
         unsafe {
             self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
@@ -318,7 +318,7 @@ impl TileTarget {
         self.textures = Some(textures);
         let images =
             Attachments { color: vec![target.color(0).image()], depth: Some(target.depth().image()) };
-        self.gl.note_framebuffer(self.framebuffer.raw, images);
+        self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, images));
         Ok(())
     }
 
@@ -329,7 +329,7 @@ impl TileTarget {
 
     /// Discards the depth. The framebuffer must be bound.
     pub fn discard_depth(&self) {
-        self.gl.record_discard(self.framebuffer.raw, [false, true]);
+        self.gl.tell(Event::Discarded { framebuffer: self.framebuffer.raw, color: false, depth: true });
         // SAFETY: the bound framebuffer has the attachment.
         unsafe { self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]) }
     }

@@ -7,7 +7,7 @@ use glam::{IVec2, IVec3, IVec4, Mat3, Mat4, Vec2, Vec3, Vec4};
 use glow::HasContext;
 use yoro_shaders::{Assembled, MissingFile};
 
-use crate::{Context, GlApi, GlError, Texture};
+use crate::{Context, Event, GlApi, GlError, Texture};
 
 /// The shader files of a program.
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +114,7 @@ impl Program {
                 let log = raw_gl.get_program_info_log(raw);
                 return Err(GlError::Shader { stage: "program", file: last_file.to_owned(), log });
             }
-            gl.recipes.borrow_mut().insert(recipe.as_ref().clone());
+            gl.tell(Event::ProgramMade(&recipe));
             for i in 0..raw_gl.get_program_parameter_i32(raw, glow::ACTIVE_UNIFORMS) as u32 {
                 if let Some(uniform) = raw_gl.get_active_uniform(raw, i)
                     && let Some(location) = raw_gl.get_uniform_location(raw, &uniform.name)
@@ -131,7 +131,7 @@ impl Program {
     pub fn bind(&self) -> &Program {
         // SAFETY: the program is linked.
         unsafe { self.gl.raw().use_program(Some(self.raw)) };
-        self.gl.recorded(|recorder| recorder.bind(self.raw, &self.recipe));
+        self.gl.tell(Event::ProgramBound(self.raw, &self.recipe));
         self
     }
 
@@ -171,7 +171,7 @@ impl Program {
 
     fn set_sampler(&self, name: &str, unit: u32, texture: glow::Texture) -> &Program {
         if self.uniforms.contains_key(name) {
-            self.gl.record_sampled(self.raw, name, texture);
+            self.gl.tell(Event::TextureSampled { program: self.raw, name, texture });
         }
         self.set(name, unit as i32)
     }

@@ -2,8 +2,7 @@
 
 use glow::HasContext;
 
-use crate::Context;
-use crate::record::Recorder;
+use crate::{Context, Event};
 
 /// More rows than any framebuffer has.
 const TALLEST: i32 = 1 << 20;
@@ -56,7 +55,7 @@ impl Context {
     /// Sets depth test, blending and culling. Turns off the stencil test and dithering, and turns on all writes. The
     /// scissor test is off, except within [`Context::within_columns`].
     pub fn set_raster_state(&self, state: &RasterState) {
-        self.recorded(|recorder| recorder.set_state(state));
+        self.tell(Event::StateSet(*state));
         let gl = self.raw();
         // SAFETY: state calls with valid enums.
         unsafe {
@@ -106,14 +105,14 @@ impl Context {
     /// Turns off colour writes until the state is set again, for programs that write only depth into a target with
     /// colour. Otherwise colour would be undefined, and WebGL would refuse to draw.
     pub fn mask_color(&self) {
-        self.recorded(Recorder::mask_color);
+        self.tell(Event::ColorMasked);
         // SAFETY: a state call without objects.
         unsafe { self.raw().color_mask(false, false, false, false) }
     }
 
     /// Turns off depth writes until the state is set again, for surfaces that are tested and blended.
     pub fn mask_depth(&self) {
-        self.recorded(Recorder::mask_depth);
+        self.tell(Event::DepthMasked);
         // SAFETY: a state call without objects.
         unsafe { self.raw().depth_mask(false) }
     }
@@ -176,7 +175,7 @@ impl Context {
 
     /// Clears all pixels that pass the scissor test.
     fn clear_unmasked(&self, depth: Option<f32>) {
-        self.record_clear(depth.is_some());
+        self.tell(Event::Cleared { depth: depth.is_some() });
         let gl = self.raw();
         let mut mask = glow::COLOR_BUFFER_BIT;
         // SAFETY: state calls with valid enums.
@@ -209,7 +208,7 @@ impl Context {
 
     /// Sets the viewport, in pixels from the lower left corner of the bound framebuffer.
     pub fn set_viewport(&self, origin: [u32; 2], size: [u32; 2]) {
-        self.recorded(|recorder| recorder.view(size));
+        self.tell(Event::ViewportSet(size));
         let ([x, y], [w, h]) = (origin.map(|n| n as f32), size.map(|n| n as f32));
         // SAFETY: the context is current, and sizes are not negative.
         unsafe { self.host.set_viewport(self.raw(), [x, y, w, h]) }
@@ -217,7 +216,7 @@ impl Context {
 
     /// Binds any framebuffer (`None` for the window's) and sets the viewport, in pixels from its lower left corner.
     pub fn bind_framebuffer(&self, framebuffer: Option<glow::Framebuffer>, origin: [u32; 2], size: [u32; 2]) {
-        self.recorded(|recorder| recorder.draw_into(framebuffer));
+        self.tell(Event::FramebufferBound(framebuffer));
         // SAFETY: GL refuses a name that is not a framebuffer.
         unsafe { self.raw().bind_framebuffer(glow::FRAMEBUFFER, framebuffer) };
         self.set_viewport(origin, size);

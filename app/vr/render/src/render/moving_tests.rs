@@ -10,7 +10,7 @@ use crate::fixture::quad;
 use yoro::eyes::DepthConvention;
 use yoro_assets::motion::{Carrier, MovingLight, MovingMesh, Node, Track};
 use yoro_assets::{Motion, Scene, ShadingStyle};
-use yoro_gl::Command;
+use yoro_estimate::{Command, Recorder};
 
 fn track(values: &[f32]) -> Option<Track> {
     Some(Track { times: vec![0.0, 2.0], values: values.to_vec(), ..Track::default() })
@@ -85,13 +85,14 @@ fn a_scene_that_moved_is_the_scene_as_it_stands() {
 fn scenes_that_stand_still_cost_nothing() {
     let head = open();
     let gl = head.gl();
+    let recorder = Recorder::new(gl);
     let frame = |prepared: &mut PreparedScene, seconds: f64| -> [Vec<Command>; 2] {
-        gl.record();
+        recorder.start();
         prepared.set_time(seconds).unwrap();
-        let moving = gl.take_record();
-        gl.record();
+        let moving = recorder.take();
+        recorder.start();
         picture(gl, prepared);
-        [moving, gl.take_record()]
+        [moving, recorder.take()]
     };
     let mut still = PreparedScene::new(gl, scene(ShadingStyle::Realistic), &settings()).unwrap();
     let [first, second] = [0.0, 1.5].map(|seconds| frame(&mut still, seconds));

@@ -11,7 +11,8 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Command, Destination, Format, Profiling, RenderTarget};
+use yoro_estimate::{Command, Recorder};
+use yoro_gl::{Destination, Format, Profiling, RenderTarget};
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -484,6 +485,7 @@ fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
 fn glass_out_of_view_costs_nothing() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
+    let recorder = Recorder::new(gl);
     let mut opaque = scene();
     opaque.model.parts.pop();
     let mut rigs = [scene(), opaque].map(|scene| Rig::of(gl, &forward(), scene));
@@ -497,10 +499,10 @@ fn glass_out_of_view_costs_nothing() {
         let pair = EyePair::parallel(pose, still.frusta[0], still.ipd(), still.depth, SIZE, still.dominant);
         let [glass, plain] = [0, 1].map(|i| {
             let (rig, method) = (&mut rigs[i], &mut *methods[i]);
-            gl.record();
+            recorder.start();
             let copies = count_passes_of(gl, rig, method, &pair, [false; 2], "copy");
             let kept =
-                gl.take_record().iter().filter(|c| matches!(c, Command::Discard(_, [true, _]))).count();
+                recorder.take().iter().filter(|c| matches!(c, Command::Discard(_, [true, _]))).count();
             let eyes = Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE));
             (eyes, copies, kept)
         });

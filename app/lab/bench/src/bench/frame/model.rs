@@ -7,7 +7,8 @@ use super::lamps::Lamps;
 use super::traffic::{fragments, pieces};
 use crate::bench::costs::Costs;
 use crate::bench::executed::Device;
-use yoro_gl::{Command, Draw, ProgramRecipe, Shape};
+use yoro_estimate::{Command, Draw};
+use yoro_gl::{ProgramRecipe, Shape};
 
 /// The prefix of the names of synthesis passes. Their execution is counted by `bench::executed`.
 pub const SYNTHESIS: &str = "gather ";

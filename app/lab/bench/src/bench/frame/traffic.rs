@@ -12,7 +12,8 @@
 
 use std::rc::Rc;
 
-use yoro_gl::{Attachments, Command, Draw, Image, Shape};
+use yoro_estimate::{Command, Draw};
+use yoro_gl::{Attachments, Image, Shape};
 
 /// The texture that every draw call reads at one place per fragment.
 const SHADOW_MAP: &str = "shadow_map";

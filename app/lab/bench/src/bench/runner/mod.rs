@@ -24,6 +24,7 @@ use super::views::{self, Views};
 use crate::inpaint::PatcherOptions;
 use yoro::eyes::Eye;
 use yoro_assets::{Scene, ShadingStyle, Viewpoint};
+use yoro_estimate::Recorder;
 use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::stereo::StereoFrame;
@@ -64,6 +65,8 @@ pub struct Runner<'a> {
     before: Results,
     bar: ProgressBar,
     prepared: Option<(SceneKey, PreparedScene)>,
+    /// Records whole frames. Made before the scenes, since it must know their textures.
+    recorder: Option<Recorder>,
 }
 
 /// Everything that a prepared scene depends on. Settings with the same key share the scene.
@@ -82,7 +85,7 @@ impl<'a> Runner<'a> {
         (writer, before): (Writer, Results),
         bar: ProgressBar,
     ) -> Runner<'a> {
-        Runner { gl, inputs, writer, before, bar, prepared: None }
+        Runner { gl, inputs, writer, before, bar, prepared: None, recorder: None }
     }
 
     /// Measures the rounds of a job that the file does not have yet.
@@ -100,6 +103,10 @@ impl<'a> Runner<'a> {
         interrupt::check()?;
         if let Some(reason) = self.too_large(job) {
             return self.leave_out(job, reason);
+        }
+        if matches!(job.measure, Measure::WholeFrames) && self.recorder.is_none() {
+            self.prepared = None;
+            self.recorder = Some(Recorder::new(self.gl));
         }
         let mut prepared = self.prepare(job)?;
         self.refuse_blank(job, &mut prepared)?;

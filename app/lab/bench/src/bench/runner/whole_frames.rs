@@ -61,9 +61,10 @@ impl Runner<'_> {
             let mut lamps = self.lamps(prepared, pair)?;
             for (contender, ready) in &mut contenders {
                 interrupt::check()?;
-                self.gl.record();
+                let recorder = self.recorder.as_ref().context("whole frames need a recorder")?;
+                recorder.start();
                 ready.render(prepared, pair, &mut frame)?;
-                let commands = self.gl.take_record();
+                let commands = recorder.take();
                 let name = contender.name();
                 let costs = model.frame(&commands, pair.size, &mut lamps).with_context(|| name.clone())?;
                 costs.into_iter().for_each(|(metric, value)| push(&name, metric, value));
