@@ -20,9 +20,9 @@ use yoro_bench::picture::{
 };
 use yoro_files as files;
 use yoro_files::interrupt;
+use yoro_media::video::Reader;
 use yoro_render::stereo::{Offline, SynthesizedImage};
 use yoro_settings::Ipd;
-use yoro_video::Reader;
 
 /// The meaning of a depth image's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -8,9 +8,8 @@ use std::time::Duration;
 use yoro::eyes::{EyePair, Pose};
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::EyeTarget;
-use yoro_render::{DecodedPicture, StreamedEyes};
 use yoro_settings::telemetry::StreamFigures;
-use yoro_stream::{FrameHeader, ViewRequest};
+use yoro_stream::{DecodedPicture, FrameHeader, StreamedEyes, ViewRequest};
 
 /// Passes data between the platform's thread and the viewer. Only the newest value of each kind is kept.
 #[derive(Default)]

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::ffi::{CString, c_char, c_int, c_void};
 
-use yoro_video::Planes;
+use yoro_media::video::Planes;
 
 use crate::bionic::text;
 use crate::exports::{Export, System, exports};
@@ -28,7 +28,7 @@ type Decode = Box<dyn FnMut(&[u8]) -> Option<Planes>>;
 /// Creates a decoder, or returns `None` if the host has none.
 #[cfg(target_arch = "x86_64")]
 fn decoder() -> Option<Decode> {
-    let mut decoder = yoro_video::Decoder::new().ok()?;
+    let mut decoder = yoro_media::video::Decoder::new().ok()?;
     Some(Box::new(move |frame| decoder.decode(frame).ok()))
 }
 

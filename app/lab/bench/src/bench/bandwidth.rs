@@ -27,9 +27,9 @@ use crate::picture::{self, DepthImage};
 use yoro::eyes::{DepthConvention, EyePair, SynthesisViews};
 use yoro::synthesis::Edges;
 use yoro_gl::Context;
+use yoro_media::video::{Decoder, Encoder, Planes, VideoError};
 use yoro_render::PreparedScene;
 use yoro_render::stereo::{Offline, StereoOptions};
-use yoro_video::{Decoder, Encoder, Planes, VideoError};
 
 /// Both eyes, side by side.
 pub const STEREO_RGB: &str = "stereo-rgb";

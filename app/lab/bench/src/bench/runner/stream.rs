@@ -7,17 +7,16 @@ use crate::bench::pictures::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::suite::{Job, STREAM_QUANTIZERS};
 use crate::bench::views::{HEADSET_RATE, Views};
-use crate::dataset::{GroupOptions, GroupRenderer};
 use crate::metrics::{Channels, SsimWindow, psnr, ssim};
-use crate::picture;
-use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
+use crate::picture::{self, rgb_image};
+use crate::streaming::Receiver;
 use image::RgbImage;
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
-use yoro_render::PreparedScene;
+use yoro_media::video::{Decoder, LiveEncoder, LiveEncoderKind};
+use yoro_render::{PreparedScene, ViewReader};
 use yoro_report::text::slug;
-use yoro_stream::{EyeView, ViewRequest};
-use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
+use yoro_stream::{EyeView, FrameRenderer, Mode, Picture, ViewRequest};
 
 /// The modes. The bits that the others save are relative to those of the first.
 const MODES: [(Mode, &str); 3] = [
@@ -40,11 +39,11 @@ impl Runner<'_> {
         let views = Views::of_motion(&all, prepared, Motion::Walk)?.split_at_last(all.frames)[1].clone();
         let [_, shown] = views.clone().split_at_last(job.frames);
         let (then, now) = (&views.pairs[..job.frames], &shown.pairs);
-        let mut groups =
-            GroupRenderer::new(self.gl, &GroupOptions { anti_aliasing: true, ..GroupOptions::default() })?;
+        let mut reader = ViewReader::new(self.gl, true)?;
         let mut eye = |prepared: &mut PreparedScene, pair: &EyePair, eye| -> anyhow::Result<RgbImage> {
             interrupt::check()?;
-            Ok(groups.render_one(prepared, &pair.view(eye))?.0)
+            let rgba = reader.color(&mut prepared.renderer, &prepared.scene, &pair.view(eye))?;
+            Ok(rgb_image(&rgba, pair.size))
         };
         let mut same = Measurement::new(&job.setting, "same image, not encoded", 0);
         let mut truths = Vec::new();

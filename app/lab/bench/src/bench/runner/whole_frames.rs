@@ -10,12 +10,11 @@ use crate::bench::frame::{FrameModel, GPUS, Lamps, LayersMeter, MULTIVIEW};
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::suite::Job;
 use crate::bench::views::Views;
-use crate::depth::DepthReader;
 use yoro::eyes::EyePair;
 use yoro::synthesis::Edges;
 use yoro_files::interrupt;
 use yoro_render::stereo::{Method, Pipeline, StereoFrame};
-use yoro_render::{PreparedScene, Selection, ViewTargets};
+use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
 
 /// The slots of the passes of `gather` as [`Meter`] names them, and the names of the passes.
 const GATHER: [(&str, &str); 3] = [
