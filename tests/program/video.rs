@@ -3,8 +3,8 @@
 use std::fs;
 
 use image::{RgbImage, imageops};
+use yoro_media::video::{Format, Planes, Reader, VideoError};
 use yoro_metrics::{Channels, psnr};
-use yoro_video::{Format, Planes, Reader, VideoError};
 
 use crate::program::{run, succeed};
 
@@ -64,7 +64,7 @@ fn a_video_of_record3d_becomes_stereo() {
         image::Rgb([channel(5.0), channel(3.0), channel(1.0)])
     };
     let format = Format { frame_rate: 30, quantizer: 10, frames: 2, rgbd: None };
-    yoro_video::write(&at.join("phone.mp4"), &format, || -> Result<Option<Planes>, VideoError> {
+    yoro_media::video::write(&at.join("phone.mp4"), &format, || -> Result<Option<Planes>, VideoError> {
         Ok(reader.read_rgbd()?.map(|(color, depth)| {
             let hues = RgbImage::from_fn(128, 96, |x, y| hue(depth.get_pixel(x, y).0[0]));
             Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))

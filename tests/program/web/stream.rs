@@ -18,13 +18,16 @@ use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::Role;
 use tungstenite::{Message, WebSocket};
 use yoro::eyes::{Eye, EyePair, Frustum, Pose};
-use yoro_bench::streaming::{FrameRenderer, Mode, Receiver};
+use yoro_bench::streaming::Receiver;
 use yoro_context::{Backend, Headless};
 use yoro_files::http::{self, Request};
+use yoro_media::rgb_image;
+use yoro_media::video::{Decoder, LiveEncoder, LiveEncoderKind, Planes};
 use yoro_metrics::{Channels, psnr};
-use yoro_render::{PreparedScene, RenderSettings};
-use yoro_stream::{Content, EyeView, FrameHeader, FromClient, FromServer, VERSION, ViewRequest};
-use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind, Planes};
+use yoro_render::{PreparedScene, RenderSettings, ViewReader};
+use yoro_stream::{
+    Content, EyeView, FrameHeader, FrameRenderer, FromClient, FromServer, Mode, VERSION, ViewRequest,
+};
 
 use super::{GL, Page, Server, close, headset};
 use crate::browser::Browser;
@@ -136,12 +139,9 @@ impl Desktop {
     }
 
     fn real(&mut self, pair: &EyePair, eye: Eye) -> RgbImage {
-        let mut renderer = yoro_bench::dataset::GroupRenderer::new(
-            self._headless.gl(),
-            &yoro_bench::dataset::GroupOptions { anti_aliasing: true, ..Default::default() },
-        )
-        .unwrap();
-        renderer.render_one(&mut self.prepared, &pair.view(eye)).unwrap().0
+        let mut reader = ViewReader::new(self._headless.gl(), true).unwrap();
+        let PreparedScene { scene, renderer } = &mut self.prepared;
+        rgb_image(&reader.color(renderer, scene, &pair.view(eye)).unwrap(), pair.size)
     }
 }
 
@@ -166,8 +166,9 @@ fn check(page: &mut Page, desktop: &mut Desktop) -> [EyePair; 2] {
 
 /// Requests the stream with these headers, and returns the beginning of the answer.
 fn ask(mut connection: impl Read + Write, host: &str, headers: &str) -> String {
-    let key = "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==";
-    write!(connection, "GET /stream HTTP/1.1\r\nHost: {host}\r\n{headers}{key}\r\n\r\n").unwrap();
+    let upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
+                   Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==";
+    write!(connection, "GET /stream HTTP/1.1\r\nHost: {host}\r\n{headers}{upgrade}\r\n\r\n").unwrap();
     let mut answer = [0; 1000];
     let length = connection.read(&mut answer).unwrap();
     String::from_utf8_lossy(&answer[..length]).into_owned()
@@ -314,7 +315,7 @@ fn a_video_is_streamed_whole() {
     let (server, link) = serve_source(path.to_str().unwrap(), 30, &[], None);
     let mut page = follow(browser, server, &link);
     let [_, right] = page.eyes([192, 128]);
-    let mut reader = yoro_video::Reader::open(&path).unwrap();
+    let mut reader = yoro_media::video::Reader::open(&path).unwrap();
     let mut best = 0.0f64;
     while let Some((color, _)) = reader.read_rgbd().unwrap() {
         // The guard band is on the left.

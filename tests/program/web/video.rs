@@ -6,8 +6,8 @@ use std::{fs, thread};
 use image::{Rgb, RgbImage, imageops};
 use serde_json::json;
 use yoro::eyes::Eye;
+use yoro_media::video::{Format, Planes, Rgbd, VideoError};
 use yoro_metrics::{Channels, psnr};
-use yoro_video::{Format, Planes, Rgbd, VideoError};
 
 use super::{Page, sum};
 use crate::program::succeed;
@@ -107,7 +107,7 @@ fn ramp(path: &std::path::Path) {
     });
     let mut pictures = [gray.clone(), Planes::of_rgb(&colors)].map(|color| color.beside(&gray)).into_iter();
     let format = Format { frame_rate: 4, quantizer: 1, frames: 2, rgbd: Some(rgbd) };
-    yoro_video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
+    yoro_media::video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
 }
 
 /// Width and height of a phone's pictures in pixels.
@@ -130,7 +130,7 @@ fn record3d(path: &std::path::Path) {
     });
     let mut pictures = [Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))].into_iter();
     let format = Format { frame_rate: 2, quantizer: 12, frames: 1, rgbd: None };
-    yoro_video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
+    yoro_media::video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
     // Focal length and centre in pixels. Hues represent up to 3 m.
     let camera = r#"{"intrinsicMatrix":[150,0,0,0,150,0,96,64,1],"rangeOfEncodedDepth":[0,3]}"#;
     let length = (camera.len() as u32 + 8).to_be_bytes();
@@ -184,7 +184,7 @@ fn pictures_come_as_planes_or_as_the_browser_has_them_and_every_shade_is_exact()
     page.until("document.getElementById('facts').textContent === 'phone.mp4' && yoro.stream?.frames > 0");
     let here = page.eyes([PHONE[0], PHONE[1]]);
     succeed(dir.path(), "synthesize phone.mp4 --out stereo.mp4");
-    let mut reader = yoro_video::Reader::open(&dir.path().join("stereo.mp4")).unwrap();
+    let mut reader = yoro_media::video::Reader::open(&dir.path().join("stereo.mp4")).unwrap();
     let stereo = reader.read().unwrap().unwrap().rgb((2 * PHONE[0], PHONE[1]));
     let [left, right] = [0, 1].map(|eye| {
         let crop = |image: &RgbImage, x: u32| {

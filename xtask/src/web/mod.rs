@@ -78,14 +78,17 @@ pub fn build_example() -> anyhow::Result<PathBuf> {
 pub fn build() -> anyhow::Result<PathBuf> {
     let start = Instant::now();
     let target = target_folder()?;
-    let module = compile(&["--package", "yoro-web", "--package", "yoro-web-video"], "yoro_web")?;
-    let video = module.with_file_name("yoro_web_video.wasm");
+    let module = compile(&["--package", "yoro-web"], "yoro_web")?;
     let (folder, unfinished) = (target.join("web"), target.join("web.part"));
     remove(&unfinished)?;
     let Sizes { module, transferred, visit } =
         bind(&module, &unfinished.join(site::VERSION), &site::sources())?;
-    // After the sizes have been measured, since a first visit does not load this module.
-    bind(&video, &unfinished.join(site::VERSION), &site::sources())?;
+    // After the sizes have been measured, since a first visit does not load this module. It has the other one's name.
+    let video =
+        compile(&["--package", "yoro-web", "--no-default-features", "--features", "video"], "yoro_web")?;
+    let renamed = video.with_file_name("yoro_web_video.wasm");
+    copy(&video, &renamed)?;
+    bind(&renamed, &unfinished.join(site::VERSION), &site::sources())?;
     site::assemble(&unfinished)?;
     remove(&folder)?;
     fs::rename(&unfinished, &folder).with_context(|| format!("{} cannot be written", folder.display()))?;

@@ -56,7 +56,7 @@ impl Request {
 /// Fails if the connection fails.
 pub fn answer(connection: &mut impl Write, request: &Request, folder: &Path) -> io::Result<()> {
     let found = match (request.method(), request.target()) {
-        (Some("GET" | "HEAD"), Some(target)) => file(folder, target),
+        (Some("GET" | "HEAD"), Some(target)) => find(folder, target),
         _ => None,
     };
     let opened = found.and_then(|path| {
@@ -83,7 +83,7 @@ pub fn answer(connection: &mut impl Write, request: &Request, folder: &Path) -> 
 }
 
 /// Returns the file that a request's target names; `None` if it is outside of the folder.
-fn file(folder: &Path, target: &str) -> Option<PathBuf> {
+pub fn find(folder: &Path, target: &str) -> Option<PathBuf> {
     let path = Path::new(target.split(['?', '#']).next()?.trim_start_matches('/'));
     let inside = path.components().all(|component| matches!(component, Component::Normal(_)));
     let path = folder.join(path);
@@ -91,7 +91,7 @@ fn file(folder: &Path, target: &str) -> Option<PathBuf> {
 }
 
 /// Returns the content type of a file. Browsers do not run scripts without one.
-fn kind(path: &Path) -> &'static str {
+pub fn kind(path: &Path) -> &'static str {
     match path.extension().and_then(|extension| extension.to_str()) {
         Some("html") => "text/html; charset=utf-8",
         Some("css") => "text/css; charset=utf-8",
@@ -112,10 +112,10 @@ mod tests {
     fn nothing_outside_of_the_folder_is_served() {
         let folder = tempfile::tempdir().unwrap();
         let at = folder.path();
-        assert_eq!(file(at, "/").unwrap(), at.join("index.html"));
-        assert_eq!(file(at, "/a/b.js?x=/../..").unwrap(), at.join("a/b.js"));
+        assert_eq!(find(at, "/").unwrap(), at.join("index.html"));
+        assert_eq!(find(at, "/a/b.js?x=/../..").unwrap(), at.join("a/b.js"));
         for outside in ["/../secret", "/a/../../secret", "/./../x"] {
-            assert_eq!(file(at, outside), None, "{outside}");
+            assert_eq!(find(at, outside), None, "{outside}");
         }
         assert_eq!(kind(Path::new("yoro_web_bg.wasm")), "application/wasm");
     }

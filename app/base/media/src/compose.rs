@@ -2,7 +2,7 @@
 
 use image::{Rgb, RgbImage};
 
-use crate::{PictureError, srgb};
+use crate::{DepthImage, PictureError, srgb};
 
 /// The factor by which [`difference`] multiplies.
 pub const DIFFERENCE_GAIN: u8 = 4;
@@ -14,6 +14,12 @@ pub fn rgb_image(rgba: &[u8], size: [u32; 2]) -> RgbImage {
         let i = (size[1] - 1 - y) as usize * row + x as usize * 4;
         Rgb([rgba[i], rgba[i + 1], rgba[i + 2]])
     })
+}
+
+/// Returns the image of depth whose rows run from the bottom, as GL reads it back.
+pub fn depth_image(depth: &[f32], [width, height]: [u32; 2]) -> DepthImage {
+    let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
+    DepthImage::from_raw(width, height, flipped).expect("one value for each pixel")
 }
 
 /// Places both eyes side by side with the left eye on the left, for parallel viewing.

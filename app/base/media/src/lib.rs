@@ -1,7 +1,10 @@
-//! Reading and writing image files, and composing pictures of two eyes.
+//! Reading and writing image files, composing pictures of two eyes, and [`video`].
 //!
 //! Images in memory are like those in files: row 0 is the top, and colours are display-referred (sRGB) 8-bit RGB. This
 //! crate must never know where a picture comes from: a renderer, a headset or a measurement.
+//!
+//! The feature `codec` adds an encoder and a decoder of H.264, which are C++, and so files of pictures. Without it there
+//! is only what needs no C.
 
 mod compose;
 mod decode;
@@ -11,10 +14,11 @@ mod srgb;
 mod stored_depth;
 #[cfg(test)]
 mod tests;
+pub mod video;
 
 use image::{ImageBuffer, Luma};
 
-pub use compose::{DIFFERENCE_GAIN, anaglyph, cross_eyed, difference, rgb_image, side_by_side};
+pub use compose::{DIFFERENCE_GAIN, anaglyph, cross_eyed, depth_image, difference, rgb_image, side_by_side};
 pub use decode::{DepthFile, DepthSamples, load_color, load_depth, load_mask};
 pub use encode::{encode_jpeg, save_color, save_depth, save_gray};
 pub use error::PictureError;

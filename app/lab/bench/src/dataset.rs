@@ -6,13 +6,12 @@ use std::rc::Rc;
 
 use image::{Luma, RgbImage};
 
-use crate::depth::DepthReader;
 use crate::inpaint::{InpaintError, Reprojected};
-use yoro::eyes::{DepthConvention, DepthRange, EyePair, EyesError, GuardBand, SynthesisViews, View};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
-use yoro_media::DepthImage;
+use yoro::eyes::{DepthConvention, EyePair, EyesError, GuardBand, SynthesisViews};
+use yoro_gl::{Context, GlError};
+use yoro_media::{DepthImage, depth_image, rgb_image};
 use yoro_render::stereo::{Offline, PipelineOptions};
-use yoro_render::{Fxaa, GpuScene, PreparedScene, Renderer, ViewTargets};
+use yoro_render::{GpuScene, Renderer, ViewReader};
 
 /// The error when an image group cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -87,26 +86,10 @@ impl ImageGroup {
     }
 }
 
-/// The rendered eye of a view. Both images have row 0 at the top.
-#[derive(Clone, Debug)]
-pub struct SourceImage {
-    /// The rendered view, the synthesized one, and how pixels move between them.
-    pub views: SynthesisViews,
-    /// The rendered dominant eye, including transparent objects; as large as the source view.
-    pub color: RgbImage,
-    /// Its depth buffer; transparent objects are not in it.
-    pub depth: DepthImage,
-    /// The meaning of the depth.
-    pub depth_range: DepthRange,
-}
-
 /// Renders image groups of scenes. Everything is compiled once.
 pub struct GroupRenderer {
     options: GroupOptions,
-    targets: ViewTargets,
-    fxaa: Option<Fxaa>,
-    smooth: RenderTarget,
-    depth: DepthReader,
+    reader: ViewReader,
     offline: Offline,
 }
 
@@ -118,10 +101,7 @@ impl GroupRenderer {
     pub fn new(gl: &Rc<Context>, options: &GroupOptions) -> Result<GroupRenderer, GlError> {
         Ok(GroupRenderer {
             options: *options,
-            targets: ViewTargets::default(),
-            fxaa: options.anti_aliasing.then(|| Fxaa::new(gl)).transpose()?,
-            smooth: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], None)?,
-            depth: DepthReader::new(gl)?,
+            reader: ViewReader::new(gl, options.anti_aliasing)?,
             offline: Offline::new(gl, &options.synthesis)?,
         })
     }
@@ -138,79 +118,18 @@ impl GroupRenderer {
         pair: &EyePair,
     ) -> Result<ImageGroup, GroupError> {
         let views = pair.synthesis_views(self.options.guard_band)?;
-        let truth = self.render_view(renderer, scene, &views.target)?;
-        let source = self.render_view(renderer, scene, &views.source)?;
-        let depth = self.depth.read();
+        let truth = self.reader.color(renderer, scene, &views.target)?;
+        let source = self.reader.color(renderer, scene, &views.source)?;
+        let depth = self.reader.depth();
         let result = self.offline.run(&source, &depth, &views.warp)?;
         Ok(ImageGroup {
             pair: *pair,
-            color: yoro_media::rgb_image(&source, views.source.size),
+            color: rgb_image(&source, views.source.size),
             depth: depth_image(&depth, views.source.size),
-            truth: yoro_media::rgb_image(&truth, views.target.size),
+            truth: rgb_image(&truth, views.target.size),
             reprojected: Reprojected::from_synthesis(&result, &views.warp)?,
-            synthesized: yoro_media::rgb_image(&result.rgba, views.target.size),
+            synthesized: rgb_image(&result.rgba, views.target.size),
             views,
         })
     }
-
-    /// Renders the dominant eye alone.
-    ///
-    /// # Errors
-    /// [`GroupError::Eyes`] and [`GroupError::Gl`], as [`GroupRenderer::render`].
-    pub fn render_source(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        pair: &EyePair,
-    ) -> Result<SourceImage, GroupError> {
-        let views = pair.synthesis_views(self.options.guard_band)?;
-        let (color, depth) = self.images(renderer, scene, &views.source)?;
-        Ok(SourceImage { views, color, depth, depth_range: pair.depth })
-    }
-
-    /// Renders any view, and returns its colour and its depth.
-    ///
-    /// # Errors
-    /// [`GlError`] beyond the driver's limits.
-    pub fn render_one(
-        &mut self,
-        prepared: &mut PreparedScene,
-        view: &View,
-    ) -> Result<(RgbImage, DepthImage), GlError> {
-        self.images(&mut prepared.renderer, &prepared.scene, view)
-    }
-
-    fn images(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        view: &View,
-    ) -> Result<(RgbImage, DepthImage), GlError> {
-        let color = self.render_view(renderer, scene, view)?;
-        Ok((yoro_media::rgb_image(&color, view.size), depth_image(&self.depth.read(), view.size)))
-    }
-
-    /// Returns the RGBA of a view, rows from the bottom, and leaves its depth in `self.depth`.
-    fn render_view(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &GpuScene,
-        view: &View,
-    ) -> Result<Vec<u8>, GlError> {
-        let rendered = renderer.render_all(&mut self.targets, scene, view)?;
-        self.depth.copy(rendered.depth, view.size)?;
-        let mut color = rendered.color;
-        if let Some(fxaa) = &self.fxaa {
-            self.smooth.resize(view.size)?;
-            fxaa.run(color.color(0), [0, 0], &Destination::whole(&self.smooth));
-            color = &self.smooth;
-        }
-        Ok(color.read_rgba8(0, [0, 0], view.size))
-    }
-}
-
-/// Returns an image of depth that was read back, and whose rows run from the bottom.
-fn depth_image(depth: &[f32], [width, height]: [u32; 2]) -> DepthImage {
-    let flipped = depth.chunks_exact(width as usize).rev().flatten().copied().collect();
-    DepthImage::from_raw(width, height, flipped).expect("one value for each pixel")
 }

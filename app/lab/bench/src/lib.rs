@@ -3,7 +3,7 @@
 //! The crate turns images, scenes and stereo methods into figures, image groups and reports. [`compare`]
 //! compares files and folders of images; [`inpaint`] has patchers that fill holes by methods of other papers; [`dataset`] renders image groups; [`run`] compares methods with rendering both
 //! eyes, [`mod@bench`] compares every method with every other, and [`report`] makes pages from the results of both.
-//! [`streaming`] has both ends of a stream.
+//! [`streaming`] makes eyes from a stream's pictures, like its page.
 //!
 //! The feature `neural` includes the weights of a network and a runtime for it.
 //!
@@ -12,7 +12,6 @@
 pub mod bench;
 pub mod compare;
 pub mod dataset;
-mod depth;
 pub mod inpaint;
 pub mod machine;
 pub mod report;

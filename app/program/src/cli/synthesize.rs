@@ -17,10 +17,10 @@ use yoro::synthesis::SourceMapEntry;
 use yoro_bench::inpaint::{Patcher, Reprojected};
 use yoro_files as files;
 use yoro_files::interrupt;
+use yoro_media::video::Reader;
 use yoro_media::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
 use yoro_render::stereo::{Offline, SynthesizedImage};
 use yoro_settings::Ipd;
-use yoro_video::Reader;
 
 /// The meaning of a depth image's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -9,13 +9,12 @@ use image::imageops;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, Pose};
-use yoro_bench::dataset::{GroupOptions, GroupRenderer};
 use yoro_files::interrupt;
 use yoro_gl::Context;
-use yoro_media::{rgb_image, side_by_side};
-use yoro_render::PreparedScene;
+use yoro_media::video::{Format, Planes, Reader, Rgbd};
+use yoro_media::{depth_image, rgb_image, side_by_side};
 use yoro_render::stereo::{Offline, PipelineOptions, StereoOptions};
-use yoro_video::{Format, Planes, Reader, Rgbd};
+use yoro_render::{PreparedScene, ViewReader};
 
 /// How videos are encoded.
 #[derive(clap::Args, Clone, Copy, Debug)]
@@ -36,9 +35,7 @@ pub fn render(
 ) -> anyhow::Result<()> {
     let PreparedScene { mut scene, mut renderer } = prepared;
     let seconds = |frame: usize| time + frame as f64 / f64::from(frame_rate);
-    let options =
-        GroupOptions { synthesis: stereo.synthesis, guard_band: stereo.guard_band, anti_aliasing: true };
-    let mut groups = GroupRenderer::new(gl, &options)?;
+    let mut reader = ViewReader::new(gl, true)?;
     // Everything is rendered twice: the 8 bits of depth cover the distances of all frames, which must be known first.
     let bar = progress_bar(2 * heads.len() as u64);
     bar.set_message("distances");
@@ -46,9 +43,10 @@ pub fn render(
     for (i, &head) in heads.iter().enumerate() {
         interrupt::check()?;
         renderer.set_time(&mut scene, seconds(i))?;
-        let source = groups.render_source(&mut renderer, &scene, &eyes.pair(head))?;
-        guard_columns = guard_columns.max(source.views.source.size[0] - eyes.size[0]);
-        let distances = source.depth.iter().map(|depth| source.depth_range.distance(*depth));
+        let view = eyes.pair(head).synthesis_views(stereo.guard_band)?.source;
+        reader.color(&mut renderer, &scene, &view)?;
+        guard_columns = guard_columns.max(view.size[0] - eyes.size[0]);
+        let distances = reader.depth().into_iter().map(|depth| view.depth.distance(depth));
         for distance in distances.filter(|distance| distance.is_finite()) {
             [nearest, farthest] = [nearest.min(distance), farthest.max(distance)];
         }
@@ -71,14 +69,16 @@ pub fn render(
     let format = Format { frame_rate, quantizer: encoding.quantizer, frames: heads.len(), rgbd: Some(rgbd) };
     bar.set_message("video");
     let mut rest = heads.iter().enumerate();
-    let bytes = yoro_video::write(file, &format, || -> anyhow::Result<Option<Planes>> {
+    let bytes = yoro_media::video::write(file, &format, || -> anyhow::Result<Option<Planes>> {
         interrupt::check()?;
         let Some((i, &head)) = rest.next() else { return Ok(None) };
         renderer.set_time(&mut scene, seconds(i))?;
-        let source = groups.render_source(&mut renderer, &scene, &eyes.pair(head))?;
+        let view = eyes.pair(head).synthesis_views(stereo.guard_band)?.source;
+        let color = reader.color(&mut renderer, &scene, &view)?;
+        let depth = depth_image(&reader.depth(), view.size);
         bar.inc(1);
-        let distance = |x, y| source.depth_range.distance(source.depth.get_pixel(x, y).0[0]);
-        Ok(Some(rgbd.pack(&source.color, distance)))
+        let distance = |x, y| view.depth.distance(depth.get_pixel(x, y).0[0]);
+        Ok(Some(rgbd.pack(&rgb_image(&color, view.size), distance)))
     })?;
     bar.finish_and_clear();
     println!(
@@ -105,7 +105,7 @@ pub fn synthesize(
     let (frames, frame_rate) = (reader.frames(), reader.frame_rate());
     let format = Format { frame_rate, quantizer: encoding.quantizer, frames, rgbd: None };
     let bar = progress_bar(frames as u64);
-    let bytes = yoro_video::write(out, &format, || -> anyhow::Result<Option<Planes>> {
+    let bytes = yoro_media::video::write(out, &format, || -> anyhow::Result<Option<Planes>> {
         interrupt::check()?;
         let Some((color, depth)) = reader.read_rgbd()? else { return Ok(None) };
         let rgba: Vec<u8> = color.rows().rev().flatten().flat_map(|p| [p[0], p[1], p[2], 255]).collect();

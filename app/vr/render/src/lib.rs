@@ -2,7 +2,7 @@
 //!
 //! [`Renderer`] renders a view of a scene to colour and depth, deferred or forward. A [`stereo::StereoMethod`] takes a
 //! pair of eyes and fills both images: by two renders, single-pass stereo, hybrid, shading reprojection, mono, or
-//! synthesis, with `yoro`'s pipeline or the paper's. [`StreamedEyes`] makes them from a stream's decoded frames.
+//! synthesis, with `yoro`'s pipeline or the paper's.
 //!
 //! This crate must never know where a GL context comes from, what a viewer's lenses do, or how a result is measured.
 
@@ -11,11 +11,9 @@ mod fixture;
 mod prepared;
 mod render;
 pub mod stereo;
-mod streamed;
 
 pub use prepared::PreparedScene;
 pub use render::{
-    DeferredRenderer, DepthCopy, DepthImage, ForwardRenderer, Fxaa, GpuScene, MAX_POINT_LIGHTS, MSAA,
-    RenderSettings, RenderedView, Renderer, RendererKind, Selection, ViewTargets,
+    DeferredRenderer, DepthCopy, DepthImage, DepthReader, ForwardRenderer, Fxaa, GpuScene, MAX_POINT_LIGHTS,
+    MSAA, RenderSettings, RenderedView, Renderer, RendererKind, Selection, ViewReader, ViewTargets,
 };
-pub use streamed::{DecodedPicture, StreamedEyes};

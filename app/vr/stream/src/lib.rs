@@ -2,16 +2,27 @@
 //!
 //! [`FromClient`] and [`FromServer`] are the messages, [`RateControl`] decides when a frame is due and how finely it is
 //! encoded, [`ReorderBuffer`] puts frames in order, and [`DepthSpan`] maps the depth's 8 bits to distances. The server
-//! (`yoro serve`) and the page use the same code. This crate must not open connections, read clocks or draw.
+//! (`yoro serve`) and the page use the same code. This crate must not open connections or read clocks.
+//!
+//! With the feature `gl`, `FrameRenderer` makes the pictures that a server sends of a scene, and `StreamedEyes` both
+//! eyes from a decoded one.
 
 mod control;
+#[cfg(feature = "gl")]
+mod eyes;
 mod messages;
+#[cfg(feature = "gl")]
+mod pictures;
 mod reorder;
 mod span;
 
 pub use control::RateControl;
+#[cfg(feature = "gl")]
+pub use eyes::{Correction, DecodedPicture, StreamedEyes};
 pub use messages::{
-    Content, EyeView, FrameHeader, FromClient, FromServer, Refusal, Token, VERSION, ViewRequest,
+    Content, EyeSource, EyeView, FrameHeader, FromClient, FromServer, Refusal, Token, VERSION, ViewRequest,
 };
+#[cfg(feature = "gl")]
+pub use pictures::{FrameRenderer, Mode, Picture, StreamError};
 pub use reorder::ReorderBuffer;
 pub use span::DepthSpan;

@@ -94,6 +94,17 @@ pub enum Content {
     },
 }
 
+/// What an eye is made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeSource {
+    /// The index among the parts that show eyes.
+    pub part: usize,
+    /// The view that the part shows.
+    pub view: EyeView,
+    /// The nearest and the farthest distance in metres of its depth; `None` without depth.
+    pub span: Option<[f32; 2]>,
+}
+
 impl Content {
     /// Returns the number of parts.
     pub fn parts(&self) -> u32 {
@@ -112,14 +123,13 @@ impl Content {
         }
     }
 
-    /// Returns the source of an eye: its index among the parts that show eyes, its view, and the distances of its
-    /// depth, if it has depth.
-    pub fn source(&self, eye: Eye) -> (usize, EyeView, Option<[f32; 2]>) {
+    /// Returns what an eye is made from.
+    pub fn source(&self, eye: Eye) -> EyeSource {
         match *self {
-            Content::Depth(eye_view, span) => (0, eye_view, Some(span)),
-            Content::Eyes(eyes) => (eye.index(), eyes[eye.index()], None),
+            Content::Depth(view, span) => EyeSource { part: 0, view, span: Some(span) },
+            Content::Eyes(eyes) => EyeSource { part: eye.index(), view: eyes[eye.index()], span: None },
             Content::EyesDepth { dominant, eyes, span } => {
-                (usize::from(eye != dominant), eyes[eye.index()], Some(span))
+                EyeSource { part: usize::from(eye != dominant), view: eyes[eye.index()], span: Some(span) }
             }
         }
     }
@@ -140,15 +150,15 @@ impl Content {
     /// # Errors
     /// [`EyesError`] if the view sees too little of the part.
     pub fn warp(&self, size: [u16; 2], eye: Eye, target: &View) -> Result<(usize, PoseWarp), EyesError> {
-        let (part, eye_view, span) = self.source(eye);
-        let warp = PoseWarp::new(&eye_view.view(size, span.unwrap_or([1.0, 2.0])), target)?;
+        let EyeSource { part, view, span } = self.source(eye);
+        let warp = PoseWarp::new(&view.view(size, span.unwrap_or([1.0, 2.0])), target)?;
         Ok((part, if span.is_some() { warp } else { warp.rotation_only() }))
     }
 
     fn is_valid(&self) -> bool {
         Eye::BOTH.into_iter().all(|eye| {
-            let (_, eye_view, span) = self.source(eye);
-            eye_view.is_valid() && span.is_none_or(|[near, far]| 1e-4 <= near && near < far && far <= 1e6)
+            let EyeSource { view, span, .. } = self.source(eye);
+            view.is_valid() && span.is_none_or(|[near, far]| 1e-4 <= near && near < far && far <= 1e6)
         })
     }
 }

@@ -83,6 +83,8 @@ impl<T> ReorderBuffer<T> {
 mod tests {
     use super::*;
 
+    const NONE: [u32; 0] = [];
+
     fn ms(milliseconds: u64) -> Duration {
         Duration::from_millis(milliseconds)
     }
@@ -96,14 +98,14 @@ mod tests {
     #[test]
     fn frames_that_overtake_others_wait_for_them() {
         let mut buffer = ReorderBuffer::default();
-        assert_eq!(decoded(&mut buffer, &[(1, false)]), []);
+        assert_eq!(decoded(&mut buffer, &[(1, false)]), NONE);
         assert_eq!(decoded(&mut buffer, &[(0, true)]), [0, 1]);
-        assert_eq!(decoded(&mut buffer, &[(4, false), (3, false), (3, false)]), []);
+        assert_eq!(decoded(&mut buffer, &[(4, false), (3, false), (3, false)]), NONE);
         assert_eq!(buffer.missing(ms(0)), None);
         assert_eq!(buffer.missing(ms(49)), None);
         assert_eq!(decoded(&mut buffer, &[(2, false)]), [2, 3, 4]);
         assert_eq!(buffer.missing(ms(99)), None, "nothing is missing any more");
-        assert_eq!(decoded(&mut buffer, &[(6, false)]), []);
+        assert_eq!(decoded(&mut buffer, &[(6, false)]), NONE);
         assert_eq!(buffer.missing(ms(100)), None, "another frame is missing since now");
         assert_eq!(buffer.lost(), 0);
     }
@@ -114,12 +116,12 @@ mod tests {
         assert_eq!(decoded(&mut buffer, &[(0, true), (2, false)]), [0]);
         assert_eq!(buffer.missing(ms(0)), None);
         assert_eq!(buffer.missing(ms(50)), Some(1));
-        assert_eq!(decoded(&mut buffer, &[(3, false)]), []);
+        assert_eq!(decoded(&mut buffer, &[(3, false)]), NONE);
         assert_eq!(buffer.missing(ms(299)), None);
         assert_eq!(buffer.missing(ms(300)), Some(1), "the request was lost, too");
         assert_eq!(decoded(&mut buffer, &[(5, false), (4, true)]), [4, 5]);
         assert_eq!(buffer.lost(), 3);
-        assert_eq!(decoded(&mut buffer, &[(1, false), (2, true)]), [], "they come too late");
+        assert_eq!(decoded(&mut buffer, &[(1, false), (2, true)]), NONE, "they come too late");
         assert_eq!(buffer.missing(ms(900)), None);
     }
 

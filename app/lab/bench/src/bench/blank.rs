@@ -4,10 +4,9 @@ use std::rc::Rc;
 
 use anyhow::ensure;
 
-use crate::depth::DepthReader;
 use yoro::eyes::EyePair;
 use yoro_gl::{Context, GlError};
-use yoro_render::{PreparedScene, Selection, ViewTargets};
+use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
 
 /// The longest edge in pixels of the image that is examined. Whatever is smaller on the screen is negligible.
 const EDGE: u32 = 256;

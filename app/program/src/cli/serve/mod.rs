@@ -1,36 +1,41 @@
 //! `yoro serve`: streams a scene that is rendered here, or a video, to a browser.
 
 mod access;
-mod connection;
+mod client;
 mod lan;
+mod places;
 mod session;
 mod source;
+mod web_server;
+mod web_socket;
 mod web_transport;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::sync::{Arc, mpsc};
+use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context as _, ensure};
+use tokio::runtime;
 
 use self::access::Access;
+use self::client::Lobby;
 use self::lan::Lan;
 use self::session::{Limits, Server};
 use self::source::{Source, Video};
+use self::web_server::WebServer;
 use crate::cli::Subcommand;
 use crate::cli::args::GlArgs;
 use crate::cli::eyes;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
-use yoro_bench::streaming::{FrameRenderer, Mode};
 use yoro_gl::Context;
+use yoro_media::video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
 use yoro_render::PreparedScene;
-use yoro_stream::{FromServer, Token};
-use yoro_video::{FfmpegEncoder, LiveEncoder, LiveEncoderKind};
+use yoro_stream::{FrameRenderer, FromServer, Mode, Token};
 
 /// Stream a scene, rendered on this machine, or an RGBD video to a browser that shows both eyes at the head's newest
 /// pose
@@ -185,16 +190,36 @@ impl Subcommand for ServeArgs {
             None => None,
         };
         announce(&links, port, lan.as_ref(), server.encoder.name())?;
-        let tls = lan.map(|lan| lan.tls);
-        let access =
-            Arc::new(Access::new(token, (scheme, hosts), self.allow_origin.clone(), folder, welcome, tls));
-        let (clients, admitted) = mpsc::channel();
-        if let Some((socket, tls)) = quic {
-            web_transport::accept(access.clone(), socket, tls, clients.clone())?;
-        }
-        thread::spawn(move || access.accept(&listener, &clients));
-        server.serve(&admitted)
+        let access = Access { token, scheme, hosts, origin: self.allow_origin.clone() };
+        let (lobby, clients) = Lobby::new(access, &welcome);
+        let tls = lan.map(|lan| lan.tls.into());
+        connect(listener, quic, WebServer { lobby, folder, tls })?;
+        server.serve(&clients)
     }
+}
+
+/// Serves all connections on a thread of their own. By UDP there is WebTransport, if that has a configuration.
+fn connect(
+    listener: TcpListener,
+    quic: Option<(UdpSocket, rustls::ServerConfig)>,
+    server: WebServer,
+) -> anyhow::Result<()> {
+    let runtime = runtime::Builder::new_current_thread().enable_all().build()?;
+    let inside = runtime.enter();
+    listener.set_nonblocking(true)?;
+    let listener = tokio::net::TcpListener::from_std(listener)?;
+    let endpoint = quic.map(|(socket, tls)| web_transport::listen(socket, tls)).transpose()?;
+    drop(inside);
+    thread::spawn(move || {
+        runtime.block_on(async {
+            let lobby = server.lobby.clone();
+            if let Some(endpoint) = endpoint {
+                tokio::spawn(async move { web_transport::accept(&endpoint, &lobby).await });
+            }
+            Arc::new(server).accept(listener).await;
+        });
+    });
+    Ok(())
 }
 
 fn random_token() -> anyhow::Result<Token> {

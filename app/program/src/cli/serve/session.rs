@@ -1,74 +1,15 @@
-//! A client's session: the messages that it sends, and the frames that it gets.
+//! A client's session: the messages that it sends, and the frames that it gets. It has the thread of the GL context.
 
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
-use tungstenite::Message;
 
-use super::access::{Seat, Socket};
+use super::client::Client;
 use super::source::Source;
-use super::web_transport::Frames;
 use yoro_files::interrupt;
+use yoro_media::video::{LiveEncoder, LivePicture};
 use yoro_stream::{FrameHeader, FromClient, FromServer, RateControl, ViewRequest};
-use yoro_video::{LiveEncoder, LivePicture};
-
-/// A client that sends nothing for this long is considered gone.
-pub const SILENCE: Duration = Duration::from_secs(3);
-
-/// Passes on a client's messages with their times of arrival, until a timeout, a lost connection or an invalid message.
-/// It runs on a thread of its own, so that messages are read while a frame is rendered.
-pub fn listen(mut socket: Socket, heard: &mpsc::Sender<(FromClient, Instant)>) {
-    while let Ok(message) = socket.read() {
-        let Some(message) = FromClient::read(&message.into_data()) else { return };
-        if heard.send((message, Instant::now())).is_err() {
-            return;
-        }
-    }
-}
-
-/// An admitted client.
-pub struct Client {
-    /// Its messages, until it is gone.
-    pub heard: Receiver<(FromClient, Instant)>,
-    /// The connection on which it gets frames.
-    pub transport: Transport,
-    /// The seat, held while it is served.
-    pub seat: Seat,
-}
-
-/// How frames are sent.
-pub enum Transport {
-    /// All frames in order.
-    WebSocket(Box<Socket>),
-    /// Each frame on a stream of its own.
-    WebTransport(Frames),
-}
-
-impl Transport {
-    fn name(&self) -> &'static str {
-        match self {
-            Transport::WebSocket(_) => "WebSocket",
-            Transport::WebTransport(_) => "WebTransport",
-        }
-    }
-
-    fn send(&mut self, number: u32, bytes: Vec<u8>) -> anyhow::Result<()> {
-        match self {
-            Transport::WebSocket(socket) => socket.send(Message::binary(bytes))?,
-            Transport::WebTransport(frames) => frames.send(number, bytes),
-        }
-        Ok(())
-    }
-
-    /// Closes the connection, which also ends its listener.
-    fn close(&self) {
-        match self {
-            Transport::WebSocket(socket) => socket.get_ref().close(),
-            Transport::WebTransport(frames) => frames.close(),
-        }
-    }
-}
 
 /// Renders, encodes and sends frames.
 pub struct Server {
@@ -93,11 +34,10 @@ impl Server {
     pub fn serve(&mut self, admitted: &Receiver<Client>) -> anyhow::Result<()> {
         while !interrupt::requested() {
             match admitted.recv_timeout(Duration::from_millis(100)) {
-                Ok(mut client) => {
+                Ok(client) => {
                     println!("a client has connected by {}", client.transport.name());
-                    let ended = self.session(&mut client);
-                    client.transport.close();
-                    drop(client.seat);
+                    let ended = self.session(&client);
+                    drop(client);
                     if !interrupt::requested() {
                         println!(
                             "the client has gone{}",
@@ -113,7 +53,7 @@ impl Server {
     }
 
     /// Serves a client until it is gone, which is not an error.
-    fn session(&mut self, client: &mut Client) -> anyhow::Result<()> {
+    fn session(&mut self, client: &Client) -> anyhow::Result<()> {
         let Client { heard, transport, .. } = client;
         let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate);
         let mut request: Option<ViewRequest> = None;
@@ -140,10 +80,8 @@ impl Server {
                 Err(RecvTimeoutError::Disconnected) => return Ok(()),
             }
             statistics.print(&control);
-            if let Transport::WebTransport(frames) = transport
-                && control.gives_up(self.start.elapsed())
-            {
-                frames.give_up(number);
+            if transport.can_give_up() && control.gives_up(self.start.elapsed()) {
+                transport.give_up(number);
             }
             let due = request
                 .filter(|request| Some(request.time_ms) != answered && control.is_due(self.start.elapsed()));
@@ -173,11 +111,9 @@ impl Server {
             };
             let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
             control.sent(number, is_intra, self.start.elapsed());
-            if let Transport::WebTransport(frames) = transport
-                && is_intra
-            {
+            if is_intra {
                 // Frames before an intra frame are no longer needed.
-                frames.give_up(number);
+                transport.give_up(number);
             }
             transport.send(number, frame.to_bytes())?;
             statistics.add(data.len(), &header);

@@ -5,10 +5,9 @@ use std::time::Duration;
 
 use anyhow::ensure;
 
-use yoro_bench::streaming::{FrameRenderer, Picture};
+use yoro_media::video::Reader;
 use yoro_render::PreparedScene;
-use yoro_stream::{Content, EyeView, FromServer, ViewRequest};
-use yoro_video::Reader;
+use yoro_stream::{Content, EyeView, FrameRenderer, FromServer, Picture, ViewRequest};
 
 /// A video that is later than this continues from the current time, instead of catching up.
 const LATE: Duration = Duration::from_millis(100);

@@ -2,12 +2,11 @@
 
 use std::net::UdpSocket;
 use std::sync::{Arc, mpsc};
-use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 use tokio::io::AsyncReadExt as _;
-use tokio::runtime::{Builder, Handle};
+use tokio::runtime::Handle;
 use tokio::sync::watch;
 use tokio::time::timeout;
 use wtransport::config::QuicTransportConfig;
@@ -15,21 +14,14 @@ use wtransport::endpoint::IncomingSession;
 use wtransport::endpoint::endpoint_side::Server;
 use wtransport::{Connection, Endpoint, ServerConfig, VarInt};
 
-use super::access::{Access, HELLO_TIMEOUT, MAX_MESSAGE_BYTES, Seat};
-use super::session::{Client, SILENCE, Transport};
+use super::client::{HELLO_TIMEOUT, Lobby, MAX_MESSAGE_BYTES, SILENCE, Seat, Transport};
 use yoro_stream::FromClient;
 
-/// Accepts clients on a socket forever, and passes on those that are admitted.
+/// Listens on a socket, in the runtime in which this is called.
 ///
 /// # Errors
 /// If the system refuses.
-pub fn accept(
-    access: Arc<Access>,
-    socket: UdpSocket,
-    tls: rustls::ServerConfig,
-    clients: mpsc::Sender<Client>,
-) -> anyhow::Result<()> {
-    let runtime = Builder::new_current_thread().enable_all().build()?;
+pub fn listen(socket: UdpSocket, tls: rustls::ServerConfig) -> anyhow::Result<Endpoint<Server>> {
     // Clients that are not admitted yet must not fill up the memory.
     let mut limits = QuicTransportConfig::default();
     limits
@@ -41,15 +33,11 @@ pub fn accept(
         .max_idle_timeout(Some(SILENCE.try_into()?));
     let config =
         ServerConfig::builder().with_bind_socket(socket).with_custom_tls_and_transport(tls, limits).build();
-    let endpoint = {
-        let _inside = runtime.enter();
-        Endpoint::server(config)?
-    };
-    thread::spawn(move || runtime.block_on(answer_all(&endpoint, &access, &clients)));
-    Ok(())
+    Ok(Endpoint::server(config)?)
 }
 
-async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, clients: &mpsc::Sender<Client>) {
+/// Accepts connections forever.
+pub async fn accept(endpoint: &Endpoint<Server>, lobby: &Arc<Lobby>) {
     loop {
         let incoming = endpoint.accept().await;
         let address = incoming.remote_address();
@@ -58,22 +46,19 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, clients: 
             incoming.retry();
             continue;
         }
-        let Some(place) = access.place(address.ip()) else {
+        let Some(place) = lobby.places.take(address.ip()) else {
             log::info!("{address} has too many connections");
             incoming.refuse();
             continue;
         };
-        let (access, clients) = (access.clone(), clients.clone());
+        let lobby = lobby.clone();
         tokio::spawn(async move {
-            let admitted = timeout(HELLO_TIMEOUT, admit(incoming, &access)).await;
+            let admitted = timeout(HELLO_TIMEOUT, admit(incoming, &lobby)).await;
             drop(place);
             match admitted.map_err(anyhow::Error::from).flatten() {
                 Ok((connection, seat)) => {
-                    let (tell, heard) = mpsc::channel();
-                    let frames = Frames::new(connection.clone());
-                    // If there is no receiver, the program is about to end.
-                    let _ = clients.send(Client { heard, transport: Transport::WebTransport(frames), seat });
-                    listen(&connection, &tell).await;
+                    let heard = lobby.admit(Box::new(Frames::new(connection.clone())), seat);
+                    hear(&connection, &heard).await;
                 }
                 Err(error) => log::info!("{address} is not served: {error}"),
             }
@@ -81,10 +66,10 @@ async fn answer_all(endpoint: &Endpoint<Server>, access: &Arc<Access>, clients: 
     }
 }
 
-/// Admits a client if [`Access`] allows it. Its hello and the answer have a stream of their own.
-async fn admit(incoming: IncomingSession, access: &Arc<Access>) -> anyhow::Result<(Connection, Seat)> {
+/// Admits a client if it may connect. Its hello and the answer have a stream of their own.
+async fn admit(incoming: IncomingSession, lobby: &Lobby) -> anyhow::Result<(Connection, Seat)> {
     let request = incoming.await?;
-    if request.path() != "/stream" || !access.allows(request.authority(), request.origin()) {
+    if request.path() != "/stream" || !lobby.access.allows(request.authority(), request.origin()) {
         request.forbidden().await;
         bail!("it is another site's page");
     }
@@ -92,14 +77,17 @@ async fn admit(incoming: IncomingSession, access: &Arc<Access>) -> anyhow::Resul
     let (mut answers, hello) = connection.accept_bi().await?;
     let mut bytes = Vec::new();
     hello.take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut bytes).await?;
-    let (answer, seat) = access.answer_hello(&bytes)?;
+    let (answer, seat) = lobby.answer(&bytes)?;
     answers.write_all(&answer).await?;
     answers.finish().await?;
-    Ok((connection, seat?))
+    match seat {
+        Ok(seat) => Ok((connection, seat)),
+        Err(refusal) => bail!("{refusal:?}"),
+    }
 }
 
 /// Passes on a client's messages with their times of arrival, until it is silent or lost, or sends anything else.
-async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromClient, Instant)>) {
+async fn hear(connection: &Connection, heard: &mpsc::Sender<(FromClient, Instant)>) {
     while let Ok(Ok(datagram)) = timeout(SILENCE, connection.receive_datagram()).await {
         let Some(message) = FromClient::read(&datagram) else { break };
         if heard.send((message, Instant::now())).is_err() {
@@ -109,8 +97,8 @@ async fn listen(connection: &Connection, heard: &mpsc::Sender<(FromClient, Insta
     connection.close(VarInt::from_u32(0), b"");
 }
 
-/// Sends frames to a client.
-pub struct Frames {
+/// Sends frames to a client, each on a stream of its own.
+struct Frames {
     runtime: Handle,
     connection: Connection,
     /// The number of the oldest frame that is still needed.
@@ -122,24 +110,34 @@ impl Frames {
     fn new(connection: Connection) -> Frames {
         Frames { runtime: Handle::current(), connection, oldest: watch::Sender::new(0) }
     }
+}
 
-    /// Sends a frame on a stream of its own.
-    pub fn send(&self, number: u32, bytes: Vec<u8>) {
+impl Transport for Frames {
+    fn name(&self) -> &'static str {
+        "WebTransport"
+    }
+
+    fn send(&self, number: u32, bytes: Vec<u8>) -> anyhow::Result<()> {
         let (connection, oldest) = (self.connection.clone(), self.oldest.subscribe());
         self.runtime.spawn(async move {
             if let Err(error) = send(&connection, number, &bytes, oldest).await {
                 log::debug!("frame {number} is not sent: {error}");
             }
         });
+        Ok(())
     }
 
-    /// Stops sending the frames before this one.
-    pub fn give_up(&self, number: u32) {
+    fn can_give_up(&self) -> bool {
+        true
+    }
+
+    fn give_up(&self, number: u32) {
         self.oldest.send_replace(number);
     }
+}
 
-    /// Closes the connection.
-    pub fn close(&self) {
+impl Drop for Frames {
+    fn drop(&mut self) {
         self.connection.close(VarInt::from_u32(0), b"");
     }
 }

@@ -26,6 +26,7 @@ mod lights;
 mod moving;
 #[cfg(test)]
 mod moving_tests;
+mod read_back;
 mod renderer;
 mod request;
 mod role;
@@ -49,6 +50,7 @@ pub(crate) use forward_targets::ForwardTargets;
 pub use fxaa::Fxaa;
 pub(crate) use g_buffer::{GBuffer, Layout, Seam};
 pub(crate) use geometry::Part;
+pub use read_back::{DepthReader, ViewReader};
 pub(crate) use renderer::RendererOfKind;
 pub use renderer::{RenderedView, Renderer, ViewTargets};
 pub(crate) use request::{Columns, DrawRequest, of_columns};

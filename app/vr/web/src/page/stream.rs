@@ -5,8 +5,7 @@ use std::time::Duration;
 use js_sys::{Array, ArrayBuffer, Uint8Array};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::Pose;
-use yoro_render::DecodedPicture;
-use yoro_stream::{FromClient, FromServer, Refusal, ReorderBuffer};
+use yoro_stream::{Correction, DecodedPicture, FromClient, FromServer, Refusal, ReorderBuffer};
 
 use super::error::sentence;
 use super::stream_show::StreamShow;
@@ -113,7 +112,7 @@ impl Page {
     #[wasm_bindgen(js_name = streamCorrection)]
     pub fn stream_correction(&mut self) -> Option<Vec<f32>> {
         let Content::Stream(stream) = &mut self.content else { return None };
-        let [metres, radians] = stream.eyes.take_correction()?;
+        let Correction { metres, radians } = stream.eyes.take_correction()?;
         Some(vec![metres * 100.0, radians.to_degrees()])
     }
 }

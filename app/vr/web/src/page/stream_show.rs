@@ -6,8 +6,8 @@ use super::show::Layout;
 use crate::settings::Settings;
 use yoro::eyes::{Eye, EyePair, Frustum, Pose};
 use yoro_gl::{Context, Destination, GlError};
-use yoro_render::StreamedEyes;
 use yoro_render::stereo::StereoFrame;
+use yoro_stream::StreamedEyes;
 
 /// Everything needed to show a stream.
 pub struct StreamShow {

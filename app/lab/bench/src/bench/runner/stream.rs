@@ -6,16 +6,16 @@ use crate::bench::motion::Motion;
 use crate::bench::pictures::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::{HEADSET_RATE, Views};
-use crate::dataset::{GroupOptions, GroupRenderer};
-use crate::streaming::{FrameRenderer, Mode, Picture, Receiver};
+use crate::streaming::Receiver;
 use image::RgbImage;
 use yoro::eyes::{Eye, EyePair};
 use yoro_files::interrupt;
+use yoro_media::rgb_image;
+use yoro_media::video::{Decoder, LiveEncoder, LiveEncoderKind};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
-use yoro_render::PreparedScene;
+use yoro_render::{PreparedScene, ViewReader};
 use yoro_report::text::slug;
-use yoro_stream::{EyeView, ViewRequest};
-use yoro_video::{Decoder, LiveEncoder, LiveEncoderKind};
+use yoro_stream::{EyeView, FrameRenderer, Mode, Picture, ViewRequest};
 
 /// The modes. The bits that the others save are relative to those of the first.
 const MODES: [(Mode, &str); 3] = [
@@ -39,11 +39,11 @@ impl Runner<'_> {
         let then = &views.pairs[..job.frames];
         let shown = views.clone().last(job.frames);
         let now = &shown.pairs;
-        let mut groups =
-            GroupRenderer::new(self.gl, &GroupOptions { anti_aliasing: true, ..GroupOptions::default() })?;
+        let mut reader = ViewReader::new(self.gl, true)?;
         let mut eye = |prepared: &mut PreparedScene, pair: &EyePair, eye| -> anyhow::Result<RgbImage> {
             interrupt::check()?;
-            Ok(groups.render_one(prepared, &pair.view(eye))?.0)
+            let rgba = reader.color(&mut prepared.renderer, &prepared.scene, &pair.view(eye))?;
+            Ok(rgb_image(&rgba, pair.size))
         };
         let mut same = Measurement::new(&job.conditions, "same image, not encoded", 0);
         let mut truths = Vec::new();

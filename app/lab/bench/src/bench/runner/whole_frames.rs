@@ -10,11 +10,10 @@ use crate::bench::job::Job;
 use crate::bench::prepared::PreparedContender;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::Views;
-use crate::depth::DepthReader;
 use yoro::eyes::EyePair;
 use yoro_files::interrupt;
 use yoro_render::stereo::{Method, Pipeline, StereoFrame};
-use yoro_render::{PreparedScene, Selection, ViewTargets};
+use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
 
 /// The contender whose passes are counted.
 const GATHER: Contender = Contender::Synthesized(Pipeline::Gather);

@@ -6,7 +6,7 @@ use yoro::eyes::{
     DepthConvention, DepthRange, Eye, EyeOptions, EyePair, EyesError, GuardBand, Pose, SynthesisViews,
 };
 
-use crate::Planes;
+use super::Planes;
 
 /// The type of the `uuid` box in a video's `avc1` sample entry that contains an [`Rgbd`] as JSON.
 pub const DEPTH_BOX: [u8; 16] = *b"yoro RGBD video1";

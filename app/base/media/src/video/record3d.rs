@@ -10,7 +10,7 @@ use image::{GrayImage, Luma, RgbImage};
 use serde::Deserialize;
 use yoro::eyes::Eye;
 
-use crate::{Planes, Rgbd};
+use super::{Planes, Rgbd};
 
 /// The beginning of the JSON object.
 const BEGIN: &[u8] = br#"{"intrinsic"#;

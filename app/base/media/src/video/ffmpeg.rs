@@ -11,9 +11,8 @@ use shiguredo_mp4::Decode;
 use shiguredo_mp4::bitstream::h264::length_prefixed_to_annexb;
 use shiguredo_mp4::boxes::AvccBox;
 
-use crate::codec::LivePicture;
-use crate::index::{length_size, parameters};
-use crate::{Planes, VideoError};
+use super::index::{length_size, parameters};
+use super::{LivePicture, Planes, VideoError};
 
 /// The longest time that an encoder may take for a picture; for the first one, a graphics card has to start.
 const TIMEOUT: Duration = Duration::from_secs(5);

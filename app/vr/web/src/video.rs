@@ -1,15 +1,13 @@
 //! RGBD videos for the page: the locations of a file's pictures, and their content in the form of a stream's messages.
 //! The page decodes the pictures.
 
-#![cfg(target_arch = "wasm32")]
-
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
+use yoro_media::video::{Index, Planes, Rgbd, VideoError};
 use yoro_stream::{Content, EyeView, FrameHeader, FromServer};
-use yoro_video::{Index, Planes, Rgbd, VideoError};
 
 /// An RGBD video file.
 #[wasm_bindgen]

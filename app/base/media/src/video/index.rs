@@ -12,8 +12,8 @@ use shiguredo_mp4::{bitstream::h264::LengthSize, boxes::AvccBox};
 
 use yoro_files::FileError;
 
-use crate::record3d::{self, Recording};
-use crate::{DEPTH_BOX, Planes, Rgbd, VideoError};
+use super::record3d::{self, Recording};
+use super::{DEPTH_BOX, Planes, Rgbd, VideoError};
 
 /// The index of an MP4 file with H.264 video.
 pub struct Index {

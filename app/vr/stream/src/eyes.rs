@@ -9,7 +9,8 @@ use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
-use yoro_stream::{Content, EyeView, ViewRequest};
+
+use crate::{Content, EyeView, ViewRequest};
 
 /// A decoded picture.
 pub enum DecodedPicture<'a> {
@@ -18,6 +19,15 @@ pub enum DecodedPicture<'a> {
     /// Red, green and blue of a picture of this size. The function uploads them into the bound texture, rows from the
     /// top.
     Upload([u32; 2], &'a dyn Fn()),
+}
+
+/// How far the head has moved between the pose that a picture was rendered for and the one that it is shown at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Correction {
+    /// The distance in metres.
+    pub metres: f32,
+    /// The angle in radians.
+    pub radians: f32,
 }
 
 /// Shows a stream: takes decoded frames and makes both eyes from the newest one.
@@ -41,9 +51,10 @@ pub struct StreamedEyes {
     pub framed: bool,
     /// The pair of eyes that was made last.
     pair: Option<EyePair>,
-    /// Number of pairs of eyes made, and the sums of the metres and radians between the poses of their pictures and
-    /// their own.
-    corrected: [f32; 3],
+    /// The number of pairs of eyes made since the last [`StreamedEyes::take_correction`], and the sum of their
+    /// corrections.
+    pairs: u32,
+    corrected: Correction,
 }
 
 impl StreamedEyes {
@@ -73,7 +84,8 @@ impl StreamedEyes {
             newest: None,
             framed: false,
             pair: None,
-            corrected: [0.0; 3],
+            pairs: 0,
+            corrected: Correction::default(),
         })
     }
 
@@ -165,11 +177,11 @@ impl StreamedEyes {
     pub fn render(&mut self, pair: &EyePair, to: &[Destination; 2]) -> Result<(), GlError> {
         self.pair = Some(*pair);
         if let Some((content, _)) = self.newest {
-            let (_, rendered, _) = content.source(pair.dominant);
-            let (from, to) = (rendered.pose, pair.poses[pair.dominant.index()]);
-            let angle = from.orientation.angle_between(to.orientation);
-            let more = [1.0, from.position.distance(to.position), angle];
-            self.corrected = [0, 1, 2].map(|i| self.corrected[i] + more[i]);
+            let from = content.source(pair.dominant).view.pose;
+            let to = pair.poses[pair.dominant.index()];
+            self.pairs += 1;
+            self.corrected.metres += from.position.distance(to.position);
+            self.corrected.radians += from.orientation.angle_between(to.orientation);
         }
         for eye in Eye::BOTH {
             let to = &to[eye.index()];
@@ -188,11 +200,10 @@ impl StreamedEyes {
         Ok(())
     }
 
-    /// Returns the mean metres and radians by which poses were corrected since the last call; `None` if no eyes were
-    /// made.
-    pub fn take_correction(&mut self) -> Option<[f32; 2]> {
-        let [pairs, metres, radians] = std::mem::take(&mut self.corrected);
-        (pairs > 0.0).then(|| [metres / pairs, radians / pairs])
+    /// Returns the mean correction of the eyes that were made since the last call; `None` if there were none.
+    pub fn take_correction(&mut self) -> Option<Correction> {
+        let (pairs, sum) = (std::mem::take(&mut self.pairs) as f32, std::mem::take(&mut self.corrected));
+        (pairs > 0.0).then(|| Correction { metres: sum.metres / pairs, radians: sum.radians / pairs })
     }
 
     /// Returns the request for the eyes that were made last; `None` before the first.

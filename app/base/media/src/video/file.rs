@@ -15,8 +15,8 @@ use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_max
 use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
-use crate::index::{length_size, parameters, read_at};
-use crate::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Planes, Rgbd, VideoError};
+use super::index::{length_size, parameters, read_at};
+use super::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Planes, Rgbd, VideoError};
 
 /// How a video is encoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -291,8 +291,8 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record3d::tests::{CAMERA, color};
-    use crate::rgbd::tests::RGBD;
+    use crate::video::record3d::tests::{CAMERA, color};
+    use crate::video::rgbd::tests::RGBD;
     use image::Rgb;
     use std::fs;
 

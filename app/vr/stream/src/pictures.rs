@@ -1,0 +1,136 @@
+//! The pictures that a server sends of a scene.
+
+use std::rc::Rc;
+
+use image::{GrayImage, Luma};
+
+use yoro::eyes::{DepthRange, Eye, EyePair, EyesError, GuardBand, HeadMotion, View};
+use yoro_gl::{Context, GlError};
+use yoro_media::video::{Planes, depth_luma};
+use yoro_media::{depth_image, rgb_image};
+use yoro_render::{PreparedScene, ViewReader};
+
+use crate::{Content, DepthSpan, EyeView, ViewRequest};
+
+/// The error when a picture cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StreamError {
+    /// The eyes cannot be widened by the guard band.
+    #[error(transparent)]
+    Eyes(#[from] EyesError),
+    /// GL refused.
+    #[error(transparent)]
+    Gl(#[from] GlError),
+}
+
+/// The content of a stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// One eye and its depth, from which both eyes are made at the newest pose.
+    Depth,
+    /// Both eyes, rotated to the newest pose: the baseline.
+    Eyes,
+    /// Both eyes and the depth of one, from which each eye is made at the newest pose.
+    EyesDepth,
+}
+
+/// The largest motion of the head between rendering and display that the guard band covers: 4 degrees and 2 cm.
+const MOTION: HeadMotion = HeadMotion { rotation: 0.07, translation: 0.02 };
+/// The distance in metres of the nearest surface for which the guard band covers that motion.
+const NEAREST: f32 = 1.0;
+
+/// A picture to be encoded.
+pub struct Picture {
+    /// All parts of the picture.
+    pub planes: Planes,
+    /// What the parts show.
+    pub content: Content,
+    /// The width and height of each part, without the padding that makes them even.
+    pub size: [u16; 2],
+    /// True if the range of depth has changed, so that the frame must be an intra frame.
+    pub new_span: bool,
+}
+
+/// Makes the pictures that a server sends of a scene.
+pub struct FrameRenderer {
+    reader: ViewReader,
+    span: DepthSpan,
+    mode: Mode,
+}
+
+impl FrameRenderer {
+    /// Compiles the programs.
+    ///
+    /// # Errors
+    /// [`GlError`] if the driver refuses.
+    pub fn new(gl: &Rc<Context>, mode: Mode) -> Result<FrameRenderer, GlError> {
+        Ok(FrameRenderer { reader: ViewReader::new(gl, true)?, span: DepthSpan::default(), mode })
+    }
+
+    /// Returns the picture that answers a request.
+    ///
+    /// # Errors
+    /// [`StreamError`] for eyes that cannot be rendered.
+    pub fn picture(
+        &mut self,
+        prepared: &mut PreparedScene,
+        request: &ViewRequest,
+    ) -> Result<Picture, StreamError> {
+        let pair = EyePair {
+            poses: request.eyes.map(|eye| eye.pose),
+            frusta: request.eyes.map(|eye| eye.frustum),
+            depth: DepthRange::PAPER,
+            size: request.size.map(u32::from),
+            dominant: request.dominant,
+        };
+        let eye_view = |view: &View| EyeView { pose: view.pose, frustum: view.frustum };
+        let size = |view: &View| view.size.map(|n| n as u16);
+        let guarded =
+            |view: &View, motion: HeadMotion| Ok::<_, StreamError>(motion.guarded(view, NEAREST)?.view);
+        if self.mode == Mode::Eyes {
+            let still = HeadMotion { translation: 0.0, ..MOTION };
+            let left = guarded(&pair.view(Eye::Left), still)?;
+            let right = View { size: left.size, ..guarded(&pair.view(Eye::Right), still)? };
+            let planes = self.color(prepared, &left)?.beside(&self.color(prepared, &right)?);
+            let content = Content::Eyes([eye_view(&left), eye_view(&right)]);
+            return Ok(Picture { planes, content, size: size(&left), new_span: false });
+        }
+        // The view is wide enough to synthesize the other eye from it. Eyes that are not parallel cannot be synthesized
+        // from each other and are taken as they are.
+        let source = |dominant: Eye| {
+            let views = EyePair { dominant, ..pair }.synthesis_views(GuardBand::Distance(NEAREST));
+            guarded(&views.map_or(pair.view(dominant), |views| views.source), MOTION)
+        };
+        let view = source(pair.dominant)?;
+        let color = self.color(prepared, &view)?;
+        let depth = depth_image(&self.reader.depth(), view.size);
+        let far = view.depth.clear_value();
+        let distance = |value: f32| view.depth.distance(value);
+        let surfaces = depth.iter().copied().filter(|value| *value != far).map(distance);
+        let (nearest, farthest) =
+            surfaces.fold((f32::INFINITY, 0.0f32), |(near, far), z| (near.min(z), far.max(z)));
+        let (span, new_span) = self.span.fit(nearest, farthest);
+        let luma = GrayImage::from_fn(depth.width(), depth.height(), |x, y| {
+            Luma([depth_luma(distance(depth.get_pixel(x, y).0[0]), span)])
+        });
+        let planes = color.beside(&Planes::of_gray(&luma));
+        let picture =
+            Picture { planes, content: Content::Depth(eye_view(&view), span), size: size(&view), new_span };
+        if self.mode == Mode::Depth {
+            return Ok(picture);
+        }
+        let dominant = pair.dominant;
+        // Mirrored eyes have the same size. Other eyes get it, too, with pixels that are not square.
+        let other = View { size: view.size, ..source(dominant.other())? };
+        let planes = picture.planes.beside(&self.color(prepared, &other)?);
+        let mut eyes = [eye_view(&view); 2];
+        eyes[dominant.other().index()] = eye_view(&other);
+        Ok(Picture { planes, content: Content::EyesDepth { dominant, eyes, span }, ..picture })
+    }
+
+    fn color(&mut self, prepared: &mut PreparedScene, view: &View) -> Result<Planes, StreamError> {
+        let rgba = self.reader.color(&mut prepared.renderer, &prepared.scene, view)?;
+        Ok(Planes::of_rgb(&rgb_image(&rgba, view.size)))
+    }
+}
