@@ -43,6 +43,6 @@ impl Receiver {
         self.frame.resize(pair.size)?;
         let to = Eye::BOTH.map(|eye| Destination::whole(self.frame.eye(eye)));
         self.streamed.render(pair, &to)?;
-use yoro::eyes::{Eye, EyePair};
+        Ok(Eye::BOTH.map(|eye| rgb_image(&self.frame.eye(eye).read_rgba8(0, [0, 0], pair.size), pair.size)))
     }
 }
