@@ -5,7 +5,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;
 
-use yoro::synthesis::WarpKind;
+use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Host, ImageState, LayerImage};
 
@@ -284,24 +284,6 @@ impl Gpu {
 
     /// Creates an image that can be rendered to, sampled and copied.
     pub fn image(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Image<'_> {
-        let copied = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
-        self.image_of(format, size, layers, vk::SampleCountFlags::TYPE_1, copied)
-    }
-
-    /// Creates an image of several samples, which can be rendered to and sampled.
-    pub fn multisampled(&self, format: vk::Format, size: [u32; 2], samples: u32) -> Image<'_> {
-        let samples = vk::SampleCountFlags::from_raw(samples);
-        self.image_of(format, size, 1, samples, vk::ImageUsageFlags::empty())
-    }
-
-    fn image_of(
-        &self,
-        format: vk::Format,
-        size: [u32; 2],
-        layers: u32,
-        samples: vk::SampleCountFlags,
-        copied: vk::ImageUsageFlags,
-    ) -> Image<'_> {
         let attachment = match is_depth(format) {
             true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             false if matches!(format, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) => {
@@ -309,14 +291,16 @@ impl Gpu {
             }
             false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
         };
-        let usage = attachment | vk::ImageUsageFlags::SAMPLED | copied;
+        let usage = attachment | vk::ImageUsageFlags::SAMPLED
+            | vk::ImageUsageFlags::TRANSFER_SRC
+            | vk::ImageUsageFlags::TRANSFER_DST;
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
             .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
             .mip_levels(1)
             .array_layers(layers)
-            .samples(samples)
+            .samples(vk::SampleCountFlags::TYPE_1)
             .usage(usage);
         // SAFETY: an image with memory of its own.
         unsafe {
