@@ -14,13 +14,14 @@ uint reversed_bits(uint bits) {
 #endif
 }
 
-// The index of the lowest bit that is set. At least one must be.
-int lowest_bit(uint bits) {
+// The index of the lowest bit that is set. At least one must be. It is a float, since naga takes the result of findLSB for
+// unsigned, and refuses to return it.
+float lowest_bit(uint bits) {
 #ifdef WITHOUT_ES_310
     // A power of two, whose logarithm is the float's exponent.
     float power = float(bits & (~bits + 1u));
-    return int(floatBitsToUint(power) >> 23) - 127;
+    return float(floatBitsToUint(power) >> 23) - 127.0;
 #else
-    return findLSB(bits);
+    return float(findLSB(bits));
 #endif
 }

@@ -2,9 +2,9 @@
 #include "include/planes.glsl"
 #include "include/fill.glsl"
 
-// The search of a fragment over segments: from each marked pair of columns to the next (include/planes.glsl),
-// or to the next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns
-// beyond the borders repeat them.
+// The search of a fragment over segments: from each marked pair of columns to the next (include/planes.glsl), or to the
+// next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns beyond the
+// borders repeat them.
 
 TEXTURE(2) uniform highp usampler2D tile_map;
 
@@ -66,7 +66,7 @@ float segment_end(float x, int tile_row, bool below, uint shift) {
     uvec4 tile = texelFetch(tile_map, ivec2(column / uint(TILE.x), tile_row), 0);
     uint marks = (below ? tile.y : tile.w) >> (shift + within);
     marks = tile.z == floatBitsToUint(NO_PLANE) ? marks : 0u;
-    return x + float(lowest_bit(marks | 0x10000u >> within));
+    return x + lowest_bit(marks | 0x10000u >> within);
 }
 
 // What a search has found so far beside the pixel.

@@ -11,4 +11,3 @@ mod shader_cost;
 mod shaders;
 mod supersampled;
 mod vulkan;
-mod vulkan_layers;

@@ -6,8 +6,8 @@
 
 mod pipeline;
 
-use crate::synthesis::backend::{Places, WarpKind, map_sizes};
 use crate::synthesis::Uniforms;
+use crate::synthesis::backend::{Places, WarpKind, map_sizes};
 use yoro_gl::Program;
 
 pub use pipeline::{AnyView, Gather, Pipeline};

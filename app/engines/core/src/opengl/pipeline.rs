@@ -117,7 +117,9 @@ impl<W: WarpKind> Pipeline<W> {
         macros: &[&'static str],
     ) -> Result<Pipeline<W>, GlError> {
         if W::ANY_VIEW && outputs.source_map {
-            return Err(GlError::Unsupported("any view has no source map, which can only hold columns".into()));
+            return Err(GlError::Unsupported(
+                "any view has no source map, which can only hold columns".into(),
+            ));
         }
         preserving(gl, options, outputs, || {
             let mut defines = options.defines();
@@ -146,15 +148,7 @@ impl<W: WarpKind> Pipeline<W> {
     /// # Errors
     /// [`GlError`] if the sizes are beyond the driver's limits.
     pub fn prepare(&mut self, warp: &W) -> Result<(), GlError> {
-        let maps = [&mut self.tile_map, &mut self.span_map];
-        let sizes = map_sizes::<W>(warp.sizes());
-        preserving(&self.gl, &self.options, self.outputs, || {
-            self.gl.set_first_unit();
-            for (map, size) in maps.into_iter().zip(sizes) {
-                map.resize(self.options.buffer_size(map.size(), size))?;
-            }
-            Ok(())
-        })
+        self.preserving(|pipeline| pipeline.resize(warp))
     }
 
     /// Synthesizes the other eye into a rectangle of the warp's target size and overwrites all of it. The framebuffer's
@@ -163,18 +157,32 @@ impl<W: WarpKind> Pipeline<W> {
     /// # Errors
     /// Those of [`Pipeline::prepare`].
     pub fn synthesize(&mut self, source: Source, warp: &W, target: &Destination) -> Result<(), GlError> {
-        let gl = self.gl.clone();
-        preserving(&gl, &self.options.clone(), self.outputs, || self.draw(&gl, source, warp, target))
+        self.preserving(|pipeline| {
+            pipeline.resize(warp)?;
+            pipeline.draw(source, warp, target);
+            Ok(())
+        })
     }
 
-    fn draw(&mut self, gl: &Context, source: Source, warp: &W, target: &Destination) -> Result<(), GlError> {
-        let [source_size, target_size] = warp.sizes();
-        let [tile_size, span_size] = map_sizes::<W>([source_size, target_size]);
-        gl.set_first_unit();
-        self.tile_map.resize(self.options.buffer_size(self.tile_map.size(), tile_size))?;
-        self.span_map.resize(self.options.buffer_size(self.span_map.size(), span_size))?;
+    fn preserving<R>(&mut self, body: impl FnOnce(&mut Self) -> R) -> R {
+        let (gl, options, outputs) = (self.gl.clone(), self.options, self.outputs);
+        preserving(&gl, &options, outputs, || body(self))
+    }
+
+    fn resize(&mut self, warp: &W) -> Result<(), GlError> {
+        self.gl.set_first_unit();
+        let maps = [&mut self.tile_map, &mut self.span_map];
+        for (map, size) in maps.into_iter().zip(map_sizes::<W>(warp.sizes())) {
+            map.resize(self.options.buffer_size(map.size(), size))?;
+        }
+        Ok(())
+    }
+
+    fn draw(&self, source: Source, warp: &W, target: &Destination) {
+        let gl = &*self.gl;
+        let [tile_size, span_size] = map_sizes::<W>(warp.sizes());
         gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
-        let uniforms = warp.uniforms(&source.places(source_size, target, self.options.parts));
+        let uniforms = warp.uniforms(&source.places(warp.sizes()[0], target, self.options.parts));
         let begin = |program: &Program| {
             self.options.bind_source(program.bind(), source);
             uniforms.set(program);
@@ -197,7 +205,6 @@ impl<W: WarpKind> Pipeline<W> {
             draw_target(gl, target, self.outputs);
         });
         gl.end_synthesis();
-        Ok(())
     }
 }
 

@@ -78,9 +78,8 @@ impl Source {
             Ok::<_, VulkanError>(texture(view, sampled_state(image).layout))
         };
         let [depth, color] = [sampled(&images.depth)?, sampled(&images.color)?];
-        let [tiles, spans] = passes
-            .intermediates()
-            .map(|map| texture(map.attachments.color, ImageState::SAMPLED.layout));
+        let [tiles, spans] =
+            passes.intermediates().map(|map| texture(map.attachments.color, ImageState::SAMPLED.layout));
         let sizes = [vk::DescriptorPoolSize {
             ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
             descriptor_count: TEXTURES as u32,

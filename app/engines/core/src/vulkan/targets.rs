@@ -73,10 +73,7 @@ impl Rendering {
             return unsafe { Rendering::dynamic(host) };
         }
         let mut pass = |kind| render_pass(objects, kind, options);
-        Ok(Rendering::Passes(RenderPasses {
-            map: pass(PassKind::Map)?,
-            target: pass(PassKind::Target)?,
-        }))
+        Ok(Rendering::Passes(RenderPasses { map: pass(PassKind::Map)?, target: pass(PassKind::Target)? }))
     }
 
     /// Loads the commands of VK_KHR_dynamic_rendering, or those of Vulkan 1.3.

@@ -259,8 +259,9 @@ fn the_shaders_of_es_3_0_draw_the_same_picture() {
                     true => near_boxes(warp.source_size, p.depth, seed, 6),
                     false => scene(warp.source_size, p.depth, seed),
                 };
-                let [written_out, built_in] = [&["WITHOUT_ES_310"][..], &[]]
-                    .map(|macros| InMemory::new(gl, synthesize(gl, OUTPUTS, macros)).run(&rgba, &depth, &warp));
+                let [written_out, built_in] = [&["WITHOUT_ES_310"][..], &[]].map(|macros| {
+                    InMemory::new(gl, synthesize(gl, OUTPUTS, macros)).run(&rgba, &depth, &warp)
+                });
                 assert!(written_out == built_in, "{dominant:?} dominant, near plane at {} m", p.depth.near);
             }
         }

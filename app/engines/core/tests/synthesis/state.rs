@@ -473,9 +473,7 @@ fn images_in_memory_do_not_depend_on_the_hosts_state() {
         let warp = warp([61, 20]);
         let (rgba, depth) =
             scene(warp.source_size, pair([61, 20], Eye::Right, 0.063, DepthConvention::Standard).depth, 3);
-        let run = || {
-            super::subject().in_memory(gl).run(&rgba, &depth, &warp)
-        };
+        let run = || super::subject().in_memory(gl).run(&rgba, &depth, &warp);
         let want = run();
         let hostile = Hostile::new(gl);
         hostile.set(gl);
@@ -487,8 +485,7 @@ fn images_in_memory_do_not_depend_on_the_hosts_state() {
 #[test]
 fn the_hosts_state_is_preserved() {
     on_every_backend(|gl| {
-        let (small, large) =
-            (Lent::new(gl, [48, 16], Format::Rgba8), Lent::new(gl, [97, 31], Format::Rgba8));
+        let (small, large) = (Lent::new(gl, [48, 16], Format::Rgba8), Lent::new(gl, [97, 31], Format::Rgba8));
         let hostile = Hostile::new(gl);
         clean(gl);
         for is_hostile in [false, true] {
@@ -593,8 +590,8 @@ fn cost_of_preserving_state() {
     on_every_backend(|gl| {
         // The image is so small that the calls dominate.
         let lent = Lent::new(gl, [8, 8], Format::Rgba8);
-        let [mut leave, mut preserve] = [GlState::Leave, GlState::Preserve]
-            .map(|gl_state| gather(gl, gl_state));
+        let [mut leave, mut preserve] =
+            [GlState::Leave, GlState::Preserve].map(|gl_state| gather(gl, gl_state));
         let mut best = [f64::MAX; 3];
         for _ in 0..20 {
             let synthesize = |gather: &mut Gather| {

@@ -5,9 +5,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
 
 use yoro::vulkan::ash::{self, vk};
-use yoro::vulkan::{
-    Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError,
-};
+use yoro::vulkan::{Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError};
 
 use super::harness::{Gpu, Image, Rendering, with_gpu};
 use super::{Setup, warps};

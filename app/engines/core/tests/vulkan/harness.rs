@@ -212,7 +212,7 @@ impl Gpu {
     }
 
     /// True if a render pass can resolve depth in this way.
-    #[allow(dead_code, reason = "for the tests of anti-aliased sources, which share this")]
+    #[allow(dead_code, reason = "for the test of resolved depth, which shares this")]
     pub fn resolves_depth(&self, mode: vk::ResolveModeFlags) -> bool {
         let mut resolve = vk::PhysicalDeviceDepthStencilResolveProperties::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut resolve);
@@ -284,6 +284,24 @@ impl Gpu {
 
     /// Creates an image that can be rendered to, sampled and copied.
     pub fn image(&self, format: vk::Format, size: [u32; 2], layers: u32) -> Image<'_> {
+        let copied = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+        self.image_of(format, size, layers, vk::SampleCountFlags::TYPE_1, copied)
+    }
+
+    /// Creates an image of four samples that can be rendered to.
+    #[allow(dead_code, reason = "for the test of resolved depth, which shares this")]
+    pub fn multisampled(&self, format: vk::Format, size: [u32; 2]) -> Image<'_> {
+        self.image_of(format, size, 1, vk::SampleCountFlags::TYPE_4, vk::ImageUsageFlags::empty())
+    }
+
+    fn image_of(
+        &self,
+        format: vk::Format,
+        size: [u32; 2],
+        layers: u32,
+        samples: vk::SampleCountFlags,
+        copied: vk::ImageUsageFlags,
+    ) -> Image<'_> {
         let attachment = match is_depth(format) {
             true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             false if matches!(format, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) => {
@@ -291,16 +309,14 @@ impl Gpu {
             }
             false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
         };
-        let usage = attachment | vk::ImageUsageFlags::SAMPLED
-            | vk::ImageUsageFlags::TRANSFER_SRC
-            | vk::ImageUsageFlags::TRANSFER_DST;
+        let usage = attachment | vk::ImageUsageFlags::SAMPLED | copied;
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format)
             .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
             .mip_levels(1)
             .array_layers(layers)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(samples)
             .usage(usage);
         // SAFETY: an image with memory of its own.
         unsafe {

@@ -4,6 +4,7 @@ mod against_opengl;
 mod any_view;
 mod failures;
 mod harness;
+mod resolved;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -21,8 +22,7 @@ use yoro::synthesis::ArgumentError;
 use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
-    AnyView, Frame, Gather, ImageState, Options, Pipeline, SourceImages, TargetImages, Use,
-    Uses, VulkanError,
+    AnyView, Frame, Gather, ImageState, Options, Pipeline, SourceImages, TargetImages, Use, Uses, VulkanError,
 };
 use yoro_context::{Backend, Headless};
 use yoro_gl as gl;
@@ -414,12 +414,8 @@ fn uses_differ_from_frame_to_frame() {
                 let depth_before = if before == free { source_depth } else { before };
                 let (own, of_depth) =
                     (Use { before, after }, Use { before: depth_before, after: depth_after });
-                let uses = Uses {
-                    source_color: own,
-                    source_depth: of_depth,
-                    target_color: own,
-                    target_depth: own,
-                };
+                let uses =
+                    Uses { source_color: own, source_depth: of_depth, target_color: own, target_depth: own };
                 gpu.run(|commands| gather.record_with_uses(commands, &frame, &warp, &uses).unwrap());
             }
         }
@@ -499,9 +495,15 @@ fn mistakes_are_refused() {
                 assert!(matches!(record(frame, none), VulkanError::Argument(ArgumentError::Size { .. })));
                 for origin in [[1, 0], [0, 1], [u32::MAX, 0]] {
                     let error = record(Frame { source_origin: origin, ..frame }, warp);
-                    assert!(matches!(error, VulkanError::Argument(ArgumentError::Rectangle { .. })), "{error}");
+                    assert!(
+                        matches!(error, VulkanError::Argument(ArgumentError::Rectangle { .. })),
+                        "{error}"
+                    );
                     let error = record(Frame { target_origin: origin, ..frame }, warp);
-                    assert!(matches!(error, VulkanError::Argument(ArgumentError::Rectangle { .. })), "{error}");
+                    assert!(
+                        matches!(error, VulkanError::Argument(ArgumentError::Rectangle { .. })),
+                        "{error}"
+                    );
                 }
                 gather.release_source(source);
                 assert_eq!(gather.record(commands, &frame, &warp), Err(VulkanError::NotRegistered));
@@ -549,7 +551,8 @@ fn cost_of_the_passes() {
         let mut gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
         let (source, target) = gl_images(context, &picture, gl::Format::Rgba8);
         let textures = opengl::Source::new(source[0].raw(), source[1].raw());
-        let mut on_gl = opengl::Gather::new(context, &opengl::Options::default(), Outputs::default()).unwrap();
+        let mut on_gl =
+            opengl::Gather::new(context, &opengl::Options::default(), Outputs::default()).unwrap();
         for _ in 0..21 {
             context.take_pass_times();
             on_gl.synthesize(textures, &warp, &Destination::whole(&target)).unwrap();
