@@ -1,5 +1,5 @@
-// Inputs of the passes for any view. app/engines/core/src/synthesis/uniforms.rs fills the block; docs/library.md has the table
-// of offsets.
+// Inputs of the passes for any view. app/engines/core/src/synthesis/uniforms.rs fills the block, and lists its
+// offsets.
 
 #include "include/interface.glsl"
 

@@ -1,4 +1,5 @@
 #include "include/tiles.glsl"
+#include "include/bits.glsl"
 
 // Tiles whose displacements lie on a plane. Depth-buffer values are affine on a plane, and so are displacements.
 //
@@ -16,7 +17,7 @@ const float MARKED = 0.99;
 // Converts marks of four rows, collected in the order of the image's columns with the first ones in the highest bits,
 // to a bit for each forward column, with the first ones in the lowest bits.
 uint in_place(uint marks) {
-    return mirrored ? marks >> 16 | marks << 16 : bitfieldReverse(marks);
+    return mirrored ? marks >> 16 | marks << 16 : reversed_bits(marks);
 }
 
 // Returns the tile at this forward column and row, including the column after it.

@@ -1,17 +1,28 @@
-#include "include/march.glsl"
+#include "include/span.glsl"
 #include "include/planes.glsl"
+#include "include/fill.glsl"
 
-// The search of a fragment over segments, for GPUs: from each marked pair of columns to the next (include/planes.glsl),
-// or to the next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns
-// beyond the borders repeat them.
+// The search of a fragment over segments: from each marked pair of columns to the next (include/planes.glsl), or to the
+// next tile. Within a segment columns land in order, each less than MAX_STRETCH after the one before. Columns beyond the
+// borders repeat them.
+
+TEXTURE(2) uniform highp usampler2D tile_map;
+
+// The surface that a target pixel shows: fractional source column and depth. For a hole they are those of the column
+// from which it is filled.
+struct Surface {
+    float source;
+    float depth;
+    bool hole;
+};
 
 // For measurements: the parts of the shader to compile. By default, all.
 #ifndef PARTS
 #define PARTS 63
 #endif
 const int LAW = 1;
-const int SHORT = 2;
-const int LONG = 4;
+const int SEARCH = 2;
+const int SEGMENTS = 4;
 const int EVENTS = 8;
 const int FILL = 16;
 const int CROSSING = 32;
@@ -32,7 +43,7 @@ vec2 depth_pair(float x) {
     }
     // A gather at a quarter of a column past the middle of x takes columns x and x + 1; at a quarter of a row past the
     // row's middle, it takes this row and the one above.
-    vec4 quad = textureGather(depth_map, TEXTURE_PLACE(vec2(columns.x * (x + 1.25) + columns.y, row_at(0.25))));
+    vec4 quad = depth_gather(vec2(columns.x * (x + 1.25) + columns.y, row_at(0.25)));
     return mirrored ? quad.zw : quad.wz;
 }
 
@@ -55,7 +66,7 @@ float segment_end(float x, int tile_row, bool below, uint shift) {
     uvec4 tile = texelFetch(tile_map, ivec2(column / uint(TILE.x), tile_row), 0);
     uint marks = (below ? tile.y : tile.w) >> (shift + within);
     marks = tile.z == floatBitsToUint(NO_PLANE) ? marks : 0u;
-    return x + float(findLSB(marks | 0x10000u >> within));
+    return x + lowest_bit(marks | 0x10000u >> within);
 }
 
 // What a search has found so far beside the pixel.
@@ -63,10 +74,6 @@ struct Beside {
     // Column and depth of the hole's background; the column is negative if there is none.
     float edge;
     float edge_depth;
-#ifdef HISTORY
-    // law.y * depth of the foreground beside the hole.
-    float front;
-#endif
     // Column and depth of the nearest silhouette; the column is negative if there is none.
     float rim;
     float rim_depth;
@@ -81,15 +88,12 @@ bool meet(inout Beside beside, Search at) {
     beside.rim = rim ? at.x + (jump ? 1.0 : 0.0) : beside.rim;
     beside.rim_depth = rim ? (jump ? at.depths.y : at.depths.x) : beside.rim_depth;
     bool farther = jump && law.y * (at.depths.x - beside.edge_depth) < 0.0;
-#ifdef HISTORY
-    beside.front = farther ? law.y * at.depths.y : beside.front;
-#endif
     beside.edge = farther ? at.x : beside.edge;
     beside.edge_depth = farther ? at.depths.x : beside.edge_depth;
     return jump && (at.a > -0.5 || !torn);
 }
 
-// Returns the colour and the surface of a pixel. The search continues where the short way has ended.
+// Returns the colour and the surface of a pixel. The search continues where the first steps have ended.
 //
 // A silhouette that crosses the pixel is blended over what lies behind it. Where the row jumps over the pixel from a
 // farther to a nearer surface, there is a disocclusion: the farthest such jump is remembered, and the hole is filled
@@ -102,9 +106,6 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     Beside beside;
     beside.edge = outside ? 0.0 : -1.0;
     beside.edge_depth = outside ? at.depths.x : law.y < 0.0 ? -1e9 : 1e9;
-#ifdef HISTORY
-    beside.front = 1e9;
-#endif
     beside.rim = -1.0;
     beside.rim_depth = 0.0;
     bool found = false;
@@ -152,13 +153,8 @@ vec4 march(Search at, float end, float origin, int row, out Surface surface) {
     float away = x - origin + law.y * surface.depth;
     surface.hole = !found && abs(away) >= 0.5;
     vec4 color = color_sample(vec2(column_at(surface.source), row_at(0.0)));
-#ifdef HISTORY
-    bool recalled = surface.hole && recall(gl_FragCoord.xy - vec2(target_origin), beside.front, origin, row, color, surface.depth);
-    if ((PARTS & FILL) != 0 && surface.hole && !recalled) {
-#else
     if ((PARTS & FILL) != 0 && surface.hole) {
-#endif
-        color = fill_hole(true, color, away, x, surface.depth, row);
+        color = fill_hole(color, away, x, surface.depth);
     }
     // A silhouette lies anywhere between its last sample and the next one, so blend by the share of the pixel that it
     // covers on average.

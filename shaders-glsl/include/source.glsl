@@ -1,6 +1,8 @@
 // The rendered image: its textures, and places in it. To be included after the declarations of `source_size` and
 // `source_origin`.
 
+#include "include/version.glsl"
+
 // Columns and rows of a tile.
 const ivec2 TILE = ivec2(16, 8);
 
@@ -35,4 +37,19 @@ float depth_sample(vec2 place) {
 
 vec4 color_sample(vec2 place) {
     return textureLod(color_map, TEXTURE_PLACE(place), 0.0);
+}
+
+// Depths of the four pixels around a place in texture coordinates, in the order of textureGather.
+vec4 depth_gather(vec2 place) {
+#ifdef WITHOUT_ES_310
+    ivec2 last = textureSize(depth_map, 0).xy - 1;
+    ivec2 corner = ivec2(floor(place * vec2(last + 1) - 0.5));
+    ivec2 low = clamp(corner, ivec2(0), last);
+    ivec2 high = clamp(corner + 1, ivec2(0), last);
+    return vec4(
+        texelFetch(depth_map, TEXEL_PLACE(ivec2(low.x, high.y)), 0).r, texelFetch(depth_map, TEXEL_PLACE(high), 0).r,
+        texelFetch(depth_map, TEXEL_PLACE(ivec2(high.x, low.y)), 0).r, texelFetch(depth_map, TEXEL_PLACE(low), 0).r);
+#else
+    return textureGather(depth_map, TEXTURE_PLACE(place));
+#endif
 }

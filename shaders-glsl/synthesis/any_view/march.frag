@@ -5,7 +5,7 @@
 // A surface at inverse distance s from the source, seen at the target pixel p, lies at the source pixel
 // `q + s * (e.xy - e.z * q)`, where q is the pixel of p's ray at infinity and e the epipole in homogeneous pixels. It
 // is affine in s, and so in the stored depth. The rules for surfaces, silhouettes and holes are those of gather
-// (include/every_column.glsl, include/fill.glsl), with samples along the segment in place of a row's columns.
+// (include/segments.glsl, include/fill.glsl), with samples along the segment in place of a row's columns.
 
 #include "include/any_view.glsl"
 

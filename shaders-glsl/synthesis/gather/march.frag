@@ -3,17 +3,11 @@
 // that do not land in the pixel.
 //
 // The first place where the displaced row crosses the pixel is the visible surface, and its fractional column is
-// fetched with linear filtering. With SHORT_WAY, the column is affine in the pixel where the previous pass has found a
-// law. Nearly every other pixel ends within a few cheap steps here, and only those beside silhouettes continue in
-// include/segments.glsl. CPU rasterizers execute both sides of an `if` and every fetch in the code, so there all pixels
-// use include/every_column.glsl.
+// fetched with linear filtering. Where the previous pass has found a law, the column is affine in the pixel. Nearly
+// every other pixel ends within a few cheap steps here, and only those beside silhouettes continue in
+// include/segments.glsl.
 
-#include "include/march.glsl"
-#ifdef SHORT_WAY
 #include "include/segments.glsl"
-#else
-#include "include/every_column.glsl"
-#endif
 
 layout(location = 0) out vec4 color;
 #ifdef SOURCE_MAP
@@ -24,9 +18,8 @@ int source_row() {
     return int(clamp(gl_FragCoord.y - first_row, 0.0, float(source_size.y - 1)));
 }
 
-#ifdef SHORT_WAY
-// The maximum number of steps of the short way: as many as a wave should wait for.
-const float SHORT_STEPS = 2.0;
+// The maximum number of steps before the search over segments: as many as a wave should wait for.
+const float FIRST_STEPS = 2.0;
 
 // Colour and surface of a pixel whose tile has a law.
 vec4 lawful(vec3 affine, out Surface surface) {
@@ -45,7 +38,7 @@ vec4 searched(uint span, out Surface surface) {
     float origin = origins.x * gl_FragCoord.x + origins.y;
     Search at = search_at(floor(origin - farthest - uintBitsToFloat(span)), origin);
     float end = min(max(at.x, 0.0) + span_steps(span), float(source_size.x - 1));
-    float limit = min(at.x + SHORT_STEPS, end);
+    float limit = min(at.x + FIRST_STEPS, end);
     // Continue to the first pair that crosses the pixel, or has a silhouette within a pixel of it.
     for (; at.x < limit && at.b <= 0.0 && max(at.b, -1.0) >= at.a; at.x += 1.0) {
         COUNT_TRIP(0)
@@ -60,33 +53,24 @@ vec4 searched(uint span, out Surface surface) {
     vec4 seen = color_sample(vec2(column_at(surface.source), row_at(0.0)));
     float middle = 0.5 * float(source_size.x - 1);
     bool done = at.a <= 0.0 && at.b > 0.0 && stretch < MAX_STRETCH && abs(surface.source - middle) <= middle;
-    if ((PARTS & LONG) != 0 && !done) {
+    if ((PARTS & SEGMENTS) != 0 && !done) {
         COUNT_TRIP(6)
         seen = march(at, end, origin, source_row(), surface);
     }
     return seen;
 }
-#endif
 
 void main() {
     uvec4 span = pixel_span();
     Surface surface;
-#ifdef SHORT_WAY
     if ((PARTS & LAW) != 0 && span.y != 0u) {
         COUNT_TRIP(7)
         color = lawful(uintBitsToFloat(span.xyz), surface);
-    } else if ((PARTS & SHORT) != 0) {
+    } else if ((PARTS & SEARCH) != 0) {
         color = searched(span.x, surface);
     } else {
         discard;
     }
-#else
-    float origin = origins.x * gl_FragCoord.x + origins.y;
-    float x = floor(origin - farthest - uintBitsToFloat(span.x));
-    int row = source_row();
-    float depth = depth_at(int(clamp(x, 0.0, float(source_size.x - 1))), row);
-    color = march(origin, row, span_steps(span.x), x, x - origin + law.y * depth, depth, surface);
-#endif
 #ifdef COUNT_TRIPS
     int ways = trips[0] | min(trips[2], 1) << 3 | trips[6] << 4 | trips[7] << 5;
     color = vec4(ways, trips[1], trips[3], trips[4]) / 255.0;

@@ -1,14 +1,12 @@
 #version 310 es
-// Gather, pass 2: for each target tile, the range of source columns that may land in it. With SHORT_WAY, if these
-// columns are of one continuous surface and affine in the target's, this law instead.
+// Gather, pass 2: for each target tile, the range of source columns that may land in it or, if these columns are of
+// one continuous surface and affine in the target's, this law.
 
 #include "include/tiles.glsl"
 
 TEXTURE(2) uniform highp usampler2D tile_map;
 
-#ifdef SHORT_WAY
 #include "include/laws.glsl"
-#endif
 
 // A span with 0 in its second component, or a law, whose second component is never 0.
 layout(location = 0) out uvec4 span;
@@ -50,10 +48,8 @@ void main() {
     // From the first candidate to the last one, each rounded outwards, and one more to close the last pair.
     uint search = pack_span(float(high) / TILE_UNITS, ceil(float(high - low) / TILE_UNITS) + 2.0);
     span = uvec4(search, 0u, 0u, 0u);
-#ifdef SHORT_WAY
     vec3 affine = law_of(tile, left, right);
     if (affine.y != 0.0) {
         span.xyz = floatBitsToUint(affine);
     }
-#endif
 }

@@ -6,19 +6,16 @@ use std::rc::Rc;
 
 use rand::{Rng, SeedableRng};
 
-use crate::in_memory::{self, Former, InMemory, SynthesizedImage};
-use crate::{posed, sheets};
+use crate::in_memory::{self, InMemory, SynthesizedImage};
+use crate::posed;
 use yoro::eyes::{
     DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, PoseWarp, View, Warp,
 };
-use yoro::synthesis::{
-    self, Edges, GatherVariant, Outputs, SourceMapEntry, Strips, SynthesisOptions, WarpKind,
-};
+use yoro::opengl::{self, Context, Destination, Options, Outputs};
+use yoro::synthesis::SourceMapEntry;
+use yoro::synthesis::backend::WarpKind;
 use yoro_context::{Backend, Headless};
-use yoro_gl::{self as gl, Context, Destination, Filter, RenderTarget, Texture};
-
-/// The variants of the shaders that other graphics interfaces have, too.
-const VARIANTS: [GatherVariant; 2] = [GatherVariant::Software, GatherVariant::ShortWay];
+use yoro_gl::{self as gl, Filter, RenderTarget, Texture};
 
 /// A rendered eye, with rows from the bottom.
 pub struct Picture<W = Warp> {
@@ -104,96 +101,37 @@ pub fn pasted<T: Copy>(
 /// The pipelines on OpenGL ES.
 pub struct Gl {
     pub headless: Headless,
-    offline: [RefCell<InMemory>; 2],
+    gather: RefCell<InMemory>,
 }
 
 impl Gl {
     pub fn new() -> Gl {
         let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
-        let offline = VARIANTS.map(|variant| {
-            let gather = synthesis::Gather::with_variant(headless.gl(), in_memory::OUTPUTS, variant).unwrap();
-            RefCell::new(InMemory::new(headless.gl(), Box::new(gather)))
+        let mut gather = opengl::Gather::new(headless.gl(), &Options::default(), in_memory::OUTPUTS).unwrap();
+        let synthesize = Box::new(move |source, warp: &Warp, target: &Destination| {
+            gather.synthesize(source, warp, target)
         });
-        Gl { headless, offline }
+        let gather = RefCell::new(InMemory::new(headless.gl(), synthesize));
+        Gl { headless, gather }
     }
 
-    pub fn run(&self, variant: usize, picture: &Picture) -> SynthesizedImage {
+    /// Returns what OpenGL draws. It receives the picture upside down, so that tiles contain the same rows as on other
+    /// interfaces, whose rows are counted from the top.
+    pub fn run(&self, picture: &Picture) -> SynthesizedImage {
         let Picture { warp, rgba, depth } = picture;
-        self.offline[variant].borrow_mut().run(rgba, depth, warp)
-    }
-}
-
-/// A rendered eye and a history of the other eye. All rows run from the bottom.
-pub struct RecalledScene {
-    pub what: String,
-    pub source: Picture,
-    pub target: View,
-    pub former: sheets::Picture,
-    pub former_size: [u32; 2],
-    /// The views of the strips from the bottom on. They divide the rows evenly, so the strips from the top on are the
-    /// same.
-    pub strips: Vec<Option<View>>,
-}
-
-impl RecalledScene {
-    /// Returns the strips for images with row 0 at the top.
-    pub fn strips_from_top(&self) -> Strips {
-        Strips::new(&self.target, &self.strips.iter().rev().copied().collect::<Vec<_>>())
-    }
-}
-
-/// Returns histories of a moving head with one of four strips empty, at full and at half size.
-pub fn recalled_scenes() -> Vec<RecalledScene> {
-    let of = |(dominant, convention, scale)| {
-        let at =
-            |head| sheets::eyes(head, dominant, 0.063, convention).synthesis_views(GuardBand::None).unwrap();
-        let views = at(Pose::IDENTITY);
-        let size = sheets::SIZE.map(|n| n / scale);
-        let strip = |i: u32| (i != 2).then(|| View { size, ..at(sheets::moved(i as f32 - 5.0)).target });
-        let strips: Vec<_> = (0..4).map(strip).collect();
-        let sheets::Picture { rgba, depth } = sheets::render(&views.source, &sheets::SHEETS);
-        RecalledScene {
-            what: format!("{dominant:?} dominant, {convention:?}, 1/{scale}"),
-            source: Picture { warp: views.warp, rgba, depth },
-            target: views.target,
-            former: sheets::in_strips(&strips, &View { size, ..views.target }),
-            former_size: size,
-            strips,
+        let [source_rows, target_rows] = [warp.source_size[1], warp.target_size[1]];
+        let (rgba, depth) = (flipped(rgba, source_rows), flipped(depth, source_rows));
+        let drawn = self.gather.borrow_mut().run(&rgba, &depth, &warp.rows_from_top());
+        SynthesizedImage {
+            rgba: flipped(&drawn.rgba, target_rows),
+            source_map: flipped(&drawn.source_map, target_rows),
         }
-    };
-    [
-        (Eye::Right, DepthConvention::Standard, 1),
-        (Eye::Left, DepthConvention::Reversed, 1),
-        (Eye::Right, DepthConvention::Reversed, 2),
-    ]
-    .map(of)
-    .into()
-}
-
-impl Gl {
-    /// Returns a pipeline that takes histories.
-    pub fn recalling(&self, edges: Edges, variant: usize) -> InMemory {
-        let gl = self.headless.gl();
-        let options = SynthesisOptions { edges, history: true, ..SynthesisOptions::default() };
-        let pipeline: Box<dyn synthesis::Synthesis> = match edges {
-            Edges::Hard => Box::new(
-                synthesis::Gather::with_variant_of(gl, in_memory::OUTPUTS, VARIANTS[variant], &options)
-                    .unwrap(),
-            ),
-            _ => synthesis::create(gl, &options, in_memory::OUTPUTS).unwrap(),
-        };
-        InMemory::new(gl, pipeline)
     }
 }
 
-impl InMemory {
-    /// Returns the other eye of a scene, with its history and without.
-    pub fn both(&mut self, scene: &RecalledScene) -> [Vec<u8>; 2] {
-        let RecalledScene { source: Picture { warp, rgba, depth }, former, former_size, .. } = scene;
-        let strips = Strips::new(&scene.target, &scene.strips);
-        let former = Former { rgba: &former.rgba, depth: &former.depth, size: *former_size, strips };
-        [Some(former), None].map(|history| self.recall(rgba, depth, warp, history).rgba)
-    }
+/// Returns the rows in the opposite order.
+pub fn flipped<T: Copy>(values: &[T], rows: u32) -> Vec<T> {
+    values.chunks_exact(values.len() / rows as usize).rev().flatten().copied().collect()
 }
 
 /// Returns warps to poses of a moving head, in all depth ranges, with targets of other sizes than the source.
@@ -221,17 +159,11 @@ pub fn assert_depth_equal(got: &[f32], want: &[f32], what: &str) {
     assert!(different * 4000 <= got.len(), "{what}: depth of {different} of {} pixels differs", got.len());
 }
 
-/// The largest difference of a channel for each variant. The interfaces count rows from opposite ends, so tiles and
-/// their laws differ: by an eighth of a pixel, in noise of 255 levels.
-pub const TOLERANCES: [u8; 2] = [1, 32];
-
 /// Checks that all channels are nearly equal, except for a few pixels whose positions lie within rounding of a
 /// decision.
-pub fn assert_equal(got: &[u8], want: &[u8], channels: usize, number: usize, what: &str) {
+pub fn assert_equal(got: &[u8], want: &[u8], channels: usize, what: &str) {
     assert_eq!(got.len(), want.len());
-    let most = TOLERANCES[number];
-    let differs = |(a, b): (&[u8], &[u8])| a[..channels].iter().zip(b).any(|(a, b)| a.abs_diff(*b) > most);
-
+    let differs = |(a, b): (&[u8], &[u8])| a[..channels].iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
     let different = got.chunks_exact(4).zip(want.chunks_exact(4)).filter(|&pair| differs(pair)).count();
     assert!(different * 4000 <= got.len() / 4, "{what}: {different} of {} pixels differ", got.len() / 4);
 }
@@ -330,8 +262,8 @@ pub fn gl_images(gl: &Rc<Context>, picture: &Picture, format: gl::Format) -> ([T
 pub fn gl_srgb(gl: &Rc<Context>, picture: &Picture) -> Vec<u8> {
     let ([color, depth], target) = gl_images(gl, picture, gl::Format::Srgb8Alpha8);
     let outputs = Outputs { srgb: true, ..Outputs::default() };
-    let mut gather = synthesis::create(gl, &SynthesisOptions::default(), outputs).unwrap();
-    let source = synthesis::Source::new(color.raw(), depth.raw());
+    let mut gather = opengl::Gather::new(gl, &Options::default(), outputs).unwrap();
+    let source = opengl::Source::new(color.raw(), depth.raw());
     gather.synthesize(source, &picture.warp, &Destination::whole(&target)).unwrap();
     target.read_rgba8(0, [0, 0], picture.warp.target_size)
 }

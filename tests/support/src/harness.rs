@@ -5,7 +5,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;
 
-use yoro::synthesis::WarpKind;
+use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Host, ImageState, LayerImage};
 
@@ -212,7 +212,7 @@ impl Gpu {
     }
 
     /// True if a render pass can resolve depth in this way.
-    #[allow(dead_code, reason = "for the tests of anti-aliased sources, which share this")]
+    #[allow(dead_code, reason = "for the test of resolved depth, which shares this")]
     pub fn resolves_depth(&self, mode: vk::ResolveModeFlags) -> bool {
         let mut resolve = vk::PhysicalDeviceDepthStencilResolveProperties::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut resolve);
@@ -288,10 +288,10 @@ impl Gpu {
         self.image_of(format, size, layers, vk::SampleCountFlags::TYPE_1, copied)
     }
 
-    /// Creates an image of several samples, which can be rendered to and sampled.
-    pub fn multisampled(&self, format: vk::Format, size: [u32; 2], samples: u32) -> Image<'_> {
-        let samples = vk::SampleCountFlags::from_raw(samples);
-        self.image_of(format, size, 1, samples, vk::ImageUsageFlags::empty())
+    /// Creates an image of four samples that can be rendered to.
+    #[allow(dead_code, reason = "for the test of resolved depth, which shares this")]
+    pub fn multisampled(&self, format: vk::Format, size: [u32; 2]) -> Image<'_> {
+        self.image_of(format, size, 1, vk::SampleCountFlags::TYPE_4, vk::ImageUsageFlags::empty())
     }
 
     fn image_of(

@@ -7,14 +7,14 @@ use std::rc::Rc;
 
 use rand::{Rng, SeedableRng};
 
-use crate::in_memory::InMemory;
+use crate::in_memory::{InMemory, Synthesize};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::synthesis::{SOURCE_MAP_HOLE, Synthesis};
+use yoro::synthesis::SOURCE_MAP_HOLE;
 use yoro_context::{Backend, Headless};
 use yoro_gl::Context;
 
 /// A function that makes a pipeline.
-type Make = Box<dyn Fn(&Rc<Context>) -> Box<dyn Synthesis>>;
+type Make = Box<dyn Fn(&Rc<Context>) -> Synthesize>;
 
 /// A pipeline under test, with its name.
 pub struct Subject {

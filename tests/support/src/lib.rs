@@ -14,4 +14,3 @@ pub mod laws;
 pub mod modules;
 pub mod posed;
 pub mod samples;
-pub mod sheets;

@@ -5,8 +5,8 @@ use std::rc::Rc;
 use glam::{EulerRot, Quat, Vec3};
 
 use yoro::eyes::{Pose, PoseWarp, View};
-use yoro::synthesis::{AnyView, Outputs, Part, Source, SynthesisOptions};
-use yoro_gl::{Context, Destination, Filter, Format, Program, RenderTarget, ShaderSource, Texture};
+use yoro::opengl::{AnyView, Context, Destination, Options, Outputs, Part, Source};
+use yoro_gl::{Filter, Format, Program, RenderTarget, ShaderSource, Texture};
 
 /// The synthesized view: RGBA with 8 bits each, and stored depth. Rows run from the bottom, as in GL.
 #[derive(Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub fn run(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &PoseWarp, part: 
     let color = texture(Format::Rgba8, rgba);
     let depth: Vec<u8> = depth.iter().flat_map(|depth| depth.to_ne_bytes()).collect();
     let depth = texture(Format::R32F, &depth);
-    let options = SynthesisOptions { parts: part.is_some(), ..SynthesisOptions::default() };
+    let options = Options { parts: part.is_some(), ..Options::default() };
     let outputs = Outputs { depth: true, ..Outputs::default() };
     let mut pipeline = AnyView::new(gl, &options, outputs).unwrap();
     let formats = [(Format::Rgba8, Filter::Nearest)];

@@ -80,7 +80,7 @@ impl Default for StereoCamera {
         StereoCamera {
             mode: StereoMode::default(),
             dominant: Eye::default(),
-            ipd: 0.063,
+            ipd: eyes::MEAN_IPD,
             fov_y: fov,
             near,
             far,
@@ -142,7 +142,6 @@ impl Eyes {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrangement {
     pub(crate) plan: Plan,
-    pub(crate) samples: u32,
     format: TextureFormat,
     /// The views of the two eyes, without their poses.
     views: [View; 2],
@@ -375,7 +374,6 @@ impl StereoCameraPartsItem<'_, '_> {
         let still = |view: View| View { pose: Pose::IDENTITY, ..view };
         let arrangement = Arrangement {
             plan,
-            samples: self.rendering.samples(),
             format: request.format,
             views: [views.source, views.target].map(still),
             far: request.far,

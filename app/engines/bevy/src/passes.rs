@@ -16,8 +16,8 @@ use bevy::render::sync_world::RenderEntity;
 use bevy::render::texture::GpuImage;
 use bevy::render::view::{ExtractedView, ViewDepthTexture, ViewTarget};
 use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderSystems};
-use yoro_wgpu::yoro::eyes::{Eye, Warp};
-use yoro_wgpu::{Gather, Options, Source, Target, WgpuError, wgpu};
+use yoro_wgpu::yoro::eyes::{DepthConvention, Eye, Warp};
+use yoro_wgpu::{Gather, NearestDepth, Options, Source, Target, WgpuError, wgpu};
 
 use crate::camera::{Eyes, Screen, Views};
 use crate::plan::Plan;
@@ -51,7 +51,6 @@ pub(crate) fn build(app: &mut App) {
 #[derive(Component, Clone)]
 pub(crate) struct Stereo {
     pub(crate) plan: Plan,
-    samples: u32,
     pub(crate) views: Views,
     pub(crate) source: AssetId<Image>,
     other: AssetId<Image>,
@@ -82,12 +81,11 @@ fn extract(
             continue;
         }
         let other_camera = other.and_then(|other| entities.get(other.entity).ok());
-        if let (Some(other), Plan::Opaque(_)) = (other_camera, arrangement.plan) {
+        if let (Some(other), Plan::Opaque) = (other_camera, arrangement.plan) {
             commands.entity(other).insert(Synthesized);
         }
         commands.entity(entity).insert(Stereo {
             plan: arrangement.plan,
-            samples: arrangement.samples,
             views,
             source: eyes.source.id(),
             other: eyes.other.id(),
@@ -112,9 +110,14 @@ fn leave_out_opaque(
     }
 }
 
-/// The passes of synthesis for each format and kind of source, or `None` if the device refuses them.
+/// The passes of synthesis; `None` where the device refuses them.
 #[derive(Resource, Default)]
-pub(crate) struct Pipelines(Vec<(Options, Option<Gather>)>);
+pub(crate) struct Pipelines {
+    /// For each format of targets.
+    gathers: Vec<(Options, Option<Gather>)>,
+    /// For cameras with MSAA, once there is one.
+    nearest: Option<Option<NearestDepth>>,
+}
 
 /// The parameters of systems that synthesize in a camera's schedule.
 #[derive(SystemParam)]
@@ -127,20 +130,34 @@ pub(crate) struct Synthesis<'w, 's> {
 
 impl Synthesis<'_, '_> {
     /// Records the passes, or logs once why this fails.
-    pub(crate) fn record(&mut self, options: &Options, source: &Source, warp: &Warp, target: &Target) {
+    pub(crate) fn record(
+        &mut self,
+        options: &Options,
+        color: &TextureView,
+        depth: &ViewDepthTexture,
+        warp: &Warp,
+        target: &Target,
+    ) {
         let device = self.device.wgpu_device();
-        let pipelines = &mut self.pipelines.0;
-        let known = pipelines.iter().position(|(other, _)| other == options);
+        let Pipelines { gathers, nearest } = &mut *self.pipelines;
+        let known = gathers.iter().position(|(other, _)| other == options);
         let index = known.unwrap_or_else(|| {
             let gather = Gather::new(device, options).inspect_err(log_once).ok();
-            pipelines.push((*options, gather));
-            pipelines.len() - 1
+            gathers.push((*options, gather));
+            gathers.len() - 1
         });
-        if let Some(gather) = &mut pipelines[index].1 {
-            let encoder = self.context.command_encoder();
-            let recorded = gather.record(device, &self.queue, encoder, source, warp, target);
-            recorded.unwrap_or_else(|error| log_once(&error));
+        let Some(gather) = &mut gathers[index].1 else { return };
+        let encoder = self.context.command_encoder();
+        let mut depth: &wgpu::TextureView = depth.view();
+        if depth.texture().sample_count() > 1 {
+            let make =
+                || NearestDepth::new(device, DepthConvention::Reversed).inspect_err(log_once).ok();
+            let Some(nearest) = nearest.get_or_insert_with(make) else { return };
+            depth = nearest.record(device, encoder, depth);
         }
+        let source = Source::new(color, depth);
+        let recorded = gather.record(device, &self.queue, encoder, &source, warp, target);
+        recorded.unwrap_or_else(|error| log_once(&error));
     }
 
     /// Copies a rectangle from one texture to another, clipped to both.
@@ -181,7 +198,7 @@ fn synthesize_opaque(
     mut synthesis: Synthesis,
 ) {
     let (stereo, source_color, source_depth) = view.into_inner();
-    let (Plan::Opaque(edges), Some(warp)) = (stereo.plan, &stereo.views.warp) else { return };
+    let (Plan::Opaque, Some(warp)) = (stereo.plan, &stereo.views.warp) else { return };
     let Some((color, depth)) = stereo.other_camera.and_then(|camera| others.get(camera).ok()) else {
         return;
     };
@@ -192,13 +209,9 @@ fn synthesize_opaque(
     let options = Options {
         color_format: color.main_texture_format(),
         depth_format: Some(CORE_3D_DEPTH_FORMAT),
-        edges,
-        samples: stereo.samples,
-        history: false,
     };
-    let source = Source::new(source_color.main_texture_view(), source_depth.view());
     let target = Target { color: color_attachment.view, depth: Some(depth.view()), origin: [0, 0] };
-    synthesis.record(&options, &source, warp, &target);
+    synthesis.record(&options, source_color.main_texture_view(), source_depth, warp, &target);
 }
 
 /// Shows both eyes side by side.
@@ -216,7 +229,7 @@ fn show_eyes(
     let [x, y] = place(dominant);
     synthesis.copy(&source.texture, crop, target.main_texture(), [x, y, 0], other.size);
     let [x, y] = place(dominant.other());
-    if let Plan::Finished(_) = stereo.plan {
+    if stereo.plan == Plan::Finished {
         let target = Target { color: target.main_texture_view(), depth: None, origin: [x, y] };
         stereo.synthesize_finished(&mut synthesis, &source.texture_view, depth, &target);
     } else if let Some(image) = images.get(stereo.other) {
@@ -233,14 +246,8 @@ impl Stereo {
         depth: &ViewDepthTexture,
         target: &Target,
     ) {
-        let (Plan::Finished(edges), Some(warp)) = (self.plan, &self.views.warp) else { return };
-        let options = Options {
-            color_format: target.color.texture().format(),
-            depth_format: None,
-            edges,
-            samples: self.samples,
-            history: false,
-        };
-        synthesis.record(&options, &Source::new(color, depth.view()), warp, target);
+        let (Plan::Finished, Some(warp)) = (self.plan, &self.views.warp) else { return };
+        let options = Options { color_format: target.color.texture().format(), depth_format: None };
+        synthesis.record(&options, color, depth, warp, target);
     }
 }

@@ -21,46 +21,25 @@ const SHADERS: [(&str, &str); 8] = [
 /// Names and values of macros.
 type Macros = &'static [(&'static str, &'static str)];
 
-/// Folder, GLSL version and macros of each API: the uniform block, and what every driver of the API supports.
+/// Folder, GLSL version and macros of each API: the uniform block.
 const APIS: [(&str, &str, Macros); 2] = [
     ("gles", "300 es", &[("UNIFORM_BLOCK", "layout(std140)")]),
-    ("vulkan", "310 es", &[("UNIFORM_BLOCK", "layout(push_constant, std140)"), ("TEXTURE_GATHER", "")]),
+    ("vulkan", "310 es", &[("UNIFORM_BLOCK", "layout(push_constant, std140)")]),
 ];
 
-/// Each file for Godot, which has both stages in one, with its two shaders, and its versions by name and macros.
-const GODOT: [(&str, &str, &str, Versions); 7] = [
-    (
-        "tiles.glsl",
-        "screen.vert",
-        "synthesis/gather/tiles.frag",
-        &[("every", &[]), ("short", &["SHORT_WAY"])],
-    ),
-    (
-        "spans.glsl",
-        "screen.vert",
-        "synthesis/gather/spans.frag",
-        &[("every", &[]), ("short", &["SHORT_WAY"])],
-    ),
+/// Each file for Godot, which has both stages in one, with its two shaders, and its versions by name and macros, if it needs any.
+const GODOT: [(&str, &str, &str, Versions); 6] = [
+    ("tiles.glsl", "screen.vert", "synthesis/gather/tiles.frag", &[]),
+    ("spans.glsl", "screen.vert", "synthesis/gather/spans.frag", &[]),
     (
         "march.glsl",
         "synthesis/march.vert",
         "synthesis/gather/march.frag",
-        &[
-            ("every", &["WRITE_DEPTH"]),
-            ("short", &["WRITE_DEPTH", "SHORT_WAY"]),
-            ("every_map", &["WRITE_DEPTH", "SOURCE_MAP"]),
-            ("short_map", &["WRITE_DEPTH", "SHORT_WAY", "SOURCE_MAP"]),
-        ],
+        &[("depth", &["WRITE_DEPTH"]), ("map", &["WRITE_DEPTH", "SOURCE_MAP"])],
     ),
-    (
-        "march_history.glsl",
-        "synthesis/march.vert",
-        "synthesis/gather/march.frag",
-        &[("every", &["WRITE_DEPTH", "HISTORY"]), ("short", &["WRITE_DEPTH", "SHORT_WAY", "HISTORY"])],
-    ),
-    ("any_view_tiles.glsl", "screen.vert", "synthesis/any_view/tiles.frag", &[("every", &[])]),
-    ("any_view_spans.glsl", "screen.vert", "synthesis/any_view/spans.frag", &[("every", &[])]),
-    ("any_view_march.glsl", "screen.vert", "synthesis/any_view/march.frag", &[("every", &["WRITE_DEPTH"])]),
+    ("any_view_tiles.glsl", "screen.vert", "synthesis/any_view/tiles.frag", &[]),
+    ("any_view_spans.glsl", "screen.vert", "synthesis/any_view/spans.frag", &[]),
+    ("any_view_march.glsl", "screen.vert", "synthesis/any_view/march.frag", &[("depth", &["WRITE_DEPTH"])]),
 ];
 type Versions = &'static [(&'static str, &'static [&'static str])];
 
@@ -108,26 +87,9 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
         "{first}\n// yoro, shader kit {}. SPDX-License-Identifier: MIT OR Apache-2.0\n",
         env!("CARGO_PKG_VERSION")
     );
-    let any_view = source.contains("any_view");
-    let march = source.ends_with("march.frag");
-    if source.ends_with(".frag") && (march || !any_view) {
-        own += "//\n// Settings:\n";
-        if march {
-            own += "// #define WRITE_DEPTH // The target's depth, too, to gl_FragDepth: for transparent objects.\n";
-        }
-        if march && !any_view {
-            own += "// #define HISTORY // Disocclusions are looked up in a former image of the other eye: two textures and a block more.\n";
-        }
-        if !any_view {
-            own += match macros.iter().any(|(name, _)| *name == "TEXTURE_GATHER") {
-                true => {
-                    "// #define SHORT_WAY // For GPUs, in all three passes: less work, the same picture.\n"
-                }
-                false => {
-                    "// #define SHORT_WAY // For GPUs, in all three passes, with `#version 310 es`: less work, the same picture.\n"
-                }
-            };
-        }
+    if source.ends_with("march.frag") {
+        own += "//\n// Setting:\n\
+                // #define WRITE_DEPTH // The target's depth, too, to gl_FragDepth: for transparent objects.\n";
     }
     // The lines before the precision statements also contain extensions, which synthesis does not need.
     let begins = |line: &&str| line.starts_with("precision ");
@@ -143,7 +105,10 @@ fn shader(source: &str, version: &str, macros: Macros) -> io::Result<String> {
 /// Returns a file that Godot imports as RDShaderFile: the shaders for Vulkan between markers.
 fn godot(vertex: &str, fragment: &str, versions: Versions) -> io::Result<String> {
     let [_, (_, version, macros)] = APIS;
-    let mut text = String::from("#[versions]\n");
+    let mut text = String::new();
+    if !versions.is_empty() {
+        text += "#[versions]\n";
+    }
     for (name, defines) in versions {
         let defines: Vec<String> = defines.iter().map(|name| format!("#define {name}")).collect();
         // Writing to a string cannot fail.
@@ -158,9 +123,9 @@ fn godot(vertex: &str, fragment: &str, versions: Versions) -> io::Result<String>
     Ok(text)
 }
 
-/// True for the comment lines in which a shader lists its settings, which are versions in Godot.
+/// True for the comment lines that name a shader's setting, which is on in Godot.
 fn is_setting(line: &str) -> bool {
-    line == "//" || line == "// Settings:" || line.starts_with("// #define ")
+    line == "//" || line == "// Setting:" || line.starts_with("// #define ")
 }
 
 /// Returns a table of a block's members.

@@ -147,15 +147,6 @@ typedef struct {
   float position[3];    /* in metres */
 } YoroKitPose;
 
-/* The maximum number of strips in a history. */
-#define YORO_KIT_STRIPS 8
-
-/* The block `History` of march.frag with HISTORY, in std140: 528 bytes. */
-typedef struct {
-  float to_history[YORO_KIT_STRIPS][16];
-  int32_t history_strips, padding[3];
-} YoroKitStrips;
-
 /* Rotates a vector by the orientation of a pose if `sense` is 1, or by its inverse if `sense` is -1. */
 static inline void yoro_kit_turn(const YoroKitPose *pose, double sense, const double v[3], double turned[3]) {
   const float *o = pose->orientation;
@@ -163,50 +154,6 @@ static inline void yoro_kit_turn(const YoroKitPose *pose, double sense, const do
   double t[3];
   for (int i = 0; i < 3; ++i) t[i] = 2 * (q[(i + 1) % 3] * v[(i + 2) % 3] - q[(i + 2) % 3] * v[(i + 1) % 3]);
   for (int i = 0; i < 3; ++i) turned[i] = v[i] + w * t[i] + q[(i + 1) % 3] * t[(i + 2) % 3] - q[(i + 2) % 3] * t[(i + 1) % 3];
-}
-
-/*
- * Computes where a history shows the surfaces of the other eye. A history is a really rendered image of that eye, of
- * any size, in strips from row 0 on, each rendered from its own pose. All strips but the last have the same number of
- * rows: the image's divided by count, rounded up. `other` is the present pose of the other eye, strips[i] its pose when
- * strip i was rendered, or NULL if the strip is empty. The frusta and depth planes must have been those of `eyes`, too.
- * Returns 0 if numbers are out of range.
- */
-static inline int yoro_kit_strips(const YoroKitEyes *eyes, const YoroKitPose *other, const YoroKitPose **strips,
-                                  int count, int width, int height, YoroKitStrips *block) {
-  const YoroKitFrustum f = eyes->frusta[eyes->rendered == 0];
-  const double near_inverse = 1.0 / eyes->near_z, far_inverse = isinf(eyes->far_z) ? 0.0 : 1.0 / eyes->far_z;
-  const double constant = eyes->reversed ? far_inverse : near_inverse;
-  const double slope = eyes->reversed ? near_inverse - far_inverse : far_inverse - near_inverse;
-  const double wide = (double)f.right - f.left, high = (double)f.up - f.down, sense = eyes->rows_down ? -1.0 : 1.0;
-  const double low = eyes->rows_down ? f.up : f.down; /* at row 0 */
-  memset(block, 0, sizeof *block);
-  if (!(count >= 1 && count <= YORO_KIT_STRIPS && width > 0 && height > 0 && eyes->width > 0 && eyes->height > 0 && wide > 0 &&
-        high > 0 && eyes->near_z > 0 && eyes->near_z < eyes->far_z))
-    return 0;
-  block->history_strips = count;
-  /* Columns of the matrix from a pixel and its depth to a direction and the inverse of the distance along the axis. */
-  const double ray[4][4] = {{wide / eyes->width, 0, 0, 0}, {0, sense * high / eyes->height, 0, 0}, {0, 0, 0, slope},
-                            {f.left, low, -1, constant}};
-  for (int strip = 0; strip < count; ++strip) {
-    const YoroKitPose *former = strips[strip];
-    if (!former) continue;
-    double moved[3], offset[3];
-    for (int i = 0; i < 3; ++i) moved[i] = (double)other->position[i] - former->position[i];
-    yoro_kit_turn(former, -1, moved, offset);
-    for (int column = 0; column < 4; ++column) {
-      double world[3], own[3];
-      yoro_kit_turn(other, 1, ray[column], world);
-      yoro_kit_turn(former, -1, world, own);
-      for (int i = 0; i < 3; ++i) own[i] += offset[i] * ray[column][3];
-      float *to = block->to_history[strip] + 4 * column;
-      to[0] = (float)((own[0] + f.left * own[2]) * width / wide);
-      to[1] = (float)(sense * (own[1] + low * own[2]) * height / high);
-      to[2] = (float)((ray[column][3] + constant * own[2]) / slope);
-      to[3] = (float)-own[2];
-    }
-  }
-  return 1;
 }
 
 /* One view: where its eye is, and its image. With OpenXR: an XrView. */

@@ -58,10 +58,6 @@ pub struct YoroCapabilities {
     pub api_major: u32,
     /// Minor version of the API: 1 for 3.1.
     pub api_minor: u32,
-    /// Zero.
-    pub reserved: u32,
-    /// 1 if the API has compute shaders, which yoro does not need.
-    pub compute: u32,
     /// 1 if the CPU renders (llvmpipe, SwiftShader).
     pub software: u32,
     /// Largest width and height of an image in pixels.
@@ -108,8 +104,6 @@ pub struct YoroTimes {
     pub struct_size: u32,
     /// 1 if the times are known.
     pub is_known: u32,
-    /// Time to split the source into surfaces; 0 with YORO_EDGES_HARD.
-    pub split_ns: u64,
     /// Time to find the bounds of the displacements, or of the depths, in each tile.
     pub tiles_ns: u64,
     /// Time to find the part of the source to search for each tile of the target.
@@ -124,7 +118,6 @@ impl YoroTimes {
     pub(crate) const UNKNOWN: YoroTimes = YoroTimes {
         struct_size: size_of::<YoroTimes>() as u32,
         is_known: 0,
-        split_ns: 0,
         tiles_ns: 0,
         spans_ns: 0,
         march_ns: 0,
@@ -338,17 +331,15 @@ mod tests {
         let mut sentences = 0u32;
         let info = YoroGlInfo {
             struct_size: size_of::<YoroGlInfo>() as u32,
-            reserved: 0,
             outputs: 0,
             state: YORO_GL_STATE_LEAVE,
             check: 0,
-            edges: 0,
-            loader: Some(load),
-            messages: YoroMessages { callback: Some(count), user: (&raw mut sentences).cast() },
             sources: 0,
             timed: 0,
-            history: 0,
             warp_kind: 0,
+            reserved: 0,
+            loader: Some(load),
+            messages: YoroMessages { callback: Some(count), user: (&raw mut sentences).cast() },
         };
         let mut context = null_mut();
         // SAFETY: the context lives until the last line.

@@ -7,26 +7,23 @@ use std::ffi::{CStr, c_char, c_void};
 use std::num::NonZeroU32;
 use std::rc::Rc;
 
-use yoro::gl::{Context, Destination, GlApi, PassTime, Profiling};
-use yoro::synthesis::{
-    self, AnyView, Edges, GlState, History, Outputs, Part, Source, Strips, Synthesis, SynthesisOptions,
-    WarpKind,
+use yoro::opengl::{
+    self, AnyView, Context, Destination, Gather, GlApi, GlState, Options, Outputs, Part, PassTime, Profiling,
+    Source,
 };
+use yoro::synthesis::backend::WarpKind;
 
 use crate::context::{
     Backend, YORO_API_OPENGL, YORO_API_OPENGL_ES, YoroCapabilities, YoroContext, YoroTimes, create, enter_as,
     write_bytes,
 };
-use crate::history::{YoroStrips, read_strips};
 use crate::pose::{YoroPoseWarp, read_pose_warp};
 use crate::result::{
     Failure, YORO_ERROR_DRIVER, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YoroMessages,
     YoroResult,
 };
-use crate::types::{
-    YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroEdges, YoroOutputFlags, YoroWarpKind, edges, is_pose, other_kind,
-};
-use crate::versioned::{self, versioned};
+use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, is_pose, other_kind};
+use crate::versioned::{self, check_reserved, versioned};
 use crate::views::{YoroWarp, read_warp};
 
 #[doc(hidden)]
@@ -57,7 +54,7 @@ pub type YoroGlSourceFlags = u32;
 /// sizes.
 pub const YORO_GL_SOURCE_PARTS: YoroGlSourceFlags = 1;
 /// The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, in colour and in depth: for the textures of GL_OVR_multiview
-/// and the OpenXR swapchains used with it. Cannot be combined with YORO_EDGES_MULTISAMPLE.
+/// and the OpenXR swapchains used with it.
 pub const YORO_GL_SOURCE_LAYERS: YoroGlSourceFlags = 2;
 
 /// The options of a context for OpenGL.
@@ -66,8 +63,6 @@ pub const YORO_GL_SOURCE_LAYERS: YoroGlSourceFlags = 2;
 pub struct YoroGlInfo {
     /// sizeof(YoroGlInfo).
     pub struct_size: u32,
-    /// Must be 0. Earlier versions chose a pipeline here.
-    pub reserved: u32,
     /// YORO_OUTPUT_ bits.
     pub outputs: YoroOutputFlags,
     /// What happens to GL state.
@@ -75,24 +70,22 @@ pub struct YoroGlInfo {
     /// 1: each call checks the textures, the framebuffer and GL's error flag, which it clears. This waits for the
     /// driver, so use it in development only. 0: mistakes are undefined behaviour, as in GL.
     pub check: u32,
-    /// The kind of source images. 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
-    pub edges: YoroEdges,
-    /// The loader of entry points.
-    pub loader: YoroGlLoader,
-    /// Receives error messages, including those of later calls.
-    pub messages: YoroMessages,
     /// YORO_GL_SOURCE_ bits.
     pub sources: YoroGlSourceFlags,
     /// 1: measures the passes for yoro_times with GL_TIME_ELAPSED queries. The engine must have no such query active
     /// during a call. 0: measures nothing.
     pub timed: u32,
-    /// 1: sources may have a history (see YoroGlImages). 0: none has.
-    pub history: u32,
     /// The kind of warp. 0 is YORO_WARP_KIND_EYES.
     pub warp_kind: YoroWarpKind,
+    /// Must be 0.
+    pub reserved: u32,
+    /// The loader of entry points.
+    pub loader: YoroGlLoader,
+    /// Receives error messages, including those of later calls.
+    pub messages: YoroMessages,
 }
 
-versioned!(YoroGlInfo since sources);
+versioned!(YoroGlInfo);
 
 /// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at
 /// startup, not in a frame.
@@ -114,8 +107,7 @@ pub unsafe extern "C" fn yoro_gl_create(
     unsafe { create(info, context, |info| info.messages, |info| Gl::new(info)) }
 }
 
-/// Returns how many bytes of GPU memory the buffers of a context will take, computed from its edges and the sizes of a
-/// frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
+/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
 /// buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
 ///
 /// Call it from any thread. It needs neither a loader nor a GL context.
@@ -140,7 +132,7 @@ pub unsafe extern "C" fn yoro_gl_buffer_bytes(
                 true => Err(Failure::value(
                     "the buffers for YORO_WARP_KIND_POSE have 16 bytes for each 16 x 8 pixels of the source, and of the target",
                 )),
-                false => Ok(synthesis::buffer_bytes(edges(info.edges)?, &read_warp(warp)?)),
+                false => Ok(opengl::buffer_bytes(&read_warp(warp)?)),
             },
         )
     }
@@ -154,11 +146,11 @@ pub struct YoroGlImages {
     pub struct_size: u32,
     /// Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another
     /// target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Texture filters
-    /// and samplers have no effect. With edges other than YORO_EDGES_HARD it is the resolved image, with values between
-    /// 0 and 1.
+    /// and samplers have no effect. Of a multisampled image, give the resolved one.
     pub color_texture: u32,
     /// Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as
-    /// depth) or red float format. With YORO_EDGES_MULTISAMPLE, a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+    /// depth) or red float format. Of a multisampled image, give the depth of each pixel's nearest sample. Averaged
+    /// depth belongs to no surface, and causes halos.
     pub depth_texture: u32,
     /// The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written, and with
     /// YORO_OUTPUT_DEPTH its depth attachment. None of the textures above may be attached to it.
@@ -167,9 +159,6 @@ pub struct YoroGlImages {
     pub x: u32,
     /// First row of the synthesized image in the framebuffer, counted from the bottom.
     pub y: u32,
-    /// With YORO_EDGES_MULTISAMPLE, the name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or
-    /// 0 if it no longer exists. Otherwise 0.
-    pub sample_color_texture: u32,
     /// First column of the rendered part in its textures. This field and the next three are for YORO_GL_SOURCE_PARTS,
     /// and otherwise 0.
     pub source_x: u32,
@@ -182,17 +171,9 @@ pub struct YoroGlImages {
     /// The layer of both textures for YORO_GL_SOURCE_LAYERS, otherwise 0. To draw into a layer, attach it to the
     /// framebuffer with glFramebufferTextureLayer.
     pub layer: u32,
-    /// The history, for contexts with `history`; otherwise 0. The name of a GL_TEXTURE_2D of any size with the colour
-    /// of a rendered image of the synthesized eye, from this frame or earlier ones. Disocclusions are filled from it.
-    /// It must show only what the source shows, and nothing that is drawn over both eyes after synthesis.
-    pub history_color_texture: u32,
-    /// The depth of that image, of the same size, with one value per pixel and the planes and encoding of the source.
-    pub history_depth_texture: u32,
-    /// The views of the history's strips. NULL: the history is not used.
-    pub strips: *const YoroStrips,
 }
 
-versioned!(YoroGlImages since source_x);
+versioned!(YoroGlImages);
 
 /// Allocates the buffers for images of these sizes, so that the first yoro_gl_synthesize need not. Does nothing if the
 /// sizes have not changed.
@@ -258,8 +239,7 @@ pub unsafe extern "C" fn yoro_gl_synthesize(
             gl.passes.eyes()?;
             let warp = gl.fitting(|| read_warp(warp))?;
             let images = versioned::read(images, "images")?;
-            let strips = read_strips(images.strips)?;
-            gl.synthesize(warp.sizes(), &images, strips, |passes, source, target| {
+            gl.synthesize(warp.sizes(), &images, |passes, source, target| {
                 Ok(passes.eyes()?.synthesize(source, &warp, target)?)
             })
         })
@@ -286,8 +266,7 @@ pub unsafe extern "C" fn yoro_gl_synthesize_pose(
             gl.passes.pose()?;
             let warp = gl.fitting(|| read_pose_warp(warp))?;
             let images = versioned::read(images, "images")?;
-            let strips = read_strips(images.strips)?;
-            gl.synthesize(warp.sizes(), &images, strips, |passes, source, target| {
+            gl.synthesize(warp.sizes(), &images, |passes, source, target| {
                 Ok(passes.pose()?.synthesize(source, &warp, target)?)
             })
         })
@@ -308,7 +287,7 @@ unsafe fn enter_gl(
 pub(crate) struct Gl {
     context: Rc<Context>,
     passes: Passes,
-    options: SynthesisOptions,
+    options: Options,
     outputs: Outputs,
     check: bool,
     timed: bool,
@@ -320,14 +299,14 @@ pub(crate) struct Gl {
 
 /// The passes for one kind of warp.
 enum Passes {
-    Eyes(Box<dyn Synthesis>),
+    Eyes(Box<Gather>),
     Pose(Box<AnyView>),
 }
 
 impl Passes {
-    fn eyes(&mut self) -> Result<&mut dyn Synthesis, Failure> {
+    fn eyes(&mut self) -> Result<&mut Gather, Failure> {
         match self {
-            Passes::Eyes(synthesis) => Ok(&mut **synthesis),
+            Passes::Eyes(gather) => Ok(gather),
             Passes::Pose(_) => Err(other_kind(true)),
         }
     }
@@ -344,12 +323,7 @@ impl Gl {
     /// # Safety
     /// A GL context is current, and the loader returns its entry points.
     unsafe fn new(info: &YoroGlInfo) -> Result<Gl, Failure> {
-        if info.reserved != 0 {
-            return Err(Failure::value(format!(
-                "reserved is {}: give 0; earlier versions chose a pipeline here, and only number 0 is left",
-                info.reserved
-            )));
-        }
+        check_reserved("info", &[info.reserved])?;
         let gl_state = match info.state {
             YORO_GL_STATE_LEAVE => GlState::Leave,
             YORO_GL_STATE_PRESERVE => GlState::Preserve,
@@ -359,13 +333,8 @@ impl Gl {
                 )));
             }
         };
-        let (outputs, edges, pose) = (outputs(info.outputs)?, edges(info.edges)?, is_pose(info.warp_kind)?);
-        if pose && (edges != Edges::Hard || info.history == 1) {
-            return Err(Failure::value(
-                "YORO_WARP_KIND_POSE is for YORO_EDGES_HARD without a history: choose these",
-            ));
-        }
-        for (flag, what) in [(info.check, "check"), (info.timed, "timed"), (info.history, "history")] {
+        let (outputs, pose) = (outputs(info.outputs)?, is_pose(info.warp_kind)?);
+        for (flag, what) in [(info.check, "check"), (info.timed, "timed")] {
             if flag > 1 {
                 return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
             }
@@ -385,12 +354,11 @@ impl Gl {
         // SAFETY: the caller guarantees that a context is current and that the loader returns its entry points.
         let context = unsafe { Context::with_loader(entry_points::wrap(load)?, load)? };
         let has = |bit| info.sources & bit != 0;
-        let (parts, layers) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
-        let options =
-            SynthesisOptions { edges, gl_state, parts, array_textures: layers, history: info.history == 1 };
+        let (parts, array_textures) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
+        let options = Options { gl_state, parts, array_textures };
         let passes = match pose {
             true => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
-            false => Passes::Eyes(synthesis::create(&context, &options, outputs)?),
+            false => Passes::Eyes(Box::new(Gather::new(&context, &options, outputs)?)),
         };
         let timed = info.timed == 1;
         if timed {
@@ -429,7 +397,6 @@ impl Gl {
         &mut self,
         [source_size, target_size]: [[u32; 2]; 2],
         images: &YoroGlImages,
-        strips: Option<Strips>,
         draw: impl FnOnce(&mut Passes, Source, &Destination) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let texture = |name: u32, what: &str| {
@@ -438,32 +405,13 @@ impl Gl {
         };
         let color = texture(images.color_texture, "color_texture")?;
         let depth = texture(images.depth_texture, "depth_texture")?;
-        let samples = NonZeroU32::new(images.sample_color_texture).map(glow::NativeTexture);
-        if samples.is_some() && self.options.edges != Edges::Multisample {
-            return Err(Failure::value(
-                "sample_color_texture is for YORO_EDGES_MULTISAMPLE only: set it to 0, or choose those edges",
-            ));
-        }
         let part = self.part(source_size, images)?;
         if images.layer != 0 && !self.options.array_textures {
             return Err(Failure::value(
                 "layer is for YORO_GL_SOURCE_LAYERS only: set it to 0, or choose array textures",
             ));
         }
-        let history = match strips {
-            Some(_) if !self.options.history => {
-                return Err(Failure::value(
-                    "strips are for contexts with history only: set them to NULL, or set history of YoroGlInfo",
-                ));
-            }
-            Some(strips) => Some(History {
-                color: texture(images.history_color_texture, "history_color_texture")?,
-                depth: texture(images.history_depth_texture, "history_depth_texture")?,
-                strips,
-            }),
-            None => None,
-        };
-        let source = Source { samples, part, layer: images.layer, history, ..Source::new(color, depth) };
+        let source = Source { color, depth, part, layer: images.layer };
         let limit = self.context.capabilities().max_texture_size;
         if images.x > limit || images.y > limit {
             return Err(Failure::value(format!(
@@ -536,7 +484,6 @@ impl Backend for Gl {
             passes.map(|time| time.time.as_nanos() as u64).sum()
         };
         Ok((!self.times.is_empty()).then(|| YoroTimes {
-            split_ns: of("split"),
             tiles_ns: of("tiles"),
             spans_ns: of("spans"),
             march_ns: of("march"),
@@ -558,8 +505,6 @@ impl Backend for Gl {
             },
             api_major: own.version.0,
             api_minor: own.version.1,
-            reserved: 0,
-            compute: own.compute.into(),
             software: own.software.into(),
             max_image_size: own.max_texture_size,
             buffer_bytes: self.context.texture_bytes() as u64,

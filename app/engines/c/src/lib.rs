@@ -23,7 +23,6 @@ mod matrices;
 mod context;
 
 mod choice;
-mod history;
 mod pose;
 
 mod gl;
@@ -37,7 +36,6 @@ pub use choice::*;
 pub use context::*;
 pub use eyes::*;
 pub use gl::*;
-pub use history::*;
 pub use matrices::*;
 pub use pose::*;
 pub use result::*;

@@ -43,7 +43,7 @@ pub struct YoroMatrices {
     pub reserved: u32,
 }
 
-versioned!(YoroMatrices since flags);
+versioned!(YoroMatrices);
 
 /// Computes the view to render, and the mapping of its pixels to the other eye. The resulting matrices use the same
 /// world, clip volume and units as the given ones. Poses are in metres.

@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 
 use yoro::eyes::EyesError;
-use yoro::gl::GlError;
+use yoro::opengl::GlError;
 
 /// The result of a function: YORO_OK, or one of the negative YORO_ERROR_ codes.
 pub type YoroResult = i32;

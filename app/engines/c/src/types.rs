@@ -1,7 +1,6 @@
 //! Versions, and the small types that the structures consist of.
 
 use yoro::eyes::{DepthConvention, Eye};
-use yoro::synthesis::Edges;
 
 use crate::result::Failure;
 
@@ -55,35 +54,11 @@ pub const YORO_ROWS_UP: YoroRows = 0;
 /// Row 0 is at the top: Vulkan, Direct3D, image files.
 pub const YORO_ROWS_DOWN: YoroRows = 1;
 
-/// The kind of source images, by how they represent edges: the pixels that show more than one surface. Never pass depth
-/// that was averaged over samples. It belongs to no surface, and causes halos.
-pub type YoroEdges = u32;
-/// One sample per pixel, of colour and depth.
-pub const YORO_EDGES_HARD: YoroEdges = 0;
-/// Colour resolved from several samples, and depth of the nearest of them.
-pub const YORO_EDGES_NEAREST: YoroEdges = 1;
-/// Colour resolved from several samples, depth of the first of them: the result of drivers that resolve depth.
-pub const YORO_EDGES_SAMPLE: YoroEdges = 2;
-/// Colour resolved from 2 or 4 samples in the standard positions, depth of all samples and, if it still exists, colour
-/// of all samples. This gives the best image.
-pub const YORO_EDGES_MULTISAMPLE: YoroEdges = 3;
-
-pub(crate) fn edges(edges: YoroEdges) -> Result<Edges, Failure> {
-    match edges {
-        YORO_EDGES_HARD => Ok(Edges::Hard),
-        YORO_EDGES_NEAREST => Ok(Edges::Nearest),
-        YORO_EDGES_SAMPLE => Ok(Edges::Sample),
-        YORO_EDGES_MULTISAMPLE => Ok(Edges::Multisample),
-        other => Err(Failure::value(format!("{other} is no kind of edges: give a YORO_EDGES_ constant"))),
-    }
-}
-
 /// The kind of warp that a context is created for.
 pub type YoroWarpKind = u32;
 /// Between two parallel eyes, with a YoroWarp.
 pub const YORO_WARP_KIND_EYES: YoroWarpKind = 0;
-/// To a view in any pose near the rendered one, with a YoroPoseWarp. Only with YORO_EDGES_HARD and without a history.
-/// If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
+/// To a view in any pose near the rendered one, with a YoroPoseWarp. If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
 pub const YORO_WARP_KIND_POSE: YoroWarpKind = 1;
 
 /// True for YORO_WARP_KIND_POSE.

@@ -20,20 +20,13 @@ pub(crate) unsafe trait Versioned: Copy {
     const FIRST_SIZE: usize;
 }
 
-/// Implements [`Versioned`] for a structure. `since` is the first field that was added after the structure's first
-/// version. Without it the structure has not grown yet.
+/// Implements [`Versioned`] for a structure that has not grown yet.
 macro_rules! versioned {
     ($name:ident) => {
-        versioned!($name, size_of::<$name>());
-    };
-    ($name:ident since $field:ident) => {
-        versioned!($name, std::mem::offset_of!($name, $field));
-    };
-    ($name:ident, $first_size:expr) => {
         // SAFETY: a u32, followed by numbers and nullable pointers.
         unsafe impl crate::versioned::Versioned for $name {
             const NAME: &'static str = stringify!($name);
-            const FIRST_SIZE: usize = $first_size;
+            const FIRST_SIZE: usize = size_of::<$name>();
         }
     };
 }

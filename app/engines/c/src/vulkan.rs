@@ -3,12 +3,11 @@
 mod device;
 mod types;
 
-use yoro::synthesis::{Strips, WarpKind};
+use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::vk;
-use yoro::vulkan::{Frame, HistoryImages, Pipeline, SourceId, SourceImages, TargetId, TargetImages, Uses};
+use yoro::vulkan::{Frame, Pipeline, SourceId, SourceImages, TargetId, TargetImages, Uses};
 
 use crate::context::{YoroContext, create, enter_as, write_bytes};
-use crate::history::read_strips;
 use crate::pose::{YoroPoseWarp, read_pose_warp};
 use crate::result::{Failure, YORO_ERROR_NULL, YoroResult};
 use crate::types::other_kind;
@@ -37,8 +36,8 @@ pub unsafe extern "C" fn yoro_vk_create(
     unsafe { create(info, context, |info| info.messages, |info| Vulkan::new(info)) }
 }
 
-/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes, formats and edges
-/// of its options. Drivers add padding. For an existing context, call yoro_capabilities.
+/// Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes in its
+/// options. Drivers add padding. For an existing context, call yoro_capabilities.
 ///
 /// Call it from any thread. It needs none of the handles in the options.
 ///
@@ -74,28 +73,9 @@ pub unsafe extern "C" fn yoro_vk_register_source(
             let images = SourceImages {
                 color: source.color.checked("color", true)?,
                 depth: source.depth.checked("depth", true)?,
-                sample_color: if source.sample_color.image == vk::Image::null() {
-                    None
-                } else {
-                    Some(source.sample_color.checked("sample_color", true)?)
-                },
                 size: [source.width, source.height],
-                history: if source.history_color.image == vk::Image::null() {
-                    None
-                } else {
-                    Some(HistoryImages {
-                        color: source.history_color.checked("history's colour", true)?,
-                        depth: source.history_depth.checked("history's depth", true)?,
-                        size: [source.history_width, source.history_height],
-                    })
-                },
             };
-            let id = of_passes!(&mut vulkan.passes, register_source(&images))?.to_raw();
-            if images.sample_color.is_some() {
-                vulkan.with_samples.push(id);
-            }
-            vulkan.with_history.extend(images.history.map(|history| (id, history.size[1])));
-            Ok(id)
+            Ok(of_passes!(&mut vulkan.passes, register_source(&images))?.to_raw())
         })
     }
 }
@@ -141,8 +121,6 @@ pub unsafe extern "C" fn yoro_vk_release_source(context: *mut YoroContext, id: Y
     unsafe {
         enter_vulkan(context, |vulkan| {
             of_passes!(&mut vulkan.passes, release_source(SourceId::from_raw(id)));
-            vulkan.with_samples.retain(|with| *with != id);
-            vulkan.with_history.retain(|(with, _)| *with != id);
             Ok(())
         })
     }
@@ -165,7 +143,7 @@ pub unsafe extern "C" fn yoro_vk_release_target(context: *mut YoroContext, id: Y
 }
 
 /// Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it. Records
-/// barriers and three draws with YORO_EDGES_HARD, four with other edges. Call it after recording the opaque objects of
+/// barriers and three draws. Call it after recording the opaque objects of
 /// the rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
 /// submits nothing, and does not wait.
 ///
@@ -197,7 +175,7 @@ pub unsafe extern "C" fn yoro_vk_record(
             check_commands(commands)?;
             // The core counts a warp's rows from the bottom, while row 0 of Vulkan's images is at the top.
             let warp = read_warp(warp)?.rows_from_top();
-            let (frame, uses) = vulkan.frame(frame, warp.target_size)?;
+            let (frame, uses) = vulkan.frame(frame)?;
             match &mut vulkan.passes {
                 Passes::Eyes(gather) => record(gather, commands, &frame, &warp, uses.as_ref()),
                 Passes::Pose(_) => Err(other_kind(true)),
@@ -228,7 +206,7 @@ pub unsafe extern "C" fn yoro_vk_record_pose(
             check_commands(commands)?;
             // As above.
             let warp = read_pose_warp(warp)?.rows_from_top();
-            let (frame, uses) = vulkan.frame(frame, warp.target_size)?;
+            let (frame, uses) = vulkan.frame(frame)?;
             match &mut vulkan.passes {
                 Passes::Pose(any_view) => record(any_view, commands, &frame, &warp, uses.as_ref()),
                 Passes::Eyes(_) => Err(other_kind(false)),
@@ -264,36 +242,25 @@ unsafe fn record<W: WarpKind>(
 }
 
 impl Vulkan {
-    /// Reads a frame for a target of this size. Returns the uses of its images only if the frame has them.
+    /// Reads a frame. Returns the uses of its images only if the frame has them.
     ///
     /// # Safety
     /// `frame` is null or points to as many bytes as it states, and so do the pointers in it.
-    unsafe fn frame(
-        &self,
-        frame: *const YoroVkFrame,
-        target_size: [u32; 2],
-    ) -> Result<(Frame, Option<Uses>), Failure> {
+    unsafe fn frame(&self, frame: *const YoroVkFrame) -> Result<(Frame, Option<Uses>), Failure> {
         // SAFETY: same contract.
         unsafe {
             let frame = versioned::read(frame, "frame")?;
             check_reserved("frame", &[frame.reserved])?;
-            let former = self.with_history.iter().find(|(with, _)| *with == frame.source);
-            let former = former.map(|(_, height)| *height);
-            // Turned like the warp.
-            let turned = |strips: Strips| strips.rows_turned(target_size[1], former.unwrap_or_default());
-            let history = read_strips(frame.strips)?.map(turned);
             let uses = if frame.uses.is_null() {
                 None
             } else {
-                let has = [self.with_samples.contains(&frame.source), former.is_some()];
-                Some(versioned::read(frame.uses, "uses")?.checked(has, self.writes_depth)?)
+                Some(versioned::read(frame.uses, "uses")?.checked(self.writes_depth)?)
             };
             let frame = Frame {
                 source: SourceId::from_raw(frame.source),
                 source_origin: [frame.source_x, frame.source_y],
                 target: TargetId::from_raw(frame.target),
                 target_origin: [frame.target_x, frame.target_y],
-                history,
             };
             Ok((frame, uses))
         }

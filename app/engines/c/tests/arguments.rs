@@ -326,7 +326,6 @@ fn impossible_contexts_return_their_codes() {
     assert_eq!(create(&YoroGlInfo { outputs: 8, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { state: 2, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { check: 2, ..info }), YORO_ERROR_VALUE);
-    assert_eq!(create(&YoroGlInfo { edges: 4, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { loader: None, ..info }), YORO_ERROR_NULL);
     assert_eq!(create(&YoroGlInfo { loader: Some(load_nothing), ..info }), YORO_ERROR_NO_CONTEXT);
     assert_eq!(create(&info), YORO_ERROR_NO_CONTEXT);
@@ -362,13 +361,14 @@ fn wrong_images_return_their_codes() {
     let (target, target_depth) =
         (plane(glow::RGBA8, target_size), plane(glow::DEPTH_COMPONENT24, target_size));
     // SAFETY: the context is current and the textures are its own.
-    let (whole, own_color, own_depth, flat, array) = unsafe {
+    let (whole, own_color, own_depth, flat, array, samples) = unsafe {
         (
             framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, target), (glow::DEPTH_ATTACHMENT, target_depth)]),
             framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, color), (glow::DEPTH_ATTACHMENT, target_depth)]),
             framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, target), (glow::DEPTH_ATTACHMENT, depth)]),
             framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, target)]),
             texture(gl, glow::TEXTURE_2D_ARRAY, glow::RGBA8, size),
+            texture(gl, glow::TEXTURE_2D_MULTISAMPLE, glow::DEPTH_COMPONENT24, size),
         )
     };
     let mut good: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
@@ -396,6 +396,7 @@ fn wrong_images_return_their_codes() {
         (&|i| i.color_texture = array, YORO_ERROR_FORMAT),
         (&|i| i.color_texture = depth, YORO_ERROR_FORMAT),
         (&|i| i.color_texture = plane(glow::RGBA8UI, size), YORO_ERROR_FORMAT),
+        (&|i| i.depth_texture = samples, YORO_ERROR_FORMAT),
         (&|i| i.color_texture = plane(glow::RGBA8, [8, 8]), YORO_ERROR_FORMAT),
         (&|i| i.depth_texture = color, YORO_ERROR_FORMAT),
         (&|i| i.depth_texture = target_depth, YORO_ERROR_FORMAT),
@@ -434,53 +435,4 @@ fn wrong_images_return_their_codes() {
         .unwrap();
     // SAFETY: made above, destroyed once.
     assert_eq!(unsafe { yoro_destroy(context) }, YORO_OK);
-}
-
-#[test]
-fn wrong_anti_aliased_images_return_their_codes() {
-    let headless = Headless::open(Backend::Egl).unwrap();
-    let gl = headless.gl().raw();
-    let views = views_of(&good_eyes()).unwrap();
-    let (size, target_size) = ([views.source.width, views.source.height], [160, 120]);
-    let made = |target, format, size| {
-        // SAFETY: the context is current.
-        unsafe { texture(gl, target, format, size) }
-    };
-    let color = made(glow::TEXTURE_2D, glow::RGBA8, size);
-    let depth = made(glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, size);
-    let sample_color = made(glow::TEXTURE_2D_MULTISAMPLE, glow::RGBA8, size);
-    let sample_depth = made(glow::TEXTURE_2D_MULTISAMPLE, glow::DEPTH_COMPONENT24, size);
-    let small = made(glow::TEXTURE_2D_MULTISAMPLE, glow::RGBA8, [8, 8]);
-    let target = made(glow::TEXTURE_2D, glow::RGBA8, target_size);
-    // SAFETY: the context is current and the texture is its own.
-    let target = unsafe { framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, target)]) };
-    // Edges, depth and colour of samples, code.
-    let table = [
-        (YORO_EDGES_NEAREST, depth, 0, YORO_OK),
-        (YORO_EDGES_SAMPLE, depth, 0, YORO_OK),
-        (YORO_EDGES_MULTISAMPLE, sample_depth, 0, YORO_OK),
-        (YORO_EDGES_MULTISAMPLE, sample_depth, sample_color, YORO_OK),
-        (YORO_EDGES_NEAREST, sample_depth, 0, YORO_ERROR_FORMAT),
-        (YORO_EDGES_MULTISAMPLE, depth, 0, YORO_ERROR_FORMAT),
-        (YORO_EDGES_MULTISAMPLE, sample_depth, color, YORO_ERROR_FORMAT),
-        (YORO_EDGES_MULTISAMPLE, sample_depth, small, YORO_ERROR_FORMAT),
-        (YORO_EDGES_MULTISAMPLE, sample_depth, sample_depth, YORO_ERROR_FORMAT),
-        (YORO_EDGES_HARD, depth, sample_color, YORO_ERROR_VALUE),
-    ];
-    for (i, (edges, depth_texture, sample_color_texture, expected)) in table.into_iter().enumerate() {
-        let mut noted = Vec::new();
-        let info = YoroGlInfo { edges, ..gl_info(&mut noted) };
-        let mut context = null_mut();
-        let mut images: YoroGlImages = zeroed(|i: &mut YoroGlImages| &mut i.struct_size);
-        (images.color_texture, images.depth_texture, images.framebuffer) = (color, depth_texture, target);
-        images.sample_color_texture = sample_color_texture;
-        // SAFETY: complete structures, a live, current context, and checks are on.
-        unsafe {
-            assert_eq!(yoro_gl_create(&info, &mut context), YORO_OK);
-            let code = yoro_gl_synthesize(context, &views.warp, &images);
-            assert_eq!(yoro_destroy(context), YORO_OK);
-            assert_eq!(code, expected, "row {i}: {noted:?}");
-        }
-        assert_eq!(headless.gl().take_errors(), None, "row {i}");
-    }
 }

@@ -128,16 +128,6 @@ fn the_warp_of_accepted_eyes_is_accepted() {
     assert_eq!(unsafe { yoro_destroy(context) }, YORO_OK);
 }
 
-/// A program built against the first version has no flags.
-#[test]
-fn matrices_without_flags_keep_their_size() {
-    let eyes = good_eyes();
-    let mut matrices = matrices_of(&views_of(&eyes).unwrap(), &eyes);
-    matrices.struct_size = std::mem::offset_of!(YoroMatrices, flags) as u32;
-    matrices.flags = 77;
-    views_of_matrices(&matrices).unwrap();
-}
-
 #[test]
 fn sentences_name_what_is_wrong() {
     let sentence = |change: &dyn Fn(&mut YoroEyes)| {

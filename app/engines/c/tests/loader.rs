@@ -65,15 +65,13 @@ fn create(info: &YoroGlInfo, noted: &mut Noted) -> Result<*mut YoroContext, (Yor
 }
 
 /// Creates textures of the size of the views, and a framebuffer of the size of the eyes.
-fn images(gl: &glow::Context, edges: YoroEdges) -> (YoroViews, YoroGlImages) {
+fn images(gl: &glow::Context) -> (YoroViews, YoroGlImages) {
     let views = views_of(&good_eyes()).unwrap();
     let (size, target_size) = ([views.source.width, views.source.height], [160, 120]);
     // SAFETY: the context is current.
     let made = |target, format, size| unsafe { texture(gl, target, format, size) };
     let color = made(glow::TEXTURE_2D, glow::RGBA8, size);
-    let samples =
-        if edges == YORO_EDGES_MULTISAMPLE { glow::TEXTURE_2D_MULTISAMPLE } else { glow::TEXTURE_2D };
-    let depth = made(samples, glow::DEPTH_COMPONENT24, size);
+    let depth = made(glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, size);
     let target = made(glow::TEXTURE_2D, glow::RGBA8, target_size);
     let target_depth = made(glow::TEXTURE_2D, glow::DEPTH_COMPONENT24, target_size);
     let attachments = [(glow::COLOR_ATTACHMENT0, target), (glow::DEPTH_ATTACHMENT, target_depth)];
@@ -93,20 +91,17 @@ fn the_needed_functions_are_enough() {
     for &backend in backends() {
         with_context(backend, |gl, desktop| {
             IS_LOADED.set(if desktop { is_needed::<true> } else { is_needed::<false> });
-            for edges in [YORO_EDGES_HARD, YORO_EDGES_NEAREST, YORO_EDGES_MULTISAMPLE] {
-                let (views, images) = images(gl, edges);
-                for state in [YORO_GL_STATE_LEAVE, YORO_GL_STATE_PRESERVE] {
-                    let mut noted = Vec::new();
-                    let outputs = YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB;
-                    let info =
-                        YoroGlInfo { edges, state, outputs, loader: Some(load_some), ..gl_info(&mut noted) };
-                    let context = create(&info, &mut noted).unwrap();
-                    // SAFETY: alive until the last line, complete structures, a current context.
-                    unsafe {
-                        assert_eq!(yoro_gl_prepare(context, &views.warp), YORO_OK, "{noted:?}");
-                        assert_eq!(yoro_gl_synthesize(context, &views.warp, &images), YORO_OK, "{noted:?}");
-                        assert_eq!(yoro_destroy(context), YORO_OK);
-                    }
+            let (views, images) = images(gl);
+            for state in [YORO_GL_STATE_LEAVE, YORO_GL_STATE_PRESERVE] {
+                let mut noted = Vec::new();
+                let outputs = YORO_OUTPUT_DEPTH | YORO_OUTPUT_SRGB;
+                let info = YoroGlInfo { state, outputs, loader: Some(load_some), ..gl_info(&mut noted) };
+                let context = create(&info, &mut noted).unwrap();
+                // SAFETY: alive until the last line, complete structures, a current context.
+                unsafe {
+                    assert_eq!(yoro_gl_prepare(context, &views.warp), YORO_OK, "{noted:?}");
+                    assert_eq!(yoro_gl_synthesize(context, &views.warp, &images), YORO_OK, "{noted:?}");
+                    assert_eq!(yoro_destroy(context), YORO_OK);
                 }
             }
         });
@@ -172,7 +167,7 @@ fn a_driver_without_memory_has_its_own_code() {
         let mut noted = Vec::new();
         let info = YoroGlInfo { loader: Some(load_full), check: 0, ..gl_info(&mut noted) };
         let context = create(&info, &mut noted).unwrap();
-        let (views, images) = images(gl, YORO_EDGES_HARD);
+        let (views, images) = images(gl);
         // SAFETY: alive until the last line, complete structures, a current context.
         unsafe {
             IS_FULL.set(true);
@@ -194,7 +189,7 @@ fn a_thread_without_a_context_is_told() {
         let mut noted = Vec::new();
         let info = YoroGlInfo { loader: Some(load_some), ..gl_info(&mut noted) };
         let context = create(&info, &mut noted).unwrap();
-        let (views, images) = images(gl, YORO_EDGES_HARD);
+        let (views, images) = images(gl);
         let shared = Shared(context, views, images);
         let codes = std::thread::spawn(move || {
             let Shared(context, views, images) = { shared };

@@ -6,14 +6,13 @@ mod common;
 use std::num::NonZeroU32;
 use std::ptr::{null, null_mut};
 
-use common::{framebuffer, gl_info, good_eyes, messages, texture, views_of, zeroed};
+use common::{framebuffer, gl_info, good_eyes, texture, views_of, zeroed};
 use glam::{DVec3, EulerRot, Quat};
 use glow::HasContext;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, HeadMotion, Pose, PoseWarp, View};
-use yoro::gl::Destination;
-use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
+use yoro::opengl::{AnyView, Destination, Options, Outputs, Source};
 use yoro_c::*;
 use yoro_context::{Backend, Headless};
 
@@ -204,8 +203,6 @@ fn the_picture_on_opengl_is_the_cores() {
     let target = view([0.03, 1.62, -0.1], [0.03, 0.02, 0.05], SIZE);
     let warp = warp_of(&poses(&source, &target, YORO_ROWS_UP)).unwrap();
     assert_eq!(create(&YoroGlInfo { warp_kind: 2, ..info }), Err(YORO_ERROR_VALUE));
-    assert_eq!(create(&YoroGlInfo { edges: YORO_EDGES_NEAREST, ..info }), Err(YORO_ERROR_VALUE));
-    assert_eq!(create(&YoroGlInfo { history: 1, ..info }), Err(YORO_ERROR_VALUE));
     let context = create(&info).unwrap();
     // SAFETY: complete structures, a live, current context, and checks are on.
     unsafe {
@@ -215,7 +212,7 @@ fn the_picture_on_opengl_is_the_cores() {
         let got = read(gl, given.framebuffer);
 
         let outputs = Outputs { depth: true, ..Outputs::default() };
-        let mut any_view = AnyView::new(headless.gl(), &SynthesisOptions::default(), outputs).unwrap();
+        let mut any_view = AnyView::new(headless.gl(), &Options::default(), outputs).unwrap();
         let name = |name| glow::NativeTexture(NonZeroU32::new(name).unwrap());
         let textures = Source::new(name(given.color_texture), name(given.depth_texture));
         let into = images(gl, [8, 8]).framebuffer;
@@ -263,8 +260,4 @@ fn the_picture_on_opengl_is_the_cores() {
         assert_eq!(yoro_gl_synthesize_pose(context, &none, &given), YORO_ERROR_VALUE);
         assert_eq!(yoro_destroy(context), YORO_OK);
     }
-    let mut noted = Vec::new();
-    let told = messages(&mut noted);
-    assert_eq!(create(&YoroGlInfo { history: 1, messages: told, ..info }), Err(YORO_ERROR_VALUE));
-    assert!(noted[0].1.contains("YORO_EDGES_HARD"), "{noted:?}");
 }

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, PoseWarp, View};
-use yoro::synthesis::{Places, PoseUniforms, Strips};
+use yoro::synthesis::PoseUniforms;
+use yoro::synthesis::backend::Places;
 
 /// Compilers, with their language and its standard.
 const COMPILERS: [[&str; 3]; 4] =
@@ -274,69 +275,22 @@ fn the_kits_shaders_for_vulkan_compile() {
         let compiled = kit.path().join("compiled");
         run(Command::new(COMPILER).args(["-V", "-o"]).arg(compiled).args(macros).arg(kit.path().join(file)));
     };
-    let settings: [&[&str]; 4] =
-        [&[], &["-DWRITE_DEPTH"], &["-DWRITE_DEPTH", "-DSHORT_WAY"], &["-DHISTORY", "-DSHORT_WAY"]];
+    let settings: [&[&str]; 2] = [&[], &["-DWRITE_DEPTH"]];
     for (shader, settings) in [
         ("screen.vert", &settings[..1]),
         ("march.vert", &settings[..1]),
-        ("tiles.frag", &settings[..]),
-        ("spans.frag", &settings[..]),
+        ("tiles.frag", &settings[..1]),
+        ("spans.frag", &settings[..1]),
         ("march.frag", &settings[..]),
         ("any_view_tiles.frag", &settings[..1]),
         ("any_view_spans.frag", &settings[..1]),
-        ("any_view_march.frag", &settings[..2]),
+        ("any_view_march.frag", &settings[..]),
     ] {
         settings.iter().for_each(|macros| compile(&format!("vulkan/{shader}"), macros));
     }
     for shader in ["any_view_tiles.frag", "any_view_spans.frag", "any_view_march.frag"] {
+        // The other shaders for OpenGL ES are compiled where they are used.
         run(Command::new(COMPILER).arg(kit.path().join("gles").join(shader)));
-    }
-    // The shaders for OpenGL ES are compiled where they are used, except for these.
-    let text = std::fs::read_to_string(kit.path().join("gles/march.frag")).unwrap();
-    let with_history = kit.path().join("history.frag");
-    std::fs::write(&with_history, text.replacen('\n', "\n#define HISTORY\n", 1)).unwrap();
-    run(Command::new(COMPILER).arg(with_history));
-}
-
-/// The kit's relation to a history is the core's, with rows from the bottom and from the top.
-#[test]
-fn the_kit_and_the_core_find_the_same_place_in_a_history() {
-    const TEXT: &str = "#include \"yoro_kit.h\"
-        #include <stdio.h>
-        int main(void) {
-          YoroKitEyes eyes = {{{-0.8f, 0.7f, 0.6f, -0.5f}, {-0.7f, 0.8f, 0.6f, -0.5f}}, 0.063f, 0.1f, 50, 0, 1, 320, 240, 1.0f, 0};
-          const YoroKitPose now = {{0, 0.0998334f, 0, 0.9950042f}, {1, 1.6f, -20}};
-          const YoroKitPose then = {{0.0499792f, 0, 0, 0.9987503f}, {1.02f, 1.55f, -20.03f}};
-          const YoroKitPose *strips[2] = {NULL, &then};
-          YoroKitStrips block;
-          int failed = yoro_kit_strips(&eyes, &now, strips, 9, 80, 60, &block);
-          for (eyes.rows_down = 0; eyes.rows_down < 2; ++eyes.rows_down) {
-            failed |= !yoro_kit_strips(&eyes, &now, strips, 2, 80, 60, &block) || block.history_strips != 2;
-            for (int strip = 0; strip < 2; ++strip)
-              for (int i = 0; i < 16; ++i) printf(\"%.9g\\n\", (double)block.to_history[strip][i]);
-          }
-          return failed;
-        }";
-    let Some(printed) = of_kit(TEXT, &[]) else { return };
-    let numbers: Vec<f32> = printed.lines().map(|line| line.parse().unwrap()).collect();
-    let view = |orientation: glam::Quat, position: [f32; 3], size| View {
-        pose: Pose { orientation, position: position.into() },
-        frustum: Frustum { left: -0.8, right: 0.7, bottom: -0.5, top: 0.6 },
-        depth: DepthRange { near: 0.1, far: 50.0, convention: DepthConvention::Standard },
-        size,
-    };
-    let now = view(glam::Quat::from_rotation_y(0.2), [1.0, 1.6, -20.0], [320, 240]);
-    let then = view(glam::Quat::from_rotation_x(0.1), [1.02, 1.55, -20.03], [80, 60]);
-    let core = Strips::new(&now, &[None, Some(then)]);
-    for (down, own) in numbers.chunks(32).enumerate() {
-        let expected = if down == 1 { core.rows_turned(240, 60) } else { core };
-        assert_eq!(own[..16], [0.0; 16]);
-        let own = glam::Mat4::from_cols_slice(&own[16..]);
-        for pixel in [[10.5, 20.5, 0.95], [200.5, 130.5, 0.99], [310.5, 230.5, 0.5]].map(glam::Vec3::from) {
-            let [got, want] = [own, expected.to_history[1]].map(|matrix| matrix.project_point3(pixel));
-            assert!((got - want).length() < 2e-3, "{pixel}: {got}, {want}");
-            assert!((own * pixel.extend(1.0)).w > 0.0);
-        }
     }
 }
 
@@ -413,13 +367,13 @@ fn the_kits_shaders_for_godot_compile() {
     let kit = tempfile::tempdir().unwrap();
     kit::write(kit.path()).unwrap();
     let mut count = 0;
-    for name in
-        ["tiles", "spans", "march", "march_history", "any_view_tiles", "any_view_spans", "any_view_march"]
-    {
+    for name in ["tiles", "spans", "march", "any_view_tiles", "any_view_spans", "any_view_march"] {
         let text = std::fs::read_to_string(kit.path().join(format!("godot/{name}.glsl"))).unwrap();
         let (versions, stages) = text.split_once("\n#[vertex]\n").unwrap();
         let (vertex, fragment) = stages.split_once("\n#[fragment]\n").unwrap();
-        for line in versions.lines().skip(1) {
+        // Without versions there is one of no name.
+        let lines = versions.lines().skip(1).chain(versions.is_empty().then_some(" = \"\";"));
+        for line in lines {
             let (version, defines) = line.split_once(" = \"").unwrap();
             let defines = defines.strip_suffix("\";").unwrap().replace("\\n", "\n");
             for (stage, text) in [("vert", vertex), ("frag", fragment)] {
@@ -435,7 +389,7 @@ fn the_kits_shaders_for_godot_compile() {
             }
         }
     }
-    assert_eq!(count, 26);
+    assert_eq!(count, 14);
     if !is_here(COMPILER) {
         println!("SKIPPED: {COMPILER} is not here");
     }

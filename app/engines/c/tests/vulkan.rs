@@ -229,11 +229,11 @@ fn uses_memory_and_times_are_those_of_the_core() {
     let info = YoroVkInfo { timed_frames: 1, ..gpu.info() };
     let mut bytes = 0;
     // Neither handles nor a loader are needed.
-    let plan = YoroVkInfo { loader: None, device: vk::Device::null(), edges: YORO_EDGES_NEAREST, ..info };
+    let plan = YoroVkInfo { loader: None, device: vk::Device::null(), ..info };
     // SAFETY: complete structures, and null pointers, which are refused.
     unsafe {
         assert_eq!(yoro_vk_buffer_bytes(&plan, &mut bytes), YORO_OK);
-        assert_eq!(bytes, 4 * (16 + 10) * 16 + 8 * 256 * 128);
+        assert_eq!(bytes, 16 * (16 + 10) * 16);
         assert_eq!(yoro_vk_buffer_bytes(&plan, null_mut()), YORO_ERROR_NULL);
         assert_eq!(yoro_vk_buffer_bytes(null(), &mut bytes), YORO_ERROR_NULL);
     }
@@ -250,7 +250,6 @@ fn uses_memory_and_times_are_those_of_the_core() {
     let discarded = YoroVkState { layout: vk::ImageLayout::UNDEFINED, ..ATTACHMENT };
     let table: &Mistakes<YoroVkUses> = &[
         (&|u| u.struct_size = 3, YORO_ERROR_STRUCT_SIZE),
-        (&|u| u.reserved = 1, YORO_ERROR_VALUE),
         (&|u| u.source_depth.before = discarded, YORO_ERROR_VALUE),
         (&|u| u.target_color.after = discarded, YORO_ERROR_VALUE),
         (&|u| u.target_color.before = discarded, YORO_OK),
@@ -274,50 +273,10 @@ fn uses_memory_and_times_are_those_of_the_core() {
 }
 
 #[test]
-fn a_history_needs_a_context_and_a_source_with_one() {
-    let Some(gpu) = Gpu::open() else { return };
-    let (source, _) = images(&gpu);
-    let former = YoroVkSource {
-        history_width: 256,
-        history_height: 128,
-        history_color: source.color,
-        history_depth: source.depth,
-        ..source
-    };
-    let mut strips = YoroStrips { to_history: [[0.0; 16]; YORO_MOST_STRIPS], count: 1, reserved: [0; 3] };
-    assert_eq!(create(&YoroVkInfo { history: 2, ..gpu.info() }), Err(YORO_ERROR_VALUE));
-    for history in [0, 1] {
-        let context = create(&YoroVkInfo { history, ..gpu.info() }).unwrap();
-        let with = if history == 1 { YORO_OK } else { YORO_ERROR_VALUE };
-        // SAFETY: live handles and complete structures.
-        unsafe {
-            let frame = registered(&gpu, context);
-            let mut id = 0;
-            assert_eq!(yoro_vk_register_source(context, &former, &mut id), with);
-            let mut no_size = former;
-            no_size.history_width = 0;
-            assert_eq!(yoro_vk_register_source(context, &no_size, &mut id), YORO_ERROR_VALUE);
-            let record = |frame: YoroVkFrame| yoro_vk_record(context, gpu.commands, &WARP, &frame);
-            assert_eq!(record(YoroVkFrame { strips: &strips, ..frame }), YORO_ERROR_VALUE);
-            if history == 1 {
-                assert_eq!(record(YoroVkFrame { source: id, strips: &strips, ..frame }), YORO_OK);
-                assert_eq!(record(YoroVkFrame { source: id, ..frame }), YORO_OK);
-                strips.count = 0;
-                assert_eq!(record(YoroVkFrame { source: id, strips: &strips, ..frame }), YORO_ERROR_VALUE);
-            }
-            assert_eq!(yoro_destroy(context), YORO_OK);
-        }
-    }
-}
-
-#[test]
 fn a_context_of_any_pose_records_pose_warps() {
     let Some(gpu) = Gpu::open() else { return };
     let info = YoroVkInfo { warp_kind: YORO_WARP_KIND_POSE, ..gpu.info() };
     assert_eq!(create(&YoroVkInfo { warp_kind: 2, ..info }), Err(YORO_ERROR_VALUE));
-    assert_eq!(create(&YoroVkInfo { reserved_too: 1, ..info }), Err(YORO_ERROR_VALUE));
-    assert_eq!(create(&YoroVkInfo { history: 1, ..info }), Err(YORO_ERROR_VALUE));
-    assert_eq!(create(&YoroVkInfo { edges: YORO_EDGES_SAMPLE, ..info }), Err(YORO_ERROR_VALUE));
     // Both views have the same orientation; the target is a little to the right.
     let warp = YoroPoseWarp {
         source_width: 200,
@@ -353,25 +312,6 @@ fn a_context_of_any_pose_records_pose_warps() {
         gpu.execute();
         assert_eq!(yoro_destroy(context), YORO_OK);
         assert_eq!(yoro_destroy(eyes), YORO_OK);
-    }
-}
-
-/// A program built against the first version knows neither uses nor times.
-#[test]
-fn the_first_version_of_structures_is_taken() {
-    use std::mem::offset_of;
-    // The values of `sizeof` in that version.
-    assert_eq!((offset_of!(YoroVkFrame, reserved), offset_of!(YoroVkInfo, timed_frames)), (28, 104));
-    let Some(gpu) = Gpu::open() else { return };
-    let info = YoroVkInfo { struct_size: 104, timed_frames: 9, history: 9, ..gpu.info() };
-    let context = create(&info).unwrap();
-    let frame =
-        YoroVkFrame { struct_size: 28, reserved: 9, uses: std::ptr::dangling(), ..registered(&gpu, context) };
-    // SAFETY: live handles; the command buffer is never submitted.
-    unsafe {
-        assert_eq!(yoro_vk_record(context, gpu.commands, &WARP, &frame), YORO_OK);
-        gpu.device.end_command_buffer(gpu.commands).unwrap();
-        assert_eq!(yoro_destroy(context), YORO_OK);
     }
 }
 
@@ -420,8 +360,6 @@ fn wrong_vulkan_arguments_return_their_codes() {
         (&|i| i.max_target_height = 0, YORO_ERROR_VALUE),
         (&|i| i.reserved = 7, YORO_ERROR_VALUE),
         (&|i| i.max_target_height = u32::MAX, YORO_ERROR_TOO_LARGE),
-        (&|i| i.edges = 4, YORO_ERROR_VALUE),
-        (&|i| (i.edges, i.samples) = (YORO_EDGES_MULTISAMPLE, 3), YORO_ERROR_UNSUPPORTED),
     ];
     for (i, (change, expected)) in table.iter().enumerate() {
         let mut wrong = info;
@@ -440,15 +378,6 @@ fn wrong_vulkan_arguments_return_their_codes() {
     assert_eq!(unsafe { yoro_capabilities(context, &mut capabilities) }, YORO_OK);
     assert_eq!((capabilities.api, capabilities.buffer_bytes), (YORO_API_VULKAN, 16 * (16 + 10) * 16));
     assert!(capabilities.device[0] != 0);
-    for (edges, samples) in [(YORO_EDGES_NEAREST, 0), (YORO_EDGES_SAMPLE, 9), (YORO_EDGES_MULTISAMPLE, 4)] {
-        let anti_aliased = create(&YoroVkInfo { edges, samples, ..info }).unwrap();
-        // SAFETY: alive until the last line, and a complete structure.
-        unsafe {
-            assert_eq!(yoro_capabilities(anti_aliased, &mut capabilities), YORO_OK);
-            assert_eq!(capabilities.buffer_bytes, 4 * (16 + 10) * 16 + 8 * 256 * 128);
-            assert_eq!(yoro_destroy(anti_aliased), YORO_OK);
-        }
-    }
 
     let (source, target) = images(&gpu);
     let color = source.color;
@@ -468,8 +397,6 @@ fn wrong_vulkan_arguments_return_their_codes() {
         (&|s| s.color.after = discarded, YORO_ERROR_VALUE),
         // Access without stages.
         (&|s| s.color.before.stages = vk::PipelineStageFlags::empty(), YORO_ERROR_VALUE),
-        // Multisampled colour with hard edges.
-        (&|s| s.sample_color = color, YORO_ERROR_VALUE),
     ];
     for (i, (change, expected)) in sources.iter().enumerate() {
         let mut wrong = source;

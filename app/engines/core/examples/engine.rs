@@ -9,16 +9,15 @@ use std::path::Path;
 use glam::{Quat, Vec3};
 use glow::HasContext;
 use image::{Rgb, RgbImage};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, View};
-use yoro::gl::Destination;
-use yoro::synthesis::{self, Outputs, Source, SynthesisOptions};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, MEAN_IPD, Pose, View};
+use yoro::opengl::{Destination, Gather, Options, Outputs, Source};
 use yoro_context::{Backend, Headless};
 
 const SIZE: [u32; 2] = [768, 768];
 
 fn main() -> Result<(), Box<dyn Error>> {
     // This stands for the engine's window. An engine has a current context and lends yoro its entry points:
-    //     yoro::gl::Context::new(unsafe { glow::Context::from_loader_function(get_proc_address) })?
+    //     yoro::opengl::Context::new(unsafe { glow::Context::from_loader_function(get_proc_address) })?
     let headless = Headless::open(Backend::Auto)?;
     let gl = headless.gl();
     let engine = Engine::new(gl.raw())?;
@@ -26,14 +25,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Once: all shaders are compiled here. `depth: true` also writes the other eye's depth, for transparent objects and
     // compositors.
     let outputs = Outputs { depth: true, ..Outputs::default() };
-    let mut synthesis = synthesis::create(gl, &SynthesisOptions::default(), outputs)?;
+    let mut gather = Gather::new(gl, &Options::default(), outputs)?;
 
     // Each frame: the poses and frusta of the eyes, and the meaning of the depth buffer. With OpenXR, `poses` and
     // `frusta` come from the two views of xrLocateViews.
     let head = Pose { position: Vec3::new(0.0, 1.6, 2.0), orientation: Quat::from_rotation_y(0.15) };
     let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
     let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
-    let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
+    let pair = EyePair::parallel(head, frustum, MEAN_IPD, depth, SIZE, Eye::Right);
 
     // For example, eyes that are not parallel give an error, as one sentence.
     let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
@@ -47,9 +46,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let textures = Source::new(source.color, source.depth);
     let target =
         Destination { framebuffer: Some(other.framebuffer), origin: [0, 0], size: views.target.size };
-    synthesis.synthesize(textures, &views.warp, &target)?;
+    gather.synthesize(textures, &views.warp, &target)?;
     // The call has changed program, vertex array, texture units 0 to 3, viewport, framebuffer and more: set your own,
-    // or choose `GlState::Preserve` in `SynthesisOptions`. The documentation of `Synthesis` has the table.
+    // or choose `GlState::Preserve` in `Options`. The documentation of `yoro::opengl::Pipeline` has the table.
 
     // The rendered eye's own image is the part of `source` that starts at `dominant_crop`.
     let right = engine.read(&source, views.dominant_crop);

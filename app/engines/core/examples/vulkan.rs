@@ -9,7 +9,7 @@ use std::path::Path;
 use anyhow::{Context as _, Result};
 use glam::Vec3;
 use image::{Rgb, RgbImage};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, View};
+use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, MEAN_IPD, Pose, View};
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Frame, Gather, Host, ImageState, LayerImage, Options, SourceImages, TargetImages};
 
@@ -25,8 +25,14 @@ fn main() -> Result<()> {
     // The eyes' poses, and the meaning of the depth buffer. With OpenXR, poses and frusta are those of the two views.
     let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
     let head = Pose { position: Vec3::new(0.0, 1.6, 2.0), ..Pose::IDENTITY };
-    let pair =
-        EyePair::parallel(head, Frustum::symmetric(75f32.to_radians(), 1.0), 0.063, depth, SIZE, Eye::Right);
+    let pair = EyePair::parallel(
+        head,
+        Frustum::symmetric(75f32.to_radians(), 1.0),
+        MEAN_IPD,
+        depth,
+        SIZE,
+        Eye::Right,
+    );
     let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
 
     // The engine's images: the view to render is wider than the eye, by the guard band.

@@ -7,40 +7,39 @@
 //! ```
 //!
 //! [`eyes`] takes poses and fields of view, and returns the view to render and how its pixels move to the other eye.
-//! [`synthesis`] takes the colour and depth of that view and draws the other eye: on OpenGL (feature `gl`, on by
-//! default) in a context that the caller lends, on Vulkan (feature `vulkan`) into the caller's command buffer.
+//! [`synthesis`] takes the colour and depth of that view and draws the other eye: `opengl` (feature `gl`, on by default)
+//! in a context that the caller lends, `vulkan` (feature `vulkan`) into the caller's command buffer.
 //! [`choice`] measures whether synthesis or two renders are cheaper on this device. This crate knows no scene,
 //! renderer, window, file or command line: an engine brings its own.
 //!
 //! # A frame
 //!
 //! An engine renders [`eyes::SynthesisViews::source`] with its own code, passes colour and depth to
-//! [`synthesis::Synthesis::synthesize`], and gets the other eye in its own framebuffer:
+//! `opengl::Gather::synthesize`, and gets the other eye in its own framebuffer:
 //!
 //! ```no_run
 //! use yoro::eyes::{DepthRange, EyeOptions, GuardBand, Pose, View};
-//! use yoro::gl::{Context, Destination};
-//! use yoro::synthesis::{self, GlState, Outputs, Source, SynthesisOptions};
+//! use yoro::opengl::{Context, Destination, Gather, GlState, Options, Outputs, Source};
 //!
 //! # fn render(_: &View) -> Source { unimplemented!() }
 //! # fn example(glow_context: glow::Context, framebuffer: glow::Framebuffer) -> Result<(), Box<dyn std::error::Error>> {
 //! // Once, with the engine's GL context current:
 //! let gl = Context::new(glow_context)?;
-//! let options = SynthesisOptions { gl_state: GlState::Preserve, ..SynthesisOptions::default() };
-//! let mut pipeline = synthesis::create(&gl, &options, Outputs::default())?;
+//! let options = Options { gl_state: GlState::Preserve, ..Options::default() };
+//! let mut gather = Gather::new(&gl, &options, Outputs::default())?;
 //!
 //! // Each frame: two eyes around the head, one of which the engine renders, a little wider.
 //! let eyes = EyeOptions { ipd: 0.064, depth: DepthRange::PAPER, ..EyeOptions::default() }.pair(Pose::IDENTITY);
 //! let views = eyes.synthesis_views(GuardBand::Distance(1.0))?;
 //! let source: Source = render(&views.source);
 //! let target = Destination { framebuffer: Some(framebuffer), origin: [0, 0], size: views.target.size };
-//! pipeline.synthesize(source, &views.warp, &target)?;
+//! gather.synthesize(source, &views.warp, &target)?;
 //! # Ok(())
 //! # }
 //! ```
 //!
 //! With poses and fields of view from OpenXR, use [`eyes::Frustum::from_fov`] and [`eyes::EyePair`] instead of
-//! [`eyes::EyeOptions`]. The table of [`synthesis::Synthesis`] lists what a call does to the context's state.
+//! [`eyes::EyeOptions`]. The table of `opengl::Pipeline` lists what a call does to the context's state.
 //! `examples/engine.rs` is a complete host.
 //!
 //! 1. Render opaque objects, lighting and tone mapping.
@@ -85,12 +84,9 @@
 
 pub mod choice;
 pub mod eyes;
-/// The types of `yoro-gl` that a host on OpenGL needs: its context in a wrapper, and where to draw.
-#[cfg(feature = "gl")]
-pub mod gl {
-    pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError, PassTime, Profiling};
-}
 pub use glam;
+#[cfg(feature = "gl")]
+pub mod opengl;
 pub mod synthesis;
 #[cfg(feature = "vulkan")]
 pub mod vulkan;

@@ -1,20 +1,18 @@
 //! The GL state of a host's renderer: set for synthesis, saved and restored.
 //!
-//! The table in the documentation of `yoro::synthesis::Synthesis` is the contract that this file keeps.
+//! The table in the documentation of `yoro::opengl::Pipeline` is the contract that this file keeps.
 
 use glow::HasContext;
 
 use crate::{Capabilities, Context, Event, GlApi, GlError, RasterState};
 
 /// The number of texture units in use, starting with unit 0.
-const UNITS: usize = 6;
-/// The units whose textures are filtered: the source's colour and a history's.
-const FILTERED_UNITS: [u32; 2] = [1, 5];
-/// The units with multisample textures: the source's depth and colour.
-const MULTISAMPLE_UNITS: [u32; 2] = [0, 3];
+const UNITS: usize = 4;
+/// The unit whose texture is filtered: the source's colour.
+const FILTERED_UNIT: u32 = 1;
 /// The units with array textures: the source's depth and colour.
 const ARRAY_UNITS: [u32; 2] = [0, 1];
-/// The number of draw buffers in use: colour and, in some passes, a second output.
+/// The number of draw buffers in use: colour and a source map.
 const DRAW_BUFFERS: usize = 2;
 /// EXT_depth_bounds_test.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
@@ -220,8 +218,6 @@ pub struct HostState {
     vertex_array: Option<glow::VertexArray>,
     active_unit: u32,
     textures: [Option<glow::Texture>; UNITS],
-    /// Textures of [`MULTISAMPLE_UNITS`], if the context has multisample textures.
-    multisample_textures: [Option<glow::Texture>; MULTISAMPLE_UNITS.len()],
     /// Textures of [`ARRAY_UNITS`], if the pipeline touches them.
     arrays: Option<[Option<glow::Texture>; ARRAY_UNITS.len()]>,
     samplers: [Option<glow::Sampler>; UNITS],
@@ -229,7 +225,7 @@ pub struct HostState {
 
 impl Context {
     /// Sets all state that a pipeline relies on and does not set in each pass: everything in the table of
-    /// `yoro::synthesis::Synthesis` except program, vertex array, framebuffer, viewport and textures. `draw_buffers` is
+    /// `yoro::opengl::Pipeline` except program, vertex array, framebuffer, viewport and textures. `draw_buffers` is
     /// the number of the target's colour attachments, 1 or 2. If `encode` is true, writes to sRGB framebuffers are
     /// encoded.
     pub fn begin_synthesis(&self, draw_buffers: u32, encode: bool) {
@@ -257,7 +253,7 @@ impl Context {
                 gl.polygon_mode(glow::FRONT_AND_BACK, glow::FILL);
             }
             for unit in 0..UNITS as u32 {
-                let sampler = if FILTERED_UNITS.contains(&unit) { host.linear } else { host.nearest };
+                let sampler = if unit == FILTERED_UNIT { host.linear } else { host.nearest };
                 gl.bind_sampler(unit, Some(sampler));
             }
         }
@@ -309,7 +305,6 @@ impl Context {
                 vertex_array: gl.get_parameter_vertex_array(glow::VERTEX_ARRAY_BINDING),
                 active_unit: integer(glow::ACTIVE_TEXTURE) as u32,
                 textures: [None; UNITS],
-                multisample_textures: [None; MULTISAMPLE_UNITS.len()],
                 arrays: touched.arrays.then_some([None; ARRAY_UNITS.len()]),
                 samplers: [None; UNITS],
             };
@@ -334,12 +329,6 @@ impl Context {
                 gl.active_texture(glow::TEXTURE0 + unit as u32);
                 state.textures[unit] = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D);
                 state.samplers[unit] = gl.get_parameter_sampler(glow::SAMPLER_BINDING);
-            }
-            if self.capabilities().multisample_textures {
-                for (unit, texture) in MULTISAMPLE_UNITS.into_iter().zip(&mut state.multisample_textures) {
-                    gl.active_texture(glow::TEXTURE0 + unit);
-                    *texture = gl.get_parameter_texture(glow::TEXTURE_BINDING_2D_MULTISAMPLE);
-                }
             }
             for (unit, texture) in ARRAY_UNITS.into_iter().zip(state.arrays.iter_mut().flatten()) {
                 gl.active_texture(glow::TEXTURE0 + unit);
@@ -389,12 +378,6 @@ impl Context {
                 gl.active_texture(glow::TEXTURE0 + unit as u32);
                 gl.bind_texture(glow::TEXTURE_2D, state.textures[unit]);
                 gl.bind_sampler(unit as u32, state.samplers[unit]);
-            }
-            if self.capabilities().multisample_textures {
-                for (unit, texture) in MULTISAMPLE_UNITS.into_iter().zip(state.multisample_textures) {
-                    gl.active_texture(glow::TEXTURE0 + unit);
-                    gl.bind_texture(glow::TEXTURE_2D_MULTISAMPLE, texture);
-                }
             }
             for (unit, texture) in ARRAY_UNITS.into_iter().zip(state.arrays.into_iter().flatten()) {
                 gl.active_texture(glow::TEXTURE0 + unit);

@@ -26,9 +26,6 @@ func _ready() -> void:
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
 	await _case("swapped", ["ONE_VIEW"])
 	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
-	camera.synthesis().short_way = false
-	await _case("every", ["ONE_VIEW"])
-	camera.synthesis().short_way = true
 	# Without stereo layers, glass is drawn with the rendered eye, whose picture must not change.
 	var before := _image(camera.dominant_eye)
 	camera.stereo_layers = 0

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use openxr_sys as sys;
 use yoro::eyes::EyesError;
-use yoro::gl::GlError;
+use yoro::opengl::GlError;
 use yoro::vulkan::VulkanError;
 
 use crate::geometry::GeometryError;

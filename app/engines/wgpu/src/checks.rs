@@ -4,7 +4,7 @@ use wgpu::{
     Backend, Device, Features, TextureFormat, TextureFormatFeatureFlags, TextureFormatFeatures,
     TextureSampleType, TextureUsages, TextureView,
 };
-use yoro::synthesis::Edges;
+use yoro::synthesis::backend::{check_rectangle, check_size};
 
 use crate::{Options, Source, Target, WgpuError};
 
@@ -43,15 +43,6 @@ impl Checks {
             }
             checks.format(format, role, drawn)?;
         }
-        if options.edges == Edges::Multisample {
-            if !matches!(options.samples, 2 | 4) {
-                return Err(WgpuError::SampleCount(options.samples));
-            }
-            if checks.opengl {
-                let (what, instead) = ("textures of several samples", "one depth in each pixel");
-                return Err(WgpuError::OpenGl { what, instead });
-            }
-        }
         Ok(checks)
     }
 
@@ -84,62 +75,26 @@ impl Checks {
         self.source(source)?;
         self.target(target)?;
         check_rectangle("a source", source.origin, source_size, size(source.color))?;
-        check_rectangle("a target", target.origin, target_size, size(target.color))
-    }
-
-    fn source(&self, source: &Source) -> Result<(), WgpuError> {
-        let multisample = self.options.edges == Edges::Multisample;
-        if source.sample_color.is_some() && !multisample {
-            return Err(WgpuError::SampleColors);
-        }
-        if source.history.is_some() && !self.options.history {
-            return Err(WgpuError::History);
-        }
-        let samples = if multisample { self.options.samples } else { 1 };
-        let roles = ["a source's colour", "a source's depth"];
-        self.sampled([source.color, source.depth], roles, samples)?;
-        if let Some(colors) = source.sample_color {
-            self.texture("the colour of samples", colors, samples, source.color)?;
-        }
-        if let Some(history) = &source.history {
-            let roles = ["a history's colour", "a history's depth"];
-            self.sampled([history.color, history.depth], roles, 1)?;
-        }
+        check_rectangle("a target", target.origin, target_size, size(target.color))?;
         Ok(())
     }
 
     /// Checks a colour that is filtered, and a depth of the same size.
-    fn sampled(
-        &self,
-        [color, depth]: [&TextureView; 2],
-        [color_role, role]: [&'static str; 2],
-        samples: u32,
-    ) -> Result<(), WgpuError> {
+    fn source(&self, source: &Source) -> Result<(), WgpuError> {
         let filtered =
             |features: TextureFormatFeatures| features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
-        self.format(color.texture().format(), color_role, filtered)?;
-        let format = depth.texture().format();
+        self.format(source.color.texture().format(), "a source's colour", filtered)?;
+        let (format, role) = (source.depth.texture().format(), "a source's depth");
         let is_float =
             matches!(format, TextureFormat::R32Float | TextureFormat::R16Unorm | TextureFormat::R16Float);
         if !is_float && !format.has_depth_aspect() {
             return Err(WgpuError::Format { format, role });
         }
-        self.texture(color_role, color, 1, color)?;
-        self.texture(role, depth, samples, color)
-    }
-
-    /// Checks a texture to read, which must have the size of `color`.
-    fn texture(
-        &self,
-        what: &'static str,
-        view: &TextureView,
-        samples: u32,
-        color: &TextureView,
-    ) -> Result<(), WgpuError> {
-        check_texture(what, view, TextureUsages::TEXTURE_BINDING, samples, color)?;
-        if self.opengl && view.texture().depth_or_array_layers() > 1 {
-            let (what, instead) = ("a layer of a texture array", "a texture of one layer");
-            return Err(WgpuError::OpenGl { what, instead });
+        for (what, view) in [("a source's colour", source.color), (role, source.depth)] {
+            check_texture(what, view, TextureUsages::TEXTURE_BINDING, source.color)?;
+            if self.opengl && view.texture().depth_or_array_layers() > 1 {
+                return Err(WgpuError::LayerOnOpenGl);
+            }
         }
         Ok(())
     }
@@ -158,7 +113,7 @@ impl Checks {
         let textures = [("a target's colour", Some(target.color)), ("a target's depth", target.depth)];
         for (what, view) in textures {
             let Some(view) = view else { continue };
-            check_texture(what, view, TextureUsages::RENDER_ATTACHMENT, 1, target.color)?;
+            check_texture(what, view, TextureUsages::RENDER_ATTACHMENT, target.color)?;
         }
         Ok(())
     }
@@ -168,15 +123,14 @@ fn check_texture(
     what: &'static str,
     view: &TextureView,
     usage: TextureUsages,
-    expected: u32,
     color: &TextureView,
 ) -> Result<(), WgpuError> {
     let (texture, of_color) = (view.texture(), size(color));
     if !texture.usage().contains(usage) {
         return Err(WgpuError::Usage { what, usage });
     }
-    if texture.sample_count() != expected {
-        return Err(WgpuError::Samples { what, expected, found: texture.sample_count() });
+    if texture.sample_count() != 1 {
+        return Err(WgpuError::Samples { what, found: texture.sample_count() });
     }
     if size(view) != of_color {
         return Err(WgpuError::Sizes { what, size: size(view), color: of_color });
@@ -187,24 +141,6 @@ fn check_texture(
 /// Returns the width and height of a view's texture.
 pub(crate) fn size(view: &TextureView) -> [u32; 2] {
     [view.texture().width(), view.texture().height()]
-}
-
-fn check_size(what: &'static str, size: [u32; 2], limit: [u32; 2]) -> Result<(), WgpuError> {
-    if (0..2).all(|i| (1..=limit[i]).contains(&size[i])) {
-        Ok(())
-    } else {
-        Err(WgpuError::Size { what, size, limit })
-    }
-}
-
-fn check_rectangle(
-    what: &'static str,
-    origin: [u32; 2],
-    size: [u32; 2],
-    image: [u32; 2],
-) -> Result<(), WgpuError> {
-    let fits = |i: usize| origin[i].checked_add(size[i]).is_some_and(|end| end <= image[i]);
-    if fits(0) && fits(1) { Ok(()) } else { Err(WgpuError::Rectangle { what, origin, size, image }) }
 }
 
 /// Creates objects, and returns the first error that wgpu reports about them. In browsers errors arrive later, at the

@@ -33,6 +33,7 @@
 
 mod buffers;
 mod checks;
+mod nearest;
 mod passes;
 mod pipeline;
 mod shaders;
@@ -41,8 +42,9 @@ mod uniforms;
 pub use wgpu;
 use wgpu::{TextureFormat, TextureUsages, TextureView};
 pub use yoro;
-use yoro::synthesis::{Edges, Strips};
+use yoro::synthesis::ArgumentError;
 
+pub use nearest::NearestDepth;
 pub use pipeline::{AnyView, Gather, Pipeline};
 
 /// The errors of creating a pipeline and of recording.
@@ -88,35 +90,19 @@ pub enum WgpuError {
         /// The usage that is missing.
         usage: TextureUsages,
     },
-    /// A texture does not have the number of samples that its role needs.
-    #[error("{what} of {found} samples cannot be used; give a texture of {expected}")]
+    /// A texture has several samples.
+    #[error(
+        "{what} of {found} samples cannot be used; give a texture of 1: resolved colour, and each pixel's nearest depth"
+    )]
     Samples {
         /// The role of the texture.
         what: &'static str,
-        /// The required number.
-        expected: u32,
         /// The number of samples of the texture.
         found: u32,
     },
-    /// The number of depth samples in [`Options`] is not 2 or 4.
-    #[error("a source's depth of {0} samples cannot be used; give 4, or 2 where the device has that")]
-    SampleCount(u32),
-    /// A source has multisampled colour, which only [`Edges::Multisample`] uses.
-    #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
-    SampleColors,
-    /// A size is zero or exceeds the device's limit.
-    #[error(
-        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give a size in that range, or a device with larger limits",
-        size[0], size[1], limit[0], limit[1]
-    )]
-    Size {
-        /// The image that has the size.
-        what: &'static str,
-        /// The width and height.
-        size: [u32; 2],
-        /// The largest width and height.
-        limit: [u32; 2],
-    },
+    /// A size or a rectangle does not fit the textures or the device.
+    #[error(transparent)]
+    Argument(#[from] ArgumentError),
     /// The textures of a source, or of a target, have different sizes.
     #[error(
         "{what} of {}x{} pixels does not go with colour of {}x{} pixels; give textures of one size",
@@ -130,35 +116,11 @@ pub enum WgpuError {
         /// The width and height of the colour texture.
         color: [u32; 2],
     },
-    /// A source has a history, but [`Options::history`] is off.
-    #[error("a history is for pipelines made with one; set Options::history, or give none")]
-    History,
-    /// [`AnyView`] was requested with edges other than [`Edges::Hard`], or with a history.
-    #[error("any view is synthesized from hard edges, without a history; choose these")]
-    AnyView,
-    /// A rectangle extends beyond its image.
+    /// wgpu's OpenGL back end cannot sample a layer of a texture array, as the other back ends can.
     #[error(
-        "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
-        size[0], size[1], origin[0], origin[1], image[0], image[1]
+        "wgpu's OpenGL back end cannot sample a layer of a texture array; take another back end, or give a texture of one layer"
     )]
-    Rectangle {
-        /// The role of the rectangle.
-        what: &'static str,
-        /// Upper left corner.
-        origin: [u32; 2],
-        /// Width and height.
-        size: [u32; 2],
-        /// Width and height of the image.
-        image: [u32; 2],
-    },
-    /// wgpu's OpenGL back end cannot sample something that the other back ends can.
-    #[error("wgpu's OpenGL back end cannot sample {what}; take another back end, or give {instead}")]
-    OpenGl {
-        /// What it cannot sample.
-        what: &'static str,
-        /// What it can sample.
-        instead: &'static str,
-    },
+    LayerOnOpenGl,
     /// wgpu refused to create a pipeline or a texture.
     #[error("wgpu cannot make the pipelines or buffers of synthesis: {0}")]
     Refused(String),
@@ -171,7 +133,7 @@ fn depth_of(format: &Option<TextureFormat>) -> String {
     format.map_or("no depth".into(), |format| format!("depth of {format:?}"))
 }
 
-/// The formats and the kind of sources that pipelines are created for.
+/// The formats that pipelines are created for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Format of the targets' colour: any format that the device can render to. If the view's format differs from the
@@ -179,67 +141,36 @@ pub struct Options {
     pub color_format: TextureFormat,
     /// Format of the targets' depth, which is written in the source's encoding. `None` for colour only.
     pub depth_format: Option<TextureFormat>,
-    /// The kind of source images; docs/library.md says which to choose.
-    pub edges: Edges,
-    /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 4, or 2 if the device supports that.
-    pub samples: u32,
-    /// True if sources may have a history ([`Source::history`]).
-    pub history: bool,
 }
 
 impl Default for Options {
-    /// Rgba8Unorm without depth, hard edges, no history.
+    /// Rgba8Unorm without depth.
     fn default() -> Options {
-        Options {
-            color_format: TextureFormat::Rgba8Unorm,
-            depth_format: None,
-            edges: Edges::Hard,
-            samples: 4,
-            history: false,
-        }
+        Options { color_format: TextureFormat::Rgba8Unorm, depth_format: None }
     }
 }
 
 /// The rendered eye and its guard band. The views each show one layer and the largest mip level of 2-D textures, which
 /// have the same size and the usage TEXTURE_BINDING. The size of the rendered rectangle is the warp's source size.
+///
+/// Every pixel counts as one surface. Of a multisampled image, give colour resolved from the samples, and the depth of
+/// each pixel's nearest sample ([`NearestDepth`]). Averaged depth belongs to no surface and causes halos at all edges.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
     /// Colour in any filterable format: Rgba8Unorm or Rgba8UnormSrgb, Rgb10a2Unorm, Rgba16Float and others. All four
-    /// channels are carried over. A source that is sampled as sRGB needs an sRGB target. With edges other than
-    /// [`Edges::Hard`] this is the resolved image, with values between 0 and 1.
+    /// channels are carried over. A source that is sampled as sRGB needs an sRGB target.
     pub color: &'a TextureView,
     /// Depth: R32Float, R16Unorm, or any depth format. If the format has stencil, the view must show the depth only
-    /// ([`wgpu::TextureAspect::DepthOnly`]). For [`Edges::Multisample`] it has [`Options::samples`] samples.
+    /// ([`wgpu::TextureAspect::DepthOnly`]).
     pub depth: &'a TextureView,
-    /// For [`Edges::Multisample`], the texture with as many samples that the colour was resolved from, if it still
-    /// exists.
-    pub sample_color: Option<&'a TextureView>,
     /// Upper left corner of the rendered rectangle in the textures, in pixels.
     pub origin: [u32; 2],
-    /// The history, for pipelines with [`Options::history`].
-    pub history: Option<History<'a>>,
-}
-
-/// A rendered image of the synthesized eye, from this frame or earlier ones. Disocclusions are filled from it. The
-/// views each show one layer and the largest mip level of 2-D textures, of the same size (any), with the usage
-/// TEXTURE_BINDING.
-#[derive(Clone, Copy, Debug)]
-pub struct History<'a> {
-    /// Colour, in any filterable format and in the encoding of the source's colour. It must show only what the source
-    /// shows, and nothing that is drawn over both eyes after synthesis.
-    pub color: &'a TextureView,
-    /// Depth in one of the formats of [`Source::depth`], with one value per pixel and the planes and encoding of the
-    /// source.
-    pub depth: &'a TextureView,
-    /// The views of its strips, beginning at the top, as [`Strips::new`] returns them. Their rows, which are counted
-    /// from the bottom, are converted internally.
-    pub strips: Strips,
 }
 
 impl<'a> Source<'a> {
-    /// Returns a source that begins at the upper left corner of two textures, without multisampled colour or a history.
+    /// Returns a source that begins at the upper left corner of two textures.
     pub fn new(color: &'a TextureView, depth: &'a TextureView) -> Source<'a> {
-        Source { color, depth, sample_color: None, origin: [0, 0], history: None }
+        Source { color, depth, origin: [0, 0] }
     }
 }
 

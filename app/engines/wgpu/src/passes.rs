@@ -10,19 +10,15 @@ use wgpu::{
     SamplerDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StoreOp,
     TextureFormat, TextureSampleType, TextureView, TextureViewDimension, VertexState,
 };
-use yoro::synthesis::{Edges, PassSet, Strips};
+use yoro::synthesis::backend::WarpKind;
 
-use crate::buffers::{Buffers, layer_formats, map_format};
-use crate::shaders;
+use crate::buffers::{Buffers, MAP};
+use crate::shaders::{SCREEN, Shaders};
 use crate::uniforms::{self, UniformRing};
 use crate::{Options, Source};
 
 /// All passes.
 pub(crate) struct Passes {
-    /// `None` for hard edges.
-    split: Option<Pass>,
-    /// For sources with multisampled colour.
-    split_samples: Option<Pass>,
     tiles: Pass,
     spans: Pass,
     march: Pass,
@@ -33,61 +29,44 @@ pub(crate) struct Passes {
 /// A pipeline, and the bindings that its shaders read.
 struct Pass {
     label: &'static str,
-    bindings: Vec<u32>,
+    bindings: &'static [u32],
     layout: BindGroupLayout,
     pipeline: RenderPipeline,
 }
 
-/// The bindings, with the numbers that `TEXTURE` has in the shaders.
+/// The bindings; textures have the numbers of `TEXTURE` in the shaders.
 const DEPTH: u32 = 0;
 const COLOR: u32 = 1;
 const TILE_MAP: u32 = 2;
 const SPAN_MAP: u32 = 3;
-const LAYERS: u32 = 4;
-const BACKGROUND: u32 = 5;
-const SAMPLE_COLOR: u32 = 6;
-const UNIFORMS: u32 = 7;
-const NEAREST: u32 = 8;
-const LINEAR: u32 = 9;
-const HISTORY_DEPTH: u32 = 10;
-const HISTORY_COLOR: u32 = 11;
-const STRIPS: u32 = 12;
+const UNIFORMS: u32 = 4;
+const NEAREST: u32 = 5;
+const LINEAR: u32 = 6;
 
 /// The bind groups of the passes for one source.
 pub(crate) struct Groups {
-    split: Option<BindGroup>,
     tiles: BindGroup,
     spans: BindGroup,
     march: BindGroup,
-    with_samples: bool,
 }
 
 impl Passes {
-    /// `uniforms` is the size of the passes' uniform block.
-    pub(crate) fn new(device: &Device, options: &Options, set: PassSet, uniforms: BufferSize) -> Passes {
-        let Options { color_format, depth_format, edges, samples, history } = *options;
+    pub(crate) fn new<W: WarpKind>(device: &Device, options: &Options) -> Passes {
         let module = |label, text: &'static str| {
             let source = ShaderSource::Wgsl(text.into());
             device.create_shader_module(ShaderModuleDescriptor { label: Some(label), source })
         };
-        let screen = module("yoro screen", shaders::SCREEN);
-        let march_vertex = module("yoro march", shaders::march_vertex(set));
-        let hard = edges == Edges::Hard;
-        let make = |label, text, bindings: &[u32], formats: &[TextureFormat]| {
-            let bindings = bindings.to_vec();
-            let pass = PassMaker { device, options, uniforms, label, bindings };
-            pass.make(&screen, &module(label, text), formats, None)
+        let shaders = Shaders::of::<W>();
+        let uniforms = uniforms::size::<W::Uniforms>();
+        let screen = module("yoro screen", SCREEN);
+        let march_vertex = module("yoro march", shaders.march_vertex);
+        let map = |label, text, bindings| {
+            let pass = PassMaker { device, uniforms, label, bindings };
+            pass.make(&screen, &module(label, text), MAP, None)
         };
-        let map = [map_format(edges)];
-        let layers = layer_formats(color_format);
-        let tile_bindings: &[u32] = if hard { &[DEPTH, UNIFORMS, NEAREST] } else { &[LAYERS, UNIFORMS] };
-        let march_bindings: &[u32] = match (hard, set) {
-            (_, PassSet::AnyView) => &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, LINEAR],
-            (true, PassSet::GatherOnGpu) => &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR],
-            (true, _) => &[DEPTH, COLOR, SPAN_MAP, UNIFORMS, LINEAR],
-            (false, _) => &[COLOR, SPAN_MAP, LAYERS, BACKGROUND, UNIFORMS, LINEAR],
-        };
-        let recall: &[u32] = if history { &[HISTORY_DEPTH, HISTORY_COLOR, STRIPS] } else { &[] };
+        let march_bindings: &[u32] = &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR];
+        let march = PassMaker { device, uniforms, label: "yoro march", bindings: march_bindings };
+        let text = shaders.march(options.depth_format.is_some());
         let sampler = |label, filter| {
             device.create_sampler(&SamplerDescriptor {
                 label: Some(label),
@@ -97,20 +76,14 @@ impl Passes {
             })
         };
         Passes {
-            split: shaders::split(edges, samples)
-                .map(|text| make("yoro split", text, &[DEPTH, COLOR, UNIFORMS], &layers)),
-            split_samples: (edges == Edges::Multisample).then(|| {
-                let bindings = [DEPTH, SAMPLE_COLOR, UNIFORMS];
-                make("yoro split", shaders::split_samples(samples), &bindings, &layers)
-            }),
-            tiles: make("yoro tiles", shaders::tiles(edges, set), tile_bindings, &map),
-            spans: make("yoro spans", shaders::spans(edges, set), &[TILE_MAP, UNIFORMS], &map),
-            march: {
-                let text = shaders::march(edges, set, depth_format.is_some(), history);
-                let bindings = [march_bindings, recall].concat();
-                let pass = PassMaker { device, options, uniforms, label: "yoro march", bindings };
-                pass.make(&march_vertex, &module("yoro march", text), &[color_format], depth_format)
-            },
+            tiles: map("yoro tiles", shaders.tiles, &[DEPTH, UNIFORMS, NEAREST]),
+            spans: map("yoro spans", shaders.spans, &[TILE_MAP, UNIFORMS]),
+            march: march.make(
+                &march_vertex,
+                &module("yoro march", text),
+                options.color_format,
+                options.depth_format,
+            ),
             nearest: sampler("yoro nearest", FilterMode::Nearest),
             linear: sampler("yoro linear", FilterMode::Linear),
         }
@@ -123,29 +96,16 @@ impl Passes {
         source: &Source,
         buffers: &Buffers,
         uniforms: &UniformRing<impl NoUninit>,
-        strips: Option<&UniformRing<Strips>>,
     ) -> Groups {
         let group = |pass: &Pass| {
             let resource = |&binding: &u32| {
-                let layer = |i: usize| buffers.layers.as_ref().map(|layers| &layers[i]);
-                let texture = match binding {
-                    DEPTH => Some(source.depth),
-                    COLOR => Some(source.color),
-                    TILE_MAP => Some(&buffers.tiles),
-                    SPAN_MAP => Some(&buffers.spans),
-                    LAYERS => layer(0),
-                    BACKGROUND => layer(1),
-                    SAMPLE_COLOR => source.sample_color,
-                    // Without a history these bindings are not read.
-                    HISTORY_DEPTH => source.history.map_or(Some(source.color), |history| Some(history.depth)),
-                    HISTORY_COLOR => source.history.map_or(Some(source.color), |history| Some(history.color)),
-                    _ => None,
-                };
-                let resource = match (binding, texture) {
-                    (_, Some(view)) => BindingResource::TextureView(view),
-                    (NEAREST, _) => BindingResource::Sampler(&self.nearest),
-                    (LINEAR, _) => BindingResource::Sampler(&self.linear),
-                    (STRIPS, _) => strips.map_or(uniforms.binding(), UniformRing::binding),
+                let resource = match binding {
+                    DEPTH => BindingResource::TextureView(source.depth),
+                    COLOR => BindingResource::TextureView(source.color),
+                    TILE_MAP => BindingResource::TextureView(&buffers.tiles),
+                    SPAN_MAP => BindingResource::TextureView(&buffers.spans),
+                    NEAREST => BindingResource::Sampler(&self.nearest),
+                    LINEAR => BindingResource::Sampler(&self.linear),
                     _ => uniforms.binding(),
                 };
                 BindGroupEntry { binding, resource }
@@ -154,19 +114,7 @@ impl Passes {
             let (label, layout) = (Some(pass.label), &pass.layout);
             device.create_bind_group(&BindGroupDescriptor { label, layout, entries: &entries })
         };
-        let with_samples = source.sample_color.is_some();
-        Groups {
-            split: self.split(with_samples).map(group),
-            tiles: group(&self.tiles),
-            spans: group(&self.spans),
-            march: group(&self.march),
-            with_samples,
-        }
-    }
-
-    /// Returns the first pass for a source with or without multisampled colour.
-    fn split(&self, with_samples: bool) -> Option<&Pass> {
-        self.split_samples.as_ref().filter(|_| with_samples).or(self.split.as_ref())
+        Groups { tiles: group(&self.tiles), spans: group(&self.spans), march: group(&self.march) }
     }
 }
 
@@ -181,32 +129,24 @@ pub(crate) struct Drawn<'a> {
 }
 
 impl Passes {
-    /// Records all passes for a source of this size in pixels. The sizes of the maps are in tiles. `uniforms` and
-    /// `strips` are offsets in their buffers.
+    /// Records all passes. The sizes of the maps are in tiles. `uniforms` is the offset of the block in its buffer.
     pub(crate) fn record(
         &self,
         encoder: &mut CommandEncoder,
         groups: &Groups,
         buffers: &Buffers,
-        [source_size, tile_size, span_size]: [[u32; 2]; 3],
-        (uniforms, strips): (u32, Option<u32>),
+        [tile_size, span_size]: [[u32; 2]; 2],
+        uniforms: u32,
         target: &Drawn,
     ) {
         let all = |[width, height]: [u32; 2]| [0, 0, width, height];
-        let split = self.split(groups.with_samples).zip(groups.split.as_ref());
-        if let (Some((pass, group)), Some(layers)) = (split, &buffers.layers) {
-            let colors = layers.each_ref().map(|view| Some(color(view, true)));
-            pass.record(encoder, group, &[uniforms], &colors, None, all(source_size));
-        }
-        let tiles = [Some(color(&buffers.tiles, true))];
-        self.tiles.record(encoder, &groups.tiles, &[uniforms], &tiles, None, all(tile_size));
-        let spans = [Some(color(&buffers.spans, true))];
-        self.spans.record(encoder, &groups.spans, &[uniforms], &spans, None, all(span_size));
-        let colors = [Some(color(target.color, target.whole))];
+        let tiles = color(&buffers.tiles, true);
+        self.tiles.record(encoder, &groups.tiles, uniforms, tiles, None, all(tile_size));
+        let spans = color(&buffers.spans, true);
+        self.spans.record(encoder, &groups.spans, uniforms, spans, None, all(span_size));
+        let target_color = color(target.color, target.whole);
         let depth = target.depth.map(|view| depth(view, target.whole));
-        let places = [uniforms, strips.unwrap_or(0)];
-        let places = &places[..1 + usize::from(strips.is_some())];
-        self.march.record(encoder, &groups.march, places, &colors, depth, target.area);
+        self.march.record(encoder, &groups.march, uniforms, target_color, depth, target.area);
     }
 }
 
@@ -233,22 +173,21 @@ impl Pass {
         &self,
         encoder: &mut CommandEncoder,
         group: &BindGroup,
-        // Offsets of the uniform blocks in their buffers.
-        places: &[u32],
-        colors: &[Option<RenderPassColorAttachment>],
+        uniforms: u32,
+        color: RenderPassColorAttachment,
         depth: Option<RenderPassDepthStencilAttachment>,
         [x, y, width, height]: [u32; 4],
     ) {
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some(self.label),
-            color_attachments: colors,
+            color_attachments: &[Some(color)],
             depth_stencil_attachment: depth,
             ..RenderPassDescriptor::default()
         });
         pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
         pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, group, places);
+        pass.set_bind_group(0, group, &[uniforms]);
         pass.draw(0..3, 0..1);
     }
 }
@@ -256,11 +195,10 @@ impl Pass {
 /// What all pipelines of a pass need besides their shaders and formats.
 struct PassMaker<'a> {
     device: &'a Device,
-    options: &'a Options,
     /// The size of the passes' uniform block in bytes.
     uniforms: BufferSize,
     label: &'static str,
-    bindings: Vec<u32>,
+    bindings: &'static [u32],
 }
 
 impl PassMaker<'_> {
@@ -268,10 +206,10 @@ impl PassMaker<'_> {
         &self,
         vertex: &ShaderModule,
         fragment: &ShaderModule,
-        formats: &[TextureFormat],
+        format: TextureFormat,
         depth_format: Option<TextureFormat>,
     ) -> Pass {
-        let PassMaker { device, label, ref bindings, .. } = *self;
+        let PassMaker { device, label, bindings, .. } = *self;
         let entries: Vec<_> = bindings.iter().map(|&binding| self.layout_entry(binding)).collect();
         let layout = device
             .create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
@@ -280,7 +218,6 @@ impl PassMaker<'_> {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let targets: Vec<_> = formats.iter().map(|&format| Some(ColorTargetState::from(format))).collect();
         let pipeline = device.create_render_pipeline(&RenderPipelineDescriptor {
             label: Some(label),
             layout: Some(&pipeline_layout),
@@ -303,38 +240,31 @@ impl PassMaker<'_> {
                 module: fragment,
                 entry_point: Some("main"),
                 compilation_options: Default::default(),
-                targets: &targets,
+                targets: &[Some(ColorTargetState::from(format))],
             }),
             multiview_mask: None,
             cache: None,
         });
-        Pass { label, bindings: bindings.clone(), layout, pipeline }
+        Pass { label, bindings, layout, pipeline }
     }
 
     fn layout_entry(&self, binding: u32) -> BindGroupLayoutEntry {
-        let multisampled =
-            self.options.edges == Edges::Multisample && matches!(binding, DEPTH | SAMPLE_COLOR);
         let texture = |sample_type| BindingType::Texture {
             sample_type,
             view_dimension: TextureViewDimension::D2,
-            multisampled,
+            multisampled: false,
         };
         let ty = match binding {
             // The sample type that depth formats and float formats have in common.
-            DEPTH | SAMPLE_COLOR | BACKGROUND | HISTORY_DEPTH => {
-                texture(TextureSampleType::Float { filterable: false })
-            }
-            COLOR | HISTORY_COLOR => texture(TextureSampleType::Float { filterable: true }),
-            TILE_MAP | SPAN_MAP | LAYERS => texture(TextureSampleType::Uint),
+            DEPTH => texture(TextureSampleType::Float { filterable: false }),
+            COLOR => texture(TextureSampleType::Float { filterable: true }),
+            TILE_MAP | SPAN_MAP => texture(TextureSampleType::Uint),
             NEAREST => BindingType::Sampler(SamplerBindingType::NonFiltering),
             LINEAR => BindingType::Sampler(SamplerBindingType::Filtering),
             _ => BindingType::Buffer {
                 ty: BufferBindingType::Uniform,
                 has_dynamic_offset: true,
-                min_binding_size: Some(match binding {
-                    STRIPS => uniforms::size::<Strips>(),
-                    _ => self.uniforms,
-                }),
+                min_binding_size: Some(self.uniforms),
             },
         };
         let visibility =

@@ -1,24 +1,22 @@
 //! Synthesis, recorded into the caller's command encoder.
 
-use wgpu::{CommandEncoder, Device, DeviceType, Queue, TextureView};
+use wgpu::{CommandEncoder, Device, Queue, TextureView};
 use yoro::eyes::{PoseWarp, Warp};
-use yoro::synthesis::{Edges, PassSet, Places, Strips, WarpKind, span_tiles, tiles};
+use yoro::synthesis::backend::{Places, WarpKind, map_sizes};
 
 use crate::buffers::Buffers;
 use crate::checks::{Checks, made, size};
 use crate::passes::{Drawn, Groups, Passes};
-use crate::uniforms::{self, UniformRing};
-use crate::{History, Options, Source, Target, WgpuError};
+use crate::uniforms::UniformRing;
+use crate::{Options, Source, Target, WgpuError};
 
 /// The bindings of a source are dropped, and with them its textures, after this many calls without it.
-const KEPT_CALLS: u64 = 32;
+pub(crate) const KEPT_CALLS: u64 = 32;
 
-/// The passes between parallel eyes: tile bounds, tile spans, march. For anti-aliased sources, a pass that splits them
-/// into layers comes first.
+/// Synthesis between parallel eyes: the march goes along the source's row.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of any view: tile bounds, tile spans, march. They draw a view in any pose near that of the source. The
-/// source must have [`Edges::Hard`] and no history.
+/// Synthesis of a view in any pose near the source's: the march goes along a segment of any direction.
 pub type AnyView = Pipeline<PoseWarp>;
 
 /// The passes for one kind of warp: [`Gather`] or [`AnyView`].
@@ -29,8 +27,6 @@ pub struct Pipeline<W: WarpKind> {
     checks: Checks,
     passes: Passes,
     uniforms: UniformRing<W::Uniforms>,
-    /// `Some` if sources may have a history.
-    strips: Option<UniformRing<Strips>>,
     buffers: Option<Buffers>,
     kept: Vec<Kept>,
     calls: u64,
@@ -38,8 +34,8 @@ pub struct Pipeline<W: WarpKind> {
 
 /// The objects that were created for a source.
 struct Kept {
-    /// Colour, depth and multisampled colour of the source; colour and depth of its history.
-    views: [Option<TextureView>; 5],
+    /// Colour and depth of the source.
+    views: [TextureView; 2],
     groups: Groups,
     /// The number of the last call that used them.
     used: u64,
@@ -49,37 +45,13 @@ impl<W: WarpKind> Pipeline<W> {
     /// Creates the pipelines, which do not depend on the textures.
     ///
     /// # Errors
-    /// [`WgpuError::Format`], [`WgpuError::SampleCount`] or [`WgpuError::OpenGl`] if the device does not support the
-    /// options, [`WgpuError::AnyView`] if [`AnyView`] does not, and [`WgpuError::Refused`] for any other error of wgpu.
-    /// In a browser such errors go to the device's handler of uncaptured errors instead.
+    /// [`WgpuError::Format`] if the device does not support the options, and [`WgpuError::Refused`] for any other error
+    /// of wgpu. In a browser such errors go to the device's handler of uncaptured errors instead.
     pub fn new(device: &Device, options: &Options) -> Result<Pipeline<W>, WgpuError> {
-        let on_cpu = device.adapter_info().device_type == DeviceType::Cpu;
-        Pipeline::with_passes(device, options, PassSet::of::<W>(on_cpu))
-    }
-
-    /// Does what [`Pipeline::new`] does, but with the passes for another kind of device, so that tests can run shaders
-    /// that this device would not use.
-    ///
-    /// # Errors
-    /// As for [`Pipeline::new`].
-    #[doc(hidden)]
-    pub fn with_passes(
-        device: &Device,
-        options: &Options,
-        passes: PassSet,
-    ) -> Result<Pipeline<W>, WgpuError> {
-        if W::ANY_VIEW && (options.edges != Edges::Hard || options.history) {
-            return Err(WgpuError::AnyView);
-        }
         let checks = Checks::new(device, options)?;
-        let (passes, uniforms, strips) = made(device, || {
-            (
-                Passes::new(device, options, passes, uniforms::size::<W::Uniforms>()),
-                UniformRing::new(device, "yoro uniforms"),
-                options.history.then(|| UniformRing::new(device, "yoro strips")),
-            )
-        })?;
-        Ok(Pipeline { checks, passes, uniforms, strips, buffers: None, kept: Vec::new(), calls: 0 })
+        let (passes, uniforms) =
+            made(device, || (Passes::new::<W>(device, options), UniformRing::new(device, "yoro uniforms")))?;
+        Ok(Pipeline { checks, passes, uniforms, buffers: None, kept: Vec::new(), calls: 0 })
     }
 
     /// Creates the intermediate buffers for sources and targets up to these sizes in pixels. [`Pipeline::record`] does
@@ -98,7 +70,7 @@ impl<W: WarpKind> Pipeline<W> {
             Some(buffers) => buffers.grown(max_source_size, max_target_size),
             None => (max_source_size, max_target_size),
         };
-        self.buffers = Some(made(device, || Buffers::new(device, &self.checks.options, W::ANY_VIEW, sizes))?);
+        self.buffers = Some(made(device, || Buffers::new::<W>(device, sizes))?);
         // The bindings refer to the old buffers.
         self.kept.clear();
         Ok(())
@@ -130,9 +102,6 @@ impl<W: WarpKind> Pipeline<W> {
             part: true,
         };
         let uniforms = self.uniforms.write(queue, &warp.uniforms_from_top(&places))?;
-        let turned = |history: History| history.strips.rows_turned(target_size[1], size(history.color)[1]);
-        let strips = source.history.map_or(Strips::NONE, turned);
-        let strips = self.strips.as_mut().map(|ring| ring.write(queue, &strips)).transpose()?;
         self.prepare(device, source_size, target_size)?;
         self.calls += 1;
         let index = self.bound(device, source);
@@ -145,23 +114,21 @@ impl<W: WarpKind> Pipeline<W> {
             area: [x, y, width, height],
             whole: size(target.color) == target_size,
         };
-        let sizes = [source_size, tiles(source_size), span_tiles(W::ANY_VIEW, source_size, target_size)];
-        self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, (uniforms, strips), &drawn);
+        let sizes = map_sizes::<W>([source_size, target_size]);
+        self.passes.record(encoder, &self.kept[index].groups, buffers, sizes, uniforms, &drawn);
         Ok(())
     }
 
     /// Returns the index of a source's bindings in `kept`.
     fn bound(&mut self, device: &Device, source: &Source) -> usize {
         let calls = self.calls;
-        let former = source.history.map(|history| [history.color, history.depth]);
-        let [former_color, former_depth] = former.map_or([None; 2], |views| views.map(Some));
-        let views = [Some(source.color), Some(source.depth), source.sample_color, former_color, former_depth];
+        let views = [source.color, source.depth];
         self.kept.retain(|kept| kept.used + KEPT_CALLS >= calls);
-        let found = self.kept.iter().position(|kept| kept.views.each_ref().map(Option::as_ref) == views);
+        let found = self.kept.iter().position(|kept| kept.views.each_ref() == views);
         let index = found.unwrap_or(self.kept.len());
         if let (None, Some(buffers)) = (found, &self.buffers) {
-            let groups = self.passes.groups(device, source, buffers, &self.uniforms, self.strips.as_ref());
-            self.kept.push(Kept { views: views.map(|view| view.cloned()), groups, used: calls });
+            let groups = self.passes.groups(device, source, buffers, &self.uniforms);
+            self.kept.push(Kept { views: views.map(Clone::clone), groups, used: calls });
         }
         self.kept[index].used = calls;
         index

@@ -3,8 +3,7 @@
 use std::num::NonZeroU32;
 
 use glow::HasContext;
-use yoro::gl::{Context, Destination};
-use yoro::synthesis::{Edges, Outputs, Source, SynthesisOptions};
+use yoro::opengl::{Context, Destination, Options, Outputs, Source};
 
 use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT};
 
@@ -12,7 +11,7 @@ use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT};
 /// bindings.
 pub(super) fn check_images(
     context: &Context,
-    options: &SynthesisOptions,
+    options: &Options,
     outputs: Outputs,
     source: Source,
     size: [u32; 2],
@@ -26,24 +25,14 @@ pub(super) fn check_images(
         ));
     }
     let size = source.part.map_or(size, |part| part.image_size);
-    let color_kind = if options.array_textures { &ARRAY } else { &SINGLE_SAMPLE };
-    let depth_kind = if options.edges == Edges::Multisample { &MULTISAMPLE } else { color_kind };
+    let kind = if options.array_textures { &ARRAY } else { &SINGLE };
     let is_here = |level: &Level| !options.array_textures || source.layer < level.layers;
-    check_texture(context, source.color, "color_texture", color_kind, size, |level| {
+    check_texture(context, source.color, "color_texture", kind, size, |level| {
         level.is_color() && is_here(level)
     })?;
-    check_texture(context, source.depth, "depth_texture", depth_kind, size, |level| {
+    check_texture(context, source.depth, "depth_texture", kind, size, |level| {
         level.is_depth() && is_here(level)
     })?;
-    if let Some(samples) = source.samples {
-        check_texture(context, samples, "sample_color_texture", &MULTISAMPLE, size, Level::is_color)?;
-    }
-    if let Some(history) = source.history {
-        let own = Level::query(context, history.color, &SINGLE_SAMPLE).map_or(size, |level| level.size);
-        let (color, depth) = ("history_color_texture", "history_depth_texture");
-        check_texture(context, history.color, color, &SINGLE_SAMPLE, own, Level::is_color)?;
-        check_texture(context, history.depth, depth, &SINGLE_SAMPLE, own, Level::is_depth)?;
-    }
     check_framebuffer(context, outputs, source, target)
 }
 
@@ -69,15 +58,8 @@ fn check_framebuffer(
     if outputs.depth && framebuffer.depth == Attachment::None {
         return Err(wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes"));
     }
-    for (texture, what) in [
-        (Some(source.color), "color_texture"),
-        (Some(source.depth), "depth_texture"),
-        (source.samples, "sample_color_texture"),
-        (source.history.map(|history| history.color), "history_color_texture"),
-        (source.history.map(|history| history.depth), "history_depth_texture"),
-    ] {
-        let attached = texture.map(Attachment::Texture);
-        if attached == Some(framebuffer.color) || attached == Some(framebuffer.depth) {
+    for (texture, what) in [(source.color, "color_texture"), (source.depth, "depth_texture")] {
+        if [framebuffer.color, framebuffer.depth].contains(&Attachment::Texture(texture)) {
             return Err(wrong(format!(
                 "{what} is attached to the framebuffer, but an image cannot be read and drawn at once: give the \
                  framebuffer textures of its own"
@@ -86,7 +68,7 @@ fn check_framebuffer(
     }
     let [right, top] = [0, 1].map(|i| target.origin[i].saturating_add(target.size[i]));
     let level = match framebuffer.color {
-        Attachment::Texture(texture) => Level::query(context, texture, &SINGLE_SAMPLE),
+        Attachment::Texture(texture) => Level::query(context, texture, &SINGLE),
         _ => None,
     };
     let [width, height] = level.map_or([0, 0], |level| level.size);
@@ -181,7 +163,7 @@ struct TextureKind {
     remedy: &'static str,
 }
 
-const SINGLE_SAMPLE: TextureKind = TextureKind {
+const SINGLE: TextureKind = TextureKind {
     target: glow::TEXTURE_2D,
     binding: glow::TEXTURE_BINDING_2D,
     remedy: "GL_TEXTURE_2D: give one layer without samples",
@@ -190,11 +172,6 @@ const ARRAY: TextureKind = TextureKind {
     target: glow::TEXTURE_2D_ARRAY,
     binding: glow::TEXTURE_BINDING_2D_ARRAY,
     remedy: "GL_TEXTURE_2D_ARRAY: give one, or no YORO_GL_SOURCE_LAYERS",
-};
-const MULTISAMPLE: TextureKind = TextureKind {
-    target: glow::TEXTURE_2D_MULTISAMPLE,
-    binding: glow::TEXTURE_BINDING_2D_MULTISAMPLE,
-    remedy: "GL_TEXTURE_2D_MULTISAMPLE: give one with samples, or other YORO_EDGES_",
 };
 
 /// The first mip level of a texture.

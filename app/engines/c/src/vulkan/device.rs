@@ -33,10 +33,6 @@ pub(super) use of_passes;
 pub(crate) struct Vulkan {
     pub(super) passes: Passes,
     pub(super) writes_depth: bool,
-    /// The sources with multisampled colour.
-    pub(super) with_samples: Vec<u32>,
-    /// The sources with a history, and the height of the history.
-    pub(super) with_history: Vec<(u32, u32)>,
     instance: Instance,
     physical_device: vk::PhysicalDevice,
 }
@@ -55,11 +51,10 @@ impl Vulkan {
         if let Some((_, what)) = handles.into_iter().find(|(is_null, _)| *is_null) {
             return Err(null(what));
         }
-        check_reserved("info", &[info.reserved, info.reserved_too])?;
-        for (flag, what) in [(info.dynamic_rendering, "dynamic_rendering"), (info.history, "history")] {
-            if flag > 1 {
-                return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
-            }
+        check_reserved("info", &[info.reserved])?;
+        if info.dynamic_rendering > 1 {
+            let flag = info.dynamic_rendering;
+            return Err(Failure::value(format!("dynamic_rendering is {flag}: give 0 or 1")));
         }
         check_format(info.color_format, "color_format")?;
         let writes_depth = info.depth_format != vk::Format::UNDEFINED;
@@ -107,7 +102,7 @@ impl Vulkan {
             dynamic_rendering: info.dynamic_rendering == 1,
             debug_utils,
         };
-        let options = info.options()?;
+        let options = info.options();
         // SAFETY: the header requires handles that are valid, belong together, and outlive the context.
         let passes = unsafe {
             match is_pose(info.warp_kind)? {
@@ -115,8 +110,7 @@ impl Vulkan {
                 false => Passes::Eyes(Gather::new(&host, &options)?),
             }
         };
-        let (with_samples, with_history, physical_device) = (Vec::new(), Vec::new(), info.physical_device);
-        Ok(Vulkan { passes, writes_depth, with_samples, with_history, instance, physical_device })
+        Ok(Vulkan { passes, writes_depth, instance, physical_device: info.physical_device })
     }
 }
 
@@ -124,7 +118,6 @@ impl From<PassTimes> for YoroTimes {
     fn from(times: PassTimes) -> YoroTimes {
         let nanoseconds = |time: Duration| time.as_nanos() as u64;
         YoroTimes {
-            split_ns: nanoseconds(times.split),
             tiles_ns: nanoseconds(times.tiles),
             spans_ns: nanoseconds(times.spans),
             march_ns: nanoseconds(times.march),
@@ -152,8 +145,6 @@ impl Backend for Vulkan {
             api: YORO_API_VULKAN,
             api_major: vk::api_version_major(properties.api_version),
             api_minor: vk::api_version_minor(properties.api_version),
-            reserved: 0,
-            compute: 1,
             software: (properties.device_type == vk::PhysicalDeviceType::CPU).into(),
             max_image_size: properties.limits.max_image_dimension2_d,
             buffer_bytes: of_passes!(&self.passes, buffer_bytes()),
@@ -172,8 +163,8 @@ mod tests {
 
     #[test]
     fn each_pass_has_its_own_time() {
-        let [split, tiles, spans, march] = [1, 2, 3, 4].map(Duration::from_nanos);
-        let times = YoroTimes::from(PassTimes { split, tiles, spans, march });
-        assert_eq!([times.split_ns, times.tiles_ns, times.spans_ns, times.march_ns], [1, 2, 3, 4]);
+        let [tiles, spans, march] = [1, 2, 3].map(Duration::from_nanos);
+        let times = YoroTimes::from(PassTimes { tiles, spans, march });
+        assert_eq!([times.tiles_ns, times.spans_ns, times.march_ns], [1, 2, 3]);
     }
 }

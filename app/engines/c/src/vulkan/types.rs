@@ -2,17 +2,17 @@
 
 use std::ffi::c_char;
 
+use yoro::synthesis::ArgumentError;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{ImageState, LayerImage, Options, Use, Uses, VulkanError};
 
-use crate::history::YoroStrips;
 use crate::result::{
     Failure, YORO_ERROR_DEVICE_LOST, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT, YORO_ERROR_MEMORY,
     YORO_ERROR_NOT_REGISTERED, YORO_ERROR_NULL, YORO_ERROR_TOO_LARGE, YORO_ERROR_UNSUPPORTED,
     YORO_ERROR_VALUE, YoroMessages,
 };
-use crate::types::{YoroEdges, YoroWarpKind, edges, is_pose};
-use crate::versioned::{check_reserved, versioned};
+use crate::types::{YoroWarpKind, is_pose};
+use crate::versioned::versioned;
 
 /// vkGetInstanceProcAddr of the Vulkan loader, or of a layer that replaces it.
 pub type YoroVkLoader = Option<
@@ -51,28 +51,20 @@ pub struct YoroVkInfo {
     pub max_target_width: u32,
     /// Largest height of a synthesized image in pixels.
     pub max_target_height: u32,
-    /// The kind of source images. 0 is YORO_EDGES_HARD.
-    pub edges: YoroEdges,
-    /// With YORO_EDGES_MULTISAMPLE, the number of samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
-    pub samples: u32,
+    /// For yoro_times: the number of frames after which the times of a frame are returned, at least the number of
+    /// frames in flight. 0: nothing is measured.
+    pub timed_frames: u32,
+    /// The kind of warp. 0 is YORO_WARP_KIND_EYES.
+    pub warp_kind: YoroWarpKind,
     /// Must be 0.
     pub reserved: u32,
     /// A pipeline cache, or VK_NULL_HANDLE.
     pub pipeline_cache: vk::PipelineCache,
     /// Receives error messages, including those of later calls.
     pub messages: YoroMessages,
-    /// For yoro_times: the number of frames after which the times of a frame are returned, at least the number of
-    /// frames in flight. 0: nothing is measured.
-    pub timed_frames: u32,
-    /// 1: sources may have a history (see YoroVkSource). 0: none has.
-    pub history: u32,
-    /// The kind of warp. 0 is YORO_WARP_KIND_EYES.
-    pub warp_kind: YoroWarpKind,
-    /// Must be 0.
-    pub reserved_too: u32,
 }
 
-versioned!(YoroVkInfo since timed_frames);
+versioned!(YoroVkInfo);
 
 /// A use of an image: one side of a barrier.
 #[repr(C)]
@@ -87,7 +79,7 @@ pub struct YoroVkState {
     pub access: vk::AccessFlags,
 }
 
-/// One layer of a 2-D image: mip level 0, without multisampling unless stated otherwise.
+/// One layer of a 2-D image: mip level 0, without multisampling.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkImage {
@@ -116,28 +108,16 @@ pub struct YoroVkSource {
     pub height: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Colour of the rendered eye, in any filterable format. All four channels are carried over. With edges other than
-    /// YORO_EDGES_HARD this is the resolved image, with values between 0 and 1.
+    /// Colour of the rendered eye, in any filterable format. All four channels are carried over. Of a
+    /// multisampled image, give the resolved one.
     pub color: YoroVkImage,
     /// Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or
-    /// R32_SFLOAT. With YORO_EDGES_MULTISAMPLE it has as many samples as YoroVkInfo says.
+    /// R32_SFLOAT. Of a multisampled image, give the depth of each pixel's nearest sample (VK_RESOLVE_MODE_MIN_BIT, or
+    /// MAX for reversed depth). Averaged depth belongs to no surface, and causes halos.
     pub depth: YoroVkImage,
-    /// With YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
-    /// VK_NULL_HANDLE if that no longer exists, and for all other edges.
-    pub sample_color: YoroVkImage,
-    /// Width of the history's images in pixels, which may be any; 0 without a history.
-    pub history_width: u32,
-    /// Height of the history's images in pixels.
-    pub history_height: u32,
-    /// The history, for contexts with `history`: the colour of a rendered image of the synthesized eye, from this frame
-    /// or earlier ones. Disocclusions are filled from it. It must show only what the source shows, and nothing that is
-    /// drawn over both eyes after synthesis. Its image is VK_NULL_HANDLE without a history.
-    pub history_color: YoroVkImage,
-    /// The depth of that image, with one value per pixel and the planes and encoding of the source.
-    pub history_depth: YoroVkImage,
 }
 
-versioned!(YoroVkSource since history_width);
+versioned!(YoroVkSource);
 
 /// Images to write.
 #[repr(C)]
@@ -186,11 +166,9 @@ pub struct YoroVkFrame {
     pub reserved: u32,
     /// The uses of the images around this call, which replace those given at registration. May be NULL.
     pub uses: *const YoroVkUses,
-    /// The views of the history's strips, for sources with a history. NULL: the history is not used.
-    pub strips: *const YoroStrips,
 }
 
-versioned!(YoroVkFrame since reserved);
+versioned!(YoroVkFrame);
 
 /// The uses of an image before and after one call.
 #[repr(C)]
@@ -211,47 +189,34 @@ pub struct YoroVkUse {
 pub struct YoroVkUses {
     /// sizeof(YoroVkUses).
     pub struct_size: u32,
-    /// Must be 0.
-    pub reserved: u32,
     /// The use of the source's colour.
     pub source_color: YoroVkUse,
     /// The use of the source's depth.
     pub source_depth: YoroVkUse,
-    /// The use of the source's multisampled colour.
-    pub source_sample_color: YoroVkUse,
     /// The use of the target's colour.
     pub target_color: YoroVkUse,
     /// The use of the target's depth.
     pub target_depth: YoroVkUse,
-    /// The use of the history's colour.
-    pub history_color: YoroVkUse,
-    /// The use of the history's depth.
-    pub history_depth: YoroVkUse,
 }
 
-versioned!(YoroVkUses since history_color);
+versioned!(YoroVkUses);
 
 impl YoroVkInfo {
-    pub(super) fn options(&self) -> Result<Options, Failure> {
+    pub(super) fn options(&self) -> Options {
         let writes_depth = self.depth_format != vk::Format::UNDEFINED;
-        Ok(Options {
+        Options {
             color_format: self.color_format,
             depth_format: writes_depth.then_some(self.depth_format),
             max_source_size: [self.max_source_width, self.max_source_height],
             max_target_size: [self.max_target_width, self.max_target_height],
-            edges: edges(self.edges)?,
-            samples: self.samples,
-            history: self.history == 1,
             timed_frames: self.timed_frames,
             pipeline_cache: self.pipeline_cache,
-        })
+        }
     }
-}
 
-impl YoroVkInfo {
     /// Returns the size of the buffers of a context with these options, in bytes.
     pub(super) fn buffer_bytes(&self) -> Result<u64, Failure> {
-        let options = self.options()?;
+        let options = self.options();
         Ok(if is_pose(self.warp_kind)? { options.any_view_buffer_bytes() } else { options.buffer_bytes() })
     }
 }
@@ -272,25 +237,17 @@ pub(super) fn check_format(format: vk::Format, what: &str) -> Result<(), Failure
 }
 
 impl YoroVkUses {
-    pub(super) fn checked(
-        &self,
-        [has_samples, has_history]: [bool; 2],
-        writes_depth: bool,
-    ) -> Result<Uses, Failure> {
-        check_reserved("uses", &[self.reserved])?;
-        // The uses of absent images are not checked.
-        let or = |is_there: bool, one: &YoroVkUse, other: Use, what, is_read| {
-            if is_there { one.checked(what, is_read) } else { Ok(other) }
-        };
-        let color = self.source_color.checked("color", true)?;
+    pub(super) fn checked(&self, writes_depth: bool) -> Result<Uses, Failure> {
+        let target_color = self.target_color.checked("color", false)?;
         Ok(Uses {
-            source_color: color,
+            source_color: self.source_color.checked("color", true)?,
             source_depth: self.source_depth.checked("depth", true)?,
-            source_sample_color: or(has_samples, &self.source_sample_color, color, "sample_color", true)?,
-            history_color: or(has_history, &self.history_color, color, "history's colour", true)?,
-            history_depth: or(has_history, &self.history_depth, color, "history's depth", true)?,
-            target_color: self.target_color.checked("color", false)?,
-            target_depth: or(writes_depth, &self.target_depth, color, "depth", false)?,
+            target_color,
+            // The use of an absent image is not checked.
+            target_depth: match writes_depth {
+                true => self.target_depth.checked("depth", false)?,
+                false => target_color,
+            },
         })
     }
 }
@@ -343,12 +300,9 @@ impl From<VulkanError> for Failure {
             VulkanError::OutOfMemory { .. } => YORO_ERROR_MEMORY,
             VulkanError::DeviceLost { .. } => YORO_ERROR_DEVICE_LOST,
             VulkanError::Format { .. } | VulkanError::OtherFormat { .. } => YORO_ERROR_FORMAT,
-            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering | VulkanError::Samples(_) => {
-                YORO_ERROR_UNSUPPORTED
-            }
-            VulkanError::SampleColors | VulkanError::History | VulkanError::AnyView => YORO_ERROR_VALUE,
-            VulkanError::Size { size, .. } if size.contains(&0) => YORO_ERROR_VALUE,
-            VulkanError::Size { .. } | VulkanError::Rectangle { .. } => YORO_ERROR_TOO_LARGE,
+            VulkanError::QueueFamily(_) | VulkanError::DynamicRendering => YORO_ERROR_UNSUPPORTED,
+            VulkanError::Argument(ArgumentError::Size { size, .. }) if size.contains(&0) => YORO_ERROR_VALUE,
+            VulkanError::Argument(_) => YORO_ERROR_TOO_LARGE,
             VulkanError::NotRegistered => YORO_ERROR_NOT_REGISTERED,
             _ => YORO_ERROR_DRIVER,
         };

@@ -19,6 +19,9 @@ pub use pose_warp::{GuardedView, HeadMotion, PoseWarp};
 pub use view::{Frustum, Pose, View};
 pub use warp::{DisparityLaw, Warp, full_overlap_distance, minimum_object_distance};
 
+/// The mean distance of people's eyes in metres, for when it was not measured.
+pub const MEAN_IPD: f32 = 0.063;
+
 /// One of the two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

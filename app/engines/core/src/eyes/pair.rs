@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::{DepthRange, DisparityLaw, Eye, EyesError, Frustum, GuardBand, Pose, View, Warp};
+use super::{DepthRange, DisparityLaw, Eye, EyesError, Frustum, GuardBand, MEAN_IPD, Pose, View, Warp};
 
 /// The largest width or height of an image in pixels. No driver renders larger ones.
 const MAX_SIDE: f64 = 65536.0;
@@ -30,7 +30,7 @@ impl Default for EyeOptions {
         EyeOptions {
             size: [1024; 2],
             fov_y: 60f32.to_radians(),
-            ipd: 0.063,
+            ipd: MEAN_IPD,
             dominant: Eye::Right,
             depth: DepthRange::PAPER,
             outer_inner: None,

@@ -91,7 +91,6 @@ impl PoseWarp {
     }
 
     /// Returns the warp for images whose rows are counted from the top, for Vulkan and wgpu.
-    #[doc(hidden)]
     pub fn rows_from_top(&self) -> PoseWarp {
         let turn = |size: [u32; 2]| {
             DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::new(0.0, f64::from(size[1]), 1.0))

@@ -3,17 +3,12 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{IVec2, Vec2, Vec4};
 
+use super::backend::{Places, UniformBlock, tiles};
 use super::forward::ForwardLaw;
 use crate::eyes::{PoseWarp, Warp};
 
 /// Columns and rows of a tile, as in `include/source.glsl`.
-const TILE: [u32; 2] = [16, 8];
-
-/// Returns the number of tiles of an image, in columns and rows.
-#[doc(hidden)]
-pub fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
-    [columns.div_ceil(TILE[0]), rows.div_ceil(TILE[1])]
-}
+pub(super) const TILE: [u32; 2] = [16, 8];
 
 macro_rules! uniforms {
     ($(#[doc = $about:literal])* $block:ident { $($(#[doc = $doc:literal])* $name:ident: $ty:ty = $glsl:literal,)* }) => {
@@ -33,6 +28,13 @@ macro_rules! uniforms {
             #[cfg(feature = "gl")]
             pub fn set(&self, program: &yoro_gl::Program) {
                 $(program.set(stringify!($name), self.$name);)*
+            }
+        }
+
+        impl UniformBlock for $block {
+            #[cfg(feature = "gl")]
+            fn set(&self, program: &yoro_gl::Program) {
+                $block::set(self, program);
             }
         }
     };
@@ -120,20 +122,6 @@ fn pair(x: f64, y: f64) -> Vec2 {
     Vec2::new(x as f32, y as f32)
 }
 
-/// The places of source and target in their images.
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug)]
-pub struct Places {
-    /// Corner of the source in its image.
-    pub source_origin: [u32; 2],
-    /// Size of the source's image in pixels.
-    pub image_size: [u32; 2],
-    /// Corner of the target in its framebuffer or image.
-    pub target_origin: [u32; 2],
-    /// True if the source is a part of its image or the maps are larger than [`tiles`]: `PART` in the shaders.
-    pub part: bool,
-}
-
 impl Uniforms {
     /// Returns the uniforms for a source that fills its textures, and maps of the [`Warp`]'s size.
     pub fn new(warp: &Warp, target_origin: [u32; 2]) -> Uniforms {
@@ -144,7 +132,6 @@ impl Uniforms {
 
     /// Returns the uniforms for these places. Columns and rows are affine in `gl_FragCoord`. Their factors are computed
     /// here rather than in each fragment, and in f64, since they are differences of large numbers.
-    #[doc(hidden)]
     pub fn of_part(warp: &Warp, places: &Places) -> Uniforms {
         let law = ForwardLaw::new(warp);
         let [image_width, image_height] = places.image_size.map(f64::from);
@@ -194,7 +181,6 @@ impl Uniforms {
 
 impl PoseUniforms {
     /// Returns the uniforms for these places.
-    #[doc(hidden)]
     pub fn new(warp: &PoseWarp, places: &Places) -> PoseUniforms {
         let row = |i: usize| warp.homography.row(i).extend(warp.epipole[i]).as_vec4();
         let [image_width, image_height] = places.image_size.map(f64::from);
@@ -213,53 +199,6 @@ impl PoseUniforms {
             texel: pair(1.0 / image_width, 1.0 / image_height),
             padding: Vec2::ZERO,
         }
-    }
-}
-
-/// Returns the size of the span map: the target's size in tiles, but with the source's rows between parallel eyes.
-#[doc(hidden)]
-pub fn span_tiles(any_view: bool, source_size: [u32; 2], target_size: [u32; 2]) -> [u32; 2] {
-    tiles(if any_view { target_size } else { [target_size[0], source_size[1]] })
-}
-
-/// A kind of warp, with what Vulkan and wgpu need to record its passes.
-#[doc(hidden)]
-pub trait WarpKind: Copy {
-    /// The uniform block of the passes.
-    type Uniforms: Pod;
-    /// True for warps to any view, whose pipelines take hard edges only, and no history.
-    const ANY_VIEW: bool;
-
-    /// Returns the width and height of the source and of the target in pixels.
-    fn sizes(&self) -> [[u32; 2]; 2];
-
-    /// Returns the uniforms for images whose rows are counted from the top.
-    fn uniforms_from_top(&self, places: &Places) -> Self::Uniforms;
-}
-
-impl WarpKind for Warp {
-    type Uniforms = Uniforms;
-    const ANY_VIEW: bool = false;
-
-    fn sizes(&self) -> [[u32; 2]; 2] {
-        [self.source_size, self.target_size]
-    }
-
-    fn uniforms_from_top(&self, places: &Places) -> Uniforms {
-        Uniforms::of_part(&self.rows_from_top(), places)
-    }
-}
-
-impl WarpKind for PoseWarp {
-    type Uniforms = PoseUniforms;
-    const ANY_VIEW: bool = true;
-
-    fn sizes(&self) -> [[u32; 2]; 2] {
-        [self.source_size, self.target_size]
-    }
-
-    fn uniforms_from_top(&self, places: &Places) -> PoseUniforms {
-        PoseUniforms::new(&self.rows_from_top(), places)
     }
 }
 
@@ -308,17 +247,6 @@ mod tests {
             assert_eq!(members, expected, "{file}");
             assert_eq!(bytes, end.next_multiple_of(16), "{file}");
             assert!(bytes <= 128, "every Vulkan device has 128 bytes of push constants, some no more");
-        }
-    }
-
-    #[test]
-    fn the_guide_lists_the_layout() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/library.md");
-        // The published package does not contain this file.
-        let Ok(document) = std::fs::read_to_string(path) else { return };
-        for (name, glsl, offset) in BLOCKS.iter().flat_map(|(_, layout, _)| *layout) {
-            let row = format!("| {offset} | `{name}` | {glsl} |");
-            assert!(*name == "padding" || document.contains(&row), "docs/library.md has no row {row}");
         }
     }
 }

@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::formats::is_depth;
 use super::{Host, Options, VulkanError};
-use crate::synthesis::Edges;
+use crate::synthesis::backend::check_size;
 
 /// A physical device and its properties.
 pub(super) struct Adapter {
@@ -21,11 +21,6 @@ impl Adapter {
         // SAFETY: the caller's physical device belongs to the instance.
         let properties = unsafe { instance.get_physical_device_properties(physical_device) };
         Adapter { instance, physical_device, properties }
-    }
-
-    /// True if the device is a CPU rasterizer.
-    pub(super) fn is_cpu(&self) -> bool {
-        self.properties.device_type == vk::PhysicalDeviceType::CPU
     }
 
     pub(super) fn memory(&self) -> vk::PhysicalDeviceMemoryProperties {
@@ -59,14 +54,11 @@ impl Adapter {
             }
             self.check_format(format, attachment, role)?;
         }
-        if options.edges == Edges::Multisample {
-            self.check_samples(options.samples)?;
-        }
         Ok(())
     }
 
     pub(super) fn check_image_size(&self, what: &'static str, size: [u32; 2]) -> Result<(), VulkanError> {
-        check_size(what, size, [self.properties.limits.max_image_dimension2_d; 2])
+        Ok(check_size(what, size, [self.properties.limits.max_image_dimension2_d; 2])?)
     }
 
     pub(super) fn check_format(
@@ -84,32 +76,4 @@ impl Adapter {
             Err(VulkanError::Format { format, role })
         }
     }
-
-    fn check_samples(&self, samples: u32) -> Result<(), VulkanError> {
-        let sampled = self.properties.limits.sampled_image_depth_sample_counts;
-        if matches!(samples, 2 | 4) && sampled.contains(vk::SampleCountFlags::from_raw(samples)) {
-            Ok(())
-        } else {
-            Err(VulkanError::Samples(samples))
-        }
-    }
-}
-
-pub(super) fn check_size(what: &'static str, size: [u32; 2], limit: [u32; 2]) -> Result<(), VulkanError> {
-    if (0..2).all(|i| (1..=limit[i]).contains(&size[i])) {
-        Ok(())
-    } else {
-        Err(VulkanError::Size { what, size, limit })
-    }
-}
-
-/// Checks that a rectangle lies within its image.
-pub(super) fn check_rectangle(
-    what: &'static str,
-    origin: [u32; 2],
-    size: [u32; 2],
-    image: [u32; 2],
-) -> Result<(), VulkanError> {
-    let fits = |i: usize| origin[i].checked_add(size[i]).is_some_and(|end| end <= image[i]);
-    if fits(0) && fits(1) { Ok(()) } else { Err(VulkanError::Rectangle { what, origin, size, image }) }
 }

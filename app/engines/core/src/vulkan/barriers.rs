@@ -6,9 +6,8 @@ use super::commands::Commands;
 use super::formats::{aspects, range};
 use super::{ImageState, LayerImage};
 
-/// The largest number of barriers in a frame: three source images, two of a history, two target images, and four
-/// intermediate images.
-const MAX: usize = 11;
+/// The largest number of barriers in a frame: two source images, two target images, and two intermediate images.
+const MAX: usize = 6;
 
 /// Barriers that are recorded with one command.
 pub(super) struct Barriers {

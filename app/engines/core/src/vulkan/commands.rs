@@ -6,7 +6,6 @@ use ash::{ext, vk};
 use bytemuck::NoUninit;
 
 use super::Host;
-use crate::synthesis::Strips;
 
 /// The stages that read the uniforms.
 pub(super) const UNIFORM_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -58,31 +57,6 @@ impl<'a> Commands<'a> {
             self.device.cmd_bind_descriptor_sets(self.buffer, point, layout, 0, &[textures], &[]);
             self.device.cmd_push_constants(self.buffer, layout, stages, 0, bytemuck::bytes_of(uniforms));
         }
-    }
-
-    /// Writes the block of a history's strips, which the previous frame's passes may still be reading. The data is part
-    /// of the command buffer, so one buffer suffices and nothing has to be kept until execution.
-    pub(super) fn write_strips(&self, buffer: vk::Buffer, strips: &Strips) {
-        let read = (vk::PipelineStageFlags::FRAGMENT_SHADER, vk::AccessFlags::UNIFORM_READ);
-        let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
-        let barrier = |from: (_, vk::AccessFlags), to: (_, vk::AccessFlags)| {
-            let barrier = vk::BufferMemoryBarrier::default()
-                .src_access_mask(from.1)
-                .dst_access_mask(to.1)
-                .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-                .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-                .buffer(buffer)
-                .size(vk::WHOLE_SIZE);
-            let none = vk::DependencyFlags::empty();
-            // SAFETY: `Commands::new` asks for a recording buffer outside of render passes, and live handles.
-            unsafe {
-                self.device.cmd_pipeline_barrier(self.buffer, from.0, to.0, none, &[], &[barrier], &[]);
-            }
-        };
-        barrier(read, written);
-        // SAFETY: as above; the buffer was made for one block, which is far below the limit of 65536 bytes.
-        unsafe { self.device.cmd_update_buffer(self.buffer, buffer, 0, bytemuck::bytes_of(strips)) };
-        barrier(written, read);
     }
 
     /// Draws a triangle that covers `area`. Must be called inside a render pass or dynamic rendering.

@@ -4,34 +4,12 @@ use ash::vk;
 
 use super::{ImageState, LayerImage};
 
-/// Format of the layers, and of their tile map and span map. Every device can sample it and render to it.
-pub(super) const MAP: vk::Format = vk::Format::R32_UINT;
-/// Format of the tile map and span map of sources with hard edges. Every device can sample it and render to it.
-pub(super) const LAW_MAP: vk::Format = vk::Format::R32G32B32A32_UINT;
+/// Format of the tile map and span map. Every device can sample it and render to it.
+pub(super) const MAP: vk::Format = vk::Format::R32G32B32A32_UINT;
 
-/// Returns the format that stores the colour behind a source's edges.
-///
-/// It has the encoding of the source's colour, because unmixing must happen in the colour space of the resolve. Its
-/// alpha holds the share of the front surface, for which ten-bit formats lack precision.
-pub(super) fn background(color: vk::Format) -> vk::Format {
-    match color {
-        vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32 => {
-            vk::Format::R8G8B8A8_SRGB
-        }
-        vk::Format::R8G8B8A8_UNORM | vk::Format::B8G8R8A8_UNORM | vk::Format::A8B8G8R8_UNORM_PACK32 => {
-            vk::Format::R8G8B8A8_UNORM
-        }
-        _ => vk::Format::R16G16B16A16_SFLOAT,
-    }
-}
-
-/// Returns the size in bytes of a texel of [`MAP`], [`LAW_MAP`] or a [`background`] format.
-pub(super) fn texel_bytes(format: vk::Format) -> u64 {
-    match format {
-        LAW_MAP => 16,
-        vk::Format::R16G16B16A16_SFLOAT => 8,
-        _ => 4,
-    }
+/// Returns the size in bytes of a map of this size.
+pub(super) fn map_bytes([width, height]: [u32; 2]) -> u64 {
+    16 * u64::from(width) * u64::from(height)
 }
 
 /// Returns all aspects of a format.

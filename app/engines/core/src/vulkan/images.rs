@@ -6,12 +6,11 @@ use super::adapter::Adapter;
 use super::formats::{aspects, is_depth, sampled_state};
 use super::objects::Objects;
 use super::passes::Passes;
-use super::pipelines::{HISTORY, TEXTURES};
+use super::pipelines::TEXTURES;
 use super::targets::{Attachments, PassKind};
 use super::{
     ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages, Use, Uses, VulkanError,
 };
-use crate::synthesis::Edges;
 
 /// A registered source: its images' views and descriptors.
 pub(super) struct Source {
@@ -29,38 +28,13 @@ pub(super) struct Target {
     _objects: Objects,
 }
 
-/// Checks that the device can sample a source's images.
-pub(super) fn check_source(
-    adapter: &Adapter,
-    options: &Options,
-    images: &SourceImages,
-) -> Result<(), VulkanError> {
+/// Checks that the device can sample a source's images: filter its colour, and fetch its depth.
+pub(super) fn check_source(adapter: &Adapter, images: &SourceImages) -> Result<(), VulkanError> {
     adapter.check_image_size("a source's image", images.size)?;
-    check_sampled(adapter, [&images.color, &images.depth], ["a source's colour", "a source's depth"])?;
-    if let Some(history) = &images.history {
-        if !options.history {
-            return Err(VulkanError::History);
-        }
-        adapter.check_image_size("a history's image", history.size)?;
-        let roles = ["a history's colour", "a history's depth"];
-        check_sampled(adapter, [&history.color, &history.depth], roles)?;
-    }
-    if images.sample_color.is_some() && options.edges != Edges::Multisample {
-        return Err(VulkanError::SampleColors);
-    }
-    Ok(())
-}
-
-/// Checks that the device can filter colour and fetch depth.
-fn check_sampled(
-    adapter: &Adapter,
-    [color, depth]: [&LayerImage; 2],
-    [color_role, role]: [&'static str; 2],
-) -> Result<(), VulkanError> {
     let sampled = vk::FormatFeatureFlags::SAMPLED_IMAGE;
     let filtered = sampled | vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
-    adapter.check_format(color.format, filtered, color_role)?;
-    let format = depth.format;
+    adapter.check_format(images.color.format, filtered, "a source's colour")?;
+    let (format, role) = (images.depth.format, "a source's depth");
     if !is_depth(format) && !matches!(format, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) {
         return Err(VulkanError::Format { format, role });
     }
@@ -93,7 +67,6 @@ impl Source {
         images: &SourceImages,
         layout: vk::DescriptorSetLayout,
         passes: &Passes,
-        strips: Option<vk::Buffer>,
     ) -> Result<Source, VulkanError> {
         let mut sampled = |image: &LayerImage| {
             let aspect = if is_depth(image.format) {
@@ -102,59 +75,26 @@ impl Source {
                 vk::ImageAspectFlags::COLOR
             };
             let view = objects.create_view(image.image, image.format, aspect, image.layer)?;
-            Ok(texture(view, sampled_state(image).layout))
+            Ok::<_, VulkanError>(texture(view, sampled_state(image).layout))
         };
-        let color = sampled(&images.color)?;
-        let depth = sampled(&images.depth)?;
-        let samples = images.sample_color.as_ref().map(&mut sampled).transpose()?;
-        let history = match &images.history {
-            Some(history) => [sampled(&history.depth)?, sampled(&history.color)?],
-            // The shaders do not read these textures.
-            None => [color; 2],
-        };
-        let pool = |ty, count| vk::DescriptorPoolSize { ty, descriptor_count: count as u32 };
-        let sizes = [
-            pool(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, TEXTURES + history.len()),
-            pool(vk::DescriptorType::UNIFORM_BUFFER, 1),
-        ];
+        let [depth, color] = [sampled(&images.depth)?, sampled(&images.color)?];
+        let [tiles, spans] =
+            passes.intermediates().map(|map| texture(map.attachments.color, ImageState::SAMPLED.layout));
+        let sizes = [vk::DescriptorPoolSize {
+            ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+            descriptor_count: TEXTURES as u32,
+        }];
         let set = objects.allocate_descriptor_set(layout, &sizes)?;
-        let intermediate =
-            |attachments: &Attachments, i| texture(attachments.color(i), ImageState::SAMPLED.layout);
-        let layers = |i| passes.layers().map(|layers| intermediate(&layers.attachments, i));
-        // Textures that are `None` are not read by the shaders of this pipeline's passes.
-        let textures = [
-            Some(depth),
-            Some(color),
-            Some(intermediate(&passes.tiles.map.attachments, 0)),
-            Some(intermediate(&passes.spans.map.attachments, 0)),
-            layers(0),
-            layers(1),
-            samples,
-        ];
-        write_textures(objects.device(), set, 0, &textures);
-        if let Some(strips) = strips {
-            write_textures(objects.device(), set, HISTORY, &history.map(Some));
-            write_strips(objects.device(), set, HISTORY + history.len(), strips);
-        }
+        write_textures(objects.device(), set, &[depth, color, tiles, spans]);
         Ok(Source { id, images: *images, textures: set, _objects: objects })
     }
 
     /// Returns each image, with its uses in a call or else those of its registration, and the state in which the passes
     /// read it.
     pub(super) fn images(&self, uses: Option<&Uses>) -> impl Iterator<Item = (LayerImage, ImageState)> {
-        let SourceImages { color, depth, sample_color, history, .. } = self.images;
-        let uses = uses.map(|uses| {
-            let Uses {
-                source_color, source_depth, source_sample_color, history_color, history_depth, ..
-            } = *uses;
-            [source_color, source_depth, source_sample_color, history_color, history_depth].map(Some)
-        });
-        let [former_color, former_depth] =
-            [history.map(|history| history.color), history.map(|history| history.depth)];
-        [Some(color), Some(depth), sample_color, former_color, former_depth]
-            .into_iter()
-            .zip(uses.unwrap_or_default())
-            .filter_map(|(image, other)| image.map(|image| (used(image, other), sampled_state(&image))))
+        let color = (self.images.color, uses.map(|uses| uses.source_color));
+        let depth = (self.images.depth, uses.map(|uses| uses.source_depth));
+        [color, depth].into_iter().map(|(image, other)| (used(image, other), sampled_state(&image)))
     }
 }
 
@@ -162,37 +102,21 @@ fn texture(view: vk::ImageView, layout: vk::ImageLayout) -> vk::DescriptorImageI
     vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
 }
 
-/// Writes textures from binding `first` on, to a set that no command uses yet.
+/// Writes all bindings to a set that no command uses yet.
 fn write_textures(
     device: &ash::Device,
     set: vk::DescriptorSet,
-    first: usize,
-    textures: &[Option<vk::DescriptorImageInfo>],
+    textures: &[vk::DescriptorImageInfo; TEXTURES],
 ) {
-    let present = textures.iter().enumerate().filter(|(_, texture)| texture.is_some());
-    let writes: Vec<_> = present
-        .map(|(binding, texture)| {
-            vk::WriteDescriptorSet::default()
-                .dst_set(set)
-                .dst_binding((first + binding) as u32)
-                .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
-                .image_info(texture.as_slice())
-        })
-        .collect();
+    let writes: [_; TEXTURES] = std::array::from_fn(|binding| {
+        vk::WriteDescriptorSet::default()
+            .dst_set(set)
+            .dst_binding(binding as u32)
+            .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+            .image_info(std::slice::from_ref(&textures[binding]))
+    });
     // SAFETY: the set was just allocated from a pool of this device, and the views are live.
     unsafe { device.update_descriptor_sets(&writes, &[]) };
-}
-
-/// Writes the block of strips to a set that no command uses yet.
-fn write_strips(device: &ash::Device, set: vk::DescriptorSet, binding: usize, strips: vk::Buffer) {
-    let buffer = [vk::DescriptorBufferInfo::default().buffer(strips).range(vk::WHOLE_SIZE)];
-    let write = vk::WriteDescriptorSet::default()
-        .dst_set(set)
-        .dst_binding(binding as u32)
-        .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER)
-        .buffer_info(&buffer);
-    // SAFETY: the set was just allocated from a pool of this device, and the buffer is live.
-    unsafe { device.update_descriptor_sets(&[write], &[]) };
 }
 
 impl Target {
@@ -209,7 +133,7 @@ impl Target {
         let color = view(&images.color)?;
         let depth = images.depth.as_ref().map(view).transpose()?;
         let attachments =
-            passes.rendering.attachments(&mut objects, PassKind::Target, &[color], depth, images.size)?;
+            passes.rendering.attachments(&mut objects, PassKind::Target, color, depth, images.size)?;
         Ok(Target { id, images: *images, attachments, _objects: objects })
     }
 

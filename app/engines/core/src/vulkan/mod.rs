@@ -1,8 +1,8 @@
 //! Synthesis on Vulkan: recorded into the caller's command buffer.
 //!
-//! [`Gather`] runs the passes of `synthesis::Gather` or, for anti-aliased sources, of `synthesis::Layers`, from the
-//! same shaders. [`AnyView`] runs those of `synthesis::AnyView`, with a [`PoseWarp`](crate::eyes::PoseWarp) instead of
-//! the warp. Both are a [`Pipeline`]. [`Pipeline::new`], [`Pipeline::register_source`] and
+//! [`Gather`] takes a [`Warp`](crate::eyes::Warp) between parallel eyes, [`AnyView`] a
+//! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. Both are a [`Pipeline`], and draw the
+//! same picture as on OpenGL, from the same shaders. [`Pipeline::new`], [`Pipeline::register_source`] and
 //! [`Pipeline::register_target`] allocate and compile everything; [`Pipeline::record`] only records: it allocates
 //! nothing, submits nothing and waits for nothing.
 //!
@@ -57,7 +57,9 @@ mod timer;
 pub use ash;
 use ash::vk;
 
-use crate::synthesis::{Edges, Strips};
+use crate::eyes::{PoseWarp, Warp};
+use crate::synthesis::ArgumentError;
+use crate::synthesis::backend::{WarpKind, map_sizes};
 
 pub use pipeline::{AnyView, Gather, Pipeline};
 
@@ -113,49 +115,9 @@ pub enum VulkanError {
         "the device has no vkCmdBeginRendering; enable the feature dynamicRendering, or leave dynamic_rendering off"
     )]
     DynamicRendering,
-    /// A size is zero, or beyond the sizes of [`Options`] or of the device.
-    #[error(
-        "{what} of {}x{} pixels is not between 1x1 and {}x{}; give a size in that range, or make pipelines for larger sizes",
-        size[0], size[1], limit[0], limit[1]
-    )]
-    Size {
-        /// The image that has the size.
-        what: &'static str,
-        /// Width and height.
-        size: [u32; 2],
-        /// The largest width and height.
-        limit: [u32; 2],
-    },
-    /// The number of depth samples is not 2 or 4, or the device cannot sample it.
-    #[error("a source's depth of {0} samples cannot be used; give 2 or 4, whichever the device can sample")]
-    Samples(u32),
-    /// A source has an image of sample colours, which only [`Edges::Multisample`] uses.
-    #[error("colour of samples is for edges of multisample textures only; leave out sample_color")]
-    SampleColors,
-    /// A source has a history, but [`Options::history`] is off; or a frame has a history, but its source was registered
-    /// without one.
-    #[error(
-        "a history is for pipelines made with one, of sources registered with its images; give both, or none"
-    )]
-    History,
-    /// [`AnyView`] was given edges other than [`Edges::Hard`], or a history.
-    #[error("any view is synthesized from hard edges, without a history; choose these")]
-    AnyView,
-    /// A rectangle reaches beyond its image.
-    #[error(
-        "{what} of {}x{} pixels at ({}, {}) reaches beyond its image of {}x{} pixels",
-        size[0], size[1], origin[0], origin[1], image[0], image[1]
-    )]
-    Rectangle {
-        /// The rectangle.
-        what: &'static str,
-        /// Upper left corner.
-        origin: [u32; 2],
-        /// Width and height.
-        size: [u32; 2],
-        /// Width and height of the image.
-        image: [u32; 2],
-    },
+    /// A size or a rectangle does not fit the images, [`Options`] or the device.
+    #[error(transparent)]
+    Argument(#[from] ArgumentError),
     /// A [`SourceId`] or [`TargetId`] was never registered, or was released.
     #[error("these images are not registered; register them, and use the id until they are released")]
     NotRegistered,
@@ -211,12 +173,6 @@ pub struct Options {
     pub max_source_size: [u32; 2],
     /// The largest size of a target in pixels.
     pub max_target_size: [u32; 2],
-    /// The kind of source images; docs/library.md explains the choice.
-    pub edges: Edges,
-    /// Samples in each pixel of a source's depth for [`Edges::Multisample`]: 2 or 4, in the standard positions.
-    pub samples: u32,
-    /// True if sources may have a history ([`SourceImages::history`]).
-    pub history: bool,
     /// The number of frames after which [`Pipeline::pass_times`] returns a frame's times: at least the number of frames
     /// in flight. 0 disables timing.
     pub timed_frames: u32,
@@ -228,30 +184,27 @@ impl Options {
     /// Returns the size in bytes of the intermediate buffers of a [`Gather`] with these options, for planning before a
     /// pipeline exists. Drivers add padding.
     pub fn buffer_bytes(&self) -> u64 {
-        self.bytes(false)
+        self.bytes::<Warp>()
     }
 
     /// Returns the same size for an [`AnyView`].
     pub fn any_view_buffer_bytes(&self) -> u64 {
-        self.bytes(true)
+        self.bytes::<PoseWarp>()
     }
 
-    fn bytes(&self, any_view: bool) -> u64 {
-        passes::buffers(self, any_view).map(|(kind, size)| kind.bytes(self, size)).sum()
+    fn bytes<W: WarpKind>(&self) -> u64 {
+        map_sizes::<W>([self.max_source_size, self.max_target_size]).map(formats::map_bytes).iter().sum()
     }
 }
 
 impl Default for Options {
-    /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, hard edges, no history, no times, no cache.
+    /// R8G8B8A8_UNORM without depth, 2048 x 2048 pixels, no times, no cache.
     fn default() -> Options {
         Options {
             color_format: vk::Format::R8G8B8A8_UNORM,
             depth_format: None,
             max_source_size: [2048; 2],
             max_target_size: [2048; 2],
-            edges: Edges::Hard,
-            samples: 4,
-            history: false,
             timed_frames: 0,
             pipeline_cache: vk::PipelineCache::null(),
         }
@@ -318,7 +271,7 @@ impl ImageState {
 /// One layer of an image, at mip level 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerImage {
-    /// A 2-D image, without multisampling unless stated otherwise. Its usage includes SAMPLED for a source,
+    /// A 2-D image, without multisampling. Its usage includes SAMPLED for a source,
     /// COLOR_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT for a target.
     pub image: vk::Image,
     /// Format of the view: the image's own, or a compatible one if the image is MUTABLE_FORMAT.
@@ -331,43 +284,26 @@ pub struct LayerImage {
     pub after: ImageState,
 }
 
-/// Colour and depth of the rendered eye and its guard band.
+/// Colour and depth of the rendered eye and its guard band. Of a multisampled image, give colour resolved from the
+/// samples, and the depth of each pixel's nearest sample (VK_RESOLVE_MODE_MIN or MAX). Averaged depth belongs to no
+/// surface and causes halos at all edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceImages {
     /// Colour in any format that can be filtered, such as R8G8B8A8_UNORM or _SRGB, A2B10G10R10_UNORM or
     /// R16G16B16A16_SFLOAT. All four channels are synthesized. A source that is sampled as sRGB needs an sRGB target.
-    /// Unless the edges are [`Edges::Hard`], colour is resolved, with values between 0 and 1.
     pub color: LayerImage,
     /// Depth: D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or R32_SFLOAT. The stencil aspect
-    /// is not read. For [`Edges::Multisample`] it has [`Options::samples`] samples.
+    /// is not read.
     pub depth: LayerImage,
-    /// For [`Edges::Multisample`], the multisample image that the colour was resolved from, with as many samples as the
-    /// depth, if it still exists.
-    pub sample_color: Option<LayerImage>,
     /// Width and height of the images in pixels; the source may be a part of them.
     pub size: [u32; 2],
-    /// Earlier renders of the other eye, for pipelines with [`Options::history`].
-    pub history: Option<HistoryImages>,
 }
 
 impl SourceImages {
-    /// Returns a source of two images of this size, without sample colours or a history.
+    /// Returns a source of two images of this size.
     pub fn new(color: LayerImage, depth: LayerImage, size: [u32; 2]) -> SourceImages {
-        SourceImages { color, depth, sample_color: None, size, history: None }
+        SourceImages { color, depth, size }
     }
-}
-
-/// A rendered image of the synthesized eye, from this frame or earlier ones. It shows what is in disocclusions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HistoryImages {
-    /// Colour in the encoding of the source's, in any format that can be filtered: the input of synthesis, without what
-    /// is drawn over both eyes afterwards.
-    pub color: LayerImage,
-    /// Depth in one of the formats of [`SourceImages::depth`], one value per pixel, with the planes and encoding of the
-    /// source's.
-    pub depth: LayerImage,
-    /// Width and height of the images in pixels, which may differ from the source's.
-    pub size: [u32; 2],
 }
 
 /// The images that the other eye is written to.
@@ -426,15 +362,12 @@ pub struct Frame {
     pub target: TargetId,
     /// Upper left corner, in pixels, of the rectangle to write. Pixels outside of it are not changed.
     pub target_origin: [u32; 2],
-    /// The views of the strips of [`SourceImages::history`], from the top on, as [`Strips::new`] returns them: its
-    /// rows, counted from the bottom, are converted. `None` if no history is to be used.
-    pub history: Option<Strips>,
 }
 
 impl Frame {
-    /// Returns a frame at the upper left corners of source and target, without a history.
+    /// Returns a frame at the upper left corners of source and target.
     pub fn new(source: SourceId, target: TargetId) -> Frame {
-        Frame { source, source_origin: [0, 0], target, target_origin: [0, 0], history: None }
+        Frame { source, source_origin: [0, 0], target, target_origin: [0, 0] }
     }
 }
 
@@ -455,12 +388,6 @@ pub struct Uses {
     pub source_color: Use,
     /// The uses of [`SourceImages::depth`].
     pub source_depth: Use,
-    /// The uses of [`SourceImages::sample_color`].
-    pub source_sample_color: Use,
-    /// The uses of [`HistoryImages::color`].
-    pub history_color: Use,
-    /// The uses of [`HistoryImages::depth`].
-    pub history_depth: Use,
     /// The uses of [`TargetImages::color`].
     pub target_color: Use,
     /// The uses of [`TargetImages::depth`].
@@ -470,8 +397,6 @@ pub struct Uses {
 /// The GPU times of one frame's passes ([`Pipeline::pass_times`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassTimes {
-    /// Splitting the source into layers; 0 with [`Edges::Hard`].
-    pub split: std::time::Duration,
     /// Finding the bounds of the displacements in each tile.
     pub tiles: std::time::Duration,
     /// Finding the part of the source to search for each tile of the target.

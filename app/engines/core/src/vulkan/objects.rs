@@ -49,7 +49,6 @@ macro_rules! objects {
 }
 
 objects! {
-    create_buffer(vk::BufferCreateInfo<'_>) -> Buffer(vk::Buffer), "vkCreateBuffer", destroy_buffer;
     create_descriptor_pool(vk::DescriptorPoolCreateInfo<'_>) -> DescriptorPool(vk::DescriptorPool),
         "vkCreateDescriptorPool", destroy_descriptor_pool;
     create_descriptor_set_layout(vk::DescriptorSetLayoutCreateInfo<'_>) -> DescriptorSetLayout(vk::DescriptorSetLayout),
@@ -156,23 +155,6 @@ impl Objects {
         unsafe { self.device.bind_image_memory(image, memory, 0) }
             .map_err(|result| VulkanError::new("vkBindImageMemory", result))?;
         Ok(image)
-    }
-
-    /// Returns a uniform buffer with its own memory, to be written by commands.
-    pub(super) fn create_uniform_buffer(
-        &mut self,
-        memory: &vk::PhysicalDeviceMemoryProperties,
-        size: u64,
-    ) -> Result<vk::Buffer, VulkanError> {
-        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
-        let buffer = self.create_buffer(&vk::BufferCreateInfo::default().size(size).usage(usage))?;
-        // SAFETY: the buffer was just made from this device.
-        let needed = unsafe { self.device.get_buffer_memory_requirements(buffer) };
-        let memory = self.allocate(memory, &needed)?;
-        // SAFETY: the memory is new, and was allocated with the buffer's size and type.
-        unsafe { self.device.bind_buffer_memory(buffer, memory, 0) }
-            .map_err(|result| VulkanError::new("vkBindBufferMemory", result))?;
-        Ok(buffer)
     }
 
     /// Allocates memory, on the device if a suitable type exists.

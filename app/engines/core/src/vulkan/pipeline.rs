@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::adapter::{Adapter, check_rectangle, check_size};
+use super::adapter::Adapter;
 use super::barriers::Barriers;
 use super::commands::{Commands, Labels};
+use super::formats::map_bytes;
 use super::images::{self, Source, Target};
 use super::objects::Objects;
 use super::passes::{Passes, Recorder};
@@ -19,17 +20,15 @@ use super::{
     VulkanError,
 };
 use crate::eyes::{PoseWarp, Warp};
-use crate::synthesis::{Edges, PassSet, Places, Strips, WarpKind, span_tiles, tiles};
+use crate::synthesis::backend::{Places, WarpKind, check_rectangle, check_size, map_sizes};
 
-/// The passes of `synthesis::Gather`: tile bounds, tile spans, march. For anti-aliased sources, those of
-/// `synthesis::Layers`, which split the source into layers first.
+/// Synthesis between parallel eyes: the march goes along the source's row.
 pub type Gather = Pipeline<Warp>;
 
-/// The passes of `synthesis::AnyView`: tile bounds, tile spans, march. They draw a view in any pose near the source's,
-/// from sources with [`Edges::Hard`] and without a history.
+/// Synthesis of a view in any pose near the source's: the march goes along a segment of any direction.
 pub type AnyView = Pipeline<PoseWarp>;
 
-/// The passes for a kind of warp: [`Gather`] or [`AnyView`].
+/// The passes for a kind of warp: [`Gather`] or [`AnyView`]: tile bounds, tile spans, march.
 ///
 /// Call the methods from one thread at a time. All frames share the intermediate buffers, which are protected by
 /// barriers only: the commands must be executed in the order in which they were recorded, by queues of one family, one
@@ -40,8 +39,6 @@ pub struct Pipeline<W> {
     options: Options,
     layouts: Layouts,
     passes: Passes,
-    /// The uniform buffer for a history's strips.
-    strips: Option<vk::Buffer>,
     timer: Option<Timer>,
     labels: Option<Labels>,
     sources: Vec<Source>,
@@ -53,33 +50,12 @@ pub struct Pipeline<W> {
     _objects: Objects,
 }
 
-impl Gather {
-    /// Does the same as [`Gather::new`], with the passes for any kind of device: for tests of shaders that this device
-    /// would not use.
-    ///
-    /// # Errors
-    /// Those of [`Gather::new`].
-    ///
-    /// # Safety
-    /// Those of [`Gather::new`].
-    #[doc(hidden)]
-    pub unsafe fn with_passes(
-        host: &Host,
-        options: &Options,
-        passes: PassSet,
-    ) -> Result<Gather, VulkanError> {
-        // SAFETY: the contract of this function is the same.
-        unsafe { Gather::with_adapter(host, Adapter::new(host), options, passes) }
-    }
-}
-
 impl<W: WarpKind> Pipeline<W> {
     /// Creates everything that does not depend on the images: pipelines and intermediate buffers.
     ///
     /// # Errors
-    /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::Samples`], [`VulkanError::QueueFamily`] and
-    /// [`VulkanError::DynamicRendering`] for what the device does not support; [`VulkanError::AnyView`] for what
-    /// [`AnyView`] does not support; errors of Vulkan's commands.
+    /// [`VulkanError::Format`], [`VulkanError::Argument`], [`VulkanError::QueueFamily`] and
+    /// [`VulkanError::DynamicRendering`] for what the device does not support; errors of Vulkan's commands.
     ///
     /// # Safety
     /// The host's handles are valid, belong together and outlive the returned value. When the value is dropped, no
@@ -87,22 +63,6 @@ impl<W: WarpKind> Pipeline<W> {
     pub unsafe fn new(host: &Host, options: &Options) -> Result<Pipeline<W>, VulkanError> {
         // SAFETY: the caller's handles are valid and belong together.
         let adapter = unsafe { Adapter::new(host) };
-        let passes = PassSet::of::<W>(adapter.is_cpu());
-        // SAFETY: the contract of this function is the same.
-        unsafe { Pipeline::with_adapter(host, adapter, options, passes) }
-    }
-
-    /// # Safety
-    /// Those of [`Pipeline::new`].
-    unsafe fn with_adapter(
-        host: &Host,
-        adapter: Adapter,
-        options: &Options,
-        passes: PassSet,
-    ) -> Result<Pipeline<W>, VulkanError> {
-        if W::ANY_VIEW && (options.edges != Edges::Hard || options.history) {
-            return Err(VulkanError::AnyView);
-        }
         let family = adapter.graphics_family(host.queue_family)?;
         adapter.check_options(options)?;
 
@@ -112,11 +72,9 @@ impl<W: WarpKind> Pipeline<W> {
         let mut objects = unsafe { Objects::new(&device) };
         // SAFETY: the caller's handles are valid and belong together.
         let rendering = unsafe { Rendering::new(host, &mut objects, options)? };
-        let layouts = Layouts::new(&mut objects, size_of::<W::Uniforms>(), options.history)?;
+        let layouts = Layouts::new(&mut objects, size_of::<W::Uniforms>())?;
         let memory = adapter.memory();
-        let passes = Passes::new(&mut objects, rendering, layouts.pipeline, &memory, options, passes)?;
-        let bytes = size_of::<Strips>() as u64;
-        let strips = options.history.then(|| objects.create_uniform_buffer(&memory, bytes)).transpose()?;
+        let passes = Passes::new::<W>(&mut objects, rendering, layouts.pipeline, &memory, options)?;
         let timer = Timer::new(&mut objects, options.timed_frames, &family, &adapter.properties.limits)?;
         // SAFETY: the caller's handles are valid and belong together.
         let labels = unsafe { Labels::new(host) };
@@ -126,7 +84,6 @@ impl<W: WarpKind> Pipeline<W> {
             options: *options,
             layouts,
             passes,
-            strips,
             timer,
             labels,
             sources: Vec::new(),
@@ -144,18 +101,17 @@ impl<W: WarpKind> Pipeline<W> {
     /// Creates views and descriptors of images to read from.
     ///
     /// # Errors
-    /// [`VulkanError::Format`], [`VulkanError::Size`], [`VulkanError::SampleColors`] and [`VulkanError::History`];
-    /// errors of Vulkan's commands.
+    /// [`VulkanError::Format`] and [`VulkanError::Argument`]; errors of Vulkan's commands.
     ///
     /// # Safety
     /// The images are as [`SourceImages`] and [`LayerImage`](super::LayerImage) describe, and live until the id is
     /// released or the pipeline is dropped.
     pub unsafe fn register_source(&mut self, images: &SourceImages) -> Result<SourceId, VulkanError> {
-        images::check_source(&self.adapter, &self.options, images)?;
+        images::check_source(&self.adapter, images)?;
         // SAFETY: the caller's images are live, and outlive the objects, which are destroyed when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
         let id = SourceId(self.next_id());
-        let source = Source::new(objects, id, images, self.layouts.textures, &self.passes, self.strips)?;
+        let source = Source::new(objects, id, images, self.layouts.textures, &self.passes)?;
         self.last_id = id.0;
         self.sources.push(source);
         Ok(id)
@@ -164,7 +120,7 @@ impl<W: WarpKind> Pipeline<W> {
     /// Creates views of images to write to, and a framebuffer if render passes are used.
     ///
     /// # Errors
-    /// [`VulkanError::OtherFormat`] and [`VulkanError::Size`]; errors of Vulkan's commands.
+    /// [`VulkanError::OtherFormat`] and [`VulkanError::Argument`]; errors of Vulkan's commands.
     ///
     /// # Safety
     /// The images are as [`TargetImages`] and [`LayerImage`](super::LayerImage) describe, and live until the id is
@@ -204,8 +160,7 @@ impl<W: WarpKind> Pipeline<W> {
     /// scissor of the command buffer's graphics bind point.
     ///
     /// # Errors
-    /// [`VulkanError::NotRegistered`], [`VulkanError::Size`], [`VulkanError::Rectangle`] and [`VulkanError::History`].
-    /// Nothing is recorded in these cases.
+    /// [`VulkanError::NotRegistered`] and [`VulkanError::Argument`]. Nothing is recorded in these cases.
     ///
     /// # Safety
     /// The command buffer belongs to this device, is in the recording state, outside of render passes and dynamic
@@ -253,8 +208,7 @@ impl<W: WarpKind> Pipeline<W> {
         let [source_size, target_size] = warp.sizes();
         self.check_frame(frame, warp.sizes(), source, target)?;
 
-        let tile_size = tiles(source_size);
-        let span_size = span_tiles(W::ANY_VIEW, source_size, target_size);
+        let [tile_size, span_size] = map_sizes::<W>([source_size, target_size]);
         let part = source_size != source.images.size
             || tile_size != self.passes.tiles.map.size
             || span_size != self.passes.spans.map.size;
@@ -274,16 +228,7 @@ impl<W: WarpKind> Pipeline<W> {
             timer.begin(&commands);
         }
         self.acquire_images(&commands, source, target, uses);
-        if let Some(buffer) = self.strips {
-            let former = source.images.history.map_or(0, |history| history.size[1]);
-            let turned = frame.history.map(|strips| strips.rows_turned(target_size[1], former));
-            commands.write_strips(buffer, &turned.unwrap_or(Strips::NONE));
-        }
         commands.bind(self.layouts.pipeline, source.textures, &warp.uniforms_from_top(&places));
-        if let Some(split) = &passes.split {
-            split.record(&recorder, source_size, source.images.sample_color.is_some());
-        }
-        recorder.stamp(Stamp::Split);
         passes.tiles.record(&recorder, tile_size);
         recorder.stamp(Stamp::Tiles);
         passes.spans.record(&recorder, span_size);
@@ -311,13 +256,11 @@ impl<W: WarpKind> Pipeline<W> {
         source: &Source,
         target: &Target,
     ) -> Result<(), VulkanError> {
-        if frame.history.is_some() && source.images.history.is_none() {
-            return Err(VulkanError::History);
-        }
         check_size("a source", source_size, self.options.max_source_size)?;
         check_size("a target", target_size, self.options.max_target_size)?;
         check_rectangle("a source", frame.source_origin, source_size, source.images.size)?;
-        check_rectangle("a target", frame.target_origin, target_size, target.images.size)
+        check_rectangle("a target", frame.target_origin, target_size, target.images.size)?;
+        Ok(())
     }
 
     /// Brings all images to the states that the passes need.
@@ -328,15 +271,15 @@ impl<W: WarpKind> Pipeline<W> {
         }
         // The previous frame has read the intermediate buffers; their contents are not needed.
         let read = ImageState { layout: vk::ImageLayout::UNDEFINED, ..ImageState::SAMPLED };
-        for &image in self.passes.intermediates().flat_map(|intermediate| &intermediate.images) {
-            barriers.intermediate(image, read, ImageState::COLOR_ATTACHMENT);
+        for map in self.passes.intermediates() {
+            barriers.intermediate(map.image, read, ImageState::COLOR_ATTACHMENT);
         }
         barriers.record(commands);
     }
 
     /// Returns the size of the intermediate buffers in bytes.
     pub fn buffer_bytes(&self) -> u64 {
-        self.passes.intermediates().map(|intermediate| intermediate.bytes).sum()
+        self.passes.intermediates().map(|map| map_bytes(map.size)).iter().sum()
     }
 
     /// Returns the times of the passes in the frame that was recorded [`Options::timed_frames`] calls of

@@ -7,15 +7,10 @@ use super::objects::Objects;
 use super::targets::{PassKind, Rendering};
 use super::{Options, VulkanError, shaders};
 
-/// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map, layers,
-/// the colour behind them, and sample colours. Hard edges have no layers, and resolved sources have no samples.
-pub(super) const TEXTURES: usize = 7;
-/// The binding of the source's colour, which is filtered. All others, except a history's colour, are fetched
-/// unfiltered.
+/// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map.
+pub(super) const TEXTURES: usize = 4;
+/// The binding of the source's colour, which is filtered. All others are fetched unfiltered.
 const COLOR: usize = 1;
-/// The first of a history's three bindings: its depth, its colour, which is filtered, and the block of its strips.
-pub(super) const HISTORY: usize = 10;
-const HISTORY_COLOR: usize = HISTORY + 1;
 
 /// The layouts that all pipelines share.
 #[derive(Clone, Copy)]
@@ -26,8 +21,8 @@ pub(super) struct Layouts {
 
 impl Layouts {
     /// Creates the layouts, for passes with this number of bytes of uniforms.
-    pub(super) fn new(objects: &mut Objects, uniforms: usize, history: bool) -> Result<Layouts, VulkanError> {
-        let textures = texture_layout(objects, history)?;
+    pub(super) fn new(objects: &mut Objects, uniforms: usize) -> Result<Layouts, VulkanError> {
+        let textures = texture_layout(objects)?;
         let layouts = [textures];
         // Every device supports 128 bytes of push constants.
         let constants =
@@ -38,27 +33,17 @@ impl Layouts {
     }
 }
 
-fn texture_layout(objects: &mut Objects, history: bool) -> Result<vk::DescriptorSetLayout, VulkanError> {
+fn texture_layout(objects: &mut Objects) -> Result<vk::DescriptorSetLayout, VulkanError> {
     let nearest = [objects.create_sampler(&sampler(vk::Filter::NEAREST))?];
     let linear = [objects.create_sampler(&sampler(vk::Filter::LINEAR))?];
-    let binding = |binding: usize, ty| {
+    let bindings: [_; TEXTURES] = std::array::from_fn(|place| {
         vk::DescriptorSetLayoutBinding::default()
-            .binding(binding as u32)
-            .descriptor_type(ty)
+            .binding(place as u32)
+            .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
             .descriptor_count(1)
             .stage_flags(vk::ShaderStageFlags::FRAGMENT)
-    };
-    let texture = |place: usize| {
-        let filtered = matches!(place, COLOR | HISTORY_COLOR);
-        binding(place, vk::DescriptorType::COMBINED_IMAGE_SAMPLER).immutable_samplers(if filtered {
-            &linear
-        } else {
-            &nearest
-        })
-    };
-    let strips = binding(HISTORY + 2, vk::DescriptorType::UNIFORM_BUFFER);
-    let own = [texture(HISTORY), texture(HISTORY_COLOR), strips];
-    let bindings: Vec<_> = (0..TEXTURES).map(texture).chain(own.into_iter().filter(|_| history)).collect();
+            .immutable_samplers(if place == COLOR { &linear } else { &nearest })
+    });
     let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
     objects.create_descriptor_set_layout(&info)
 }
@@ -92,7 +77,7 @@ impl Pipelines {
 pub(super) struct PipelineFactory<'a> {
     pub(super) objects: &'a mut Objects,
     /// The shader modules, which are only needed until the pipelines are created.
-    pub(super) shaders: Objects,
+    pub(super) modules: Objects,
     pub(super) rendering: &'a Rendering,
     pub(super) layout: vk::PipelineLayout,
     pub(super) options: &'a Options,
@@ -119,14 +104,13 @@ impl PipelineFactory<'_> {
             PassKind::Target => self.march_vertex,
             _ => shaders::SCREEN,
         };
-        let vertex = self.shaders.create_shader(vertex)?;
-        let fragment = self.shaders.create_shader(fragment)?;
-        // `PART` and `TWO_SAMPLES` in the shaders.
-        let values = [part, self.options.samples == 2].map(u32::from);
-        let entries =
-            [0, 1].map(|id| vk::SpecializationMapEntry { constant_id: id, offset: 4 * id, size: 4 });
+        let vertex = self.modules.create_shader(vertex)?;
+        let fragment = self.modules.create_shader(fragment)?;
+        // `PART` in the shaders.
+        let value = u32::from(part);
+        let entries = [vk::SpecializationMapEntry { constant_id: 0, offset: 0, size: 4 }];
         let constants =
-            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::bytes_of(&values));
+            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::bytes_of(&value));
         let stage = |stage, module| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(c"main")
         };
@@ -143,7 +127,7 @@ impl PipelineFactory<'_> {
         stages: &[vk::PipelineShaderStageCreateInfo],
         kind: PassKind,
     ) -> Result<vk::Pipeline, VulkanError> {
-        let (formats, depth_format) = (kind.formats(self.options), kind.depth_format(self.options));
+        let (format, depth_format) = (kind.format(self.options), kind.depth_format(self.options));
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
             .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
@@ -156,8 +140,8 @@ impl PipelineFactory<'_> {
             .depth_write_enable(depth_format.is_some())
             .depth_compare_op(vk::CompareOp::ALWAYS);
         let blend =
-            vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
-        let blend = vec![blend; formats.len()];
+            [vk::PipelineColorBlendAttachmentState::default()
+                .color_write_mask(vk::ColorComponentFlags::RGBA)];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blend);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
@@ -172,6 +156,7 @@ impl PipelineFactory<'_> {
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(self.layout);
+        let formats = [format];
         let mut attachments = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(&formats)
             .depth_attachment_format(depth_format.unwrap_or_default());

@@ -1,68 +1,47 @@
 //! The shaders of the passes as SPIR-V, compiled from the files of `yoro-shaders` by `cargo xtask maintain spirv`.
 
-use crate::synthesis::{Edges, PassSet};
+use crate::synthesis::backend::WarpKind;
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
-/// The first pass, for depth and colour of all samples.
-pub(super) const SPLIT_SAMPLES: &[u8] = include_bytes!("spirv/split-samples.spv");
 
-/// Returns the first pass, for resolved colour; `None` for hard edges.
-pub(super) fn split(edges: Edges) -> Option<&'static [u8]> {
-    match edges {
-        Edges::Hard => None,
-        Edges::Nearest => Some(include_bytes!("spirv/split-nearest.spv")),
-        Edges::Sample => Some(include_bytes!("spirv/split-sample.spv")),
-        Edges::Multisample => Some(include_bytes!("spirv/split-multisample.spv")),
-    }
+/// The shaders of the passes for a kind of warp.
+pub(super) struct Shaders {
+    /// Finds the bounds of each tile.
+    pub(super) tiles: &'static [u8],
+    /// Finds the part of the source to search for each tile of the target.
+    pub(super) spans: &'static [u8],
+    /// The vertex shader of the last pass.
+    pub(super) march_vertex: &'static [u8],
+    /// The last pass.
+    march: &'static [u8],
+    /// The last pass, writing depth, too.
+    march_depth: &'static [u8],
 }
 
-/// Returns the pass that finds the bounds of each tile.
-pub(super) fn tiles(edges: Edges, passes: PassSet) -> &'static [u8] {
-    match (edges, passes) {
-        (_, PassSet::AnyView) => include_bytes!("spirv/any-view-tiles.spv"),
-        (Edges::Hard, PassSet::GatherOnCpu) => include_bytes!("spirv/tiles.spv"),
-        (Edges::Hard, PassSet::GatherOnGpu) => include_bytes!("spirv/tiles-short.spv"),
-        _ => include_bytes!("spirv/layer-tiles.spv"),
-    }
-}
+const GATHER: Shaders = Shaders {
+    tiles: include_bytes!("spirv/tiles.spv"),
+    spans: include_bytes!("spirv/spans.spv"),
+    march_vertex: include_bytes!("spirv/march-vertex.spv"),
+    march: include_bytes!("spirv/march.spv"),
+    march_depth: include_bytes!("spirv/march-depth.spv"),
+};
 
-/// Returns the pass that finds the source columns to search for each tile of the target.
-pub(super) fn spans(edges: Edges, passes: PassSet) -> &'static [u8] {
-    match (edges, passes) {
-        (_, PassSet::AnyView) => include_bytes!("spirv/any-view-spans.spv"),
-        (Edges::Hard, PassSet::GatherOnGpu) => include_bytes!("spirv/spans-short.spv"),
-        _ => include_bytes!("spirv/spans.spv"),
-    }
-}
+const ANY_VIEW: Shaders = Shaders {
+    tiles: include_bytes!("spirv/any-view-tiles.spv"),
+    spans: include_bytes!("spirv/any-view-spans.spv"),
+    march_vertex: SCREEN,
+    march: include_bytes!("spirv/any-view-march.spv"),
+    march_depth: include_bytes!("spirv/any-view-march-depth.spv"),
+};
 
-/// Returns the vertex shader of the last pass.
-pub(super) fn march_vertex(passes: PassSet) -> &'static [u8] {
-    match passes {
-        PassSet::GatherOnCpu | PassSet::GatherOnGpu => include_bytes!("spirv/march-vertex.spv"),
-        PassSet::AnyView => SCREEN,
+impl Shaders {
+    pub(super) fn of<W: WarpKind>() -> &'static Shaders {
+        if W::ANY_VIEW { &ANY_VIEW } else { &GATHER }
     }
-}
 
-/// Returns the last pass, with or without writing depth and using a history.
-pub(super) fn march(edges: Edges, passes: PassSet, depth: bool, history: bool) -> &'static [u8] {
-    /// Selects among the four modules for one kind of source.
-    macro_rules! of {
-        ($name:literal) => {
-            match (depth, history) {
-                (false, false) => include_bytes!(concat!("spirv/", $name, ".spv")),
-                (true, false) => include_bytes!(concat!("spirv/", $name, "-depth.spv")),
-                (false, true) => include_bytes!(concat!("spirv/", $name, "-history.spv")),
-                (true, true) => include_bytes!(concat!("spirv/", $name, "-depth-history.spv")),
-            }
-        };
-    }
-    match (edges, passes) {
-        (_, PassSet::AnyView) if depth => include_bytes!("spirv/any-view-march-depth.spv"),
-        (_, PassSet::AnyView) => include_bytes!("spirv/any-view-march.spv"),
-        (Edges::Hard, PassSet::GatherOnCpu) => of!("march"),
-        (Edges::Hard, PassSet::GatherOnGpu) => of!("march-short"),
-        (Edges::Multisample, _) => of!("layer-march-multisample"),
-        _ => of!("layer-march"),
+    /// Returns the last pass.
+    pub(super) fn march(&self, depth: bool) -> &'static [u8] {
+        if depth { self.march_depth } else { self.march }
     }
 }
 

@@ -3,39 +3,26 @@
 use ash::{khr, vk};
 
 use super::commands::{Commands, has_command};
-use super::formats::{self, texel_bytes};
+use super::formats;
 use super::objects::Objects;
 use super::{Host, ImageState, Options, VulkanError};
-use crate::synthesis::Edges;
 
 /// The kinds of attachments that passes draw into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PassKind {
-    /// One 32-bit integer for each tile of layers.
+    /// Four 32-bit integers for each tile.
     Map,
-    /// Four 32-bit integers for each tile of a source with hard edges, whose tiles have laws.
-    LawMap,
-    /// Two colour attachments: the surfaces that each source pixel shows, and the colour behind them.
-    Layers,
     /// The caller's target.
     Target,
 }
 
 impl PassKind {
-    /// Formats of the colour attachments.
-    pub(super) fn formats(self, options: &Options) -> Vec<vk::Format> {
+    /// Returns the format of the colour attachment.
+    pub(super) fn format(self, options: &Options) -> vk::Format {
         match self {
-            PassKind::Map => vec![formats::MAP],
-            PassKind::LawMap => vec![formats::LAW_MAP],
-            PassKind::Layers => vec![formats::MAP, formats::background(options.color_format)],
-            PassKind::Target => vec![options.color_format],
+            PassKind::Map => formats::MAP,
+            PassKind::Target => options.color_format,
         }
-    }
-
-    /// Returns the bytes of the colour attachments' texels.
-    pub(super) fn bytes(self, options: &Options, size: [u32; 2]) -> u64 {
-        let texels = u64::from(size[0]) * u64::from(size[1]);
-        texels * self.formats(options).into_iter().map(texel_bytes).sum::<u64>()
     }
 
     /// Returns the format of the depth attachment.
@@ -53,9 +40,6 @@ pub(super) enum Rendering {
 /// A render pass for each [`PassKind`].
 pub(super) struct RenderPasses {
     map: vk::RenderPass,
-    law_map: vk::RenderPass,
-    /// A null handle for hard edges, which have no layers.
-    layers: vk::RenderPass,
     target: vk::RenderPass,
 }
 
@@ -63,20 +47,17 @@ pub(super) struct RenderPasses {
 #[derive(Clone, Copy)]
 pub(super) struct Attachments {
     kind: PassKind,
-    /// The second view is only used for [`PassKind::Layers`].
-    colors: [vk::ImageView; 2],
+    pub(super) color: vk::ImageView,
     depth: Option<vk::ImageView>,
     framebuffer: vk::Framebuffer,
 }
 
 /// The result of a pass that later passes read.
 pub(super) struct Intermediate {
-    pub(super) images: Vec<vk::Image>,
+    pub(super) image: vk::Image,
     pub(super) attachments: Attachments,
     /// Width and height in texels.
     pub(super) size: [u32; 2],
-    /// The size of the texels in bytes.
-    pub(super) bytes: u64,
 }
 
 impl Rendering {
@@ -92,15 +73,7 @@ impl Rendering {
             return unsafe { Rendering::dynamic(host) };
         }
         let mut pass = |kind| render_pass(objects, kind, options);
-        Ok(Rendering::Passes(RenderPasses {
-            map: pass(PassKind::Map)?,
-            law_map: pass(PassKind::LawMap)?,
-            layers: match options.edges {
-                Edges::Hard => vk::RenderPass::null(),
-                _ => pass(PassKind::Layers)?,
-            },
-            target: pass(PassKind::Target)?,
-        }))
+        Ok(Rendering::Passes(RenderPasses { map: pass(PassKind::Map)?, target: pass(PassKind::Target)? }))
     }
 
     /// Loads the commands of VK_KHR_dynamic_rendering, or those of Vulkan 1.3.
@@ -127,8 +100,6 @@ impl Rendering {
         let Rendering::Passes(passes) = self else { return vk::RenderPass::null() };
         match kind {
             PassKind::Map => passes.map,
-            PassKind::LawMap => passes.law_map,
-            PassKind::Layers => passes.layers,
             PassKind::Target => passes.target,
         }
     }
@@ -138,14 +109,14 @@ impl Rendering {
         &self,
         objects: &mut Objects,
         kind: PassKind,
-        colors: &[vk::ImageView],
+        color: vk::ImageView,
         depth: Option<vk::ImageView>,
         size: [u32; 2],
     ) -> Result<Attachments, VulkanError> {
         let framebuffer = match self {
             Rendering::Dynamic { .. } => vk::Framebuffer::null(),
             Rendering::Passes { .. } => {
-                let views: Vec<_> = colors.iter().copied().chain(depth).collect();
+                let views: Vec<_> = [color].into_iter().chain(depth).collect();
                 objects.create_framebuffer(
                     &vk::FramebufferCreateInfo::default()
                         .render_pass(self.render_pass(kind))
@@ -156,8 +127,7 @@ impl Rendering {
                 )?
             }
         };
-        let color = |i: usize| colors.get(i).copied().unwrap_or_default();
-        Ok(Attachments { kind, colors: [color(0), color(1)], depth, framebuffer })
+        Ok(Attachments { kind, color, depth, framebuffer })
     }
 
     /// Draws over an area of the attachments, whose images must be in attachment layouts.
@@ -193,11 +163,6 @@ impl Rendering {
 }
 
 impl Attachments {
-    /// Returns the view of a colour attachment.
-    pub(super) fn color(&self, index: usize) -> vk::ImageView {
-        self.colors[index]
-    }
-
     /// # Safety
     /// The buffer records outside of render passes, and `begin` is a command of its device.
     unsafe fn begin_dynamic(
@@ -213,13 +178,12 @@ impl Attachments {
                 .load_op(vk::AttachmentLoadOp::DONT_CARE)
                 .store_op(vk::AttachmentStoreOp::STORE)
         };
-        let colors = self.colors.map(|view| attachment(view, ImageState::COLOR_ATTACHMENT));
-        let count = if self.kind == PassKind::Layers { 2 } else { 1 };
+        let colors = [attachment(self.color, ImageState::COLOR_ATTACHMENT)];
         let depth = attachment(self.depth.unwrap_or_default(), ImageState::DEPTH_ATTACHMENT);
         let info = vk::RenderingInfo::default()
             .render_area(area)
             .layer_count(1)
-            .color_attachments(&colors[..count])
+            .color_attachments(&colors)
             .depth_attachment(&depth);
         // SAFETY: the caller's buffer and command; the description names live views.
         unsafe { begin(buffer, &info) };
@@ -243,17 +207,13 @@ fn render_pass(
             .initial_layout(state.layout)
             .final_layout(state.layout)
     };
-    let (colors, depth) = (kind.formats(options), kind.depth_format(options));
-    let color_attachments = colors.iter().map(|&format| attachment(format, ImageState::COLOR_ATTACHMENT));
-    let depth_attachment = depth.map(|format| attachment(format, ImageState::DEPTH_ATTACHMENT));
-    let attachments: Vec<_> = color_attachments.chain(depth_attachment).collect();
-    let reference = |attachment: usize, state: ImageState| vk::AttachmentReference {
-        attachment: attachment as u32,
-        layout: state.layout,
-    };
-    let color_references: Vec<_> =
-        (0..colors.len()).map(|i| reference(i, ImageState::COLOR_ATTACHMENT)).collect();
-    let depth_reference = reference(colors.len(), ImageState::DEPTH_ATTACHMENT);
+    let color = attachment(kind.format(options), ImageState::COLOR_ATTACHMENT);
+    let depth = kind.depth_format(options).map(|format| attachment(format, ImageState::DEPTH_ATTACHMENT));
+    let attachments: Vec<_> = [color].into_iter().chain(depth).collect();
+    let reference =
+        |attachment, state: ImageState| vk::AttachmentReference { attachment, layout: state.layout };
+    let color_references = [reference(0, ImageState::COLOR_ATTACHMENT)];
+    let depth_reference = reference(1, ImageState::DEPTH_ATTACHMENT);
     let mut subpass = vk::SubpassDescription::default()
         .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
         .color_attachments(&color_references);
@@ -271,18 +231,11 @@ impl Intermediate {
         objects: &mut Objects,
         rendering: &Rendering,
         memory: &vk::PhysicalDeviceMemoryProperties,
-        kind: PassKind,
-        options: &Options,
         size: [u32; 2],
     ) -> Result<Intermediate, VulkanError> {
-        let formats = kind.formats(options);
-        let (mut images, mut views) = (Vec::new(), Vec::new());
-        for &format in &formats {
-            let image = objects.create_color_image(memory, format, size)?;
-            images.push(image);
-            views.push(objects.create_view(image, format, vk::ImageAspectFlags::COLOR, 0)?);
-        }
-        let attachments = rendering.attachments(objects, kind, &views, None, size)?;
-        Ok(Intermediate { images, attachments, size, bytes: kind.bytes(options, size) })
+        let image = objects.create_color_image(memory, formats::MAP, size)?;
+        let view = objects.create_view(image, formats::MAP, vk::ImageAspectFlags::COLOR, 0)?;
+        let attachments = rendering.attachments(objects, PassKind::Map, view, None, size)?;
+        Ok(Intermediate { image, attachments, size })
     }
 }

@@ -12,7 +12,6 @@ use super::{PassTimes, VulkanError};
 #[derive(Clone, Copy)]
 pub(super) enum Stamp {
     Begin,
-    Split,
     Tiles,
     Spans,
     March,
@@ -98,7 +97,6 @@ impl Timer {
             Duration::from_nanos((ticks as f64 * self.period) as u64)
         };
         Ok(Some(PassTimes {
-            split: time(Stamp::Split),
             tiles: time(Stamp::Tiles),
             spans: time(Stamp::Spans),
             march: time(Stamp::March),

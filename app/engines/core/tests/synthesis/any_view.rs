@@ -5,9 +5,9 @@ use glam::{DVec2, Vec3};
 use super::laws::{on_every_backend, pair, scene};
 use super::posed::{MOTIONS, moved, run};
 use yoro::eyes::{DepthConvention, Eye, EyePair, GuardBand, PoseWarp, View};
-use yoro::synthesis::*;
+use yoro::opengl::{AnyView, Destination, GlError, Options, Outputs, Part, Profiling, Source};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Destination, Filter, Format, GlError, Profiling, RenderTarget, Texture};
+use yoro_gl::{Filter, Format, RenderTarget, Texture};
 
 /// Returns a view of `size`, and a moved and turned copy of it.
 fn views(size: [u32; 2], way: Vec3, turn: [f32; 3], convention: DepthConvention) -> [View; 2] {
@@ -248,8 +248,7 @@ fn parallel_eyes_are_those_of_gather() {
             let eyes: EyePair = pair([150, 60], dominant, 0.063, convention);
             let views = eyes.synthesis_views(GuardBand::Pixels(9)).unwrap();
             let (rgba, depth) = scene(views.source.size, eyes.depth, seed);
-            let gather = Box::new(Gather::with_variant(gl, super::OUTPUTS, GatherVariant::Plain).unwrap());
-            let want = super::InMemory::new(gl, gather).run(&rgba, &depth, &views.warp).rgba;
+            let want = super::subject().in_memory(gl).run(&rgba, &depth, &views.warp).rgba;
             let warp = PoseWarp::new(&views.source, &views.target).unwrap();
             let got = run(gl, &rgba, &depth, &warp, None).rgba;
             let off: Vec<u8> = got
@@ -291,8 +290,8 @@ fn a_part_is_what_the_whole_would_be() {
 #[test]
 fn what_cannot_be_synthesized_is_refused() {
     on_every_backend(|gl| {
-        let options = SynthesisOptions { edges: Edges::Nearest, ..SynthesisOptions::default() };
-        let refused = AnyView::new(gl, &options, Outputs::default());
+        let outputs = Outputs { source_map: true, ..Outputs::default() };
+        let refused = AnyView::new(gl, &Options::default(), outputs);
         assert!(matches!(refused, Err(GlError::Unsupported(_))));
     });
 }
@@ -328,7 +327,7 @@ fn cost_of_any_view() {
         };
         let images = [texture(Format::Rgba8, &rgba), texture(Format::R32F, &depth)];
         let warp = PoseWarp::new(&source, &target).unwrap();
-        let any_view = AnyView::new(gl, &SynthesisOptions::default(), Outputs::default()).unwrap();
+        let any_view = AnyView::new(gl, &Options::default(), Outputs::default()).unwrap();
         (near, images, warp, any_view, Vec::new())
     });
     let target = RenderTarget::new(gl, [w, h], &[(Format::Rgba8, Filter::Nearest)], None).unwrap();

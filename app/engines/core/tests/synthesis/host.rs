@@ -6,10 +6,10 @@ use std::mem::transmute;
 use glow::HasContext;
 
 use super::laws::on_every_backend;
-use super::state::{Lent, OUTPUTS, clean, program, ways};
-use yoro::synthesis::*;
+use super::state::{Lent, clean, gather, program};
+use yoro::opengl::{Context, GlState};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Context, Format};
+use yoro_gl::Format;
 
 const STATES: [GlState; 2] = [GlState::Leave, GlState::Preserve];
 
@@ -28,23 +28,20 @@ fn current_program(gl: &Context) -> Option<glow::Program> {
 fn a_program_that_was_deleted_while_current_is_not_restored() {
     on_every_backend(|gl| {
         let lent = Lent::new(gl, [48, 16], Format::Rgba8);
-        for options in ways() {
-            let options = SynthesisOptions { gl_state: GlState::Preserve, ..options };
-            let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-            let own = program(
-                gl,
-                "void main() { gl_Position = vec4(0.0); }",
-                "out vec4 color; void main() { color = vec4(1.0); }",
-            );
-            // SAFETY: deleted once.
-            unsafe {
-                gl.raw().use_program(Some(own));
-                gl.raw().delete_program(own);
-            }
-            synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-            assert_eq!(gl.take_errors(), None, "{options:?}");
-            assert_eq!(current_program(gl), None, "{options:?}");
+        let mut gather = gather(gl, GlState::Preserve);
+        let own = program(
+            gl,
+            "void main() { gl_Position = vec4(0.0); }",
+            "out vec4 color; void main() { color = vec4(1.0); }",
+        );
+        // SAFETY: deleted once.
+        unsafe {
+            gl.raw().use_program(Some(own));
+            gl.raw().delete_program(own);
         }
+        gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+        assert_eq!(gl.take_errors(), None);
+        assert_eq!(current_program(gl), None);
     });
 }
 
@@ -52,13 +49,11 @@ fn a_program_that_was_deleted_while_current_is_not_restored() {
 fn a_dropped_pipeline_leaves_no_program_current() {
     on_every_backend(|gl| {
         let lent = Lent::new(gl, [48, 16], Format::Rgba8);
-        for options in ways() {
-            let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-            synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-            assert!(current_program(gl).is_some());
-            drop(synthesis);
-            assert_eq!(current_program(gl), None, "{options:?}");
-        }
+        let mut gather = gather(gl, GlState::Leave);
+        gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+        assert!(current_program(gl).is_some());
+        drop(gather);
+        assert_eq!(current_program(gl), None);
     });
 }
 
@@ -66,13 +61,13 @@ fn a_dropped_pipeline_leaves_no_program_current() {
 fn a_pending_error_of_the_host_stays() {
     on_every_backend(|gl| {
         let lent = Lent::new(gl, [48, 16], Format::Rgba8);
-        for (options, gl_state) in ways().into_iter().flat_map(|way| STATES.map(|state| (way, state))) {
+        for gl_state in STATES {
             // SAFETY: GL refuses this number, which is not a capability.
             unsafe { gl.raw().enable(0x1234) };
-            let mut synthesis = create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap();
-            synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-            drop(synthesis);
-            assert_eq!(gl.take_errors().as_deref(), Some("INVALID_ENUM"), "{options:?}, {gl_state:?}");
+            let mut gather = gather(gl, gl_state);
+            gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+            drop(gather);
+            assert_eq!(gl.take_errors().as_deref(), Some("INVALID_ENUM"), "{gl_state:?}");
         }
     });
 }
@@ -105,7 +100,7 @@ fn the_state_of_other_viewports_is_not_touched() {
         (values, scissor)
     };
     let lent = Lent::new(gl, [48, 16], Format::Rgba8);
-    for (options, gl_state) in ways().into_iter().flat_map(|way| STATES.map(|state| (way, state))) {
+    for gl_state in STATES {
         // SAFETY: valid state of two viewports.
         unsafe {
             // Mesa clamps the numbers in place, so they must not be constants.
@@ -116,10 +111,10 @@ fn the_state_of_other_viewports_is_not_touched() {
             raw.enable_draw_buffer(glow::SCISSOR_TEST, 1);
         }
         let before = [state(0), state(1)];
-        let mut synthesis = create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap();
-        synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+        let mut gather = gather(gl, gl_state);
+        gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
         let kept = if gl_state == GlState::Preserve { 0 } else { 1 };
-        assert_eq!([state(0), state(1)][kept..], before[kept..], "{options:?}, {gl_state:?}");
+        assert_eq!([state(0), state(1)][kept..], before[kept..], "{gl_state:?}");
     }
 }
 
@@ -145,35 +140,33 @@ fn a_compatibility_profile_discards_no_fragments() {
         transmute::<*const c_void, AlphaFunc>(function(c"glAlphaFunc"))(glow::NEVER, 0.0);
         transmute::<*const c_void, PolygonStipple>(function(c"glPolygonStipple"))(&[0x55; 128]);
     }
-    for options in ways() {
-        let lent = Lent::new(gl, [97, 31], Format::Rgba8);
-        let run = |gl_state| {
-            let mut synthesis = create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap();
-            synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-        };
-        // SAFETY: the compatibility profile has both.
-        let switch = |switch: u32, on: bool| unsafe {
-            if on { gl.raw().enable(switch) } else { gl.raw().disable(switch) }
-        };
-        let clean_all = || {
-            clean(gl);
-            switch(ALPHA_TEST, false);
-            switch(POLYGON_STIPPLE, false);
-        };
+    let lent = Lent::new(gl, [97, 31], Format::Rgba8);
+    let run = |gl_state| {
+        let mut gather = gather(gl, gl_state);
+        gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+    };
+    // SAFETY: the compatibility profile has both.
+    let switch = |switch: u32, on: bool| unsafe {
+        if on { gl.raw().enable(switch) } else { gl.raw().disable(switch) }
+    };
+    let clean_all = || {
+        clean(gl);
+        switch(ALPHA_TEST, false);
+        switch(POLYGON_STIPPLE, false);
+    };
+    clean_all();
+    run(GlState::Leave);
+    let want = lent.picture(gl);
+    for (name, gl_state) in
+        [ALPHA_TEST, POLYGON_STIPPLE].into_iter().flat_map(|s| STATES.map(|state| (s, state)))
+    {
+        lent.target().framebuffer.inspect(|_| gl.clear(None));
+        switch(name, true);
+        run(gl_state);
+        // SAFETY: a query of a switch that the profile has.
+        let on = unsafe { gl.raw().is_enabled(name) };
+        assert_eq!(on, gl_state == GlState::Preserve, "0x{name:x}, {gl_state:?}");
         clean_all();
-        run(GlState::Leave);
-        let want = lent.picture(gl);
-        for (name, gl_state) in
-            [ALPHA_TEST, POLYGON_STIPPLE].into_iter().flat_map(|s| STATES.map(|state| (s, state)))
-        {
-            lent.target().framebuffer.inspect(|_| gl.clear(None));
-            switch(name, true);
-            run(gl_state);
-            // SAFETY: a query of a switch that the profile has.
-            let on = unsafe { gl.raw().is_enabled(name) };
-            assert_eq!(on, gl_state == GlState::Preserve, "0x{name:x}, {gl_state:?}");
-            clean_all();
-            assert!(lent.picture(gl) == want, "{options:?}, 0x{name:x}, {gl_state:?}");
-        }
+        assert!(lent.picture(gl) == want, "0x{name:x}, {gl_state:?}");
     }
 }

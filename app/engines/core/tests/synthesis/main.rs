@@ -1,7 +1,6 @@
 //! The gather pipeline against its f64 reference, and the laws that it must keep, on every available GL backend.
 
 mod any_view;
-mod history;
 mod host;
 mod parts;
 mod reference;
@@ -11,31 +10,34 @@ use std::rc::Rc;
 
 use rand::{Rng, SeedableRng};
 
-use in_memory::{InMemory, OUTPUTS, SynthesizedImage};
+use in_memory::{InMemory, OUTPUTS, Synthesize, SynthesizedImage};
 use laws::{Subject, on_every_backend, pair, positions, row, scene};
 use reference::Entry;
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, EyePair, Frustum, GuardBand, Pose, Warp};
-use yoro::synthesis::*;
-use yoro_gl::Context;
-use yoro_test_support::{in_memory, laws, posed, sheets};
+use yoro::opengl::{Context, Gather, Options, Outputs};
+use yoro::synthesis::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE};
+use yoro_test_support::{in_memory, laws, posed};
 
-laws!(variants());
+laws!([subject()]);
 
 #[test]
 fn asymmetric_frusta_agree_with_the_symmetric_view() {
-    laws::asymmetric_frusta_agree_with_the_symmetric_view(&variants());
+    laws::asymmetric_frusta_agree_with_the_symmetric_view(&[subject()]);
 }
 
-/// Returns the pipeline in all variants of its shaders. Drivers select one of these; tests run them all.
-fn variants() -> Vec<Subject> {
-    GatherVariant::ALL.map(variant).into()
+fn subject() -> Subject {
+    Subject { name: "gather".into(), make: Box::new(|gl| synthesize(gl, OUTPUTS, &[])) }
 }
 
-fn variant(variant: GatherVariant) -> Subject {
-    Subject {
-        name: format!("{variant:?}"),
-        make: Box::new(move |gl| Box::new(Gather::with_variant(gl, OUTPUTS, variant).unwrap())),
-    }
+/// Compiles the pipeline with these macros.
+fn synthesize(gl: &Rc<Context>, outputs: Outputs, macros: &[&'static str]) -> Synthesize {
+    let mut gather = Gather::with_macros(gl, &Options::default(), outputs, macros).unwrap();
+    Box::new(move |source, warp, target| gather.synthesize(source, warp, target))
+}
+
+/// Returns how often the parts of the march run for each pixel.
+fn counts(gl: &Rc<Context>, rgba: &[u8], depth: &[f32], warp: &Warp) -> SynthesizedImage {
+    InMemory::new(gl, synthesize(gl, Outputs::default(), &["COUNT_TRIPS"])).run(rgba, depth, warp)
 }
 
 /// Fetches from a row at a fractional forward column, with linear filtering, in f64.
@@ -51,14 +53,12 @@ fn fetch(rgba: &[u8], source: f64, mirrored: bool) -> [f64; 4] {
 
 type Reference = fn(&[f64], usize) -> Vec<Entry>;
 
-/// Returns the largest allowed distance in pixels of a source column from the reference's: rounding, and an eighth of a
-/// pixel in tiles with a law, half from the tiles' planes and half from the law (`PLANAR` in `include/planes.glsl`).
-fn bound(variant: GatherVariant) -> f64 {
-    if variant == GatherVariant::ShortWay { 0.125 } else { 2e-3 }
-}
+/// The largest allowed distance in pixels of a source column from the reference's: an eighth of a pixel in tiles with a
+/// law, half from the tiles' planes and half from the law (`PLANAR` in `include/planes.glsl`).
+const BOUND: f64 = 0.125;
 
-fn agrees_with_reference(gl: &Rc<Context>, kind: GatherVariant, reference: Reference) {
-    let subject = variant(kind);
+fn agrees_with_reference(gl: &Rc<Context>, reference: Reference) {
+    let subject = subject();
     for (seed, dominant, convention, guard) in [
         (1, Eye::Right, DepthConvention::Standard, GuardBand::None),
         (2, Eye::Left, DepthConvention::Standard, GuardBand::Pixels(21)),
@@ -70,7 +70,7 @@ fn agrees_with_reference(gl: &Rc<Context>, kind: GatherVariant, reference: Refer
         let (rgba, depth) = scene(warp.source_size, p.depth, seed);
         let result = subject.in_memory(gl).run(&rgba, &depth, &warp);
         let what = format!("{subject:?}, case {seed}");
-        is_its_reference(&result, reference, &rgba, &depth, &warp, bound(kind), &what);
+        is_its_reference(&result, reference, &rgba, &depth, &warp, &what);
     }
 }
 
@@ -80,7 +80,6 @@ fn is_its_reference(
     rgba: &[u8],
     depth: &[f32],
     warp: &Warp,
-    bound: f64,
     what: &str,
 ) {
     let (ws, wt) = (warp.source_size[0] as usize, warp.target_size[0] as usize);
@@ -97,7 +96,7 @@ fn is_its_reference(
             let hole = got & SOURCE_MAP_HOLE != 0;
             let source = (got & !SOURCE_MAP_HOLE) as f64 / SOURCE_MAP_FIXED as f64;
             // Positions within rounding of a decision (a pixel centre exactly on an edge) may differ.
-            if hole != entry.hole || (source - entry.source).abs() > bound {
+            if hole != entry.hole || (source - entry.source).abs() > BOUND {
                 different += 1;
                 continue;
             }
@@ -117,11 +116,7 @@ fn is_its_reference(
 /// A red square in front of blue: where a silhouette covers part of a pixel, the pixel is mixed in that proportion.
 #[test]
 fn gather_blends_silhouettes_by_coverage() {
-    on_every_backend(|gl| {
-        for subject in variants() {
-            blends_silhouettes_by_coverage(gl, &subject);
-        }
-    });
+    on_every_backend(|gl| blends_silhouettes_by_coverage(gl, &subject()));
 }
 
 fn blends_silhouettes_by_coverage(gl: &Rc<Context>, subject: &Subject) {
@@ -164,15 +159,11 @@ fn blends_silhouettes_by_coverage(gl: &Rc<Context>, subject: &Subject) {
 
 #[test]
 fn gather_is_its_reference() {
-    on_every_backend(|gl| {
-        for variant in GatherVariant::ALL {
-            agrees_with_reference(gl, variant, reference::gather_row);
-        }
-    });
+    on_every_backend(|gl| agrees_with_reference(gl, reference::gather_row));
 }
 
 /// Boxes as near as 5 cm in front of a far wall: the search skips what lies between the tiles that land in a pixel. It
-/// finds the same as the reference and the variant that examine every column.
+/// finds the same as the reference, which examines every column.
 #[test]
 fn near_surfaces_are_found_in_few_steps() {
     let frustum = Frustum { left: -1.1, right: 1.1, bottom: -0.16, top: 0.16 };
@@ -188,20 +179,10 @@ fn near_surfaces_are_found_in_few_steps() {
             let p = EyePair::parallel(Pose::IDENTITY, frustum, 0.063, depth, size, dominant);
             let warp = p.synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
             let (rgba, depth) = near_boxes(warp.source_size, p.depth, seed, boxes);
-            let results = GatherVariant::ALL.map(|v| (v, variant(v).in_memory(gl).run(&rgba, &depth, &warp)));
-            let of_all_columns = |(variant, _): &&(_, _)| *variant == GatherVariant::Software;
-            let (_, every_column) = results.iter().find(of_all_columns).unwrap();
-            for (variant, result) in &results {
-                let what = format!("{variant:?}, {boxes} boxes, {dominant:?} dominant, {convention:?}");
-                is_its_reference(result, reference::gather_row, &rgba, &depth, &warp, bound(*variant), &what);
-                let pairs = result.source_map.iter().zip(&every_column.source_map);
-                // Positions are rounded, and a pixel's centre on an edge may go either way.
-                let off = (SOURCE_MAP_FIXED as f64 * bound(*variant).max(0.01)) as u32;
-                let different = pairs.filter(|(a, b)| a.abs_diff(**b) > off).count();
-                assert!(different <= 10, "{what}: {different} pixels are not those of all columns");
-            }
-            let counting = Box::new(Gather::counting(gl).unwrap());
-            let counts = InMemory::new(gl, counting).run(&rgba, &depth, &warp);
+            let result = subject().in_memory(gl).run(&rgba, &depth, &warp);
+            let what = format!("{boxes} boxes, {dominant:?} dominant, {convention:?}");
+            is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, &what);
+            let counts = counts(gl, &rgba, &depth, &warp);
             let most = counts.rgba.chunks_exact(4).map(|pixel| pixel[1]).max().unwrap();
             // At most one step per tile, and one step per mark.
             assert!(boxes > 1 || (1..=8 * 4).contains(&most), "{most} steps past a single box");
@@ -226,12 +207,10 @@ fn tiles_with_laws_are_their_reference() {
             let depth: Vec<f32> =
                 (0..w * h).map(|i| p.depth.depth(1.0 / nearness((i % w) as f32, (i / w) as f32))).collect();
             let (rgba, _) = scene(warp.source_size, p.depth, 17);
-            for kind in GatherVariant::ALL {
-                let result = variant(kind).in_memory(gl).run(&rgba, &depth, &warp);
-                let what = format!("{kind:?}, {dominant:?} dominant");
-                is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, bound(kind), &what);
-            }
-            let counts = InMemory::new(gl, Box::new(Gather::counting(gl).unwrap())).run(&rgba, &depth, &warp);
+            let result = subject().in_memory(gl).run(&rgba, &depth, &warp);
+            let what = format!("{dominant:?} dominant");
+            is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, &what);
+            let counts = counts(gl, &rgba, &depth, &warp);
             let laws = counts.rgba.chunks_exact(4).filter(|pixel| pixel[0] & 32 != 0).count();
             assert!(3 * laws > counts.source_map.len(), "{laws} pixels have a law");
         }
@@ -254,10 +233,34 @@ fn surfaces_that_move_beyond_the_image_hide_nothing() {
             };
             let depth: Vec<f32> = (0..150 * 40).map(|i| p.depth.depth(metres(i))).collect();
             let (rgba, _) = scene(p.size, p.depth, 16);
-            for kind in GatherVariant::ALL {
-                let result = variant(kind).in_memory(gl).run(&rgba, &depth, &warp);
-                let what = format!("{kind:?}");
-                is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, bound(kind), &what);
+            let result = subject().in_memory(gl).run(&rgba, &depth, &warp);
+            let what = format!("{dominant:?} dominant");
+            is_its_reference(&result, reference::gather_row, &rgba, &depth, &warp, &what);
+        }
+    });
+}
+
+/// OpenGL ES 3.0 and WebGL 2 draw the same picture to the bit, by the functions that are written out for them.
+#[test]
+fn the_shaders_of_es_3_0_draw_the_same_picture() {
+    on_every_backend(|gl| {
+        for (seed, dominant, convention) in
+            [(1, Eye::Right, DepthConvention::Standard), (2, Eye::Left, DepthConvention::Reversed)]
+        {
+            // Slow and fast changes of depth, boxes, wires; and boxes so near that the search skips tiles.
+            let scattered = pair([203, 77], dominant, 0.2, convention);
+            let near = EyePair { depth: DepthRange { near: 0.05, ..scattered.depth }, ..scattered };
+            for p in [scattered, near] {
+                let warp = p.synthesis_views(GuardBand::Pixels(21)).unwrap().warp;
+                let warp = Warp { target_size: [203, 90], row_offset: 5, ..warp };
+                let (rgba, depth) = match p == near {
+                    true => near_boxes(warp.source_size, p.depth, seed, 6),
+                    false => scene(warp.source_size, p.depth, seed),
+                };
+                let [written_out, built_in] = [&["WITHOUT_ES_310"][..], &[]].map(|macros| {
+                    InMemory::new(gl, synthesize(gl, OUTPUTS, macros)).run(&rgba, &depth, &warp)
+                });
+                assert!(written_out == built_in, "{dominant:?} dominant, near plane at {} m", p.depth.near);
             }
         }
     });

@@ -8,8 +8,8 @@ use rand::{Rng, SeedableRng};
 use super::laws::{on_every_backend, pair, scene};
 use super::state::snapshot;
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
-use yoro::synthesis::*;
-use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
+use yoro::opengl::{Context, Destination, Gather, GlState, Options, Outputs, Part, Source, buffer_bytes};
+use yoro_gl::{Filter, Format, RenderTarget};
 
 /// The corner of every source in its textures.
 const ORIGIN: [u32; 2] = [5, 3];
@@ -94,58 +94,48 @@ impl Drop for Textures {
 }
 
 /// Returns the synthesized colour and source map.
-fn run(gl: &Rc<Context>, synthesis: &mut dyn Synthesis, source: Source, warp: &Warp) -> (Vec<u8>, Vec<u32>) {
+fn run(gl: &Rc<Context>, gather: &mut Gather, source: Source, warp: &Warp) -> (Vec<u8>, Vec<u32>) {
     let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
     let target = RenderTarget::new(gl, warp.target_size, &formats, None).unwrap();
-    synthesis.synthesize(source, warp, &Destination::whole(&target)).unwrap();
+    gather.synthesize(source, warp, &Destination::whole(&target)).unwrap();
     (target.read_rgba8(0, [0, 0], warp.target_size), target.read_u32(1, [0, 0], warp.target_size))
 }
 
 const OUTPUTS: Outputs = Outputs { depth: false, source_map: true, srgb: false };
 
 /// Checks that two pictures are equal, except for a few pixels whose positions lie within rounding of a decision.
-/// `bound` is the largest difference of columns, in 1/65536 pixel.
-fn assert_equal(got: &(Vec<u8>, Vec<u32>), want: &(Vec<u8>, Vec<u32>), bound: u32, what: &str) {
+/// Columns differ by a thousandth of a pixel at most.
+fn assert_equal(got: &(Vec<u8>, Vec<u32>), want: &(Vec<u8>, Vec<u32>), what: &str) {
     let far = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
     let colors = got.0.chunks_exact(4).zip(want.0.chunks_exact(4)).filter(|&pair| far(pair)).count();
-    let columns = got.1.iter().zip(&want.1).filter(|(a, b)| a.abs_diff(**b) > bound).count();
+    let columns = got.1.iter().zip(&want.1).filter(|(a, b)| a.abs_diff(**b) > 64).count();
     assert!(colors.max(columns) * 500 <= got.1.len(), "{what}: {colors} colours, {columns} columns differ");
 }
 
 #[test]
 fn parts_and_layers_give_the_same_picture() {
     on_every_backend(|gl| {
-        for edges in [Edges::Hard, Edges::Nearest] {
-            let plain = SynthesisOptions { edges, ..SynthesisOptions::default() };
-            // A smaller picture after a larger one, and a mirrored one.
-            let cases = [([97, 31], Eye::Right), ([61, 20], Eye::Right), ([61, 20], Eye::Left)];
-            let pictures = cases.map(|(size, dominant)| Picture::new(size, dominant, 11));
-            let mut whole = create(gl, &plain, OUTPUTS).unwrap();
-            let wanted = pictures.each_ref().map(|picture| {
-                let (_own, source) = Textures::new(gl, picture, false, false);
-                run(gl, &mut *whole, source, &picture.warp)
-            });
-            let check = |synthesis: &mut dyn Synthesis, bound, what: &str, parts, layers| {
-                for (picture, want) in pictures.iter().zip(&wanted) {
+        // A smaller picture after a larger one, and a mirrored one.
+        let cases = [([97, 31], Eye::Right), ([61, 20], Eye::Right), ([61, 20], Eye::Left)];
+        let pictures = cases.map(|(size, dominant)| Picture::new(size, dominant, 11));
+        let mut whole = Gather::new(gl, &Options::default(), OUTPUTS).unwrap();
+        let wanted = pictures.each_ref().map(|picture| {
+            let (_own, source) = Textures::new(gl, picture, false, false);
+            run(gl, &mut whole, source, &picture.warp)
+        });
+        for (parts, layers) in [(true, false), (false, true), (true, true)] {
+            let options = Options { parts, array_textures: layers, ..Options::default() };
+            let [written_out, built_in] = [&["WITHOUT_ES_310"][..], &[]].map(|macros| {
+                let mut gather = Gather::with_macros(gl, &options, OUTPUTS, macros).unwrap();
+                pictures.each_ref().map(|picture| {
                     let (_part, source) = Textures::new(gl, picture, parts, layers);
-                    let got = run(gl, synthesis, source, &picture.warp);
-                    assert_equal(&got, want, bound, &format!("{edges:?}, {what}, {:?}", picture.warp));
-                }
-            };
-            for (parts, layers) in [(true, false), (false, true), (true, true)] {
-                let options = SynthesisOptions { parts, array_textures: layers, ..plain };
-                let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-                check(&mut *synthesis, 64, &format!("parts {parts}, layers {layers}"), parts, layers);
-            }
-            // Other drivers would select these variants.
-            let options = SynthesisOptions { parts: true, array_textures: true, ..plain };
-            for variant in [GatherVariant::Plain, GatherVariant::ShortWay] {
-                if edges == Edges::Hard {
-                    let mut gather = Gather::with_variant_of(gl, OUTPUTS, variant, &options).unwrap();
-                    // In tiles with a law, an eighth of a pixel.
-                    let bound = if variant == GatherVariant::ShortWay { 65536 / 8 } else { 64 };
-                    check(&mut gather, bound, &format!("{variant:?}"), true, true);
-                }
+                    run(gl, &mut gather, source, &picture.warp)
+                })
+            });
+            let what = format!("parts {parts}, layers {layers}");
+            assert!(written_out == built_in, "{what}: the shaders of OpenGL ES 3.0 draw something else");
+            for ((got, want), picture) in built_in.iter().zip(&wanted).zip(&pictures) {
+                assert_equal(got, want, &format!("{what}, {:?}", picture.warp));
             }
         }
     });
@@ -155,21 +145,19 @@ fn parts_and_layers_give_the_same_picture() {
 #[test]
 fn buffers_of_parts_only_grow() {
     on_every_backend(|gl| {
-        for edges in [Edges::Hard, Edges::Nearest] {
-            let [large, small] = [[197, 70], [61, 20]].map(|size| Picture::new(size, Eye::Right, 1).warp);
-            let options = SynthesisOptions { edges, parts: true, ..SynthesisOptions::default() };
-            let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-            synthesis.prepare(&large).unwrap();
-            let bytes = gl.texture_bytes();
-            assert_eq!(bytes as u64, buffer_bytes(edges, &large), "{edges:?}");
-            synthesis.prepare(&small).unwrap();
-            assert_eq!(gl.texture_bytes(), bytes, "{edges:?}");
-            drop(synthesis);
-            let mut fitting = create(gl, &SynthesisOptions { parts: false, ..options }, OUTPUTS).unwrap();
-            fitting.prepare(&large).unwrap();
-            fitting.prepare(&small).unwrap();
-            assert_eq!(gl.texture_bytes() as u64, buffer_bytes(edges, &small), "{edges:?}");
-        }
+        let [large, small] = [[197, 70], [61, 20]].map(|size| Picture::new(size, Eye::Right, 1).warp);
+        let options = Options { parts: true, ..Options::default() };
+        let mut gather = Gather::new(gl, &options, OUTPUTS).unwrap();
+        gather.prepare(&large).unwrap();
+        let bytes = gl.texture_bytes();
+        assert_eq!(bytes as u64, buffer_bytes(&large));
+        gather.prepare(&small).unwrap();
+        assert_eq!(gl.texture_bytes(), bytes);
+        drop(gather);
+        let mut fitting = Gather::new(gl, &Options { parts: false, ..options }, OUTPUTS).unwrap();
+        fitting.prepare(&large).unwrap();
+        fitting.prepare(&small).unwrap();
+        assert_eq!(gl.texture_bytes() as u64, buffer_bytes(&small));
     });
 }
 
@@ -178,12 +166,7 @@ fn the_hosts_array_textures_are_preserved() {
     on_every_backend(|gl| {
         let picture = Picture::new([48, 16], Eye::Right, 2);
         let (textures, source) = Textures::new(gl, &picture, true, true);
-        let options = SynthesisOptions {
-            gl_state: GlState::Preserve,
-            parts: true,
-            array_textures: true,
-            ..SynthesisOptions::default()
-        };
+        let options = Options { gl_state: GlState::Preserve, parts: true, array_textures: true };
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         let target = RenderTarget::new(gl, picture.warp.target_size, &formats, None).unwrap();
         // SAFETY: textures of this context.
@@ -194,21 +177,9 @@ fn the_hosts_array_textures_are_preserved() {
             }
         }
         let before = snapshot(gl);
-        let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
+        let mut gather = Gather::new(gl, &options, OUTPUTS).unwrap();
         // Depth is bound to unit 0, and colour to unit 1; the host has them the other way round.
-        synthesis.synthesize(source, &picture.warp, &Destination::whole(&target)).unwrap();
+        gather.synthesize(source, &picture.warp, &Destination::whole(&target)).unwrap();
         assert_eq!(snapshot(gl), before);
-    });
-}
-
-#[test]
-fn layers_of_multisample_arrays_are_refused() {
-    on_every_backend(|gl| {
-        let options = SynthesisOptions {
-            edges: Edges::Multisample,
-            array_textures: true,
-            ..SynthesisOptions::default()
-        };
-        assert!(matches!(create(gl, &options, OUTPUTS), Err(yoro_gl::GlError::Unsupported(_))));
     });
 }

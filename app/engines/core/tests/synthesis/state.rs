@@ -4,20 +4,18 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use super::in_memory::{self, InMemory};
 use super::laws::{on_every_backend, pair, scene};
 use yoro::eyes::{DepthConvention, Eye, GuardBand, Warp};
-use yoro::synthesis::*;
-use yoro_gl::{Context, Destination, Filter, Format, GlApi, RenderTarget, Texture};
+use yoro::opengl::{Context, Destination, Gather, GlApi, GlState, Options, Outputs, Source};
+use yoro_gl::{Filter, Format, RenderTarget, Texture};
 
 pub const OUTPUTS: Outputs = Outputs { depth: true, source_map: true, srgb: false };
 /// GL_DEPTH_BOUNDS_TEST_EXT.
 const DEPTH_BOUNDS_TEST: u32 = 0x8890;
 
-/// Returns options for both kinds of edges without multisample textures, and for a pipeline that takes histories.
-pub fn ways() -> [SynthesisOptions; 3] {
-    [(Edges::Hard, false), (Edges::Nearest, false), (Edges::Hard, true)]
-        .map(|(edges, history)| SynthesisOptions { edges, history, ..SynthesisOptions::default() })
+/// Compiles the pipeline with [`OUTPUTS`].
+pub fn gather(gl: &Rc<Context>, gl_state: GlState) -> Gather {
+    Gather::new(gl, &Options { gl_state, ..Options::default() }, OUTPUTS).unwrap()
 }
 
 pub fn warp(size: [u32; 2]) -> Warp {
@@ -446,30 +444,25 @@ pub fn snapshot(gl: &Context) -> Vec<(String, Vec<i32>)> {
 #[test]
 fn pictures_do_not_depend_on_the_hosts_state() {
     on_every_backend(|gl| {
-        for options in ways() {
-            let lent = Lent::new(gl, [97, 31], Format::Rgba8);
-            clean(gl);
-            let run = |options: &SynthesisOptions| {
-                create(gl, options, OUTPUTS)
-                    .unwrap()
-                    .synthesize(lent.source(), &lent.warp, &lent.target())
-                    .unwrap();
-            };
-            run(&options);
-            let want = lent.picture(gl);
-            assert!(want.0.iter().any(|v| *v > 200) && want.2.iter().any(|v| *v != want.2[0]), "a picture");
+        let lent = Lent::new(gl, [97, 31], Format::Rgba8);
+        clean(gl);
+        let run = |gl_state| {
+            gather(gl, gl_state).synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+        };
+        run(GlState::Leave);
+        let want = lent.picture(gl);
+        assert!(want.0.iter().any(|v| *v > 200) && want.2.iter().any(|v| *v != want.2[0]), "a picture");
 
-            let hostile = Hostile::new(gl);
-            for gl_state in [GlState::Leave, GlState::Preserve] {
-                lent.target.bind();
-                gl.clear(Some(0.5));
-                hostile.set(gl);
-                run(&SynthesisOptions { gl_state, ..options });
-                assert_eq!(gl.take_errors(), None);
-                assert!(lent.picture(gl) == want, "{options:?}, {gl_state:?}");
-            }
-            hostile.delete(gl);
+        let hostile = Hostile::new(gl);
+        for gl_state in [GlState::Leave, GlState::Preserve] {
+            lent.target.bind();
+            gl.clear(Some(0.5));
+            hostile.set(gl);
+            run(gl_state);
+            assert_eq!(gl.take_errors(), None);
+            assert!(lent.picture(gl) == want, "{gl_state:?}");
         }
+        hostile.delete(gl);
     });
 }
 
@@ -480,116 +473,71 @@ fn images_in_memory_do_not_depend_on_the_hosts_state() {
         let warp = warp([61, 20]);
         let (rgba, depth) =
             scene(warp.source_size, pair([61, 20], Eye::Right, 0.063, DepthConvention::Standard).depth, 3);
-        for options in ways() {
-            let run = || {
-                InMemory::new(gl, create(gl, &options, in_memory::OUTPUTS).unwrap()).run(&rgba, &depth, &warp)
-            };
-            let want = run();
-            let hostile = Hostile::new(gl);
-            hostile.set(gl);
-            assert!(run() == want, "{options:?}");
-            hostile.delete(gl);
-        }
+        let run = || super::subject().in_memory(gl).run(&rgba, &depth, &warp);
+        let want = run();
+        let hostile = Hostile::new(gl);
+        hostile.set(gl);
+        assert!(run() == want);
+        hostile.delete(gl);
     });
 }
 
 #[test]
 fn the_hosts_state_is_preserved() {
     on_every_backend(|gl| {
-        for options in ways() {
-            let (small, large) =
-                (Lent::new(gl, [48, 16], Format::Rgba8), Lent::new(gl, [97, 31], Format::Rgba8));
-            let hostile = Hostile::new(gl);
-            clean(gl);
-            for is_hostile in [false, true] {
-                if is_hostile {
-                    hostile.set(gl);
-                }
-                let before = snapshot(gl);
-                let options = SynthesisOptions { gl_state: GlState::Preserve, ..options };
-                let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-                assert_eq!(snapshot(gl), before, "{options:?}: create");
-                synthesis.prepare(&small.warp).unwrap();
-                assert_eq!(snapshot(gl), before, "{options:?}: prepare");
-                // The second size allocates; the third call does not.
-                for lent in [&small, &large, &large] {
-                    synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-                    assert_eq!(snapshot(gl), before, "{options:?}: synthesize");
-                }
-                let beyond = Warp { target_size: [u32::MAX; 2], source_size: [u32::MAX; 2], ..small.warp };
-                assert!(synthesis.prepare(&beyond).is_err());
-                assert_eq!(snapshot(gl), before, "{options:?}: a call that fails");
-            }
-            // Colour masks of single draw buffers, tested by what they let through.
-            let raw = gl.raw();
-            let [target, _] = &hostile.targets;
-            // SAFETY: a framebuffer with two colour attachments.
-            unsafe {
-                raw.disable(glow::RASTERIZER_DISCARD);
-                raw.disable(glow::SCISSOR_TEST);
-                raw.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
-                (0..2).for_each(|i| raw.clear_buffer_f32_slice(glow::COLOR, i, &[1.0; 4]));
-            }
-            let pixel = |i| target.read_rgba8(i, [0, 0], [1, 1]);
-            assert_eq!(pixel(0), [0, 255, 0, 255], "{options:?}");
-            if gl.capabilities().api == GlApi::Desktop || gl.capabilities().version >= (3, 2) {
-                assert_eq!(pixel(1), [255, 0, 0, 255], "{options:?}");
-            }
-            hostile.delete(gl);
-        }
-    });
-}
-
-/// The values of the samples do not matter here.
-#[test]
-fn the_hosts_state_is_preserved_with_multisample_textures() {
-    on_every_backend(|gl| {
-        let lent = Lent::new(gl, [48, 16], Format::Rgba8);
-        let texture = |format: Format| {
-            let [w, h] = lent.warp.source_size.map(|n| n as i32);
-            // SAFETY: a new texture.
-            unsafe {
-                let texture = gl.raw().create_texture().unwrap();
-                gl.raw().bind_texture(glow::TEXTURE_2D_MULTISAMPLE, Some(texture));
-                let internal = format.gl().0;
-                gl.raw().tex_storage_2d_multisample(glow::TEXTURE_2D_MULTISAMPLE, 4, internal, w, h, true);
-                texture
-            }
-        };
-        let [depth, samples] = [Format::Depth32F, Format::Rgba8].map(texture);
+        let (small, large) = (Lent::new(gl, [48, 16], Format::Rgba8), Lent::new(gl, [97, 31], Format::Rgba8));
+        let hostile = Hostile::new(gl);
         clean(gl);
-        let options = SynthesisOptions {
-            edges: Edges::Multisample,
-            gl_state: GlState::Preserve,
-            ..SynthesisOptions::default()
-        };
-        let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-        let before = snapshot(gl);
-        for samples in [None, Some(samples)] {
-            let source = Source { samples, ..Source::new(lent.color.raw(), depth) };
-            synthesis.synthesize(source, &lent.warp, &lent.target()).unwrap();
-            assert_eq!(snapshot(gl), before);
+        for is_hostile in [false, true] {
+            if is_hostile {
+                hostile.set(gl);
+            }
+            let before = snapshot(gl);
+            let mut gather = gather(gl, GlState::Preserve);
+            assert_eq!(snapshot(gl), before, "create");
+            gather.prepare(&small.warp).unwrap();
+            assert_eq!(snapshot(gl), before, "prepare");
+            // The second size allocates; the third call does not.
+            for lent in [&small, &large, &large] {
+                gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+                assert_eq!(snapshot(gl), before, "synthesize");
+            }
+            let beyond = Warp { target_size: [u32::MAX; 2], source_size: [u32::MAX; 2], ..small.warp };
+            assert!(gather.prepare(&beyond).is_err());
+            assert_eq!(snapshot(gl), before, "a call that fails");
         }
-        // SAFETY: created above.
-        unsafe { [depth, samples].into_iter().for_each(|texture| gl.raw().delete_texture(texture)) };
+        // Colour masks of single draw buffers, tested by what they let through.
+        let raw = gl.raw();
+        let [target, _] = &hostile.targets;
+        // SAFETY: a framebuffer with two colour attachments.
+        unsafe {
+            raw.disable(glow::RASTERIZER_DISCARD);
+            raw.disable(glow::SCISSOR_TEST);
+            raw.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+            (0..2).for_each(|i| raw.clear_buffer_f32_slice(glow::COLOR, i, &[1.0; 4]));
+        }
+        let pixel = |i| target.read_rgba8(i, [0, 0], [1, 1]);
+        assert_eq!(pixel(0), [0, 255, 0, 255]);
+        if gl.capabilities().api == GlApi::Desktop || gl.capabilities().version >= (3, 2) {
+            assert_eq!(pixel(1), [255, 0, 0, 255]);
+        }
+        hostile.delete(gl);
     });
 }
 
 #[test]
 fn no_sampler_is_left_behind() {
     on_every_backend(|gl| {
-        for options in ways() {
-            let lent = Lent::new(gl, [33, 9], Format::Rgba8);
-            let mut synthesis = create(gl, &options, OUTPUTS).unwrap();
-            synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-            for unit in 0..8 {
-                // SAFETY: queries of a unit that exists.
-                let sampler = unsafe {
-                    gl.raw().active_texture(glow::TEXTURE0 + unit);
-                    gl.raw().get_parameter_sampler(glow::SAMPLER_BINDING)
-                };
-                assert_eq!(sampler, None, "{options:?}, unit {unit}");
-            }
+        let lent = Lent::new(gl, [33, 9], Format::Rgba8);
+        let mut gather = gather(gl, GlState::Leave);
+        gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+        for unit in 0..8 {
+            // SAFETY: queries of a unit that exists.
+            let sampler = unsafe {
+                gl.raw().active_texture(glow::TEXTURE0 + unit);
+                gl.raw().get_parameter_sampler(glow::SAMPLER_BINDING)
+            };
+            assert_eq!(sampler, None, "unit {unit}");
         }
     });
 }
@@ -599,30 +547,28 @@ fn no_sampler_is_left_behind() {
 #[test]
 fn srgb_is_encoded_where_asked_for() {
     on_every_backend(|gl| {
-        for options in ways() {
-            let mut lent = Lent::new(gl, [64, 16], Format::Srgb8Alpha8);
-            lent.warp = pair([64, 16], Eye::Right, 0.0, DepthConvention::Standard)
-                .synthesis_views(GuardBand::Pixels(9))
-                .unwrap()
-                .warp;
-            let hostile = Hostile::new(gl);
-            let [encoded, stored] = [true, false].map(|srgb| {
-                hostile.set(gl);
-                let mut synthesis = create(gl, &options, Outputs { srgb, ..OUTPUTS }).unwrap();
-                synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-                lent.picture(gl).0
-            });
-            hostile.delete(gl);
-            for y in 0..16 {
-                let given = &lent.rgba[y * 73 * 4 + 9 * 4..][..64 * 4];
-                let got = &encoded[y * 64 * 4..][..64 * 4];
-                assert!(
-                    given.iter().zip(got).all(|(a, b)| a.abs_diff(*b) <= 1),
-                    "{options:?}, row {y}: {given:?} became {got:?}"
-                );
-            }
-            assert_ne!(encoded, stored, "{options:?}: encoding can be switched in both contexts");
+        let mut lent = Lent::new(gl, [64, 16], Format::Srgb8Alpha8);
+        lent.warp = pair([64, 16], Eye::Right, 0.0, DepthConvention::Standard)
+            .synthesis_views(GuardBand::Pixels(9))
+            .unwrap()
+            .warp;
+        let hostile = Hostile::new(gl);
+        let [encoded, stored] = [true, false].map(|srgb| {
+            hostile.set(gl);
+            let mut gather = Gather::new(gl, &Options::default(), Outputs { srgb, ..OUTPUTS }).unwrap();
+            gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+            lent.picture(gl).0
+        });
+        hostile.delete(gl);
+        for y in 0..16 {
+            let given = &lent.rgba[y * 73 * 4 + 9 * 4..][..64 * 4];
+            let got = &encoded[y * 64 * 4..][..64 * 4];
+            assert!(
+                given.iter().zip(got).all(|(a, b)| a.abs_diff(*b) <= 1),
+                "row {y}: {given:?} became {got:?}"
+            );
         }
+        assert_ne!(encoded, stored, "encoding can be switched in both contexts");
     });
 }
 
@@ -644,32 +590,29 @@ fn cost_of_preserving_state() {
     on_every_backend(|gl| {
         // The image is so small that the calls dominate.
         let lent = Lent::new(gl, [8, 8], Format::Rgba8);
-        for options in ways() {
-            let [mut leave, mut preserve] = [GlState::Leave, GlState::Preserve]
-                .map(|gl_state| create(gl, &SynthesisOptions { gl_state, ..options }, OUTPUTS).unwrap());
-            let mut best = [f64::MAX; 3];
-            for _ in 0..20 {
-                let synthesize = |synthesis: &mut Box<dyn Synthesis>| {
-                    gl.finish();
-                    microseconds(1000, &mut || {
-                        synthesis.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
-                    })
-                };
-                let calls = [synthesize(&mut leave), synthesize(&mut preserve)];
-                // If sizes do not change, saving and restoring are all that `prepare` does.
-                let alone = microseconds(20_000, &mut || preserve.prepare(&lent.warp).unwrap());
-                for (best, time) in best.iter_mut().zip([calls[0], calls[1], alone]) {
-                    *best = best.min(time);
-                }
+        let [mut leave, mut preserve] =
+            [GlState::Leave, GlState::Preserve].map(|gl_state| gather(gl, gl_state));
+        let mut best = [f64::MAX; 3];
+        for _ in 0..20 {
+            let synthesize = |gather: &mut Gather| {
+                gl.finish();
+                microseconds(1000, &mut || {
+                    gather.synthesize(lent.source(), &lent.warp, &lent.target()).unwrap();
+                })
+            };
+            let calls = [synthesize(&mut leave), synthesize(&mut preserve)];
+            // If sizes do not change, saving and restoring are all that `prepare` does.
+            let alone = microseconds(20_000, &mut || preserve.prepare(&lent.warp).unwrap());
+            for (best, time) in best.iter_mut().zip([calls[0], calls[1], alone]) {
+                *best = best.min(time);
             }
-            println!(
-                "{}, {}: {:.1} us a call, {:.1} us with the state preserved; to save and restore alone {:.1} us",
-                gl.capabilities().version_string,
-                options.edges.name(),
-                best[0],
-                best[1],
-                best[2]
-            );
         }
+        println!(
+            "{}: {:.1} us a call, {:.1} us with the state preserved; to save and restore alone {:.1} us",
+            gl.capabilities().version_string,
+            best[0],
+            best[1],
+            best[2]
+        );
     });
 }

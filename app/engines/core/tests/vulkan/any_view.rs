@@ -19,7 +19,7 @@ fn any_view_is_that_of_opengl() {
                 let got = synthesize(gpu, &mut any_view, &setup, &picture);
                 let want = gl.any_view(&picture);
                 let what = format!("{rendering:?}, {warp:?}");
-                assert_equal(&got.rgba, &want.rgba, 4, 0, &what);
+                assert_equal(&got.rgba, &want.rgba, 4, &what);
                 assert_depth_equal(&got.depth.unwrap(), &want.depth, &what);
             }
         });
@@ -59,7 +59,7 @@ fn any_view_of_parts_and_layers() {
             let got = synthesize(gpu, &mut any_view, setup, &picture);
             let want = gl.any_view(&picture);
             let what = format!("{warp:?}, {setup:?}");
-            assert_equal(&got.rgba, &want.rgba, 4, 0, &what);
+            assert_equal(&got.rgba, &want.rgba, 4, &what);
             assert_depth_equal(&got.depth.unwrap(), &want.depth, &what);
         }
         // SAFETY: everything is executed.

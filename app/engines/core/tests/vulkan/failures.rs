@@ -4,11 +4,8 @@ use std::ffi::{CStr, c_void};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
 
-use yoro::synthesis::{Edges, Strips};
 use yoro::vulkan::ash::{self, vk};
-use yoro::vulkan::{
-    Frame, Gather, HistoryImages, Host, ImageState, Options, SourceImages, TargetImages, VulkanError,
-};
+use yoro::vulkan::{Frame, Gather, Host, ImageState, Options, SourceImages, TargetImages, VulkanError};
 
 use super::harness::{Gpu, Image, Rendering, with_gpu};
 use super::{Setup, warps};
@@ -60,14 +57,8 @@ failing! {
     c"vkAllocateMemory" allocate_memory(
         device: vk::Device, info: *const vk::MemoryAllocateInfo<'_>, a: Callbacks<'_>, made: *mut vk::DeviceMemory
     );
-    c"vkBindBufferMemory" bind_buffer_memory(
-        device: vk::Device, buffer: vk::Buffer, memory: vk::DeviceMemory, offset: vk::DeviceSize
-    );
     c"vkBindImageMemory" bind_image_memory(
         device: vk::Device, image: vk::Image, memory: vk::DeviceMemory, offset: vk::DeviceSize
-    );
-    c"vkCreateBuffer" create_buffer(
-        device: vk::Device, info: *const vk::BufferCreateInfo<'_>, a: Callbacks<'_>, made: *mut vk::Buffer
     );
     c"vkCreateDescriptorPool" create_descriptor_pool(
         device: vk::Device, info: *const vk::DescriptorPoolCreateInfo<'_>, a: Callbacks<'_>,
@@ -114,28 +105,21 @@ failing! {
 }
 
 /// Calls everything that calls Vulkan, once.
-fn everything(gpu: &Gpu, host: &Host, edges: Edges) -> Result<(), VulkanError> {
+fn everything(gpu: &Gpu, host: &Host) -> Result<(), VulkanError> {
     let (warp, setup) = (warps()[0].0, Setup::PLAIN);
     let color = gpu.image(setup.color, warp.source_size, 1);
-    let samples = if edges == Edges::Multisample { 4 } else { 1 };
-    let sample_color = gpu.multisampled(setup.color, warp.source_size, samples);
-    let depth = gpu.multisampled(vk::Format::D32_SFLOAT, warp.source_size, samples);
-    let former = [setup.color, vk::Format::D32_SFLOAT].map(|format| gpu.image(format, [16, 16], 1));
+    let depth = gpu.image(vk::Format::D32_SFLOAT, warp.source_size, 1);
     let target = gpu.image(setup.target, warp.target_size, 1);
     let (before, after) = (ImageState::DISCARDED, ImageState::SAMPLED);
-    let options = Options { timed_frames: 1, edges, history: true, ..setup.options(&[warp]) };
+    let options = Options { timed_frames: 1, ..setup.options(&[warp]) };
     // SAFETY: the handles are valid, and all commands are executed before the pipeline is dropped.
     unsafe {
         let mut gather = Gather::new(host, &options)?;
         let layer = |image: &Image| image.layer(0, before, after);
-        let [former_color, former_depth] = former.each_ref().map(layer);
-        let source = gather.register_source(&SourceImages {
-            sample_color: (samples > 1).then(|| layer(&sample_color)),
-            history: Some(HistoryImages { color: former_color, depth: former_depth, size: [16, 16] }),
-            ..SourceImages::new(layer(&color), layer(&depth), warp.source_size)
-        })?;
+        let source = SourceImages::new(layer(&color), layer(&depth), warp.source_size);
+        let source = gather.register_source(&source)?;
         let target = gather.register_target(&TargetImages::new(layer(&target), warp.target_size))?;
-        let frame = Frame { history: Some(Strips::NONE), ..Frame::new(source, target) };
+        let frame = Frame::new(source, target);
         gpu.run(|commands| gather.record(commands, &frame, &warp))?;
         gather.pass_times()?;
     }
@@ -158,18 +142,16 @@ fn every_failure_comes_back_as_an_error() {
             ash::Device::load_with(load, real.handle())
         };
         let host = Host { device: &device, ..host };
-        // Anti-aliased sources take the same paths, some of them more often.
-        let failures = [
-            (vk::Result::ERROR_OUT_OF_DEVICE_MEMORY, Edges::Multisample),
-            (vk::Result::ERROR_OUT_OF_HOST_MEMORY, Edges::Hard),
-            (vk::Result::ERROR_DEVICE_LOST, Edges::Hard),
-        ];
-        for (failure, edges) in failures {
+        for failure in [
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
+            vk::Result::ERROR_OUT_OF_HOST_MEMORY,
+            vk::Result::ERROR_DEVICE_LOST,
+        ] {
             let mut calls = 0;
             loop {
                 FAILURE.store(failure.as_raw(), Ordering::SeqCst);
                 LEFT.store(calls, Ordering::SeqCst);
-                let result = everything(gpu, &host, edges);
+                let result = everything(gpu, &host);
                 LEFT.store(usize::MAX, Ordering::SeqCst);
                 if FAILURE.load(Ordering::SeqCst) != 0 {
                     assert_eq!(result, Ok(()));

@@ -2,7 +2,7 @@
 
 mod any_view;
 mod failures;
-mod history;
+mod resolved;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -15,14 +15,15 @@ use against_opengl::{
 };
 use harness::{Gpu, Image, READ, Rendering, WRITTEN, largest, with_gpu};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, GuardBand, Warp};
-use yoro::synthesis::{self, Outputs, PassSet, SynthesisOptions, WarpKind};
+use yoro::opengl::{self, Destination, Outputs};
+use yoro::synthesis::ArgumentError;
+use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{
-    AnyView, Frame, Gather, HistoryImages, ImageState, Options, Pipeline, SourceImages, TargetImages, Use,
-    Uses, VulkanError,
+    AnyView, Frame, Gather, ImageState, Options, Pipeline, SourceImages, TargetImages, Use, Uses, VulkanError,
 };
 use yoro_context::{Backend, Headless};
-use yoro_gl::{self as gl, Destination};
+use yoro_gl as gl;
 use yoro_test_support::{against_opengl, harness};
 
 /// An allocator that counts this thread's allocations.
@@ -187,23 +188,13 @@ fn pictures_equal_those_of_opengl() {
     let gl = Gl::new();
     for rendering in Rendering::ALL {
         with_gpu(rendering, |gpu| {
-            for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
-                for (i, (warp, range)) in warps().into_iter().enumerate() {
-                    let picture = picture(&warp, range, i as u64);
-                    let setup = Setup::PLAIN;
-                    // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
-                    let mut gather =
-                        unsafe { Gather::with_passes(&gpu.host(), &setup.options(&[warp]), passes).unwrap() };
-                    let got = synthesize(gpu, &mut gather, &setup, &picture);
-                    let want = gl.run(number, &picture);
-                    assert_equal(
-                        &got.rgba,
-                        &want.rgba,
-                        4,
-                        number,
-                        &format!("{rendering:?}, {passes:?}, {warp:?}"),
-                    );
-                }
+            for (i, (warp, range)) in warps().into_iter().enumerate() {
+                let picture = picture(&warp, range, i as u64);
+                let setup = Setup::PLAIN;
+                // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
+                let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
+                let got = synthesize(gpu, &mut gather, &setup, &picture);
+                assert_equal(&got.rgba, &gl.run(&picture).rgba, 4, &format!("{rendering:?}, {warp:?}"));
             }
         });
     }
@@ -234,18 +225,14 @@ fn parts_and_layers_are_found() {
                 ..setup
             },
         ];
-        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
-            let all: Vec<Warp> = warps.iter().map(|(warp, _)| *warp).collect();
-            // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
-            let mut gather =
-                unsafe { Gather::with_passes(&gpu.host(), &setup.options(&all), passes).unwrap() };
-            for (i, (warp, range)) in warps.iter().enumerate() {
-                let picture = picture(warp, *range, 50 + i as u64);
-                let setup = &setups[i % setups.len()];
-                let got = synthesize(gpu, &mut gather, setup, &picture);
-                let want = gl.run(number, &picture);
-                assert_equal(&got.rgba, &want.rgba, 4, number, &format!("{passes:?}, {warp:?}, {setup:?}"));
-            }
+        let all: Vec<Warp> = warps.iter().map(|(warp, _)| *warp).collect();
+        // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
+        let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&all)).unwrap() };
+        for (i, (warp, range)) in warps.iter().enumerate() {
+            let picture = picture(warp, *range, 50 + i as u64);
+            let setup = &setups[i % setups.len()];
+            let got = synthesize(gpu, &mut gather, setup, &picture);
+            assert_equal(&got.rgba, &gl.run(&picture).rgba, 4, &format!("{warp:?}, {setup:?}"));
         }
     });
 }
@@ -291,9 +278,9 @@ fn every_format_is_taken() {
                 // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
                 let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
                 let got = synthesize(gpu, &mut gather, &setup, &picture);
-                let want = gl.run(0, &picture);
+                let want = gl.run(&picture);
                 // Formats with ten bits have only two of alpha.
-                assert_equal(&got.rgba, &want.rgba, 3, 0, &format!("{rendering:?}, {setup:?}"));
+                assert_equal(&got.rgba, &want.rgba, 3, &format!("{rendering:?}, {setup:?}"));
                 let expected = expected_depth(&picture, &want.source_map);
                 let error =
                     got.depth.unwrap().iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
@@ -316,8 +303,8 @@ fn srgb_is_filtered_in_linear_light() {
         let mut gather = unsafe { Gather::new(&gpu.host(), &setup.options(&[warp])).unwrap() };
         let got = synthesize(gpu, &mut gather, &setup, &picture);
         let want = gl_srgb(gl.headless.gl(), &picture);
-        assert_equal(&got.rgba, &want, 4, 0, "sRGB");
-        assert_ne!(want, gl.run(0, &picture).rgba, "linear light makes a difference");
+        assert_equal(&got.rgba, &want, 4, "sRGB");
+        assert_ne!(want, gl.run(&picture).rgba, "linear light makes a difference");
     });
 }
 
@@ -327,22 +314,19 @@ fn sizes_and_rectangles_at_random() {
     let gl = Gl::new();
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [540, 70], max_target_size: [540, 70], ..Options::default() };
-        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
-            // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
-            let mut gather = unsafe { Gather::with_passes(&gpu.host(), &limits, passes).unwrap() };
-            for (case, seed) in random_cases().into_iter().zip(3..) {
-                let picture = picture(&case.warp, RANDOM_RANGE, seed);
-                let setup = Setup {
-                    source_margins: case.source_margins,
-                    target_margins: case.target_margins,
-                    source_layer: case.source_layer,
-                    target_layer: case.target_layer,
-                    ..Setup::PLAIN
-                };
-                let got = synthesize(gpu, &mut gather, &setup, &picture);
-                let want = gl.run(number, &picture);
-                assert_equal(&got.rgba, &want.rgba, 4, number, &format!("{passes:?}, {case:?}"));
-            }
+        // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
+        let mut gather = unsafe { Gather::new(&gpu.host(), &limits).unwrap() };
+        for (case, seed) in random_cases().into_iter().zip(3..) {
+            let picture = picture(&case.warp, RANDOM_RANGE, seed);
+            let setup = Setup {
+                source_margins: case.source_margins,
+                target_margins: case.target_margins,
+                source_layer: case.source_layer,
+                target_layer: case.target_layer,
+                ..Setup::PLAIN
+            };
+            let got = synthesize(gpu, &mut gather, &setup, &picture);
+            assert_equal(&got.rgba, &gl.run(&picture).rgba, 4, &format!("{case:?}"));
         }
     });
 }
@@ -387,7 +371,7 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
                 });
                 for (target, picture) in [(0, 1), (1, 0)] {
                     let got = images[target].2.read_rgba8(0, drawn);
-                    assert_equal(&got, &gl.run(0, &pictures[picture]).rgba, 4, 0, "one after the other");
+                    assert_equal(&got, &gl.run(&pictures[picture]).rgba, 4, "one after the other");
                 }
             }
         });
@@ -429,41 +413,27 @@ fn uses_differ_from_frame_to_frame() {
                 let depth_before = if before == free { source_depth } else { before };
                 let (own, of_depth) =
                     (Use { before, after }, Use { before: depth_before, after: depth_after });
-                let uses = Uses {
-                    source_color: own,
-                    source_depth: of_depth,
-                    source_sample_color: own,
-                    history_color: own,
-                    history_depth: own,
-                    target_color: own,
-                    target_depth: own,
-                };
+                let uses =
+                    Uses { source_color: own, source_depth: of_depth, target_color: own, target_depth: own };
                 gpu.run(|commands| gather.record_with_uses(commands, &frame, &warp, &uses).unwrap());
             }
         }
         let got = target.read_rgba8(0, READ);
-        assert_equal(&got, &gl.run(0, &picture).rgba, 4, 0, "in other states");
+        assert_equal(&got, &gl.run(&picture).rgba, 4, "in other states");
     });
 }
 
 #[test]
 fn the_memory_is_known_before() {
     with_gpu(Rendering::Core, |gpu| {
-        let sizes = ([300, 200], [128, 190]);
-        for edges in synthesis::Edges::ALL {
-            for color_format in [vk::Format::R8G8B8A8_SRGB, vk::Format::R16G16B16A16_SFLOAT] {
-                let (max_source_size, max_target_size) = sizes;
-                let options =
-                    Options { edges, color_format, max_source_size, max_target_size, ..Options::default() };
-                // SAFETY: the device outlives the pipeline.
-                let gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
-                assert_eq!(options.buffer_bytes(), gather.buffer_bytes(), "{options:?}");
-            }
-        }
-        let (max_source_size, max_target_size) = sizes;
-        let options = Options { max_source_size, max_target_size, ..Options::default() };
-        // SAFETY: the device outlives the pipeline.
-        let any_view = unsafe { AnyView::new(&gpu.host(), &options).unwrap() };
+        let options =
+            Options { max_source_size: [300, 200], max_target_size: [128, 190], ..Options::default() };
+        // SAFETY: the device outlives the pipelines.
+        let (gather, any_view) = unsafe {
+            (Gather::new(&gpu.host(), &options).unwrap(), AnyView::new(&gpu.host(), &options).unwrap())
+        };
+        assert_eq!(options.buffer_bytes(), 16 * (19 * 25 + 8 * 25));
+        assert_eq!(gather.buffer_bytes(), options.buffer_bytes());
         assert_eq!(options.any_view_buffer_bytes(), 16 * (19 * 25 + 8 * 24));
         assert_eq!(any_view.buffer_bytes(), options.any_view_buffer_bytes());
     });
@@ -480,21 +450,15 @@ fn mistakes_are_refused() {
         unsafe {
             let make = |options: &Options| Gather::new(&gpu.host(), options).err();
             let none = Options { max_source_size: [0, 4], ..options };
-            assert!(matches!(make(&none), Some(VulkanError::Size { .. })));
+            assert!(matches!(make(&none), Some(VulkanError::Argument(ArgumentError::Size { .. }))));
             let much = Options { max_target_size: [1 << 20, 4], ..options };
-            assert!(matches!(make(&much), Some(VulkanError::Size { .. })));
+            assert!(matches!(make(&much), Some(VulkanError::Argument(ArgumentError::Size { .. }))));
             for format in [vk::Format::R8G8B8A8_UINT, vk::Format::D32_SFLOAT, vk::Format::UNDEFINED] {
                 let format = Options { color_format: format, ..options };
                 assert!(matches!(make(&format), Some(VulkanError::Format { .. })), "{format:?}");
             }
             let color = Options { depth_format: Some(vk::Format::R8G8B8A8_UNORM), ..options };
             assert!(matches!(make(&color), Some(VulkanError::Format { .. })));
-            for other in [
-                Options { edges: synthesis::Edges::Nearest, ..options },
-                Options { history: true, ..options },
-            ] {
-                assert_eq!(AnyView::new(&gpu.host(), &other).err(), Some(VulkanError::AnyView));
-            }
             let family = Gather::new(&yoro::vulkan::Host { queue_family: 77, ..gpu.host() }, &options);
             assert_eq!(family.err(), Some(VulkanError::QueueFamily(77)));
             let dynamic =
@@ -508,9 +472,6 @@ fn mistakes_are_refused() {
             let target = gpu.image(setup.target, warp.target_size, 1);
             let sampled = |image: &Image| image.layer(0, ImageState::SAMPLED, ImageState::SAMPLED);
             let source = SourceImages::new(sampled(&color), sampled(&depth), warp.source_size);
-            let former = HistoryImages { color: sampled(&color), depth: sampled(&depth), size: [w, h] };
-            let with_history = SourceImages { history: Some(former), ..source };
-            assert_eq!(gather.register_source(&with_history), Err(VulkanError::History));
             let no_depth = SourceImages { depth: sampled(&color), ..source };
             let refused = gather.register_source(&no_depth).unwrap_err();
             assert!(
@@ -528,14 +489,20 @@ fn mistakes_are_refused() {
             gpu.run(|commands| {
                 let mut record = |frame, warp: Warp| gather.record(commands, &frame, &warp).unwrap_err();
                 let wide = Warp { source_size: [w + 1, h], ..warp };
-                assert!(matches!(record(frame, wide), VulkanError::Size { .. }));
+                assert!(matches!(record(frame, wide), VulkanError::Argument(ArgumentError::Size { .. })));
                 let none = Warp { target_size: [0, h], ..warp };
-                assert!(matches!(record(frame, none), VulkanError::Size { .. }));
+                assert!(matches!(record(frame, none), VulkanError::Argument(ArgumentError::Size { .. })));
                 for origin in [[1, 0], [0, 1], [u32::MAX, 0]] {
                     let error = record(Frame { source_origin: origin, ..frame }, warp);
-                    assert!(matches!(error, VulkanError::Rectangle { .. }), "{error}");
+                    assert!(
+                        matches!(error, VulkanError::Argument(ArgumentError::Rectangle { .. })),
+                        "{error}"
+                    );
                     let error = record(Frame { target_origin: origin, ..frame }, warp);
-                    assert!(matches!(error, VulkanError::Rectangle { .. }), "{error}");
+                    assert!(
+                        matches!(error, VulkanError::Argument(ArgumentError::Rectangle { .. })),
+                        "{error}"
+                    );
                 }
                 gather.release_source(source);
                 assert_eq!(gather.record(commands, &frame, &warp), Err(VulkanError::NotRegistered));
@@ -582,8 +549,9 @@ fn cost_of_the_passes() {
         // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
         let mut gather = unsafe { Gather::new(&gpu.host(), &options).unwrap() };
         let (source, target) = gl_images(context, &picture, gl::Format::Rgba8);
-        let textures = synthesis::Source::new(source[0].raw(), source[1].raw());
-        let mut on_gl = synthesis::create(context, &SynthesisOptions::default(), Outputs::default()).unwrap();
+        let textures = opengl::Source::new(source[0].raw(), source[1].raw());
+        let mut on_gl =
+            opengl::Gather::new(context, &opengl::Options::default(), Outputs::default()).unwrap();
         for _ in 0..21 {
             context.take_pass_times();
             on_gl.synthesize(textures, &warp, &Destination::whole(&target)).unwrap();

@@ -4,8 +4,6 @@
 class_name YoroSynthesis
 extends CompositorEffect
 
-## Uses the search for GPUs; the other one is for software rasterizers. Both give the same picture.
-var short_way := true
 ## Also makes [member source_map], which marks holes.
 var map := false
 ## The views of the frame, to be set before it is drawn.
@@ -74,12 +72,11 @@ func _render_callback(_type: int, data: RenderData) -> void:
 		push.encode_s32(0, 1 << passes.device.texture_get_format(samples).samples)
 		passes.draw("nearest", [_nearest], [samples], push)
 		rendered_depth = _nearest
-	var way := "short" if short_way else "every"
-	passes.draw("tiles_" + way, [_tiles], [rendered_depth, rendered_color], views.uniforms)
-	passes.draw("spans_" + way, [_spans], [rendered_depth, rendered_color, _tiles], views.uniforms)
+	passes.draw("tiles", [_tiles], [rendered_depth, rendered_color], views.uniforms)
+	passes.draw("spans", [_spans], [rendered_depth, rendered_color, _tiles], views.uniforms)
 	var targets: Array[RID] = [synthesized_color, synthesized_depth]
 	if map:
 		targets.insert(1, source_map)
-	passes.draw("march_" + way + ("_map" if map else ""), targets, [rendered_depth, rendered_color, _tiles, _spans],
+	passes.draw("march_map" if map else "march_depth", targets, [rendered_depth, rendered_color, _tiles, _spans],
 			views.uniforms, RenderingDevice.COMPARE_OP_ALWAYS)
 	passes.device.draw_command_end_label()

@@ -11,8 +11,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use glow::HasContext as _;
-use yoro::gl::{Context, Destination, GlApi, GlError};
-use yoro::synthesis::{self, GlState, Outputs, Source, Synthesis, SynthesisOptions};
+use yoro::opengl::{Context, Destination, Gather, GlApi, GlError, GlState, Options, Outputs, Source};
 
 pub use binding::{Binding, Current};
 
@@ -31,7 +30,7 @@ pub struct Synthesizer {
 /// The objects in the context. They are used only while it is current.
 struct Objects {
     context: Rc<Context>,
-    pipeline: Option<(Outputs, Box<dyn Synthesis>)>,
+    pipeline: Option<(Outputs, Gather)>,
     /// Framebuffers by the colour and depth that are attached to them.
     targets: Vec<([Option<Image>; 2], glow::Framebuffer)>,
     /// Copies of colour and depth, used if only a part of an image is submitted.
@@ -152,8 +151,8 @@ impl Objects {
         let pipeline = match &mut self.pipeline {
             Some((made_for, pipeline)) if *made_for == outputs => pipeline,
             other => {
-                let options = SynthesisOptions { gl_state: GlState::Preserve, ..SynthesisOptions::default() };
-                let pipeline = synthesis::create(&self.context, &options, outputs)?;
+                let options = Options { gl_state: GlState::Preserve, ..Options::default() };
+                let pipeline = Gather::new(&self.context, &options, outputs)?;
                 &mut other.insert((outputs, pipeline)).1
             }
         };

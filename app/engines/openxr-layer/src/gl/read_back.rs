@@ -1,7 +1,7 @@
 //! Reads images back. For tests.
 
 use glow::HasContext as _;
-use yoro::gl::{Destination, GlApi};
+use yoro::opengl::{Destination, GlApi};
 
 use super::{Objects, Synthesizer, bind_framebuffers, bound_framebuffers};
 use crate::geometry::Rectangle;

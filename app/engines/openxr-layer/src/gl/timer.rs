@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use glow::HasContext as _;
-use yoro::gl::{Context, GlApi};
+use yoro::opengl::{Context, GlApi};
 
 use super::Binding;
 

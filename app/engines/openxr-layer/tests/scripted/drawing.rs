@@ -6,7 +6,7 @@ use std::ptr;
 use glow::HasContext as _;
 use openxr_sys as sys;
 use sys::pfn;
-use yoro::gl::Context;
+use yoro::opengl::Context;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::ash::vk::Handle as _;
 use yoro_context::{Backend, Binding, Graphics as _, Headless, HeadlessGraphics};

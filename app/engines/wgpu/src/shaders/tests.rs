@@ -8,14 +8,14 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use yoro_test_support::compiled::{self, Compiled, Source};
 use yoro_test_support::modules::{MODULES, Module};
 
-/// The modules for sources with two samples. In SPIR-V a specialization constant selects the number.
-const OF_TWO_SAMPLES: [Module; 2] = [
-    ("split-multisample-two", "synthesis/layers/split.frag", &["MULTISAMPLE", "TWO"]),
-    ("split-samples-two", "synthesis/layers/split.frag", &["MULTISAMPLE", "SAMPLE_COLORS", "TWO"]),
+/// The modules that only wgpu needs.
+const NEAREST_DEPTH: [Module; 2] = [
+    ("nearest-depth", "synthesis/nearest_depth.frag", &[]),
+    ("nearest-depth-reversed", "synthesis/nearest_depth.frag", &["REVERSED"]),
 ];
 
 fn all_modules() -> Vec<Module> {
-    [&MODULES[..], &OF_TWO_SAMPLES].concat()
+    [&MODULES[..], &NEAREST_DEPTH].concat()
 }
 
 /// Plain SPIR-V for Vulkan 1.0: names and functions are kept, so that a capture can be read.
@@ -25,26 +25,25 @@ fn folder() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/wgsl"))
 }
 
-fn source((name, file, macros): Module) -> Source {
-    let mut defines = vec![("UNIFORM_BLOCK", "layout(set = 0, binding = 7, std140)".to_owned())];
-    let (two, macros): (Vec<&str>, Vec<&str>) = macros.iter().partition(|name| **name == "TWO");
+fn source((name, file, macros): &Module) -> Source {
+    let mut defines = vec![("UNIFORM_BLOCK", "layout(set = 0, binding = 4, std140)".to_owned())];
     defines.extend(macros.iter().map(|name| (*name, String::new())));
     let text = yoro_shaders::assemble(file, "450", &defines).unwrap().text;
-    Source { name, vertex: file.ends_with(".vert"), text: for_wgsl(&text, !two.is_empty()) }
+    Source { name, vertex: file.ends_with(".vert"), text: for_wgsl(&text) }
 }
 
-/// Replaces what WGSL does not have, in four changes.
-fn for_wgsl(text: &str, two_samples: bool) -> String {
-    text.lines().map(|line| line_for_wgsl(line, two_samples) + "\n").collect()
+/// Replaces what WGSL does not have, in three changes.
+fn for_wgsl(text: &str) -> String {
+    text.lines().map(|line| line_for_wgsl(line) + "\n").collect()
 }
 
-fn line_for_wgsl(line: &str, two_samples: bool) -> String {
+fn line_for_wgsl(line: &str) -> String {
     // WGSL separates textures and samplers.
     if let Some((binding, declared)) = line.strip_prefix("TEXTURE(").and_then(|rest| rest.split_once(')')) {
         let declared = declared.trim_start_matches(" uniform ").trim_start_matches("highp ");
         let (kind, name) = declared.trim_end_matches(';').split_once(' ').unwrap();
         let texture = kind.replace("sampler", "texture");
-        let filter = if matches!(name, "color_map" | "history_color") { "linear" } else { "nearest" };
+        let filter = if name == "color_map" { "linear" } else { "nearest" };
         return format!(
             "layout(set = 0, binding = {binding}) uniform {texture} {name}_texture;\n\
              #define {name} {kind}({name}_texture, {filter}_sampler)"
@@ -53,16 +52,12 @@ fn line_for_wgsl(line: &str, two_samples: bool) -> String {
     match line.trim() {
         // WGSL cannot sample integer textures, so they are fetched instead.
         "layout(constant_id = 0) const bool PART = false;" => {
-            "layout(set = 0, binding = 8) uniform sampler nearest_sampler;\n\
-             layout(set = 0, binding = 9) uniform sampler linear_sampler;\n\
+            "layout(set = 0, binding = 5) uniform sampler nearest_sampler;\n\
+             layout(set = 0, binding = 6) uniform sampler linear_sampler;\n\
              const bool PART = true;"
                 .to_owned()
         }
         "return texture(span_map, span_at);" => "return uvec4(0u);".to_owned(),
-        // naga computes nothing from constants that are set later.
-        "layout(constant_id = 1) const bool TWO_SAMPLES = false;" => {
-            format!("const bool TWO_SAMPLES = {two_samples};")
-        }
         _ => line.to_owned(),
     }
 }
@@ -78,15 +73,14 @@ fn wgsl(source: &Source) -> anyhow::Result<Vec<u8>> {
         .map_err(|error| anyhow!("{}", error.emit_to_string("")))
         .with_context(|| source.name)?;
     naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-    // Restores GLSL's names: functions without argument types, and one name for each block, which has none.
+    // Restores GLSL's names: functions without argument types, and a name for the block, which has none.
     for (_, function) in module.functions.iter_mut() {
         let name = function.name.take().unwrap_or_default();
         function.name = name.split('(').next().map(str::to_owned);
     }
     for (_, variable) in module.global_variables.iter_mut() {
         if variable.space == naga::AddressSpace::Uniform {
-            let strips = variable.binding.is_some_and(|at| at.binding == 12);
-            variable.name = Some(if strips { "history" } else { "synthesis" }.to_owned());
+            variable.name = Some("synthesis".to_owned());
         }
     }
     let info = validated(&module).with_context(|| source.name)?;
@@ -112,7 +106,7 @@ fn modules_are_compiled_from_the_present_shaders() {
         command: "cargo xtask maintain wgsl",
         compile: wgsl,
     };
-    let sources: Vec<Source> = all_modules().into_iter().map(source).collect();
+    let sources: Vec<Source> = all_modules().iter().map(source).collect();
     if std::env::var_os("YORO_BLESS_WGSL").is_some() {
         compiled.renew(&sources).unwrap();
     }

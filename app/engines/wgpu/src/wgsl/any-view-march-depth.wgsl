@@ -33,13 +33,13 @@ struct FragmentOutput {
     @builtin(frag_depth) member_1: f32,
 }
 
-@group(0) @binding(7) 
+@group(0) @binding(4) 
 var<uniform> synthesis: AnyView;
 @group(0) @binding(0) 
 var depth_map_texture: texture_2d<f32>;
 @group(0) @binding(1) 
 var color_map_texture: texture_2d<f32>;
-@group(0) @binding(9) 
+@group(0) @binding(6) 
 var linear_sampler: sampler;
 @group(0) @binding(2) 
 var tile_map_texture: texture_2d<u32>;

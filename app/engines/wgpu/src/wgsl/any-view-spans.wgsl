@@ -13,7 +13,7 @@ struct AnyView {
     texel: vec2<f32>,
 }
 
-@group(0) @binding(7) 
+@group(0) @binding(4) 
 var<uniform> synthesis: AnyView;
 @group(0) @binding(2) 
 var tile_map_texture: texture_2d<u32>;

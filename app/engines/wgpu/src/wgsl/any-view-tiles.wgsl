@@ -13,7 +13,7 @@ struct AnyView {
     texel: vec2<f32>,
 }
 
-@group(0) @binding(7) 
+@group(0) @binding(4) 
 var<uniform> synthesis: AnyView;
 @group(0) @binding(0) 
 var depth_map_texture: texture_2d<f32>;

@@ -1,15 +1,15 @@
 // Made of yoro's GLSL by `cargo tools wgsl`.
 struct Search {
-    column: i32,
-    shift: f32,
+    x: f32,
+    depths: vec2<f32>,
     a: f32,
     b: f32,
-    depth: f32,
-    next: f32,
-    found: bool,
-    edge: i32,
+}
+
+struct Beside {
+    edge: f32,
     edge_depth: f32,
-    rim: i32,
+    rim: f32,
     rim_depth: f32,
 }
 
@@ -43,720 +43,878 @@ struct FragmentOutput {
     @builtin(frag_depth) member_1: f32,
 }
 
-@group(0) @binding(7) 
-var<uniform> synthesis: Synthesis;
 @group(0) @binding(0) 
 var depth_map_texture: texture_2d<f32>;
+@group(0) @binding(8) 
+var nearest_sampler: sampler;
 @group(0) @binding(1) 
 var color_map_texture: texture_2d<f32>;
 @group(0) @binding(9) 
 var linear_sampler: sampler;
+@group(0) @binding(7) 
+var<uniform> synthesis: Synthesis;
+var<private> gl_FragCoord_1: vec4<f32>;
 @group(0) @binding(3) 
 var span_map_texture: texture_2d<u32>;
 var<private> span_at_1: vec2<f32>;
-var<private> gl_FragCoord_1: vec4<f32>;
+@group(0) @binding(2) 
+var tile_map_texture: texture_2d<u32>;
 var<private> color_2: vec4<f32>;
 var<private> gl_FragDepth: f32 = 0f;
 
-fn in_image(pixel: ptr<function, vec2<i32>>) -> vec2<i32> {
-    var local: vec2<i32>;
+fn color_sample(place: ptr<function, vec2<f32>>) -> vec4<f32> {
+    let _e4 = (*place);
+    let _e5 = textureSampleLevel(color_map_texture, linear_sampler, _e4, 0f);
+    return _e5;
+}
+
+fn depth_sample(place_1: ptr<function, vec2<f32>>) -> f32 {
+    let _e4 = (*place_1);
+    let _e5 = textureSampleLevel(depth_map_texture, nearest_sampler, _e4, 0f);
+    return _e5.x;
+}
+
+fn place_of(at: ptr<function, vec2<f32>>) -> vec2<f32> {
+    var local: vec2<f32>;
 
     if true {
-        let _e5 = synthesis.source_origin;
-        let _e6 = (*pixel);
-        local = (_e5 + _e6);
+        let _e8 = (*at);
+        let _e10 = synthesis.source_size;
+        local = clamp(_e8, vec2<f32>(0.5f, 0.5f), (vec2<f32>(_e10) - vec2(0.5f)));
     } else {
-        let _e8 = (*pixel);
-        local = _e8;
+        let _e15 = (*at);
+        local = _e15;
     }
-    let _e9 = local;
-    return _e9;
+    let _e16 = local;
+    (*at) = _e16;
+    let _e19 = synthesis.columns[0u];
+    let _e21 = (*at)[0u];
+    let _e25 = synthesis.columns[1u];
+    let _e29 = synthesis.source_origin[1u];
+    let _e32 = (*at)[1u];
+    let _e36 = synthesis.texel[1u];
+    return vec2<f32>(((_e19 * _e21) + _e25), ((f32(_e29) + _e32) * _e36));
 }
 
-fn depth_texel(column: ptr<function, i32>, row: ptr<function, i32>) -> f32 {
-    var param: vec2<i32>;
+fn row_at(away: ptr<function, f32>) -> f32 {
+    var local_1: f32;
+    var param: vec2<f32>;
 
-    let _e5 = (*column);
-    let _e6 = (*row);
-    param = vec2<i32>(_e5, _e6);
-    let _e8 = in_image((&param));
-    let _e9 = textureLoad(depth_map_texture, _e8, 0i);
-    return _e9.x;
+    if true {
+        let _e10 = gl_FragCoord_1[1u];
+        let _e12 = synthesis.first_row;
+        let _e14 = (*away);
+        param = vec2<f32>(0.5f, ((_e10 - _e12) + _e14));
+        let _e17 = place_of((&param));
+        local_1 = _e17.y;
+    } else {
+        let _e21 = synthesis.rows[0u];
+        let _e23 = gl_FragCoord_1[1u];
+        let _e24 = (*away);
+        let _e29 = synthesis.rows[1u];
+        local_1 = ((_e21 * (_e23 + _e24)) + _e29);
+    }
+    let _e31 = local_1;
+    return _e31;
 }
 
-fn source_column(x: ptr<function, i32>) -> i32 {
-    var local_1: i32;
+fn column_at(x: ptr<function, f32>) -> f32 {
+    var param_1: vec2<f32>;
+
+    let _e3 = (*x);
+    param_1 = vec2<f32>((_e3 + 0.5f), 0.5f);
+    let _e6 = place_of((&param_1));
+    return _e6.x;
+}
+
+fn source_column(x_1: ptr<function, i32>) -> i32 {
+    var local_2: i32;
 
     let _e6 = synthesis.mirrored;
     if (_e6 != 0u) {
         let _e10 = synthesis.source_size[0u];
-        let _e12 = (*x);
-        local_1 = ((_e10 - 1i) - _e12);
+        let _e12 = (*x_1);
+        local_2 = ((_e10 - 1i) - _e12);
     } else {
-        let _e14 = (*x);
-        local_1 = _e14;
+        let _e14 = (*x_1);
+        local_2 = _e14;
     }
-    let _e15 = local_1;
+    let _e15 = local_2;
     return _e15;
 }
 
-fn fill_spread(away: ptr<function, f32>) -> f32 {
-    let _e4 = (*away);
+fn fill_spread(away_1: ptr<function, f32>) -> f32 {
+    let _e4 = (*away_1);
     return (0.5f * clamp(abs(_e4), 1f, 12f));
 }
 
-fn fill_hole(hole: ptr<function, bool>, color: ptr<function, vec4<f32>>, away_1: ptr<function, f32>, x_1: ptr<function, f32>, depth: ptr<function, f32>, row_1: ptr<function, i32>) -> vec4<f32> {
+fn fill_hole(hole: ptr<function, bool>, color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_2: ptr<function, f32>, depth: ptr<function, f32>, row: ptr<function, i32>) -> vec4<f32> {
     var spread: f32;
-    var param_1: f32;
+    var param_2: f32;
     var sum: vec4<f32>;
     var weights: f32;
     var edge: i32;
-    var param_2: i32;
+    var param_3: i32;
     var i: i32;
     var distance_: f32;
-    var below: vec2<i32>;
-    var above: vec2<i32>;
+    var below: vec2<f32>;
+    var param_4: f32;
+    var param_5: f32;
+    var above: vec2<f32>;
+    var param_6: f32;
+    var param_7: f32;
     var depths: vec2<f32>;
-    var param_3: i32;
-    var param_4: i32;
-    var param_5: i32;
-    var param_6: i32;
+    var param_8: vec2<f32>;
+    var param_9: vec2<f32>;
     var below_color: vec4<f32>;
-    var param_7: vec2<i32>;
+    var param_10: vec2<f32>;
     var above_color: vec4<f32>;
-    var param_8: vec2<i32>;
+    var param_11: vec2<f32>;
     var weight: vec2<f32>;
 
-    let _e37 = (*away_1);
-    param_1 = _e37;
-    let _e38 = fill_spread((&param_1));
-    spread = _e38;
-    let _e39 = (*color);
-    sum = (_e39 * 2f);
+    let _e36 = (*away_2);
+    param_2 = _e36;
+    let _e37 = fill_spread((&param_2));
+    spread = _e37;
+    let _e38 = (*color);
+    sum = (_e38 * 2f);
     weights = 2f;
-    let _e41 = (*x_1);
-    param_2 = i32(_e41);
-    let _e43 = source_column((&param_2));
-    edge = _e43;
-    let _e44 = (*hole);
-    i = select(3i, 1i, _e44);
+    let _e40 = (*x_2);
+    param_3 = i32(_e40);
+    let _e42 = source_column((&param_3));
+    edge = _e42;
+    let _e43 = (*hole);
+    i = select(3i, 1i, _e43);
     loop {
-        let _e46 = i;
-        if (_e46 <= 2i) {
-            let _e48 = i;
-            let _e50 = spread;
-            distance_ = round((f32(_e48) * _e50));
-            let _e53 = edge;
-            let _e54 = (*row_1);
-            let _e55 = distance_;
-            below = vec2<i32>(_e53, max((_e54 - i32(_e55)), 0i));
-            let _e60 = edge;
-            let _e61 = (*row_1);
-            let _e62 = distance_;
-            let _e67 = synthesis.source_size[1u];
-            above = vec2<i32>(_e60, min((_e61 + i32(_e62)), (_e67 - 1i)));
-            let _e72 = below[0u];
-            param_3 = _e72;
-            let _e74 = below[1u];
-            param_4 = _e74;
-            let _e75 = depth_texel((&param_3), (&param_4));
-            let _e77 = above[0u];
-            param_5 = _e77;
-            let _e79 = above[1u];
-            param_6 = _e79;
-            let _e80 = depth_texel((&param_5), (&param_6));
-            depths = vec2<f32>(_e75, _e80);
-            let _e82 = below;
-            param_7 = _e82;
-            let _e83 = in_image((&param_7));
-            let _e84 = textureLoad(color_map_texture, _e83, 0i);
-            below_color = _e84;
-            let _e85 = above;
-            param_8 = _e85;
-            let _e86 = in_image((&param_8));
-            let _e87 = textureLoad(color_map_texture, _e86, 0i);
-            above_color = _e87;
-            let _e90 = synthesis.law[1u];
-            let _e91 = depths;
-            let _e92 = (*depth);
-            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e91 - vec2(_e92)) * _e90) <= vec2<f32>(1f, 1f)));
-            let _e99 = weight[0u];
-            let _e100 = below_color;
-            let _e103 = weight[1u];
-            let _e104 = above_color;
-            let _e107 = sum;
-            sum = (_e107 + ((_e100 * _e99) + (_e104 * _e103)));
-            let _e110 = weight[0u];
-            let _e112 = weight[1u];
-            let _e114 = weights;
-            weights = (_e114 + (_e110 + _e112));
+        let _e45 = i;
+        if (_e45 <= 2i) {
+            let _e47 = i;
+            let _e49 = spread;
+            distance_ = round((f32(_e47) * _e49));
+            let _e52 = (*x_2);
+            param_4 = _e52;
+            let _e53 = column_at((&param_4));
+            let _e54 = distance_;
+            param_5 = -(_e54);
+            let _e56 = row_at((&param_5));
+            below = vec2<f32>(_e53, _e56);
+            let _e58 = (*x_2);
+            param_6 = _e58;
+            let _e59 = column_at((&param_6));
+            let _e60 = distance_;
+            param_7 = _e60;
+            let _e61 = row_at((&param_7));
+            above = vec2<f32>(_e59, _e61);
+            let _e63 = below;
+            param_8 = _e63;
+            let _e64 = depth_sample((&param_8));
+            let _e65 = above;
+            param_9 = _e65;
+            let _e66 = depth_sample((&param_9));
+            depths = vec2<f32>(_e64, _e66);
+            let _e68 = below;
+            param_10 = _e68;
+            let _e69 = color_sample((&param_10));
+            below_color = _e69;
+            let _e70 = above;
+            param_11 = _e70;
+            let _e71 = color_sample((&param_11));
+            above_color = _e71;
+            let _e74 = synthesis.law[1u];
+            let _e75 = depths;
+            let _e76 = (*depth);
+            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e75 - vec2(_e76)) * _e74) <= vec2<f32>(1f, 1f)));
+            let _e83 = weight[0u];
+            let _e84 = below_color;
+            let _e87 = weight[1u];
+            let _e88 = above_color;
+            let _e91 = sum;
+            sum = (_e91 + ((_e84 * _e83) + (_e88 * _e87)));
+            let _e94 = weight[0u];
+            let _e96 = weight[1u];
+            let _e98 = weights;
+            weights = (_e98 + (_e94 + _e96));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e116 = i;
-            i = (_e116 + 1i);
+            let _e100 = i;
+            i = (_e100 + 1i);
         }
     }
-    let _e118 = sum;
-    let _e119 = weights;
-    return (_e118 / vec4(_e119));
+    let _e102 = sum;
+    let _e103 = weights;
+    return (_e102 / vec4(_e103));
 }
 
-fn color_at(x_2: ptr<function, f32>, row_2: ptr<function, i32>) -> vec4<f32> {
-    var column_1: f32;
-    var local_2: f32;
-    var at: vec2<f32>;
-    var local_3: vec2<f32>;
-
-    let _e15 = synthesis.mirrored;
-    if (_e15 != 0u) {
-        let _e19 = synthesis.source_size[0u];
-        let _e22 = (*x_2);
-        local_2 = (f32((_e19 - 1i)) - _e22);
-    } else {
-        let _e24 = (*x_2);
-        local_2 = _e24;
-    }
-    let _e25 = local_2;
-    column_1 = _e25;
-    let _e26 = column_1;
-    let _e27 = (*row_2);
-    at = (vec2<f32>(_e26, f32(_e27)) + vec2(0.5f));
-    if true {
-        let _e33 = synthesis.source_origin;
-        let _e35 = at;
-        let _e38 = synthesis.texel;
-        local_3 = ((vec2<f32>(_e33) + _e35) * _e38);
-    } else {
-        let _e40 = at;
-        let _e42 = synthesis.source_size;
-        local_3 = (_e40 / vec2<f32>(_e42));
-    }
-    let _e45 = local_3;
-    at = _e45;
-    let _e46 = at;
-    let _e47 = textureSampleLevel(color_map_texture, linear_sampler, _e46, 0f);
-    return _e47;
-}
-
-fn is_torn(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
-    let _e3 = (*b);
-    let _e4 = (*a);
-    return ((_e3 - _e4) >= 2f);
-}
-
-fn jumps(a_1: ptr<function, f32>, b_1: ptr<function, f32>) -> bool {
-    let _e3 = (*a_1);
-    let _e5 = (*b_1);
-    return ((_e3 <= 0f) && (_e5 > 0f));
-}
-
-fn folds(a_2: ptr<function, f32>, b_2: ptr<function, f32>) -> bool {
-    var phi_153_: bool;
-
-    let _e4 = (*a_2);
-    let _e5 = (_e4 <= 0f);
-    phi_153_ = _e5;
-    if _e5 {
-        let _e6 = (*b_2);
-        let _e8 = (*a_2);
-        phi_153_ = (max(_e6, -1f) < _e8);
-    }
-    let _e11 = phi_153_;
-    return _e11;
-}
-
-fn has_rim(a_3: ptr<function, f32>, b_3: ptr<function, f32>) -> bool {
-    var param_9: f32;
-    var param_10: f32;
-    var param_11: f32;
+fn depth_pair(x_3: ptr<function, f32>) -> vec2<f32> {
+    var row_1: f32;
     var param_12: f32;
     var param_13: f32;
-    var param_14: f32;
-    var phi_176_: bool;
-    var phi_181_: bool;
-
-    let _e9 = (*a_3);
-    param_9 = _e9;
-    let _e10 = (*b_3);
-    param_10 = _e10;
-    let _e11 = folds((&param_9), (&param_10));
-    phi_181_ = _e11;
-    if !(_e11) {
-        let _e13 = (*a_3);
-        param_11 = _e13;
-        let _e14 = (*b_3);
-        param_12 = _e14;
-        let _e15 = jumps((&param_11), (&param_12));
-        phi_176_ = _e15;
-        if _e15 {
-            let _e16 = (*a_3);
-            param_13 = _e16;
-            let _e17 = (*b_3);
-            param_14 = _e17;
-            let _e18 = is_torn((&param_13), (&param_14));
-            phi_176_ = _e18;
-        }
-        let _e20 = phi_176_;
-        let _e21 = (*b_3);
-        phi_181_ = (_e20 && (_e21 < 1f));
-    }
-    let _e25 = phi_181_;
-    return _e25;
-}
-
-fn is_seen(a_4: ptr<function, f32>, b_4: ptr<function, f32>) -> bool {
+    var param_14: vec2<f32>;
     var param_15: f32;
-    var param_16: f32;
+    var param_16: vec2<f32>;
+    var quad: vec4<f32>;
     var param_17: f32;
-    var param_18: f32;
-    var phi_140_: bool;
-    var phi_141_: bool;
+    var local_3: vec2<f32>;
 
-    let _e7 = (*a_4);
-    param_15 = _e7;
-    let _e8 = (*b_4);
-    param_16 = _e8;
-    let _e9 = jumps((&param_15), (&param_16));
-    phi_141_ = _e9;
-    if _e9 {
-        let _e10 = (*a_4);
-        let _e11 = (_e10 > -0.5f);
-        phi_140_ = _e11;
-        if !(_e11) {
-            let _e13 = (*a_4);
-            param_17 = _e13;
-            let _e14 = (*b_4);
-            param_18 = _e14;
-            let _e15 = is_torn((&param_17), (&param_18));
-            phi_140_ = !(_e15);
-        }
-        let _e18 = phi_140_;
-        phi_141_ = _e18;
+    if true {
+        param_12 = 0f;
+        let _e20 = row_at((&param_12));
+        row_1 = _e20;
+        let _e21 = (*x_3);
+        param_13 = _e21;
+        let _e22 = column_at((&param_13));
+        let _e23 = row_1;
+        param_14 = vec2<f32>(_e22, _e23);
+        let _e25 = depth_sample((&param_14));
+        let _e26 = (*x_3);
+        param_15 = (_e26 + 1f);
+        let _e28 = column_at((&param_15));
+        let _e29 = row_1;
+        param_16 = vec2<f32>(_e28, _e29);
+        let _e31 = depth_sample((&param_16));
+        return vec2<f32>(_e25, _e31);
     }
-    let _e20 = phi_141_;
-    return _e20;
+    let _e35 = synthesis.columns[0u];
+    let _e36 = (*x_3);
+    let _e41 = synthesis.columns[1u];
+    param_17 = 0.25f;
+    let _e43 = row_at((&param_17));
+    let _e45 = textureGather(0, depth_map_texture, nearest_sampler, vec2<f32>(((_e35 * (_e36 + 1.25f)) + _e41), _e43));
+    quad = _e45;
+    let _e47 = synthesis.mirrored;
+    if (_e47 != 0u) {
+        let _e49 = quad;
+        local_3 = _e49.zw;
+    } else {
+        let _e51 = quad;
+        local_3 = _e51.wz;
+    }
+    let _e53 = local_3;
+    return _e53;
 }
 
-fn walk(at_1: ptr<function, Search>, end: ptr<function, f32>, origin: ptr<function, f32>, row_3: ptr<function, i32>) {
-    var limit: f32;
-    var step_: i32;
-    var here: i32;
-    var param_19: i32;
-    var param_20: i32;
-    var param_21: f32;
-    var param_22: f32;
-    var fold: bool;
-    var param_23: f32;
-    var param_24: f32;
-    var nearest: bool;
-    var param_25: f32;
-    var param_26: f32;
-    var local_4: i32;
-    var local_5: i32;
+fn search_at(x_4: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
+    var depths_1: vec2<f32>;
+    var param_18: f32;
+    var shift: f32;
+
+    let _e9 = (*x_4);
+    param_18 = _e9;
+    let _e10 = depth_pair((&param_18));
+    depths_1 = _e10;
+    let _e11 = (*x_4);
+    let _e12 = (*origin);
+    shift = (_e11 - _e12);
+    let _e14 = (*x_4);
+    let _e15 = depths_1;
+    let _e16 = shift;
+    let _e19 = synthesis.law[1u];
+    let _e21 = depths_1[0u];
+    let _e24 = shift;
+    let _e28 = synthesis.law[1u];
+    let _e30 = depths_1[1u];
+    return Search(_e14, _e15, (_e16 + (_e19 * _e21)), ((_e24 + 1f) + (_e28 * _e30)));
+}
+
+fn segment_end(x_5: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: ptr<function, bool>, shift_1: ptr<function, u32>) -> f32 {
+    var column: u32;
+    var within: u32;
+    var tile: vec4<u32>;
+    var marks: u32;
+    var local_4: u32;
+
+    let _e18 = (*x_5);
+    column = u32(_e18);
+    let _e20 = column;
+    within = (_e20 % 16u);
+    let _e22 = column;
+    let _e25 = (*tile_row);
+    let _e27 = textureLoad(tile_map_texture, vec2<i32>(bitcast<i32>((_e22 / 16u)), _e25), 0i);
+    tile = _e27;
+    let _e28 = (*below_1);
+    if _e28 {
+        let _e30 = tile[1u];
+        local_4 = _e30;
+    } else {
+        let _e32 = tile[3u];
+        local_4 = _e32;
+    }
+    let _e33 = local_4;
+    let _e34 = (*shift_1);
+    let _e35 = within;
+    marks = (_e33 >> bitcast<u32>((_e34 + _e35)));
+    let _e40 = tile[2u];
+    let _e43 = marks;
+    marks = select(0u, _e43, (_e40 == bitcast<u32>(9f)));
+    let _e45 = (*x_5);
+    let _e46 = marks;
+    let _e47 = within;
+    return (_e45 + f32(firstTrailingBit((_e46 | (65536u >> bitcast<u32>(_e47))))));
+}
+
+fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
+    var jump: bool;
+    var torn: bool;
+    var rim: bool;
+    var local_5: f32;
     var local_6: f32;
     var local_7: f32;
     var farther: bool;
+    var local_8: f32;
+    var local_9: f32;
+    var phi_594_: bool;
+    var phi_595_: bool;
+    var phi_596_: bool;
+    var phi_643_: bool;
+    var phi_676_: bool;
+
+    let _e19 = (*at_1).b;
+    jump = (_e19 > 0f);
+    let _e22 = (*at_1).b;
+    let _e24 = (*at_1).a;
+    torn = ((_e22 - _e24) >= 2f);
+    let _e28 = (*beside).rim;
+    let _e29 = (_e28 < 0f);
+    phi_596_ = _e29;
+    if _e29 {
+        let _e30 = jump;
+        let _e31 = !(_e30);
+        phi_595_ = _e31;
+        if !(_e31) {
+            let _e33 = torn;
+            phi_594_ = _e33;
+            if _e33 {
+                let _e35 = (*at_1).b;
+                phi_594_ = (_e35 < 1f);
+            }
+            let _e38 = phi_594_;
+            phi_595_ = _e38;
+        }
+        let _e40 = phi_595_;
+        phi_596_ = _e40;
+    }
+    let _e42 = phi_596_;
+    rim = _e42;
+    let _e43 = rim;
+    if _e43 {
+        let _e45 = (*at_1).x;
+        let _e46 = jump;
+        local_5 = (_e45 + select(0f, 1f, _e46));
+    } else {
+        let _e50 = (*beside).rim;
+        local_5 = _e50;
+    }
+    let _e51 = local_5;
+    (*beside).rim = _e51;
+    let _e53 = rim;
+    if _e53 {
+        let _e54 = jump;
+        if _e54 {
+            let _e57 = (*at_1).depths[1u];
+            local_7 = _e57;
+        } else {
+            let _e60 = (*at_1).depths[0u];
+            local_7 = _e60;
+        }
+        let _e61 = local_7;
+        local_6 = _e61;
+    } else {
+        let _e63 = (*beside).rim_depth;
+        local_6 = _e63;
+    }
+    let _e64 = local_6;
+    (*beside).rim_depth = _e64;
+    let _e66 = jump;
+    phi_643_ = _e66;
+    if _e66 {
+        let _e69 = synthesis.law[1u];
+        let _e72 = (*at_1).depths[0u];
+        let _e74 = (*beside).edge_depth;
+        phi_643_ = ((_e69 * (_e72 - _e74)) < 0f);
+    }
+    let _e79 = phi_643_;
+    farther = _e79;
+    let _e80 = farther;
+    if _e80 {
+        let _e82 = (*at_1).x;
+        local_8 = _e82;
+    } else {
+        let _e84 = (*beside).edge;
+        local_8 = _e84;
+    }
+    let _e85 = local_8;
+    (*beside).edge = _e85;
+    let _e87 = farther;
+    if _e87 {
+        let _e90 = (*at_1).depths[0u];
+        local_9 = _e90;
+    } else {
+        let _e92 = (*beside).edge_depth;
+        local_9 = _e92;
+    }
+    let _e93 = local_9;
+    (*beside).edge_depth = _e93;
+    let _e95 = jump;
+    phi_676_ = _e95;
+    if _e95 {
+        let _e97 = (*at_1).a;
+        let _e99 = torn;
+        phi_676_ = ((_e97 > -0.5f) || !(_e99));
+    }
+    let _e103 = phi_676_;
+    return _e103;
+}
+
+fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
+    var phi_507_: bool;
+    var phi_508_: bool;
+
+    let _e4 = (*a);
+    let _e5 = (_e4 <= 0f);
+    phi_508_ = _e5;
+    if _e5 {
+        let _e6 = (*b);
+        let _e7 = (_e6 > 0f);
+        phi_507_ = _e7;
+        if !(_e7) {
+            let _e9 = (*b);
+            let _e11 = (*a);
+            phi_507_ = (max(_e9, -1f) < _e11);
+        }
+        let _e14 = phi_507_;
+        phi_508_ = _e14;
+    }
+    let _e16 = phi_508_;
+    return _e16;
+}
+
+fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<function, f32>, row_2: ptr<function, i32>, surface: ptr<function, Surface>) -> vec4<f32> {
+    var border: f32;
+    var outside: bool;
+    var beside_1: Beside;
+    var local_10: f32;
+    var found: bool;
+    var param_19: f32;
+    var param_20: f32;
+    var param_21: Beside;
+    var param_22: Search;
+    var x_6: f32;
+    var a_1: f32;
+    var tile_row_1: i32;
+    var below_2: bool;
+    var shift_2: u32;
+    var crosses: bool;
+    var param_23: f32;
+    var param_24: i32;
+    var param_25: bool;
+    var param_26: u32;
     var param_27: f32;
     var param_28: f32;
-    var local_8: i32;
-    var local_9: f32;
-    var phi_515_: bool;
-    var phi_582_: bool;
-    var phi_640_: bool;
+    var param_29: f32;
+    var param_30: f32;
+    var param_31: Beside;
+    var param_32: Search;
+    var local_11: f32;
+    var local_12: f32;
+    var last: f32;
+    var b_1: f32;
+    var param_33: f32;
+    var param_34: f32;
+    var behind: bool;
+    var local_13: f32;
+    var local_14: f32;
+    var local_15: f32;
+    var local_16: f32;
+    var own: bool;
+    var local_17: f32;
+    var t: f32;
+    var local_18: f32;
+    var local_19: f32;
+    var away_3: f32;
+    var color_1: vec4<f32>;
+    var param_35: f32;
+    var param_36: f32;
+    var param_37: vec2<f32>;
+    var param_38: bool;
+    var param_39: vec4<f32>;
+    var param_40: f32;
+    var param_41: f32;
+    var param_42: f32;
+    var param_43: i32;
+    var coverage: f32;
+    var param_44: f32;
+    var param_45: f32;
+    var param_46: vec2<f32>;
+    var phi_725_: bool;
+    var phi_732_: bool;
+    var phi_742_: bool;
+    var phi_812_: bool;
+    var phi_823_: bool;
+    var phi_833_: bool;
+    var phi_907_: bool;
+    var phi_957_: bool;
+    var phi_980_: bool;
+    var phi_1031_: bool;
+    var phi_1047_: bool;
 
-    let _e35 = (*end);
-    let _e36 = (*origin);
-    limit = ((_e35 - _e36) - 0.5f);
-    let _e40 = synthesis.mirrored;
-    step_ = select(1i, -1i, (_e40 != 0u));
+    let _e79 = (*at_2).a;
+    let _e81 = (*at_2).x;
+    border = (_e79 - _e81);
+    let _e84 = (*at_2).x;
+    let _e86 = border;
+    outside = ((_e84 <= 0f) && (_e86 > 0f));
+    let _e89 = outside;
+    let _e90 = border;
+    let _e93 = (*end);
+    (*end) = select(_e93, 0f, (_e89 && (_e90 < 0.5f)));
+    let _e95 = outside;
+    beside_1.edge = select(-1f, 0f, _e95);
+    let _e98 = outside;
+    if _e98 {
+        let _e101 = (*at_2).depths[0u];
+        local_10 = _e101;
+    } else {
+        let _e104 = synthesis.law[1u];
+        local_10 = select(1000000000f, -1000000000f, (_e104 < 0f));
+    }
+    let _e107 = local_10;
+    beside_1.edge_depth = _e107;
+    beside_1.rim = -1f;
+    beside_1.rim_depth = 0f;
+    found = false;
+    phi_725_ = true;
+    if true {
+        let _e112 = (*at_2).x;
+        phi_725_ = (_e112 >= 0f);
+    }
+    let _e115 = phi_725_;
+    phi_732_ = _e115;
+    if _e115 {
+        let _e117 = (*at_2).x;
+        let _e118 = (*end);
+        phi_732_ = (_e117 < _e118);
+    }
+    let _e121 = phi_732_;
+    phi_742_ = _e121;
+    if _e121 {
+        let _e123 = (*at_2).a;
+        param_19 = _e123;
+        let _e125 = (*at_2).b;
+        param_20 = _e125;
+        let _e126 = is_event((&param_19), (&param_20));
+        phi_742_ = _e126;
+    }
+    let _e128 = phi_742_;
+    if _e128 {
+        let _e129 = beside_1;
+        param_21 = _e129;
+        let _e130 = (*at_2);
+        param_22 = _e130;
+        let _e131 = meet((&param_21), (&param_22));
+        let _e132 = param_21;
+        beside_1 = _e132;
+        found = _e131;
+    }
+    let _e134 = (*at_2).x;
+    x_6 = max((_e134 + 1f), 0f);
+    let _e138 = (*at_2).b;
+    let _e139 = x_6;
+    let _e141 = (*at_2).x;
+    a_1 = (_e138 + ((_e139 - _e141) - 1f));
+    let _e145 = (*row_2);
+    tile_row_1 = (_e145 / 8i);
+    let _e147 = (*row_2);
+    below_2 = ((_e147 & 4i) == 0i);
+    let _e150 = (*row_2);
+    shift_2 = (bitcast<u32>((_e150 & 2i)) << bitcast<u32>(3i));
+    crosses = false;
     loop {
-        let _e44 = (*at_1).shift;
-        let _e45 = limit;
-        let _e46 = (_e44 < _e45);
-        phi_515_ = _e46;
-        if _e46 {
-            let _e48 = (*at_1).found;
-            phi_515_ = !(_e48);
-        }
-        let _e51 = phi_515_;
-        if _e51 {
-            let _e53 = (*at_1).b;
-            (*at_1).a = _e53;
-            let _e56 = (*at_1).next;
-            (*at_1).depth = _e56;
-            let _e59 = (*at_1).column;
-            here = _e59;
-            let _e60 = step_;
-            let _e62 = (*at_1).column;
-            (*at_1).column = (_e62 + _e60);
-            let _e66 = (*at_1).shift;
-            (*at_1).shift = (_e66 + 1f);
-            let _e70 = (*at_1).column;
-            param_19 = _e70;
-            let _e71 = (*row_3);
-            param_20 = _e71;
-            let _e72 = depth_texel((&param_19), (&param_20));
-            (*at_1).next = _e72;
-            let _e75 = (*at_1).shift;
-            let _e78 = synthesis.law[1u];
-            let _e80 = (*at_1).next;
-            (*at_1).b = (_e75 + (_e78 * _e80));
-            let _e85 = (*at_1).a;
-            param_21 = _e85;
-            let _e87 = (*at_1).b;
-            param_22 = _e87;
-            let _e88 = is_seen((&param_21), (&param_22));
-            (*at_1).found = _e88;
-            let _e91 = (*at_1).a;
-            param_23 = _e91;
-            let _e93 = (*at_1).b;
-            param_24 = _e93;
-            let _e94 = folds((&param_23), (&param_24));
-            fold = _e94;
-            let _e96 = (*at_1).a;
-            param_25 = _e96;
-            let _e98 = (*at_1).b;
-            param_26 = _e98;
-            let _e99 = has_rim((&param_25), (&param_26));
-            phi_582_ = _e99;
-            if _e99 {
-                let _e101 = (*at_1).rim;
-                phi_582_ = (_e101 < 0i);
+        let _e155 = x_6;
+        let _e156 = (*end);
+        let _e158 = found;
+        if ((_e155 <= _e156) && !(_e158)) {
+            let _e161 = x_6;
+            param_23 = _e161;
+            let _e162 = tile_row_1;
+            param_24 = _e162;
+            let _e163 = below_2;
+            param_25 = _e163;
+            let _e164 = shift_2;
+            param_26 = _e164;
+            let _e165 = segment_end((&param_23), (&param_24), (&param_25), (&param_26));
+            let _e166 = (*end);
+            param_27 = min(_e165, _e166);
+            let _e168 = (*origin_1);
+            param_28 = _e168;
+            let _e169 = search_at((&param_27), (&param_28));
+            (*at_2) = _e169;
+            let _e170 = a_1;
+            let _e171 = (_e170 <= 0f);
+            phi_812_ = _e171;
+            if _e171 {
+                let _e173 = (*at_2).a;
+                phi_812_ = (_e173 > 0f);
             }
-            let _e104 = phi_582_;
-            nearest = _e104;
-            let _e105 = nearest;
-            if _e105 {
-                let _e106 = fold;
-                if _e106 {
-                    let _e107 = here;
-                    local_5 = _e107;
-                } else {
-                    let _e109 = (*at_1).column;
-                    local_5 = _e109;
-                }
-                let _e110 = local_5;
-                local_4 = _e110;
+            let _e176 = phi_812_;
+            crosses = _e176;
+            let _e177 = crosses;
+            found = _e177;
+            let _e178 = crosses;
+            let _e180 = (true && !(_e178));
+            phi_823_ = _e180;
+            if _e180 {
+                let _e182 = (*at_2).x;
+                let _e183 = (*end);
+                phi_823_ = (_e182 < _e183);
+            }
+            let _e186 = phi_823_;
+            phi_833_ = _e186;
+            if _e186 {
+                let _e188 = (*at_2).a;
+                param_29 = _e188;
+                let _e190 = (*at_2).b;
+                param_30 = _e190;
+                let _e191 = is_event((&param_29), (&param_30));
+                phi_833_ = _e191;
+            }
+            let _e193 = phi_833_;
+            if _e193 {
+                let _e194 = beside_1;
+                param_31 = _e194;
+                let _e195 = (*at_2);
+                param_32 = _e195;
+                let _e196 = meet((&param_31), (&param_32));
+                let _e197 = param_31;
+                beside_1 = _e197;
+                found = _e196;
+            }
+            let _e198 = found;
+            if _e198 {
+                let _e199 = x_6;
+                local_11 = _e199;
             } else {
-                let _e112 = (*at_1).rim;
-                local_4 = _e112;
+                let _e201 = (*at_2).x;
+                local_11 = (_e201 + 1f);
             }
-            let _e113 = local_4;
-            (*at_1).rim = _e113;
-            let _e115 = nearest;
-            if _e115 {
-                let _e116 = fold;
-                if _e116 {
-                    let _e118 = (*at_1).depth;
-                    local_7 = _e118;
-                } else {
-                    let _e120 = (*at_1).next;
-                    local_7 = _e120;
-                }
-                let _e121 = local_7;
-                local_6 = _e121;
+            let _e203 = local_11;
+            x_6 = _e203;
+            let _e204 = found;
+            if _e204 {
+                let _e205 = a_1;
+                local_12 = _e205;
             } else {
-                let _e123 = (*at_1).rim_depth;
-                local_6 = _e123;
+                let _e207 = (*at_2).b;
+                local_12 = _e207;
             }
-            let _e124 = local_6;
-            (*at_1).rim_depth = _e124;
-            let _e127 = (*at_1).a;
-            param_27 = _e127;
-            let _e129 = (*at_1).b;
-            param_28 = _e129;
-            let _e130 = jumps((&param_27), (&param_28));
-            phi_640_ = _e130;
-            if _e130 {
-                let _e133 = synthesis.law[1u];
-                let _e135 = (*at_1).depth;
-                let _e137 = (*at_1).edge_depth;
-                phi_640_ = ((_e133 * (_e135 - _e137)) < 0f);
-            }
-            let _e142 = phi_640_;
-            farther = _e142;
-            let _e143 = farther;
-            if _e143 {
-                let _e144 = here;
-                local_8 = _e144;
-            } else {
-                let _e146 = (*at_1).edge;
-                local_8 = _e146;
-            }
-            let _e147 = local_8;
-            (*at_1).edge = _e147;
-            let _e149 = farther;
-            if _e149 {
-                let _e151 = (*at_1).depth;
-                local_9 = _e151;
-            } else {
-                let _e153 = (*at_1).edge_depth;
-                local_9 = _e153;
-            }
-            let _e154 = local_9;
-            (*at_1).edge_depth = _e154;
+            let _e208 = local_12;
+            a_1 = _e208;
             continue;
         } else {
             break;
         }
     }
-    return;
-}
-
-fn march(origin_1: ptr<function, f32>, row_4: ptr<function, i32>, steps: ptr<function, f32>, x_3: ptr<function, f32>, b_5: ptr<function, f32>, next: ptr<function, f32>, surface: ptr<function, Surface>) -> vec4<f32> {
-    var last_column: f32;
-    var outside: bool;
-    var end_1: f32;
-    var local_10: f32;
-    var column_2: i32;
-    var param_29: i32;
-    var edge_1: i32;
-    var edge_depth: f32;
-    var local_11: f32;
-    var at_2: Search;
-    var param_30: Search;
-    var param_31: f32;
-    var param_32: f32;
-    var param_33: i32;
-    var own: bool;
-    var local_12: i32;
-    var param_34: i32;
-    var t: f32;
-    var param_35: f32;
-    var param_36: f32;
-    var local_13: f32;
-    var local_14: f32;
-    var away_2: f32;
-    var color_1: vec4<f32>;
-    var param_37: f32;
-    var param_38: i32;
-    var param_39: bool;
-    var param_40: vec4<f32>;
-    var param_41: f32;
-    var param_42: f32;
-    var param_43: f32;
-    var param_44: i32;
-    var param_45: i32;
-    var coverage: f32;
-    var param_46: vec2<i32>;
-    var phi_753_: bool;
-    var phi_832_: bool;
-
-    let _e57 = synthesis.source_size[0u];
-    last_column = f32((_e57 - 1i));
-    let _e60 = (*x_3);
-    let _e61 = (*b_5);
-    (*b_5) = (_e61 - _e60);
-    let _e63 = (*x_3);
-    let _e64 = last_column;
-    (*x_3) = clamp(_e63, 0f, _e64);
-    let _e66 = (*x_3);
-    let _e67 = (*b_5);
-    (*b_5) = (_e67 + _e66);
-    let _e69 = (*x_3);
-    let _e71 = (*b_5);
-    outside = ((_e69 == 0f) && (_e71 > 0f));
-    let _e74 = outside;
-    let _e75 = (*b_5);
-    if (_e74 && (_e75 < 0.5f)) {
-        let _e78 = (*x_3);
-        local_10 = _e78;
-    } else {
-        let _e79 = (*x_3);
-        let _e80 = (*steps);
-        let _e82 = last_column;
-        local_10 = min((_e79 + _e80), _e82);
-    }
-    let _e84 = local_10;
-    end_1 = _e84;
-    let _e85 = (*x_3);
-    param_29 = i32(_e85);
-    let _e87 = source_column((&param_29));
-    column_2 = _e87;
-    let _e88 = outside;
-    let _e89 = column_2;
-    edge_1 = select(-1i, _e89, _e88);
-    let _e91 = outside;
-    if _e91 {
-        let _e92 = (*next);
-        local_11 = _e92;
-    } else {
-        let _e95 = synthesis.law[1u];
-        local_11 = select(1000000000f, -1000000000f, (_e95 < 0f));
-    }
-    let _e98 = local_11;
-    edge_depth = _e98;
-    let _e99 = column_2;
-    let _e100 = (*x_3);
-    let _e101 = (*origin_1);
-    let _e103 = (*b_5);
-    let _e104 = (*b_5);
-    let _e105 = (*next);
-    let _e106 = (*next);
-    let _e107 = edge_1;
-    let _e108 = edge_depth;
-    at_2 = Search(_e99, (_e100 - _e101), _e103, _e104, _e105, _e106, false, _e107, _e108, -1i, 0f);
-    let _e110 = at_2;
-    param_30 = _e110;
-    let _e111 = end_1;
-    param_31 = _e111;
-    let _e112 = (*origin_1);
-    param_32 = _e112;
-    let _e113 = (*row_4);
-    param_33 = _e113;
-    walk((&param_30), (&param_31), (&param_32), (&param_33));
-    let _e114 = param_30;
-    at_2 = _e114;
-    let _e116 = at_2.found;
-    phi_753_ = _e116;
-    if !(_e116) {
-        let _e119 = at_2.edge;
-        phi_753_ = (_e119 < 0i);
-    }
-    let _e122 = phi_753_;
-    own = _e122;
-    let _e123 = own;
-    if _e123 {
-        let _e125 = at_2.column;
-        local_12 = _e125;
-    } else {
-        let _e127 = at_2.edge;
-        local_12 = _e127;
-    }
-    let _e128 = local_12;
-    column_2 = _e128;
-    let _e129 = column_2;
-    param_34 = _e129;
-    let _e130 = source_column((&param_34));
-    (*x_3) = f32(_e130);
-    let _e133 = at_2.a;
-    param_35 = _e133;
-    let _e135 = at_2.b;
-    param_36 = _e135;
-    let _e136 = is_torn((&param_35), (&param_36));
-    if _e136 {
-        local_13 = 0f;
-    } else {
-        let _e138 = at_2.a;
-        let _e141 = at_2.b;
-        let _e143 = at_2.a;
-        local_13 = (-(_e138) / (_e141 - _e143));
-    }
-    let _e146 = local_13;
-    t = _e146;
-    let _e148 = at_2.found;
-    let _e149 = t;
-    t = select(1f, _e149, _e148);
-    let _e151 = (*x_3);
-    let _e153 = t;
-    (*surface).source = ((_e151 - 1f) + _e153);
-    let _e157 = at_2.depth;
-    let _e158 = own;
-    if _e158 {
-        let _e160 = at_2.next;
-        local_14 = _e160;
-    } else {
-        let _e162 = at_2.edge_depth;
-        local_14 = _e162;
-    }
-    let _e163 = local_14;
-    let _e164 = t;
-    (*surface).depth = mix(_e157, _e163, _e164);
-    let _e167 = (*x_3);
-    let _e168 = (*origin_1);
-    let _e172 = synthesis.law[1u];
-    let _e174 = (*surface).depth;
-    away_2 = ((_e167 - _e168) + (_e172 * _e174));
-    let _e178 = at_2.found;
-    let _e179 = !(_e178);
-    phi_832_ = _e179;
-    if _e179 {
-        let _e180 = away_2;
-        phi_832_ = (abs(_e180) >= 0.5f);
-    }
-    let _e184 = phi_832_;
-    (*surface).hole = _e184;
-    let _e187 = (*surface).source;
-    param_37 = _e187;
-    let _e188 = (*row_4);
-    param_38 = _e188;
-    let _e189 = color_at((&param_37), (&param_38));
-    let _e191 = (*surface).hole;
-    param_39 = _e191;
-    param_40 = _e189;
-    let _e192 = away_2;
-    param_41 = _e192;
-    let _e193 = (*x_3);
-    param_42 = _e193;
-    let _e195 = (*surface).depth;
-    param_43 = _e195;
-    let _e196 = (*row_4);
-    param_44 = _e196;
-    let _e197 = fill_hole((&param_39), (&param_40), (&param_41), (&param_42), (&param_43), (&param_44));
-    color_1 = _e197;
-    let _e199 = at_2.rim;
-    if (_e199 >= 0i) {
-        let _e202 = at_2.rim;
-        param_45 = _e202;
-        let _e203 = source_column((&param_45));
-        (*x_3) = f32(_e203);
-        let _e205 = (*x_3);
-        let _e206 = (*origin_1);
-        let _e210 = synthesis.law[1u];
-        let _e212 = at_2.rim_depth;
-        coverage = (1f - abs(((_e205 - _e206) + (_e210 * _e212))));
-        let _e217 = color_1;
-        let _e219 = at_2.rim;
-        let _e220 = (*row_4);
-        param_46 = vec2<i32>(_e219, _e220);
-        let _e222 = in_image((&param_46));
-        let _e223 = textureLoad(color_map_texture, _e222, 0i);
-        let _e224 = coverage;
-        color_1 = mix(_e217, _e223, vec4(_e224));
-        let _e227 = coverage;
-        if (_e227 >= 0.5f) {
-            let _e229 = (*x_3);
-            let _e231 = at_2.rim_depth;
-            (*surface) = Surface(_e229, _e231, false);
+    let _e210 = (*at_2).x;
+    last = _e210;
+    let _e212 = (*at_2).a;
+    b_1 = _e212;
+    loop {
+        let _e213 = crosses;
+        let _e215 = x_6;
+        let _e216 = last;
+        if ((true && _e213) && (_e215 < _e216)) {
+            let _e219 = x_6;
+            let _e220 = last;
+            let _e221 = x_6;
+            let _e223 = a_1;
+            let _e225 = a_1;
+            let _e226 = b_1;
+            let _e231 = x_6;
+            let _e232 = last;
+            param_33 = clamp(floor((_e219 + (((_e220 - _e221) * _e223) / (_e225 - _e226)))), _e231, (_e232 - 1f));
+            let _e235 = (*origin_1);
+            param_34 = _e235;
+            let _e236 = search_at((&param_33), (&param_34));
+            (*at_2) = _e236;
+            let _e238 = (*at_2).a;
+            let _e239 = (_e238 > 0f);
+            phi_907_ = _e239;
+            if !(_e239) {
+                let _e242 = (*at_2).b;
+                phi_907_ = (_e242 <= 0f);
+            }
+            let _e245 = phi_907_;
+            crosses = _e245;
+            let _e247 = (*at_2).a;
+            behind = (_e247 > 0f);
+            let _e249 = behind;
+            if _e249 {
+                let _e250 = x_6;
+                local_13 = _e250;
+            } else {
+                let _e252 = (*at_2).x;
+                local_13 = (_e252 + 1f);
+            }
+            let _e254 = local_13;
+            x_6 = _e254;
+            let _e255 = behind;
+            if _e255 {
+                let _e256 = a_1;
+                local_14 = _e256;
+            } else {
+                let _e258 = (*at_2).b;
+                local_14 = _e258;
+            }
+            let _e259 = local_14;
+            a_1 = _e259;
+            let _e260 = behind;
+            if _e260 {
+                let _e262 = (*at_2).x;
+                local_15 = _e262;
+            } else {
+                let _e263 = last;
+                local_15 = _e263;
+            }
+            let _e264 = local_15;
+            last = _e264;
+            let _e265 = behind;
+            if _e265 {
+                let _e267 = (*at_2).a;
+                local_16 = _e267;
+            } else {
+                let _e268 = b_1;
+                local_16 = _e268;
+            }
+            let _e269 = local_16;
+            b_1 = _e269;
+            continue;
+        } else {
+            break;
         }
     }
-    let _e233 = color_1;
-    return _e233;
-}
-
-fn span_steps(span: ptr<function, u32>) -> f32 {
-    var steps_1: u32;
-    var local_15: f32;
-
-    let _e5 = (*span);
-    steps_1 = (_e5 & 1023u);
-    let _e7 = steps_1;
-    if (_e7 == 1023u) {
-        local_15 = 1000000000f;
-    } else {
-        let _e9 = steps_1;
-        local_15 = f32(_e9);
+    let _e270 = found;
+    phi_957_ = _e270;
+    if !(_e270) {
+        let _e273 = beside_1.edge;
+        phi_957_ = (_e273 < 0f);
     }
-    let _e11 = local_15;
-    return _e11;
-}
-
-fn depth_at(x_4: ptr<function, i32>, row_5: ptr<function, i32>) -> f32 {
-    var param_47: i32;
-    var param_48: i32;
-    var param_49: i32;
-
-    let _e5 = (*x_4);
-    param_47 = _e5;
-    let _e6 = source_column((&param_47));
-    param_48 = _e6;
-    let _e7 = (*row_5);
-    param_49 = _e7;
-    let _e8 = depth_texel((&param_48), (&param_49));
-    return _e8;
+    let _e276 = phi_957_;
+    own = _e276;
+    let _e277 = own;
+    if _e277 {
+        let _e279 = (*at_2).x;
+        let _e280 = (*end);
+        local_17 = min(_e279, _e280);
+    } else {
+        let _e283 = beside_1.edge;
+        local_17 = _e283;
+    }
+    let _e284 = local_17;
+    x_6 = _e284;
+    let _e285 = found;
+    phi_980_ = _e285;
+    if _e285 {
+        let _e287 = (*at_2).b;
+        let _e289 = (*at_2).a;
+        phi_980_ = ((_e287 - _e289) < 2f);
+    }
+    let _e293 = phi_980_;
+    if _e293 {
+        let _e295 = (*at_2).a;
+        let _e298 = (*at_2).b;
+        let _e300 = (*at_2).a;
+        local_18 = (-(_e295) / (_e298 - _e300));
+    } else {
+        local_18 = 0f;
+    }
+    let _e303 = local_18;
+    t = _e303;
+    let _e304 = x_6;
+    let _e305 = t;
+    (*surface).source = (_e304 + _e305);
+    let _e308 = own;
+    if _e308 {
+        let _e311 = (*at_2).depths[0u];
+        let _e314 = (*at_2).depths[1u];
+        let _e315 = t;
+        local_19 = mix(_e311, _e314, _e315);
+    } else {
+        let _e318 = beside_1.edge_depth;
+        local_19 = _e318;
+    }
+    let _e319 = local_19;
+    (*surface).depth = _e319;
+    let _e321 = x_6;
+    let _e322 = (*origin_1);
+    let _e326 = synthesis.law[1u];
+    let _e328 = (*surface).depth;
+    away_3 = ((_e321 - _e322) + (_e326 * _e328));
+    let _e331 = found;
+    let _e332 = !(_e331);
+    phi_1031_ = _e332;
+    if _e332 {
+        let _e333 = away_3;
+        phi_1031_ = (abs(_e333) >= 0.5f);
+    }
+    let _e337 = phi_1031_;
+    (*surface).hole = _e337;
+    let _e340 = (*surface).source;
+    param_35 = _e340;
+    let _e341 = column_at((&param_35));
+    param_36 = 0f;
+    let _e342 = row_at((&param_36));
+    param_37 = vec2<f32>(_e341, _e342);
+    let _e344 = color_sample((&param_37));
+    color_1 = _e344;
+    phi_1047_ = true;
+    if true {
+        let _e346 = (*surface).hole;
+        phi_1047_ = _e346;
+    }
+    let _e348 = phi_1047_;
+    if _e348 {
+        param_38 = true;
+        let _e349 = color_1;
+        param_39 = _e349;
+        let _e350 = away_3;
+        param_40 = _e350;
+        let _e351 = x_6;
+        param_41 = _e351;
+        let _e353 = (*surface).depth;
+        param_42 = _e353;
+        let _e354 = (*row_2);
+        param_43 = _e354;
+        let _e355 = fill_hole((&param_38), (&param_39), (&param_40), (&param_41), (&param_42), (&param_43));
+        color_1 = _e355;
+    }
+    let _e357 = beside_1.rim;
+    if (_e357 >= 0f) {
+        let _e360 = beside_1.rim;
+        let _e361 = (*origin_1);
+        let _e365 = synthesis.law[1u];
+        let _e367 = beside_1.rim_depth;
+        coverage = (1f - abs(((_e360 - _e361) + (_e365 * _e367))));
+        let _e372 = color_1;
+        let _e374 = beside_1.rim;
+        param_44 = _e374;
+        let _e375 = column_at((&param_44));
+        param_45 = 0f;
+        let _e376 = row_at((&param_45));
+        param_46 = vec2<f32>(_e375, _e376);
+        let _e378 = color_sample((&param_46));
+        let _e379 = coverage;
+        color_1 = mix(_e372, _e378, vec4(_e379));
+        let _e382 = coverage;
+        if (_e382 >= 0.5f) {
+            let _e385 = beside_1.rim;
+            let _e387 = beside_1.rim_depth;
+            (*surface) = Surface(_e385, _e387, false);
+        }
+    }
+    let _e389 = color_1;
+    return _e389;
 }
 
 fn source_row() -> i32 {
@@ -766,15 +924,223 @@ fn source_row() -> i32 {
     return i32(clamp((_e6 - _e8), 0f, f32((_e12 - 1i))));
 }
 
+fn span_steps(span: ptr<function, u32>) -> f32 {
+    var steps: u32;
+    var local_20: f32;
+
+    let _e5 = (*span);
+    steps = (_e5 & 1023u);
+    let _e7 = steps;
+    if (_e7 == 1023u) {
+        local_20 = 1000000000f;
+    } else {
+        let _e9 = steps;
+        local_20 = f32(_e9);
+    }
+    let _e11 = local_20;
+    return _e11;
+}
+
+fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> vec4<f32> {
+    var origin_2: f32;
+    var at_3: Search;
+    var param_47: f32;
+    var param_48: f32;
+    var end_1: f32;
+    var param_49: u32;
+    var limit: f32;
+    var next: f32;
+    var param_50: f32;
+    var param_51: f32;
+    var param_52: vec2<f32>;
+    var stretch: f32;
+    var t_1: f32;
+    var seen: vec4<f32>;
+    var param_53: f32;
+    var param_54: f32;
+    var param_55: vec2<f32>;
+    var middle: f32;
+    var done: bool;
+    var param_56: Search;
+    var param_57: f32;
+    var param_58: f32;
+    var param_59: i32;
+    var param_60: Surface;
+    var phi_1229_: bool;
+    var phi_1238_: bool;
+    var phi_1321_: bool;
+    var phi_1334_: bool;
+
+    let _e40 = synthesis.origins[0u];
+    let _e42 = gl_FragCoord_1[0u];
+    let _e46 = synthesis.origins[1u];
+    origin_2 = ((_e40 * _e42) + _e46);
+    let _e48 = origin_2;
+    let _e50 = synthesis.farthest;
+    let _e52 = (*span_1);
+    param_47 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
+    let _e56 = origin_2;
+    param_48 = _e56;
+    let _e57 = search_at((&param_47), (&param_48));
+    at_3 = _e57;
+    let _e59 = at_3.x;
+    let _e61 = (*span_1);
+    param_49 = _e61;
+    let _e62 = span_steps((&param_49));
+    let _e66 = synthesis.source_size[0u];
+    end_1 = min((max(_e59, 0f) + _e62), f32((_e66 - 1i)));
+    let _e71 = at_3.x;
+    let _e73 = end_1;
+    limit = min((_e71 + 2f), _e73);
+    loop {
+        let _e76 = at_3.x;
+        let _e77 = limit;
+        let _e78 = (_e76 < _e77);
+        phi_1229_ = _e78;
+        if _e78 {
+            let _e80 = at_3.b;
+            phi_1229_ = (_e80 <= 0f);
+        }
+        let _e83 = phi_1229_;
+        phi_1238_ = _e83;
+        if _e83 {
+            let _e85 = at_3.b;
+            let _e88 = at_3.a;
+            phi_1238_ = (max(_e85, -1f) >= _e88);
+        }
+        let _e91 = phi_1238_;
+        if _e91 {
+            let _e93 = at_3.x;
+            param_50 = (_e93 + 2f);
+            let _e95 = column_at((&param_50));
+            param_51 = 0f;
+            let _e96 = row_at((&param_51));
+            param_52 = vec2<f32>(_e95, _e96);
+            let _e98 = depth_sample((&param_52));
+            next = _e98;
+            let _e101 = at_3.depths[1u];
+            let _e102 = next;
+            at_3.depths = vec2<f32>(_e101, _e102);
+            let _e106 = at_3.b;
+            at_3.a = _e106;
+            let _e109 = at_3.x;
+            let _e111 = origin_2;
+            let _e115 = synthesis.law[1u];
+            let _e116 = next;
+            at_3.b = (((_e109 + 2f) - _e111) + (_e115 * _e116));
+            continue;
+        } else {
+            break;
+        }
+        continuing {
+            let _e121 = at_3.x;
+            at_3.x = (_e121 + 1f);
+        }
+    }
+    let _e125 = at_3.b;
+    let _e127 = at_3.a;
+    stretch = (_e125 - _e127);
+    let _e130 = at_3.a;
+    let _e132 = stretch;
+    t_1 = (-(_e130) / _e132);
+    let _e135 = at_3.x;
+    let _e136 = t_1;
+    let _e140 = at_3.depths[0u];
+    let _e143 = at_3.depths[1u];
+    let _e144 = t_1;
+    (*surface_1) = Surface((_e135 + _e136), mix(_e140, _e143, _e144), false);
+    let _e148 = (*surface_1).source;
+    param_53 = _e148;
+    let _e149 = column_at((&param_53));
+    param_54 = 0f;
+    let _e150 = row_at((&param_54));
+    param_55 = vec2<f32>(_e149, _e150);
+    let _e152 = color_sample((&param_55));
+    seen = _e152;
+    let _e155 = synthesis.source_size[0u];
+    middle = (0.5f * f32((_e155 - 1i)));
+    let _e160 = at_3.a;
+    let _e161 = (_e160 <= 0f);
+    phi_1321_ = _e161;
+    if _e161 {
+        let _e163 = at_3.b;
+        phi_1321_ = (_e163 > 0f);
+    }
+    let _e166 = phi_1321_;
+    let _e167 = stretch;
+    let _e169 = (_e166 && (_e167 < 2f));
+    phi_1334_ = _e169;
+    if _e169 {
+        let _e171 = (*surface_1).source;
+        let _e172 = middle;
+        let _e175 = middle;
+        phi_1334_ = (abs((_e171 - _e172)) <= _e175);
+    }
+    let _e178 = phi_1334_;
+    done = _e178;
+    let _e179 = done;
+    if (true && !(_e179)) {
+        let _e182 = source_row();
+        let _e183 = at_3;
+        param_56 = _e183;
+        let _e184 = end_1;
+        param_57 = _e184;
+        let _e185 = origin_2;
+        param_58 = _e185;
+        param_59 = _e182;
+        let _e186 = march((&param_56), (&param_57), (&param_58), (&param_59), (&param_60));
+        let _e187 = param_60;
+        (*surface_1) = _e187;
+        seen = _e186;
+    }
+    let _e188 = seen;
+    return _e188;
+}
+
+fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
+    var place_2: f32;
+    var depths_2: vec2<f32>;
+    var param_61: f32;
+    var param_62: f32;
+    var param_63: vec2<f32>;
+
+    let _e17 = (*affine)[0u];
+    let _e19 = (*affine)[1u];
+    let _e21 = gl_FragCoord_1[0u];
+    let _e25 = (*affine)[2u];
+    let _e27 = gl_FragCoord_1[1u];
+    place_2 = ((_e17 + (_e19 * _e21)) + (_e25 * _e27));
+    let _e30 = place_2;
+    let _e33 = synthesis.columns[1u];
+    let _e37 = synthesis.columns[0u];
+    let _e42 = synthesis.source_size[0u];
+    (*surface_2).source = clamp((((_e30 - _e33) / _e37) - 0.5f), 0f, f32((_e42 - 1i)));
+    let _e48 = (*surface_2).source;
+    param_61 = floor(_e48);
+    let _e50 = depth_pair((&param_61));
+    depths_2 = _e50;
+    let _e52 = depths_2[0u];
+    let _e54 = depths_2[1u];
+    let _e56 = (*surface_2).source;
+    (*surface_2).depth = mix(_e52, _e54, fract(_e56));
+    (*surface_2).hole = false;
+    let _e61 = place_2;
+    param_62 = 0f;
+    let _e62 = row_at((&param_62));
+    param_63 = vec2<f32>(_e61, _e62);
+    let _e64 = color_sample((&param_63));
+    return _e64;
+}
+
 fn pixel_span() -> vec4<u32> {
-    var last: vec2<i32>;
+    var last_1: vec2<i32>;
 
     if true {
         let _e14 = synthesis.target_size[0u];
         let _e17 = synthesis.source_size[1u];
-        last = ((vec2<i32>(_e14, _e17) - vec2(1i)) / vec2<i32>(16i, 8i));
+        last_1 = ((vec2<i32>(_e14, _e17) - vec2(1i)) / vec2<i32>(16i, 8i));
         let _e22 = span_at_1;
-        let _e24 = last;
+        let _e24 = last_1;
         let _e26 = textureLoad(span_map_texture, clamp(vec2<i32>(_e22), vec2<i32>(0i, 0i), _e24), 0i);
         return _e26;
     }
@@ -782,72 +1148,50 @@ fn pixel_span() -> vec4<u32> {
 }
 
 fn main_1() {
-    var span_1: vec4<u32>;
-    var origin_2: f32;
-    var x_5: f32;
-    var row_6: i32;
-    var depth_1: f32;
-    var param_50: i32;
-    var param_51: i32;
-    var param_52: u32;
-    var surface_1: Surface;
-    var param_53: f32;
-    var param_54: i32;
-    var param_55: f32;
-    var param_56: f32;
-    var param_57: f32;
-    var param_58: f32;
-    var param_59: Surface;
+    var span_2: vec4<u32>;
+    var surface_3: Surface;
+    var param_64: vec3<f32>;
+    var param_65: Surface;
+    var param_66: u32;
+    var param_67: Surface;
+    var phi_1361_: bool;
 
-    let _e24 = pixel_span();
-    span_1 = _e24;
-    let _e27 = synthesis.origins[0u];
-    let _e29 = gl_FragCoord_1[0u];
-    let _e33 = synthesis.origins[1u];
-    origin_2 = ((_e27 * _e29) + _e33);
-    let _e35 = origin_2;
-    let _e37 = synthesis.farthest;
-    let _e40 = span_1[0u];
-    x_5 = floor(((_e35 - _e37) - bitcast<f32>(_e40)));
-    let _e44 = source_row();
-    row_6 = _e44;
-    let _e45 = x_5;
-    let _e48 = synthesis.source_size[0u];
-    param_50 = i32(clamp(_e45, 0f, f32((_e48 - 1i))));
-    let _e53 = row_6;
-    param_51 = _e53;
-    let _e54 = depth_at((&param_50), (&param_51));
-    depth_1 = _e54;
-    let _e56 = span_1[0u];
-    param_52 = _e56;
-    let _e57 = span_steps((&param_52));
-    let _e58 = x_5;
-    let _e59 = origin_2;
-    let _e63 = synthesis.law[1u];
-    let _e64 = depth_1;
-    let _e67 = origin_2;
-    param_53 = _e67;
-    let _e68 = row_6;
-    param_54 = _e68;
-    param_55 = _e57;
-    let _e69 = x_5;
-    param_56 = _e69;
-    param_57 = ((_e58 - _e59) + (_e63 * _e64));
-    let _e70 = depth_1;
-    param_58 = _e70;
-    let _e71 = march((&param_53), (&param_54), (&param_55), (&param_56), (&param_57), (&param_58), (&param_59));
-    let _e72 = param_59;
-    surface_1 = _e72;
-    color_2 = _e71;
-    let _e74 = surface_1.depth;
-    gl_FragDepth = _e74;
+    let _e11 = pixel_span();
+    span_2 = _e11;
+    phi_1361_ = true;
+    if true {
+        let _e13 = span_2[1u];
+        phi_1361_ = (_e13 != 0u);
+    }
+    let _e16 = phi_1361_;
+    if _e16 {
+        let _e17 = span_2;
+        param_64 = bitcast<vec3<f32>>(_e17.xyz);
+        let _e20 = lawful((&param_64), (&param_65));
+        let _e21 = param_65;
+        surface_3 = _e21;
+        color_2 = _e20;
+    } else {
+        if true {
+            let _e23 = span_2[0u];
+            param_66 = _e23;
+            let _e24 = searched((&param_66), (&param_67));
+            let _e25 = param_67;
+            surface_3 = _e25;
+            color_2 = _e24;
+        } else {
+            discard;
+        }
+    }
+    let _e27 = surface_3.depth;
+    gl_FragDepth = _e27;
     return;
 }
 
 @fragment 
-fn main(@location(0) span_at: vec2<f32>, @builtin(position) gl_FragCoord: vec4<f32>) -> FragmentOutput {
-    span_at_1 = span_at;
+fn main(@builtin(position) gl_FragCoord: vec4<f32>, @location(0) span_at: vec2<f32>) -> FragmentOutput {
     gl_FragCoord_1 = gl_FragCoord;
+    span_at_1 = span_at;
     main_1();
     let _e6 = color_2;
     let _e7 = gl_FragDepth;

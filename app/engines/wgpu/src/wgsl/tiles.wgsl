@@ -18,12 +18,12 @@ struct Synthesis {
     texel: vec2<f32>,
 }
 
-@group(0) @binding(7) 
-var<uniform> synthesis: Synthesis;
 @group(0) @binding(0) 
 var depth_map_texture: texture_2d<f32>;
 @group(0) @binding(8) 
 var nearest_sampler: sampler;
+@group(0) @binding(7) 
+var<uniform> synthesis: Synthesis;
 var<private> gl_FragCoord_1: vec4<f32>;
 var<private> tile: vec4<u32>;
 
@@ -42,6 +42,22 @@ fn pack_interval(low: ptr<function, f32>, high: ptr<function, f32>) -> u32 {
     return (u32(_e24) | (u32(_e26) << bitcast<u32>(16i)));
 }
 
+fn in_place(marks: ptr<function, u32>) -> u32 {
+    var local: u32;
+
+    let _e6 = synthesis.mirrored;
+    if (_e6 != 0u) {
+        let _e8 = (*marks);
+        let _e11 = (*marks);
+        local = ((_e8 >> bitcast<u32>(16i)) | (_e11 << bitcast<u32>(16i)));
+    } else {
+        let _e15 = (*marks);
+        local = reverseBits(_e15);
+    }
+    let _e17 = local;
+    return _e17;
+}
+
 fn displacement(depth: ptr<function, f32>) -> f32 {
     let _e6 = synthesis.law[0u];
     let _e9 = synthesis.law[1u];
@@ -52,27 +68,27 @@ fn displacement(depth: ptr<function, f32>) -> f32 {
 fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     var last: vec2<f32>;
     var at: vec2<f32>;
-    var local: vec2<f32>;
+    var local_1: vec2<f32>;
     var row: f32;
-    var local_1: f32;
+    var local_2: f32;
     var quad: vec4<f32>;
-    var local_2: vec4<f32>;
     var local_3: vec4<f32>;
     var local_4: vec4<f32>;
-    var phi_131_: bool;
-    var phi_163_: bool;
+    var local_5: vec4<f32>;
+    var phi_192_: bool;
+    var phi_224_: bool;
 
     let _e21 = synthesis.source_size;
     last = vec2<f32>((_e21 - vec2(2i)));
     if true {
         let _e25 = (*corner);
         let _e26 = last;
-        local = clamp(_e25, vec2<f32>(0f, 0f), max(_e26, vec2<f32>(0f, 0f)));
+        local_1 = clamp(_e25, vec2<f32>(0f, 0f), max(_e26, vec2<f32>(0f, 0f)));
     } else {
         let _e29 = (*corner);
-        local = _e29;
+        local_1 = _e29;
     }
-    let _e30 = local;
+    let _e30 = local_1;
     at = _e30;
     let _e32 = at[1u];
     row = (_e32 + 1f);
@@ -80,13 +96,13 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
         let _e36 = synthesis.source_origin[1u];
         let _e38 = row;
         let _e42 = synthesis.texel[1u];
-        local_1 = ((f32(_e36) + _e38) * _e42);
+        local_2 = ((f32(_e36) + _e38) * _e42);
     } else {
         let _e44 = row;
         let _e47 = synthesis.source_size[1u];
-        local_1 = (_e44 / f32(_e47));
+        local_2 = (_e44 / f32(_e47));
     }
-    let _e50 = local_1;
+    let _e50 = local_2;
     row = _e50;
     let _e53 = synthesis.columns[0u];
     let _e55 = at[0u];
@@ -98,147 +114,354 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
         let _e66 = (*corner)[0u];
         let _e68 = last[0u];
         let _e69 = (_e66 <= _e68);
-        phi_131_ = _e69;
+        phi_192_ = _e69;
         if !(_e69) {
             let _e73 = synthesis.source_size[0u];
-            phi_131_ = (_e73 == 1i);
+            phi_192_ = (_e73 == 1i);
         }
-        let _e76 = phi_131_;
+        let _e76 = phi_192_;
         if _e76 {
             let _e77 = quad;
-            local_2 = _e77;
+            local_3 = _e77;
         } else {
             let _e79 = synthesis.mirrored;
             if (_e79 != 0u) {
                 let _e81 = quad;
-                local_3 = _e81.xxww;
+                local_4 = _e81.xxww;
             } else {
                 let _e83 = quad;
-                local_3 = _e83.yyzz;
+                local_4 = _e83.yyzz;
             }
-            let _e85 = local_3;
-            local_2 = _e85;
+            let _e85 = local_4;
+            local_3 = _e85;
         }
-        let _e86 = local_2;
+        let _e86 = local_3;
         quad = _e86;
         let _e88 = (*corner)[1u];
         let _e90 = last[1u];
         let _e91 = (_e88 <= _e90);
-        phi_163_ = _e91;
+        phi_224_ = _e91;
         if !(_e91) {
             let _e95 = synthesis.source_size[1u];
-            phi_163_ = (_e95 == 1i);
+            phi_224_ = (_e95 == 1i);
         }
-        let _e98 = phi_163_;
+        let _e98 = phi_224_;
         if _e98 {
             let _e99 = quad;
-            local_4 = _e99;
+            local_5 = _e99;
         } else {
             let _e100 = quad;
-            local_4 = _e100.xyyx;
+            local_5 = _e100.xyyx;
         }
-        let _e102 = local_4;
+        let _e102 = local_5;
         quad = _e102;
     }
     let _e103 = quad;
     return _e103;
 }
 
-fn main_1() {
-    var corner_1: vec2<f32>;
-    var least: f32;
-    var most: f32;
+fn depth_sample(place: ptr<function, vec2<f32>>) -> f32 {
+    let _e4 = (*place);
+    let _e5 = textureSampleLevel(depth_map_texture, nearest_sampler, _e4, 0f);
+    return _e5.x;
+}
+
+fn place_of(at_1: ptr<function, vec2<f32>>) -> vec2<f32> {
+    var local_6: vec2<f32>;
+
+    if true {
+        let _e8 = (*at_1);
+        let _e10 = synthesis.source_size;
+        local_6 = clamp(_e8, vec2<f32>(0.5f, 0.5f), (vec2<f32>(_e10) - vec2(0.5f)));
+    } else {
+        let _e15 = (*at_1);
+        local_6 = _e15;
+    }
+    let _e16 = local_6;
+    (*at_1) = _e16;
+    let _e19 = synthesis.columns[0u];
+    let _e21 = (*at_1)[0u];
+    let _e25 = synthesis.columns[1u];
+    let _e29 = synthesis.source_origin[1u];
+    let _e32 = (*at_1)[1u];
+    let _e36 = synthesis.texel[1u];
+    return vec2<f32>(((_e19 * _e21) + _e25), ((f32(_e29) + _e32) * _e36));
+}
+
+fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
+    var middle: vec2<f32>;
+    var first: f32;
+    var param: vec2<f32>;
+    var param_1: vec2<f32>;
+    var right: f32;
+    var param_2: vec2<f32>;
+    var param_3: vec2<f32>;
+    var above: f32;
+    var param_4: vec2<f32>;
+    var param_5: vec2<f32>;
+    var opposite: f32;
+    var param_6: vec2<f32>;
+    var param_7: vec2<f32>;
+    var slope: vec2<f32>;
     var low_1: vec4<f32>;
     var high_1: vec4<f32>;
+    var plane: f32;
+    var lower_marks: u32;
+    var marks_1: u32;
+    var marked: f32;
+    var begin: f32;
+    var sense: f32;
     var row_1: f32;
+    var before: vec2<f32>;
     var i: i32;
+    var column: f32;
+    var quad_1: vec4<f32>;
+    var param_8: vec2<f32>;
     var depths: vec4<f32>;
-    var param: vec2<f32>;
+    var between: vec2<f32>;
+    var within: vec2<f32>;
+    var second: vec4<f32>;
+    var least: f32;
+    var most: f32;
+    var rise: vec2<f32>;
     var a: f32;
-    var param_1: f32;
+    var param_9: f32;
     var b: f32;
-    var param_2: f32;
-    var param_3: f32;
-    var param_4: f32;
+    var param_10: f32;
+    var plane_law: vec3<f32>;
+    var param_11: f32;
+    var planar: bool;
+    var rest: vec3<u32>;
+    var local_7: vec3<u32>;
+    var param_12: u32;
+    var param_13: u32;
+    var param_14: f32;
+    var param_15: f32;
+    var phi_604_: bool;
 
-    let _e31 = gl_FragCoord_1;
-    corner_1 = ((_e31.xy - vec2(0.5f)) * vec2<f32>(16f, 8f));
-    least = 1000000000f;
-    most = -1000000000f;
+    let _e79 = (*corner_1);
+    middle = (_e79 + vec2(0.5f));
+    let _e82 = middle;
+    param = _e82;
+    let _e83 = place_of((&param));
+    param_1 = _e83;
+    let _e84 = depth_sample((&param_1));
+    first = _e84;
+    let _e85 = middle;
+    param_2 = (_e85 + vec2<f32>(16f, 0f));
+    let _e87 = place_of((&param_2));
+    param_3 = _e87;
+    let _e88 = depth_sample((&param_3));
+    right = _e88;
+    let _e89 = middle;
+    param_4 = (_e89 + vec2<f32>(0f, 7f));
+    let _e91 = place_of((&param_4));
+    param_5 = _e91;
+    let _e92 = depth_sample((&param_5));
+    above = _e92;
+    let _e93 = middle;
+    param_6 = (_e93 + vec2<f32>(16f, 7f));
+    let _e95 = place_of((&param_6));
+    param_7 = _e95;
+    let _e96 = depth_sample((&param_7));
+    opposite = _e96;
+    let _e97 = right;
+    let _e98 = above;
+    let _e100 = first;
+    slope = ((vec2<f32>(_e97, _e98) - vec2(_e100)) / vec2<f32>(16f, 7f));
+    let _e106 = synthesis.law[1u];
+    let _e107 = first;
+    let _e108 = right;
+    let _e110 = above;
+    let _e112 = opposite;
+    let _e117 = slope;
+    slope = select(vec2<f32>(0f, 0f), _e117, vec2((abs((_e106 * (((_e107 - _e108) - _e110) + _e112))) <= 0.25f)));
     low_1 = vec4<f32>(1000000000f, 1000000000f, 1000000000f, 1000000000f);
     high_1 = vec4<f32>(-1000000000f, -1000000000f, -1000000000f, -1000000000f);
-    let _e37 = corner_1[1u];
-    row_1 = _e37;
+    plane = 0f;
+    lower_marks = 0u;
+    marks_1 = 0u;
+    let _e122 = synthesis.law[1u];
+    marked = (0.99f / abs(_e122));
+    let _e126 = synthesis.mirrored;
+    begin = select(0f, 15f, (_e126 != 0u));
+    let _e130 = synthesis.mirrored;
+    sense = select(1f, -1f, (_e130 != 0u));
+    let _e134 = (*corner_1)[1u];
+    row_1 = _e134;
     loop {
-        let _e38 = row_1;
-        let _e40 = corner_1[1u];
-        if (_e38 < (_e40 + 8f)) {
+        let _e135 = row_1;
+        let _e137 = (*corner_1)[1u];
+        if (_e135 < (_e137 + 8f)) {
+            let _e140 = row_1;
+            let _e142 = (*corner_1)[1u];
+            let _e145 = marks_1;
+            let _e146 = lower_marks;
+            lower_marks = select(_e146, _e145, (_e140 == (_e142 + 4f)));
+            before = vec2<f32>(0f, 0f);
             i = 0i;
             loop {
-                let _e43 = i;
-                if (_e43 <= 16i) {
-                    let _e46 = corner_1[0u];
-                    let _e47 = i;
-                    let _e51 = row_1;
-                    param = vec2<f32>((_e46 + f32(min(_e47, 15i))), _e51);
-                    let _e53 = depth_quad((&param));
-                    depths = _e53;
-                    let _e54 = low_1;
-                    let _e55 = depths;
-                    low_1 = min(_e54, _e55);
-                    let _e57 = high_1;
-                    let _e58 = depths;
-                    high_1 = max(_e57, _e58);
+                let _e148 = i;
+                if (_e148 <= 16i) {
+                    let _e150 = begin;
+                    let _e151 = sense;
+                    let _e152 = i;
+                    column = (_e150 + (_e151 * f32(min(_e152, 15i))));
+                    let _e158 = (*corner_1)[0u];
+                    let _e159 = column;
+                    let _e161 = row_1;
+                    param_8 = vec2<f32>((_e158 + _e159), _e161);
+                    let _e163 = depth_quad((&param_8));
+                    quad_1 = _e163;
+                    let _e164 = quad_1;
+                    let _e165 = plane;
+                    let _e167 = slope[0u];
+                    let _e168 = column;
+                    depths = (_e164 - vec4((_e165 + (_e167 * _e168))));
+                    let _e173 = low_1;
+                    let _e174 = depths;
+                    low_1 = min(_e173, _e174);
+                    let _e176 = high_1;
+                    let _e177 = depths;
+                    high_1 = max(_e176, _e177);
+                    let _e179 = quad_1;
+                    let _e181 = before;
+                    between = abs((_e179.xw - _e181));
+                    let _e184 = quad_1;
+                    let _e186 = quad_1;
+                    within = abs((_e184.yz - _e186.xw));
+                    let _e190 = quad_1;
+                    before = _e190.yz;
+                    let _e192 = i;
+                    let _e194 = i;
+                    if ((_e192 > 0i) && (_e194 < 16i)) {
+                        let _e197 = marks_1;
+                        let _e201 = between[0u];
+                        let _e203 = between[1u];
+                        let _e205 = marked;
+                        marks_1 = ((_e197 << bitcast<u32>(1i)) | select(0u, 1u, (max(_e201, _e203) > _e205)));
+                    }
+                    let _e209 = marks_1;
+                    let _e213 = within[0u];
+                    let _e215 = within[1u];
+                    let _e217 = marked;
+                    marks_1 = ((_e209 << bitcast<u32>(1i)) | select(0u, 1u, (max(_e213, _e215) > _e217)));
                     continue;
                 } else {
                     break;
                 }
                 continuing {
-                    let _e60 = i;
-                    i = (_e60 + 2i);
+                    let _e221 = i;
+                    i = (_e221 + 2i);
                 }
             }
+            let _e224 = slope[1u];
+            let _e226 = plane;
+            plane = (_e226 + (2f * _e224));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e62 = row_1;
-            row_1 = (_e62 + 2f);
+            let _e228 = row_1;
+            row_1 = (_e228 + 2f);
         }
     }
-    let _e64 = low_1;
-    let _e66 = low_1;
-    let _e68 = min(_e64.xy, _e66.zw);
-    low_1[0u] = _e68.x;
-    low_1[1u] = _e68.y;
-    let _e73 = high_1;
-    let _e75 = high_1;
-    let _e77 = max(_e73.xy, _e75.zw);
-    high_1[0u] = _e77.x;
-    high_1[1u] = _e77.y;
-    let _e83 = low_1[0u];
-    let _e85 = low_1[1u];
-    least = min(_e83, _e85);
-    let _e88 = high_1[0u];
-    let _e90 = high_1[1u];
-    most = max(_e88, _e90);
-    let _e92 = least;
-    param_1 = _e92;
-    let _e93 = displacement((&param_1));
-    a = _e93;
-    let _e94 = most;
-    param_2 = _e94;
-    let _e95 = displacement((&param_2));
-    b = _e95;
-    let _e96 = a;
-    let _e97 = b;
-    let _e99 = a;
-    let _e100 = b;
-    param_3 = min(_e96, _e97);
-    param_4 = max(_e99, _e100);
-    let _e102 = pack_interval((&param_3), (&param_4));
-    tile = vec4<u32>(_e102, 0u, 0u, 0u);
+    let _e231 = slope[0u];
+    let _e233 = synthesis.mirrored;
+    let _e239 = slope[1u];
+    second = ((select(vec4<f32>(0f, 1f, 1f, 0f), vec4<f32>(1f, 0f, 0f, 1f), vec4((_e233 != 0u))) * _e231) + (vec4<f32>(1f, 1f, 0f, 0f) * _e239));
+    let _e242 = second;
+    let _e243 = low_1;
+    low_1 = (_e243 - _e242);
+    let _e245 = second;
+    let _e246 = high_1;
+    high_1 = (_e246 - _e245);
+    let _e248 = low_1;
+    let _e250 = low_1;
+    let _e252 = min(_e248.xy, _e250.zw);
+    low_1[0u] = _e252.x;
+    low_1[1u] = _e252.y;
+    let _e257 = high_1;
+    let _e259 = high_1;
+    let _e261 = max(_e257.xy, _e259.zw);
+    high_1[0u] = _e261.x;
+    high_1[1u] = _e261.y;
+    let _e267 = low_1[0u];
+    let _e269 = low_1[1u];
+    least = min(_e267, _e269);
+    let _e272 = high_1[0u];
+    let _e274 = high_1[1u];
+    most = max(_e272, _e274);
+    let _e276 = slope;
+    rise = (_e276 * vec2<f32>(16f, 7f));
+    let _e278 = least;
+    let _e280 = rise[0u];
+    let _e284 = rise[1u];
+    param_9 = ((_e278 + min(_e280, 0f)) + min(_e284, 0f));
+    let _e287 = displacement((&param_9));
+    a = _e287;
+    let _e288 = most;
+    let _e290 = rise[0u];
+    let _e294 = rise[1u];
+    param_10 = ((_e288 + max(_e290, 0f)) + max(_e294, 0f));
+    let _e297 = displacement((&param_10));
+    b = _e297;
+    let _e298 = least;
+    let _e299 = most;
+    param_11 = (0.5f * (_e298 + _e299));
+    let _e302 = displacement((&param_11));
+    let _e305 = synthesis.law[1u];
+    let _e306 = slope;
+    let _e307 = (_e306 * _e305);
+    plane_law = vec3<f32>(_e302, _e307.x, _e307.y);
+    let _e313 = synthesis.law[1u];
+    let _e315 = most;
+    let _e316 = least;
+    let _e319 = ((abs(_e313) * (_e315 - _e316)) <= 0.125f);
+    phi_604_ = _e319;
+    if _e319 {
+        let _e321 = plane_law[1u];
+        phi_604_ = (abs((_e321 - 0.25f)) < 0.75f);
+    }
+    let _e326 = phi_604_;
+    planar = _e326;
+    let _e327 = planar;
+    if _e327 {
+        let _e328 = plane_law;
+        local_7 = bitcast<vec3<u32>>(_e328);
+    } else {
+        let _e330 = lower_marks;
+        param_12 = _e330;
+        let _e331 = in_place((&param_12));
+        let _e333 = marks_1;
+        param_13 = _e333;
+        let _e334 = in_place((&param_13));
+        local_7 = vec3<u32>(_e331, bitcast<u32>(9f), _e334);
+    }
+    let _e336 = local_7;
+    rest = _e336;
+    let _e337 = a;
+    let _e338 = b;
+    let _e340 = a;
+    let _e341 = b;
+    param_14 = min(_e337, _e338);
+    param_15 = max(_e340, _e341);
+    let _e343 = pack_interval((&param_14), (&param_15));
+    let _e344 = rest;
+    return vec4<u32>(_e343, _e344.x, _e344.y, _e344.z);
+}
+
+fn main_1() {
+    var corner_2: vec2<f32>;
+    var param_16: vec2<f32>;
+
+    let _e6 = gl_FragCoord_1;
+    corner_2 = ((_e6.xy - vec2(0.5f)) * vec2<f32>(16f, 8f));
+    let _e11 = corner_2;
+    param_16 = _e11;
+    let _e12 = plane_tile((&param_16));
+    tile = _e12;
     return;
 }
 

@@ -1,6 +1,6 @@
-// Compiles all modules, and draws a picture with the passes for hard edges. Returns the browser's messages and the
+// Compiles all modules, and draws a picture with the passes between parallel eyes. Returns the browser's messages and the
 // pixels, or null without WebGPU.
-async ({ modules, variant, uniforms, color, depth, source, target, tiles, spans }) => {
+async ({ modules, uniforms, color, depth, source, target, tiles, spans }) => {
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) return null;
   const device = await adapter.requestDevice();
@@ -25,9 +25,9 @@ async ({ modules, variant, uniforms, color, depth, source, target, tiles, spans 
   const bound = {
     0: [{ texture: { sampleType: "unfilterable-float" } }, texture("r32float", source, new Float32Array(depth)).createView()],
     1: [{ texture: {} }, texture("rgba8unorm", source, new Uint8Array(color)).createView()],
-    7: [{ buffer: {} }, { buffer: block }],
-    8: [{ sampler: { type: "non-filtering" } }, device.createSampler()],
-    9: [{ sampler: {} }, device.createSampler({ magFilter: "linear", minFilter: "linear" })],
+    4: [{ buffer: {} }, { buffer: block }],
+    5: [{ sampler: { type: "non-filtering" } }, device.createSampler()],
+    6: [{ sampler: {} }, device.createSampler({ magFilter: "linear", minFilter: "linear" })],
   };
   const encoder = device.createCommandEncoder();
   const pass = (vertex, fragment, format, size, bindings) => {
@@ -51,9 +51,9 @@ async ({ modules, variant, uniforms, color, depth, source, target, tiles, spans 
     return into;
   };
   const map = (made) => [{ texture: { sampleType: "uint" } }, made.createView()];
-  bound[2] = map(pass("screen", `tiles${variant}`, "rgba32uint", tiles, [0, 7, 8]));
-  bound[3] = map(pass("screen", `spans${variant}`, "rgba32uint", spans, [2, 7]));
-  const drawn = pass("march-vertex", `march${variant}`, "rgba8unorm", target, [0, 1, 2, 3, 7, 8, 9]);
+  bound[2] = map(pass("screen", "tiles", "rgba32uint", tiles, [0, 4, 5]));
+  bound[3] = map(pass("screen", "spans", "rgba32uint", spans, [2, 4]));
+  const drawn = pass("march-vertex", "march", "rgba8unorm", target, [0, 1, 2, 3, 4, 5, 6]);
 
   const [width, height] = target;
   const bytesPerRow = Math.ceil(width / 64) * 256;

@@ -37,7 +37,7 @@ fn any_view_is_that_of_opengl() {
                 let setup = setup.on(gpu);
                 let got = synthesize(gpu, &mut any_view, &setup, picture);
                 let what = format!("{}, {:?}, {setup:?}", gpu.name, picture.warp);
-                assert_equal(&got.rgba, &want.rgba, 4, 0, &what);
+                assert_equal(&got.rgba, &want.rgba, 4, &what);
                 assert_depth_equal(&got.depth.unwrap(), &want.depth, &what);
             }
         }

@@ -23,17 +23,8 @@ fn bits(@builtin(position) at: vec4<f32>) -> @location(0) u32 {
 }
 
 // The pictures of the samples are stacked, the first one at the top.
-fn of_sample(at: vec4<f32>, sample: u32) -> vec4<f32> {
-    let rows = textureDimensions(from_texture).y / 4u;
-    return textureLoad(from_texture, vec2<i32>(at.xy) + vec2<i32>(0, i32(sample * rows)), 0);
-}
-
-@fragment
-fn sample_color(@builtin(position) at: vec4<f32>, @builtin(sample_index) sample: u32) -> @location(0) vec4<f32> {
-    return of_sample(at, sample);
-}
-
 @fragment
 fn sample_depth(@builtin(position) at: vec4<f32>, @builtin(sample_index) sample: u32) -> @builtin(frag_depth) f32 {
-    return of_sample(at, sample).r;
+    let rows = textureDimensions(from_texture).y / 4u;
+    return textureLoad(from_texture, vec2<i32>(at.xy) + vec2<i32>(0, i32(sample * rows)), 0).r;
 }

@@ -4,6 +4,8 @@
 
 use std::sync::OnceLock;
 
+use crate::against_opengl::flipped;
+
 use yoro_wgpu::wgpu::{
     self, Backends, BindGroupDescriptor, BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
     BindingResource, BindingType, BufferDescriptor, BufferUsages, ColorTargetState, CommandEncoder,
@@ -211,8 +213,7 @@ impl Gpu {
                 module: &module,
                 entry_point: Some(match format {
                     TextureFormat::R32Uint => "bits",
-                    _ if into.sample_count() > 1 && is_depth => "sample_depth",
-                    _ if into.sample_count() > 1 => "sample_color",
+                    _ if into.sample_count() > 1 => "sample_depth",
                     _ if is_depth => "depth",
                     _ => "color",
                 }),
@@ -298,7 +299,12 @@ impl Gpu {
         // Not every device can render to 32-bit floats.
         let plain = self.texture(TextureFormat::R32Uint, size(texture), 1);
         self.draw(&depth_of(texture, layer), &plain, 0);
-        let bytes = self.read(&plain, 0);
+        self.read_bits(&plain)
+    }
+
+    /// Reads the bits of floats.
+    pub fn read_bits(&self, bits: &Texture) -> Vec<f32> {
+        let bytes = self.read(bits, 0);
         bytes.chunks_exact(4).map(|value| f32::from_ne_bytes(value.try_into().unwrap())).collect()
     }
 }
@@ -313,11 +319,6 @@ fn size(texture: &Texture) -> [u32; 2] {
 
 fn place(texture: &Texture, layer: u32) -> TexelCopyTextureInfo<'_> {
     TexelCopyTextureInfo { origin: Origin3d { z: layer, ..Origin3d::ZERO }, ..texture.as_image_copy() }
-}
-
-/// Returns the rows in the opposite order.
-pub fn flipped<T: Copy>(values: &[T], rows: u32) -> Vec<T> {
-    values.chunks_exact(values.len() / rows as usize).rev().flatten().copied().collect()
 }
 
 /// Returns a view of one layer.

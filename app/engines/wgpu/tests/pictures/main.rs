@@ -1,9 +1,8 @@
 //! The pictures of the passes on wgpu equal those of the OpenGL passes, both on wgpu's Vulkan and on its OpenGL.
 
 mod any_view;
-mod edges;
 mod harness;
-mod history;
+mod nearest;
 
 use std::time::Instant;
 
@@ -13,12 +12,13 @@ use against_opengl::{
     Gl, Picture, RANDOM_RANGE, assert_equal, cut, expected_depth, eyes, gl_images, gl_srgb, pasted, picture,
     random_cases, warps,
 };
-use harness::{Gpu, depth_of, flipped, one_layer, with_gpus};
+use harness::{Gpu, depth_of, one_layer, with_gpus};
 use yoro::eyes::{DepthConvention, DepthRange, DisparityLaw, Eye, GuardBand, Warp};
-use yoro::synthesis::{self, Edges, Outputs, PassSet, Strips, SynthesisOptions, WarpKind};
+use yoro::opengl;
+use yoro::synthesis::backend::WarpKind;
 use yoro_test_support::against_opengl;
 use yoro_wgpu::wgpu::{Backends, TextureAspect, TextureFormat, TextureUsages};
-use yoro_wgpu::{AnyView, Gather, History, Options, Pipeline, Source, Target, WgpuError};
+use yoro_wgpu::{Gather, Options, Pipeline, Source, Target, WgpuError};
 
 /// The parameters of a synthesis.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +57,8 @@ impl Setup {
         Setup { source_layer: if gpu.is_opengl() { 0 } else { self.source_layer }, ..*self }
     }
 
-    fn gather(&self, gpu: &Gpu, passes: PassSet) -> Gather {
-        Gather::with_passes(&gpu.device, &self.options(), passes).unwrap()
+    fn gather(&self, gpu: &Gpu) -> Gather {
+        Gather::new(&gpu.device, &self.options()).unwrap()
     }
 }
 
@@ -134,23 +134,13 @@ fn synthesize<W: WarpKind>(
     Synthesized { rgba, depth }
 }
 
-/// Returns what OpenGL draws for warps, with seeds from `first`, by each of [`PassSet::GATHER`]. It receives the
-/// pictures upside down, so that tiles contain the same rows as on wgpu, whose rows are counted from the top.
-fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture, [Vec<u8>; 2])> {
+/// Returns pictures for warps, with seeds from `first`, and what OpenGL draws.
+fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture, Vec<u8>)> {
     let numbered = warps.iter().zip(first..);
     let pictures = numbered.map(|((warp, range), seed)| picture(warp, *range, seed));
     pictures
-        .map(|picture| {
-            let Picture { warp, rgba, depth } = &picture;
-            let [source_rows, target_rows] = [warp.source_size[1], warp.target_size[1]];
-            let turned = Picture {
-                warp: warp.rows_from_top(),
-                rgba: flipped(rgba, source_rows),
-                depth: flipped(depth, source_rows),
-            };
-            let wanted = [0, 1].map(|variant| flipped(&gl.run(variant, &turned).rgba, target_rows));
-            (picture, wanted)
-        })
+        .map(|picture| (gl.run(&picture).rgba, picture))
+        .map(|(wanted, picture)| (picture, wanted))
         .collect()
 }
 
@@ -158,13 +148,11 @@ fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture,
 fn pictures_equal_those_of_opengl() {
     let pictures = on_opengl(&Gl::new(), &warps(), 0);
     with_gpus(|gpu| {
-        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
-            let mut gather = Setup::PLAIN.gather(gpu, passes);
-            for (picture, wanted) in &pictures {
-                let got = synthesize(gpu, &mut gather, &Setup::PLAIN, picture);
-                let what = format!("{}, {passes:?}, {:?}", gpu.name, picture.warp);
-                assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
-            }
+        let mut gather = Setup::PLAIN.gather(gpu);
+        for (picture, wanted) in &pictures {
+            let got = synthesize(gpu, &mut gather, &Setup::PLAIN, picture);
+            let what = format!("{}, {:?}", gpu.name, picture.warp);
+            assert_equal(&got.rgba, wanted, 4, &what);
         }
     });
 }
@@ -181,14 +169,12 @@ fn parts_and_layers_are_found() {
         Setup { source_margins: [[1, 1], [1, 1]], ..setup },
     ];
     with_gpus(|gpu| {
-        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
-            let mut gather = setup.gather(gpu, passes);
-            for ((picture, wanted), setup) in pictures.iter().zip(setups.iter().cycle()) {
-                let setup = setup.on(gpu);
-                let got = synthesize(gpu, &mut gather, &setup, picture);
-                let what = format!("{}, {passes:?}, {:?}, {setup:?}", gpu.name, picture.warp);
-                assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
-            }
+        let mut gather = setup.gather(gpu);
+        for ((picture, wanted), setup) in pictures.iter().zip(setups.iter().cycle()) {
+            let setup = setup.on(gpu);
+            let got = synthesize(gpu, &mut gather, &setup, picture);
+            let what = format!("{}, {:?}, {setup:?}", gpu.name, picture.warp);
+            assert_equal(&got.rgba, wanted, 4, &what);
         }
     });
 }
@@ -215,7 +201,7 @@ fn every_format_is_taken() {
     let exact = picture(&warp, range, 70);
     let mut rounded = picture(&warp, range, 70);
     rounded.depth.iter_mut().for_each(|depth| *depth = (*depth * 65535.0).round() / 65535.0);
-    let [exact, rounded] = [exact, rounded].map(|picture| (gl.run(0, &picture), picture));
+    let [exact, rounded] = [exact, rounded].map(|picture| (gl.run(&picture), picture));
     drop(gl);
     with_gpus(|gpu| {
         for (i, format) in sources.iter().copied().enumerate() {
@@ -237,10 +223,10 @@ fn every_format_is_taken() {
                 target_margins: [[0, 1], [1, 0]],
                 ..Setup::PLAIN
             };
-            let mut gather = setup.gather(gpu, PassSet::GatherOnCpu);
+            let mut gather = setup.gather(gpu);
             let got = synthesize(gpu, &mut gather, &setup, picture);
             // Ten-bit formats have two bits of alpha.
-            assert_equal(&got.rgba, &wanted.rgba, 3, 0, &format!("{}, {setup:?}", gpu.name));
+            assert_equal(&got.rgba, &wanted.rgba, 3, &format!("{}, {setup:?}", gpu.name));
             let expected = expected_depth(picture, &wanted.source_map);
             let depth = got.depth.unwrap();
             let error = depth.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
@@ -255,14 +241,14 @@ fn srgb_is_filtered_in_linear_light() {
     let (warp, range) = warps()[2];
     let picture = picture(&warp, range, 80);
     let gl = Gl::new();
-    let (want, plain) = (gl_srgb(gl.headless.gl(), &picture), gl.run(0, &picture).rgba);
+    let (want, plain) = (gl_srgb(gl.headless.gl(), &picture), gl.run(&picture).rgba);
     drop(gl);
     assert_ne!(want, plain, "linear light makes a difference");
     with_gpus(|gpu| {
         let srgb = TextureFormat::Rgba8UnormSrgb;
         let setup = Setup { color: srgb, target: srgb, ..Setup::PLAIN };
-        let got = synthesize(gpu, &mut setup.gather(gpu, PassSet::GatherOnCpu), &setup, &picture);
-        assert_equal(&got.rgba, &want, 4, 0, &gpu.name);
+        let got = synthesize(gpu, &mut setup.gather(gpu), &setup, &picture);
+        assert_equal(&got.rgba, &want, 4, &gpu.name);
     });
 }
 
@@ -273,20 +259,18 @@ fn sizes_and_rectangles_at_random() {
     let warps: Vec<_> = cases.iter().map(|case| (case.warp, RANDOM_RANGE)).collect();
     let pictures = on_opengl(&Gl::new(), &warps, 3);
     with_gpus(|gpu| {
-        for (number, passes) in PassSet::GATHER.into_iter().enumerate() {
-            let mut gather = Setup::PLAIN.gather(gpu, passes);
-            for ((picture, wanted), case) in pictures.iter().zip(&cases) {
-                let setup = Setup {
-                    source_margins: case.source_margins,
-                    target_margins: case.target_margins,
-                    source_layer: case.source_layer,
-                    target_layer: case.target_layer,
-                    ..Setup::PLAIN
-                };
-                let got = synthesize(gpu, &mut gather, &setup.on(gpu), picture);
-                let what = format!("{}, {passes:?}, {case:?}", gpu.name);
-                assert_equal(&got.rgba, &wanted[number], 4, 0, &what);
-            }
+        let mut gather = Setup::PLAIN.gather(gpu);
+        for ((picture, wanted), case) in pictures.iter().zip(&cases) {
+            let setup = Setup {
+                source_margins: case.source_margins,
+                target_margins: case.target_margins,
+                source_layer: case.source_layer,
+                target_layer: case.target_layer,
+                ..Setup::PLAIN
+            };
+            let got = synthesize(gpu, &mut gather, &setup.on(gpu), picture);
+            let what = format!("{}, {case:?}", gpu.name);
+            assert_equal(&got.rgba, wanted, 4, &what);
         }
     });
 }
@@ -298,7 +282,7 @@ fn calls_of_one_submission_do_not_disturb_each_other() {
     let far = Warp { law: DisparityLaw { scale: 0.25 * near.law.scale, ..near.law }, ..near };
     let pictures = on_opengl(&Gl::new(), &[(near, range), (far, range)], 5);
     with_gpus(|gpu| {
-        let mut gather = Setup::PLAIN.gather(gpu, PassSet::GatherOnCpu);
+        let mut gather = Setup::PLAIN.gather(gpu);
         let made = [0, 1].map(|number| {
             let picture = &pictures[number].0;
             let color = gpu.texture(Setup::PLAIN.color, picture.warp.source_size, 1);
@@ -320,7 +304,7 @@ fn calls_of_one_submission_do_not_disturb_each_other() {
         });
         for (target, source) in [(0, 1), (1, 0)] {
             let got = gpu.read_rgba8(&made[target][2], 0);
-            assert_equal(&got, &pictures[source].1[0], 4, 0, &gpu.name);
+            assert_equal(&got, &pictures[source].1, 4, &gpu.name);
         }
     });
 }
@@ -338,14 +322,6 @@ fn mistakes_are_refused() {
         }
         let options = Options { depth_format: Some(TextureFormat::Rgba8Unorm), ..plain };
         assert!(matches!(make(&options), Some(WgpuError::Format { .. })));
-        for samples in [0, 1, 3, 8] {
-            let options = Options { edges: Edges::Multisample, samples, ..plain };
-            assert_eq!(make(&options), Some(WgpuError::SampleCount(samples)));
-        }
-
-        for other in [Options { edges: Edges::Nearest, ..plain }, Options { history: true, ..plain }] {
-            assert_eq!(AnyView::new(&gpu.device, &other).err(), Some(WgpuError::AnyView));
-        }
 
         let mut gather = Gather::new(&gpu.device, &plain).unwrap();
         let [w, h] = warp.source_size;
@@ -387,11 +363,6 @@ fn mistakes_are_refused() {
                 target,
                 "a source's depth of 4 samples cannot be used; give a texture of 1",
             );
-            let former = History { color: &color, depth: &depth, strips: Strips::NONE };
-            let recalling = Source { history: Some(former), ..source };
-            let samples = Source { sample_color: Some(&color), ..source };
-            refused(samples, warp, target, "colour of samples is for edges of multisample");
-            refused(recalling, warp, target, "a history is for pipelines made with one");
             refused(at([1, 0]), warp, target, "a source of");
             refused(at([0, u32::MAX]), warp, target, "a source of");
             let source_size = |source_size| Warp { source_size, ..warp };
@@ -423,7 +394,7 @@ fn a_lost_device_is_an_error() {
     }
     let gpu = Gpu::open(Backends::VULKAN).unwrap();
     let (warp, _) = warps()[0];
-    let mut gather = Setup::PLAIN.gather(&gpu, PassSet::GatherOnCpu);
+    let mut gather = Setup::PLAIN.gather(&gpu);
     let texture = |format, size| one_layer(&gpu.texture(format, size, 1), 0, TextureAspect::All);
     let [color, depth] =
         [Setup::PLAIN.color, Setup::PLAIN.depth].map(|format| texture(format, warp.source_size));
@@ -447,9 +418,9 @@ fn cost_of_the_passes() {
     let picture = picture(&warp, range, 1);
     let gl = Gl::new();
     let (textures, into) = gl_images(gl.headless.gl(), &picture, yoro_gl::Format::Rgba8);
-    let on_gl_source = synthesis::Source::new(textures[0].raw(), textures[1].raw());
-    let (options, outputs) = (SynthesisOptions::default(), Outputs::default());
-    let mut on_gl = synthesis::create(gl.headless.gl(), &options, outputs).unwrap();
+    let on_gl_source = opengl::Source::new(textures[0].raw(), textures[1].raw());
+    let (options, outputs) = Default::default();
+    let mut on_gl = opengl::Gather::new(gl.headless.gl(), &options, outputs).unwrap();
 
     let gpu = Gpu::open(Backends::VULKAN).unwrap();
     let color = gpu.texture(Setup::PLAIN.color, warp.source_size, 1);
@@ -459,7 +430,7 @@ fn cost_of_the_passes() {
     gpu.upload_depth(&depth, 0, &picture.depth);
     let [color, depth, target] = [color, depth, target].map(|texture| depth_of(&texture, 0));
     let (source, target) = (Source::new(&color, &depth), Target::new(&target));
-    let mut gather = Setup::PLAIN.gather(&gpu, PassSet::GatherOnCpu);
+    let mut gather = Setup::PLAIN.gather(&gpu);
 
     let mut times: [Vec<f64>; 2] = Default::default();
     for _ in 0..22 {

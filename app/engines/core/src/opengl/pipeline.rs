@@ -1,0 +1,222 @@
+//! Tile bounds, tile spans, march.
+
+use std::marker::PhantomData;
+use std::rc::Rc;
+
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource, Touched};
+
+use super::{GlState, Options, Outputs, Source, draw_target};
+use crate::eyes::{PoseWarp, Warp};
+use crate::synthesis::backend::{UniformBlock as _, WarpKind, map_sizes};
+
+/// Synthesis between parallel eyes: the march goes along the source's row.
+pub type Gather = Pipeline<Warp>;
+
+/// Synthesis of a view in any pose near the source's: the march goes along a segment of any direction. For parallel eyes
+/// on a level line, it gives the same picture as [`Gather`], within the rounding of positions, but is slower. It has no
+/// source map, which can only hold columns.
+pub type AnyView = Pipeline<PoseWarp>;
+
+/// The passes for a kind of warp: [`Gather`] or [`AnyView`]. All are fragment passes: tile bounds, tile spans, march. The
+/// two intermediate buffers have 16 bytes per tile of 16 x 8 pixels ([`buffer_bytes`](super::buffer_bytes)).
+///
+/// The context must be current on the calling thread. The picture does not depend on the context's state: a call sets
+/// all the state that it relies on. Afterwards, the state is as in the table with [`GlState::Leave`], and as before the
+/// call with [`GlState::Preserve`]. State that is not in the table is neither read nor changed, and state that a
+/// context lacks, by version or extension, is neither set nor queried.
+///
+/// | state | set to | afterwards |
+/// |---|---|---|
+/// | program | the passes' | changed; none once the pipeline is dropped |
+/// | vertex array | one without attributes | changed |
+/// | draw and read framebuffer | the target's | changed |
+/// | viewport (the first; with `OES_viewport_array` all) | the target's rectangle | changed |
+/// | 2-D texture of units 0 to 3 | depth, colour, intermediate | changed |
+/// | array texture of units 0 and 1, for sources that are layers | depth, colour | changed |
+/// | sampler object of units 0 to 3 | yoro's own | none |
+/// | active unit | 0 to 3 | changed |
+/// | scissor test (as the viewport), stencil and depth test, face culling | off; depth test on for the target if depth is written | off |
+/// | depth function, depth mask, depth range (as the viewport) | `ALWAYS`, on, 0 to 1 | as set |
+/// | blending and colour mask, of draw buffer 0 and, with a source map, 1 (of all draw buffers before OpenGL ES 3.2) | off; all channels | as set |
+/// | dithering, polygon offset for filling, rasterizer discard, primitive restart (fixed index) | off | off |
+/// | alpha to coverage, sample coverage; sample mask (ES 3.1) | off | off |
+/// | clip distances (`EXT_clip_cull_distance`, desktop), depth bounds test (`EXT_depth_bounds_test`) | off | off |
+/// | sRGB encoding of what is written (`EXT_sRGB_write_control`, desktop) | off, or on if asked for | as set |
+/// | primitive restart, logic operation, polygon smoothing, alpha to one (desktop) | off | off |
+/// | polygon mode (desktop) | fill | fill |
+/// | alpha test, polygon stipple (compatibility profile) | off | off |
+///
+/// Not touched: buffers bound to any target (vertex, uniform, storage, pixel pack and unpack), pixel store, scissor
+/// box, blend function and equation, stencil function, clear values, other texture targets and units. A pending error
+/// stays, except in browsers, where allocating buffers reads GL's error flag. A program that the host deleted while it
+/// was current is destroyed, as GL specifies, when another one becomes current; `Preserve` then leaves no program
+/// current.
+///
+/// The host ensures the rest: transform feedback and conditional rendering are inactive, the shading rate is one
+/// fragment per pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the
+/// source is attached to it. An active occlusion query counts the passes' fragments.
+pub struct Pipeline<W> {
+    gl: Rc<Context>,
+    outputs: Outputs,
+    options: Options,
+    tiles: Program,
+    spans: Program,
+    march: Program,
+    tile_map: RenderTarget,
+    span_map: RenderTarget,
+    warp: PhantomData<W>,
+}
+
+/// The names of the passes and their shaders.
+struct Shaders {
+    tiles: [&'static str; 2],
+    spans: [&'static str; 2],
+    march: &'static str,
+    march_vertex: &'static str,
+    march_fragment: &'static str,
+}
+
+const GATHER: Shaders = Shaders {
+    tiles: ["gather tiles", "synthesis/gather/tiles.frag"],
+    spans: ["gather spans", "synthesis/gather/spans.frag"],
+    march: "gather march",
+    march_vertex: "synthesis/march.vert",
+    march_fragment: "synthesis/gather/march.frag",
+};
+
+const ANY_VIEW: Shaders = Shaders {
+    tiles: ["any view tiles", "synthesis/any_view/tiles.frag"],
+    spans: ["any view spans", "synthesis/any_view/spans.frag"],
+    march: "any view march",
+    march_vertex: "screen.vert",
+    march_fragment: "synthesis/any_view/march.frag",
+};
+
+impl<W: WarpKind> Pipeline<W> {
+    const SHADERS: Shaders = if W::ANY_VIEW { ANY_VIEW } else { GATHER };
+
+    /// Compiles the passes. Changes the same state as [`Pipeline::prepare`], or none with [`GlState::Preserve`].
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for an [`AnyView`] with a source map; [`GlError::Shader`] if the driver refuses a shader.
+    pub fn new(gl: &Rc<Context>, options: &Options, outputs: Outputs) -> Result<Pipeline<W>, GlError> {
+        Pipeline::with_macros(gl, options, outputs, &[])
+    }
+
+    /// Does the same as [`Pipeline::new`] with more preprocessor macros, for tests and measurements. `WITHOUT_ES_310`
+    /// takes the shaders of OpenGL ES 3.0 on any driver. `COUNT_TRIPS` makes a [`Gather`] write how often parts of the
+    /// march run, instead of colours. Red: first steps (low three bits), then one bit each for a hole, the search over
+    /// segments, and a law. Green: segments. Blue: events. Alpha: steps to a segment's crossing.
+    ///
+    /// # Errors
+    /// Those of [`Pipeline::new`].
+    pub fn with_macros(
+        gl: &Rc<Context>,
+        options: &Options,
+        outputs: Outputs,
+        macros: &[&'static str],
+    ) -> Result<Pipeline<W>, GlError> {
+        if W::ANY_VIEW && outputs.source_map {
+            return Err(GlError::Unsupported(
+                "any view has no source map, which can only hold columns".into(),
+            ));
+        }
+        preserving(gl, options, outputs, || {
+            let mut defines = options.defines();
+            defines.extend(macros.iter().map(|name| (*name, String::new())));
+            let screen = |file| Program::new(gl, ShaderSource::Screen(file), &defines);
+            let map = || RenderTarget::new(gl, [1, 1], &[(Format::Rgba32Ui, Filter::Nearest)], None);
+            let Shaders { tiles, spans, march_vertex, march_fragment, .. } = Self::SHADERS;
+            let march = ShaderSource::Raster { vertex: march_vertex, fragment: march_fragment };
+            Ok(Pipeline {
+                gl: gl.clone(),
+                outputs,
+                options: *options,
+                tiles: screen(tiles[1])?,
+                spans: screen(spans[1])?,
+                march: Program::new(gl, march, &[outputs.defines(), defines.clone()].concat())?,
+                tile_map: map()?,
+                span_map: map()?,
+                warp: PhantomData,
+            })
+        })
+    }
+
+    /// Allocates intermediate buffers for images of these sizes; this binds framebuffers, and a 2-D texture to unit 0.
+    /// Costs nothing if the sizes have not changed. [`Pipeline::synthesize`] calls it.
+    ///
+    /// # Errors
+    /// [`GlError`] if the sizes are beyond the driver's limits.
+    pub fn prepare(&mut self, warp: &W) -> Result<(), GlError> {
+        self.preserving(|pipeline| pipeline.resize(warp))
+    }
+
+    /// Synthesizes the other eye into a rectangle of the warp's target size and overwrites all of it. The framebuffer's
+    /// attachments must fit the pipeline's [`Outputs`].
+    ///
+    /// # Errors
+    /// Those of [`Pipeline::prepare`].
+    pub fn synthesize(&mut self, source: Source, warp: &W, target: &Destination) -> Result<(), GlError> {
+        self.preserving(|pipeline| {
+            pipeline.resize(warp)?;
+            pipeline.draw(source, warp, target);
+            Ok(())
+        })
+    }
+
+    fn preserving<R>(&mut self, body: impl FnOnce(&mut Self) -> R) -> R {
+        let (gl, options, outputs) = (self.gl.clone(), self.options, self.outputs);
+        preserving(&gl, &options, outputs, || body(self))
+    }
+
+    fn resize(&mut self, warp: &W) -> Result<(), GlError> {
+        self.gl.set_first_unit();
+        let maps = [&mut self.tile_map, &mut self.span_map];
+        for (map, size) in maps.into_iter().zip(map_sizes::<W>(warp.sizes())) {
+            map.resize(self.options.buffer_size(map.size(), size))?;
+        }
+        Ok(())
+    }
+
+    fn draw(&self, source: Source, warp: &W, target: &Destination) {
+        let gl = &*self.gl;
+        let [tile_size, span_size] = map_sizes::<W>(warp.sizes());
+        gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
+        let uniforms = warp.uniforms(&source.places(warp.sizes()[0], target, self.options.parts));
+        let begin = |program: &Program| {
+            self.options.bind_source(program.bind(), source);
+            uniforms.set(program);
+        };
+        gl.pass(Self::SHADERS.tiles[0], || {
+            self.tile_map.bind_part(tile_size);
+            begin(&self.tiles);
+            gl.draw_screen();
+        });
+        gl.pass(Self::SHADERS.spans[0], || {
+            self.span_map.bind_part(span_size);
+            begin(&self.spans);
+            self.spans.texture("tile_map", 2, self.tile_map.color(0).raw());
+            gl.draw_screen();
+        });
+        gl.pass(Self::SHADERS.march, || {
+            begin(&self.march);
+            self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
+            self.march.texture("span_map", 3, self.span_map.color(0).raw());
+            draw_target(gl, target, self.outputs);
+        });
+        gl.end_synthesis();
+    }
+}
+
+/// Runs `body`, and restores the host's state afterwards, even if it fails, if the options say so.
+fn preserving<R>(gl: &Context, options: &Options, outputs: Outputs, body: impl FnOnce() -> R) -> R {
+    if options.gl_state == GlState::Leave {
+        return body();
+    }
+    let touched = Touched { draw_buffers: outputs.draw_buffers(), arrays: options.array_textures };
+    let state = gl.save_state(touched);
+    gl.set_first_unit();
+    let result = body();
+    gl.restore_state(&state);
+    result
+}

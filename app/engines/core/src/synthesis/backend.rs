@@ -1,0 +1,90 @@
+//! For crates that run the passes on another graphics interface, as `yoro-wgpu` does: sizes of buffers, uniform blocks,
+//! and checks of arguments. It may change with the shaders.
+
+use bytemuck::Pod;
+
+pub use super::error::{check_rectangle, check_size};
+use super::uniforms::{PoseUniforms, TILE, Uniforms};
+use crate::eyes::{PoseWarp, Warp};
+
+/// The places of source and target in their images.
+#[derive(Clone, Copy, Debug)]
+pub struct Places {
+    /// Corner of the source in its image.
+    pub source_origin: [u32; 2],
+    /// Size of the source's image in pixels.
+    pub image_size: [u32; 2],
+    /// Corner of the target in its framebuffer or image.
+    pub target_origin: [u32; 2],
+    /// True if the source is a part of its image or the maps are larger than [`map_sizes`]: `PART` in the shaders.
+    pub part: bool,
+}
+
+/// Returns the number of tiles of an image, in columns and rows.
+pub fn tiles([columns, rows]: [u32; 2]) -> [u32; 2] {
+    [columns.div_ceil(TILE[0]), rows.div_ceil(TILE[1])]
+}
+
+/// Returns the sizes of the tile map and of the span map, for the sizes of source and target in pixels. The span map has
+/// the target's size in tiles, but with the source's rows between parallel eyes.
+pub fn map_sizes<W: WarpKind>([source, target]: [[u32; 2]; 2]) -> [[u32; 2]; 2] {
+    [tiles(source), tiles(if W::ANY_VIEW { target } else { [target[0], source[1]] })]
+}
+
+/// The uniform block of the passes.
+pub trait UniformBlock: Pod {
+    /// Sets the uniforms that the program has. The program must be current.
+    #[cfg(feature = "gl")]
+    fn set(&self, program: &yoro_gl::Program);
+}
+
+/// A kind of warp, with what the pipelines need to draw its passes.
+pub trait WarpKind: Copy {
+    /// The uniform block of the passes.
+    type Uniforms: UniformBlock;
+    /// True for warps to any view.
+    const ANY_VIEW: bool;
+
+    /// Returns the width and height of the source and of the target in pixels.
+    fn sizes(&self) -> [[u32; 2]; 2];
+
+    /// Returns the uniforms for images whose rows are counted as the warp's.
+    fn uniforms(&self, places: &Places) -> Self::Uniforms;
+
+    /// Returns the uniforms for images whose rows are counted from the top.
+    fn uniforms_from_top(&self, places: &Places) -> Self::Uniforms;
+}
+
+impl WarpKind for Warp {
+    type Uniforms = Uniforms;
+    const ANY_VIEW: bool = false;
+
+    fn sizes(&self) -> [[u32; 2]; 2] {
+        [self.source_size, self.target_size]
+    }
+
+    fn uniforms(&self, places: &Places) -> Uniforms {
+        Uniforms::of_part(self, places)
+    }
+
+    fn uniforms_from_top(&self, places: &Places) -> Uniforms {
+        Uniforms::of_part(&self.rows_from_top(), places)
+    }
+}
+
+impl WarpKind for PoseWarp {
+    type Uniforms = PoseUniforms;
+    const ANY_VIEW: bool = true;
+
+    fn sizes(&self) -> [[u32; 2]; 2] {
+        [self.source_size, self.target_size]
+    }
+
+    fn uniforms(&self, places: &Places) -> PoseUniforms {
+        PoseUniforms::new(self, places)
+    }
+
+    fn uniforms_from_top(&self, places: &Places) -> PoseUniforms {
+        PoseUniforms::new(&self.rows_from_top(), places)
+    }
+}
