@@ -24,7 +24,6 @@ use yoro_bench::report::bench::BenchReport;
 use yoro_context::{Backend, Headless};
 use yoro_files::interrupt::Interrupted;
 use yoro_gl::{Context, GlApi};
-use yoro_render::RenderSettings;
 use yoro_settings::Ipd;
 use yoro_viewer::render_settings;
 

@@ -7,7 +7,6 @@ use image::{GrayImage, Luma};
 
 use crate::cli::Subcommand;
 use crate::cli::args::{GlArgs, PatcherArgs, parse_finite, parse_fov, parse_positive};
-use crate::cli::choices;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;

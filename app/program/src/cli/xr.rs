@@ -16,7 +16,6 @@ use yoro::eyes::{Eye, EyePair};
 use yoro_context::HeadlessGraphics;
 use yoro_files as files;
 use yoro_files::interrupt;
-use yoro_render::RenderSettings;
 use yoro_render::stereo::MethodChoice;
 use yoro_settings::Settings;
 use yoro_settings::telemetry::DeviceState;
