@@ -6,7 +6,7 @@ use std::path::Path;
 use yoro_bench::picture;
 
 use crate::pair;
-use crate::program::{run, succeed};
+use crate::program::run;
 
 const RATINGS: &str =
     "participant,method,scene,question,rating\nP1,yoro,street,q,3\nP1,conventional,street,q,3\n";
