@@ -30,6 +30,8 @@ pub fn lint() -> anyhow::Result<()> {
     for library in &libraries {
         checks.push(vec!["check", "--quiet", "--package", library, "--lib", "--no-default-features"]);
     }
+    // What `cargo xtask run` builds.
+    checks.push(vec!["check", "--quiet", "--package", "yoro-cli", "--bin", "yoro", "--no-default-features"]);
     // Without the lock file, cargo does not ask the registry for packages that are not published.
     let mut package = vec!["package", "--quiet", "--no-verify", "--allow-dirty", "--exclude-lockfile"];
     package.extend(PUBLISHED.iter().flat_map(|name| ["--package", name]));

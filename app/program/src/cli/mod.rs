@@ -19,6 +19,10 @@ pub mod render;
 pub mod report;
 pub mod run;
 pub mod scenes;
+#[cfg(feature = "serve")]
+pub mod serve;
+#[cfg(not(feature = "serve"))]
+#[path = "no_server.rs"]
 pub mod serve;
 pub mod settings;
 pub mod study;
