@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
-use yoro::synthesis::{self, AnyView, Outputs, SynthesisOptions};
+use yoro::opengl::{AnyView, Gather, Options, Outputs};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_estimate::Recorder;
@@ -51,7 +51,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let outputs = [(false, false), (false, true), (true, false), (true, true)]
         .map(|(depth, source_map)| Outputs { depth, source_map, ..Outputs::default() });
     for outputs in outputs {
-        synthesis::create(gl, &SynthesisOptions::default(), outputs)?;
+        Gather::new(gl, &Options::default(), outputs)?;
         for (strict, linear_interpolation) in [(false, true), (false, false), (true, false), (true, true)] {
             for (divisor, kernel_height) in [(1, 1), (4, 15)] {
                 let imbuffer = ImBufferSize::Divisor(divisor);
@@ -66,8 +66,8 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let places = [(false, false), (true, false), (false, true), (true, true)];
     let built = if variants == Variants::Every { &places[..] } else { &places[..1] };
     for &(parts, array_textures) in built {
-        let options = SynthesisOptions { parts, array_textures, ..SynthesisOptions::default() };
-        synthesis::create(gl, &options, Outputs::default())?;
+        let options = Options { parts, array_textures, ..Options::default() };
+        Gather::new(gl, &options, Outputs::default())?;
         for depth in [false, true] {
             AnyView::new(gl, &options, Outputs { depth, ..Outputs::default() })?;
         }
@@ -76,8 +76,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let march =
         ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
     for parts in MARCH_PARTS {
-        let defines = [("TEXTURE_GATHER", ""), ("SHORT_WAY", ""), ("PARTS", parts)];
-        Program::new(gl, march, &defines.map(|(name, value)| (name, value.to_owned())))?;
+        Program::new(gl, march, &[("PARTS", parts.to_owned())])?;
     }
     Ok(())
 }

@@ -13,4 +13,3 @@ pub mod in_memory;
 pub mod laws;
 pub mod modules;
 pub mod posed;
-pub mod samples;

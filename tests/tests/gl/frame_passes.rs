@@ -5,13 +5,12 @@ use std::path::Path;
 
 use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
-use yoro_bench::bench::PreparedContender;
-use yoro_bench::bench::frame::{contenders, pass_table, pieces};
+use yoro_bench::bench::{PreparedContender, frame_contenders};
 use yoro_context::{Backend, Headless};
-use yoro_estimate::{Command, Recorder};
+use yoro_estimate::{Command, Recorder, pass_table, pieces};
 use yoro_gl::{Filter, Format, GlApi, Program, RasterState, RenderTarget, ShaderSource, Shape, Texture};
 use yoro_render::stereo::StereoFrame;
-use yoro_render::{PreparedScene, RenderSettings, RendererKind};
+use yoro_render::{PreparedScene, RendererKind};
 use yoro_settings::Settings;
 use yoro_tests::{golden::BLESS, on_every_backend, scene};
 use yoro_viewer::render_settings;
@@ -32,7 +31,7 @@ fn every_pass_reads_and_writes_what_the_table_says() {
         let options = EyeOptions { size: [96, 64], ..EyeOptions::default() };
         let pair = options.pair(prepared.scene.viewpoints[0].pose());
         let mut frame = StereoFrame::new(gl, pair.size).unwrap();
-        for contender in contenders(renderer) {
+        for contender in frame_contenders(renderer) {
             let (method, options) = contender.method().unwrap();
             let mut ready = PreparedContender::new(gl, method, &settings, &options).unwrap();
             recorder.start();

@@ -66,9 +66,7 @@ fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
             .register_source(&SourceImages {
                 color: image(&color, WRITTEN, ImageState::SAMPLED),
                 depth: image(&depth, WRITTEN, ImageState::SAMPLED),
-                sample_color: None,
                 size: warp.source_size,
-                history: None,
             })
             .unwrap();
         let written = gather
@@ -78,8 +76,7 @@ fn synthesize(gpu: &Gpu, group: &ImageGroup) -> RgbImage {
                 size: warp.target_size,
             })
             .unwrap();
-        let frame =
-            Frame { source, source_origin: [0, 0], target: written, target_origin: [0, 0], history: None };
+        let frame = Frame { source, source_origin: [0, 0], target: written, target_origin: [0, 0] };
         gpu.run(|commands| gather.record(commands, &frame, warp).unwrap());
     }
     let [w, h] = warp.target_size;

@@ -17,10 +17,10 @@ pub(crate) enum Task {
     ShaderCost {
         /// Only programs whose names contain this
         filter: Option<String>,
-        /// These GPUs instead of those of docs/shader-cost.csv
+        /// These GPUs instead of those of app/lab/estimate/shader-cost.csv
         #[arg(long = "gpu", value_name = "NAME", value_delimiter = ',')]
         gpus: Vec<shader_cost::Gpu>,
-        /// Renew docs/shader-cost.csv
+        /// Renew app/lab/estimate/shader-cost.csv
         #[arg(long)]
         bless: bool,
     },

@@ -1,10 +1,10 @@
-//! The cost of one invocation of each shader, from `docs/shader-cost.csv`.
+//! The cost of one invocation of each shader, from `shader-cost.csv`.
 
 use anyhow::{Context as _, ensure};
 use yoro_gl::ProgramRecipe;
 
 /// The table that `cargo xtask maintain shader-cost --bless` writes.
-const TABLE: &str = include_str!("../../../../../docs/shader-cost.csv");
+const TABLE: &str = include_str!("../shader-cost.csv");
 /// The macros of maps. The table has materials without maps and with all of these.
 const MAPS: [&str; 4] = ["DIFFUSE_MAP", "SPECULAR_MAP", "EMISSIVE_MAP", "NORMAL_MAP"];
 
@@ -85,7 +85,7 @@ impl Costs {
         let rows: Vec<Row> = TABLE.lines().filter_map(|line| row(gpu, line)).collect();
         ensure!(
             !rows.is_empty(),
-            "docs/shader-cost.csv has nothing of {gpu}: run cargo xtask maintain shader-cost --bless"
+            "app/lab/estimate/shader-cost.csv has nothing of {gpu}: run cargo xtask maintain shader-cost --bless"
         );
         Ok(Costs { rows, lanes: if gpu == "g52" { 8 } else { 16 } })
     }
@@ -100,7 +100,7 @@ impl Costs {
         let none = none.or(all);
         ensure!(
             none.is_some(),
-            "docs/shader-cost.csv lacks {:?}: run cargo xtask maintain shader-cost --bless",
+            "app/lab/estimate/shader-cost.csv lacks {:?}: run cargo xtask maintain shader-cost --bless",
             program.files
         );
         let [none, all] = [none, all].map(|row| row.map(|row| row.fragment).unwrap_or_default());
@@ -122,7 +122,7 @@ impl Costs {
             self.rows.iter().find(|row| row.stage == "fragment" && row.file == file && row.macros == macros);
         let row = found.with_context(|| {
             format!(
-                "docs/shader-cost.csv lacks {file} {macros:?}: run cargo xtask maintain shader-cost --bless"
+                "app/lab/estimate/shader-cost.csv lacks {file} {macros:?}: run cargo xtask maintain shader-cost --bless"
             )
         })?;
         let lanes = if row.fragment.lanes > 0 { row.fragment.lanes } else { self.lanes };
@@ -133,7 +133,7 @@ impl Costs {
             let (is_inner, body) = text.strip_prefix('>').map_or((false, text), |body| (true, body));
             let body = work(body).filter(|_| !is_inner || !parts.loops.is_empty());
             let body = body.with_context(|| {
-                format!("docs/shader-cost.csv has unreadable loops of {file}: {}", row.loops)
+                format!("app/lab/estimate/shader-cost.csv has unreadable loops of {file}: {}", row.loops)
             })?;
             let around = if is_inner { &mut parts.loops[outermost] } else { &mut parts.straight };
             *around = around.minus(body);

@@ -2,23 +2,24 @@
 //!
 //! The runs of the parts of `gather` are counted by its own shaders on real frames. A GPU runs a part as often as the
 //! slowest pixel of a wave does. The sizes of the parts are those that Mesa's compilers make of the same source
-//! (`docs/shader-cost.csv`). The rates of GPUs are assumptions: [`DEVICES`].
+//! (`shader-cost.csv`). The rates of GPUs are assumptions: [`GPUS`](crate::GPUS).
 
 use std::rc::Rc;
 
 use anyhow::ensure;
 
-use super::costs::Work;
-use super::prepared::synthesize;
-use super::record::metric;
-use super::waves::{combine, wave_size};
+use crate::costs::Work;
+use crate::gpus::Device;
+use crate::metric;
+use crate::waves::{combine, wave_size};
 use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
-use yoro::synthesis::{Gather, Synthesis, Uniforms};
+use yoro::opengl::{Gather, Options, Outputs};
+use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, Filter, Format, RenderTarget};
 use yoro_render::{PreparedScene, ViewTargets};
 
 /// The size of a tile in pixels. The first two passes draw one fragment per tile.
-pub(super) const TILE: [u32; 2] = [16, 8];
+const TILE: [u32; 2] = [16, 8];
 /// The number of row pairs of a tile, and thus of trips of its loop.
 const TILE_TRIPS: f64 = TILE[1] as f64 / 2.0;
 /// Bytes read and written for each pixel, counting every texel once: depth for the tiles, colour, target, and both
@@ -27,38 +28,10 @@ const BYTES: f64 = 4.0 + 4.0 + 4.0 + 2.0 * 2.0 * 16.0 / (TILE[0] * TILE[1]) as f
 /// Bytes of depth that the march reads for a pixel whose tile has no law.
 const DEPTH_BYTES: f64 = 4.0;
 
-/// A GPU, and the size of an eye on a device with it. The rates are assumptions from public figures: one issue slot per
-/// lane and clock cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Device {
-    /// The name in results.
-    pub name: &'static str,
-    /// The GPU's name in tables of costs.
-    pub gpu: &'static str,
-    /// The size of an eye in pixels.
-    pub size: [u32; 2],
-    /// Issue slots per second: lanes times clock.
-    pub slots: f64,
-    /// Texture instructions per second.
-    pub fetches: f64,
-    /// Bytes of memory traffic per second.
-    pub bytes: f64,
-}
-
-/// The devices of the suite `shader-cost`.
-pub const DEVICES: [Device; 3] = [
-    // Adreno 650: 768 lanes at 0.5 GHz.
-    Device { name: "quest-2", gpu: "a650", size: [1832, 1920], slots: 0.384e12, fetches: 12e9, bytes: 40e9 },
-    // Adreno 740.
-    Device { name: "quest-3", gpu: "a740", size: [1680, 1760], slots: 1.0e12, fetches: 28.8e9, bytes: 60e9 },
-    // Mali-G57 MC2 at 0.95 GHz: two cores with 32 lanes and 4 texels each.
-    Device { name: "mali-g57", gpu: "g57", size: [1200, 1080], slots: 0.061e12, fetches: 7.6e9, bytes: 17e9 },
-];
-
 /// The largest number of source tiles that a law is made of (`LAW_TILES` in `include/laws.glsl`).
 const LAW_TILES: f64 = 4.0;
 
-/// How often the march's parts run, from [`Gather::counting`]: for one pixel, or the maximum over a wave's pixels.
+/// How often the march's parts run, from a [`Gather`] with `COUNT_TRIPS`: for one pixel, or the maximum over a wave's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Trips {
     /// 1 if the pixel's tile has a law.
@@ -117,16 +90,13 @@ impl Costs {
     /// # Errors
     /// If the table has no entry for this GPU, or a program has an unexpected number of loops.
     fn of(gpu: &str) -> anyhow::Result<Costs> {
-        let table = super::costs::Costs::of(gpu)?;
+        let table = crate::costs::Costs::of(gpu)?;
         let of = |pass: &str, more: &[&str], loops: usize| {
-            let parts = table.parts(
-                &format!("synthesis/gather/{pass}.frag"),
-                &[&["TEXTURE_GATHER", "SHORT_WAY"], more].concat(),
-            )?;
+            let parts = table.parts(&format!("synthesis/gather/{pass}.frag"), more)?;
             let found = parts.loops.len();
             ensure!(
                 found == loops,
-                "{pass} {more:?} has {found} loops on {gpu}, and {loops} are named: name them anew in executed.rs"
+                "{pass} {more:?} has {found} loops on {gpu}, and {loops} are named: name them anew in gather.rs"
             );
             Ok(parts)
         };
@@ -203,7 +173,7 @@ impl Counts<'_> {
 
 /// Returns the trips of the loop of the second pass (`synthesis/gather/spans.frag`), as the mean over the target's
 /// columns of tiles.
-pub(super) fn span_trips(views: &SynthesisViews) -> f64 {
+fn span_trips(views: &SynthesisViews) -> f64 {
     let warp = &views.warp;
     let Uniforms { near_displacement, far_displacement, .. } = Uniforms::new(warp, [0, 0]);
     let tile = f64::from(TILE[0]);
@@ -224,51 +194,28 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
-/// A synthesis that writes counts instead of colours, with the targets that it needs.
-pub(super) struct Counting<S> {
-    synthesis: S,
-    targets: ViewTargets,
-    counts: RenderTarget,
-}
-
-impl<S: Synthesis> Counting<S> {
-    pub fn new(gl: &Rc<Context>, synthesis: S) -> anyhow::Result<Counting<S>> {
-        let counts = RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?;
-        Ok(Counting { synthesis, targets: ViewTargets::default(), counts })
-    }
-
-    /// Returns the views of one frame with a guard band from 1 m, and the counts at the synthesized eye's pixels.
-    ///
-    /// # Errors
-    /// If the eyes cannot be synthesized, or GL refuses.
-    pub fn count(
-        &mut self,
-        prepared: &mut PreparedScene,
-        pair: &EyePair,
-    ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
-        let views = pair.synthesis_views(GuardBand::Distance(1.0))?;
-        synthesize(&mut self.synthesis, &mut self.targets, prepared, &views, &mut self.counts)?;
-        Ok((views, self.counts.read_rgba8(0, [0, 0], pair.size)))
-    }
-}
-
 /// Counts what `gather` executes on a device.
 pub struct Meter {
     device: Device,
     costs: Costs,
-    counting: Counting<Gather>,
+    /// Writes counts instead of colours.
+    counting: Gather,
+    targets: ViewTargets,
+    counts: RenderTarget,
 }
 
 impl Meter {
     /// Compiles the counting pipeline.
     ///
     /// # Errors
-    /// If the driver refuses it or has no OpenGL ES 3.1, or if the table lacks a program.
+    /// If the driver refuses it, or if the table lacks a program.
     pub fn new(gl: &Rc<Context>, device: Device) -> anyhow::Result<Meter> {
         Ok(Meter {
             device,
             costs: Costs::of(device.gpu)?,
-            counting: Counting::new(gl, Gather::counting(gl)?)?,
+            counting: Gather::with_macros(gl, &Options::default(), Outputs::default(), &["COUNT_TRIPS"])?,
+            targets: ViewTargets::default(),
+            counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
         })
     }
 
@@ -285,7 +232,7 @@ impl Meter {
         Ok(self.values(&views, &pixels, pair.size))
     }
 
-    /// Returns the counts of one frame, from which [`Meter::values`] of any device are computed.
+    /// Returns the views of one frame with a guard band from 1 m, and the counts at the synthesized eye's pixels, from which [`Meter::values`] of any device are computed.
     ///
     /// # Errors
     /// Those of [`Meter::measure`].
@@ -294,7 +241,9 @@ impl Meter {
         prepared: &mut PreparedScene,
         pair: &EyePair,
     ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
-        self.counting.count(prepared, pair)
+        let views = pair.synthesis_views(GuardBand::Distance(1.0))?;
+        prepared.synthesize(&mut self.counting, &mut self.targets, &views, &mut self.counts)?;
+        Ok((views, self.counts.read_rgba8(0, [0, 0], pair.size)))
     }
 
     /// Returns the values of a counted frame whose eyes have this size, by metric.
@@ -343,6 +292,7 @@ impl Meter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpus::DEVICES;
 
     #[test]
     fn all_devices_have_all_parts() {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{Vec3, vec3};
 
-use crate::bench::waves::{combine, wave_size};
+use crate::waves::{combine, wave_size};
 use yoro::eyes::View;
 use yoro_assets::PointLight;
 use yoro_render::MAX_POINT_LIGHTS;

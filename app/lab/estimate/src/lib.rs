@@ -1,5 +1,25 @@
-//! An estimate of what frames cost on mobile GPUs that are not at hand.
+//! An estimate of what stereo frames cost on mobile GPUs that are not at hand.
+//!
+//! A frame is rendered here and [recorded](Recorder): its passes, their images, and the number of samples that pass each
+//! depth test. `costs` has what Mesa's compilers make of each shader (`shader-cost.csv`), `traffic` what a tile-based GPU
+//! moves between its tiles and memory, `lamps` the number of lights that a wave computes, and [`Meter`] what the
+//! synthesis executes. [`FrameModel`] adds these up.
 
+mod costs;
+mod gather;
+mod gpus;
+mod lamps;
+pub mod metric;
+mod model;
+mod pass_table;
 mod record;
+mod traffic;
+mod waves;
 
+pub use gather::Meter;
+pub use gpus::{DEVICES, Device, GPUS};
+pub use lamps::Lamps;
+pub use model::{Frame, FrameModel, MULTIVIEW, SIZE, SYNTHESIS, VERTICES, VERTICES_ONCE};
+pub use pass_table::pass_table;
 pub use record::{Command, Draw, Recorder};
+pub use traffic::{Piece, Traffic, pieces};

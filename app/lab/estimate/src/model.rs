@@ -2,16 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use super::GPUS;
-use super::lamps::Lamps;
-use super::traffic::{fragments, pieces};
-use crate::bench::costs::Costs;
-use crate::bench::executed::Device;
-use yoro_estimate::{Command, Draw};
+use crate::costs::Costs;
+use crate::gpus::{Device, GPUS};
+use crate::lamps::Lamps;
+use crate::record::{Command, Draw};
+use crate::traffic::{fragments, pieces};
 use yoro_gl::{ProgramRecipe, Shape};
 
-/// The prefix of the names of synthesis passes. Their execution is counted by `bench::executed`.
+/// The prefix of the names of synthesis passes. Their execution is counted by [`Meter`](crate::Meter).
 pub const SYNTHESIS: &str = "gather ";
+/// The size of an eye in pixels, as on a Quest 3.
+pub const SIZE: [u32; 2] = [1680, 1760];
+/// The name of the frames that are derived from records of [`Method::Instanced`](yoro_render::stereo::Method::Instanced),
+/// which draws the same pixels and differs only in vertices.
+pub const MULTIVIEW: &str = "multiview";
 /// The name under which vertices are counted, like a pass.
 pub const VERTICES: &str = "vertices";
 /// The same with each vertex shaded once for both eyes, as multiview allows.
@@ -154,7 +158,7 @@ mod tests {
         let model = FrameModel::new().unwrap();
         let frame = model.frame(&commands, size, &mut lamps).unwrap();
         let told = |file: &str, stage: &str, column: usize| {
-            let table = include_str!("../../../../../../docs/shader-cost.csv");
+            let table = include_str!("../shader-cost.csv");
             let line = table.lines().find(|line| line.starts_with(&format!("a740,{file},{stage},"))).unwrap();
             line.split(',').nth(column).unwrap().parse::<f64>().unwrap()
         };

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::traffic::{Piece, Traffic};
+use crate::traffic::{Piece, Traffic};
 use yoro_gl::Image;
 use yoro_render::RendererKind;
 

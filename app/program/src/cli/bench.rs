@@ -17,7 +17,7 @@ use yoro::eyes::{Eye, EyeOptions};
 use yoro_assets::load::sidecar_file;
 use yoro_bench::bench::record::{Header, PassClock, VERSION};
 use yoro_bench::bench::{
-    self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, frame, process,
+    self, Bounds, Choices, Contender, Inputs, Job, LazyObject, Object, Runner, Suite, Writer, process,
 };
 use yoro_bench::inpaint::PatcherOptions;
 use yoro_bench::report::bench::BenchReport;
@@ -191,7 +191,7 @@ impl BenchArgs {
         let eyes = EyeOptions {
             size: self.size.unwrap_or(match (self.quick, self.frame) {
                 (true, _) => [512; 2],
-                (false, true) => frame::SIZE,
+                (false, true) => yoro_estimate::SIZE,
                 (false, false) => [1024; 2],
             }),
             fov_y: self.fov_y,

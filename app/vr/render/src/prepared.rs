@@ -2,10 +2,12 @@
 
 use std::rc::Rc;
 
+use yoro::eyes::SynthesisViews;
+use yoro::opengl::{Gather, Source};
 use yoro_assets::Scene;
-use yoro_gl::{Context, GlError};
+use yoro_gl::{Context, Destination, GlError, RenderTarget};
 
-use crate::render::{GpuScene, RenderSettings, Renderer};
+use crate::render::{GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
 
 /// A scene on the GPU and the renderer that was compiled for it.
 pub struct PreparedScene {
@@ -32,5 +34,23 @@ impl PreparedScene {
     /// As [`Renderer::set_time`].
     pub fn set_time(&mut self, seconds: f64) -> Result<(), GlError> {
         self.renderer.set_time(&mut self.scene, seconds)
+    }
+
+    /// Renders the source of some views and synthesizes the other eye into `to`, which is resized to that eye. For
+    /// measurements of the synthesis alone.
+    ///
+    /// # Errors
+    /// [`GlError`] beyond the driver's limits.
+    pub fn synthesize(
+        &self,
+        gather: &mut Gather,
+        targets: &mut ViewTargets,
+        views: &SynthesisViews,
+        to: &mut RenderTarget,
+    ) -> Result<(), GlError> {
+        let rendered = self.renderer.render(targets, &self.scene, &views.source, Selection::All)?;
+        to.resize(views.target.size)?;
+        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
+        gather.synthesize(source, &views.warp, &Destination::whole(to))
     }
 }

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::IVec2;
 
 use yoro::eyes::{Eye, EyePair};
-use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
+use yoro::opengl::{AnyView, Options, Outputs, Source};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
 };
@@ -66,7 +66,7 @@ impl StreamedEyes {
         let target = |format, filter, depth| RenderTarget::new(gl, [1, 1], &[(format, filter)], depth);
         let color = || target(Format::Rgba8, Filter::Linear, None);
         // Frames and eyes alternate between several sizes.
-        let options = SynthesisOptions { parts: true, ..SynthesisOptions::default() };
+        let options = Options { parts: true, ..Options::default() };
         Ok(StreamedEyes {
             gl: gl.clone(),
             from_planes: Program::new(gl, ShaderSource::Screen("viewer/decoded.frag"), &[])?,

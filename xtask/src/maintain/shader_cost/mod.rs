@@ -1,7 +1,7 @@
 //! `cargo xtask maintain shader-cost`: the cost of the shader programs on mobile GPUs, by Mesa's compilers alone.
 //!
 //! The library builds all programs in a context on this machine, `shader-programs` of tests/ prints their texts, and
-//! [`Compilers`] compile them. The results are compared with `docs/shader-cost.csv`. See docs/performance.md.
+//! [`Compilers`] compile them. The results are compared with `app/lab/estimate/shader-cost.csv`. See docs/performance.md.
 
 mod compilers;
 mod gpus;
@@ -28,7 +28,7 @@ use gpus::{GPUS, IN_TABLE};
 use table::{Row, Table};
 
 /// The committed table, relative to the workspace.
-const TABLE: &str = "docs/shader-cost.csv";
+const TABLE: &str = "app/lab/estimate/shader-cost.csv";
 
 /// An accepted fault of a program on a GPU.
 struct Exception {

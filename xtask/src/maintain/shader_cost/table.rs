@@ -1,4 +1,4 @@
-//! The rows of `docs/shader-cost.csv`: the cost of each compiled shader on each GPU.
+//! The rows of `app/lab/estimate/shader-cost.csv`: the cost of each compiled shader on each GPU.
 
 use std::fmt::Write as _;
 use std::str::FromStr;

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use super::prepared::synthesize;
 use yoro::eyes::{EyePair, GuardBand};
-use yoro::synthesis::{self, Outputs, SOURCE_MAP_HOLE, Synthesis, SynthesisOptions};
+use yoro::opengl::{Gather, Options, Outputs};
+use yoro::synthesis::SOURCE_MAP_HOLE;
 use yoro_gl::{Context, Filter, Format, GlError, RenderTarget};
 use yoro_render::stereo::StereoError;
 use yoro_render::{PreparedScene, ViewTargets};
@@ -13,7 +13,7 @@ use yoro_render::{PreparedScene, ViewTargets};
 /// contenders, whatever they do about holes. It includes the outer border.
 pub struct HoleFinder {
     targets: ViewTargets,
-    synthesis: Box<dyn Synthesis>,
+    synthesis: Gather,
     map: RenderTarget,
 }
 
@@ -27,7 +27,7 @@ impl HoleFinder {
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         Ok(HoleFinder {
             targets: ViewTargets::default(),
-            synthesis: synthesis::create(gl, &SynthesisOptions::default(), outputs)?,
+            synthesis: Gather::new(gl, &Options::default(), outputs)?,
             map: RenderTarget::new(gl, [1, 1], &formats, None)?,
         })
     }
@@ -38,7 +38,7 @@ impl HoleFinder {
     /// [`StereoError`] for eyes that cannot be synthesized, or if GL refuses.
     pub fn find(&mut self, prepared: &mut PreparedScene, pair: &EyePair) -> Result<Vec<bool>, StereoError> {
         let views = pair.synthesis_views(GuardBand::None)?;
-        synthesize(&mut *self.synthesis, &mut self.targets, prepared, &views, &mut self.map)?;
+        prepared.synthesize(&mut self.synthesis, &mut self.targets, &views, &mut self.map)?;
         let entries = self.map.read_u32(1, [0, 0], pair.size);
         let rows = entries.chunks_exact(pair.size[0] as usize).rev();
         Ok(rows.flatten().map(|entry| entry & SOURCE_MAP_HOLE != 0).collect())

@@ -1,11 +1,11 @@
 //! A job: what is measured under one set of conditions.
 
 use super::contender::Contender;
-use super::executed::Device;
 use super::motion::Motion;
 use super::record::Conditions;
 use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
+use yoro_estimate::Device;
 use yoro_render::RenderSettings;
 use yoro_render::stereo::AntiAliasing;
 

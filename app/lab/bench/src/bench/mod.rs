@@ -7,9 +7,7 @@
 
 mod blank;
 mod contender;
-mod costs;
-mod executed;
-pub mod frame;
+mod frame;
 mod holes;
 mod job;
 mod measured;
@@ -23,10 +21,10 @@ mod scenes;
 mod suite;
 mod summary;
 mod views;
-mod waves;
 
 pub use blank::BlankFinder;
 pub use contender::Contender;
+pub use frame::{SUITE as FRAME_SUITE, contenders as frame_contenders};
 pub use holes::HoleFinder;
 pub use job::{Displaced, Job, Measure, Source};
 pub use motion::Motion;

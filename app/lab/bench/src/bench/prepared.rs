@@ -4,13 +4,12 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::process;
-use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
-use yoro::synthesis::{Source, Synthesis};
-use yoro_gl::{Context, Destination, GlError, Profiling, RenderTarget};
+use yoro::eyes::{EyePair, GuardBand};
+use yoro_gl::{Context, GlError, Profiling};
 use yoro_render::stereo::{
     self, GuardBandUse, Method, StereoError, StereoFrame, StereoMethod, StereoOptions,
 };
-use yoro_render::{PreparedScene, RenderSettings, Selection, ViewTargets};
+use yoro_render::{PreparedScene, RenderSettings};
 
 /// A stereo method with its programs and targets, ready to be measured.
 pub struct PreparedContender {
@@ -113,22 +112,4 @@ impl PreparedContender {
         }
         Ok(times)
     }
-}
-
-/// Renders the source of some views and synthesizes the other eye into `to`, which is resized to that eye.
-///
-/// # Errors
-/// [`StereoError`] if GL refuses.
-pub(super) fn synthesize(
-    pipeline: &mut dyn Synthesis,
-    targets: &mut ViewTargets,
-    prepared: &mut PreparedScene,
-    views: &SynthesisViews,
-    to: &mut RenderTarget,
-) -> Result<(), StereoError> {
-    let PreparedScene { renderer, scene } = prepared;
-    let rendered = renderer.render(targets, scene, &views.source, Selection::All)?;
-    to.resize(views.target.size)?;
-    let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
-    Ok(pipeline.synthesize(source, &views.warp, &Destination::whole(to))?)
 }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use anyhow::ensure;
 
 use super::contender::Contender;
-use super::executed::DEVICES;
 use super::frame;
 use super::job::{Displaced, Job, Measure, Source};
 use super::motion::Motion;
@@ -14,6 +13,7 @@ use super::scenes::LazyObject;
 use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
+use yoro_estimate::DEVICES;
 use yoro_render::stereo::{AntiAliasing, Pipeline};
 use yoro_render::{RenderSettings, RendererKind};
 use yoro_scenes::BUILTINS;

@@ -6,7 +6,7 @@
 //! | patcher | after | runs on |
 //! |---|---|---|
 //! | [`PatcherKind::Paper`] | Algorithm 3 as corrected | GPU |
-//! | [`PatcherKind::Gather`] | the fill of [`yoro::synthesis::Gather`] | GPU |
+//! | [`PatcherKind::Gather`] | the fill of [`yoro::opengl::Gather`] | GPU |
 //! | [`PatcherKind::Median`] | Noori et al.: median of the valid ones of 5x5 neighbours | GPU |
 //! | [`PatcherKind::Xiao`] | Xiao et al. 2022: background filter of 29x29 pixels | GPU |
 //! | [`PatcherKind::Telea`] | Telea 2004: fast marching | CPU, holes in parallel |

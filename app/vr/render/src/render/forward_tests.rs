@@ -9,7 +9,8 @@ use super::*;
 use crate::fixture::quad;
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, Viewpoint};
-use yoro_gl::{Command, Context, RenderTarget};
+use yoro_estimate::{Command, Recorder};
+use yoro_gl::{Context, RenderTarget};
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -203,14 +204,13 @@ fn transparent_surfaces_are_tested_per_sample() {
 #[test]
 fn samples_are_given_up_once_drawing_has_resumed() {
     let head = open();
+    let recorder = Recorder::new(head.gl());
     let (scene, renderer, mut targets) = forward(head.gl(), scene(ShadingStyle::Realistic), &with_samples(4));
     let view = view(DepthConvention::Standard);
-    let gl = head.gl();
     let discarded = |draw: &mut dyn FnMut()| {
-        gl.record();
+        recorder.start();
         draw();
-        let record = gl.take_record();
-        record.iter().any(|command| matches!(command, Command::Discard(_, [true, true])))
+        recorder.take().iter().any(|command| matches!(command, Command::Discard(_, [true, true])))
     };
     let mut draw = |request: &DrawRequest| {
         discarded(&mut || renderer.render(&mut targets, &scene, &view, request).unwrap())

@@ -3,8 +3,9 @@
 use std::rc::Rc;
 
 use super::options::PipelineOptions;
+use super::pipeline::Synthesis;
 use yoro::eyes::Warp;
-use yoro::synthesis::{Outputs, Source, Synthesis};
+use yoro::opengl::{Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
 
 /// A pipeline with its own textures. In all arrays rows run from the bottom, as in GL. The result does not depend on

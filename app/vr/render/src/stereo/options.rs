@@ -1,13 +1,10 @@
 //! Settings of the methods.
 
-use std::rc::Rc;
-
 use super::near_field_policy::NearFieldPolicy;
-use super::paper::{Paper, PaperOptions};
+use super::paper::PaperOptions;
 use crate::render::RenderSettings;
 use yoro::eyes::GuardBand;
-use yoro::synthesis::{self, Outputs, Synthesis, SynthesisOptions};
-use yoro_gl::{Capabilities, Context, GlError};
+use yoro_gl::{Capabilities, GlError};
 pub use yoro_settings::{AntiAliasing, Method, MethodChoice, Pipeline};
 
 /// Returns what the forward renderer lacks for a method, if anything.
@@ -55,20 +52,6 @@ pub struct PipelineOptions {
     pub pipeline: Pipeline,
     /// Options of [`Pipeline::Paper`].
     pub paper: PaperOptions,
-}
-
-impl PipelineOptions {
-    /// Compiles the pipeline.
-    ///
-    /// # Errors
-    /// [`GlError::Unsupported`] for [`Pipeline::Paper`] without OpenGL ES 3.1; [`GlError::Shader`] if the driver refuses
-    /// a shader.
-    pub fn create(&self, gl: &Rc<Context>, outputs: Outputs) -> Result<Box<dyn Synthesis>, GlError> {
-        match self.pipeline {
-            Pipeline::Gather => synthesis::create(gl, &SynthesisOptions::default(), outputs),
-            Pipeline::Paper => Ok(Box::new(Paper::new(gl, outputs, self.paper)?)),
-        }
-    }
 }
 
 /// Settings of all methods.

@@ -5,8 +5,10 @@ use std::rc::Rc;
 use glam::{IVec2, Vec2};
 use glow::HasContext;
 
+use super::pipeline::Synthesis;
 use yoro::eyes::Warp;
-use yoro::synthesis::{Outputs, Source, Synthesis, Uniforms, draw_target, set_source};
+use yoro::opengl::{Outputs, Source, draw_target, set_source};
+use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Program, RenderTarget, ShaderSource};
 use yoro_settings::MAX_KERNEL_HEIGHT;
 pub use yoro_settings::{ImBufferSize, ParseImBufferSizeError};

@@ -8,7 +8,7 @@ use super::method::{EyeTarget, StereoError};
 use super::options::Pipeline;
 use crate::render::{DepthImage, RendererOfKind, ViewImages, ViewRenderer};
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, HeadMotion, PoseWarp, View};
-use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
+use yoro::opengl::{AnyView, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// Degrees per second that a head may turn before its borders are filled, if a render is shown for the whole time until
@@ -45,7 +45,7 @@ impl Synthesizer {
         let outputs = Outputs { depth, ..Outputs::default() };
         let format = depth.then_some(Format::Depth32F);
         Ok(Synthesizer {
-            any_view: AnyView::new(gl, &SynthesisOptions::default(), outputs)?,
+            any_view: AnyView::new(gl, &Options::default(), outputs)?,
             image: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], format)?,
         })
     }

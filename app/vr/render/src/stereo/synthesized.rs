@@ -12,9 +12,10 @@ use super::near_field_policy::{FrameMode, NearFieldPolicy};
 use super::near_fraction::NearFraction;
 use super::options::{AntiAliasing, PipelineOptions, StereoOptions};
 use super::overlay::{EyeSource, Overlay, OverlaySurfaces, SmoothedEye};
+use super::pipeline::Synthesis;
 use crate::render::{DrawRequest, GpuScene, Selection, ViewImages};
 use yoro::eyes::{GuardBand, SynthesisViews};
-use yoro::synthesis::{Outputs, Source, Synthesis};
+use yoro::opengl::{Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
 /// One render with a guard band and one synthesis. [`StereoOptions`] decide about near objects and near frames.

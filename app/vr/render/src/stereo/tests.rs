@@ -501,8 +501,7 @@ fn glass_out_of_view_costs_nothing() {
             let (rig, method) = (&mut rigs[i], &mut *methods[i]);
             recorder.start();
             let copies = count_passes_of(gl, rig, method, &pair, [false; 2], "copy");
-            let kept =
-                recorder.take().iter().filter(|c| matches!(c, Command::Discard(_, [true, _]))).count();
+            let kept = recorder.take().iter().filter(|c| matches!(c, Command::Discard(_, [true, _]))).count();
             let eyes = Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE));
             (eyes, copies, kept)
         });

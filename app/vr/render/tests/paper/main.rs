@@ -2,7 +2,7 @@
 
 use yoro::eyes::{DepthConvention, Eye, GuardBand};
 use yoro::synthesis::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE};
-use yoro_render::stereo::{ImBufferSize, Paper, PaperOptions};
+use yoro_render::stereo::{ImBufferSize, Paper, PaperOptions, Synthesis};
 use yoro_test_support::in_memory::OUTPUTS;
 use yoro_test_support::laws;
 use yoro_test_support::laws::{Subject, on_every_backend, pair, positions, row, scene};
@@ -20,7 +20,10 @@ fn asymmetric_frusta_agree_with_the_symmetric_view() {
 fn subject(options: PaperOptions) -> Subject {
     Subject {
         name: format!("{options:?}"),
-        make: Box::new(move |gl| Box::new(Paper::new(gl, OUTPUTS, options).unwrap())),
+        make: Box::new(move |gl| {
+            let mut paper = Paper::new(gl, OUTPUTS, options).unwrap();
+            Box::new(move |source, warp, target| paper.synthesize(source, warp, target))
+        }),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use yoro::eyes::{Eye, EyePair, EyesError, PoseWarp};
-use yoro::synthesis::{AnyView, Outputs, Source, SynthesisOptions};
+use yoro::opengl::{AnyView, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Format, GlError, RenderTarget};
 use yoro_render::DepthCopy;
 use yoro_render::stereo::{DepthTarget, EyeTarget, StereoError, StereoFrame};
@@ -24,7 +24,7 @@ impl PositionalTimewarp {
         Ok(PositionalTimewarp {
             depths: [depth()?, depth()?],
             copy: DepthCopy::new(gl)?,
-            any_view: AnyView::new(gl, &SynthesisOptions::default(), Outputs::default())?,
+            any_view: AnyView::new(gl, &Options::default(), Outputs::default())?,
             moved: StereoFrame::new(gl, size)?,
         })
     }

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use wasm_bindgen::JsError;
 use yoro::eyes::Eye;
-use yoro::synthesis::{self, Outputs, Source, Synthesis, SynthesisOptions};
+use yoro::opengl::{Gather, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, Texture};
 use yoro_render::stereo::StereoFrame;
 
@@ -17,7 +17,7 @@ use crate::settings::{Display, Settings};
 pub struct PictureShow {
     pair: PicturePair,
     options: PictureOptions,
-    pipeline: Box<dyn Synthesis>,
+    pipeline: Gather,
     color: Texture,
     depth: Texture,
     /// The images of both eyes.
@@ -41,8 +41,7 @@ impl PictureShow {
         let mut pictures = PictureShow {
             color: texture(Format::Rgba8, Filter::Linear)?,
             depth: texture(Format::R32F, Filter::Nearest)?,
-            pipeline: synthesis::create(gl, &SynthesisOptions::default(), Outputs::default())
-                .map_err(sentence)?,
+            pipeline: Gather::new(gl, &Options::default(), Outputs::default()).map_err(sentence)?,
             frame: StereoFrame::new(gl, pair.size).map_err(sentence)?,
             pair,
             options,

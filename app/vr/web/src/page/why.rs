@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use wasm_bindgen::prelude::*;
 use yoro::eyes::{EyePair, GuardBand};
-use yoro::synthesis::{self, Outputs, Source, SynthesisOptions};
+use yoro::opengl::{Gather, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro_render::DepthCopy;
 use yoro_render::stereo::{
@@ -79,7 +79,7 @@ fn explain(gl: &Rc<Context>, page: &mut Page, pair: &EyePair) -> Result<Option<E
     let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
     let made = RenderTarget::new(gl, pair.size, &formats, None)?;
     let outputs = Outputs { source_map: true, ..Outputs::default() };
-    let mut synthesis = synthesis::create(gl, &SynthesisOptions::default(), outputs)?;
+    let mut synthesis = Gather::new(gl, &Options::default(), outputs)?;
     let source = Source::new(color.color(0).raw(), depth.depth().raw());
     synthesis.synthesize(source, &views.warp, &Destination::whole(&made))?;
     let packed = RenderTarget::new(gl, wide.size, &[(Format::Rgba8, Filter::Nearest)], None)?;

@@ -1,6 +1,8 @@
 //! Names of the metrics, with units. Quality is that of the eye that is not dominant, compared with a real render of
 //! the same eye (`conventional`); images are 8 bits, display-referred.
 
+pub use yoro_estimate::metric::*;
+
 /// Wall-clock time of a whole stereo frame up to glFinish, in ms.
 pub const FRAME_MS: &str = "frame_ms";
 /// CPU time of all threads of the process during that frame, in ms.
@@ -76,37 +78,6 @@ pub const GUARD_COLUMNS: &str = "guard_columns";
 pub const UNDRAWN: &str = "undrawn";
 /// PSNR (RGB) in dB in the columns at the other eye's outer border that a guard band serves.
 pub const BORDER_PSNR: &str = "border_psnr";
-
-/// Share of the pixels whose tile has a law, 0 to 1.
-pub const LAW_PIXEL: &str = "law_pixel";
-/// Share of the waves in which every pixel's tile has a law, 0 to 1.
-pub const LAW_WAVE: &str = "law_wave";
-/// Trips of the loop of the march's short way, per pixel.
-pub const TRIPS_PIXEL: &str = "trips_pixel";
-/// Trips of the loop of the march's short way, per wave.
-pub const TRIPS_WAVE: &str = "trips_wave";
-/// Share of the pixels that go the long way, 0 to 1.
-pub const GOES_ON_PIXEL: &str = "goes_on_pixel";
-/// Share of the waves with a pixel that goes the long way, 0 to 1.
-pub const GOES_ON_WAVE: &str = "goes_on_wave";
-/// Segments that the march takes on its long way, per wave.
-pub const LONG_TRIPS_WAVE: &str = "long_trips_wave";
-/// Estimated issue slots per pixel of the first pass of `gather`.
-pub const SLOTS_TILES: &str = "slots_tiles";
-/// Estimated issue slots per pixel of the second pass.
-pub const SLOTS_SPANS: &str = "slots_spans";
-/// Estimated issue slots per pixel of the third pass.
-pub const SLOTS_MARCH: &str = "slots_march";
-/// Estimated issue slots per pixel of all three passes.
-pub const SLOTS: &str = "slots";
-/// Estimated texture instructions per pixel.
-pub const FETCHES: &str = "fetches";
-/// Estimated time of the issue slots alone, in ms.
-pub const ALU_MS: &str = "alu_ms";
-/// Estimated time of the texture instructions alone, in ms.
-pub const FETCH_MS: &str = "fetch_ms";
-/// Estimated time of the memory traffic alone, in ms.
-pub const MEMORY_MS: &str = "memory_ms";
 
 /// Wall-clock time of patching alone in ms, with the image in the memory in which the patcher works.
 pub const PATCH_MS: &str = "patch_ms";

@@ -13,7 +13,7 @@ use crate::bench::picture_folder;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::Views;
 use yoro::eyes::{Eye, EyePair, GuardBand, HeadMotion, PoseWarp, View};
-use yoro::synthesis::{AnyView, Outputs, Source, Synthesis, SynthesisOptions};
+use yoro::opengl::{AnyView, Gather, Options, Outputs, Source};
 use yoro_files::interrupt;
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 use yoro_metrics::{Channels, SsimWindow, psnr, ssim};
@@ -164,7 +164,7 @@ impl Timer {
 struct Reprojector {
     gl: Rc<Context>,
     any_view: AnyView,
-    gather: Box<dyn Synthesis>,
+    gather: Gather,
     rendered: ViewTargets,
     parallel: RenderTarget,
     shown: RenderTarget,
@@ -172,13 +172,13 @@ struct Reprojector {
 
 impl Reprojector {
     fn new(gl: &Rc<Context>) -> Result<Reprojector, GlError> {
-        let options = SynthesisOptions::default();
+        let options = Options::default();
         let formats = [(Format::Rgba8, Filter::Linear)];
         let outputs = Outputs { depth: true, ..Outputs::default() };
         Ok(Reprojector {
             gl: gl.clone(),
             any_view: AnyView::new(gl, &options, Outputs::default())?,
-            gather: yoro::synthesis::create(gl, &options, outputs)?,
+            gather: Gather::new(gl, &options, outputs)?,
             rendered: ViewTargets::default(),
             parallel: RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F))?,
             shown: RenderTarget::new(gl, [1, 1], &formats, None)?,

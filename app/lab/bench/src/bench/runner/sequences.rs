@@ -4,12 +4,12 @@ use image::RgbImage;
 
 use super::{Runner, eye_image, milliseconds};
 use crate::bench::contender::Band;
-use crate::bench::executed::{Device, Meter};
 use crate::bench::holes::HoleFinder;
 use crate::bench::job::Job;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::{self, Views};
 use yoro::eyes::{Eye, EyePair};
+use yoro_estimate::{Device, Meter};
 use yoro_files::interrupt;
 use yoro_metrics::{Channels, FlickerMeter, psnr};
 use yoro_render::PreparedScene;

@@ -4,13 +4,12 @@ use anyhow::Context as _;
 
 use super::{Runner, left_out};
 use crate::bench::contender::Contender;
-use crate::bench::executed::Meter;
-use crate::bench::frame::{FrameModel, GPUS, Lamps, MULTIVIEW};
 use crate::bench::job::Job;
 use crate::bench::prepared::PreparedContender;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::Views;
 use yoro::eyes::EyePair;
+use yoro_estimate::{FrameModel, GPUS, Lamps, MULTIVIEW, Meter};
 use yoro_files::interrupt;
 use yoro_render::stereo::{Method, Pipeline, StereoFrame};
 use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};

@@ -1,8 +1,8 @@
 //! The cost of whole frames on mobile GPUs.
 
 use super::section::Section;
-use crate::bench::frame::{self, SYNTHESIS};
 use crate::report::bench::data::{CONVENTIONAL, Measured, SettingData, Suite};
+use yoro_estimate::{self as estimate, SYNTHESIS};
 use yoro_report::grid::{Cell, Table};
 use yoro_report::stats::{mean, unique};
 
@@ -27,7 +27,7 @@ impl<'a> Entry<'a> {
                 suite.settings.iter().filter(|s| s.conditions.label.as_deref() == Some(renderer));
             for name in unique(of_renderer.flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()))) {
                 let entry = Entry { suite, renderer, name, once: false };
-                if name == frame::MULTIVIEW {
+                if name == estimate::MULTIVIEW {
                     entries.push(Entry { once: true, ..entry });
                 }
                 entries.push(entry);
@@ -39,8 +39,8 @@ impl<'a> Entry<'a> {
     fn title(&self) -> String {
         match (self.name, self.once) {
             (CONVENTIONAL, _) => "two renders".into(),
-            (frame::MULTIVIEW, true) => "multiview, vertices once".into(),
-            (frame::MULTIVIEW, false) => "multiview, vertices twice".into(),
+            (estimate::MULTIVIEW, true) => "multiview, vertices once".into(),
+            (estimate::MULTIVIEW, false) => "multiview, vertices twice".into(),
             (name, _) => name.into(),
         }
     }
@@ -66,7 +66,7 @@ impl<'a> Entry<'a> {
 
     /// Returns the issue slots per pixel of an eye in each scene, for the passes for which `counts` is true.
     fn slots(&self, gpu: &str, counts: impl Fn(&str) -> bool) -> Vec<f64> {
-        let left_out = if self.once { frame::VERTICES } else { frame::VERTICES_ONCE };
+        let left_out = if self.once { estimate::VERTICES } else { estimate::VERTICES_ONCE };
         self.sums(&format!("slots/{gpu}/"), |pass| pass != left_out && counts(pass))
     }
 
@@ -84,11 +84,14 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// Returns the mean of a pass's metric. Vertices are scaled to an eye of [`frame::SIZE`], because their number does not
+/// Returns the mean of a pass's metric. Vertices are scaled to an eye of [`estimate::SIZE`], because their number does not
 /// depend on the size of the frame.
 fn value(suite: &Suite, measured: &Measured, metric: &str) -> Option<f64> {
-    let scale =
-        if metric.contains(frame::VERTICES) { measured_pixels(suite) / pixels(frame::SIZE) } else { 1.0 };
+    let scale = if metric.contains(estimate::VERTICES) {
+        measured_pixels(suite) / pixels(estimate::SIZE)
+    } else {
+        1.0
+    };
     Some(scale * measured.mean(metric)?)
 }
 
@@ -101,7 +104,7 @@ fn measured_pixels(suite: &Suite) -> f64 {
     let size = suite.header.parameters.iter().find(|parameter| parameter.name == "size of each eye, pixels");
     let parts =
         size.map(|size| size.value.split(" x ").filter_map(|n| n.parse::<f64>().ok()).product::<f64>());
-    parts.unwrap_or(pixels(frame::SIZE))
+    parts.unwrap_or(pixels(estimate::SIZE))
 }
 
 fn average(values: &[f64]) -> f64 {
@@ -135,7 +138,7 @@ pub fn section(suite: &Suite) -> Section {
 }
 
 fn gpu_columns<'a>(first: &[&'a str]) -> Vec<&'a str> {
-    first.iter().copied().chain(frame::GPUS.iter().map(|gpu| gpu.name)).collect()
+    first.iter().copied().chain(estimate::GPUS.iter().map(|gpu| gpu.name)).collect()
 }
 
 fn ratios(entries: &[Entry]) -> Table {
@@ -145,7 +148,7 @@ fn ratios(entries: &[Entry]) -> Table {
         Table::new("Executed slots over two renders: mean of the scenes, least and most", &columns);
     for (i, entry) in entries.iter().enumerate() {
         let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
-        for gpu in frame::GPUS {
+        for gpu in estimate::GPUS {
             let (own, base) = (entry.slots(gpu.gpu, |_| true), entry.baseline().slots(gpu.gpu, |_| true));
             let ratios: Vec<f64> = own.iter().zip(&base).map(|(own, base)| own / base).collect();
             let text = if entry.name == CONVENTIONAL {
@@ -178,7 +181,7 @@ fn break_evens(entries: &[Entry]) -> Table {
     let mut table = Table::new(title, &gpu_columns(&["<renderer", "<method"]));
     for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
         let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
-        for gpu in frame::GPUS {
+        for gpu in estimate::GPUS {
             let both = [entry.baseline(), *entry];
             let surfaces = both.map(|entry| average(&entry.slots(gpu.gpu, |pass| SURFACES.contains(&pass))));
             let rest = both.map(|entry| average(&entry.slots(gpu.gpu, |pass| !SURFACES.contains(&pass))));
@@ -202,13 +205,13 @@ fn bandwidth(entries: &[Entry]) -> Table {
         let more = average(&entry.bytes()) - average(&entry.baseline().bytes());
         let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
         cells.push(Cell::ours(Some(format!("{more:+.0}"))));
-        for gpu in frame::GPUS {
+        for gpu in estimate::GPUS {
             let pixels = f64::from(gpu.size[0]) * f64::from(gpu.size[1]);
             cells.push(Cell::ours(Some(format!("{:+.2}", 1e3 * more * pixels / gpu.bytes))));
         }
         table.push(cells);
     }
-    let sizes = frame::GPUS.map(|gpu| {
+    let sizes = estimate::GPUS.map(|gpu| {
         format!("{} {} x {} pixels an eye, {} GB/s", gpu.name, gpu.size[0], gpu.size[1], gpu.bytes / 1e9)
     });
     table.note = format!("Assumed: {}.", sizes.join("; "));
@@ -226,7 +229,7 @@ fn passes(entries: &[Entry]) -> Table {
             let (kind, rest) = metric.split_once('/')?;
             if kind == "slots" { Some(rest.split_once('/')?.1) } else { Some(rest) }
         }));
-        for (i, name) in names.into_iter().filter(|name| *name != frame::VERTICES_ONCE).enumerate() {
+        for (i, name) in names.into_iter().filter(|name| *name != estimate::VERTICES_ONCE).enumerate() {
             let mean = |metric: String| {
                 let of = |measured: &Measured| value(entry.suite, measured, &metric).unwrap_or(0.0);
                 average(&entry.by_scene(of))
@@ -235,13 +238,13 @@ fn passes(entries: &[Entry]) -> Table {
                 |value: f64, digits: usize| Cell::ours((value > 0.0).then(|| format!("{value:.digits$}")));
             let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title()), Cell::plain(name)];
             cells.push(shown(mean(format!("fragments/{name}")), 2));
-            let slots = frame::GPUS.map(|gpu| shown(mean(format!("slots/{}/{name}", gpu.gpu)), 1));
+            let slots = estimate::GPUS.map(|gpu| shown(mean(format!("slots/{}/{name}", gpu.gpu)), 1));
             cells.extend(slots);
             cells.push(shown(mean(format!("bytes/{name}")), 1));
             table.push_grouped(cells, i == 0);
         }
     }
-    let [width, height] = frame::SIZE;
+    let [width, height] = estimate::SIZE;
     table.note = format!(
         "Passes of the synthesis begin with {}. Vertices do not depend on the size: the figures are for eyes of {width} x {height} pixels.",
         SYNTHESIS.trim_end()

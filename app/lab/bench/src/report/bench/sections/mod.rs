@@ -50,10 +50,10 @@ pub fn sections(suites: &[Suite]) -> Vec<(&Suite, Section)> {
         let of_kind = suites.iter().filter(|suite| suite.name == kind.name());
         sections.extend(of_kind.map(|suite| (suite, make(suite))));
     }
-    let frames = suites.iter().filter(|suite| suite.name == bench::frame::SUITE);
+    let frames = suites.iter().filter(|suite| suite.name == bench::FRAME_SUITE);
     sections.extend(frames.map(|suite| (suite, frame_cost::section(suite))));
     let known = |suite: &&Suite| {
-        suite.name == bench::frame::SUITE || ORDER.iter().any(|(kind, _)| kind.name() == suite.name)
+        suite.name == bench::FRAME_SUITE || ORDER.iter().any(|(kind, _)| kind.name() == suite.name)
     };
     sections.extend(suites.iter().filter(|suite| !known(suite)).map(|suite| (suite, other::section(suite))));
     sections.retain(|(_, section)| !section.figures.is_empty() || !section.tables.is_empty());
