@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
-use yoro::synthesis::{self, AnyView, Edges, Gather, GatherVariant, Outputs, SynthesisOptions};
+use yoro::opengl::{AnyView, Gather, Options, Outputs};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
@@ -44,17 +44,15 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     viewer(gl)
 }
 
-/// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the short way; the long way to
-/// its end; events; the fill; crossings.
+/// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the first steps; the search
+/// over segments; events; the fill; crossings.
 const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
 
 fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     let outputs = [(false, false), (false, true), (true, false), (true, true)]
         .map(|(depth, source_map)| Outputs { depth, source_map, ..Outputs::default() });
     for outputs in outputs {
-        for edges in Edges::ALL {
-            synthesis::create(gl, &SynthesisOptions { edges, ..SynthesisOptions::default() }, outputs)?;
-        }
+        Gather::new(gl, &Options::default(), outputs)?;
         for (strict, linear_interpolation) in [(false, true), (false, false), (true, false), (true, true)] {
             for (divisor, kernel_height) in [(1, 1), (4, 15)] {
                 let imbuffer = ImBufferSize::Divisor(divisor);
@@ -67,45 +65,24 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         }
     }
     for depth in [false, true] {
-        let outputs = Outputs { depth, ..Outputs::default() };
-        AnyView::new(gl, &SynthesisOptions::default(), outputs)?;
-        if variants == Variants::Every {
-            for (parts, layers) in [(true, false), (false, true), (true, true)] {
-                AnyView::new(
-                    gl,
-                    &SynthesisOptions { parts, array_textures: layers, ..SynthesisOptions::default() },
-                    outputs,
-                )?;
+        AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
+    }
+    if variants == Variants::Every {
+        for (parts, array_textures) in [(true, false), (false, true), (true, true)] {
+            let options = Options { parts, array_textures, ..Options::default() };
+            Gather::new(gl, &options, Outputs::default())?;
+            for depth in [false, true] {
+                AnyView::new(gl, &options, Outputs { depth, ..Outputs::default() })?;
             }
         }
     }
-    // The library would only use one of these variants on this driver.
-    for variant in GatherVariant::ALL {
-        for depth in [false, true] {
-            Gather::with_variant(gl, Outputs { depth, ..Outputs::default() }, variant)?;
-        }
-    }
-    for (parts, layers, history) in
-        [(false, false, true), (true, false, false), (false, true, false), (true, true, false)]
-    {
-        if variants == Variants::Extreme && !history {
-            continue;
-        }
-        let options =
-            SynthesisOptions { parts, array_textures: layers, history, ..SynthesisOptions::default() };
-        for variant in GatherVariant::ALL {
-            Gather::with_variant_of(gl, Outputs::default(), variant, &options)?;
-        }
-        for edges in [Edges::Nearest, Edges::Sample] {
-            synthesis::create(gl, &SynthesisOptions { edges, ..options }, Outputs::default())?;
-        }
-    }
+    // What OpenGL ES 3.0 and WebGL 2 compile.
+    Gather::with_macros(gl, &Options::default(), Outputs::default(), &["WITHOUT_ES_310"])?;
     // The march split into parts, to determine the cost of each.
     let march =
         ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
     for parts in MARCH_PARTS {
-        let defines = [("TEXTURE_GATHER", ""), ("SHORT_WAY", ""), ("PARTS", parts)];
-        Program::new(gl, march, &defines.map(|(name, value)| (name, value.to_owned())))?;
+        Program::new(gl, march, &[("PARTS", parts.to_owned())])?;
     }
     Ok(())
 }
