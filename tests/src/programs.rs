@@ -43,8 +43,8 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<BTreeSet<Pro
     Ok(recorder.programs().iter().map(|recipe| recipe.as_ref().clone()).collect())
 }
 
-/// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the short way; the long way to
-/// its end; events; the fill; crossings.
+/// Values of `PARTS` in `include/segments.glsl`. Each adds a part of the march: the law; the first steps; the search
+/// over segments; events; the fill; crossings.
 const MARCH_PARTS: [&str; 6] = ["1", "2", "6", "14", "30", "62"];
 
 fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
@@ -63,15 +63,20 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
             }
         }
     }
-    let places = [(false, false), (true, false), (false, true), (true, true)];
-    let built = if variants == Variants::Every { &places[..] } else { &places[..1] };
-    for &(parts, array_textures) in built {
-        let options = Options { parts, array_textures, ..Options::default() };
-        Gather::new(gl, &options, Outputs::default())?;
-        for depth in [false, true] {
-            AnyView::new(gl, &options, Outputs { depth, ..Outputs::default() })?;
+    for depth in [false, true] {
+        AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
+    }
+    if variants == Variants::Every {
+        for (parts, array_textures) in [(true, false), (false, true), (true, true)] {
+            let options = Options { parts, array_textures, ..Options::default() };
+            Gather::new(gl, &options, Outputs::default())?;
+            for depth in [false, true] {
+                AnyView::new(gl, &options, Outputs { depth, ..Outputs::default() })?;
+            }
         }
     }
+    // What OpenGL ES 3.0 and WebGL 2 compile.
+    Gather::with_macros(gl, &Options::default(), Outputs::default(), &["WITHOUT_ES_310"])?;
     // The march split into parts, to determine the cost of each.
     let march =
         ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
