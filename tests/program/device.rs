@@ -314,14 +314,14 @@ fn a_log_is_followed() {
         .collect();
     write(at, "log", &lines);
     write(at, "ends", "");
-    let said = succeed(at, "device logcat --seconds 4 --from-oldest --out log --adb adb --serial FAKE1");
+    let said = succeed(at, "device logcat --seconds 4 --from-oldest --out kept --adb adb --serial FAKE1");
     assert!(
-        said.stdout.contains("yoro in prototype") && said.stdout.contains("capture: log"),
+        said.stdout.contains("yoro in prototype") && said.stdout.contains("capture: kept"),
         "{}",
         said.stdout
     );
     assert!(said.stderr.contains("FAKE1 is back after"), "{}", said.stderr);
-    let capture = read(&at.join("log"));
+    let capture = read(&at.join("kept"));
     assert_eq!((capture.samples.len(), kinds(&capture)), (3, vec![FaultKind::Disconnected]));
 }
 
