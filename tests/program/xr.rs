@@ -19,8 +19,8 @@ use yoro_openxr_stub::log::{self, Entry, Layer, View};
 use yoro_openxr_stub::script::{
     Aim, At, Event, Eye as ScriptEye, Fault, Input, POISON, Pictures, Script, State, VARIABLE, What,
 };
-use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer};
+use yoro_render::stereo::{self, Method, StereoFrame};
+use yoro_render::{GpuScene, Renderer};
 use yoro_settings::Settings;
 use yoro_viewer::{render_settings, stereo_options};
 

@@ -12,7 +12,7 @@ use yoro_gl::{
     Command, Filter, Format, GlApi, Program, RasterState, RenderTarget, ShaderSource, Shape, Texture,
 };
 use yoro_render::stereo::StereoFrame;
-use yoro_render::{PreparedScene, RenderSettings, RendererKind};
+use yoro_render::{PreparedScene, RendererKind};
 use yoro_settings::Settings;
 use yoro_tests::{golden::BLESS, on_every_backend, scene};
 use yoro_viewer::render_settings;
