@@ -129,7 +129,7 @@ fn a_saved_log_is_a_table_and_a_capture() {
 /// A shell script that answers like the program adb.
 #[cfg(unix)]
 const FAKE_ADB: &str = r#"#!/bin/sh
-# A fake adb: one device, on which everything works. While the file "slow" is there, an application logs one line and no
+# A fake adb: one device, on which everything works. While the file "slow" is there, an application logs two lines and no
 # end; if the file "ends" is there, the log ends once.
 here=$(dirname "$0")
 [ "$1" = start-server ] && exit 0
@@ -163,8 +163,9 @@ case "$*" in
     *"settings get"*zen_mode*|*"settings get"*low_power*) echo 0 ;;
     *"settings get system screen_brightness_mode"*) echo 0 ;;
     *"settings get system screen_brightness"*) echo 100 ;;
+    *"am force-stop"*) : > "$here/log" ;;
     *"am start"*) run=$(echo "$*" | sed 's/.*--es run \([^ ]*\).*/\1/')
-        n=1; lines=4; [ -e "$here/slow" ] && lines=1
+        n=1; lines=4; [ -e "$here/slow" ] && lines=2
         while [ $n -le $lines ]; do sed "s/t=1.0s/t=$n.0s/; s/^17000000000/170000000$n/; s/RUN/$run/" "$here/line"; n=$((n+1)); done >> "$here/log"
         [ -e "$here/slow" ] || echo 'v=1,summary=1,t=4.0s' >> "$here/log"
         echo 'Status: ok' ;;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::pair;
-use crate::program::{run, succeed};
+use crate::program::run;
 
 const RATINGS: &str =
     "participant,method,scene,question,rating\nP1,yoro,street,q,3\nP1,conventional,street,q,3\n";

@@ -57,7 +57,7 @@ impl Configuration {
             );
         }
         if let Some(scenes) = folders.first() {
-            shared::remove_unfinished(scenes);
+            share::remove_unfinished(scenes);
         }
         let reading = java.is_shared().then(|| {
             let java = java.clone();

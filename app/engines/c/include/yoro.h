@@ -98,11 +98,6 @@
 #define YORO_GUARD_BAND 1.0
 
 /**
- * The largest number of strips in a history.
- */
-#define YORO_MOST_STRIPS 8
-
-/**
  * Finds out whether two renders or one render with synthesis is cheaper on this device. It alternates between them for
  * about a second, chooses, and measures again when the result may have changed.
  *
@@ -628,14 +623,6 @@ typedef struct {
    */
   uint32_t api_minor;
   /**
-   * Zero.
-   */
-  uint32_t reserved;
-  /**
-   * 1 if the API has compute shaders, which yoro does not need.
-   */
-  uint32_t compute;
-  /**
    * 1 if the CPU renders (llvmpipe, SwiftShader).
    */
   uint32_t software;
@@ -665,10 +652,6 @@ typedef struct {
    * 1 if the times are known.
    */
   uint32_t is_known;
-  /**
-   * Time to split the source into surfaces; 0 with YORO_EDGES_HARD.
-   */
-  uint64_t split_ns;
   /**
    * Time to find the bounds of the displacements, or of the depths, in each tile.
    */
@@ -806,68 +789,6 @@ typedef struct {
    */
   float cost_ms[2];
 } YoroChoice;
-
-/**
- * A history: a rendered image of the synthesized eye, divided into strips of rows, each rendered in a frame of its
- * own. All strips but the last have the same number of rows: the rows of the image divided by the number of strips,
- * rounded up.
- */
-typedef struct {
-  /**
-   * sizeof(YoroHistory).
-   */
-  uint32_t struct_size;
-  /**
-   * Number of strips, 1 to YORO_MOST_STRIPS.
-   */
-  uint32_t count;
-  /**
-   * For each strip, beginning with the one at row 0, the view of the whole image that it was rendered from:
-   * YoroViews' `synthesized` of that frame, with the size of the history. All views have the same size. NULL for an
-   * empty strip.
-   */
-  const YoroView *strips[YORO_MOST_STRIPS];
-  /**
-   * Distance of the near plane in metres, as for the eyes; more than 0.
-   */
-  float near_z;
-  /**
-   * Distance of the far plane in metres; may be INFINITY.
-   */
-  float far_z;
-  /**
-   * The meaning of the depth buffers' values.
-   */
-  YoroDepth depth;
-  /**
-   * Order of rows in the images.
-   */
-  YoroRows rows;
-  /**
-   * Receives error messages.
-   */
-  YoroMessages messages;
-} YoroHistory;
-
-/**
- * The relation of a synthesized image to the strips of a history, for yoro_gl_synthesize and yoro_vk_record.
- * yoro_strips fills it. It can be copied and kept. It has the std140 layout of the shader kit's block `History`.
- */
-typedef struct {
-  /**
-   * Matrices that map a pixel of the synthesized image and its depth to a pixel of each strip's image and its depth,
-   * column-major. Zeros for empty strips.
-   */
-  float to_history[YORO_MOST_STRIPS][16];
-  /**
-   * Number of strips.
-   */
-  uint32_t count;
-  /**
-   * Must be 0.
-   */
-  uint32_t reserved[3];
-} YoroStrips;
 
 /**
  * Two views of a scene: a rendered one, and one in any pose near it.
@@ -1075,27 +996,33 @@ typedef uint32_t YoroGlState;
 #define YORO_GL_STATE_PRESERVE 1
 
 /**
- * The kind of source images, by how they represent edges: the pixels that show more than one surface. Never pass depth
- * that was averaged over samples. It belongs to no surface, and causes halos.
+ * Bits that describe where sources lie in their textures.
  */
-typedef uint32_t YoroEdges;
+typedef uint32_t YoroGlSourceFlags;
 /**
- * One sample per pixel, of colour and depth.
+ * The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution, or
+ * both eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
+ * sizes.
  */
-#define YORO_EDGES_HARD 0
+#define YORO_GL_SOURCE_PARTS 1
 /**
- * Colour resolved from several samples, and depth of the nearest of them.
+ * The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, in colour and in depth: for the textures of GL_OVR_multiview
+ * and the OpenXR swapchains used with it.
  */
-#define YORO_EDGES_NEAREST 1
+#define YORO_GL_SOURCE_LAYERS 2
+
 /**
- * Colour resolved from several samples, depth of the first of them: the result of drivers that resolve depth.
+ * The kind of warp that a context is created for.
  */
-#define YORO_EDGES_SAMPLE 2
+typedef uint32_t YoroWarpKind;
 /**
- * Colour resolved from 2 or 4 samples in the standard positions, depth of all samples and, if it still exists, colour
- * of all samples. This gives the best image.
+ * Between two parallel eyes, with a YoroWarp.
  */
-#define YORO_EDGES_MULTISAMPLE 3
+#define YORO_WARP_KIND_EYES 0
+/**
+ * To a view in any pose near the rendered one, with a YoroPoseWarp. If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
+ */
+#define YORO_WARP_KIND_POSE 1
 
 /**
  * An entry point of any type.
@@ -1109,36 +1036,6 @@ typedef void (*YoroGlProc)(void);
 typedef YoroGlProc (*YoroGlLoader)(const char *name);
 
 /**
- * Bits that describe where sources lie in their textures.
- */
-typedef uint32_t YoroGlSourceFlags;
-/**
- * The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution, or
- * both eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
- * sizes.
- */
-#define YORO_GL_SOURCE_PARTS 1
-/**
- * The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, in colour and in depth: for the textures of GL_OVR_multiview
- * and the OpenXR swapchains used with it. Cannot be combined with YORO_EDGES_MULTISAMPLE.
- */
-#define YORO_GL_SOURCE_LAYERS 2
-
-/**
- * The kind of warp that a context is created for.
- */
-typedef uint32_t YoroWarpKind;
-/**
- * Between two parallel eyes, with a YoroWarp.
- */
-#define YORO_WARP_KIND_EYES 0
-/**
- * To a view in any pose near the rendered one, with a YoroPoseWarp. Only with YORO_EDGES_HARD and without a history.
- * If both views are parallel eyes, YORO_WARP_KIND_EYES gives the same image and is faster.
- */
-#define YORO_WARP_KIND_POSE 1
-
-/**
  * The options of a context for OpenGL.
  */
 typedef struct {
@@ -1146,10 +1043,6 @@ typedef struct {
    * sizeof(YoroGlInfo).
    */
   uint32_t struct_size;
-  /**
-   * Must be 0. Earlier versions chose a pipeline here.
-   */
-  uint32_t reserved;
   /**
    * YORO_OUTPUT_ bits.
    */
@@ -1164,18 +1057,6 @@ typedef struct {
    */
   uint32_t check;
   /**
-   * The kind of source images. 0 is YORO_EDGES_HARD. YORO_EDGES_MULTISAMPLE needs OpenGL ES 3.1.
-   */
-  YoroEdges edges;
-  /**
-   * The loader of entry points.
-   */
-  YoroGlLoader loader;
-  /**
-   * Receives error messages, including those of later calls.
-   */
-  YoroMessages messages;
-  /**
    * YORO_GL_SOURCE_ bits.
    */
   YoroGlSourceFlags sources;
@@ -1185,13 +1066,21 @@ typedef struct {
    */
   uint32_t timed;
   /**
-   * 1: sources may have a history (see YoroGlImages). 0: none has.
-   */
-  uint32_t history;
-  /**
    * The kind of warp. 0 is YORO_WARP_KIND_EYES.
    */
   YoroWarpKind warp_kind;
+  /**
+   * Must be 0.
+   */
+  uint32_t reserved;
+  /**
+   * The loader of entry points.
+   */
+  YoroGlLoader loader;
+  /**
+   * Receives error messages, including those of later calls.
+   */
+  YoroMessages messages;
 } YoroGlInfo;
 
 /**
@@ -1205,13 +1094,13 @@ typedef struct {
   /**
    * Colour of the rendered eye: name of a GL_TEXTURE_2D of the source's size in any filterable format (another
    * target or size with YORO_GL_SOURCE_ bits). All four channels are carried over, in any encoding. Texture filters
-   * and samplers have no effect. With edges other than YORO_EDGES_HARD it is the resolved image, with values between
-   * 0 and 1.
+   * and samplers have no effect. Of a multisampled image, give the resolved one.
    */
   uint32_t color_texture;
   /**
    * Depth of the rendered eye: name of a GL_TEXTURE_2D of the same size with a depth, depth-stencil (sampled as
-   * depth) or red float format. With YORO_EDGES_MULTISAMPLE, a GL_TEXTURE_2D_MULTISAMPLE of 2 or 4 samples.
+   * depth) or red float format. Of a multisampled image, give the depth of each pixel's nearest sample. Averaged
+   * depth belongs to no surface, and causes halos.
    */
   uint32_t depth_texture;
   /**
@@ -1227,11 +1116,6 @@ typedef struct {
    * First row of the synthesized image in the framebuffer, counted from the bottom.
    */
   uint32_t y;
-  /**
-   * With YORO_EDGES_MULTISAMPLE, the name of the GL_TEXTURE_2D_MULTISAMPLE that color_texture was resolved from, or
-   * 0 if it no longer exists. Otherwise 0.
-   */
-  uint32_t sample_color_texture;
   /**
    * First column of the rendered part in its textures. This field and the next three are for YORO_GL_SOURCE_PARTS,
    * and otherwise 0.
@@ -1254,20 +1138,6 @@ typedef struct {
    * framebuffer with glFramebufferTextureLayer.
    */
   uint32_t layer;
-  /**
-   * The history, for contexts with `history`; otherwise 0. The name of a GL_TEXTURE_2D of any size with the colour
-   * of a rendered image of the synthesized eye, from this frame or earlier ones. Disocclusions are filled from it.
-   * It must show only what the source shows, and nothing that is drawn over both eyes after synthesis.
-   */
-  uint32_t history_color_texture;
-  /**
-   * The depth of that image, of the same size, with one value per pixel and the planes and encoding of the source.
-   */
-  uint32_t history_depth_texture;
-  /**
-   * The views of the history's strips. NULL: the history is not used.
-   */
-  const YoroStrips *strips;
 } YoroGlImages;
 
 #ifdef __cplusplus
@@ -1414,19 +1284,6 @@ YoroResult yoro_chooser_scene_changed(YoroChooser *chooser);
 void yoro_chooser_destroy(YoroChooser *chooser);
 
 /**
- * Computes where the strips of a history show the surfaces of a synthesized image.
- *
- * Call it from any thread, without a context. It allocates and keeps nothing.
- *
- * @param history     The strips.
- * @param synthesized The image to synthesize: YoroViews' `synthesized` of this frame.
- * @param strips      Receives the relation.
- * @pre The pointers point to structures, `history` to one of the size that it states.
- * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
- */
-YoroResult yoro_strips(const YoroHistory *history, const YoroView *synthesized, YoroStrips *strips);
-
-/**
  * Computes the mapping of pixels from a rendered view to one in any pose near it.
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
@@ -1471,8 +1328,7 @@ YoroResult yoro_gl_create(const YoroGlInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes of GPU memory the buffers of a context will take, computed from its edges and the sizes of a
- * frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
+ * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes of a frame. Drivers add padding. For an existing context, call yoro_capabilities. Fails for YORO_WARP_KIND_POSE, whose
  * buffers take 16 bytes for each 16 x 8 pixels of the source and of the target.
  *
  * Call it from any thread. It needs neither a loader nor a GL context.
@@ -1619,13 +1475,14 @@ typedef struct {
    */
   uint32_t max_target_height;
   /**
-   * The kind of source images. 0 is YORO_EDGES_HARD.
+   * For yoro_times: the number of frames after which the times of a frame are returned, at least the number of
+   * frames in flight. 0: nothing is measured.
    */
-  YoroEdges edges;
+  uint32_t timed_frames;
   /**
-   * With YORO_EDGES_MULTISAMPLE, the number of samples in each pixel of a source's depth: 2 or 4. Otherwise ignored.
+   * The kind of warp. 0 is YORO_WARP_KIND_EYES.
    */
-  uint32_t samples;
+  YoroWarpKind warp_kind;
   /**
    * Must be 0.
    */
@@ -1638,23 +1495,6 @@ typedef struct {
    * Receives error messages, including those of later calls.
    */
   YoroMessages messages;
-  /**
-   * For yoro_times: the number of frames after which the times of a frame are returned, at least the number of
-   * frames in flight. 0: nothing is measured.
-   */
-  uint32_t timed_frames;
-  /**
-   * 1: sources may have a history (see YoroVkSource). 0: none has.
-   */
-  uint32_t history;
-  /**
-   * The kind of warp. 0 is YORO_WARP_KIND_EYES.
-   */
-  YoroWarpKind warp_kind;
-  /**
-   * Must be 0.
-   */
-  uint32_t reserved_too;
 } YoroVkInfo;
 
 /**
@@ -1677,7 +1517,7 @@ typedef struct {
 } YoroVkState;
 
 /**
- * One layer of a 2-D image: mip level 0, without multisampling unless stated otherwise.
+ * One layer of a 2-D image: mip level 0, without multisampling.
  */
 typedef struct {
   /**
@@ -1724,38 +1564,16 @@ typedef struct {
    */
   uint32_t reserved;
   /**
-   * Colour of the rendered eye, in any filterable format. All four channels are carried over. With edges other than
-   * YORO_EDGES_HARD this is the resolved image, with values between 0 and 1.
+   * Colour of the rendered eye, in any filterable format. All four channels are carried over. Of a
+   * multisampled image, give the resolved one.
    */
   YoroVkImage color;
   /**
    * Depth of the rendered eye: VK_FORMAT_D16_UNORM, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R16_UNORM or
-   * R32_SFLOAT. With YORO_EDGES_MULTISAMPLE it has as many samples as YoroVkInfo says.
+   * R32_SFLOAT. Of a multisampled image, give the depth of each pixel's nearest sample (VK_RESOLVE_MODE_MIN_BIT, or
+   * MAX for reversed depth). Averaged depth belongs to no surface, and causes halos.
    */
   YoroVkImage depth;
-  /**
-   * With YORO_EDGES_MULTISAMPLE, the image with as many samples that the colour was resolved from. Its image is
-   * VK_NULL_HANDLE if that no longer exists, and for all other edges.
-   */
-  YoroVkImage sample_color;
-  /**
-   * Width of the history's images in pixels, which may be any; 0 without a history.
-   */
-  uint32_t history_width;
-  /**
-   * Height of the history's images in pixels.
-   */
-  uint32_t history_height;
-  /**
-   * The history, for contexts with `history`: the colour of a rendered image of the synthesized eye, from this frame
-   * or earlier ones. Disocclusions are filled from it. It must show only what the source shows, and nothing that is
-   * drawn over both eyes after synthesis. Its image is VK_NULL_HANDLE without a history.
-   */
-  YoroVkImage history_color;
-  /**
-   * The depth of that image, with one value per pixel and the planes and encoding of the source.
-   */
-  YoroVkImage history_depth;
 } YoroVkSource;
 
 /**
@@ -1824,10 +1642,6 @@ typedef struct {
    */
   uint32_t struct_size;
   /**
-   * Must be 0.
-   */
-  uint32_t reserved;
-  /**
    * The use of the source's colour.
    */
   YoroVkUse source_color;
@@ -1836,10 +1650,6 @@ typedef struct {
    */
   YoroVkUse source_depth;
   /**
-   * The use of the source's multisampled colour.
-   */
-  YoroVkUse source_sample_color;
-  /**
    * The use of the target's colour.
    */
   YoroVkUse target_color;
@@ -1847,14 +1657,6 @@ typedef struct {
    * The use of the target's depth.
    */
   YoroVkUse target_depth;
-  /**
-   * The use of the history's colour.
-   */
-  YoroVkUse history_color;
-  /**
-   * The use of the history's depth.
-   */
-  YoroVkUse history_depth;
 } YoroVkUses;
 
 /**
@@ -1897,10 +1699,6 @@ typedef struct {
    * The uses of the images around this call, which replace those given at registration. May be NULL.
    */
   const YoroVkUses *uses;
-  /**
-   * The views of the history's strips, for sources with a history. NULL: the history is not used.
-   */
-  const YoroStrips *strips;
 } YoroVkFrame;
 
 #ifdef __cplusplus
@@ -1923,8 +1721,8 @@ YoroResult yoro_vk_create(const YoroVkInfo *info,
                           YoroContext **context);
 
 /**
- * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes, formats and edges
- * of its options. Drivers add padding. For an existing context, call yoro_capabilities.
+ * Returns how many bytes of GPU memory the buffers of a context will take, computed from the sizes in its
+ * options. Drivers add padding. For an existing context, call yoro_capabilities.
  *
  * Call it from any thread. It needs none of the handles in the options.
  *
@@ -1932,8 +1730,7 @@ YoroResult yoro_vk_create(const YoroVkInfo *info,
  * @param bytes Receives the number of bytes.
  * @return YORO_ERROR_VALUE, YORO_ERROR_NULL, YORO_ERROR_STRUCT_SIZE.
  */
-YoroResult yoro_vk_buffer_bytes(const YoroVkInfo *info,
-                                uint64_t *bytes);
+YoroResult yoro_vk_buffer_bytes(const YoroVkInfo *info, uint64_t *bytes);
 
 /**
  * Creates views and descriptors for images to read. Call it once for each set of images that you render to.
@@ -1985,7 +1782,7 @@ YoroResult yoro_vk_release_target(YoroContext *context, YoroVkTargetId id);
 
 /**
  * Records the synthesis of the other eye into a rectangle of the warp's target size, and overwrites all of it. Records
- * barriers and three draws with YORO_EDGES_HARD, four with other edges. Call it after recording the opaque objects of
+ * barriers and three draws. Call it after recording the opaque objects of
  * the rendered eye, and before transparent objects and effects that are drawn for each eye. It allocates, compiles and
  * submits nothing, and does not wait.
  *

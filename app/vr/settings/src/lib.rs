@@ -1,4 +1,4 @@
-//! The protocol between a phone and the lab: [`Settings`] in one direction, [`telemetry`] in the other.
+//! The viewer's [`Settings`], and the lines in which it reports what it measures: [`telemetry`].
 //!
 //! Settings are read from a file, from `key=value` texts or from options, and become typed values. Frames and device
 //! states become lines of text, which are read back into the same values.

@@ -1,8 +1,8 @@
 //! Depth that a render pass has resolved from samples is a source in the state in which the render pass leaves it.
 
+use crate::Setup;
 use crate::against_opengl::{Gl, assert_equal, picture, warps};
 use crate::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
-use crate::Setup;
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{Frame, Gather, ImageState, SourceImages, TargetImages};
 

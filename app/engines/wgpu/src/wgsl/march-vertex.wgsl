@@ -31,7 +31,7 @@ struct VertexOutput {
 }
 
 var<private> gl_VertexIndex_1: i32;
-@group(0) @binding(7) 
+@group(0) @binding(4) 
 var<uniform> synthesis: Synthesis;
 var<private> span_at: vec2<f32>;
 var<private> unnamed: gl_PerVertex = gl_PerVertex(vec4<f32>(0f, 0f, 0f, 1f), 1f, array<f32, 1>(), array<f32, 1>());

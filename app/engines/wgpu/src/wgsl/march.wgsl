@@ -40,13 +40,13 @@ struct Synthesis {
 
 @group(0) @binding(0) 
 var depth_map_texture: texture_2d<f32>;
-@group(0) @binding(8) 
+@group(0) @binding(5) 
 var nearest_sampler: sampler;
 @group(0) @binding(1) 
 var color_map_texture: texture_2d<f32>;
-@group(0) @binding(9) 
+@group(0) @binding(6) 
 var linear_sampler: sampler;
-@group(0) @binding(7) 
+@group(0) @binding(4) 
 var<uniform> synthesis: Synthesis;
 var<private> gl_FragCoord_1: vec4<f32>;
 @group(0) @binding(3) 
@@ -121,188 +121,167 @@ fn column_at(x: ptr<function, f32>) -> f32 {
     return _e6.x;
 }
 
-fn source_column(x_1: ptr<function, i32>) -> i32 {
-    var local_2: i32;
-
-    let _e6 = synthesis.mirrored;
-    if (_e6 != 0u) {
-        let _e10 = synthesis.source_size[0u];
-        let _e12 = (*x_1);
-        local_2 = ((_e10 - 1i) - _e12);
-    } else {
-        let _e14 = (*x_1);
-        local_2 = _e14;
-    }
-    let _e15 = local_2;
-    return _e15;
-}
-
 fn fill_spread(away_1: ptr<function, f32>) -> f32 {
     let _e4 = (*away_1);
     return (0.5f * clamp(abs(_e4), 1f, 12f));
 }
 
-fn fill_hole(hole: ptr<function, bool>, color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_2: ptr<function, f32>, depth: ptr<function, f32>, row: ptr<function, i32>) -> vec4<f32> {
+fn fill_hole(color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_1: ptr<function, f32>, depth: ptr<function, f32>) -> vec4<f32> {
     var spread: f32;
     var param_2: f32;
     var sum: vec4<f32>;
     var weights: f32;
-    var edge: i32;
-    var param_3: i32;
     var i: i32;
     var distance_: f32;
     var below: vec2<f32>;
+    var param_3: f32;
     var param_4: f32;
-    var param_5: f32;
     var above: vec2<f32>;
+    var param_5: f32;
     var param_6: f32;
-    var param_7: f32;
     var depths: vec2<f32>;
+    var param_7: vec2<f32>;
     var param_8: vec2<f32>;
-    var param_9: vec2<f32>;
-    var below_color: vec4<f32>;
-    var param_10: vec2<f32>;
-    var above_color: vec4<f32>;
-    var param_11: vec2<f32>;
     var weight: vec2<f32>;
+    var param_9: vec2<f32>;
+    var param_10: vec2<f32>;
 
-    let _e36 = (*away_2);
-    param_2 = _e36;
-    let _e37 = fill_spread((&param_2));
-    spread = _e37;
-    let _e38 = (*color);
-    sum = (_e38 * 2f);
+    let _e30 = (*away_2);
+    param_2 = _e30;
+    let _e31 = fill_spread((&param_2));
+    spread = _e31;
+    let _e32 = (*color);
+    sum = (_e32 * 2f);
     weights = 2f;
-    let _e40 = (*x_2);
-    param_3 = i32(_e40);
-    let _e42 = source_column((&param_3));
-    edge = _e42;
-    let _e43 = (*hole);
-    i = select(3i, 1i, _e43);
+    i = 1i;
     loop {
-        let _e45 = i;
-        if (_e45 <= 2i) {
-            let _e47 = i;
-            let _e49 = spread;
-            distance_ = round((f32(_e47) * _e49));
-            let _e52 = (*x_2);
-            param_4 = _e52;
-            let _e53 = column_at((&param_4));
-            let _e54 = distance_;
-            param_5 = -(_e54);
-            let _e56 = row_at((&param_5));
-            below = vec2<f32>(_e53, _e56);
-            let _e58 = (*x_2);
-            param_6 = _e58;
-            let _e59 = column_at((&param_6));
-            let _e60 = distance_;
-            param_7 = _e60;
-            let _e61 = row_at((&param_7));
-            above = vec2<f32>(_e59, _e61);
-            let _e63 = below;
-            param_8 = _e63;
-            let _e64 = depth_sample((&param_8));
-            let _e65 = above;
-            param_9 = _e65;
-            let _e66 = depth_sample((&param_9));
-            depths = vec2<f32>(_e64, _e66);
-            let _e68 = below;
-            param_10 = _e68;
-            let _e69 = color_sample((&param_10));
-            below_color = _e69;
-            let _e70 = above;
-            param_11 = _e70;
-            let _e71 = color_sample((&param_11));
-            above_color = _e71;
-            let _e74 = synthesis.law[1u];
-            let _e75 = depths;
-            let _e76 = (*depth);
-            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e75 - vec2(_e76)) * _e74) <= vec2<f32>(1f, 1f)));
-            let _e83 = weight[0u];
-            let _e84 = below_color;
-            let _e87 = weight[1u];
-            let _e88 = above_color;
-            let _e91 = sum;
-            sum = (_e91 + ((_e84 * _e83) + (_e88 * _e87)));
-            let _e94 = weight[0u];
-            let _e96 = weight[1u];
-            let _e98 = weights;
-            weights = (_e98 + (_e94 + _e96));
+        let _e34 = i;
+        if (_e34 <= 2i) {
+            let _e36 = i;
+            let _e38 = spread;
+            distance_ = round((f32(_e36) * _e38));
+            let _e41 = (*x_1);
+            param_3 = _e41;
+            let _e42 = column_at((&param_3));
+            let _e43 = distance_;
+            param_4 = -(_e43);
+            let _e45 = row_at((&param_4));
+            below = vec2<f32>(_e42, _e45);
+            let _e47 = (*x_1);
+            param_5 = _e47;
+            let _e48 = column_at((&param_5));
+            let _e49 = distance_;
+            param_6 = _e49;
+            let _e50 = row_at((&param_6));
+            above = vec2<f32>(_e48, _e50);
+            let _e52 = below;
+            param_7 = _e52;
+            let _e53 = depth_sample((&param_7));
+            let _e54 = above;
+            param_8 = _e54;
+            let _e55 = depth_sample((&param_8));
+            depths = vec2<f32>(_e53, _e55);
+            let _e59 = synthesis.law[1u];
+            let _e60 = depths;
+            let _e61 = (*depth);
+            weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e60 - vec2(_e61)) * _e59) <= vec2<f32>(1f, 1f)));
+            let _e68 = weight[0u];
+            let _e69 = below;
+            param_9 = _e69;
+            let _e70 = color_sample((&param_9));
+            let _e73 = weight[1u];
+            let _e74 = above;
+            param_10 = _e74;
+            let _e75 = color_sample((&param_10));
+            let _e78 = sum;
+            sum = (_e78 + ((_e70 * _e68) + (_e75 * _e73)));
+            let _e81 = weight[0u];
+            let _e83 = weight[1u];
+            let _e85 = weights;
+            weights = (_e85 + (_e81 + _e83));
             continue;
         } else {
             break;
         }
         continuing {
-            let _e100 = i;
-            i = (_e100 + 1i);
+            let _e87 = i;
+            i = (_e87 + 1i);
         }
     }
-    let _e102 = sum;
-    let _e103 = weights;
-    return (_e102 / vec4(_e103));
+    let _e89 = sum;
+    let _e90 = weights;
+    return (_e89 / vec4(_e90));
 }
 
-fn depth_pair(x_3: ptr<function, f32>) -> vec2<f32> {
-    var row_1: f32;
+fn depth_gather(place_2: ptr<function, vec2<f32>>) -> vec4<f32> {
+    let _e3 = (*place_2);
+    let _e4 = textureGather(0, depth_map_texture, nearest_sampler, _e3);
+    return _e4;
+}
+
+fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
+    var row: f32;
+    var param_11: f32;
     var param_12: f32;
-    var param_13: f32;
-    var param_14: vec2<f32>;
-    var param_15: f32;
-    var param_16: vec2<f32>;
+    var param_13: vec2<f32>;
+    var param_14: f32;
+    var param_15: vec2<f32>;
     var quad: vec4<f32>;
-    var param_17: f32;
-    var local_3: vec2<f32>;
+    var param_16: f32;
+    var param_17: vec2<f32>;
+    var local_2: vec2<f32>;
 
     if true {
-        param_12 = 0f;
-        let _e20 = row_at((&param_12));
-        row_1 = _e20;
-        let _e21 = (*x_3);
-        param_13 = _e21;
-        let _e22 = column_at((&param_13));
-        let _e23 = row_1;
-        param_14 = vec2<f32>(_e22, _e23);
-        let _e25 = depth_sample((&param_14));
-        let _e26 = (*x_3);
-        param_15 = (_e26 + 1f);
-        let _e28 = column_at((&param_15));
-        let _e29 = row_1;
-        param_16 = vec2<f32>(_e28, _e29);
-        let _e31 = depth_sample((&param_16));
-        return vec2<f32>(_e25, _e31);
+        param_11 = 0f;
+        let _e19 = row_at((&param_11));
+        row = _e19;
+        let _e20 = (*x_2);
+        param_12 = _e20;
+        let _e21 = column_at((&param_12));
+        let _e22 = row;
+        param_13 = vec2<f32>(_e21, _e22);
+        let _e24 = depth_sample((&param_13));
+        let _e25 = (*x_2);
+        param_14 = (_e25 + 1f);
+        let _e27 = column_at((&param_14));
+        let _e28 = row;
+        param_15 = vec2<f32>(_e27, _e28);
+        let _e30 = depth_sample((&param_15));
+        return vec2<f32>(_e24, _e30);
     }
-    let _e35 = synthesis.columns[0u];
-    let _e36 = (*x_3);
-    let _e41 = synthesis.columns[1u];
-    param_17 = 0.25f;
-    let _e43 = row_at((&param_17));
-    let _e45 = textureGather(0, depth_map_texture, nearest_sampler, vec2<f32>(((_e35 * (_e36 + 1.25f)) + _e41), _e43));
-    quad = _e45;
-    let _e47 = synthesis.mirrored;
-    if (_e47 != 0u) {
-        let _e49 = quad;
-        local_3 = _e49.zw;
+    let _e34 = synthesis.columns[0u];
+    let _e35 = (*x_2);
+    let _e40 = synthesis.columns[1u];
+    param_16 = 0.25f;
+    let _e42 = row_at((&param_16));
+    param_17 = vec2<f32>(((_e34 * (_e35 + 1.25f)) + _e40), _e42);
+    let _e44 = depth_gather((&param_17));
+    quad = _e44;
+    let _e46 = synthesis.mirrored;
+    if (_e46 != 0u) {
+        let _e48 = quad;
+        local_2 = _e48.zw;
     } else {
-        let _e51 = quad;
-        local_3 = _e51.wz;
+        let _e50 = quad;
+        local_2 = _e50.wz;
     }
-    let _e53 = local_3;
-    return _e53;
+    let _e52 = local_2;
+    return _e52;
 }
 
-fn search_at(x_4: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
+fn search_at(x_3: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
     var depths_1: vec2<f32>;
     var param_18: f32;
     var shift: f32;
 
-    let _e9 = (*x_4);
+    let _e9 = (*x_3);
     param_18 = _e9;
     let _e10 = depth_pair((&param_18));
     depths_1 = _e10;
-    let _e11 = (*x_4);
+    let _e11 = (*x_3);
     let _e12 = (*origin);
     shift = (_e11 - _e12);
-    let _e14 = (*x_4);
+    let _e14 = (*x_3);
     let _e15 = depths_1;
     let _e16 = shift;
     let _e19 = synthesis.law[1u];
@@ -313,57 +292,65 @@ fn search_at(x_4: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
     return Search(_e14, _e15, (_e16 + (_e19 * _e21)), ((_e24 + 1f) + (_e28 * _e30)));
 }
 
-fn segment_end(x_5: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: ptr<function, bool>, shift_1: ptr<function, u32>) -> f32 {
+fn lowest_bit(bits: ptr<function, u32>) -> f32 {
+    let _e1 = (*bits);
+    return f32(firstTrailingBit(_e1));
+}
+
+fn segment_end(x_4: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: ptr<function, bool>, shift_1: ptr<function, u32>) -> f32 {
     var column: u32;
     var within: u32;
     var tile: vec4<u32>;
     var marks: u32;
-    var local_4: u32;
+    var local_3: u32;
+    var param_19: u32;
 
-    let _e18 = (*x_5);
-    column = u32(_e18);
-    let _e20 = column;
-    within = (_e20 % 16u);
-    let _e22 = column;
-    let _e25 = (*tile_row);
-    let _e27 = textureLoad(tile_map_texture, vec2<i32>(bitcast<i32>((_e22 / 16u)), _e25), 0i);
-    tile = _e27;
-    let _e28 = (*below_1);
-    if _e28 {
-        let _e30 = tile[1u];
-        local_4 = _e30;
+    let _e19 = (*x_4);
+    column = u32(_e19);
+    let _e21 = column;
+    within = (_e21 % 16u);
+    let _e23 = column;
+    let _e26 = (*tile_row);
+    let _e28 = textureLoad(tile_map_texture, vec2<i32>(bitcast<i32>((_e23 / 16u)), _e26), 0i);
+    tile = _e28;
+    let _e29 = (*below_1);
+    if _e29 {
+        let _e31 = tile[1u];
+        local_3 = _e31;
     } else {
-        let _e32 = tile[3u];
-        local_4 = _e32;
+        let _e33 = tile[3u];
+        local_3 = _e33;
     }
-    let _e33 = local_4;
-    let _e34 = (*shift_1);
-    let _e35 = within;
-    marks = (_e33 >> bitcast<u32>((_e34 + _e35)));
-    let _e40 = tile[2u];
-    let _e43 = marks;
-    marks = select(0u, _e43, (_e40 == bitcast<u32>(9f)));
-    let _e45 = (*x_5);
-    let _e46 = marks;
-    let _e47 = within;
-    return (_e45 + f32(firstTrailingBit((_e46 | (65536u >> bitcast<u32>(_e47))))));
+    let _e34 = local_3;
+    let _e35 = (*shift_1);
+    let _e36 = within;
+    marks = (_e34 >> bitcast<u32>((_e35 + _e36)));
+    let _e41 = tile[2u];
+    let _e44 = marks;
+    marks = select(0u, _e44, (_e41 == bitcast<u32>(9f)));
+    let _e46 = (*x_4);
+    let _e47 = marks;
+    let _e48 = within;
+    param_19 = (_e47 | (65536u >> bitcast<u32>(_e48)));
+    let _e52 = lowest_bit((&param_19));
+    return (_e46 + _e52);
 }
 
 fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     var jump: bool;
     var torn: bool;
     var rim: bool;
+    var local_4: f32;
     var local_5: f32;
     var local_6: f32;
-    var local_7: f32;
     var farther: bool;
+    var local_7: f32;
     var local_8: f32;
-    var local_9: f32;
-    var phi_594_: bool;
-    var phi_595_: bool;
-    var phi_596_: bool;
-    var phi_643_: bool;
-    var phi_676_: bool;
+    var phi_577_: bool;
+    var phi_578_: bool;
+    var phi_579_: bool;
+    var phi_626_: bool;
+    var phi_659_: bool;
 
     let _e19 = (*at_1).b;
     jump = (_e19 > 0f);
@@ -372,543 +359,538 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     torn = ((_e22 - _e24) >= 2f);
     let _e28 = (*beside).rim;
     let _e29 = (_e28 < 0f);
-    phi_596_ = _e29;
+    phi_579_ = _e29;
     if _e29 {
         let _e30 = jump;
         let _e31 = !(_e30);
-        phi_595_ = _e31;
+        phi_578_ = _e31;
         if !(_e31) {
             let _e33 = torn;
-            phi_594_ = _e33;
+            phi_577_ = _e33;
             if _e33 {
                 let _e35 = (*at_1).b;
-                phi_594_ = (_e35 < 1f);
+                phi_577_ = (_e35 < 1f);
             }
-            let _e38 = phi_594_;
-            phi_595_ = _e38;
+            let _e38 = phi_577_;
+            phi_578_ = _e38;
         }
-        let _e40 = phi_595_;
-        phi_596_ = _e40;
+        let _e40 = phi_578_;
+        phi_579_ = _e40;
     }
-    let _e42 = phi_596_;
+    let _e42 = phi_579_;
     rim = _e42;
     let _e43 = rim;
     if _e43 {
         let _e45 = (*at_1).x;
         let _e46 = jump;
-        local_5 = (_e45 + select(0f, 1f, _e46));
+        local_4 = (_e45 + select(0f, 1f, _e46));
     } else {
         let _e50 = (*beside).rim;
-        local_5 = _e50;
+        local_4 = _e50;
     }
-    let _e51 = local_5;
+    let _e51 = local_4;
     (*beside).rim = _e51;
     let _e53 = rim;
     if _e53 {
         let _e54 = jump;
         if _e54 {
             let _e57 = (*at_1).depths[1u];
-            local_7 = _e57;
+            local_6 = _e57;
         } else {
             let _e60 = (*at_1).depths[0u];
-            local_7 = _e60;
+            local_6 = _e60;
         }
-        let _e61 = local_7;
-        local_6 = _e61;
+        let _e61 = local_6;
+        local_5 = _e61;
     } else {
         let _e63 = (*beside).rim_depth;
-        local_6 = _e63;
+        local_5 = _e63;
     }
-    let _e64 = local_6;
+    let _e64 = local_5;
     (*beside).rim_depth = _e64;
     let _e66 = jump;
-    phi_643_ = _e66;
+    phi_626_ = _e66;
     if _e66 {
         let _e69 = synthesis.law[1u];
         let _e72 = (*at_1).depths[0u];
         let _e74 = (*beside).edge_depth;
-        phi_643_ = ((_e69 * (_e72 - _e74)) < 0f);
+        phi_626_ = ((_e69 * (_e72 - _e74)) < 0f);
     }
-    let _e79 = phi_643_;
+    let _e79 = phi_626_;
     farther = _e79;
     let _e80 = farther;
     if _e80 {
         let _e82 = (*at_1).x;
-        local_8 = _e82;
+        local_7 = _e82;
     } else {
         let _e84 = (*beside).edge;
-        local_8 = _e84;
+        local_7 = _e84;
     }
-    let _e85 = local_8;
+    let _e85 = local_7;
     (*beside).edge = _e85;
     let _e87 = farther;
     if _e87 {
         let _e90 = (*at_1).depths[0u];
-        local_9 = _e90;
+        local_8 = _e90;
     } else {
         let _e92 = (*beside).edge_depth;
-        local_9 = _e92;
+        local_8 = _e92;
     }
-    let _e93 = local_9;
+    let _e93 = local_8;
     (*beside).edge_depth = _e93;
     let _e95 = jump;
-    phi_676_ = _e95;
+    phi_659_ = _e95;
     if _e95 {
         let _e97 = (*at_1).a;
         let _e99 = torn;
-        phi_676_ = ((_e97 > -0.5f) || !(_e99));
+        phi_659_ = ((_e97 > -0.5f) || !(_e99));
     }
-    let _e103 = phi_676_;
+    let _e103 = phi_659_;
     return _e103;
 }
 
 fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
-    var phi_507_: bool;
-    var phi_508_: bool;
+    var phi_490_: bool;
+    var phi_491_: bool;
 
     let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_508_ = _e5;
+    phi_491_ = _e5;
     if _e5 {
         let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_507_ = _e7;
+        phi_490_ = _e7;
         if !(_e7) {
             let _e9 = (*b);
             let _e11 = (*a);
-            phi_507_ = (max(_e9, -1f) < _e11);
+            phi_490_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_507_;
-        phi_508_ = _e14;
+        let _e14 = phi_490_;
+        phi_491_ = _e14;
     }
-    let _e16 = phi_508_;
+    let _e16 = phi_491_;
     return _e16;
 }
 
-fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<function, f32>, row_2: ptr<function, i32>, surface: ptr<function, Surface>) -> vec4<f32> {
+fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<function, f32>, row_1: ptr<function, i32>, surface: ptr<function, Surface>) -> vec4<f32> {
     var border: f32;
     var outside: bool;
     var beside_1: Beside;
-    var local_10: f32;
+    var local_9: f32;
     var found: bool;
-    var param_19: f32;
     var param_20: f32;
-    var param_21: Beside;
-    var param_22: Search;
-    var x_6: f32;
+    var param_21: f32;
+    var param_22: Beside;
+    var param_23: Search;
+    var x_5: f32;
     var a_1: f32;
     var tile_row_1: i32;
     var below_2: bool;
     var shift_2: u32;
     var crosses: bool;
-    var param_23: f32;
-    var param_24: i32;
-    var param_25: bool;
-    var param_26: u32;
-    var param_27: f32;
+    var param_24: f32;
+    var param_25: i32;
+    var param_26: bool;
+    var param_27: u32;
     var param_28: f32;
     var param_29: f32;
     var param_30: f32;
-    var param_31: Beside;
-    var param_32: Search;
+    var param_31: f32;
+    var param_32: Beside;
+    var param_33: Search;
+    var local_10: f32;
     var local_11: f32;
-    var local_12: f32;
     var last: f32;
     var b_1: f32;
-    var param_33: f32;
     var param_34: f32;
+    var param_35: f32;
     var behind: bool;
+    var local_12: f32;
     var local_13: f32;
     var local_14: f32;
     var local_15: f32;
-    var local_16: f32;
     var own: bool;
-    var local_17: f32;
+    var local_16: f32;
     var t: f32;
+    var local_17: f32;
     var local_18: f32;
-    var local_19: f32;
     var away_3: f32;
     var color_1: vec4<f32>;
-    var param_35: f32;
     var param_36: f32;
-    var param_37: vec2<f32>;
-    var param_38: bool;
+    var param_37: f32;
+    var param_38: vec2<f32>;
     var param_39: vec4<f32>;
     var param_40: f32;
     var param_41: f32;
     var param_42: f32;
-    var param_43: i32;
     var coverage: f32;
+    var param_43: f32;
     var param_44: f32;
-    var param_45: f32;
-    var param_46: vec2<f32>;
+    var param_45: vec2<f32>;
+    var phi_708_: bool;
+    var phi_715_: bool;
     var phi_725_: bool;
-    var phi_732_: bool;
-    var phi_742_: bool;
-    var phi_812_: bool;
-    var phi_823_: bool;
-    var phi_833_: bool;
-    var phi_907_: bool;
-    var phi_957_: bool;
-    var phi_980_: bool;
-    var phi_1031_: bool;
-    var phi_1047_: bool;
+    var phi_795_: bool;
+    var phi_806_: bool;
+    var phi_816_: bool;
+    var phi_890_: bool;
+    var phi_940_: bool;
+    var phi_963_: bool;
+    var phi_1014_: bool;
+    var phi_1030_: bool;
 
-    let _e79 = (*at_2).a;
-    let _e81 = (*at_2).x;
-    border = (_e79 - _e81);
-    let _e84 = (*at_2).x;
-    let _e86 = border;
-    outside = ((_e84 <= 0f) && (_e86 > 0f));
-    let _e89 = outside;
-    let _e90 = border;
-    let _e93 = (*end);
-    (*end) = select(_e93, 0f, (_e89 && (_e90 < 0.5f)));
-    let _e95 = outside;
-    beside_1.edge = select(-1f, 0f, _e95);
-    let _e98 = outside;
-    if _e98 {
-        let _e101 = (*at_2).depths[0u];
-        local_10 = _e101;
+    let _e77 = (*at_2).a;
+    let _e79 = (*at_2).x;
+    border = (_e77 - _e79);
+    let _e82 = (*at_2).x;
+    let _e84 = border;
+    outside = ((_e82 <= 0f) && (_e84 > 0f));
+    let _e87 = outside;
+    let _e88 = border;
+    let _e91 = (*end);
+    (*end) = select(_e91, 0f, (_e87 && (_e88 < 0.5f)));
+    let _e93 = outside;
+    beside_1.edge = select(-1f, 0f, _e93);
+    let _e96 = outside;
+    if _e96 {
+        let _e99 = (*at_2).depths[0u];
+        local_9 = _e99;
     } else {
-        let _e104 = synthesis.law[1u];
-        local_10 = select(1000000000f, -1000000000f, (_e104 < 0f));
+        let _e102 = synthesis.law[1u];
+        local_9 = select(1000000000f, -1000000000f, (_e102 < 0f));
     }
-    let _e107 = local_10;
-    beside_1.edge_depth = _e107;
+    let _e105 = local_9;
+    beside_1.edge_depth = _e105;
     beside_1.rim = -1f;
     beside_1.rim_depth = 0f;
     found = false;
-    phi_725_ = true;
+    phi_708_ = true;
     if true {
-        let _e112 = (*at_2).x;
-        phi_725_ = (_e112 >= 0f);
+        let _e110 = (*at_2).x;
+        phi_708_ = (_e110 >= 0f);
     }
-    let _e115 = phi_725_;
-    phi_732_ = _e115;
-    if _e115 {
-        let _e117 = (*at_2).x;
-        let _e118 = (*end);
-        phi_732_ = (_e117 < _e118);
+    let _e113 = phi_708_;
+    phi_715_ = _e113;
+    if _e113 {
+        let _e115 = (*at_2).x;
+        let _e116 = (*end);
+        phi_715_ = (_e115 < _e116);
     }
-    let _e121 = phi_732_;
-    phi_742_ = _e121;
-    if _e121 {
-        let _e123 = (*at_2).a;
-        param_19 = _e123;
-        let _e125 = (*at_2).b;
-        param_20 = _e125;
-        let _e126 = is_event((&param_19), (&param_20));
-        phi_742_ = _e126;
+    let _e119 = phi_715_;
+    phi_725_ = _e119;
+    if _e119 {
+        let _e121 = (*at_2).a;
+        param_20 = _e121;
+        let _e123 = (*at_2).b;
+        param_21 = _e123;
+        let _e124 = is_event((&param_20), (&param_21));
+        phi_725_ = _e124;
     }
-    let _e128 = phi_742_;
-    if _e128 {
-        let _e129 = beside_1;
-        param_21 = _e129;
-        let _e130 = (*at_2);
-        param_22 = _e130;
-        let _e131 = meet((&param_21), (&param_22));
-        let _e132 = param_21;
-        beside_1 = _e132;
-        found = _e131;
+    let _e126 = phi_725_;
+    if _e126 {
+        let _e127 = beside_1;
+        param_22 = _e127;
+        let _e128 = (*at_2);
+        param_23 = _e128;
+        let _e129 = meet((&param_22), (&param_23));
+        let _e130 = param_22;
+        beside_1 = _e130;
+        found = _e129;
     }
-    let _e134 = (*at_2).x;
-    x_6 = max((_e134 + 1f), 0f);
-    let _e138 = (*at_2).b;
-    let _e139 = x_6;
-    let _e141 = (*at_2).x;
-    a_1 = (_e138 + ((_e139 - _e141) - 1f));
-    let _e145 = (*row_2);
-    tile_row_1 = (_e145 / 8i);
-    let _e147 = (*row_2);
-    below_2 = ((_e147 & 4i) == 0i);
-    let _e150 = (*row_2);
-    shift_2 = (bitcast<u32>((_e150 & 2i)) << bitcast<u32>(3i));
+    let _e132 = (*at_2).x;
+    x_5 = max((_e132 + 1f), 0f);
+    let _e136 = (*at_2).b;
+    let _e137 = x_5;
+    let _e139 = (*at_2).x;
+    a_1 = (_e136 + ((_e137 - _e139) - 1f));
+    let _e143 = (*row_1);
+    tile_row_1 = (_e143 / 8i);
+    let _e145 = (*row_1);
+    below_2 = ((_e145 & 4i) == 0i);
+    let _e148 = (*row_1);
+    shift_2 = (bitcast<u32>((_e148 & 2i)) << bitcast<u32>(3i));
     crosses = false;
     loop {
-        let _e155 = x_6;
-        let _e156 = (*end);
-        let _e158 = found;
-        if ((_e155 <= _e156) && !(_e158)) {
-            let _e161 = x_6;
-            param_23 = _e161;
-            let _e162 = tile_row_1;
-            param_24 = _e162;
-            let _e163 = below_2;
-            param_25 = _e163;
-            let _e164 = shift_2;
-            param_26 = _e164;
-            let _e165 = segment_end((&param_23), (&param_24), (&param_25), (&param_26));
-            let _e166 = (*end);
-            param_27 = min(_e165, _e166);
-            let _e168 = (*origin_1);
-            param_28 = _e168;
-            let _e169 = search_at((&param_27), (&param_28));
-            (*at_2) = _e169;
-            let _e170 = a_1;
-            let _e171 = (_e170 <= 0f);
-            phi_812_ = _e171;
-            if _e171 {
-                let _e173 = (*at_2).a;
-                phi_812_ = (_e173 > 0f);
+        let _e153 = x_5;
+        let _e154 = (*end);
+        let _e156 = found;
+        if ((_e153 <= _e154) && !(_e156)) {
+            let _e159 = x_5;
+            param_24 = _e159;
+            let _e160 = tile_row_1;
+            param_25 = _e160;
+            let _e161 = below_2;
+            param_26 = _e161;
+            let _e162 = shift_2;
+            param_27 = _e162;
+            let _e163 = segment_end((&param_24), (&param_25), (&param_26), (&param_27));
+            let _e164 = (*end);
+            param_28 = min(_e163, _e164);
+            let _e166 = (*origin_1);
+            param_29 = _e166;
+            let _e167 = search_at((&param_28), (&param_29));
+            (*at_2) = _e167;
+            let _e168 = a_1;
+            let _e169 = (_e168 <= 0f);
+            phi_795_ = _e169;
+            if _e169 {
+                let _e171 = (*at_2).a;
+                phi_795_ = (_e171 > 0f);
             }
-            let _e176 = phi_812_;
-            crosses = _e176;
-            let _e177 = crosses;
-            found = _e177;
-            let _e178 = crosses;
-            let _e180 = (true && !(_e178));
-            phi_823_ = _e180;
-            if _e180 {
-                let _e182 = (*at_2).x;
-                let _e183 = (*end);
-                phi_823_ = (_e182 < _e183);
+            let _e174 = phi_795_;
+            crosses = _e174;
+            let _e175 = crosses;
+            found = _e175;
+            let _e176 = crosses;
+            let _e178 = (true && !(_e176));
+            phi_806_ = _e178;
+            if _e178 {
+                let _e180 = (*at_2).x;
+                let _e181 = (*end);
+                phi_806_ = (_e180 < _e181);
             }
-            let _e186 = phi_823_;
-            phi_833_ = _e186;
-            if _e186 {
-                let _e188 = (*at_2).a;
-                param_29 = _e188;
-                let _e190 = (*at_2).b;
-                param_30 = _e190;
-                let _e191 = is_event((&param_29), (&param_30));
-                phi_833_ = _e191;
+            let _e184 = phi_806_;
+            phi_816_ = _e184;
+            if _e184 {
+                let _e186 = (*at_2).a;
+                param_30 = _e186;
+                let _e188 = (*at_2).b;
+                param_31 = _e188;
+                let _e189 = is_event((&param_30), (&param_31));
+                phi_816_ = _e189;
             }
-            let _e193 = phi_833_;
-            if _e193 {
-                let _e194 = beside_1;
-                param_31 = _e194;
-                let _e195 = (*at_2);
-                param_32 = _e195;
-                let _e196 = meet((&param_31), (&param_32));
-                let _e197 = param_31;
-                beside_1 = _e197;
-                found = _e196;
+            let _e191 = phi_816_;
+            if _e191 {
+                let _e192 = beside_1;
+                param_32 = _e192;
+                let _e193 = (*at_2);
+                param_33 = _e193;
+                let _e194 = meet((&param_32), (&param_33));
+                let _e195 = param_32;
+                beside_1 = _e195;
+                found = _e194;
             }
-            let _e198 = found;
-            if _e198 {
-                let _e199 = x_6;
-                local_11 = _e199;
+            let _e196 = found;
+            if _e196 {
+                let _e197 = x_5;
+                local_10 = _e197;
             } else {
-                let _e201 = (*at_2).x;
-                local_11 = (_e201 + 1f);
+                let _e199 = (*at_2).x;
+                local_10 = (_e199 + 1f);
             }
-            let _e203 = local_11;
-            x_6 = _e203;
-            let _e204 = found;
-            if _e204 {
-                let _e205 = a_1;
-                local_12 = _e205;
+            let _e201 = local_10;
+            x_5 = _e201;
+            let _e202 = found;
+            if _e202 {
+                let _e203 = a_1;
+                local_11 = _e203;
             } else {
-                let _e207 = (*at_2).b;
-                local_12 = _e207;
+                let _e205 = (*at_2).b;
+                local_11 = _e205;
             }
-            let _e208 = local_12;
-            a_1 = _e208;
+            let _e206 = local_11;
+            a_1 = _e206;
             continue;
         } else {
             break;
         }
     }
-    let _e210 = (*at_2).x;
-    last = _e210;
-    let _e212 = (*at_2).a;
-    b_1 = _e212;
+    let _e208 = (*at_2).x;
+    last = _e208;
+    let _e210 = (*at_2).a;
+    b_1 = _e210;
     loop {
-        let _e213 = crosses;
-        let _e215 = x_6;
-        let _e216 = last;
-        if ((true && _e213) && (_e215 < _e216)) {
-            let _e219 = x_6;
-            let _e220 = last;
-            let _e221 = x_6;
+        let _e211 = crosses;
+        let _e213 = x_5;
+        let _e214 = last;
+        if ((true && _e211) && (_e213 < _e214)) {
+            let _e217 = x_5;
+            let _e218 = last;
+            let _e219 = x_5;
+            let _e221 = a_1;
             let _e223 = a_1;
-            let _e225 = a_1;
-            let _e226 = b_1;
-            let _e231 = x_6;
-            let _e232 = last;
-            param_33 = clamp(floor((_e219 + (((_e220 - _e221) * _e223) / (_e225 - _e226)))), _e231, (_e232 - 1f));
-            let _e235 = (*origin_1);
-            param_34 = _e235;
-            let _e236 = search_at((&param_33), (&param_34));
-            (*at_2) = _e236;
-            let _e238 = (*at_2).a;
-            let _e239 = (_e238 > 0f);
-            phi_907_ = _e239;
-            if !(_e239) {
-                let _e242 = (*at_2).b;
-                phi_907_ = (_e242 <= 0f);
+            let _e224 = b_1;
+            let _e229 = x_5;
+            let _e230 = last;
+            param_34 = clamp(floor((_e217 + (((_e218 - _e219) * _e221) / (_e223 - _e224)))), _e229, (_e230 - 1f));
+            let _e233 = (*origin_1);
+            param_35 = _e233;
+            let _e234 = search_at((&param_34), (&param_35));
+            (*at_2) = _e234;
+            let _e236 = (*at_2).a;
+            let _e237 = (_e236 > 0f);
+            phi_890_ = _e237;
+            if !(_e237) {
+                let _e240 = (*at_2).b;
+                phi_890_ = (_e240 <= 0f);
             }
-            let _e245 = phi_907_;
-            crosses = _e245;
-            let _e247 = (*at_2).a;
-            behind = (_e247 > 0f);
-            let _e249 = behind;
-            if _e249 {
-                let _e250 = x_6;
-                local_13 = _e250;
+            let _e243 = phi_890_;
+            crosses = _e243;
+            let _e245 = (*at_2).a;
+            behind = (_e245 > 0f);
+            let _e247 = behind;
+            if _e247 {
+                let _e248 = x_5;
+                local_12 = _e248;
             } else {
-                let _e252 = (*at_2).x;
-                local_13 = (_e252 + 1f);
+                let _e250 = (*at_2).x;
+                local_12 = (_e250 + 1f);
             }
-            let _e254 = local_13;
-            x_6 = _e254;
-            let _e255 = behind;
-            if _e255 {
-                let _e256 = a_1;
-                local_14 = _e256;
+            let _e252 = local_12;
+            x_5 = _e252;
+            let _e253 = behind;
+            if _e253 {
+                let _e254 = a_1;
+                local_13 = _e254;
             } else {
-                let _e258 = (*at_2).b;
-                local_14 = _e258;
+                let _e256 = (*at_2).b;
+                local_13 = _e256;
             }
-            let _e259 = local_14;
-            a_1 = _e259;
-            let _e260 = behind;
-            if _e260 {
-                let _e262 = (*at_2).x;
-                local_15 = _e262;
+            let _e257 = local_13;
+            a_1 = _e257;
+            let _e258 = behind;
+            if _e258 {
+                let _e260 = (*at_2).x;
+                local_14 = _e260;
             } else {
-                let _e263 = last;
-                local_15 = _e263;
+                let _e261 = last;
+                local_14 = _e261;
             }
-            let _e264 = local_15;
-            last = _e264;
-            let _e265 = behind;
-            if _e265 {
-                let _e267 = (*at_2).a;
-                local_16 = _e267;
+            let _e262 = local_14;
+            last = _e262;
+            let _e263 = behind;
+            if _e263 {
+                let _e265 = (*at_2).a;
+                local_15 = _e265;
             } else {
-                let _e268 = b_1;
-                local_16 = _e268;
+                let _e266 = b_1;
+                local_15 = _e266;
             }
-            let _e269 = local_16;
-            b_1 = _e269;
+            let _e267 = local_15;
+            b_1 = _e267;
             continue;
         } else {
             break;
         }
     }
-    let _e270 = found;
-    phi_957_ = _e270;
-    if !(_e270) {
-        let _e273 = beside_1.edge;
-        phi_957_ = (_e273 < 0f);
+    let _e268 = found;
+    phi_940_ = _e268;
+    if !(_e268) {
+        let _e271 = beside_1.edge;
+        phi_940_ = (_e271 < 0f);
     }
-    let _e276 = phi_957_;
-    own = _e276;
-    let _e277 = own;
-    if _e277 {
-        let _e279 = (*at_2).x;
-        let _e280 = (*end);
-        local_17 = min(_e279, _e280);
+    let _e274 = phi_940_;
+    own = _e274;
+    let _e275 = own;
+    if _e275 {
+        let _e277 = (*at_2).x;
+        let _e278 = (*end);
+        local_16 = min(_e277, _e278);
     } else {
-        let _e283 = beside_1.edge;
-        local_17 = _e283;
+        let _e281 = beside_1.edge;
+        local_16 = _e281;
     }
-    let _e284 = local_17;
-    x_6 = _e284;
-    let _e285 = found;
-    phi_980_ = _e285;
-    if _e285 {
-        let _e287 = (*at_2).b;
-        let _e289 = (*at_2).a;
-        phi_980_ = ((_e287 - _e289) < 2f);
+    let _e282 = local_16;
+    x_5 = _e282;
+    let _e283 = found;
+    phi_963_ = _e283;
+    if _e283 {
+        let _e285 = (*at_2).b;
+        let _e287 = (*at_2).a;
+        phi_963_ = ((_e285 - _e287) < 2f);
     }
-    let _e293 = phi_980_;
-    if _e293 {
-        let _e295 = (*at_2).a;
-        let _e298 = (*at_2).b;
-        let _e300 = (*at_2).a;
-        local_18 = (-(_e295) / (_e298 - _e300));
+    let _e291 = phi_963_;
+    if _e291 {
+        let _e293 = (*at_2).a;
+        let _e296 = (*at_2).b;
+        let _e298 = (*at_2).a;
+        local_17 = (-(_e293) / (_e296 - _e298));
     } else {
-        local_18 = 0f;
+        local_17 = 0f;
     }
-    let _e303 = local_18;
-    t = _e303;
-    let _e304 = x_6;
-    let _e305 = t;
-    (*surface).source = (_e304 + _e305);
-    let _e308 = own;
-    if _e308 {
-        let _e311 = (*at_2).depths[0u];
-        let _e314 = (*at_2).depths[1u];
-        let _e315 = t;
-        local_19 = mix(_e311, _e314, _e315);
+    let _e301 = local_17;
+    t = _e301;
+    let _e302 = x_5;
+    let _e303 = t;
+    (*surface).source = (_e302 + _e303);
+    let _e306 = own;
+    if _e306 {
+        let _e309 = (*at_2).depths[0u];
+        let _e312 = (*at_2).depths[1u];
+        let _e313 = t;
+        local_18 = mix(_e309, _e312, _e313);
     } else {
-        let _e318 = beside_1.edge_depth;
-        local_19 = _e318;
+        let _e316 = beside_1.edge_depth;
+        local_18 = _e316;
     }
-    let _e319 = local_19;
-    (*surface).depth = _e319;
-    let _e321 = x_6;
-    let _e322 = (*origin_1);
-    let _e326 = synthesis.law[1u];
-    let _e328 = (*surface).depth;
-    away_3 = ((_e321 - _e322) + (_e326 * _e328));
-    let _e331 = found;
-    let _e332 = !(_e331);
-    phi_1031_ = _e332;
-    if _e332 {
-        let _e333 = away_3;
-        phi_1031_ = (abs(_e333) >= 0.5f);
+    let _e317 = local_18;
+    (*surface).depth = _e317;
+    let _e319 = x_5;
+    let _e320 = (*origin_1);
+    let _e324 = synthesis.law[1u];
+    let _e326 = (*surface).depth;
+    away_3 = ((_e319 - _e320) + (_e324 * _e326));
+    let _e329 = found;
+    let _e330 = !(_e329);
+    phi_1014_ = _e330;
+    if _e330 {
+        let _e331 = away_3;
+        phi_1014_ = (abs(_e331) >= 0.5f);
     }
-    let _e337 = phi_1031_;
-    (*surface).hole = _e337;
-    let _e340 = (*surface).source;
-    param_35 = _e340;
-    let _e341 = column_at((&param_35));
-    param_36 = 0f;
-    let _e342 = row_at((&param_36));
-    param_37 = vec2<f32>(_e341, _e342);
-    let _e344 = color_sample((&param_37));
-    color_1 = _e344;
-    phi_1047_ = true;
+    let _e335 = phi_1014_;
+    (*surface).hole = _e335;
+    let _e338 = (*surface).source;
+    param_36 = _e338;
+    let _e339 = column_at((&param_36));
+    param_37 = 0f;
+    let _e340 = row_at((&param_37));
+    param_38 = vec2<f32>(_e339, _e340);
+    let _e342 = color_sample((&param_38));
+    color_1 = _e342;
+    phi_1030_ = true;
     if true {
-        let _e346 = (*surface).hole;
-        phi_1047_ = _e346;
+        let _e344 = (*surface).hole;
+        phi_1030_ = _e344;
     }
-    let _e348 = phi_1047_;
-    if _e348 {
-        param_38 = true;
-        let _e349 = color_1;
-        param_39 = _e349;
-        let _e350 = away_3;
-        param_40 = _e350;
-        let _e351 = x_6;
-        param_41 = _e351;
-        let _e353 = (*surface).depth;
-        param_42 = _e353;
-        let _e354 = (*row_2);
-        param_43 = _e354;
-        let _e355 = fill_hole((&param_38), (&param_39), (&param_40), (&param_41), (&param_42), (&param_43));
-        color_1 = _e355;
+    let _e346 = phi_1030_;
+    if _e346 {
+        let _e347 = color_1;
+        param_39 = _e347;
+        let _e348 = away_3;
+        param_40 = _e348;
+        let _e349 = x_5;
+        param_41 = _e349;
+        let _e351 = (*surface).depth;
+        param_42 = _e351;
+        let _e352 = fill_hole((&param_39), (&param_40), (&param_41), (&param_42));
+        color_1 = _e352;
     }
-    let _e357 = beside_1.rim;
-    if (_e357 >= 0f) {
-        let _e360 = beside_1.rim;
-        let _e361 = (*origin_1);
-        let _e365 = synthesis.law[1u];
-        let _e367 = beside_1.rim_depth;
-        coverage = (1f - abs(((_e360 - _e361) + (_e365 * _e367))));
-        let _e372 = color_1;
-        let _e374 = beside_1.rim;
-        param_44 = _e374;
-        let _e375 = column_at((&param_44));
-        param_45 = 0f;
-        let _e376 = row_at((&param_45));
-        param_46 = vec2<f32>(_e375, _e376);
-        let _e378 = color_sample((&param_46));
+    let _e354 = beside_1.rim;
+    if (_e354 >= 0f) {
+        let _e357 = beside_1.rim;
+        let _e358 = (*origin_1);
+        let _e362 = synthesis.law[1u];
+        let _e364 = beside_1.rim_depth;
+        coverage = (1f - abs(((_e357 - _e358) + (_e362 * _e364))));
+        let _e369 = color_1;
+        let _e371 = beside_1.rim;
+        param_43 = _e371;
+        let _e372 = column_at((&param_43));
+        param_44 = 0f;
+        let _e373 = row_at((&param_44));
+        param_45 = vec2<f32>(_e372, _e373);
+        let _e375 = color_sample((&param_45));
+        let _e376 = coverage;
+        color_1 = mix(_e369, _e375, vec4(_e376));
         let _e379 = coverage;
-        color_1 = mix(_e372, _e378, vec4(_e379));
-        let _e382 = coverage;
-        if (_e382 >= 0.5f) {
-            let _e385 = beside_1.rim;
-            let _e387 = beside_1.rim_depth;
-            (*surface) = Surface(_e385, _e387, false);
+        if (_e379 >= 0.5f) {
+            let _e382 = beside_1.rim;
+            let _e384 = beside_1.rim_depth;
+            (*surface) = Surface(_e382, _e384, false);
         }
     }
-    let _e389 = color_1;
-    return _e389;
+    let _e386 = color_1;
+    return _e386;
 }
 
 fn source_row() -> i32 {
@@ -920,50 +902,50 @@ fn source_row() -> i32 {
 
 fn span_steps(span: ptr<function, u32>) -> f32 {
     var steps: u32;
-    var local_20: f32;
+    var local_19: f32;
 
     let _e5 = (*span);
     steps = (_e5 & 1023u);
     let _e7 = steps;
     if (_e7 == 1023u) {
-        local_20 = 1000000000f;
+        local_19 = 1000000000f;
     } else {
         let _e9 = steps;
-        local_20 = f32(_e9);
+        local_19 = f32(_e9);
     }
-    let _e11 = local_20;
+    let _e11 = local_19;
     return _e11;
 }
 
 fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> vec4<f32> {
     var origin_2: f32;
     var at_3: Search;
+    var param_46: f32;
     var param_47: f32;
-    var param_48: f32;
     var end_1: f32;
-    var param_49: u32;
+    var param_48: u32;
     var limit: f32;
     var next: f32;
+    var param_49: f32;
     var param_50: f32;
-    var param_51: f32;
-    var param_52: vec2<f32>;
+    var param_51: vec2<f32>;
     var stretch: f32;
     var t_1: f32;
     var seen: vec4<f32>;
+    var param_52: f32;
     var param_53: f32;
-    var param_54: f32;
-    var param_55: vec2<f32>;
+    var param_54: vec2<f32>;
     var middle: f32;
     var done: bool;
-    var param_56: Search;
+    var param_55: Search;
+    var param_56: f32;
     var param_57: f32;
-    var param_58: f32;
-    var param_59: i32;
-    var param_60: Surface;
-    var phi_1199_: bool;
-    var phi_1208_: bool;
-    var phi_1291_: bool;
-    var phi_1304_: bool;
+    var param_58: i32;
+    var param_59: Surface;
+    var phi_1179_: bool;
+    var phi_1188_: bool;
+    var phi_1271_: bool;
+    var phi_1284_: bool;
 
     let _e40 = synthesis.origins[0u];
     let _e42 = gl_FragCoord_1[0u];
@@ -972,15 +954,15 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     let _e48 = origin_2;
     let _e50 = synthesis.farthest;
     let _e52 = (*span_1);
-    param_47 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
+    param_46 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
     let _e56 = origin_2;
-    param_48 = _e56;
-    let _e57 = search_at((&param_47), (&param_48));
+    param_47 = _e56;
+    let _e57 = search_at((&param_46), (&param_47));
     at_3 = _e57;
     let _e59 = at_3.x;
     let _e61 = (*span_1);
-    param_49 = _e61;
-    let _e62 = span_steps((&param_49));
+    param_48 = _e61;
+    let _e62 = span_steps((&param_48));
     let _e66 = synthesis.source_size[0u];
     end_1 = min((max(_e59, 0f) + _e62), f32((_e66 - 1i)));
     let _e71 = at_3.x;
@@ -990,27 +972,27 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
         let _e76 = at_3.x;
         let _e77 = limit;
         let _e78 = (_e76 < _e77);
-        phi_1199_ = _e78;
+        phi_1179_ = _e78;
         if _e78 {
             let _e80 = at_3.b;
-            phi_1199_ = (_e80 <= 0f);
+            phi_1179_ = (_e80 <= 0f);
         }
-        let _e83 = phi_1199_;
-        phi_1208_ = _e83;
+        let _e83 = phi_1179_;
+        phi_1188_ = _e83;
         if _e83 {
             let _e85 = at_3.b;
             let _e88 = at_3.a;
-            phi_1208_ = (max(_e85, -1f) >= _e88);
+            phi_1188_ = (max(_e85, -1f) >= _e88);
         }
-        let _e91 = phi_1208_;
+        let _e91 = phi_1188_;
         if _e91 {
             let _e93 = at_3.x;
-            param_50 = (_e93 + 2f);
-            let _e95 = column_at((&param_50));
-            param_51 = 0f;
-            let _e96 = row_at((&param_51));
-            param_52 = vec2<f32>(_e95, _e96);
-            let _e98 = depth_sample((&param_52));
+            param_49 = (_e93 + 2f);
+            let _e95 = column_at((&param_49));
+            param_50 = 0f;
+            let _e96 = row_at((&param_50));
+            param_51 = vec2<f32>(_e95, _e96);
+            let _e98 = depth_sample((&param_51));
             next = _e98;
             let _e101 = at_3.depths[1u];
             let _e102 = next;
@@ -1044,46 +1026,46 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     let _e144 = t_1;
     (*surface_1) = Surface((_e135 + _e136), mix(_e140, _e143, _e144), false);
     let _e148 = (*surface_1).source;
-    param_53 = _e148;
-    let _e149 = column_at((&param_53));
-    param_54 = 0f;
-    let _e150 = row_at((&param_54));
-    param_55 = vec2<f32>(_e149, _e150);
-    let _e152 = color_sample((&param_55));
+    param_52 = _e148;
+    let _e149 = column_at((&param_52));
+    param_53 = 0f;
+    let _e150 = row_at((&param_53));
+    param_54 = vec2<f32>(_e149, _e150);
+    let _e152 = color_sample((&param_54));
     seen = _e152;
     let _e155 = synthesis.source_size[0u];
     middle = (0.5f * f32((_e155 - 1i)));
     let _e160 = at_3.a;
     let _e161 = (_e160 <= 0f);
-    phi_1291_ = _e161;
+    phi_1271_ = _e161;
     if _e161 {
         let _e163 = at_3.b;
-        phi_1291_ = (_e163 > 0f);
+        phi_1271_ = (_e163 > 0f);
     }
-    let _e166 = phi_1291_;
+    let _e166 = phi_1271_;
     let _e167 = stretch;
     let _e169 = (_e166 && (_e167 < 2f));
-    phi_1304_ = _e169;
+    phi_1284_ = _e169;
     if _e169 {
         let _e171 = (*surface_1).source;
         let _e172 = middle;
         let _e175 = middle;
-        phi_1304_ = (abs((_e171 - _e172)) <= _e175);
+        phi_1284_ = (abs((_e171 - _e172)) <= _e175);
     }
-    let _e178 = phi_1304_;
+    let _e178 = phi_1284_;
     done = _e178;
     let _e179 = done;
     if (true && !(_e179)) {
         let _e182 = source_row();
         let _e183 = at_3;
-        param_56 = _e183;
+        param_55 = _e183;
         let _e184 = end_1;
-        param_57 = _e184;
+        param_56 = _e184;
         let _e185 = origin_2;
-        param_58 = _e185;
-        param_59 = _e182;
-        let _e186 = march((&param_56), (&param_57), (&param_58), (&param_59), (&param_60));
-        let _e187 = param_60;
+        param_57 = _e185;
+        param_58 = _e182;
+        let _e186 = march((&param_55), (&param_56), (&param_57), (&param_58), (&param_59));
+        let _e187 = param_59;
         (*surface_1) = _e187;
         seen = _e186;
     }
@@ -1092,21 +1074,21 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
 }
 
 fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
-    var place_2: f32;
-    var param_61: f32;
-    var param_62: vec2<f32>;
+    var place_3: f32;
+    var param_60: f32;
+    var param_61: vec2<f32>;
 
     let _e10 = (*affine)[0u];
     let _e12 = (*affine)[1u];
     let _e14 = gl_FragCoord_1[0u];
     let _e18 = (*affine)[2u];
     let _e20 = gl_FragCoord_1[1u];
-    place_2 = ((_e10 + (_e12 * _e14)) + (_e18 * _e20));
-    let _e23 = place_2;
-    param_61 = 0f;
-    let _e24 = row_at((&param_61));
-    param_62 = vec2<f32>(_e23, _e24);
-    let _e26 = color_sample((&param_62));
+    place_3 = ((_e10 + (_e12 * _e14)) + (_e18 * _e20));
+    let _e23 = place_3;
+    param_60 = 0f;
+    let _e24 = row_at((&param_60));
+    param_61 = vec2<f32>(_e23, _e24);
+    let _e26 = color_sample((&param_61));
     return _e26;
 }
 
@@ -1128,33 +1110,33 @@ fn pixel_span() -> vec4<u32> {
 fn main_1() {
     var span_2: vec4<u32>;
     var surface_3: Surface;
-    var param_63: vec3<f32>;
-    var param_64: Surface;
-    var param_65: u32;
-    var param_66: Surface;
-    var phi_1331_: bool;
+    var param_62: vec3<f32>;
+    var param_63: Surface;
+    var param_64: u32;
+    var param_65: Surface;
+    var phi_1311_: bool;
 
     let _e10 = pixel_span();
     span_2 = _e10;
-    phi_1331_ = true;
+    phi_1311_ = true;
     if true {
         let _e12 = span_2[1u];
-        phi_1331_ = (_e12 != 0u);
+        phi_1311_ = (_e12 != 0u);
     }
-    let _e15 = phi_1331_;
+    let _e15 = phi_1311_;
     if _e15 {
         let _e16 = span_2;
-        param_63 = bitcast<vec3<f32>>(_e16.xyz);
-        let _e19 = lawful((&param_63), (&param_64));
-        let _e20 = param_64;
+        param_62 = bitcast<vec3<f32>>(_e16.xyz);
+        let _e19 = lawful((&param_62), (&param_63));
+        let _e20 = param_63;
         surface_3 = _e20;
         color_2 = _e19;
     } else {
         if true {
             let _e22 = span_2[0u];
-            param_65 = _e22;
-            let _e23 = searched((&param_65), (&param_66));
-            let _e24 = param_66;
+            param_64 = _e22;
+            let _e23 = searched((&param_64), (&param_65));
+            let _e24 = param_65;
             surface_3 = _e24;
             color_2 = _e23;
         } else {

@@ -20,7 +20,7 @@ struct Synthesis {
 
 @group(0) @binding(2) 
 var tile_map_texture: texture_2d<u32>;
-@group(0) @binding(7) 
+@group(0) @binding(4) 
 var<uniform> synthesis: Synthesis;
 var<private> gl_FragCoord_1: vec4<f32>;
 var<private> span: vec4<u32>;

@@ -20,12 +20,12 @@ struct Synthesis {
 
 @group(0) @binding(0) 
 var depth_map_texture: texture_2d<f32>;
-@group(0) @binding(8) 
+@group(0) @binding(5) 
 var nearest_sampler: sampler;
-@group(0) @binding(7) 
+@group(0) @binding(4) 
 var<uniform> synthesis: Synthesis;
-var<private> gl_FragCoord_1: vec4<f32>;
 var<private> tile: vec4<u32>;
+var<private> gl_FragCoord_1: vec4<f32>;
 
 fn pack_interval(low: ptr<function, f32>, high: ptr<function, f32>) -> u32 {
     var lowest: f32;
@@ -42,20 +42,28 @@ fn pack_interval(low: ptr<function, f32>, high: ptr<function, f32>) -> u32 {
     return (u32(_e24) | (u32(_e26) << bitcast<u32>(16i)));
 }
 
+fn reversed_bits(bits: ptr<function, u32>) -> u32 {
+    let _e1 = (*bits);
+    return reverseBits(_e1);
+}
+
 fn in_place(marks: ptr<function, u32>) -> u32 {
     var local: u32;
+    var param: u32;
 
-    let _e6 = synthesis.mirrored;
-    if (_e6 != 0u) {
-        let _e8 = (*marks);
-        let _e11 = (*marks);
-        local = ((_e8 >> bitcast<u32>(16i)) | (_e11 << bitcast<u32>(16i)));
+    let _e7 = synthesis.mirrored;
+    if (_e7 != 0u) {
+        let _e9 = (*marks);
+        let _e12 = (*marks);
+        local = ((_e9 >> bitcast<u32>(16i)) | (_e12 << bitcast<u32>(16i)));
     } else {
-        let _e15 = (*marks);
-        local = reverseBits(_e15);
+        let _e16 = (*marks);
+        param = _e16;
+        let _e17 = reversed_bits((&param));
+        local = _e17;
     }
-    let _e17 = local;
-    return _e17;
+    let _e18 = local;
+    return _e18;
 }
 
 fn displacement(depth: ptr<function, f32>) -> f32 {
@@ -65,6 +73,12 @@ fn displacement(depth: ptr<function, f32>) -> f32 {
     return (_e6 + (_e9 * _e10));
 }
 
+fn depth_gather(place: ptr<function, vec2<f32>>) -> vec4<f32> {
+    let _e3 = (*place);
+    let _e4 = textureGather(0, depth_map_texture, nearest_sampler, _e3);
+    return _e4;
+}
+
 fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     var last: vec2<f32>;
     var at: vec2<f32>;
@@ -72,96 +86,98 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     var row: f32;
     var local_2: f32;
     var quad: vec4<f32>;
+    var param_1: vec2<f32>;
     var local_3: vec4<f32>;
     var local_4: vec4<f32>;
     var local_5: vec4<f32>;
-    var phi_192_: bool;
-    var phi_224_: bool;
+    var phi_203_: bool;
+    var phi_235_: bool;
 
-    let _e21 = synthesis.source_size;
-    last = vec2<f32>((_e21 - vec2(2i)));
+    let _e20 = synthesis.source_size;
+    last = vec2<f32>((_e20 - vec2(2i)));
     if true {
-        let _e25 = (*corner);
-        let _e26 = last;
-        local_1 = clamp(_e25, vec2<f32>(0f, 0f), max(_e26, vec2<f32>(0f, 0f)));
+        let _e24 = (*corner);
+        let _e25 = last;
+        local_1 = clamp(_e24, vec2<f32>(0f, 0f), max(_e25, vec2<f32>(0f, 0f)));
     } else {
-        let _e29 = (*corner);
-        local_1 = _e29;
+        let _e28 = (*corner);
+        local_1 = _e28;
     }
-    let _e30 = local_1;
-    at = _e30;
-    let _e32 = at[1u];
-    row = (_e32 + 1f);
+    let _e29 = local_1;
+    at = _e29;
+    let _e31 = at[1u];
+    row = (_e31 + 1f);
     if true {
-        let _e36 = synthesis.source_origin[1u];
-        let _e38 = row;
-        let _e42 = synthesis.texel[1u];
-        local_2 = ((f32(_e36) + _e38) * _e42);
+        let _e35 = synthesis.source_origin[1u];
+        let _e37 = row;
+        let _e41 = synthesis.texel[1u];
+        local_2 = ((f32(_e35) + _e37) * _e41);
     } else {
-        let _e44 = row;
-        let _e47 = synthesis.source_size[1u];
-        local_2 = (_e44 / f32(_e47));
+        let _e43 = row;
+        let _e46 = synthesis.source_size[1u];
+        local_2 = (_e43 / f32(_e46));
     }
-    let _e50 = local_2;
-    row = _e50;
-    let _e53 = synthesis.columns[0u];
-    let _e55 = at[0u];
-    let _e60 = synthesis.columns[1u];
-    let _e62 = row;
-    let _e64 = textureGather(0, depth_map_texture, nearest_sampler, vec2<f32>(((_e53 * (_e55 + 1f)) + _e60), _e62));
-    quad = _e64;
+    let _e49 = local_2;
+    row = _e49;
+    let _e52 = synthesis.columns[0u];
+    let _e54 = at[0u];
+    let _e59 = synthesis.columns[1u];
+    let _e61 = row;
+    param_1 = vec2<f32>(((_e52 * (_e54 + 1f)) + _e59), _e61);
+    let _e63 = depth_gather((&param_1));
+    quad = _e63;
     if true {
-        let _e66 = (*corner)[0u];
-        let _e68 = last[0u];
-        let _e69 = (_e66 <= _e68);
-        phi_192_ = _e69;
-        if !(_e69) {
-            let _e73 = synthesis.source_size[0u];
-            phi_192_ = (_e73 == 1i);
+        let _e65 = (*corner)[0u];
+        let _e67 = last[0u];
+        let _e68 = (_e65 <= _e67);
+        phi_203_ = _e68;
+        if !(_e68) {
+            let _e72 = synthesis.source_size[0u];
+            phi_203_ = (_e72 == 1i);
         }
-        let _e76 = phi_192_;
-        if _e76 {
-            let _e77 = quad;
-            local_3 = _e77;
+        let _e75 = phi_203_;
+        if _e75 {
+            let _e76 = quad;
+            local_3 = _e76;
         } else {
-            let _e79 = synthesis.mirrored;
-            if (_e79 != 0u) {
-                let _e81 = quad;
-                local_4 = _e81.xxww;
+            let _e78 = synthesis.mirrored;
+            if (_e78 != 0u) {
+                let _e80 = quad;
+                local_4 = _e80.xxww;
             } else {
-                let _e83 = quad;
-                local_4 = _e83.yyzz;
+                let _e82 = quad;
+                local_4 = _e82.yyzz;
             }
-            let _e85 = local_4;
-            local_3 = _e85;
+            let _e84 = local_4;
+            local_3 = _e84;
         }
-        let _e86 = local_3;
-        quad = _e86;
-        let _e88 = (*corner)[1u];
-        let _e90 = last[1u];
-        let _e91 = (_e88 <= _e90);
-        phi_224_ = _e91;
-        if !(_e91) {
-            let _e95 = synthesis.source_size[1u];
-            phi_224_ = (_e95 == 1i);
+        let _e85 = local_3;
+        quad = _e85;
+        let _e87 = (*corner)[1u];
+        let _e89 = last[1u];
+        let _e90 = (_e87 <= _e89);
+        phi_235_ = _e90;
+        if !(_e90) {
+            let _e94 = synthesis.source_size[1u];
+            phi_235_ = (_e94 == 1i);
         }
-        let _e98 = phi_224_;
-        if _e98 {
-            let _e99 = quad;
-            local_5 = _e99;
+        let _e97 = phi_235_;
+        if _e97 {
+            let _e98 = quad;
+            local_5 = _e98;
         } else {
-            let _e100 = quad;
-            local_5 = _e100.xyyx;
+            let _e99 = quad;
+            local_5 = _e99.xyyx;
         }
-        let _e102 = local_5;
-        quad = _e102;
+        let _e101 = local_5;
+        quad = _e101;
     }
-    let _e103 = quad;
-    return _e103;
+    let _e102 = quad;
+    return _e102;
 }
 
-fn depth_sample(place: ptr<function, vec2<f32>>) -> f32 {
-    let _e4 = (*place);
+fn depth_sample(place_1: ptr<function, vec2<f32>>) -> f32 {
+    let _e4 = (*place_1);
     let _e5 = textureSampleLevel(depth_map_texture, nearest_sampler, _e4, 0f);
     return _e5.x;
 }
@@ -191,17 +207,17 @@ fn place_of(at_1: ptr<function, vec2<f32>>) -> vec2<f32> {
 fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var middle: vec2<f32>;
     var first: f32;
-    var param: vec2<f32>;
-    var param_1: vec2<f32>;
-    var right: f32;
     var param_2: vec2<f32>;
     var param_3: vec2<f32>;
-    var above: f32;
+    var right: f32;
     var param_4: vec2<f32>;
     var param_5: vec2<f32>;
-    var opposite: f32;
+    var above: f32;
     var param_6: vec2<f32>;
     var param_7: vec2<f32>;
+    var opposite: f32;
+    var param_8: vec2<f32>;
+    var param_9: vec2<f32>;
     var slope: vec2<f32>;
     var low_1: vec4<f32>;
     var high_1: vec4<f32>;
@@ -216,7 +232,7 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var i: i32;
     var column: f32;
     var quad_1: vec4<f32>;
-    var param_8: vec2<f32>;
+    var param_10: vec2<f32>;
     var depths: vec4<f32>;
     var between: vec2<f32>;
     var within: vec2<f32>;
@@ -225,45 +241,45 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var most: f32;
     var rise: vec2<f32>;
     var a: f32;
-    var param_9: f32;
-    var b: f32;
-    var param_10: f32;
-    var plane_law: vec3<f32>;
     var param_11: f32;
+    var b: f32;
+    var param_12: f32;
+    var plane_law: vec3<f32>;
+    var param_13: f32;
     var planar: bool;
     var rest: vec3<u32>;
     var local_7: vec3<u32>;
-    var param_12: u32;
-    var param_13: u32;
-    var param_14: f32;
-    var param_15: f32;
-    var phi_604_: bool;
+    var param_14: u32;
+    var param_15: u32;
+    var param_16: f32;
+    var param_17: f32;
+    var phi_620_: bool;
 
     let _e79 = (*corner_1);
     middle = (_e79 + vec2(0.5f));
     let _e82 = middle;
-    param = _e82;
-    let _e83 = place_of((&param));
-    param_1 = _e83;
-    let _e84 = depth_sample((&param_1));
+    param_2 = _e82;
+    let _e83 = place_of((&param_2));
+    param_3 = _e83;
+    let _e84 = depth_sample((&param_3));
     first = _e84;
     let _e85 = middle;
-    param_2 = (_e85 + vec2<f32>(16f, 0f));
-    let _e87 = place_of((&param_2));
-    param_3 = _e87;
-    let _e88 = depth_sample((&param_3));
+    param_4 = (_e85 + vec2<f32>(16f, 0f));
+    let _e87 = place_of((&param_4));
+    param_5 = _e87;
+    let _e88 = depth_sample((&param_5));
     right = _e88;
     let _e89 = middle;
-    param_4 = (_e89 + vec2<f32>(0f, 7f));
-    let _e91 = place_of((&param_4));
-    param_5 = _e91;
-    let _e92 = depth_sample((&param_5));
+    param_6 = (_e89 + vec2<f32>(0f, 7f));
+    let _e91 = place_of((&param_6));
+    param_7 = _e91;
+    let _e92 = depth_sample((&param_7));
     above = _e92;
     let _e93 = middle;
-    param_6 = (_e93 + vec2<f32>(16f, 7f));
-    let _e95 = place_of((&param_6));
-    param_7 = _e95;
-    let _e96 = depth_sample((&param_7));
+    param_8 = (_e93 + vec2<f32>(16f, 7f));
+    let _e95 = place_of((&param_8));
+    param_9 = _e95;
+    let _e96 = depth_sample((&param_9));
     opposite = _e96;
     let _e97 = right;
     let _e98 = above;
@@ -310,8 +326,8 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
                     let _e158 = (*corner_1)[0u];
                     let _e159 = column;
                     let _e161 = row_1;
-                    param_8 = vec2<f32>((_e158 + _e159), _e161);
-                    let _e163 = depth_quad((&param_8));
+                    param_10 = vec2<f32>((_e158 + _e159), _e161);
+                    let _e163 = depth_quad((&param_10));
                     quad_1 = _e163;
                     let _e164 = quad_1;
                     let _e165 = plane;
@@ -398,19 +414,19 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     let _e278 = least;
     let _e280 = rise[0u];
     let _e284 = rise[1u];
-    param_9 = ((_e278 + min(_e280, 0f)) + min(_e284, 0f));
-    let _e287 = displacement((&param_9));
+    param_11 = ((_e278 + min(_e280, 0f)) + min(_e284, 0f));
+    let _e287 = displacement((&param_11));
     a = _e287;
     let _e288 = most;
     let _e290 = rise[0u];
     let _e294 = rise[1u];
-    param_10 = ((_e288 + max(_e290, 0f)) + max(_e294, 0f));
-    let _e297 = displacement((&param_10));
+    param_12 = ((_e288 + max(_e290, 0f)) + max(_e294, 0f));
+    let _e297 = displacement((&param_12));
     b = _e297;
     let _e298 = least;
     let _e299 = most;
-    param_11 = (0.5f * (_e298 + _e299));
-    let _e302 = displacement((&param_11));
+    param_13 = (0.5f * (_e298 + _e299));
+    let _e302 = displacement((&param_13));
     let _e305 = synthesis.law[1u];
     let _e306 = slope;
     let _e307 = (_e306 * _e305);
@@ -419,12 +435,12 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     let _e315 = most;
     let _e316 = least;
     let _e319 = ((abs(_e313) * (_e315 - _e316)) <= 0.125f);
-    phi_604_ = _e319;
+    phi_620_ = _e319;
     if _e319 {
         let _e321 = plane_law[1u];
-        phi_604_ = (abs((_e321 - 0.25f)) < 0.75f);
+        phi_620_ = (abs((_e321 - 0.25f)) < 0.75f);
     }
-    let _e326 = phi_604_;
+    let _e326 = phi_620_;
     planar = _e326;
     let _e327 = planar;
     if _e327 {
@@ -432,11 +448,11 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
         local_7 = bitcast<vec3<u32>>(_e328);
     } else {
         let _e330 = lower_marks;
-        param_12 = _e330;
-        let _e331 = in_place((&param_12));
+        param_14 = _e330;
+        let _e331 = in_place((&param_14));
         let _e333 = marks_1;
-        param_13 = _e333;
-        let _e334 = in_place((&param_13));
+        param_15 = _e333;
+        let _e334 = in_place((&param_15));
         local_7 = vec3<u32>(_e331, bitcast<u32>(9f), _e334);
     }
     let _e336 = local_7;
@@ -445,23 +461,20 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     let _e338 = b;
     let _e340 = a;
     let _e341 = b;
-    param_14 = min(_e337, _e338);
-    param_15 = max(_e340, _e341);
-    let _e343 = pack_interval((&param_14), (&param_15));
+    param_16 = min(_e337, _e338);
+    param_17 = max(_e340, _e341);
+    let _e343 = pack_interval((&param_16), (&param_17));
     let _e344 = rest;
     return vec4<u32>(_e343, _e344.x, _e344.y, _e344.z);
 }
 
 fn main_1() {
-    var corner_2: vec2<f32>;
-    var param_16: vec2<f32>;
+    var param_18: vec2<f32>;
 
-    let _e6 = gl_FragCoord_1;
-    corner_2 = ((_e6.xy - vec2(0.5f)) * vec2<f32>(16f, 8f));
-    let _e11 = corner_2;
-    param_16 = _e11;
-    let _e12 = plane_tile((&param_16));
-    tile = _e12;
+    let _e5 = gl_FragCoord_1;
+    param_18 = ((_e5.xy - vec2(0.5f)) * vec2<f32>(16f, 8f));
+    let _e10 = plane_tile((&param_18));
+    tile = _e10;
     return;
 }
 

@@ -9,7 +9,6 @@ use super::*;
 use crate::cardboard::{Cardboard, HeldHead};
 use crate::event::{Action, Event};
 use crate::frame::{FrameReport, FrameTiming};
-use yoro::eyes::Frustum;
 use yoro_context::{Backend, Headless};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{MotionSample, Rotation, Screen};
