@@ -42,6 +42,7 @@ mod structures;
 mod swapchain;
 mod synthesizer;
 mod vulkan;
+mod xdg;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

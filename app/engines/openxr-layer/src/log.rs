@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use crate::lock;
-use yoro_files::xdg;
+use crate::xdg;
 
 /// The length of the longest line in bytes. Longer lines are truncated.
 const LONGEST: usize = 1024;

@@ -8,7 +8,8 @@ use std::str::FromStr;
 use openxr_sys as sys;
 use toml::{Table, Value};
 use yoro::eyes::{Eye, GuardBand};
-use yoro_files::xdg;
+
+use crate::xdg;
 
 /// The position of the configuration with one view in the list of view configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
-use yoro_files::xdg;
+
+use crate::xdg;
 
 /// Returns the path of the file, `$XDG_STATE_HOME/yoro/layer-sizes.json` (`~/.local/state` if that is not set), or
 /// `None` without a home folder and on Android.

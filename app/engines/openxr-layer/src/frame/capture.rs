@@ -1,6 +1,8 @@
 //! Pictures of what the runtime receives in one frame. For tests.
 
+use std::path::Path;
 use std::sync::Arc;
+use std::{fs, io};
 
 use yoro::eyes::Eye;
 
@@ -30,10 +32,20 @@ pub unsafe fn write(
     // SAFETY: same contract.
     let written = unsafe { synthesizer.read(image, part) }
         .and_then(|bytes| encode(part.size, &bytes).map_err(|error| error.to_string()))
-        .and_then(|png| yoro_files::write(&path, &png).map_err(|error| error.to_string()));
+        .and_then(|png| save(&path, &png).map_err(|error| error.to_string()));
     if let Err(error) = written {
         say(format_args!("no picture {name}.png: {error}"));
     }
+}
+
+/// Writes a file that appears under its name only when it is complete, since a test waits for it.
+fn save(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let unfinished = path.with_added_extension("part");
+    fs::write(&unfinished, bytes)?;
+    fs::rename(&unfinished, path)
 }
 
 /// Writes both views of an application that renders both.
