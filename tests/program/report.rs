@@ -30,13 +30,12 @@ fn the_page_is_shown_in_a_browser() {
             RgbImage::from_fn(64, 48, |x, y| Rgb([((x + shift) * 4) as u8, (y * 5) as u8, (x * y) as u8]));
         yoro_media::save_color(&at.join(format!("run.pictures/scenes/talk/{name}.png")), &eye).unwrap();
     }
-    let stdout = succeed(at, "report run.jsonl --out out --figures out/figures").stdout;
+    let stdout = succeed(at, "report run.jsonl --out out").stdout;
     assert!(stdout.contains("out/report.html"), "{stdout}");
     let results = fs::read_to_string(at.join("out/results.md")).unwrap();
     for needed in ["| 0.60 |", "32.50 / 0.9700", "20.00 / 0.5000", "29.79 / 0.9697", "no GL_OVR_multiview2"] {
         assert!(results.contains(needed), "{needed}: {results}");
     }
-    assert!(at.join("out/figures/frame-time-ratio.svg").is_file());
     if let Some(mut browser) = Browser::start() {
         check_page(&mut browser, &at.join("out/report.html"));
     }

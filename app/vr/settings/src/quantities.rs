@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+use yoro::eyes::MEAN_IPD;
 
 /// The distance between the eyes (interpupillary distance) in metres, 0 to [`Ipd::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
@@ -20,7 +21,7 @@ impl Ipd {
     /// The largest distance, a little more than people have.
     pub const MAX: Ipd = Ipd(0.08);
     /// The default, which is the paper's distance.
-    pub const DEFAULT: Ipd = Ipd(0.063);
+    pub const DEFAULT: Ipd = Ipd(MEAN_IPD);
 
     /// Returns the valid distance nearest to `metres`; [`Ipd::MAX`] for NaN.
     pub fn nearest(metres: f32) -> Ipd {

@@ -8,7 +8,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 use image::{GrayImage, Luma, RgbImage};
 use serde::Deserialize;
-use yoro::eyes::Eye;
+use yoro::eyes::{Eye, MEAN_IPD};
 
 use super::{Planes, Rgbd};
 
@@ -20,8 +20,6 @@ const METADATA_LIMIT: u64 = 64 << 20;
 const DEFAULT_RANGE: [f32; 2] = [0.0, 3.0];
 /// The nearest distance that phones measure, in metres. Pixels without a measurement are red.
 const NEAREST: f32 = 0.1;
-/// The distance between the eyes in metres.
-const IPD: f32 = 0.063;
 
 /// The camera of a video.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -103,7 +101,7 @@ impl Camera {
             fov_y: 2.0 * angle(height as f32 / 2.0, focal_y),
             // The outer side of the right eye is on the right.
             outer_inner: Some([angle(columns as f32 - center_x, focal_x), angle(center_x, focal_x)]),
-            ipd: IPD,
+            ipd: MEAN_IPD,
             nearest: low.max(NEAREST),
             farthest: high,
         };

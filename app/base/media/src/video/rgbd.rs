@@ -91,6 +91,7 @@ pub fn depth_luma(distance: f32, span: [f32; 2]) -> u8 {
 pub(crate) mod tests {
     use super::*;
     use image::Rgb;
+    use yoro::eyes::MEAN_IPD;
 
     pub(crate) const RGBD: Rgbd = Rgbd {
         size: [60, 32],
@@ -98,7 +99,7 @@ pub(crate) mod tests {
         guard_columns: 4,
         fov_y: 1.0,
         outer_inner: None,
-        ipd: 0.063,
+        ipd: MEAN_IPD,
         nearest: 0.5,
         farthest: 100.0,
     };

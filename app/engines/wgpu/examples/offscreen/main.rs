@@ -9,7 +9,7 @@ use anyhow::{Context as _, Result};
 use image::{Rgb, RgbImage};
 use yoro_wgpu::wgpu::{self, TextureFormat, TextureUsages};
 use yoro_wgpu::yoro::eyes::{
-    DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose, SynthesisViews, View,
+    DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, MEAN_IPD, Pose, SynthesisViews, View,
 };
 use yoro_wgpu::{Gather, Options, Source, Target};
 
@@ -85,7 +85,7 @@ impl Stereo {
         let depth = DepthRange { near: 0.1, far: f32::INFINITY, convention: DepthConvention::Reversed };
         let head = Pose { position: [0.0, 1.6, 2.0].into(), ..Pose::IDENTITY };
         let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
-        let pair = EyePair::parallel(head, frustum, 0.063, depth, SIZE, Eye::Right);
+        let pair = EyePair::parallel(head, frustum, MEAN_IPD, depth, SIZE, Eye::Right);
         let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
 
         // Once: pipelines for the format of the other eye's texture.

@@ -6,7 +6,7 @@ mod sections;
 mod tests;
 
 use std::fmt::Write as _;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use minijinja::context;
 
@@ -19,8 +19,6 @@ use sections::Section;
 use yoro::eyes::Eye;
 use yoro_files as files;
 use yoro_report::page::{self, Template};
-use yoro_report::stats::unique;
-use yoro_report::text::slug;
 
 const TEMPLATE: Template =
     Template { name: "bench.html.j2", text: include_str!("../templates/bench.html.j2") };
@@ -53,17 +51,6 @@ its own scenes, six phones and a Quest 2.";
 const TIME_METHOD: &str = "Frame times: wall clock of a whole stereo frame up to glFinish. Methods take turns within \
 each round, so that ratios pair frames of the same round; means of ratios over scenes are geometric.";
 
-/// The folders that a report is written to.
-#[derive(Clone, Copy, Debug)]
-pub struct Places<'a> {
-    /// The folder of the page and of the files with all tables.
-    pub report: &'a Path,
-    /// The folder of the figures as SVG files, if they are wanted.
-    pub figures: Option<&'a Path>,
-    /// The folder of a Markdown file for each suite, if they are wanted.
-    pub results: Option<&'a Path>,
-}
-
 /// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
@@ -73,10 +60,6 @@ pub struct Written {
     pub results: PathBuf,
     /// The first table of each experiment, for a README.
     pub summary: PathBuf,
-    /// The figures as SVG.
-    pub figures: Vec<PathBuf>,
-    /// The tables of each suite, one file per suite.
-    pub suites: Vec<PathBuf>,
 }
 
 impl BenchReport {
@@ -145,62 +128,17 @@ impl BenchReport {
         Ok(page::fill(TEMPLATE, TITLE, page)?)
     }
 
-    /// Returns all tables. Figures are linked from the folder `figures`, if it is given.
-    pub fn to_markdown(&self, figures: Option<&str>) -> String {
+    /// Returns all tables.
+    pub fn to_markdown(&self) -> String {
         let mut out = format!("{PAPERS_MARK}\n");
         for (suite, section) in sections::sections(&self.suites) {
             self.heading(&mut out, suite, &section);
-            self.content(&mut out, suite, &section, figures);
-        }
-        out
-    }
-
-    /// Returns a document with the tables of each suite, by the suite's name, headed by machine, command and method.
-    /// `figures` as in [`BenchReport::to_markdown`].
-    pub fn to_documents(&self, figures: Option<&str>) -> Vec<(String, String)> {
-        let sections = sections::sections(&self.suites);
-        let names = unique(sections.iter().map(|(suite, _)| suite.name.as_str()));
-        names.into_iter().map(|name| (name.to_owned(), self.document(&sections, name, figures))).collect()
-    }
-
-    fn document(&self, sections: &[(&Suite, Section)], name: &str, figures: Option<&str>) -> String {
-        let of_suite: Vec<_> = sections.iter().filter(|(suite, _)| suite.name == name).collect();
-        let titles = unique(of_suite.iter().map(|(_, section)| section.title.to_lowercase()));
-        let title = match &of_suite[..] {
-            [(_, section)] => section.title.clone(),
-            _ => format!("{}{}: {}", name[..1].to_uppercase(), &name[1..], titles.join(", ")),
-        };
-        let mut out = format!(
-            "# {title}\n\n<!-- Written by yoro report --results: change nothing here by hand. -->\n\n"
-        );
-        for suite in self.suites.iter().filter(|suite| suite.name == name) {
+            for table in &section.tables {
+                let _ = writeln!(out, "{}", table.markdown());
+            }
             source(&mut out, suite);
         }
-        let _ = writeln!(out, "\n{QUALITY_METHOD}\n\n{TIME_METHOD}\n\n{PAPERS_MARK}");
-        for (suite, section) in &of_suite {
-            match of_suite.len() {
-                1 => {
-                    let _ = writeln!(out, "\n{}\n", section.intro);
-                }
-                _ => self.heading(&mut out, suite, section),
-            }
-            self.content(&mut out, suite, section, figures);
-        }
         out
-    }
-
-    /// Writes a section's figures, tables and source.
-    fn content(&self, out: &mut String, suite: &Suite, section: &Section, figures: Option<&str>) {
-        if let Some(folder) = figures {
-            for figure in &section.figures {
-                let _ = writeln!(out, "![{}]({folder}/{}.svg)", figure.title, figure.id);
-                let _ = writeln!(out, "\n*{}. {}*\n", figure.title, figure.caption);
-            }
-        }
-        for table in &section.tables {
-            let _ = writeln!(out, "{}", table.markdown());
-        }
-        source(out, suite);
     }
 
     /// Returns the first table of each experiment.
@@ -234,38 +172,18 @@ impl BenchReport {
         }
     }
 
-    /// Writes [`FILES`] and, if they are wanted, the figures as SVG files and a `SUITE.md` for each suite.
+    /// Writes [`FILES`] into a folder.
     ///
     /// # Errors
     /// [`ReportError`]; existing files are then unchanged.
-    pub fn write(&self, places: Places) -> Result<Written, ReportError> {
+    pub fn write(&self, folder: &Path) -> Result<Written, ReportError> {
         // Everything is made before anything is written.
-        let link = |from: &Path| places.figures.map(|figures| link_from(from, figures));
-        let html = self.to_html()?;
-        let tables = self.to_markdown(link(places.report).as_deref());
-        let mut drawn = Vec::new();
-        if let Some(to) = places.figures {
-            for (_, section) in sections::sections(&self.suites) {
-                for figure in &section.figures {
-                    drawn.push((to.join(format!("{}.svg", figure.id)), figure.svg()?));
-                }
-            }
-        }
-        let mut suites = Vec::new();
-        if let Some(to) = places.results {
-            let documents = self.to_documents(link(to).as_deref());
-            suites.extend(documents.into_iter().map(|(name, text)| (to.join(slug(&name) + ".md"), text)));
-        }
-        for (path, text) in drawn.iter().chain(&suites) {
+        let texts = [self.to_html()?, self.to_markdown(), self.to_summary()];
+        let [page, results, summary] = FILES.map(|name| folder.join(name));
+        for (path, text) in [&page, &results, &summary].into_iter().zip(&texts).rev() {
             files::write(path, text.as_bytes())?;
         }
-        let paths = |files: Vec<(PathBuf, String)>| files.into_iter().map(|(path, _)| path).collect();
-        let [page, results, summary] = FILES.map(|name| places.report.join(name));
-        let written = Written { page, results, summary, figures: paths(drawn), suites: paths(suites) };
-        files::write(&written.results, tables.as_bytes())?;
-        files::write(&written.summary, self.to_summary().as_bytes())?;
-        files::write(&written.page, html.as_bytes())?;
-        Ok(written)
+        Ok(Written { page, results, summary })
     }
 }
 
@@ -283,19 +201,6 @@ fn source(out: &mut String, suite: &Suite) {
 fn gl(suite: &Suite) -> (&str, &str) {
     let machine = &suite.header.machine;
     (&machine.gl_renderer, &machine.gl_version)
-}
-
-/// Returns the relative path, with slashes, from a file in `folder` to `target`.
-fn link_from(folder: &Path, target: &Path) -> String {
-    let normal = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
-    let (folder, target) = (normal(folder), normal(target));
-    let (from, to): (Vec<Component>, Vec<Component>) =
-        (folder.components().collect(), target.components().collect());
-    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-    let up = from[common..].iter().map(|_| "..".to_owned());
-    let down = to[common..].iter().map(|part| part.as_os_str().to_string_lossy().into_owned());
-    let parts: Vec<String> = up.chain(down).collect();
-    if parts.is_empty() { ".".into() } else { parts.join("/") }
 }
 
 fn file_name(path: &Path) -> String {
