@@ -1,14 +1,12 @@
 //! Checks that built-in scenes look the same on Vulkan and on OpenGL.
 
-use image::RgbImage;
-use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
+use yoro::eyes::{DepthRange, Eye, EyePair, Frustum, MEAN_IPD};
 use yoro::vulkan::ash::vk;
 use yoro::vulkan::{Frame, Gather, ImageState, LayerImage, Options, SourceImages, TargetImages};
 use yoro_bench::dataset::{GroupOptions, GroupRenderer, ImageGroup};
-use yoro_context::Headless;
 use yoro_render::{GpuScene, RenderSettings, Renderer};
-use yoro_test_support::harness::{Gpu, Image, READ, Rendering, WRITTEN, flipped, with_gpu};
-use yoro_tests::backends;
+use yoro_test_support::against_opengl::{Gl, Picture, flipped};
+use yoro_test_support::harness::{Gpu, Image, READ, Rendering, WRITTEN, with_gpu};
 
 const SIZE: [u32; 2] = [256, 256];
 
