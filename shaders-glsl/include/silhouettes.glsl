@@ -4,6 +4,8 @@
 // A surface that is stretched more than this counts as two surfaces with a disocclusion between them.
 const float MAX_STRETCH = 2.0;
 
+// Any view calls these rules; gather writes them out in `is_event` and `meet` (include/segments.glsl).
+
 bool is_torn(float a, float b) {
     return b - a >= MAX_STRETCH;
 }

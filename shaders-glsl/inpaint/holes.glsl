@@ -2,6 +2,9 @@
 //
 // Columns are counted "forward", as in synthesis (include/warp.glsl): nearer surfaces have moved further along, so the
 // background of a disocclusion is on its left.
+//
+// The patchers fill holes in loops with dynamic counts, not in an `if`: CPU rasterizers and wide GPUs would pay for
+// both of its sides at every pixel.
 
 // Alpha is 1 where the colour is valid and 0 in holes.
 uniform sampler2D color_map;

@@ -32,7 +32,7 @@ void main() {
     int count = 0;
     // The median is the largest level with no more than half of the values below it. It is found two bits at a time.
     // The neighbours are fetched again each time, since an array of them would lie in memory or take most of a GPU's
-    // registers. The rare work is in a loop with a dynamic count; see include/fill.glsl.
+    // registers. The rare work is in a loop with a dynamic count; see inpaint/holes.glsl.
     for (int bit = color.a < 0.5 ? 64 : 0; bit > 0; bit >>= 2) {
         ivec3 candidates = level + bit * ONES * ivec3(1, 2, 3);
         ivec3 above = ivec3(0);

@@ -12,7 +12,7 @@ const int MAX_KERNEL_WIDTH = 10;
 void main() {
     ivec2 pixel = here();
     color = color_at(pixel.x, pixel.y);
-    // The rare work is in a loop with a dynamic count; see include/fill.glsl.
+    // The rare work is in a loop with a dynamic count; see inpaint/holes.glsl.
     for (int once = color.a < 0.5 ? 0 : 1; once < 1; ++once) {
         int left = pixel.x;
         while (left >= 0 && is_hole(left, pixel.y)) {

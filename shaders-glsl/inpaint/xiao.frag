@@ -14,7 +14,7 @@ void main() {
     ivec2 pixel = here();
     color = color_at(pixel.x, pixel.y);
     disparity = vec4(disparity_at(pixel.x, pixel.y));
-    // The rare work is in a loop with a dynamic count; see include/fill.glsl.
+    // The rare work is in a loop with a dynamic count; see inpaint/holes.glsl.
     bool hole = color.a < 0.5;
     ivec2 low = max(pixel - RADIUS, ivec2(0));
     ivec2 high = min(pixel + RADIUS, size - 1);

@@ -3,7 +3,7 @@
 
 uniform sampler2D image;  // display-referred sRGB, as the screen takes it
 uniform vec4 frustum;     // left, bottom, width, height of the image in tangents
-uniform float vignette;   // width of the dark border, as a part of the image
+uniform float border;     // width of the fade at a border, as a part of the image
 
 in vec2 lens_uv;
 in vec3 green_direction;
@@ -18,8 +18,8 @@ vec2 image_uv(vec3 direction) {
     return (direction.xy / max(-direction.z, 1e-3) - frustum.xy) / frustum.zw;
 }
 
-// 1 inside, 0 from the border on.
-float inside(vec2 uv, float border) {
+// 1 inside, 0 from the borders on.
+float inside(vec2 uv) {
     vec2 edge = smoothstep(0.0, border, uv) * smoothstep(0.0, border, 1.0 - uv);
     return edge.x * edge.y;
 }
@@ -35,5 +35,5 @@ void main() {
     vec3 color = texture(image, green_uv).rgb;
 #endif
     // A turned image may end before the lens does.
-    out_color = vec4(color * min(inside(lens_uv, vignette), inside(green_uv, vignette)), 1.0);
+    out_color = vec4(color * min(inside(lens_uv), inside(green_uv)), 1.0);
 }

@@ -315,7 +315,8 @@ pub fn depth_that_is_no_number_ends(subjects: &[Subject]) {
                     depth[8 * 96..16 * 96].iter_mut().skip(1).step_by(3).for_each(|d| *d = value);
                     depth[12 * 96..13 * 96].fill(value);
                     let got = pipeline.run(&rgba, &depth, &warp);
-                    // Fills reach at most six rows.
+                    // Fills reach as many rows as the hole's background is pixels away, at most twelve (`fill_spread`).
+                    // Here no surface moves by more than six pixels.
                     assert_eq!(row(&got.rgba, 0, 96 * 4), row(&want.rgba, 0, 96 * 4), "{subject:?} {value}");
                     assert_eq!(
                         row(&got.rgba, 23, 96 * 4),

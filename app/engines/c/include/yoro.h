@@ -6,7 +6,8 @@
  * WHAT IT DOES
  *
  * Your engine renders one eye, a little wider than it is shown, and lends its colour and depth. yoro draws the other eye into your
- * framebuffer or image, with its depth if you ask for it. Nothing is allocated, compiled or waited for in a frame.
+ * framebuffer or image, with its depth if you ask for it. While sizes stay the same, nothing is allocated, compiled or waited for in
+ * a frame.
  *
  * STEP BY STEP, on OpenGL ES 3.0 and desktop OpenGL 4.5. Fields left at 0 mean OpenGL's conventions and the defaults.
  *
@@ -39,9 +40,22 @@
  *   with the size of views.rendered: blit it, or give the compositor that rectangle. At the end: yoro_destroy.
  *
  * ON VULKAN 1.1, define YORO_USE_VULKAN, or include <vulkan/vulkan.h> before this file; without it there is the rest. The file can
- * be included again with it. yoro_vk_create once, yoro_vk_register_source and yoro_vk_register_target once for each pair of images,
- * with their use before and after; then in each frame, outside of render passes, with eyes.rows = YORO_ROWS_DOWN and eyes.clip =
- * YORO_CLIP_VULKAN: yoro_vk_record(yoro, commands, &views.warp, &frame).
+ * be included again with it. Views are as above, with eyes.rows = YORO_ROWS_DOWN and eyes.clip = YORO_CLIP_VULKAN. The complete host
+ * is examples/vulkan.c.
+ *
+ *   Once, with the device, the loader, the target's formats and the largest sizes in a YoroVkInfo:
+ *
+ *     yoro_vk_create(&info, &yoro);
+ *
+ *   Once for each pair of images, with its use before and after in a YoroVkSource and a YoroVkTarget:
+ *
+ *     YoroVkFrame frame = {.struct_size = sizeof frame};
+ *     yoro_vk_register_source(yoro, &read, &frame.source);
+ *     yoro_vk_register_target(yoro, &written, &frame.target);
+ *
+ *   Each frame, outside of render passes, after the source's:
+ *
+ *     yoro_vk_record(yoro, commands, &views.warp, &frame);
  *
  * A VIEW IN ANY POSE near the rendered one: warp_kind = YORO_WARP_KIND_POSE at creation, yoro_guarded_view for what to render,
  * yoro_pose_warp for the newest pose, and the calls that end in _pose.
@@ -1459,7 +1473,8 @@ typedef struct {
    */
   VkFormat depth_format;
   /**
-   * Largest width of a source in pixels.
+   * Largest width of a source in pixels. The source's size follows from the eyes' distance and angles: take it from
+   * eyes with the largest distance, and add a margin.
    */
   uint32_t max_source_width;
   /**
@@ -1502,12 +1517,15 @@ typedef struct {
  */
 typedef struct {
   /**
-   * The layout of the image.
+   * The layout of the image. Before a call, that of a target may be VK_IMAGE_LAYOUT_UNDEFINED if its contents are
+   * not needed: with VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT and access 0 if it was
+   * drawn to, sampled or copied from before.
    */
   VkImageLayout layout;
   /**
    * The stages that use the image. 0: nothing is waited for before the call, or nothing waits after it, for example
-   * because a semaphore does this.
+   * because a semaphore does this. Before a call, where a semaphore hands the image over, name the stage at which
+   * that semaphore is waited for.
    */
   VkPipelineStageFlags stages;
   /**

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     engine.draw(&views.source, &source);
 
     let other = engine.create_image(views.target.size)?;
-    // A texture with only a GL name is `glow::NativeTexture(name)`.
+    // A texture with only a GL name is `glow::NativeTexture(name)`, with the name as `NonZeroU32`.
     let textures = Source::new(source.color, source.depth);
     let target =
         Destination { framebuffer: Some(other.framebuffer), origin: [0, 0], size: views.target.size };

@@ -38,13 +38,17 @@
 //! # }
 //! ```
 //!
+//! `Context::new` takes the glow context by value. An engine that goes on with its own loads a second one with
+//! `glow::Context::from_loader_function`, or draws through `Context::raw`.
+//!
 //! With poses and fields of view from OpenXR, use [`eyes::Frustum::from_fov`] and [`eyes::EyePair`] instead of
 //! [`eyes::EyeOptions`]. The table of `opengl::Pipeline` lists what a call does to the context's state.
 //! `examples/engine.rs` is a complete host.
 //!
 //! 1. Render opaque objects, lighting and tone mapping.
 //! 2. Synthesize, with the other eye's depth if anything follows.
-//! 3. Draw transparent objects and interfaces into both eyes, each against its own depth.
+//! 3. Draw transparent objects and interfaces into both eyes, each against its own depth: into the source with
+//!    `views.source`, before its part is blitted, and into the other eye with `views.target`.
 //! 4. Anti-alias each eye, unless the source was drawn with several samples: then hand over their average colour and
 //!    the *nearest* of their depths, never an average of depths.
 //!

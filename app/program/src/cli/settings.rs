@@ -55,7 +55,8 @@ impl Group for Stereo {
     ];
 }
 
-/// The settings of the picture behind lenses.
+/// The settings of the picture behind lenses that `yoro view` has options for. Its own `--screen` is in pixels; the
+/// setting `screen` is in millimetres.
 #[derive(Clone, Copy, Debug)]
 pub struct Lenses;
 
@@ -84,7 +85,7 @@ impl<G: Group> SettingOptions<G> {
     }
 
     fn rows() -> impl Iterator<Item = &'static Setting> {
-        G::KEYS.iter().filter_map(|key| Setting::find(key))
+        G::KEYS.iter().map(|key| Setting::find(key).expect("a key of the table"))
     }
 }
 

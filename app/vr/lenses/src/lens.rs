@@ -1,4 +1,5 @@
-//! The pass that draws both eyes on the screen, with lens distortion, chromatic correction, timewarp and vignette.
+//! The pass that draws both eyes on the screen, with lens distortion, chromatic correction, timewarp and dark
+//! borders.
 
 use std::rc::Rc;
 
@@ -11,8 +12,8 @@ use yoro_gl::{Context, Destination, GlError, Mesh, Program, RasterState, ShaderS
 /// Radii at which red and blue light is seen through a lens, relative to green, for which lenses are specified. For
 /// acrylic (Abbe number 57, n - 1 of 0.494) at a screen's 620, 530 and 460 nm.
 const DISPERSION: [f32; 2] = [0.9913, 1.0106];
-/// Width of the vignette as a share of the image.
-const VIGNETTE: f32 = 0.03;
+/// Width of the fade at the borders as a share of the image.
+const BORDER: f32 = 0.03;
 /// Width of the alignment line in metres, and its colour, a grey.
 const LINE_WIDTH: f32 = 0.0006;
 const LINE_COLOR: [f32; 4] = [0.35, 0.35, 0.35, 1.0];
@@ -57,7 +58,7 @@ impl LensPass {
                 .bind()
                 .set("turn", Mat4::from_quat(turn))
                 .set("dispersion", Vec2::from(DISPERSION))
-                .set("vignette", VIGNETTE);
+                .set("border", BORDER);
             for eye in Eye::BOTH {
                 let frustum = &self.frusta[eye.index()];
                 let rectangle = Vec4::new(frustum.left, frustum.bottom, frustum.width(), frustum.height());

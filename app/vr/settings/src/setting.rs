@@ -10,7 +10,8 @@ pub const PROPERTY_PREFIX: &str = "debug.yoro.";
 
 /// A setting of the viewer, one row of [`SETTINGS`]: its name, its effect, and the values it takes.
 pub struct Setting {
-    /// The key in files, `key=value` texts, intent extras and system properties; the command line option's name.
+    /// The key in files, `key=value` texts, intent extras and system properties; the name of the command line option,
+    /// if the program has one for it.
     pub key: &'static str,
     help: &'static str,
     /// The placeholder for the value on the command line, if it is not the key.

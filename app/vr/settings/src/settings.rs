@@ -85,8 +85,8 @@ macro_rules! settings {
             }
         }
 
-        /// The table of settings. Files, `key=value` texts, intent extras, system properties, options of the command
-        /// line and the table in docs/settings.md follow it.
+        /// The table of settings. Files, `key=value` texts, intent extras, system properties and the table in
+        /// docs/settings.md follow it, and options of the command line for the keys that the program groups.
         pub static SETTINGS: &[Setting] = &[$(
             Setting::new::<$type>(
                 $key,

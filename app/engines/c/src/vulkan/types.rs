@@ -43,7 +43,8 @@ pub struct YoroVkInfo {
     pub color_format: vk::Format,
     /// Format of the targets' depth, which is written in the source's encoding. VK_FORMAT_UNDEFINED for no depth.
     pub depth_format: vk::Format,
-    /// Largest width of a source in pixels.
+    /// Largest width of a source in pixels. The source's size follows from the eyes' distance and angles: take it from
+    /// eyes with the largest distance, and add a margin.
     pub max_source_width: u32,
     /// Largest height of a source in pixels.
     pub max_source_height: u32,
@@ -70,10 +71,13 @@ versioned!(YoroVkInfo);
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct YoroVkState {
-    /// The layout of the image.
+    /// The layout of the image. Before a call, that of a target may be VK_IMAGE_LAYOUT_UNDEFINED if its contents are
+    /// not needed: with VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT and access 0 if it was
+    /// drawn to, sampled or copied from before.
     pub layout: vk::ImageLayout,
     /// The stages that use the image. 0: nothing is waited for before the call, or nothing waits after it, for example
-    /// because a semaphore does this.
+    /// because a semaphore does this. Before a call, where a semaphore hands the image over, name the stage at which
+    /// that semaphore is waited for.
     pub stages: vk::PipelineStageFlags,
     /// The kinds of access of these stages; 0 if there are none.
     pub access: vk::AccessFlags,

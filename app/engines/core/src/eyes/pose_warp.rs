@@ -9,7 +9,7 @@ use super::{EyesError, View};
 /// The point at inverse distance k from the target's eye, along its viewing axis, that the target shows at the pixel p
 /// lies in the source at the pixel `homography * p + k * epipole`: homogeneous pixels, counted from the lower left
 /// corner, with the third component `source distance / target distance` (Hartley and Zisserman, Multiple View Geometry,
-/// equation 9.7). `synthesis::AnyView` draws the target on OpenGL, `vulkan::AnyView` on Vulkan.
+/// equation 9.7). `opengl::AnyView` draws the target on OpenGL, `vulkan::AnyView` on Vulkan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseWarp {
     /// Size of the source in pixels.
@@ -90,7 +90,8 @@ impl PoseWarp {
         PoseWarp { epipole: DVec3::ZERO, ..*self }
     }
 
-    /// Returns the warp for images whose rows are counted from the top, for Vulkan and wgpu.
+    /// Returns the warp for images with row 0 at the top. `vulkan::Pipeline::record` and `yoro-wgpu` convert it
+    /// themselves.
     pub fn rows_from_top(&self) -> PoseWarp {
         let turn = |size: [u32; 2]| {
             DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::new(0.0, f64::from(size[1]), 1.0))

@@ -118,7 +118,8 @@ pub struct View {
 
 impl View {
     /// Returns the matrix from local to clip space, for OpenGL's default clip volume (-w..w on each axis). The depth
-    /// buffer then has the values of [`DepthRange`], in both conventions.
+    /// buffer then has the values of [`DepthRange`], in both conventions; but this volume costs reversed depth its
+    /// precision far away. With glClipControl, take [`View::wgpu_projection`].
     pub fn projection(&self) -> Mat4 {
         let f = &self.frustum;
         let (c, m) = self.depth.inverse_distance_law();
@@ -140,6 +141,7 @@ impl View {
 
     /// Returns the matrix from local to clip space for wgpu, WebGPU, Metal and Direct3D: y points up, depth is 0..w,
     /// and the image has row 0 at the top. The depth buffer then has the values of [`DepthRange`], in both conventions.
+    /// It serves OpenGL with `glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE)`, too, where row 0 is at the bottom.
     pub fn wgpu_projection(&self) -> Mat4 {
         let to_wgpu =
             Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, 0.5, 0.0), Vec4::new(0.0, 0.0, 0.5, 1.0));

@@ -63,7 +63,8 @@ impl Warp {
         })
     }
 
-    /// Returns the warp for images whose rows are counted from the top, for Vulkan and wgpu.
+    /// Returns the warp for images with row 0 at the top. `vulkan::Pipeline::record` and `yoro-wgpu` convert it
+    /// themselves.
     pub fn rows_from_top(&self) -> Warp {
         let [source, target] = [self.source_size[1], self.target_size[1]].map(|rows| rows as i32);
         Warp { row_offset: (target - source).saturating_sub(self.row_offset), ..*self }

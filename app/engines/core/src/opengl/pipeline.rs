@@ -54,7 +54,8 @@ pub type AnyView = Pipeline<PoseWarp>;
 ///
 /// The host ensures the rest: transform feedback and conditional rendering are inactive, the shading rate is one
 /// fragment per pixel, the target's draw buffers are its colour attachments from 0 on, and neither texture of the
-/// source is attached to it. An active occlusion query counts the passes' fragments.
+/// source is attached to it. An active occlusion query counts the passes' fragments. While [`Context::set_profiling`]
+/// times passes, no TIME_ELAPSED query of the host is active.
 pub struct Pipeline<W> {
     gl: Rc<Context>,
     outputs: Outputs,

@@ -169,7 +169,8 @@ pub struct Options {
     pub color_format: vk::Format,
     /// Format of the targets' depth, which is written in the source's encoding; `None` for colour only.
     pub depth_format: Option<vk::Format>,
-    /// The largest size of a source in pixels. Smaller sources need no new pipelines or buffers.
+    /// The largest size of a source in pixels. Smaller sources need no new pipelines or buffers. The source's size
+    /// follows from the eyes' distance and frusta: take it from a pair with the largest distance, and add a margin.
     pub max_source_size: [u32; 2],
     /// The largest size of a target in pixels.
     pub max_target_size: [u32; 2],
@@ -216,8 +217,9 @@ impl Default for Options {
 pub struct ImageState {
     /// Its layout.
     pub layout: vk::ImageLayout,
-    /// The stages that use it. Empty if nothing needs to be waited for, or nothing waits, for example because of a
-    /// semaphore.
+    /// The stages that use it. Empty if nothing needs to be waited for before, or if nothing waits afterwards, for
+    /// example because a semaphore does this. Before a call, where a semaphore hands the image over, name the stage at
+    /// which that semaphore is waited for.
     pub stages: vk::PipelineStageFlags,
     /// The kinds of access by these stages.
     pub access: vk::AccessFlags,

@@ -1,4 +1,5 @@
-//! A plain f64 version of the pipeline, without tiles: what the shaders must compute.
+//! A plain f64 version of the pipeline, without tiles: what the shaders must compute, but not the colours of holes:
+//! `any_view.rs` has them.
 
 /// One target pixel: its source column in forward columns, and whether it is a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]

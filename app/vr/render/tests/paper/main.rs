@@ -1,4 +1,5 @@
-//! Tests the paper's pipeline against its f64 reference, and what every pipeline must fulfil, on all GL backends.
+//! Tests the paper's pipeline against an f64 reference of Algorithm 2, and what every pipeline must fulfil, on all GL
+//! backends. Golden images show Algorithm 3's colours.
 
 use yoro::eyes::{DepthConvention, Eye, GuardBand};
 use yoro::synthesis::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE};
@@ -27,6 +28,7 @@ fn subject(options: PaperOptions) -> Subject {
     }
 }
 
+/// Compares sources and holes, not colours: what Algorithm 2 finds.
 #[test]
 fn paper_is_its_reference() {
     on_every_backend(|gl| {
