@@ -133,7 +133,7 @@ enum Task {
         #[command(subcommand)]
         task: maintain::Task,
     },
-    /// Check formatting, clippy, documentation, each library without its default features, the packages to publish, and
+    /// Check formatting, clippy, documentation, each published library without its default features, their packages, and
     /// the types of the page's scripts
     Lint,
 }
