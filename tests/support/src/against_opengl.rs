@@ -105,7 +105,7 @@ pub struct Gl {
 }
 
 impl Gl {
-    pub fn new() -> Gl {
+    pub fn open() -> Gl {
         let headless = Headless::open(Backend::Egl).expect("EGL is set up by `cargo xtask setup`");
         let mut gather = opengl::Gather::new(headless.gl(), &Options::default(), in_memory::OUTPUTS).unwrap();
         let synthesize = Box::new(move |source, warp: &Warp, target: &Destination| {

@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [256, 256];
 
 #[test]
 fn vulkan_equals_opengl_on_scenes() {
-    let opengl = Gl::new();
+    let opengl = Gl::open();
     let (gl, settings) = (opengl.headless.gl(), RenderSettings::default());
     let mut groups = GroupRenderer::new(gl, &GroupOptions::default()).unwrap();
     for name in ["talk", "stage"] {

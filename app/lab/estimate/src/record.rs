@@ -176,11 +176,9 @@ impl State {
             Event::ColorMasked => self.masks_color = true,
             Event::DepthMasked => self.masks_depth = true,
             Event::DrawBegins(shape) => self.begin_draw(gl, shape),
-            Event::DrawEnds => {
-                if self.open.take().is_some() {
-                    // SAFETY: ends the query that the draw call began.
-                    unsafe { gl.raw().end_query(glow::SAMPLES_PASSED) };
-                }
+            Event::DrawEnds if self.open.take().is_some() => {
+                // SAFETY: ends the query that the draw call began.
+                unsafe { gl.raw().end_query(glow::SAMPLES_PASSED) };
             }
             Event::Cleared { depth } => self.push(Command::Clear(self.target(self.framebuffer), depth), None),
             Event::Discarded { framebuffer, color, depth } => {

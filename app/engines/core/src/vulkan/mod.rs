@@ -1,12 +1,12 @@
 //! Synthesis on Vulkan: recorded into the caller's command buffer.
 //!
-//! [`Gather`] takes a [`Warp`](crate::eyes::Warp) between parallel eyes, [`AnyView`] a
-//! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. Both are a [`Pipeline`], and draw the
+//! [`Gather`] takes a [`Warp`] between parallel eyes, [`AnyView`] a
+//! [`PoseWarp`] to a view in any pose near the source's. Both are a [`Pipeline`], and draw the
 //! same picture as on OpenGL, from the same shaders. [`Pipeline::new`], [`Pipeline::register_source`] and
 //! [`Pipeline::register_target`] allocate and compile everything; [`Pipeline::record`] only records: it allocates
 //! nothing, submits nothing and waits for nothing.
 //!
-//! Source and target images have Vulkan's own orientation, with row 0 at the top. Pass the [`Warp`](crate::eyes::Warp)
+//! Source and target images have Vulkan's own orientation, with row 0 at the top. Pass the [`Warp`]
 //! as [`EyePair::synthesis_views`](crate::eyes::EyePair::synthesis_views) returns it: its rows, counted from the
 //! bottom, are converted. [`View::vulkan_projection`](crate::eyes::View::vulkan_projection) renders the source in this
 //! orientation. [`SynthesisViews::dominant_crop_from_top`](crate::eyes::SynthesisViews::dominant_crop_from_top) is the

@@ -8,7 +8,7 @@ use yoro::vulkan::{AnyView, ImageState, Options};
 
 #[test]
 fn any_view_is_that_of_opengl() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     for rendering in Rendering::ALL {
         with_gpu(rendering, |gpu| {
             for (i, (warp, range)) in pose_warps().into_iter().enumerate() {
@@ -29,7 +29,7 @@ fn any_view_is_that_of_opengl() {
 /// Parts of larger images and layers of arrays, with one pipeline for several sizes, pass times and other formats.
 #[test]
 fn any_view_of_parts_and_layers() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     with_gpu(Rendering::Core, |gpu| {
         let setups = [
             Setup { source_layer: 1, source_margins: [[5, 3], [2, 7]], target_layer: 1, ..Setup::PLAIN },

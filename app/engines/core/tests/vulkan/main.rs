@@ -185,7 +185,7 @@ fn synthesize<W: WarpKind>(
 
 #[test]
 fn pictures_equal_those_of_opengl() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     for rendering in Rendering::ALL {
         with_gpu(rendering, |gpu| {
             for (i, (warp, range)) in warps().into_iter().enumerate() {
@@ -203,7 +203,7 @@ fn pictures_equal_those_of_opengl() {
 /// Parts of larger images and layers of arrays, with one pipeline for several sizes, in all layouts.
 #[test]
 fn parts_and_layers_are_found() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     with_gpu(Rendering::RenderPasses, |gpu| {
         let warps = warps();
         let [read_only, general] =
@@ -239,7 +239,7 @@ fn parts_and_layers_are_found() {
 
 #[test]
 fn every_format_is_taken() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     for rendering in [Rendering::RenderPasses, Rendering::Core] {
         with_gpu(rendering, |gpu| {
             let color = [
@@ -293,7 +293,7 @@ fn every_format_is_taken() {
 /// sRGB is decoded, filtered and encoded by Vulkan as by OpenGL.
 #[test]
 fn srgb_is_filtered_in_linear_light() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     with_gpu(Rendering::Core, |gpu| {
         let (warp, range) = warps()[2];
         let picture = picture(&warp, range, 80);
@@ -311,7 +311,7 @@ fn srgb_is_filtered_in_linear_light() {
 /// Random sizes, rectangles, eyes and laws, with displacements of up to 300 pixels, where the search skips tiles.
 #[test]
 fn sizes_and_rectangles_at_random() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     with_gpu(Rendering::Core, |gpu| {
         let limits = Options { max_source_size: [540, 70], max_target_size: [540, 70], ..Options::default() };
         // SAFETY: the device outlives the pipeline, and all commands are executed before it is dropped.
@@ -335,7 +335,7 @@ fn sizes_and_rectangles_at_random() {
 /// allocates nothing.
 #[test]
 fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     for rendering in [Rendering::RenderPasses, Rendering::Core] {
         with_gpu(rendering, |gpu| {
             let (warp, range) = warps()[2];
@@ -382,7 +382,7 @@ fn frames_do_not_overwrite_each_other_and_recording_allocates_nothing() {
 /// a semaphore. The validation layer checks them.
 #[test]
 fn uses_differ_from_frame_to_frame() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     with_gpu(Rendering::RenderPasses, |gpu| {
         let (warp, range) = warps()[0];
         let picture = picture(&warp, range, 7);

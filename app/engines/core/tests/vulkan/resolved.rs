@@ -10,7 +10,7 @@ const FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
 #[test]
 fn resolved_depth_is_taken() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     with_gpu(Rendering::Core, |gpu| {
         let (warp, range) = warps()[0];
         if !gpu.resolves_depth(vk::ResolveModeFlags::MIN) {

@@ -34,7 +34,7 @@ fn a_browsers_webgpu_draws_opengls_picture() {
         .filter(|path| path.extension().is_some_and(|ending| ending == "wgsl"))
         .map(|path| (path.file_stem().unwrap().display().to_string(), fs::read_to_string(&path).unwrap()))
         .collect();
-    let gl = Gl::new();
+    let gl = Gl::open();
     browser.open(&folder.join("tests/browser/page.html"));
     for (number, (warp, range)) in [warps()[0], warps()[5]].into_iter().enumerate() {
         let picture = picture(&warp, range, number as u64);

@@ -10,7 +10,7 @@ use crate::{Setup, synthesize};
 /// Whole textures, parts of larger ones and layers of arrays, drawn by one pipeline.
 #[test]
 fn any_view_is_that_of_opengl() {
-    let gl = Gl::new();
+    let gl = Gl::open();
     let numbered = pose_warps().into_iter().zip(0..);
     let pictures: Vec<_> = numbered
         .map(|((warp, range), seed)| {

@@ -49,7 +49,7 @@ impl Setup {
     };
 
     fn options(&self) -> Options {
-        Options { color_format: self.target, depth_format: self.target_depth, ..Options::default() }
+        Options { color_format: self.target, depth_format: self.target_depth }
     }
 
     /// Returns this setup, reduced to what the device supports.
@@ -146,7 +146,7 @@ fn on_opengl(gl: &Gl, warps: &[(Warp, DepthRange)], first: u64) -> Vec<(Picture,
 
 #[test]
 fn pictures_equal_those_of_opengl() {
-    let pictures = on_opengl(&Gl::new(), &warps(), 0);
+    let pictures = on_opengl(&Gl::open(), &warps(), 0);
     with_gpus(|gpu| {
         let mut gather = Setup::PLAIN.gather(gpu);
         for (picture, wanted) in &pictures {
@@ -160,7 +160,7 @@ fn pictures_equal_those_of_opengl() {
 /// Parts of larger textures and layers of arrays, with one pipeline for several sizes.
 #[test]
 fn parts_and_layers_are_found() {
-    let pictures = on_opengl(&Gl::new(), &warps(), 50);
+    let pictures = on_opengl(&Gl::open(), &warps(), 50);
     let setup = Setup { depth: TextureFormat::Depth32Float, ..Setup::PLAIN };
     let setups = [
         Setup { source_layer: 1, source_margins: [[5, 3], [2, 7]], target_layer: 1, ..setup },
@@ -197,7 +197,7 @@ fn every_format_is_taken() {
     let sources = [&depth[..], &[TextureFormat::R16Unorm, TextureFormat::R32Float]].concat();
     let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
     let warp = eyes([150, 41], Eye::Left, range).synthesis_views(GuardBand::Pixels(9)).unwrap().warp;
-    let gl = Gl::new();
+    let gl = Gl::open();
     let exact = picture(&warp, range, 70);
     let mut rounded = picture(&warp, range, 70);
     rounded.depth.iter_mut().for_each(|depth| *depth = (*depth * 65535.0).round() / 65535.0);
@@ -240,7 +240,7 @@ fn every_format_is_taken() {
 fn srgb_is_filtered_in_linear_light() {
     let (warp, range) = warps()[2];
     let picture = picture(&warp, range, 80);
-    let gl = Gl::new();
+    let gl = Gl::open();
     let (want, plain) = (gl_srgb(gl.headless.gl(), &picture), gl.run(&picture).rgba);
     drop(gl);
     assert_ne!(want, plain, "linear light makes a difference");
@@ -257,7 +257,7 @@ fn srgb_is_filtered_in_linear_light() {
 fn sizes_and_rectangles_at_random() {
     let cases = random_cases();
     let warps: Vec<_> = cases.iter().map(|case| (case.warp, RANDOM_RANGE)).collect();
-    let pictures = on_opengl(&Gl::new(), &warps, 3);
+    let pictures = on_opengl(&Gl::open(), &warps, 3);
     with_gpus(|gpu| {
         let mut gather = Setup::PLAIN.gather(gpu);
         for ((picture, wanted), case) in pictures.iter().zip(&cases) {
@@ -280,7 +280,7 @@ fn sizes_and_rectangles_at_random() {
 fn calls_of_one_submission_do_not_disturb_each_other() {
     let (near, range) = warps()[2];
     let far = Warp { law: DisparityLaw { scale: 0.25 * near.law.scale, ..near.law }, ..near };
-    let pictures = on_opengl(&Gl::new(), &[(near, range), (far, range)], 5);
+    let pictures = on_opengl(&Gl::open(), &[(near, range), (far, range)], 5);
     with_gpus(|gpu| {
         let mut gather = Setup::PLAIN.gather(gpu);
         let made = [0, 1].map(|number| {
@@ -416,7 +416,7 @@ fn cost_of_the_passes() {
     let range = DepthRange { near: 0.3, far: 100.0, convention: DepthConvention::Reversed };
     let warp = eyes([1024; 2], Eye::Right, range).synthesis_views(GuardBand::Distance(1.0)).unwrap().warp;
     let picture = picture(&warp, range, 1);
-    let gl = Gl::new();
+    let gl = Gl::open();
     let (textures, into) = gl_images(gl.headless.gl(), &picture, yoro_gl::Format::Rgba8);
     let on_gl_source = opengl::Source::new(textures[0].raw(), textures[1].raw());
     let (options, outputs) = Default::default();

@@ -59,7 +59,7 @@ fn an_experiment_on_two_devices_over_faults() {
         assert_eq!(progress.to_string(), "8 of 8 runs complete");
         is_given_back(device);
     }
-    let captures = capture::read_all(&[out.clone()]).unwrap();
+    let captures = capture::read_all(std::slice::from_ref(&out)).unwrap();
     assert_eq!(captures.len(), 16);
     for serial in ["SIM1", "SIM2"] {
         let of: Vec<&Capture> = captures.iter().filter(|c| c.info.device.serial == serial).collect();
