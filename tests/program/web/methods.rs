@@ -1,5 +1,6 @@
 //! Compares the picture of each method with the desktop's.
 
+use image::RgbImage;
 use serde_json::{Value, json};
 use yoro::eyes::{Eye, EyeOptions};
 use yoro_context::{Backend, Headless};
@@ -8,6 +9,7 @@ use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
 use yoro_render::{PreparedScene, RenderSettings, RendererKind};
 
 use super::{Page, close};
+use crate::program::{finish, yoro};
 
 /// WebGL on SwiftShader, which supports OVR_multiview2, as headsets' browsers do.
 const MULTIVIEW: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
@@ -46,8 +48,13 @@ fn every_method_shows_what_the_desktop_shows() {
             page.choose("method", method.name());
             assert_eq!(page.message(), None, "{name}");
             let eyes = page.eyes(SIZE);
+            let reads_samples = renderer == RendererKind::Forward && method == Method::Synthesized;
+            let without = reads_samples.then(without_readable_samples);
             for eye in Eye::BOTH {
-                let desktop = rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], SIZE), SIZE);
+                let desktop = match &without {
+                    Some(eyes) => eyes[eye.index()].clone(),
+                    None => rgb_image(&frame.eye(eye).read_rgba8(0, [0, 0], SIZE), SIZE),
+                };
                 close(&format!("{name}, {}", eye.name()), &eyes[eye.index()], &desktop);
             }
             assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null, "{name}");
@@ -57,6 +64,22 @@ fn every_method_shows_what_the_desktop_shows() {
     }
 
     page.browser.expect_silence();
+}
+
+/// Returns both eyes as the desktop synthesizes them from the forward renderer on OpenGL ES 3.0. Like WebGL 2, it cannot
+/// read samples, so that the depth of each pixel's first one counts in place of the nearest one.
+fn without_readable_samples() -> [RgbImage; 2] {
+    let dir = tempfile::tempdir().unwrap();
+    let [width, height] = SIZE;
+    let line =
+        format!("render prototype --pose 1 --size {width}x{height} --renderer forward --gl egl --out es");
+    let run = finish(
+        yoro(line.split_whitespace()).env("MESA_GLES_VERSION_OVERRIDE", "3.0").current_dir(dir.path()),
+    );
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    Eye::BOTH.map(|eye| {
+        yoro_media::load_color(&dir.path().join(format!("es/prototype.{}.png", eye.name()))).unwrap()
+    })
 }
 
 #[test]
