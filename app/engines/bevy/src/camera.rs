@@ -142,6 +142,8 @@ impl Eyes {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrangement {
     pub(crate) plan: Plan,
+    /// The samples of the other eye's camera if both eyes are rendered.
+    msaa: Msaa,
     format: TextureFormat,
     /// The views of the two eyes, without their poses.
     views: [View; 2],
@@ -374,6 +376,7 @@ impl StereoCameraPartsItem<'_, '_> {
         let still = |view: View| View { pose: Pose::IDENTITY, ..view };
         let arrangement = Arrangement {
             plan,
+            msaa: self.rendering.msaa(),
             format: request.format,
             views: [views.source, views.target].map(still),
             far: request.far,

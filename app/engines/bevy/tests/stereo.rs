@@ -168,7 +168,7 @@ fn hdr_and_samples_are_synthesized() {
     stage.app.world_mut().entity_mut(camera).insert(Exposure::default());
     // MSAA.
     stage.app.world_mut().entity_mut(camera).remove::<(Hdr, Bloom)>().insert(Msaa::Sample4);
-    stage.check("4 samples", [37.5, 31.0]);
+    stage.check("4 samples", [36.0, 31.0]);
     stage.app.world_mut().entity_mut(camera).insert(Hdr);
     stage.check("4 samples with Hdr", [32.0, 29.0]);
 }
