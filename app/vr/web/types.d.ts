@@ -4,7 +4,7 @@ declare module '*yoro_web.js' {
   class Built { constructor(...all: any[]); [member: string]: any; static [member: string]: any }
   export default function init(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
   export function builtinScenes(): string;
-  export class Page extends Built {}
+  export class Page extends Built { static defaultChoices(): string }
   export class Bench extends Built {}
   export class Phone extends Built {
     static viewerFault(viewer: string): string | undefined;

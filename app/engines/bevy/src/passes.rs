@@ -150,8 +150,7 @@ impl Synthesis<'_, '_> {
         let encoder = self.context.command_encoder();
         let mut depth: &wgpu::TextureView = depth.view();
         if depth.texture().sample_count() > 1 {
-            let make =
-                || NearestDepth::new(device, DepthConvention::Reversed).inspect_err(log_once).ok();
+            let make = || NearestDepth::new(device, DepthConvention::Reversed).inspect_err(log_once).ok();
             let Some(nearest) = nearest.get_or_insert_with(make) else { return };
             depth = nearest.record(device, encoder, depth);
         }
@@ -206,10 +205,8 @@ fn synthesize_opaque(
     // clear them.
     let color_attachment = color.get_unsampled_color_attachment();
     drop(depth.get_attachment(StoreOp::Store));
-    let options = Options {
-        color_format: color.main_texture_format(),
-        depth_format: Some(CORE_3D_DEPTH_FORMAT),
-    };
+    let options =
+        Options { color_format: color.main_texture_format(), depth_format: Some(CORE_3D_DEPTH_FORMAT) };
     let target = Target { color: color_attachment.view, depth: Some(depth.view()), origin: [0, 0] };
     synthesis.record(&options, source_color.main_texture_view(), source_depth, warp, &target);
 }
