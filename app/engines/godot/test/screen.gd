@@ -26,6 +26,7 @@ func _ready() -> void:
 	camera.dominant_eye = YoroCamera3D.Eye.LEFT
 	await _case("swapped", ["ONE_VIEW"])
 	camera.dominant_eye = YoroCamera3D.Eye.RIGHT
+	await _frames(2)
 	# Without stereo layers, glass is drawn with the rendered eye, whose picture must not change.
 	var before := _image(camera.dominant_eye)
 	camera.stereo_layers = 0
