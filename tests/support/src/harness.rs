@@ -5,6 +5,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;
 
+use crate::against_opengl::flipped;
 use yoro::synthesis::backend::WarpKind;
 use yoro::vulkan::ash::{self, vk};
 use yoro::vulkan::{Host, ImageState, LayerImage};
@@ -486,7 +487,7 @@ impl Image<'_> {
 
     /// Fills a colour layer with RGBA bytes, with rows from the bottom. sRGB images store them unchanged.
     pub fn upload_rgba8(&self, layer: u32, rgba: &[u8], after: ImageState) {
-        let bytes = flipped(rgba, self.size[0] as usize * 4);
+        let bytes = flipped(rgba, self.size[1]);
         if is_rgba8(self.format) {
             return self.upload(layer, &bytes, after);
         }
@@ -498,11 +499,11 @@ impl Image<'_> {
     /// Reads a colour layer as RGBA bytes, with rows from the bottom.
     pub fn read_rgba8(&self, layer: u32, state: ImageState) -> Vec<u8> {
         if is_rgba8(self.format) {
-            return flipped(&self.read(layer, state, 4), self.size[0] as usize * 4);
+            return flipped(&self.read(layer, state, 4), self.size[1]);
         }
         let plain = self.gpu.image(vk::Format::R8G8B8A8_UNORM, self.size, 1);
         plain.blit_from(0, self, layer, [state, READ]);
-        flipped(&plain.read(0, READ, 4), self.size[0] as usize * 4)
+        flipped(&plain.read(0, READ, 4), self.size[1])
     }
 
     /// Fills a depth layer, with rows from the bottom.
@@ -519,14 +520,13 @@ impl Image<'_> {
             }
         };
         let bytes: Vec<u8> = depth.iter().flat_map(texel).collect();
-        let bytes_per_pixel = bytes.len() / depth.len();
-        self.upload(layer, &flipped(&bytes, self.size[0] as usize * bytes_per_pixel), after);
+        self.upload(layer, &flipped(&bytes, self.size[1]), after);
     }
 
     /// Reads a depth layer, with rows from the bottom.
     pub fn read_depth(&self, layer: u32, state: ImageState) -> Vec<f32> {
         let size = if self.format == vk::Format::D16_UNORM { 2 } else { 4 };
-        let bytes = flipped(&self.read(layer, state, size), self.size[0] as usize * size);
+        let bytes = flipped(&self.read(layer, state, size), self.size[1]);
         let value = |texel: &[u8]| match self.format {
             vk::Format::D16_UNORM => f32::from(u16::from_ne_bytes(texel.try_into().unwrap())) / 65535.0,
             vk::Format::D24_UNORM_S8_UINT => {
@@ -558,11 +558,6 @@ pub const READ: ImageState = ImageState {
     stages: vk::PipelineStageFlags::TRANSFER,
     access: vk::AccessFlags::TRANSFER_READ,
 };
-
-/// Reverses the order of the rows.
-pub fn flipped(bytes: &[u8], row: usize) -> Vec<u8> {
-    bytes.chunks_exact(row).rev().flatten().copied().collect()
-}
 
 /// Returns the largest source and target sizes of several warps.
 pub fn largest(warps: &[impl WarpKind]) -> [[u32; 2]; 2] {

@@ -4,15 +4,15 @@
 pub const LAW_PIXEL: &str = "law_pixel";
 /// Share of the waves in which every pixel's tile has a law, 0 to 1.
 pub const LAW_WAVE: &str = "law_wave";
-/// Trips of the loop of the march's short way, per pixel.
+/// The march's first steps, per pixel.
 pub const TRIPS_PIXEL: &str = "trips_pixel";
-/// Trips of the loop of the march's short way, per wave.
+/// The march's first steps, per wave.
 pub const TRIPS_WAVE: &str = "trips_wave";
-/// Share of the pixels that go the long way, 0 to 1.
+/// Share of the pixels that search over segments, 0 to 1.
 pub const GOES_ON_PIXEL: &str = "goes_on_pixel";
-/// Share of the waves with a pixel that goes the long way, 0 to 1.
+/// Share of the waves with a pixel that searches over segments, 0 to 1.
 pub const GOES_ON_WAVE: &str = "goes_on_wave";
-/// Segments that the march takes on its long way, per wave.
+/// Segments of that search, per wave.
 pub const LONG_TRIPS_WAVE: &str = "long_trips_wave";
 /// Estimated issue slots per pixel of the first pass of `gather`.
 pub const SLOTS_TILES: &str = "slots_tiles";
