@@ -1,8 +1,8 @@
-// A depth texture as a float image, to be read back.
-uniform sampler2D source;
+// A view's depth as a float image, to be read back.
+#include "include/depth_map.glsl"
 
 layout(location = 0) out vec4 out_depth;
 
 void main() {
-    out_depth = vec4(texelFetch(source, ivec2(gl_FragCoord.xy), 0).x);
+    out_depth = vec4(depth_of(ivec2(gl_FragCoord.xy)));
 }

@@ -1,8 +1,10 @@
 // A view's depth into the depth buffer of another framebuffer.
-#include "include/g_buffer.glsl"
+#include "include/depth_map.glsl"
 
 uniform ivec2 offset;  // from a pixel of the target to its pixel in the depth map
+uniform bool reverse;  // true if the target's convention is the other one
 
 void main() {
-    gl_FragDepth = G_TEXEL(depth_map, ivec2(gl_FragCoord.xy) + offset).x;
+    float depth = depth_of(ivec2(gl_FragCoord.xy) + offset);
+    gl_FragDepth = reverse ? 1.0 - depth : depth;
 }

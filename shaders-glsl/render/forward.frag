@@ -6,20 +6,16 @@ uniform float exposure;
 #ifdef INK
 uniform float material_id;
 #endif
-#ifdef SEAM_DISCARD
-uniform float seam;  // first column of the right eye
-flat in int v_view;
-#endif
-
 layout(location = 0) out vec4 out_color;
+#include "include/carried.glsl"
+#include "include/seam.glsl"
+#ifdef REPROJECTED
+#include "include/reprojection.glsl"
+#endif
 
 void main() {
     vec4 color = material_diffuse();
-#ifdef SEAM_DISCARD
-    if ((gl_FragCoord.x < seam) != (v_view == 0)) {
-        discard;
-    }
-#endif
+    DISCARD_BEYOND_SEAM
 #if defined(CUTOUT) && !defined(MULTISAMPLE)
     if (cut_out(color.a)) {
         discard;
@@ -27,8 +23,17 @@ void main() {
 #endif
     // Beyond the surface's edge, where only some samples are covered, the extrapolated distance may be invalid.
     float distance = 1.0 / max(gl_FragCoord.w, 1e-6);
-    vec3 c = aerial(shade(material_surface(color.rgb), v_position, 1.0), distance);
-    c = tonemap(exposure * c);
+    Surface surface = material_surface(color.rgb);
+#ifdef REPROJECTED
+    // Maps are sampled before the branch, since their derivatives are undefined within it.
+    vec3 c;
+    if (!is_seen(c)) {
+        c = tonemap(exposure * aerial(shade(surface, v_position), distance));
+    }
+#else
+    vec3 c = tonemap(exposure * aerial(shade(surface, v_position), distance));
+#endif
+    CARRY_DEPTH(gl_FragCoord.z)
 #if defined(CUTOUT) && defined(MULTISAMPLE)
     out_color = vec4(c, coverage(color.a));
 #elif defined(INK)

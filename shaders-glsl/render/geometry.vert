@@ -31,7 +31,7 @@ out float gl_ClipDistance[1];
 #ifdef SEAM_DISCARD
 flat out int v_view;
 #endif
-#if defined(STEREO) && defined(FORWARD)
+#ifdef STEREO
 out vec3 v_from_first;  // relative to the first eye
 #endif
 
@@ -43,7 +43,7 @@ void main() {
     v_position = position - EYE;
     v_normal = normal;
     v_uv = uv;
-#if defined(STEREO) && defined(FORWARD)
+#ifdef STEREO
     v_from_first = position - eyes[0];
 #endif
     gl_Position = EYE_TO_CLIP * vec4(v_position, 1.0);

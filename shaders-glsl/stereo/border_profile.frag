@@ -3,7 +3,8 @@
 // the nearest surface of a few columns, in every second row of a sixteenth of the rows. Columns are counted forward
 // (include/warp.glsl), so those of the guard band are the first.
 
-uniform sampler2D depth_map;
+#include "include/depth_map.glsl"
+
 uniform bool mirrored;
 uniform int guard;      // columns of the guard band
 uniform int first;      // first column that is drawn
@@ -27,7 +28,7 @@ void main() {
     float undrawn = 0.0;
     for (int row = cell.y * size.y / BANDS; row < top; row += ROWS) {
         for (int x = begin; x < end; ++x) {
-            float depth = texelFetch(depth_map, ivec2(mirrored ? size.x - 1 - x : x, row), 0).r;
+            float depth = depth_of(ivec2(mirrored ? size.x - 1 - x : x, row));
             float disparity = law.x + law.y * depth;
             nearest = max(nearest, disparity);
             // A surface that continues beyond the outermost drawn column is seen as far as it moves into the image.

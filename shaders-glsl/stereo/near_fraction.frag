@@ -2,7 +2,8 @@
 // The share of a depth image that is nearer than a given depth: each of 16 x 16 texels counts 8 x 8 pixels of its part
 // of the image.
 
-uniform sampler2D depth_map;
+#include "include/depth_map.glsl"
+
 uniform ivec2 origin;
 uniform ivec2 size;
 uniform float near_depth;
@@ -19,7 +20,7 @@ void main() {
     for (int j = 0; j < SAMPLES; ++j) {
         for (int i = 0; i < SAMPLES; ++i) {
             ivec2 pixel = origin + ((cell + ivec2(i, j)) * 2 + 1) * size / (2 * GRID * SAMPLES);
-            float depth = texelFetch(depth_map, pixel, 0).r;
+            float depth = depth_of(pixel);
             count += (reversed ? depth > near_depth : depth < near_depth) ? 1.0 : 0.0;
         }
     }

@@ -8,6 +8,12 @@
 // include/segments.glsl.
 
 #include "include/segments.glsl"
+#ifdef BLOOM
+#include "include/develop.glsl"
+#define DEVELOPED(color, place) developed(color, place)
+#else
+#define DEVELOPED(color, place) color
+#endif
 
 layout(location = 0) out vec4 color;
 #ifdef SOURCE_MAP
@@ -30,7 +36,8 @@ vec4 lawful(vec3 affine, out Surface surface) {
     surface.depth = mix(depths.x, depths.y, fract(surface.source));
     surface.hole = false;
 #endif
-    return color_sample(vec2(place, row_at(0.0)));
+    vec2 at = vec2(place, row_at(0.0));
+    return DEVELOPED(color_sample(at), at);
 }
 
 // Colour and surface of any other pixel.
@@ -57,7 +64,7 @@ vec4 searched(uint span, out Surface surface) {
         COUNT_TRIP(6)
         seen = march(at, end, origin, source_row(), surface);
     }
-    return seen;
+    return DEVELOPED(seen, vec2(column_at(surface.source), row_at(0.0)));
 }
 
 void main() {

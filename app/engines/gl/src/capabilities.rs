@@ -52,6 +52,9 @@ pub struct Capabilities {
     pub samples: Vec<u32>,
     /// Multisample textures, whose samples shaders read one by one: OpenGL ES 3.1 and desktop.
     pub multisample_textures: bool,
+    /// Masks of the samples that are drawn: OpenGL ES 3.1 and desktop, with its entry points
+    /// ([`crate::Context::with_loader`]).
+    pub sample_masks: bool,
     /// Samples of colour and depth that exist only in the tiles of a tile-based GPU:
     /// GL_EXT_multisampled_render_to_texture and its second version.
     pub tile_samples: bool,
@@ -59,6 +62,12 @@ pub struct Capabilities {
     pub max_compute_shared_memory: u32,
     /// True on CPU rasterizers (llvmpipe, softpipe, SwiftShader), where times are CPU times.
     pub software: bool,
+}
+
+/// The entry points beyond glow's that were found.
+pub(crate) struct Loaded {
+    pub multiview: bool,
+    pub sample_masks: bool,
 }
 
 /// Returns the sample counts above 1 that both colour and depth formats support, largest first.
@@ -117,7 +126,7 @@ impl Capabilities {
     /// Queries the current context. `counts_time` is called only if timer queries are supported.
     pub(crate) fn query(
         gl: &glow::Context,
-        multiview_loaded: bool,
+        loaded: Loaded,
         counts_time: impl FnOnce() -> bool,
     ) -> Result<Capabilities, GlError> {
         // SAFETY: the context is current, and each enum exists in the versions in which it is queried.
@@ -162,13 +171,14 @@ impl Capabilities {
                 },
                 timer_queries,
                 multiview_timer_queries: timer_queries && has("GL_EXT_multiview_timer_query"),
-                multiview: multiview_loaded && has("GL_OVR_multiview2"),
+                multiview: loaded.multiview && has("GL_OVR_multiview2"),
                 clip_distances: api == GlApi::Desktop || has("GL_EXT_clip_cull_distance"),
                 max_texture_size: limit(glow::MAX_TEXTURE_SIZE),
                 samples: samples(gl),
                 tile_samples: api == GlApi::Es
                     && has("GL_EXT_multisampled_render_to_texture")
                     && has("GL_EXT_multisampled_render_to_texture2"),
+                sample_masks: loaded.sample_masks && (api == GlApi::Desktop || number >= (3, 1)),
                 multisample_textures: api == GlApi::Desktop || number >= (3, 1),
                 max_compute_shared_memory: if compute {
                     limit(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE)
@@ -214,6 +224,7 @@ impl Capabilities {
         feature(self.multiview, "multiview");
         feature(self.clip_distances, "clip distances");
         feature(self.multisample_textures, "multisample textures");
+        feature(self.sample_masks, "sample masks");
         feature(self.tile_samples, "samples in tiles");
         feature(self.max_anisotropy > 1.0, "anisotropic filtering");
         format!("{}, {} ({})", self.renderer, self.version_string, features.join(", "))

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use glow::HasContext;
 
-use crate::{Attachments, Context, Event, Filter, Format, GlApi, GlError, PixelBuffer, Texture};
+use crate::{Aspect, Attachments, Context, Event, Filter, Format, GlApi, GlError, PixelBuffer, Texture};
 
 /// A rectangle of a framebuffer to draw into.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,8 @@ impl Context {
     /// Copies a rectangle of colour to another one, stretched without filtering if the sizes differ. Values are copied
     /// bit by bit, unless only one of the two is stored as sRGB.
     pub fn copy(&self, from: &Destination, to: &Destination) {
-        self.tell(Event::Copied { from: from.framebuffer, to: to.framebuffer, size: to.size, depth: false });
+        let aspect = Aspect::Color(0);
+        self.tell(Event::Copied { from: from.framebuffer, to: to.framebuffer, size: to.size, aspect });
         let gl = self.raw();
         let [x, y] = from.origin.map(|n| n as i32);
         let [w, h] = from.size.map(|n| n as i32);
@@ -282,6 +283,16 @@ impl RenderTarget {
     /// Binds the framebuffer, for draws that overwrite all of its depth.
     pub fn overwrite_depth(&self) {
         self.gl.overwrite(&self.depth_only(), 0, true);
+    }
+
+    /// Discards the depth, so that a tile-based GPU does not write it to memory.
+    pub fn discard_depth(&self) {
+        self.gl.tell(Event::Discarded { framebuffer: self.raw(), color: false, depth: true });
+        // SAFETY: this target's framebuffer has the attachment, or GL ignores the call.
+        unsafe {
+            self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.raw()));
+            self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &[glow::DEPTH_ATTACHMENT]);
+        }
     }
 
     /// Returns colour texture `i`.

@@ -16,6 +16,7 @@ mod observer;
 mod pixel_buffer;
 mod profiler;
 mod program;
+mod sample_mask;
 mod state;
 mod texture;
 
@@ -31,7 +32,7 @@ pub use framebuffer::{Destination, ForeignTarget, RenderTarget};
 pub use host::{HostState, Touched};
 pub use mesh::Mesh;
 pub use multisample::{MultisampleTarget, TileTarget};
-pub use observer::{Attachments, Event, Image, Observer, Shape};
+pub use observer::{Aspect, Attachments, Event, Image, Observer, Shape};
 pub use pixel_buffer::PixelBuffer;
 pub use profiler::{PassTime, Profiling};
 pub use program::{Program, ProgramRecipe, ShaderSource, UniformValue};
@@ -100,6 +101,7 @@ type GetQuery = unsafe extern "system" fn(u32, u32, *mut i32);
 #[derive(Clone, Copy, Default)]
 struct EntryPoints {
     framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
+    sample_masks: Option<sample_mask::SampleMasks>,
     get_query: Option<GetQuery>,
     indexed: Option<host::IndexedQueries>,
 }
@@ -125,6 +127,7 @@ pub struct Context {
     /// Browsers provide the function without an entry point.
     #[cfg(not(target_arch = "wasm32"))]
     framebuffer_texture_multiview: Option<FramebufferTextureMultiview>,
+    sample_masks: Option<sample_mask::SampleMasks>,
     capabilities: Capabilities,
     host: host::Host,
     profiler: RefCell<profiler::Profiler>,
@@ -148,8 +151,8 @@ impl Context {
         Context::with_entry_points(raw, EntryPoints::default(), None)
     }
 
-    /// Like [`Context::new`], with functions that glow does not wrap: multiview, the bits of timer queries, and the
-    /// state of single draw buffers. Without the latter, [`Context::restore_state`] gives the second draw buffer the
+    /// Like [`Context::new`], with functions that glow does not wrap: multiview, sample masks, the bits of timer queries,
+    /// and the state of single draw buffers. Without the latter, [`Context::restore_state`] gives the second draw buffer the
     /// state of the first. `load` returns an entry point by its name, or null.
     ///
     /// # Errors
@@ -197,12 +200,20 @@ impl Context {
             let get_boolean = std::mem::transmute::<*const c_void, Option<host::GetBooleanIndexed>>(load(
                 c"glGetBooleani_v",
             ));
+            let set_mask =
+                std::mem::transmute::<*const c_void, Option<sample_mask::SetMask>>(load(c"glSampleMaski"));
+            let get_sample = std::mem::transmute::<*const c_void, Option<sample_mask::GetSample>>(load(
+                c"glGetMultisamplefv",
+            ));
             EntryPoints {
                 framebuffer_texture_multiview: std::mem::transmute::<
                     *const c_void,
                     Option<FramebufferTextureMultiview>,
                 >(load(c"glFramebufferTextureMultiviewOVR")),
                 get_query: std::mem::transmute::<*const c_void, Option<GetQuery>>(load(c"glGetQueryiv")),
+                sample_masks: set_mask
+                    .zip(get_sample)
+                    .map(|(set_mask, get_sample)| sample_mask::SampleMasks { set_mask, get_sample }),
                 indexed: is_enabled
                     .zip(get_boolean)
                     .map(|(is_enabled, get_boolean)| host::IndexedQueries { is_enabled, get_boolean }),
@@ -218,7 +229,11 @@ impl Context {
     ) -> Result<Rc<Context>, GlError> {
         let has_multiview =
             cfg!(target_arch = "wasm32") || entry_points.framebuffer_texture_multiview.is_some();
-        let capabilities = Capabilities::query(&raw, has_multiview, || entry_points.counts_time())?;
+        let loaded = capabilities::Loaded {
+            multiview: has_multiview,
+            sample_masks: entry_points.sample_masks.is_some(),
+        };
+        let capabilities = Capabilities::query(&raw, loaded, || entry_points.counts_time())?;
         let host = host::Host::new(&raw, &capabilities, entry_points.indexed)?;
         // SAFETY: creates an object, which `Context` deletes when it is dropped.
         let empty_vertex_array = unsafe { raw.create_vertex_array() }
@@ -228,6 +243,7 @@ impl Context {
             raw,
             #[cfg(not(target_arch = "wasm32"))]
             framebuffer_texture_multiview: entry_points.framebuffer_texture_multiview,
+            sample_masks: entry_points.sample_masks,
             capabilities,
             host,
             profiler,

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glow::HasContext;
 
 use crate::framebuffer::Framebuffer;
-use crate::{Attachments, Context, Event, Format, GlError, RenderTarget};
+use crate::{Aspect, Attachments, Context, Destination, Event, Format, GlError, RenderTarget, Texture};
 
 /// A colour or depth attachment.
 enum Image {
@@ -13,23 +13,24 @@ enum Image {
     Renderbuffer(glow::Renderbuffer),
 }
 
-/// A framebuffer with several samples of colour and depth per pixel, 4 bytes each. A tile-based GPU writes all samples
-/// to memory unless they are discarded by [`MultisampleTarget::discard`].
+/// A framebuffer with several samples of colours and depth per pixel. A tile-based GPU writes all samples to memory
+/// unless they are discarded by [`MultisampleTarget::discard`].
 pub struct MultisampleTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,
     samples: u32,
-    formats: [Format; 2],
+    colors: Vec<Format>,
+    depth: Format,
     readable: bool,
-    /// The colour image and the depth image.
-    images: Option<[Image; 2]>,
+    /// The colour images and the depth image.
+    images: Vec<Image>,
     size: [u32; 2],
 }
 
 impl MultisampleTarget {
-    /// Creates a target of `size` pixels with this many samples each ([`crate::Capabilities::check_samples`]). Both
-    /// formats must be renderable and have 4 bytes. A `readable` target has textures, for shaders that read single
-    /// samples ([`crate::Capabilities::multisample_textures`]).
+    /// Creates a target of `size` pixels with this many samples each ([`crate::Capabilities::check_samples`]). All formats
+    /// must be renderable. A `readable` target has textures, for shaders that read single samples
+    /// ([`crate::Capabilities::multisample_textures`]).
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver lacks this many samples or multisample textures, or cannot render to the
@@ -38,7 +39,7 @@ impl MultisampleTarget {
         gl: &Rc<Context>,
         size: [u32; 2],
         samples: u32,
-        color: Format,
+        colors: &[Format],
         depth: Format,
         readable: bool,
     ) -> Result<MultisampleTarget, GlError> {
@@ -52,9 +53,10 @@ impl MultisampleTarget {
             gl: gl.clone(),
             framebuffer: Framebuffer::new(gl)?,
             samples,
-            formats: [color, depth],
+            colors: colors.to_vec(),
+            depth,
             readable,
-            images: None,
+            images: Vec::new(),
             size: [0, 0],
         };
         target.resize(size)?;
@@ -75,24 +77,28 @@ impl MultisampleTarget {
             return Err(GlError::TooLarge { width, height, limit });
         }
         self.delete_images();
-        let [color, depth] = self.formats;
-        self.images = Some([self.image(size, color)?, self.image(size, depth)?]);
+        for format in self.formats().collect::<Vec<_>>() {
+            let image = self.image(size, format)?;
+            self.images.push(image);
+        }
         self.size = size;
         self.gl.count_texture_bytes(self.bytes());
-        let [color, depth] = self.formats.map(|format| self.describe(format));
-        for (image, what) in self.images.iter().flatten().zip([color, depth]) {
+        let what: Vec<_> = self.formats().map(|format| self.describe(format)).collect();
+        for (image, what) in self.images.iter().zip(&what) {
             if let Image::Texture(raw) = *image {
-                self.gl.tell(Event::TextureMade(raw, what));
+                self.gl.tell(Event::TextureMade(raw, *what));
             }
         }
-        let images = Attachments { color: vec![color], depth: Some(depth) };
-        self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, images));
+        let (color, depth) = (what[..self.colors.len()].to_vec(), what.last().copied());
+        self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, Attachments { color, depth }));
         let gl = self.gl.raw();
         // SAFETY: the attachments were created for this target above.
         let (status, error) = unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
-            let attachments = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT];
-            for (attachment, image) in attachments.into_iter().zip(self.images.iter().flatten()) {
+            let buffers: Vec<u32> =
+                (0..self.colors.len() as u32).map(|i| glow::COLOR_ATTACHMENT0 + i).collect();
+            let attachments = buffers.iter().copied().chain([glow::DEPTH_ATTACHMENT]);
+            for (attachment, image) in attachments.zip(&self.images) {
                 let (target, multisample) = (glow::FRAMEBUFFER, glow::TEXTURE_2D_MULTISAMPLE);
                 match *image {
                     Image::Texture(raw) => {
@@ -103,6 +109,7 @@ impl MultisampleTarget {
                     }
                 }
             }
+            gl.draw_buffers(&buffers);
             (gl.check_framebuffer_status(glow::FRAMEBUFFER), gl.get_error())
         };
         if error == glow::OUT_OF_MEMORY {
@@ -112,8 +119,8 @@ impl MultisampleTarget {
         }
         if status != glow::FRAMEBUFFER_COMPLETE {
             return Err(GlError::Unsupported(format!(
-                "the GL driver cannot render to {color:?} with depth {depth:?} in {} samples a pixel (status 0x{status:x}): choose fewer, or update the driver",
-                self.samples
+                "the GL driver cannot render to {:?} with depth {:?} in {} samples a pixel (status 0x{status:x}): choose fewer, or update the driver",
+                self.colors, self.depth, self.samples
             )));
         }
         Ok(())
@@ -147,15 +154,21 @@ impl MultisampleTarget {
         crate::Image { format, size: self.size, samples: self.samples }
     }
 
-    /// Returns the size of colour and depth in bytes.
+    /// Returns the formats of the images.
+    fn formats(&self) -> impl Iterator<Item = Format> {
+        self.colors.iter().copied().chain([self.depth])
+    }
+
+    /// Returns the size of all images in bytes.
     fn bytes(&self) -> isize {
-        2 * 4 * self.samples as isize * self.size[0] as isize * self.size[1] as isize
+        let sample: usize = self.formats().map(Format::bytes).sum();
+        sample as isize * self.samples as isize * self.size[0] as isize * self.size[1] as isize
     }
 
     fn delete_images(&mut self) {
         self.gl.count_texture_bytes(-self.bytes());
         self.size = [0, 0];
-        for image in self.images.take().into_iter().flatten() {
+        for image in std::mem::take(&mut self.images) {
             if let Image::Texture(raw) = image {
                 self.gl.tell(Event::TextureDeleted(raw));
             }
@@ -175,63 +188,75 @@ impl MultisampleTarget {
         self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
     }
 
-    /// Averages the samples into the first colour texture of `to`, which must have the same colour format. Resolves the
-    /// lower left pixels, up to the size of `to`.
-    pub fn resolve_color(&self, to: &RenderTarget) {
-        self.blit(to, glow::COLOR_BUFFER_BIT);
+    /// Averages the samples of a colour attachment into a rectangle of the same format. The rectangle is the lower left
+    /// one of both: OpenGL ES averages between equal rectangles only.
+    pub fn average(&self, attachment: usize, to: &Destination) {
+        debug_assert_eq!(to.origin, [0, 0]);
+        self.blit(Aspect::Color(attachment), to);
     }
 
     /// Copies the depth of one sample, which the driver chooses, into the depth texture of `to`, which must have the
-    /// same depth format. For drivers without multisample textures.
-    pub fn resolve_depth(&self, to: &RenderTarget) {
-        self.blit(to, glow::DEPTH_BUFFER_BIT);
+    /// same depth format.
+    pub fn copy_depth(&self, to: &RenderTarget) {
+        self.blit(Aspect::Depth, &Destination::whole(to));
     }
 
-    fn blit(&self, to: &RenderTarget, mask: u32) {
-        let (from, depth) = (self.framebuffer.raw, mask == glow::DEPTH_BUFFER_BIT);
-        self.gl.tell(Event::Copied { from: Some(from), to: Some(to.raw()), size: to.size(), depth });
-        let [w, h] = to.size().map(|n| n as i32);
+    fn blit(&self, aspect: Aspect, to: &Destination) {
+        let from = Some(self.framebuffer.raw);
+        self.gl.tell(Event::Copied { from, to: to.framebuffer, size: to.size, aspect });
+        let [w, h] = to.size.map(|n| n as i32);
         let gl = self.gl.raw();
-        // SAFETY: both targets own their framebuffers; the rectangles are equal, as GL demands for multisampled ones.
+        // SAFETY: the source is this target's framebuffer; the rectangles are equal, as GL demands for samples.
         unsafe {
             gl.disable(glow::SCISSOR_TEST);
-            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.framebuffer.raw));
-            gl.read_buffer(glow::COLOR_ATTACHMENT0);
-            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(to.raw()));
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, from);
+            let mask = match aspect {
+                Aspect::Color(i) => {
+                    gl.read_buffer(glow::COLOR_ATTACHMENT0 + i as u32);
+                    glow::COLOR_BUFFER_BIT
+                }
+                Aspect::Depth => glow::DEPTH_BUFFER_BIT,
+            };
+            gl.bind_framebuffer(glow::DRAW_FRAMEBUFFER, to.framebuffer);
             gl.blit_framebuffer(0, 0, w, h, 0, 0, w, h, mask, glow::NEAREST);
         }
     }
 
-    /// Discards the contents of colour, depth or both, so that a tile-based GPU does not write them to memory.
+    /// Returns the lower left part of this size.
+    pub fn part(&self, size: [u32; 2]) -> Destination {
+        Destination { framebuffer: Some(self.framebuffer.raw), origin: [0, 0], size }
+    }
+
+    /// Discards the contents of all colours, depth or both, so that a tile-based GPU does not write them to memory.
     pub fn discard(&self, color: bool, depth: bool) {
-        let attachments = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT];
-        let discarded = match (color, depth) {
-            (true, true) => &attachments[..],
-            (true, false) => &attachments[..1],
-            (false, true) => &attachments[1..],
-            (false, false) => return,
-        };
+        let colors = (0..self.colors.len() as u32).map(|i| glow::COLOR_ATTACHMENT0 + i).filter(|_| color);
+        let mut discarded = [0; 4];
+        let mut count = 0;
+        for attachment in colors.chain(depth.then_some(glow::DEPTH_ATTACHMENT)) {
+            discarded[count] = attachment;
+            count += 1;
+        }
         self.gl.tell(Event::Discarded { framebuffer: self.framebuffer.raw, color, depth });
         // SAFETY: this target's framebuffer has these attachments.
         unsafe {
             self.gl.raw().bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
-            self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, discarded);
+            self.gl.raw().invalidate_framebuffer(glow::FRAMEBUFFER, &discarded[..count]);
         }
     }
 
-    /// Returns the colour of all samples as a multisample texture, if the target is readable.
+    /// Returns the samples of the first colour as a multisample texture, if the target is readable.
     pub fn color(&self) -> Option<glow::Texture> {
         self.texture(0)
     }
 
-    /// Returns the depth of all samples as a multisample texture, if the target is readable.
+    /// Returns the samples of depth as a multisample texture, if the target is readable.
     pub fn depth(&self) -> Option<glow::Texture> {
-        self.texture(1)
+        self.texture(self.colors.len())
     }
 
     fn texture(&self, i: usize) -> Option<glow::Texture> {
-        match self.images.as_ref()?[i] {
-            Image::Texture(raw) => Some(raw),
+        match self.images.get(i)? {
+            Image::Texture(raw) => Some(*raw),
             Image::Renderbuffer(_) => None,
         }
     }
@@ -253,15 +278,14 @@ impl Drop for MultisampleTarget {
     }
 }
 
-/// A framebuffer that renders with several samples per pixel into the textures of a render target. A tile-based GPU
-/// keeps the samples in its tiles and averages them when it writes the tiles: 8 bytes per pixel, whatever the number of
-/// samples. The samples are lost as soon as another framebuffer is bound.
+/// A framebuffer that renders with several samples per pixel into textures of one. A tile-based GPU keeps the samples in
+/// its tiles and averages them when it writes the tiles. The samples are lost as soon as another framebuffer is bound.
 pub struct TileTarget {
     gl: Rc<Context>,
     framebuffer: Framebuffer,
     samples: u32,
-    /// The colour texture and the depth texture.
-    textures: Option<[glow::Texture; 2]>,
+    /// The colour textures and the depth texture.
+    textures: Vec<glow::Texture>,
 }
 
 impl TileTarget {
@@ -278,26 +302,34 @@ impl TileTarget {
                 capabilities.renderer
             )));
         }
-        Ok(TileTarget { gl: gl.clone(), framebuffer: Framebuffer::new(gl)?, samples, textures: None })
+        Ok(TileTarget { gl: gl.clone(), framebuffer: Framebuffer::new(gl)?, samples, textures: Vec::new() })
     }
 
-    /// Attaches the first colour texture and the depth texture of a target, unless they are attached already.
+    /// Attaches colour textures, which receive the averages, and a depth texture of the same size, which is never
+    /// written, unless they are attached already.
     ///
     /// # Errors
     /// [`GlError::Unsupported`] if the driver cannot render to these textures with this many samples.
-    pub fn fit(&mut self, target: &RenderTarget) -> Result<(), GlError> {
-        let textures = [target.color(0).raw(), target.depth().raw()];
-        if self.textures == Some(textures) {
+    ///
+    /// # Safety
+    /// The colours are 2-D textures of this context, in the order of the attachments.
+    pub unsafe fn fit(
+        &mut self,
+        colors: &[(glow::Texture, crate::Image)],
+        depth: &Texture,
+    ) -> Result<(), GlError> {
+        let textures = || colors.iter().map(|(raw, _)| *raw).chain([depth.raw()]);
+        if self.textures.iter().copied().eq(textures()) {
             return Ok(());
         }
-        self.textures = None;
+        self.textures.clear();
         let gl = self.gl.raw();
-        // SAFETY: the target owns the textures, and the entry point exists by `tile_samples`.
+        let buffers: Vec<u32> = (0..colors.len() as u32).map(|i| glow::COLOR_ATTACHMENT0 + i).collect();
+        let attachments = buffers.iter().copied().chain([glow::DEPTH_ATTACHMENT]);
+        // SAFETY: the caller's textures, and the entry point exists by `tile_samples`.
         let status = unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer.raw));
-            for (attachment, raw) in
-                [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT].into_iter().zip(textures)
-            {
+            for (attachment, raw) in attachments.zip(textures()) {
                 gl.framebuffer_texture_2d_multisample(
                     glow::FRAMEBUFFER,
                     attachment,
@@ -307,6 +339,7 @@ impl TileTarget {
                     self.samples as i32,
                 );
             }
+            gl.draw_buffers(&buffers);
             gl.check_framebuffer_status(glow::FRAMEBUFFER)
         };
         if status != glow::FRAMEBUFFER_COMPLETE {
@@ -315,16 +348,16 @@ impl TileTarget {
                 self.samples
             )));
         }
-        self.textures = Some(textures);
-        let images =
-            Attachments { color: vec![target.color(0).image()], depth: Some(target.depth().image()) };
+        self.textures = textures().collect();
+        let color = colors.iter().map(|(_, image)| *image).collect();
+        let images = Attachments { color, depth: Some(depth.image()) };
         self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, images));
         Ok(())
     }
 
-    /// Binds the framebuffer and sets the viewport to its lower left part of this size, in pixels.
-    pub fn bind(&self, size: [u32; 2]) {
-        self.gl.bind_framebuffer(Some(self.framebuffer.raw), [0, 0], size);
+    /// Returns the lower left part of this size.
+    pub fn part(&self, size: [u32; 2]) -> Destination {
+        Destination { framebuffer: Some(self.framebuffer.raw), origin: [0, 0], size }
     }
 
     /// Discards the depth. The framebuffer must be bound.

@@ -106,9 +106,18 @@ pub enum Event<'a> {
         to: Option<glow::Framebuffer>,
         /// Width and height in pixels.
         size: [u32; 2],
-        /// True for depth, false for the first colour attachment.
-        depth: bool,
+        /// The attachment of the source that is copied, into the first of its kind.
+        aspect: Aspect,
     },
+}
+
+/// An attachment of a framebuffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aspect {
+    /// The colour attachment of this number.
+    Color(usize),
+    /// The depth attachment.
+    Depth,
 }
 
 /// Is told what a context does.

@@ -231,5 +231,6 @@ uniform!(&[IVec4], |gl, l, v| gl.uniform_4_i32_slice(Some(l), bytemuck::cast_sli
 uniform!(&[IVec2], |gl, l, v| gl.uniform_2_i32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec3], |gl, l, v| gl.uniform_3_f32_slice(Some(l), bytemuck::cast_slice(v)));
 uniform!(&[Vec4], |gl, l, v| gl.uniform_4_f32_slice(Some(l), bytemuck::cast_slice(v)));
+uniform!(&[Mat3], |gl, l, v| gl.uniform_matrix_3_f32_slice(Some(l), false, bytemuck::cast_slice(v)));
 uniform!(&[Mat4], |gl, l, v| gl.uniform_matrix_4_f32_slice(Some(l), false, bytemuck::cast_slice(v)));
 uniform!(&[f32], |gl, l, v| gl.uniform_1_f32_slice(Some(l), v));

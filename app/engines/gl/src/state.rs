@@ -110,6 +110,12 @@ impl Context {
         unsafe { self.raw().color_mask(false, false, false, false) }
     }
 
+    /// Limits colour writes to these channels until the state is set again.
+    pub fn mask_colors(&self, [red, green, blue, alpha]: [bool; 4]) {
+        // SAFETY: a state call without objects.
+        unsafe { self.raw().color_mask(red, green, blue, alpha) }
+    }
+
     /// Turns off depth writes until the state is set again, for surfaces that are tested and blended.
     pub fn mask_depth(&self) {
         self.tell(Event::DepthMasked);

@@ -239,7 +239,8 @@ impl Texture {
         self.size[0] as usize * self.size[1] as usize * self.format.bytes()
     }
 
-    pub(crate) fn image(&self) -> Image {
+    /// Returns its description.
+    pub fn image(&self) -> Image {
         Image { format: self.format, size: self.size, samples: 1 }
     }
 

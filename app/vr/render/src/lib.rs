@@ -1,7 +1,6 @@
 //! The renderer and the stereo methods: frames to synthesize from, and every way to make two eyes of them.
 //!
-//! [`Renderer`] renders a view of a scene to colour and depth, deferred or forward. A [`stereo::StereoMethod`] takes a
-//! pair of eyes and fills both images: by two renders, single-pass stereo, hybrid, shading reprojection, mono, or
+//! [`Renderer`] renders a view of a scene to colour and depth. A [`stereo::StereoMethod`] takes a pair of eyes and fills both images: by two renders, single-pass stereo, hybrid, shading reprojection, mono, or
 //! synthesis, with `yoro`'s pipeline or the paper's.
 //!
 //! This crate must never know where a GL context comes from, what a viewer's lenses do, or how a result is measured.
@@ -9,11 +8,11 @@
 #[cfg(test)]
 mod fixture;
 mod prepared;
-mod render;
 pub mod stereo;
+mod view;
 
 pub use prepared::PreparedScene;
-pub use render::{
-    DeferredRenderer, DepthCopy, DepthImage, DepthReader, ForwardRenderer, Fxaa, GpuScene, MAX_POINT_LIGHTS,
-    MSAA, RenderSettings, RenderedView, Renderer, RendererKind, Selection, ViewReader, ViewTargets,
+pub use view::{
+    DepthCopy, DepthImage, DepthReader, GpuScene, MAX_POINT_LIGHTS, MSAA, NearestDepth, RenderSettings,
+    RenderedView, Renderer, Selection, ViewReader, ViewTargets,
 };

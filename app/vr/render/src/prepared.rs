@@ -7,7 +7,7 @@ use yoro::opengl::{Gather, Source};
 use yoro_assets::Scene;
 use yoro_gl::{Context, Destination, GlError, RenderTarget};
 
-use crate::render::{GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
+use crate::view::{GpuScene, RenderSettings, Renderer, Selection, ViewTargets};
 
 /// A scene on the GPU and the renderer that was compiled for it.
 pub struct PreparedScene {
@@ -50,7 +50,7 @@ impl PreparedScene {
     ) -> Result<(), GlError> {
         let rendered = self.renderer.render(targets, &self.scene, &views.source, Selection::All)?;
         to.resize(views.target.size)?;
-        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.raw());
+        let source = Source::new(rendered.color.color(0).raw(), rendered.depth.texture.raw());
         gather.synthesize(source, &views.warp, &Destination::whole(to))
     }
 }

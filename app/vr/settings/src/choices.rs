@@ -13,11 +13,8 @@ pub const MAX_POINT_LIGHTS: usize = 24;
 /// The largest number of rows of the kernel that fills holes in the paper's pipeline.
 pub const MAX_KERNEL_HEIGHT: u32 = 15;
 
-/// The numbers of samples per pixel that the forward renderer supports.
+/// The numbers of samples per pixel of a rendered view, as far as a driver has them.
 pub const MSAA: [u32; 3] = [1, 2, 4];
-
-/// The possible numbers of depth bits per pixel, for pixels with several samples.
-pub const DEPTH_BITS: [u32; 2] = [16, 32];
 
 /// A text that is not the name of any value of a type.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -121,26 +118,6 @@ choices! {
         Paper = "paper",
     }
 
-    /// When anti-aliasing runs.
-    AntiAliasing {
-        /// After synthesis, on each eye
-        #[default]
-        After = "after",
-        /// Before synthesis, on the rendered eye only, as in the paper
-        Before = "before",
-        /// Never
-        Off = "off",
-    }
-
-    /// The renderer of a view.
-    RendererKind {
-        /// G-buffer, ambient occlusion, lighting of each pixel; edges are smoothed afterwards, by FXAA
-        #[default]
-        Deferred = "deferred",
-        /// Surfaces lit as they are drawn, several samples in each pixel (MSAA), no ambient occlusion
-        Forward = "forward",
-    }
-
     /// How the finished image follows the head after rendering.
     Timewarp {
         /// Not at all
@@ -150,16 +127,6 @@ choices! {
         Rotation = "rotation",
         /// Moved by the head's rotation and translation, from the depth of both eyes
         Position = "position",
-    }
-
-    /// Ambient occlusion.
-    Ssao {
-        /// None
-        Off = "off",
-        /// Half resolution
-        Half = "half",
-        /// Full resolution
-        Full = "full",
     }
 
     /// The display that shows the eyes.

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::choices::{
-    AntiAliasing, DEPTH_BITS, DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice,
-    Performance, Pipeline, RendererKind, Ssao, Timewarp,
+    DisplayKind, MAX_KERNEL_HEIGHT, MAX_POINT_LIGHTS, MSAA, Method, MethodChoice, Performance, Pipeline,
+    Timewarp,
 };
 use crate::quantities::{ImBufferSize, Ipd, ScreenSize};
 use crate::setting::Setting;
@@ -133,8 +133,6 @@ settings! {
     "guard-band" guard_band: Option<GuardBand> = None;
         value_name("none|Npx|METRES|auto");
         auto("1.0; paper: none"),
-    /// When to anti-alias.
-    "anti-aliasing" anti_aliasing: Option<AntiAliasing> = None; auto("after; paper: before"),
     /// Render objects nearer than this many metres for both eyes; the rest is synthesized.
     "near-field" near_field: Option<f32> = None;
         value_name("METRES");
@@ -176,19 +174,10 @@ settings! {
     "chromatic" chromatic: bool = false,
     /// Show the HUD.
     "hud" hud: bool = true; off_help("Hide the HUD"),
-    /// The renderer of a view.
-    "renderer" renderer: RendererKind = RendererKind::Deferred,
-    /// forward: samples in each pixel, 1, 2 or 4, as far as the driver has them.
+    /// Samples in each pixel, 1, 2 or 4, as far as the driver has them.
     "msaa" msaa: u32 = 4; value_name("N"); range(|s| MSAA.contains(&s.msaa), "give 1, 2 or 4"),
-    /// forward with several samples: bits of the resolved depth that the synthesis reads, 16 or 32. 16 halve the memory
-    /// traffic of depth.
-    "depth-bits" depth_bits: u32 = 32;
-        value_name("N");
-        range(|s| DEPTH_BITS.contains(&s.depth_bits), "give 16 or 32"),
     /// Edge of the sun's shadow map in texels, at most 8192; 0 for no shadows.
     "shadow-map" shadow_map: u32 = 2048; range(|s| s.shadow_map <= 8192, "give texels from 0 to 8192"),
-    /// Ambient occlusion; the forward renderer has none.
-    "ssao" ssao: Ssao = Ssao::Half,
     /// Glow around what is brighter than white.
     "bloom" bloom: bool = true,
     /// Point lights that light a view, at most 24.
@@ -386,7 +375,7 @@ mod tests {
             "ipd=0.06",
             "adaptive=true",
             "seed=7",
-            "ssao=off",
+            "msaa=2",
             "duration=30",
             "viewer=https://g.co/cardboard",
             "hud=",
@@ -399,7 +388,7 @@ mod tests {
         assert_eq!((settings.guard_band, settings.ipd), (Some(GuardBand::None), Some(Ipd::nearest(0.06))));
         assert_eq!(settings.screen.unwrap().metres(), [0.158, 0.0705]);
         assert_eq!((settings.dominant, settings.duration), (Eye::Left, Some(30.0)));
-        assert!(settings.adaptive && settings.hud && settings.ssao == Ssao::Off);
+        assert!(settings.adaptive && settings.hud && settings.msaa == 2);
         assert_eq!(settings.pipeline, Pipeline::Paper);
         let again = with(&[
             "ipd=0.06",
@@ -428,8 +417,7 @@ mod tests {
         refused("ipd=0.2", &["\"ipd\"", &Ipd::MAX.to_string(), &Ipd::DEFAULT.to_string()]);
         refused("split-disparity=0", &["\"split-disparity\"", "pixels"]);
         refused("msaa=8", &["\"msaa\"", "1, 2 or 4"]);
-        refused("depth-bits=24", &["\"depth-bits\"", "16 or 32"]);
-        refused("renderer=fast", &["\"renderer\"", "forward"]);
+        refused("renderer=forward", &["\"renderer\""]);
         refused("point-lights=25", &[&MAX_POINT_LIGHTS.to_string()]);
         refused("ipd=wide", &["\"ipd\"", "wide"]);
         refused("imbuffer=0", &["\"imbuffer\"", "64"]);

@@ -110,12 +110,20 @@ pub struct Options {
     pub parts: bool,
     /// True if colour and depth are layers of array textures, as with multiview ([`Source::layer`]).
     pub array_textures: bool,
+    /// True if the depth texture has two channels, each with the reversed depth of one of the pixel's samples, of which
+    /// the nearer counts. It is how depth is carried through the average of samples in a tile-based GPU; see the guide
+    /// for engines.
+    pub depth_pairs: bool,
 }
 
 impl Options {
     /// Returns the preprocessor macros that select this kind of source.
     fn defines(&self) -> Vec<(&'static str, String)> {
-        defines([("SOURCE_PARTS", self.parts), ("SOURCE_LAYERS", self.array_textures)])
+        defines([
+            ("SOURCE_PARTS", self.parts),
+            ("SOURCE_LAYERS", self.array_textures),
+            ("DEPTH_PAIRS", self.depth_pairs),
+        ])
     }
 
     /// Binds depth and colour of the source to units 0 and 1. The program must be current.

@@ -104,7 +104,8 @@ impl<W: WarpKind> Pipeline<W> {
         Pipeline::with_macros(gl, options, outputs, &[])
     }
 
-    /// Does the same as [`Pipeline::new`] with more preprocessor macros, for tests and measurements. `WITHOUT_ES_310`
+    /// Does the same as [`Pipeline::new`] with more preprocessor macros. `BLOOM` makes a [`Gather`] add yoro's bloom to
+    /// its colours ([`Pipeline::synthesize_with`]; `include/develop.glsl`). For tests and measurements, `WITHOUT_ES_310`
     /// takes the shaders of OpenGL ES 3.0 on any driver. `COUNT_TRIPS` makes a [`Gather`] write how often parts of the
     /// march run, instead of colours. Red: first steps (low three bits), then one bit each for a hole, the search over
     /// segments, and a law. Green: segments. Blue: events. Alpha: steps to a segment's crossing.
@@ -158,9 +159,24 @@ impl<W: WarpKind> Pipeline<W> {
     /// # Errors
     /// Those of [`Pipeline::prepare`].
     pub fn synthesize(&mut self, source: Source, warp: &W, target: &Destination) -> Result<(), GlError> {
+        self.synthesize_with(source, warp, target, |_| {})
+    }
+
+    /// Like [`Pipeline::synthesize`]; `set` sets what the last pass has by [`Pipeline::with_macros`], in its bound
+    /// program. Texture units from 4 on are free.
+    ///
+    /// # Errors
+    /// Those of [`Pipeline::prepare`].
+    pub fn synthesize_with(
+        &mut self,
+        source: Source,
+        warp: &W,
+        target: &Destination,
+        set: impl FnOnce(&Program),
+    ) -> Result<(), GlError> {
         self.preserving(|pipeline| {
             pipeline.resize(warp)?;
-            pipeline.draw(source, warp, target);
+            pipeline.draw(source, warp, target, set);
             Ok(())
         })
     }
@@ -179,7 +195,7 @@ impl<W: WarpKind> Pipeline<W> {
         Ok(())
     }
 
-    fn draw(&self, source: Source, warp: &W, target: &Destination) {
+    fn draw(&self, source: Source, warp: &W, target: &Destination, set: impl FnOnce(&Program)) {
         let gl = &*self.gl;
         let [tile_size, span_size] = map_sizes::<W>(warp.sizes());
         gl.begin_synthesis(self.outputs.draw_buffers(), self.outputs.srgb);
@@ -203,6 +219,7 @@ impl<W: WarpKind> Pipeline<W> {
             begin(&self.march);
             self.march.texture("tile_map", 2, self.tile_map.color(0).raw());
             self.march.texture("span_map", 3, self.span_map.color(0).raw());
+            set(&self.march);
             draw_target(gl, target, self.outputs);
         });
         gl.end_synthesis();

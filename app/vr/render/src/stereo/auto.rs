@@ -8,19 +8,37 @@ use std::time::Instant;
 #[cfg(target_arch = "wasm32")]
 use web_time::Instant;
 
-use super::method::{EyeTarget, GuardBandUse, StereoError, StereoMethod};
+use super::method::{EyeTarget, MethodReport, StereoError, StereoMethod, Substituted};
 use super::options::{Method, MethodChoice, StereoOptions};
-use super::substitute::Substitute;
-use crate::render::{GpuScene, RenderSettings, Renderer};
+use crate::view::{GpuScene, RenderSettings, Renderer};
 use yoro::choice::{Choice, Chooser, Cost, FrameEnd, Reason, Way};
-use yoro::eyes::EyePair;
+use yoro::eyes::{EyePair, EyesError, GuardBand};
 use yoro_gl::{Context, GlError};
 
 /// The methods by [`Way::index`].
 const METHODS: [Method; 2] = [Method::Conventional, Method::Synthesized];
 
-/// A named method, or the cheaper of two.
-pub enum SelectedMethod {
+/// Returns the reason why a method cannot use a pair of eyes, or `None` if it can.
+pub fn unfit(method: Method, pair: &EyePair) -> Option<EyesError> {
+    if method.needs_aligned_eyes() { pair.synthesis_views(GuardBand::None).err() } else { None }
+}
+
+/// A named method or the cheaper of two, and two renders in its place for eyes that it cannot use.
+pub struct SelectedMethod {
+    gl: Rc<Context>,
+    settings: RenderSettings,
+    options: StereoOptions,
+    method: Method,
+    kind: Kind,
+    /// Two renders, made when first needed.
+    both: Option<Box<dyn StereoMethod>>,
+    /// True while both eyes are rendered for a comparison with the method.
+    is_comparing: bool,
+    /// The reason why the method could not use the last frame's eyes, if so.
+    unfit: Option<EyesError>,
+}
+
+enum Kind {
     /// Always this method.
     Named(Box<dyn StereoMethod>),
     /// The cheaper one.
@@ -38,39 +56,115 @@ impl SelectedMethod {
         settings: &RenderSettings,
         options: &StereoOptions,
     ) -> Result<SelectedMethod, GlError> {
-        Ok(match choice {
-            MethodChoice::Named(method) => {
-                SelectedMethod::Named(super::create(gl, method, settings, options)?)
-            }
+        let named = |method| super::create(gl, method, settings, options).map(Kind::Named);
+        let kind = match choice {
+            MethodChoice::Named(method) => named(method)?,
             // Two renders cannot show a frame again.
-            MethodChoice::Auto if options.render_rate.is_some() => {
-                SelectedMethod::Named(super::create(gl, Method::Synthesized, settings, options)?)
-            }
-            MethodChoice::Auto => SelectedMethod::Auto(Box::new(Auto::new(gl, settings, options)?)),
+            MethodChoice::Auto if options.render_rate.is_some() => named(Method::Synthesized)?,
+            MethodChoice::Auto => Kind::Auto(Box::new(Auto::new(gl, settings, options)?)),
+        };
+        Ok(SelectedMethod {
+            gl: gl.clone(),
+            settings: settings.clone(),
+            options: *options,
+            method: choice.first(),
+            kind,
+            both: None,
+            is_comparing: false,
+            unfit: None,
         })
-    }
-
-    /// Returns the method to render with.
-    pub fn method(&mut self) -> &mut dyn StereoMethod {
-        match self {
-            SelectedMethod::Named(method) => method.as_mut(),
-            SelectedMethod::Auto(auto) => auto.as_mut(),
-        }
     }
 
     /// Returns the choice between two methods, if there is one.
     pub fn auto(&self) -> Option<&Auto> {
-        match self {
-            SelectedMethod::Named(_) => None,
-            SelectedMethod::Auto(auto) => Some(auto),
+        match &self.kind {
+            Kind::Named(_) => None,
+            Kind::Auto(auto) => Some(auto),
         }
     }
 
     /// Returns the choice between two methods, if there is one.
     pub fn auto_mut(&mut self) -> Option<&mut Auto> {
-        match self {
-            SelectedMethod::Named(_) => None,
-            SelectedMethod::Auto(auto) => Some(auto),
+        match &mut self.kind {
+            Kind::Named(_) => None,
+            Kind::Auto(auto) => Some(auto),
+        }
+    }
+
+    /// Starts or ends a comparison, during which both eyes are rendered.
+    ///
+    /// # Errors
+    /// As [`super::create`].
+    pub fn compare(&mut self, is_comparing: bool) -> Result<(), GlError> {
+        self.is_comparing = is_comparing;
+        if is_comparing {
+            self.both()?;
+        }
+        Ok(())
+    }
+
+    /// Makes two renders ready, so that the first frame of a comparison need not.
+    ///
+    /// # Errors
+    /// As [`super::create`].
+    pub fn prepare_comparison(&mut self) -> Result<(), GlError> {
+        self.both().map(drop)
+    }
+
+    fn both(&mut self) -> Result<&mut dyn StereoMethod, GlError> {
+        let made = match self.both.take() {
+            Some(made) => made,
+            None => super::create(&self.gl, Method::Conventional, &self.settings, &self.options)?,
+        };
+        Ok(self.both.insert(made).as_mut())
+    }
+
+    /// Returns the method to render a frame with whose eyes it can use.
+    fn chosen(&mut self) -> &mut dyn StereoMethod {
+        match &mut self.kind {
+            Kind::Named(method) => method.as_mut(),
+            Kind::Auto(auto) => auto.as_mut(),
+        }
+    }
+}
+
+impl StereoMethod for SelectedMethod {
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError> {
+        self.chosen().prepare(renderer, scene)
+    }
+
+    /// Renders both eyes if neither can be synthesized from the other.
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        self.unfit = unfit(self.method, pair);
+        if self.unfit.is_none() && !self.is_comparing {
+            return self.chosen().render_to(renderer, scene, pair, to);
+        }
+        if let Kind::Auto(auto) = &mut self.kind {
+            auto.skip_frame();
+        }
+        self.both()?.render_to(renderer, scene, pair, to)
+    }
+
+    fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
+        if self.is_comparing || self.unfit.is_some() || unfit(self.method, pair).is_some() {
+            return Ok(false);
+        }
+        self.chosen().show_again(pair, to)
+    }
+
+    fn report(&self) -> MethodReport {
+        if let Some(reason) = &self.unfit {
+            return MethodReport { guard_band: None, substituted: Some(Substituted::Eyes(reason.clone())) };
+        }
+        match &self.kind {
+            Kind::Named(method) => method.report(),
+            Kind::Auto(auto) => auto.report(),
         }
     }
 }
@@ -120,6 +214,11 @@ impl Auto {
         self.chooser.is_measuring()
     }
 
+    /// Notes that a frame was rendered by neither method, for its eyes or for a comparison.
+    fn skip_frame(&mut self) {
+        (self.rendered, self.clock_ms) = (None, None);
+    }
+
     /// Starts a new choice, for another place in the scene.
     pub fn scene_changed(&mut self) {
         self.chooser.scene_changed();
@@ -142,11 +241,10 @@ impl StereoMethod for Auto {
         self.methods.iter_mut().try_for_each(|method| method.prepare(renderer, scene))
     }
 
-    fn guard_band(&self) -> Option<GuardBandUse> {
-        self.methods[self.rendered?.index()].guard_band()
+    fn report(&self) -> MethodReport {
+        self.rendered.map_or(MethodReport::default(), |way| self.methods[way.index()].report())
     }
 
-    /// Renders both eyes if neither can be synthesized from the other.
     fn render_to(
         &mut self,
         renderer: &mut Renderer,
@@ -154,10 +252,8 @@ impl StereoMethod for Auto {
         pair: &EyePair,
         to: &[EyeTarget; 2],
     ) -> Result<(), StereoError> {
-        let wanted = self.chooser.way();
-        let is_fit = Substitute::reason(Method::Synthesized, pair).is_none();
-        let way = if is_fit { wanted } else { Way::TwoViews };
-        if std::mem::take(&mut self.is_new) && is_fit {
+        let way = self.chooser.way();
+        if std::mem::take(&mut self.is_new) {
             // Makes everything that the other method needs now, while the scene comes into view, rather than in its
             // first turn.
             self.methods[way.other().index()].render_to(renderer, scene, pair, to)?;
@@ -170,7 +266,7 @@ impl StereoMethod for Auto {
         });
         let method = &mut self.methods[way.index()];
         method.render_to(renderer, scene, pair, to)?;
-        self.rendered = (way == wanted && !method.is_substituted()).then_some(way);
+        self.rendered = method.report().substituted.is_none().then_some(way);
         self.clock_ms = begin.map(|begin| {
             self.gl.finish_drawing(&targets);
             begin.elapsed().as_secs_f32() * 1e3

@@ -1,47 +1,68 @@
 //! The ground truth: renders both eyes, one after the other.
 
-use super::finish::{EyeImage, Finish};
-use super::frame::{Frame, FrameMethod, Setup};
-use super::method::StereoError;
-use crate::render::{RendererOfKind, ViewRenderer};
-use yoro::eyes::Eye;
+use super::frame::Frame;
+use super::method::{EyeTarget, StereoError, StereoMethod};
+use crate::view::{DepthImage, GpuScene, Layout, Renderer, Targets};
+use yoro::eyes::{Eye, EyePair};
 use yoro_gl::GlError;
 
 /// Two full renders.
-pub struct Conventional<R: ViewRenderer> {
-    targets: R::Targets,
-    finish: Finish,
+#[derive(Default)]
+pub struct Conventional {
+    targets: Option<Targets>,
 }
 
-impl<R: RendererOfKind> Conventional<R> {
-    /// Makes the targets.
-    pub(super) fn new(setup: &Setup) -> Result<Conventional<R>, GlError> {
-        Ok(Conventional { targets: R::targets(setup.gl, setup.settings)?, finish: Finish::new(setup)? })
-    }
-
-    /// Renders both eyes, the dominant one last. Calls `rendered` after each with its images, which have depth if
-    /// `reads_depth` returns true.
+impl Conventional {
+    /// Renders both eyes, the dominant one last. Calls `rendered` after each that `reads_depth`, with its depth.
     pub(super) fn render_eyes(
         &mut self,
-        frame: &Frame<R>,
+        frame: &Frame,
         reads_depth: impl Fn(Eye) -> bool,
-        mut rendered: impl FnMut(Eye, &R::Targets),
+        mut rendered: impl FnMut(&DepthImage) -> Result<(), GlError>,
     ) -> Result<(), GlError> {
+        let Some(targets) = &mut self.targets else { return Ok(()) };
         let dominant = frame.pair.dominant;
         for eye in [dominant.other(), dominant] {
+            let (view, to) = (frame.pair.view(eye), frame.to(eye));
             let depth = frame.wants_depth(eye) || reads_depth(eye);
-            frame.renderer.render_all(&mut self.targets, frame.scene, &frame.pair.view(eye), depth)?;
-            self.finish.run(&EyeImage::whole(&self.targets, depth), frame.to(eye));
-            rendered(eye, &self.targets);
+            let views = std::slice::from_ref(&view);
+            let is_complete = frame.renderer.draw_all(targets, frame.scene, views, depth, Some(to))?;
+            if !is_complete {
+                frame.renderer.develop(targets, &view, Eye::Left, [0, 0], &to.color, false);
+            }
+            if depth {
+                let depth = targets.depth(view.size, Eye::Left, [0, 0]);
+                frame.write_depth(eye, &depth);
+                if reads_depth(eye) {
+                    rendered(&depth)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes the targets, unless they are made already.
+    pub(super) fn make(&mut self, renderer: &Renderer) -> Result<(), GlError> {
+        if self.targets.is_none() {
+            self.targets = Some(renderer.targets(Layout::Single)?);
         }
         Ok(())
     }
 }
 
-impl<R: RendererOfKind> FrameMethod for Conventional<R> {
-    type Renderer = R;
+impl StereoMethod for Conventional {
+    fn prepare(&mut self, renderer: &mut Renderer, _: &GpuScene) -> Result<(), StereoError> {
+        Ok(self.make(renderer)?)
+    }
 
-    fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
-        Ok(self.render_eyes(frame, |_| false, |_, _| ())?)
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        self.prepare(renderer, scene)?;
+        Ok(self.render_eyes(&Frame::new(renderer, scene, pair, to)?, |_| false, |_| Ok(()))?)
     }
 }

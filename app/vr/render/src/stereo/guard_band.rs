@@ -5,18 +5,16 @@ use std::rc::Rc;
 use super::border::{BANDS, Border, CELLS, Profile, Width};
 use super::method::GuardBandUse;
 use super::readback::Readback;
-use crate::render::{Columns, GpuScene, of_columns};
+use crate::view::{Columns, DepthImage, DepthProgram, GpuScene, of_columns};
 use yoro::eyes::{Eye, EyePair, SynthesisViews};
 use yoro::synthesis::Uniforms;
-use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
+use yoro_gl::{Context, GlError, RasterState};
 
 /// Size of a profile in bytes, as in `stereo/border_profile.frag`.
 const BYTES: usize = CELLS * BANDS * 4;
-/// The innermost 1 / `PART` of the band is drawn in every frame. Ambient occlusion and bloom, which reach far, stop at
-/// its edge in all frames.
+/// The innermost 1 / `PART` of the band is drawn in every frame. Bloom, which reaches far, stops at its edge in all frames.
 const PART: u32 = 4;
-/// Lower bound of that part in columns. A pixel depends on as many as the filters reach: ambient occlusion at half size
-/// (5) and FXAA (4).
+/// Lower bound of that part in columns.
 const REACH: u32 = 10;
 
 /// Returns how many columns of a band are drawn in every frame.
@@ -27,7 +25,7 @@ fn least(guard_columns: u32) -> u32 {
 /// Measures each frame and decides the width of the next.
 pub(super) struct AutoGuardBand {
     gl: Rc<Context>,
-    program: Program,
+    program: DepthProgram,
     readback: Readback<Frame>,
     width: Width,
     /// The frame that is being rendered.
@@ -47,7 +45,7 @@ impl AutoGuardBand {
     pub(super) fn new(gl: &Rc<Context>) -> Result<AutoGuardBand, GlError> {
         Ok(AutoGuardBand {
             gl: gl.clone(),
-            program: Program::new(gl, ShaderSource::Screen("stereo/border_profile.frag"), &[])?,
+            program: DepthProgram::new(gl, "stereo/border_profile.frag"),
             readback: Readback::new(gl, [CELLS as u32, BANDS as u32])?,
             width: Width::default(),
             frame: None,
@@ -87,27 +85,28 @@ impl AutoGuardBand {
     }
 
     /// Starts to measure the frame of the last [`AutoGuardBand::columns`].
-    pub(super) fn measure(&mut self, depth: &Texture, views: &SynthesisViews) {
+    pub(super) fn measure(&mut self, depth: &DepthImage, views: &SynthesisViews) -> Result<(), GlError> {
         let Some(frame) = self.frame.take().filter(|frame| frame.border.guard_columns > 0) else {
             self.readback.forget();
-            return;
+            return Ok(());
         };
         let warp = Uniforms::new(&views.warp, [0, 0]);
-        self.gl.pass("border profile", || {
-            self.gl.set_raster_state(&RasterState::SCREEN);
-            self.readback.image().bind();
-            self.program
-                .bind()
-                .texture("depth_map", 0, depth.raw())
+        let (gl, program, readback) = (&self.gl, &mut self.program, &mut self.readback);
+        gl.pass("border profile", || {
+            gl.set_raster_state(&RasterState::SCREEN);
+            readback.image().bind();
+            program
+                .bind(depth)?
                 .set("mirrored", warp.mirrored)
                 .set("guard", views.guard_columns as i32)
                 .set("first", (views.guard_columns - frame.drawn) as i32)
                 .set("columns", frame.step as i32)
                 .set("law", warp.law - glam::Vec2::X * warp.far_displacement)
                 .set("beyond", frame.border.beyond);
-            self.gl.draw_screen();
-            self.readback.start(frame);
-        });
+            gl.draw_screen();
+            readback.start(frame);
+            Ok(())
+        })
     }
 
     /// Returns the newest measured frame.

@@ -2,21 +2,14 @@
 //!
 //! After Fink et al., "Hybrid Mono-Stereo Rendering in Virtual Reality" (IEEE VR 2019), from its description: beyond a
 //! certain distance the eyes' images differ by less than can be seen. The clip planes split the scene per pixel, and
-//! the images are combined before bloom and tone mapping.
-
-use std::rc::Rc;
+//! the images are combined before bloom.
 
 use glam::IVec2;
 
-use super::finish::{EyeImage, Finish};
-use super::frame::{Frame, FrameMethod, Setup};
-use super::method::StereoError;
-use crate::render::{
-    DeferredRenderer, DepthImage, FinishTargets, ForwardRenderer, ForwardTargets, GBuffer, GpuScene, Layout,
-    LightTargets, Part, RendererOfKind, Role, RoleKind, ViewRenderer, depth_test,
-};
+use super::frame::Frame;
+use super::method::{EyeTarget, StereoError, StereoMethod};
+use crate::view::{GpuScene, Layout, Renderer, Targets};
 use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, Pose, View};
-use yoro_gl::{Context, Destination, GlError, Program, RasterState, RenderTarget, ShaderSource};
 
 /// The far field starts at this fraction of the distance at which the near field ends, so that no crack opens where a
 /// slanted surface passes from one to the other.
@@ -24,32 +17,63 @@ const OVERLAP: f32 = 0.95;
 
 /// Renders the near field twice and the far field once. If nothing is far, the frame is the same as two full renders
 /// and costs as much.
-pub struct Hybrid<T> {
+///
+/// Each eye starts from its part of the far field, colour and depth. Its near field is drawn over that sample by sample,
+/// so that its edges are as smooth as all others.
+pub struct Hybrid {
     threshold: f32,
-    targets: T,
-    finish: Finish,
+    /// The targets of an eye and of the far field.
+    targets: Option<[Targets; 2]>,
 }
 
-impl<T: FieldTargets> Hybrid<T> {
-    /// Makes the targets.
-    pub(super) fn new(setup: &Setup) -> Result<Hybrid<T>, GlError> {
-        let threshold = setup.options.split_disparity;
-        Ok(Hybrid { threshold, targets: T::new(setup)?, finish: Finish::new(setup)? })
+impl Hybrid {
+    /// Makes it without targets; the far field starts where the disparity is `threshold` pixels.
+    pub(super) fn new(threshold: f32) -> Hybrid {
+        Hybrid { threshold, targets: None }
     }
 }
 
-impl<T: FieldTargets> FrameMethod for Hybrid<T> {
-    type Renderer = T::Renderer;
-
-    fn compile(&mut self, renderer: &mut T::Renderer, scene: &GpuScene) -> Result<(), GlError> {
-        T::compile(renderer, scene)
+impl StereoMethod for Hybrid {
+    fn prepare(&mut self, renderer: &mut Renderer, _: &GpuScene) -> Result<(), StereoError> {
+        renderer.prepare_load()?;
+        if self.targets.is_none() {
+            self.targets = Some([renderer.targets(Layout::Single)?, renderer.targets(Layout::Single)?]);
+        }
+        Ok(())
     }
 
-    fn render_frame(&mut self, frame: &Frame<T::Renderer>) -> Result<(), StereoError> {
-        let fields = Fields::new(frame.pair, self.threshold, frame.scene)?;
-        self.targets.draw(frame, &fields)?;
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        self.prepare(renderer, scene)?;
+        let frame = Frame::new(renderer, scene, pair, to)?;
+        let Some([targets, far]) = &mut self.targets else { return Ok(()) };
+        let renderer = frame.renderer;
+        let fields = Fields::new(&frame.pair, self.threshold, scene)?;
+        if let Some(slice) = fields.split.far {
+            renderer.draw_far(far, scene, &fields.view, slice)?;
+        }
         for eye in Eye::BOTH {
-            self.finish.run(&self.targets.eye(frame, &fields, eye)?, frame.to(eye));
+            let (view, to) = (frame.pair.view(eye), frame.to(eye));
+            let depth = frame.wants_depth(eye);
+            let mut is_complete = false;
+            if fields.split.far.is_some() {
+                let far = (&*far, &fields.view, fields.crops[eye.index()].as_uvec2().to_array());
+                renderer.draw_near(targets, scene, &view, fields.split.near, far, depth)?;
+            } else {
+                is_complete =
+                    renderer.draw_all(targets, scene, std::slice::from_ref(&view), depth, Some(to))?;
+            }
+            if !is_complete {
+                renderer.develop(targets, &view, Eye::Left, [0, 0], &to.color, false);
+            }
+            if depth {
+                frame.write_depth(eye, &targets.depth(view.size, Eye::Left, [0, 0]));
+            }
         }
         Ok(())
     }
@@ -75,7 +99,7 @@ impl Split {
 }
 
 /// The far field of a frame, and the position of each eye's image in it.
-pub(super) struct Fields {
+struct Fields {
     split: Split,
     /// The view with both frusta from between the eyes.
     view: View,
@@ -110,188 +134,6 @@ fn crops(pair: &EyePair, far: &View) -> [IVec2; 2] {
             (y.round() as i32).clamp(0, last(far.size[1], pair.size[1])),
         )
     })
-}
-
-/// The images of near and far field, for one kind of renderer.
-pub(super) trait FieldTargets: Sized {
-    /// The kind of renderer.
-    type Renderer: RendererOfKind;
-
-    fn new(setup: &Setup) -> Result<Self, GlError>;
-
-    /// See [`FrameMethod::compile`].
-    fn compile(_renderer: &mut Self::Renderer, _scene: &GpuScene) -> Result<(), GlError> {
-        Ok(())
-    }
-
-    /// Draws what both eyes share: the far field, if there is one.
-    fn draw(&mut self, frame: &Frame<Self::Renderer>, fields: &Fields) -> Result<(), GlError>;
-
-    /// Completes the image of one eye, after [`FieldTargets::draw`].
-    fn eye(
-        &mut self,
-        frame: &Frame<Self::Renderer>,
-        fields: &Fields,
-        eye: Eye,
-    ) -> Result<EyeImage<'_>, GlError>;
-}
-
-/// G-buffers of both near fields and of the far field.
-///
-/// Before the far field is drawn, the pixels that the near field hides from both eyes are marked in its depth buffer,
-/// so that they are neither rasterized nor lit. Each eye's lighting skips the pixels that show the far field.
-pub(super) struct DeferredFields {
-    gl: Rc<Context>,
-    /// G-buffers by [`Eye::index`].
-    near: [GBuffer; 2],
-    far: GBuffer,
-    far_light: LightTargets,
-    /// Light of the eye that is being lit.
-    light: LightTargets,
-    image: FinishTargets,
-    hidden: Program,
-    far_depth: Program,
-}
-
-impl DeferredFields {
-    /// Marks the pixels of the far field that the near field hides from both eyes.
-    fn mark_hidden(&self, far: &RenderTarget, view: &View, crops: &[IVec2; 2]) {
-        self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
-        self.gl.mask_color();
-        far.bind();
-        self.hidden
-            .bind()
-            .texture_of("left_depth", 0, self.near[0].target().depth())
-            .texture_of("right_depth", 1, self.near[1].target().depth())
-            .set("crops", &crops[..])
-            .set("far_depth", view.depth.clear_value());
-        self.gl.draw_screen();
-        self.gl.set_raster_state(&RasterState::SCREEN);
-    }
-
-    /// Adds the far field's depth to an eye's depth, for a finished image whose depth is read.
-    fn merge_depth(&self, eye: &RenderTarget, view: &View, crop: IVec2) {
-        self.gl.pass("merge depth", || {
-            let depth = depth_test(view.depth.convention);
-            self.gl.set_raster_state(&RasterState { depth, ..RasterState::SCREEN });
-            self.gl.mask_color();
-            eye.bind();
-            self.far_depth
-                .bind()
-                .texture_of("far_field_depth", 0, self.far.target().depth())
-                .set("crop", crop)
-                .set("far_depth", view.depth.clear_value());
-            self.gl.draw_screen();
-            self.gl.set_raster_state(&RasterState::SCREEN);
-        });
-    }
-}
-
-impl FieldTargets for DeferredFields {
-    type Renderer = DeferredRenderer;
-
-    fn new(&Setup { gl, settings, .. }: &Setup) -> Result<DeferredFields, GlError> {
-        let g_buffer = || GBuffer::new(gl, Layout::Single);
-        Ok(DeferredFields {
-            gl: gl.clone(),
-            near: [g_buffer()?, g_buffer()?],
-            far: g_buffer()?,
-            far_light: LightTargets::new(gl, settings)?,
-            light: LightTargets::new(gl, settings)?,
-            image: FinishTargets::new(gl, settings)?,
-            hidden: Program::new(gl, ShaderSource::Screen("stereo/hidden.frag"), &[])?,
-            far_depth: Program::new(gl, ShaderSource::Screen("stereo/far_depth.frag"), &[])?,
-        })
-    }
-
-    fn compile(renderer: &mut DeferredRenderer, scene: &GpuScene) -> Result<(), GlError> {
-        let roles = [RoleKind::Whole, RoleKind::NearField, RoleKind::FarField];
-        renderer.prepare(scene, Layout::Single, &roles)
-    }
-
-    fn draw(&mut self, frame: &Frame<DeferredRenderer>, fields: &Fields) -> Result<(), GlError> {
-        let Frame { renderer, scene, pair, .. } = frame;
-        let Fields { split, view, crops } = fields;
-        self.light.resize(pair.size)?;
-        self.image.resize(pair.size)?;
-        for (near, eye) in self.near.iter_mut().zip(Eye::BOTH) {
-            near.fit(pair.size, pair.depth.convention)?;
-            renderer.draw(near, scene, &[pair.view(eye)], split.near.map(Part::Slice), |_| {});
-        }
-        if split.far.is_some() {
-            self.far.fit(view.size, pair.depth.convention)?;
-            self.far_light.resize(view.size)?;
-            let mark = |target: &RenderTarget| self.mark_hidden(target, view, crops);
-            renderer.draw(&self.far, scene, &[*view], split.far.map(Part::Slice), mark);
-            renderer.light(&self.far_light, &self.far, scene, view, Role::FarField);
-        }
-        Ok(())
-    }
-
-    fn eye(
-        &mut self,
-        frame: &Frame<DeferredRenderer>,
-        fields: &Fields,
-        eye: Eye,
-    ) -> Result<EyeImage<'_>, GlError> {
-        let Frame { renderer, scene, pair, .. } = frame;
-        let (view, near, crop) = (pair.view(eye), &self.near[eye.index()], fields.crops[eye.index()]);
-        let is_split = fields.split.far.is_some();
-        let mut role = Role::Whole;
-        if is_split {
-            role = Role::NearField { far: self.far_light.hdr(), crop };
-        }
-        renderer.light(&self.light, near, scene, &view, role);
-        renderer.finish(&self.image, &self.light);
-        if is_split && (scene.has_transparent() || frame.wants_depth(eye)) {
-            self.merge_depth(near.target(), &view, crop);
-        }
-        let (color, depth) = (self.image.color(), DepthImage::whole(near.target().depth()));
-        renderer.draw_transparent(&Destination::whole(color), depth, scene, &view);
-        Ok(EyeImage { color, origin: [0, 0], depth: Some(depth) })
-    }
-}
-
-/// The samples of an eye and of the far field.
-///
-/// Each eye starts from its part of the far field, colour and depth. Its near field is drawn over that sample by
-/// sample, so that its edges are as smooth as all others.
-pub(super) struct ForwardFields {
-    eye: ForwardTargets,
-    far: ForwardTargets,
-}
-
-impl FieldTargets for ForwardFields {
-    type Renderer = ForwardRenderer;
-
-    fn new(setup: &Setup) -> Result<ForwardFields, GlError> {
-        let targets = || ForwardRenderer::targets(setup.gl, setup.settings);
-        Ok(ForwardFields { eye: targets()?, far: targets()? })
-    }
-
-    fn draw(&mut self, frame: &Frame<ForwardRenderer>, fields: &Fields) -> Result<(), GlError> {
-        match fields.split.far {
-            Some(slice) => frame.renderer.render_far(&mut self.far, frame.scene, &fields.view, slice),
-            None => Ok(()),
-        }
-    }
-
-    fn eye(
-        &mut self,
-        frame: &Frame<ForwardRenderer>,
-        fields: &Fields,
-        eye: Eye,
-    ) -> Result<EyeImage<'_>, GlError> {
-        let (renderer, scene, view) = (frame.renderer, frame.scene, frame.pair.view(eye));
-        let depth = frame.wants_depth(eye);
-        if fields.split.far.is_some() {
-            let far = (&self.far, fields.crops[eye.index()].as_uvec2().to_array());
-            renderer.render_near(&mut self.eye, scene, &view, fields.split.near, far, depth)?;
-        } else {
-            renderer.render_all(&mut self.eye, scene, &view, depth)?;
-        }
-        Ok(EyeImage::whole(&self.eye, depth))
-    }
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use crate::render::{DepthCopy, GpuScene, Renderer};
+use crate::view::{DepthCopy, GpuScene, Renderer};
 use yoro::eyes::{Eye, EyePair, EyesError};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget, Texture};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, Image, RenderTarget, Texture};
 
 /// The reason why a stereo frame could not be rendered.
 #[derive(Debug, thiserror::Error)]
@@ -63,7 +63,7 @@ impl StereoFrame {
 
     /// Returns both images as targets, without depth.
     pub fn targets(&self) -> [EyeTarget<'static>; 2] {
-        Eye::BOTH.map(|eye| EyeTarget { color: Destination::whole(self.eye(eye)), depth: None })
+        Eye::BOTH.map(|eye| EyeTarget::of(self.eye(eye)))
     }
 }
 
@@ -72,8 +72,24 @@ impl StereoFrame {
 pub struct EyeTarget<'a> {
     /// Receives display-referred sRGB with luma in alpha, and stores it as written.
     pub color: Destination,
+    /// The 2-D texture of which `color` is the first level, if it is one: samples of a tile-based GPU are then averaged
+    /// into it without a copy. It must live as long as the target is used.
+    pub texture: Option<(glow::Texture, Image)>,
     /// Receives the eye's window depth; `None` if it is not needed.
     pub depth: Option<DepthTarget<'a>>,
+}
+
+impl EyeTarget<'_> {
+    /// Returns the colour of a render target, without depth.
+    pub fn of(target: &RenderTarget) -> EyeTarget<'static> {
+        let color = target.color(0);
+        EyeTarget { color: target.color_only(), texture: Some((color.raw(), color.image())), depth: None }
+    }
+
+    /// Returns a rectangle of a framebuffer, without depth.
+    pub fn rectangle(color: Destination) -> EyeTarget<'static> {
+        EyeTarget { color, texture: None, depth: None }
+    }
 }
 
 /// The target of an eye's window depth.
@@ -97,27 +113,39 @@ pub struct GuardBandUse {
     pub undrawn: u32,
 }
 
+/// What a method says about a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MethodReport {
+    /// The use of the guard band two frames before the last one, the newest that is measured. `None` for methods and
+    /// settings that always draw the whole band, and before the first measurement.
+    pub guard_band: Option<GuardBandUse>,
+    /// The reason why both eyes of the last frame were rendered instead of using the method, if they were.
+    pub substituted: Option<Substituted>,
+}
+
+/// A reason for rendering both eyes.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Substituted {
+    /// Most of the view is too near, as [`NearFieldPolicy`](super::NearFieldPolicy) decides.
+    #[error("most of the view is too near")]
+    Near,
+    /// Neither eye can be synthesized from the other, as with canted eyes.
+    #[error(transparent)]
+    Eyes(#[from] EyesError),
+}
+
 /// A method with its own programs and targets.
 pub trait StereoMethod {
     /// Compiles what the method needs for the materials of a scene, so that the first frame of that scene need not.
     ///
     /// # Errors
     /// [`StereoError`] if GL refuses.
-    fn prepare(&mut self, _renderer: &mut Renderer, _scene: &GpuScene) -> Result<(), StereoError> {
-        Ok(())
-    }
+    fn prepare(&mut self, renderer: &mut Renderer, scene: &GpuScene) -> Result<(), StereoError>;
 
-    /// Returns the use of the guard band two frames before the last one, the newest that is measured. `None` for
-    /// methods and settings that always draw the whole band, and before the first measurement.
-    fn guard_band(&self) -> Option<GuardBandUse> {
-        None
-    }
-
-    /// True if both eyes of the last frame were rendered instead of using the method, as [`NearFieldPolicy`] decides.
-    ///
-    /// [`NearFieldPolicy`]: super::NearFieldPolicy
-    fn is_substituted(&self) -> bool {
-        false
+    /// Returns what there is to say about the last frames.
+    fn report(&self) -> MethodReport {
+        MethodReport::default()
     }
 
     /// Renders both eyes of a frame into their targets, by [`Eye::index`].

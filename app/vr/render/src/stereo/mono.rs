@@ -1,49 +1,55 @@
 //! The dominant eye's view shown to both eyes: the lower bound of cost and quality.
 
-use super::finish::Finish;
-use super::frame::{Frame, FrameMethod, Setup};
-use super::method::StereoError;
-use crate::render::{DepthImage, RendererOfKind, ViewImages, ViewRenderer};
+use super::frame::Frame;
+use super::method::{EyeTarget, StereoError, StereoMethod};
+use crate::view::{GpuScene, Layout, Renderer, Targets};
 use yoro::eyes::{Eye, EyePair, GuardBand, View};
-use yoro_gl::GlError;
 
 /// One render from the dominant eye's position, with the union of both frusta. Each eye shows its own part, which is
 /// the same image if the frusta are the same.
-pub struct Mono<R: ViewRenderer> {
-    targets: R::Targets,
-    finish: Finish,
+#[derive(Default)]
+pub struct Mono {
+    targets: Option<Targets>,
 }
 
-impl<R: ViewRenderer> Mono<R> {
-    /// Makes the targets.
-    pub(super) fn new(setup: &Setup) -> Result<Mono<R>, GlError> {
-        Ok(Mono { targets: R::targets(setup.gl, setup.settings)?, finish: Finish::new(setup)? })
+impl StereoMethod for Mono {
+    fn prepare(&mut self, renderer: &mut Renderer, _: &GpuScene) -> Result<(), StereoError> {
+        if self.targets.is_none() {
+            self.targets = Some(renderer.targets(Layout::Single)?);
+        }
+        Ok(())
     }
-}
 
-impl<R: RendererOfKind> FrameMethod for Mono<R> {
-    type Renderer = R;
-
-    fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
-        let Frame { renderer, scene, pair, .. } = frame;
-        let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..**pair };
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        self.prepare(renderer, scene)?;
+        let frame = Frame::new(renderer, scene, pair, to)?;
+        let Some(targets) = &mut self.targets else { return Ok(()) };
+        let pair = &frame.pair;
+        let here = EyePair { poses: [pair.poses[pair.dominant.index()]; 2], ..*pair };
         let views = here.synthesis_views(GuardBand::None)?;
         let wants_depth = Eye::BOTH.iter().any(|eye| frame.wants_depth(*eye));
-        renderer.render_all(&mut self.targets, scene, &views.source, wants_depth)?;
-        let color = self.targets.color();
-        let [dominant, other] = [pair.dominant, pair.dominant.other()].map(|eye| frame.to(eye));
-        let (origin, other_origin) = (views.dominant_crop, origin_in(&views.source, &views.target));
-        self.finish.color(color, origin, &dominant.color);
+        let source = &views.source;
+        let renderer = frame.renderer;
+        renderer.draw_all(targets, scene, std::slice::from_ref(source), wants_depth, None)?;
+        let [dominant, other] = [pair.dominant, pair.dominant.other()];
+        let (origin, other_origin) = (views.dominant_crop, origin_in(source, &views.target));
+        renderer.develop(targets, source, Eye::Left, origin, &frame.to(dominant).color, false);
         if other_origin == origin {
-            let gl = &renderer.common().gl;
-            gl.pass("copy", || gl.copy(&dominant.color, &other.color));
+            let gl = &renderer.gl;
+            gl.pass("copy", || gl.copy(&frame.to(dominant).color, &frame.to(other).color));
         } else {
-            self.finish.color(color, other_origin, &other.color);
+            renderer.develop(targets, source, Eye::Left, other_origin, &frame.to(other).color, false);
         }
-        if wants_depth {
-            let depth = DepthImage::whole(self.targets.depth());
-            Finish::depth(Some(DepthImage { origin, ..depth }), dominant);
-            Finish::depth(Some(DepthImage { origin: other_origin, ..depth }), other);
+        for (eye, origin) in [(dominant, origin), (other, other_origin)] {
+            if frame.wants_depth(eye) {
+                frame.write_depth(eye, &targets.depth(source.size, Eye::Left, origin));
+            }
         }
         Ok(())
     }

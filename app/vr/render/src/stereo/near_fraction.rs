@@ -5,8 +5,9 @@ use std::rc::Rc;
 use glam::IVec2;
 
 use super::readback::Readback;
+use crate::view::{DepthImage, DepthProgram};
 use yoro::eyes::{DepthConvention, DepthRange};
-use yoro_gl::{Context, GlError, Program, RasterState, ShaderSource, Texture};
+use yoro_gl::{Context, GlError, RasterState};
 
 /// Texels per side of the image that [`NearFraction`] reads back, as in `stereo/near_fraction.frag`.
 const GRID: u32 = 16;
@@ -15,40 +16,41 @@ const GRID: u32 = 16;
 /// for it.
 pub(super) struct NearFraction {
     gl: Rc<Context>,
-    program: Program,
+    program: DepthProgram,
     readback: Readback<()>,
 }
 
 impl NearFraction {
     /// Compiles the pass.
     pub(super) fn new(gl: &Rc<Context>) -> Result<NearFraction, GlError> {
-        let program = Program::new(gl, ShaderSource::Screen("stereo/near_fraction.frag"), &[])?;
+        let program = DepthProgram::new(gl, "stereo/near_fraction.frag");
         Ok(NearFraction { gl: gl.clone(), program, readback: Readback::new(gl, [GRID; 2])? })
     }
 
-    /// Starts to measure the part of a depth image that has its lower left corner at `origin` and `size` pixels.
+    /// Starts to measure the part of a depth image that has its lower left corner at the image's origin and `size`
+    /// pixels.
     pub(super) fn measure(
         &mut self,
-        depth: &Texture,
-        origin: [u32; 2],
+        depth: &DepthImage,
         size: [u32; 2],
         range: &DepthRange,
         distance: f32,
-    ) {
+    ) -> Result<(), GlError> {
         let to_ivec = |v: [u32; 2]| IVec2::new(v[0] as i32, v[1] as i32);
-        self.gl.pass("near fraction", || {
-            self.gl.set_raster_state(&RasterState::SCREEN);
-            self.readback.image().bind();
-            self.program
-                .bind()
-                .texture("depth_map", 0, depth.raw())
-                .set("origin", to_ivec(origin))
+        let (gl, program, readback) = (&self.gl, &mut self.program, &mut self.readback);
+        gl.pass("near fraction", || {
+            gl.set_raster_state(&RasterState::SCREEN);
+            readback.image().bind();
+            program
+                .bind(depth)?
+                .set("origin", to_ivec(depth.origin))
                 .set("size", to_ivec(size))
                 .set("near_depth", range.depth(distance))
                 .set("reversed", range.convention == DepthConvention::Reversed);
-            self.gl.draw_screen();
-            self.readback.start(());
-        });
+            gl.draw_screen();
+            readback.start(());
+            Ok(())
+        })
     }
 
     /// Returns the result of the last but one [`NearFraction::measure`], from 0 to 1. Returns each result once.

@@ -2,21 +2,10 @@
 
 use super::near_field_policy::NearFieldPolicy;
 use super::paper::PaperOptions;
-use crate::render::RenderSettings;
+use crate::view::RenderSettings;
 use yoro::eyes::GuardBand;
 use yoro_gl::{Capabilities, GlError};
-pub use yoro_settings::{AntiAliasing, Method, MethodChoice, Pipeline};
-
-/// Returns what the forward renderer lacks for a method, if anything.
-fn lacking_forward(method: Method) -> Option<&'static str> {
-    match method {
-        Method::ShadingReprojection => Some("the g-buffer of both eyes"),
-        // Layers with several samples need EXT_multisampled_render_to_texture and
-        // GL_OVR_multiview_multisampled_render_to_texture.
-        Method::Multiview => Some("layers with one sample in each pixel"),
-        _ => None,
-    }
-}
+pub use yoro_settings::{Method, MethodChoice, Pipeline};
 
 impl RenderSettings {
     /// Checks that a driver can run a method with this renderer. The pipelines of [`Method::Synthesized`] check their own
@@ -26,14 +15,6 @@ impl RenderSettings {
     /// [`GlError::Unsupported`] with what is missing and what to do.
     pub fn supports(&self, method: Method, capabilities: &Capabilities) -> Result<(), GlError> {
         self.supported(capabilities)?;
-        if self.is_forward()
-            && let Some(lacking) = lacking_forward(method)
-        {
-            return Err(GlError::Unsupported(format!(
-                "{} needs {lacking}: choose the deferred renderer, or another method",
-                method.name()
-            )));
-        }
         if method == Method::Multiview && !capabilities.multiview {
             return Err(GlError::Unsupported(format!(
                 "{} ({}) has no GL_OVR_multiview2; use instanced, or a driver that has it, such as Mesa 25",
@@ -62,8 +43,6 @@ pub struct StereoOptions {
     pub synthesis: PipelineOptions,
     /// How much wider the dominant eye is rendered.
     pub guard_band: GuardBand,
-    /// When anti-aliasing runs.
-    pub anti_aliasing: AntiAliasing,
     /// Objects nearer than this, in metres, are rendered for both eyes.
     pub near_field: Option<f32>,
     /// When to render both eyes of frames that are mostly too near; `None` for never.
@@ -82,7 +61,6 @@ impl Default for StereoOptions {
         StereoOptions {
             synthesis: PipelineOptions::default(),
             guard_band: GuardBand::Distance(1.0),
-            anti_aliasing: AntiAliasing::default(),
             near_field: None,
             policy: Some(NearFieldPolicy::default()),
             render_rate: None,
@@ -92,15 +70,12 @@ impl Default for StereoOptions {
 }
 
 impl StereoOptions {
-    /// Returns the defaults for a pipeline. The paper's has no guard band and anti-aliasing before synthesis, as in the
-    /// paper.
+    /// Returns the defaults for a pipeline. The paper's has no guard band.
     pub fn of_pipeline(pipeline: Pipeline) -> StereoOptions {
         let synthesis = PipelineOptions { pipeline, ..PipelineOptions::default() };
         let options = StereoOptions { synthesis, ..StereoOptions::default() };
         match pipeline {
-            Pipeline::Paper => {
-                StereoOptions { guard_band: GuardBand::None, anti_aliasing: AntiAliasing::Before, ..options }
-            }
+            Pipeline::Paper => StereoOptions { guard_band: GuardBand::None, ..options },
             _ => options,
         }
     }

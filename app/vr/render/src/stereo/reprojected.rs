@@ -2,12 +2,11 @@
 
 use std::rc::Rc;
 
-use super::finish::{EyeImage, Finish};
-use super::frame::{Frame, FrameMethod, Setup};
-use super::method::{EyeTarget, StereoError};
-use super::options::Pipeline;
-use crate::render::{DepthImage, RendererOfKind, ViewImages, ViewRenderer};
-use yoro::eyes::{Eye, EyePair, EyesError, GuardBand, HeadMotion, PoseWarp, View};
+use super::frame::{reversed, write_depth};
+use super::method::{EyeTarget, StereoError, StereoMethod};
+use super::options::{Pipeline, StereoOptions};
+use crate::view::{DepthImage, GpuScene, Layout, NearestDepth, Renderer, Targets};
+use yoro::eyes::{DepthConvention, Eye, EyePair, EyesError, GuardBand, HeadMotion, PoseWarp, View};
 use yoro::opengl::{AnyView, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, RenderTarget};
 
@@ -21,54 +20,56 @@ const NEAREST: f32 = 1.0;
 
 /// One render with a guard band on all four sides, shown in any number of frames: each eye is synthesized from its
 /// colour and depth. Surfaces stand still meanwhile; transparent ones and highlights move with what is behind them.
-pub struct Reprojected<R: ViewRenderer> {
+pub struct Reprojected {
     gl: Rc<Context>,
     guard_band: GuardBand,
     /// The motion of a head between two renders that the guard band allows for.
     motion: HeadMotion,
-    targets: R::Targets,
+    targets: Option<Targets>,
     /// The view in the targets; `None` before the first frame.
     rendered: Option<View>,
+    /// True if the depth of the view is that of two samples.
+    pairs: bool,
     /// Synthesis without and with depth, each made when first needed.
     synthesis: [Option<Synthesizer>; 2],
-    finish: Finish,
 }
 
-/// The synthesis, and the image it writes: an eye before anti-aliasing.
+/// The synthesis, and the image of an eye whose depth is wanted.
 struct Synthesizer {
     any_view: AnyView,
-    image: RenderTarget,
+    image: Option<RenderTarget>,
 }
 
 impl Synthesizer {
-    fn new(gl: &Rc<Context>, depth: bool) -> Result<Synthesizer, GlError> {
+    fn new(gl: &Rc<Context>, pairs: bool, depth: bool) -> Result<Synthesizer, GlError> {
         let outputs = Outputs { depth, ..Outputs::default() };
-        let format = depth.then_some(Format::Depth32F);
-        Ok(Synthesizer {
-            any_view: AnyView::new(gl, &Options::default(), outputs)?,
-            image: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Linear)], format)?,
-        })
+        let image = depth.then(|| {
+            let formats = [(Format::Rgba8, Filter::Linear)];
+            RenderTarget::new(gl, [1, 1], &formats, Some(Format::Depth32F))
+        });
+        let options = Options { depth_pairs: pairs, ..Options::default() };
+        Ok(Synthesizer { any_view: AnyView::new(gl, &options, outputs)?, image: image.transpose()? })
     }
 }
 
-impl<R: ViewRenderer> Reprojected<R> {
-    /// Makes the targets for `rate` renders per second. For the paper's pipeline returns [`GlError::Unsupported`].
-    pub(super) fn new(setup: &Setup, rate: f32) -> Result<Reprojected<R>, GlError> {
-        if setup.options.synthesis.pipeline == Pipeline::Paper {
+impl Reprojected {
+    /// Makes the method for `rate` renders per second. For the paper's pipeline returns [`GlError::Unsupported`].
+    pub(super) fn new(gl: &Rc<Context>, options: &StereoOptions, rate: f32) -> Result<Reprojected, GlError> {
+        if options.synthesis.pipeline == Pipeline::Paper {
             let message = "the pipeline paper cannot show a render again: choose the pipeline gather, or no render rate";
             return Err(GlError::Unsupported(message.into()));
         }
         Ok(Reprojected {
-            gl: setup.gl.clone(),
-            guard_band: setup.options.guard_band,
+            gl: gl.clone(),
+            guard_band: options.guard_band,
             motion: HeadMotion {
                 rotation: DEGREES_PER_SECOND.to_radians() / rate,
                 translation: METRES_PER_SECOND / rate,
             },
-            targets: R::targets(setup.gl, setup.settings)?,
+            targets: None,
             rendered: None,
-            synthesis: [Some(Synthesizer::new(setup.gl, false)?), None],
-            finish: Finish::new(setup)?,
+            pairs: false,
+            synthesis: [None, None],
         })
     }
 
@@ -84,36 +85,72 @@ impl<R: ViewRenderer> Reprojected<R> {
 
     /// Synthesizes both eyes from a rendered view.
     fn show(&mut self, source: &View, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), StereoError> {
+        let Some(targets) = &self.targets else { return Ok(()) };
+        let eyes = reversed(pair);
         for eye in Eye::BOTH {
             let to = &to[eye.index()];
-            let warp = PoseWarp::new(source, &pair.view(eye))?;
+            let warp = PoseWarp::new(source, &eyes.view(eye))?;
             let slot = &mut self.synthesis[usize::from(to.depth.is_some())];
             let Synthesizer { any_view, image } = match slot {
                 Some(made) => made,
-                None => slot.insert(Synthesizer::new(&self.gl, true)?),
+                None => slot.insert(Synthesizer::new(&self.gl, self.pairs, to.depth.is_some())?),
+            };
+            let color = targets.developed.as_ref().unwrap_or(targets.color());
+            let depth = targets.depth(source.size, Eye::Left, [0, 0]);
+            let images = Source::new(color.color(0).raw(), depth.texture.raw());
+            let Some(image) = image else {
+                any_view.synthesize(images, &warp, &to.color)?;
+                continue;
             };
             image.resize(pair.size)?;
-            let images = Source::new(self.targets.color().color(0).raw(), self.targets.depth().raw());
             any_view.synthesize(images, &warp, &Destination::whole(image))?;
-            let depth = to.depth.is_some().then(|| DepthImage::whole(image.depth()));
-            self.finish.run(&EyeImage { color: image, origin: [0, 0], depth }, to);
+            self.gl.pass("copy", || image.copy_color([0, 0], &to.color));
+            let convention = DepthConvention::Reversed;
+            let depth = DepthImage {
+                texture: image.depth(),
+                origin: [0, 0],
+                layer: None,
+                is_pair: false,
+                convention,
+            };
+            write_depth(&depth, to, pair.depth.convention);
         }
         Ok(())
     }
 }
 
-impl<R: RendererOfKind> FrameMethod for Reprojected<R> {
-    type Renderer = R;
-
-    fn render_frame(&mut self, frame: &Frame<R>) -> Result<(), StereoError> {
-        let view = self.source_view(frame.pair)?;
-        self.rendered = None;
-        frame.renderer.render_all(&mut self.targets, frame.scene, &view, true)?;
-        self.rendered = Some(view);
-        self.show(&view, frame.pair, frame.targets())
+impl StereoMethod for Reprojected {
+    fn prepare(&mut self, renderer: &mut Renderer, _: &GpuScene) -> Result<(), StereoError> {
+        if self.targets.is_none() {
+            self.targets = Some(renderer.targets(Layout::Single)?);
+            self.pairs = renderer.nearest_depth() == NearestDepth::Carried;
+            self.synthesis[0] = Some(Synthesizer::new(&self.gl, self.pairs, false)?);
+        }
+        Ok(())
     }
 
-    fn show_last(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
+    fn render_to(
+        &mut self,
+        renderer: &mut Renderer,
+        scene: &GpuScene,
+        pair: &EyePair,
+        to: &[EyeTarget; 2],
+    ) -> Result<(), StereoError> {
+        self.prepare(renderer, scene)?;
+        renderer.check_scene(scene)?;
+        let view = self.source_view(&reversed(pair))?;
+        let Some(targets) = &mut self.targets else { return Ok(()) };
+        self.rendered = None;
+        renderer.draw_all(targets, scene, std::slice::from_ref(&view), true, None)?;
+        if renderer.develops() {
+            let to = Destination::whole(targets.picture(view.size)?);
+            renderer.develop(targets, &view, Eye::Left, [0, 0], &to, false);
+        }
+        self.rendered = Some(view);
+        self.show(&view, pair, to)
+    }
+
+    fn show_again(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<bool, StereoError> {
         let Some(view) = self.rendered else { return Ok(false) };
         match self.show(&view, pair, to) {
             // The head has turned away from the render.

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::{Method, Pipeline, StereoError, StereoFrame, StereoOptions, create};
-use crate::render::{GpuScene, RenderSettings, Renderer};
+use crate::view::{GpuScene, RenderSettings, Renderer};
 use yoro::eyes::{DepthRange, Eye, EyePair, Frustum};
 use yoro_assets::Scene;
 use yoro_gl::Context;

@@ -1,0 +1,177 @@
+//! The last pass of an eye over which more is drawn: near objects, and transparent surfaces.
+
+use std::rc::Rc;
+
+use super::frame::Frame;
+use crate::view::{DepthImage, Renderer, Selection};
+use yoro::eyes::{DepthConvention, Eye};
+use yoro_gl::{
+    Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
+};
+
+/// The format of depth, as in the samples of a view.
+const DEPTH: Format = Format::Depth32F;
+
+/// What is drawn over both eyes of a frame, after the rendered one is developed and the other one synthesized.
+#[derive(Clone, Copy)]
+pub(super) struct OverlaySurfaces {
+    /// The near objects, if they are left out of the synthesis.
+    pub(super) near: Option<Selection>,
+    pub(super) transparent: bool,
+}
+
+impl OverlaySurfaces {
+    /// True if anything is drawn. It is then tested against the depth of either eye.
+    pub(super) fn is_any(&self) -> bool {
+        self.transparent || self.near.is_some()
+    }
+}
+
+/// The images in which an eye is finished. A picture and its depth are written, more is drawn over them, and the average
+/// of the samples is the eye's image: all in one pass, which reads nothing back and stores no sample.
+///
+/// If somebody reads the eye's depth, a pixel has one sample, since samples have no depth in common.
+pub(super) struct Over {
+    gl: Rc<Context>,
+    samples: u32,
+    /// Samples outside tiles.
+    multisample: Option<MultisampleTarget>,
+    /// Samples in tiles, and the depth of one eye, which is never written.
+    tile: Option<(TileTarget, Option<Texture>)>,
+    /// One sample.
+    image: Option<RenderTarget>,
+    way: Way,
+    /// The place of the current eye.
+    place: Destination,
+}
+
+/// Where the current eye is finished.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// In its own target: nothing is drawn over it.
+    Direct,
+    Image,
+    Samples,
+    Tile,
+}
+
+impl Over {
+    /// Makes it without images.
+    pub(super) fn new(renderer: &Renderer) -> Result<Over, GlError> {
+        let (gl, samples) = (&renderer.gl, renderer.samples());
+        let tile = (samples > 1 && gl.capabilities().tile_samples).then(|| TileTarget::new(gl, samples));
+        Ok(Over {
+            gl: gl.clone(),
+            samples,
+            multisample: None,
+            tile: tile.transpose()?.map(|tile| (tile, None)),
+            image: None,
+            way: Way::Direct,
+            place: Destination { framebuffer: None, origin: [0, 0], size: [0, 0] },
+        })
+    }
+
+    /// Returns the place to write an eye to, with depth if `over` draws anything or the eye's depth is wanted.
+    pub(super) fn begin(
+        &mut self,
+        frame: &Frame,
+        eye: Eye,
+        over: &OverlaySurfaces,
+    ) -> Result<(Destination, bool), GlError> {
+        let (place, has_depth) = self.choose(frame, eye, over)?;
+        self.place = place;
+        Ok((place, has_depth))
+    }
+
+    fn choose(
+        &mut self,
+        frame: &Frame,
+        eye: Eye,
+        over: &OverlaySurfaces,
+    ) -> Result<(Destination, bool), GlError> {
+        let (to, size) = (frame.to(eye), frame.pair.size);
+        let wants_depth = frame.wants_depth(eye);
+        if !over.is_any() && !wants_depth {
+            self.way = Way::Direct;
+            return Ok((to.color, false));
+        }
+        if !wants_depth && self.fit_tile(to.texture.map(|texture| (texture, size)))? {
+            self.way = Way::Tile;
+            let tile = self.tile.as_ref().map(|(tile, _)| tile.part(size));
+            return Ok((tile.unwrap_or(to.color), true));
+        }
+        // OpenGL ES averages between equal rectangles only.
+        if !wants_depth && self.samples > 1 && to.color.origin == [0, 0] {
+            self.way = Way::Samples;
+            let samples = match &mut self.multisample {
+                Some(samples) => samples,
+                slot => {
+                    let colors = [Format::Rgba8];
+                    let made = MultisampleTarget::new(&self.gl, size, self.samples, &colors, DEPTH, false)?;
+                    slot.insert(made)
+                }
+            };
+            samples.resize(size)?;
+            return Ok((samples.part(size), true));
+        }
+        self.way = Way::Image;
+        let image = match &mut self.image {
+            Some(image) => image,
+            slot => slot.insert(RenderTarget::new(
+                &self.gl,
+                size,
+                &[(Format::Rgba8, Filter::Linear)],
+                Some(DEPTH),
+            )?),
+        };
+        image.resize(size)?;
+        Ok((Destination::whole(image), true))
+    }
+
+    /// Attaches an eye's texture to the tiles; false if there are no such tiles, or no texture.
+    fn fit_tile(&mut self, to: Option<((glow::Texture, yoro_gl::Image), [u32; 2])>) -> Result<bool, GlError> {
+        let (Some((tile, depth)), Some((color, size))) = (&mut self.tile, to) else { return Ok(false) };
+        if color.1.size != size {
+            return Ok(false);
+        }
+        let depth = match depth.take().filter(|depth| depth.size() == size) {
+            Some(made) => depth.insert(made),
+            None => depth.insert(Texture::new(&self.gl, size, DEPTH, Filter::Nearest)?),
+        };
+        // SAFETY: the caller's texture, by the contract of `EyeTarget`.
+        Ok(unsafe { tile.fit(&[color], depth) }.is_ok())
+    }
+
+    /// Draws over the eye that was written to the place that [`Over::begin`] returned, and completes its target.
+    pub(super) fn finish(&self, frame: &Frame, eye: Eye, over: &OverlaySurfaces) {
+        if self.way == Way::Direct {
+            return;
+        }
+        let view = frame.pair.view(eye);
+        let samples = if self.way == Way::Image { 1 } else { self.samples };
+        if over.is_any() {
+            let place = &self.place;
+            self.gl.bind_framebuffer(place.framebuffer, place.origin, place.size);
+            frame.renderer.draw_over(frame.scene, &view, over.near, samples);
+        }
+        match (self.way, &self.multisample, &self.tile, &self.image) {
+            (Way::Samples, Some(samples), ..) => self.gl.pass("resolve", || {
+                samples.average(0, &frame.to(eye).color);
+                samples.discard(true, true);
+            }),
+            (Way::Tile, _, Some((tile, _)), _) => tile.discard_depth(),
+            (Way::Image, .., Some(image)) => {
+                self.gl.pass("copy", || image.copy_color([0, 0], &frame.to(eye).color));
+                let depth = DepthImage {
+                    texture: image.depth(),
+                    origin: [0, 0],
+                    layer: None,
+                    is_pair: false,
+                    convention: DepthConvention::Reversed,
+                };
+                frame.write_depth(eye, &depth);
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Bloom.
+
+use std::rc::Rc;
+
+use glam::{Vec2, Vec4};
+
+use yoro_gl::{
+    Blend, Context, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource, Texture,
+};
+
+/// Share of the bloom that is added to the picture.
+pub const STRENGTH: f32 = 0.12;
+/// Levels of the pyramid; the first has half the view's size.
+const LEVELS: usize = 5;
+
+/// The pyramid of images.
+pub struct BloomTargets {
+    levels: [RenderTarget; LEVELS],
+}
+
+fn level_size(size: [u32; 2], level: usize) -> [u32; 2] {
+    size.map(|n| (n >> (level + 1)).max(1))
+}
+
+impl BloomTargets {
+    /// Makes targets of one pixel; call [`BloomTargets::resize`] before drawing into them.
+    pub fn new(gl: &Rc<Context>) -> Result<BloomTargets, GlError> {
+        let format = hdr_format(gl);
+        let level = || RenderTarget::new(gl, [1, 1], &[(format, Filter::Linear)], None);
+        Ok(BloomTargets { levels: [level()?, level()?, level()?, level()?, level()?] })
+    }
+
+    /// Fits the targets to a view of `size` pixels.
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<(), GlError> {
+        self.levels.iter_mut().enumerate().try_for_each(|(i, level)| level.resize(level_size(size, i)))
+    }
+
+    /// Returns the finished bloom, half the view's size.
+    pub fn result(&self) -> &Texture {
+        self.levels[0].color(0)
+    }
+}
+
+/// Returns the defines of `include/hdr.glsl`.
+pub fn hdr_defines(gl: &Context) -> Option<(&'static str, String)> {
+    (!gl.capabilities().float_render_targets).then(|| ("NO_FLOAT_TARGETS", String::new()))
+}
+
+/// Returns the format of scene-referred colour. EXT_color_buffer_half_float alone allows half floats but not packed
+/// floats, so this asks the driver.
+pub fn hdr_format(gl: &Rc<Context>) -> Format {
+    if !gl.capabilities().float_render_targets {
+        return Format::Rgba8;
+    }
+    first_renderable(gl, [Format::R11G11B10F, Format::Rgba16F])
+}
+
+/// Returns the first format that the driver can render to, or the last one if it can render to none.
+pub fn first_renderable<const N: usize>(gl: &Rc<Context>, formats: [Format; N]) -> Format {
+    let renders = |f: &Format| RenderTarget::new(gl, [1, 1], &[(*f, Filter::Linear)], None).is_ok();
+    formats.into_iter().find(renders).unwrap_or(formats[N - 1])
+}
+
+/// The part of a picture that shines.
+#[derive(Clone, Copy)]
+pub struct Shining<'a> {
+    /// Display-referred colour, filtered linearly: a texture, or an array of them.
+    pub picture: &'a Texture,
+    /// The layer, if the picture is an array.
+    pub layer: Option<u32>,
+    /// Lower left corner of the view in the picture, in pixels.
+    pub origin: [u32; 2],
+    /// Width and height of the view.
+    pub size: [u32; 2],
+    /// The columns `[first, end]` of the view that count; the edge columns are repeated beside them.
+    pub columns: [u32; 2],
+}
+
+/// Spreads light that is brighter than white over its surroundings.
+///
+/// Reads the picture, and writes the pyramid, which is scene-referred. Every level is overwritten; on the way back it is
+/// blended into.
+pub struct BloomPass {
+    gl: Rc<Context>,
+    first: Program,
+    /// `None` without multiview.
+    first_of_layer: Option<Program>,
+    down: Program,
+    up: Program,
+}
+
+impl BloomPass {
+    /// Compiles the programs.
+    pub fn new(gl: &Rc<Context>) -> Result<BloomPass, GlError> {
+        let down = |names: &[&'static str]| {
+            let mut defines: Vec<_> = names.iter().map(|name| (*name, String::new())).collect();
+            defines.extend(hdr_defines(gl));
+            Program::new(gl, ShaderSource::Screen("render/bloom_down.frag"), &defines)
+        };
+        Ok(BloomPass {
+            gl: gl.clone(),
+            first: down(&["FIRST"])?,
+            first_of_layer: gl.capabilities().multiview.then(|| down(&["FIRST", "LAYER"])).transpose()?,
+            down: down(&[])?,
+            up: Program::new(gl, ShaderSource::Screen("render/bloom_up.frag"), &[])?,
+        })
+    }
+
+    /// Computes the bloom of a picture that was exposed with `exposure`.
+    pub fn run(&self, targets: &BloomTargets, shining: &Shining, exposure: f32) {
+        let texel = |texture: &Texture| 1.0 / Vec2::from(texture.size().map(|n| n as f32));
+        self.gl.pass("bloom", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            let first = match (shining.layer, &self.first_of_layer) {
+                (Some(_), Some(program)) => program,
+                _ => &self.first,
+            };
+            let mut from = shining.picture;
+            for (i, level) in targets.levels.iter().enumerate() {
+                level.overwrite();
+                let program = if i == 0 { first } else { &self.down };
+                program.bind().texture_of("source", 0, from).set("texel", texel(level.color(0)));
+                if i == 0 {
+                    set_part(program, shining, exposure);
+                }
+                self.gl.draw_screen();
+                from = level.color(0);
+            }
+            self.gl.set_raster_state(&RasterState { blend: Blend::Add, ..RasterState::SCREEN });
+            for pair in targets.levels.windows(2).rev() {
+                let (large, small) = (&pair[0], pair[1].color(0));
+                large.bind();
+                self.up
+                    .bind()
+                    .texture("source", 0, small.raw())
+                    .set("texel", texel(large.color(0)))
+                    .set("source_texel", texel(small));
+                self.gl.draw_screen();
+            }
+        });
+    }
+}
+
+/// Sets the uniforms of the first step.
+fn set_part(program: &Program, shining: &Shining, exposure: f32) {
+    let Shining { picture, layer, origin, size, columns: [first, end] } = *shining;
+    let texel = 1.0 / Vec2::from(picture.size().map(|n| n as f32));
+    let place = |v: [u32; 2]| Vec2::from(v.map(|n| n as f32)) * texel;
+    let (corner, extent) = (place(origin), place(size));
+    let low = place([origin[0] + first, origin[1]]) + 0.5 * texel;
+    let high = place([origin[0] + end, origin[1] + size[1]]) - 0.5 * texel;
+    program
+        .set("exposure", exposure)
+        .set("color_layer", layer.unwrap_or(0) as i32)
+        .set("part", Vec4::new(corner.x, corner.y, extent.x, extent.y))
+        .set("bounds", Vec4::new(low.x, low.y, high.x, high.y));
+}

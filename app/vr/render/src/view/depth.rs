@@ -1,0 +1,136 @@
+//! The depth of rendered views: how the nearest of a pixel's samples is had, and programs that read it.
+
+use std::rc::Rc;
+
+use glam::IVec2;
+
+use yoro::eyes::DepthConvention;
+use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource, Texture};
+
+/// How the nearest depth of each pixel's samples gets into a texture. Averages of depth belong to no surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NearestDepth {
+    /// A pixel has one sample, whose depth buffer is the texture.
+    Single,
+    /// A second colour carries the depth of two samples through the average (`include/carried.glsl`), so that no sample
+    /// leaves the tile of a tile-based GPU.
+    Carried,
+    /// A pass reads all samples.
+    Read,
+    /// The driver copies the depth of one sample (OpenGL ES 3.0).
+    First,
+}
+
+impl NearestDepth {
+    /// Returns the best way that a driver has for views with this many samples. Where outlines are drawn (`ink`), which
+    /// compare samples with their neighbours, they are read if possible.
+    pub(super) fn best(gl: &Context, samples: u32, ink: bool) -> NearestDepth {
+        let capabilities = gl.capabilities();
+        let carries = capabilities.sample_masks && capabilities.float_render_targets && !ink;
+        if samples == 1 {
+            NearestDepth::Single
+        } else if carries && capabilities.tile_samples {
+            NearestDepth::Carried
+        } else if capabilities.multisample_textures {
+            NearestDepth::Read
+        } else if carries {
+            NearestDepth::Carried
+        } else {
+            NearestDepth::First
+        }
+    }
+}
+
+/// Window depth of an image.
+#[derive(Clone, Copy)]
+pub struct DepthImage<'a> {
+    /// A depth texture, or a texture with a float channel, without filtering.
+    pub texture: &'a Texture,
+    /// Pixel of the texture that corresponds to the destination's lower left pixel.
+    pub origin: [u32; 2],
+    /// The layer, if the texture is an array.
+    pub layer: Option<u32>,
+    /// True if the texture holds the reversed depth of two samples in two channels ([`NearestDepth::Carried`]).
+    pub is_pair: bool,
+    /// The convention of the depth.
+    pub convention: DepthConvention,
+}
+
+/// A program that reads `include/depth_map.glsl`, in variants for each kind of texture. They are compiled when first
+/// asked for.
+pub(crate) struct DepthProgram {
+    gl: Rc<Context>,
+    file: &'static str,
+    /// Whole textures, pairs of depths, layers.
+    made: [Option<Program>; 3],
+}
+
+impl DepthProgram {
+    pub(crate) fn new(gl: &Rc<Context>, file: &'static str) -> DepthProgram {
+        DepthProgram { gl: gl.clone(), file, made: [const { None }; 3] }
+    }
+
+    /// Compiles the variant for an image, unless it is compiled already, binds it and its texture to unit 0.
+    pub(crate) fn bind(&mut self, depth: &DepthImage) -> Result<&Program, GlError> {
+        let i = if depth.layer.is_some() { 2 } else { usize::from(depth.is_pair) };
+        let slot = &mut self.made[i];
+        let program = match slot {
+            Some(program) => program,
+            None => {
+                let define = [None, Some("DEPTH_PAIRS"), Some("LAYER")][i];
+                let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
+                slot.insert(Program::new(&self.gl, ShaderSource::Screen(self.file), &defines)?)
+            }
+        };
+        program
+            .bind()
+            .texture_of("depth_map", 0, depth.texture)
+            .set("view_layer", depth.layer.unwrap_or(0) as i32);
+        Ok(program)
+    }
+}
+
+/// Copies window depth into a framebuffer's depth attachment, which may have any depth format, for compositors that
+/// reproject images with it.
+pub struct DepthCopy {
+    gl: Rc<Context>,
+    /// For whole textures, pairs of depths, and layers; the latter two where the driver has them.
+    programs: [Option<Program>; 3],
+}
+
+impl DepthCopy {
+    /// Compiles the programs.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    pub fn new(gl: &Rc<Context>) -> Result<DepthCopy, GlError> {
+        let compile = |define: Option<&'static str>| {
+            let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
+            Program::new(gl, ShaderSource::Screen("render/depth_write.frag"), &defines)
+        };
+        let capabilities = gl.capabilities();
+        let pairs = capabilities.sample_masks.then(|| compile(Some("DEPTH_PAIRS"))).transpose()?;
+        let layers = capabilities.multiview.then(|| compile(Some("LAYER"))).transpose()?;
+        Ok(DepthCopy { gl: gl.clone(), programs: [Some(compile(None)?), pairs, layers] })
+    }
+
+    /// Writes the destination's depth, in this convention.
+    pub fn run(&self, from: &DepthImage, to: &Destination, convention: DepthConvention) {
+        let i = if from.layer.is_some() { 2 } else { usize::from(from.is_pair) };
+        let Some(program) = &self.programs[i] else { return };
+        self.gl.pass("depth copy", || {
+            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+            self.gl.overwrite(to, 0, true);
+            let offset =
+                IVec2::from(from.origin.map(|n| n as i32)) - IVec2::from(to.origin.map(|n| n as i32));
+            program
+                .bind()
+                .texture_of("depth_map", 0, from.texture)
+                .set("offset", offset)
+                .set("reverse", from.convention != convention)
+                .set("view_layer", from.layer.unwrap_or(0) as i32);
+            self.gl.draw_screen();
+            self.gl.set_raster_state(&RasterState::SCREEN);
+        });
+    }
+}

@@ -1,0 +1,39 @@
+//! Renders views of a scene to colour and depth.
+
+mod bloom;
+mod carry;
+mod cluster;
+mod depth;
+mod geometry;
+mod layout;
+mod light_tiles;
+mod lights;
+mod moving;
+#[cfg(test)]
+mod moving_tests;
+mod passes;
+#[cfg(test)]
+mod picture_tests;
+mod read_back;
+mod renderer;
+mod request;
+mod scene;
+mod settings;
+mod shadow;
+mod targets;
+#[cfg(test)]
+mod tests;
+mod transparent;
+mod uniforms;
+
+pub use cluster::Selection;
+pub(crate) use depth::DepthProgram;
+pub use depth::{DepthCopy, DepthImage, NearestDepth};
+pub(crate) use layout::{Layout, Seam};
+pub(crate) use passes::Reprojection;
+pub use read_back::{DepthReader, ViewReader};
+pub use renderer::{RenderedView, Renderer, ViewTargets};
+pub(crate) use request::{Columns, DrawRequest, of_columns};
+pub use scene::GpuScene;
+pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings};
+pub(crate) use targets::Targets;

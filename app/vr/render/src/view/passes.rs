@@ -1,0 +1,496 @@
+//! The passes of the renderer.
+
+use glam::{IVec2, Mat3, Vec2, Vec3};
+
+use super::bloom::Shining;
+use super::cluster::{Culler, Selection};
+use super::geometry::{Part, Variant};
+use super::layout::Layout;
+use super::light_tiles::LightTiles;
+use super::lights::Lights;
+use super::renderer::{Develop, Renderer, Resolve, line_width};
+use super::scene::{FREE_UNIT, GpuScene};
+use super::shadow::ShadowMap;
+use super::targets::{Onto, Targets};
+use super::uniforms::{nearer, set_view, view_rays};
+use yoro::eyes::{DisparityLaw, Eye, View};
+use yoro_gl::{DepthTest, Destination, GlError, Program, RasterState, RenderTarget, Texture};
+
+/// The light in the views of a frame.
+pub struct Illumination<'a> {
+    pub scene: &'a GpuScene,
+    pub shadow: Option<&'a ShadowMap>,
+    /// Relative to `eye`.
+    pub lights: Lights,
+    pub tiles: LightTiles,
+    pub eye: Vec3,
+    pub exposure: f32,
+}
+
+impl Illumination<'_> {
+    /// Sets the uniforms of `include/shade.glsl` in a bound program.
+    fn set(&self, program: &Program) {
+        program.set("exposure", self.exposure);
+        if let Some(shadow) = self.shadow {
+            shadow.set(program, FREE_UNIT, self.eye);
+        }
+        self.lights.set(program, &self.scene.sky);
+        self.tiles.set(program);
+    }
+}
+
+/// What the second eye takes from the dominant eye's image.
+#[derive(Clone, Copy)]
+pub(crate) struct Reprojection<'a> {
+    /// Display-referred colour of the dominant eye, filtered linearly.
+    pub color: &'a Texture,
+    /// Its nearest depth.
+    pub depth: &'a Texture,
+    /// Maps a column of the dominant eye to that of the second.
+    pub law: DisparityLaw,
+    /// Row of the second eye minus that of the dominant.
+    pub row_offset: i32,
+    /// Inverse distance, in 1 / metres, whose disparity is half a pixel.
+    pub half_pixel: f32,
+}
+
+impl Renderer {
+    /// Returns the light of the views in an image of this layout, for positions relative to the first view.
+    fn illuminate<'a>(&'a self, layout: Layout, scene: &'a GpuScene, views: &[View]) -> Illumination<'a> {
+        let lights = self.lights(scene, views);
+        Illumination {
+            scene,
+            shadow: self.shadow.as_ref(),
+            tiles: LightTiles::new(&lights, layout, views),
+            lights,
+            eye: views[0].pose.position,
+            exposure: self.settings.exposure,
+        }
+    }
+
+    fn variant(targets: &Targets) -> Variant {
+        let (layout, samples) = (targets.layout(), targets.sample_count());
+        Variant { layout, carried: targets.carries(), ..Variant::plain(samples) }
+    }
+
+    /// Clears the targets, and draws a part of the scene and the sky behind it.
+    pub(super) fn draw_on_sky(&self, targets: &mut Targets, scene: &GpuScene, views: &[View], part: &Part) {
+        self.draw_on_sky_as(targets, scene, views, part, None);
+    }
+
+    /// Like [`Renderer::draw_on_sky`]; takes the dominant eye's colours where it sees the surface.
+    fn draw_on_sky_as(
+        &self,
+        targets: &mut Targets,
+        scene: &GpuScene,
+        views: &[View],
+        part: &Part,
+        from: Option<&Reprojection>,
+    ) {
+        let view = &views[0];
+        targets.convention = view.depth.convention;
+        self.gl.pass("surfaces", || {
+            targets.bind(targets.layout().texture_size(view.size));
+            self.gl.clear(Some(view.depth.clear_value()));
+            let light = self.illuminate(targets.layout(), scene, views);
+            let variant = Variant { reprojected: from.is_some(), ..Renderer::variant(targets) };
+            self.draw_opaque(variant, &light, views, part, |program| {
+                if let Some(from) = from {
+                    set_reprojection(program, from, view);
+                }
+            });
+            self.draw_sky(targets, &light, views);
+        });
+    }
+
+    /// Draws and lights the opaque surfaces that nothing in the bound framebuffer hides.
+    fn draw_opaque(
+        &self,
+        variant: Variant,
+        light: &Illumination,
+        views: &[View],
+        part: &Part,
+        more: impl Fn(&Program),
+    ) {
+        let Some(pass) = self.geometry.iter().find(|pass| pass.variant() == variant) else { return };
+        pass.programs().for_each(|program| {
+            light.set(program.bind());
+            more(program);
+        });
+        pass.draw(light.scene, views, part);
+    }
+
+    /// Draws the sky where nothing was drawn.
+    fn draw_sky(&self, targets: &Targets, light: &Illumination, views: &[View]) {
+        let variant = Renderer::variant(targets);
+        let Some((_, program)) = self.skies.iter().find(|(made, _)| *made == variant) else { return };
+        let layout = targets.layout();
+        // With multiview, one triangle is drawn for both eyes.
+        let rays: [Mat3; 2] = std::array::from_fn(|i| view_rays(views.get(i).unwrap_or(&views[0])));
+        let drawn = if layout == Layout::Layered { 1 } else { views.len() };
+        for (i, eye) in Eye::BOTH.into_iter().enumerate().take(drawn) {
+            let view = &views[i];
+            let origin = layout.origin(view.size, eye);
+            self.gl.set_viewport(origin, view.size);
+            self.gl.set_raster_state(&RasterState { depth: DepthTest::Equal, ..RasterState::SCREEN });
+            let far = view.depth.clear_value();
+            self.gl.set_depth_window([far, far]);
+            light.set(program.bind());
+            program
+                .set("rays", if layout == Layout::Layered { &rays[..] } else { &rays[i..=i] })
+                .set("view_origin", Vec2::from(origin.map(|n| n as f32)))
+                .set("view_texel", 1.0 / Vec2::from(view.size.map(|n| n as f32)));
+            self.gl.draw_screen();
+            self.gl.set_depth_window([0.0, 1.0]);
+        }
+        self.gl.set_viewport([0, 0], layout.texture_size(views[0].size));
+    }
+
+    /// Draws the transparent surfaces over what is in the targets.
+    pub(super) fn draw_transparent(&self, targets: &Targets, scene: &GpuScene, views: &[View]) {
+        if scene.has_transparent() {
+            let light = self.illuminate(targets.layout(), scene, views);
+            self.transparent.run(Renderer::variant(targets), scene, views, |program| light.set(program));
+        }
+    }
+
+    /// Draws near objects and transparent surfaces over the bound framebuffer, which holds an eye and its depth from
+    /// pixel [0, 0] on, and has this many samples in each pixel.
+    pub(crate) fn draw_over(&self, scene: &GpuScene, view: &View, near: Option<Selection>, samples: u32) {
+        let variant = Variant::plain(samples);
+        let views = std::slice::from_ref(view);
+        let light = self.illuminate(Layout::Single, scene, views);
+        if let Some(near) = near {
+            let culler = Culler::selecting(view, near);
+            self.gl.pass("near objects", || {
+                self.draw_opaque(variant, &light, views, &Part::Selected(&culler), |_| {});
+            });
+        }
+        if scene.has_transparent() {
+            self.transparent.run(variant, scene, views, |program| light.set(program));
+        }
+    }
+
+    /// Averages the samples, into `to` if it is given, and takes their nearest depth if `depth` is set. With `ink`,
+    /// outlines are drawn. The samples are lost.
+    pub(super) fn resolve(
+        &self,
+        targets: &mut Targets,
+        view: &View,
+        depth: bool,
+        ink: bool,
+        to: Option<&Destination>,
+    ) -> Result<(), GlError> {
+        match targets.onto() {
+            Onto::Resolved if !depth && !ink => targets.resolved.discard_depth(),
+            Onto::Resolved => {}
+            Onto::Tile => {
+                if targets.carries()
+                    && let Some(carry) = &self.carry
+                {
+                    self.gl.pass("carry", || carry.run());
+                }
+                if let Some(tile) = targets.tile() {
+                    tile.discard_depth();
+                }
+            }
+            Onto::Samples => self.resolve_samples(targets, view, depth, ink, to),
+        }
+        targets.has_depth = depth;
+        let is_drawn = targets.onto() == Onto::Samples && self.reads(targets);
+        // An array's outlines are drawn eye by eye.
+        if ink && !is_drawn && targets.layout() != Layout::Layered {
+            targets.ink_picture()?;
+            self.draw_ink(targets, view, Eye::Left);
+        }
+        Ok(())
+    }
+
+    /// Draws the outlines of an eye that is a layer of the targets, if the style has outlines.
+    pub(crate) fn ink_layer(&self, targets: &mut Targets, view: &View, eye: Eye) -> Result<(), GlError> {
+        if self.ink && targets.layout() == Layout::Layered {
+            targets.ink_picture()?;
+            self.draw_ink(targets, view, eye);
+        }
+        Ok(())
+    }
+
+    /// True if shaders can read the samples.
+    fn reads(&self, targets: &Targets) -> bool {
+        targets.multisample().is_some_and(|samples| samples.depth().is_some())
+    }
+
+    fn resolve_samples(
+        &self,
+        targets: &Targets,
+        view: &View,
+        depth: bool,
+        ink: bool,
+        to: Option<&Destination>,
+    ) {
+        let Some(samples) = targets.multisample() else { return };
+        if self.reads(targets) && (depth || ink) {
+            self.read_samples(targets, view, ink, &targets.resolved);
+            return;
+        }
+        if targets.carries()
+            && let Some(carry) = &self.carry
+        {
+            self.gl.pass("carry", || carry.run());
+        }
+        self.gl.pass("resolve", || {
+            let whole = Destination::whole(&targets.resolved);
+            samples.average(0, to.unwrap_or(&whole));
+            match targets.pair() {
+                Some(pair) if targets.carries() => samples.average(1, &Destination::whole(pair)),
+                _ if depth || ink => samples.copy_depth(&targets.resolved),
+                _ => {}
+            }
+            samples.discard(true, true);
+        });
+    }
+
+    /// Averages the samples in memory and takes their nearest depth, with outlines or without.
+    fn read_samples(&self, targets: &Targets, view: &View, ink: bool, to: &RenderTarget) {
+        let Some(samples) = targets.multisample() else { return };
+        let Some((color, depth)) = samples.color().zip(samples.depth()) else { return };
+        let variant = Resolve { samples: samples.samples(), ink, depth: true, layer: false };
+        let Some((_, program)) = self.resolve.iter().find(|(made, _)| *made == variant) else { return };
+        self.gl.pass("resolve", || {
+            self.gl.overwrite(&Destination::whole(to), 1, true);
+            self.gl.set_raster_state(&RasterState::SCREEN_DEPTH);
+            program.bind().texture_multisample("color_map", 0, color).texture_multisample(
+                "depth_map",
+                1,
+                depth,
+            );
+            self.draw_resolve(program, targets.layout(), view, None);
+        });
+    }
+
+    /// Draws outlines over the resolved picture, or over one of its layers, into another one.
+    fn draw_ink(&self, targets: &Targets, view: &View, eye: Eye) {
+        let layer = targets.layout() == Layout::Layered;
+        let variant = Resolve { samples: 1, ink: true, depth: false, layer };
+        let (Some((_, program)), Some(inked)) =
+            (self.resolve.iter().find(|(made, _)| *made == variant), &targets.inked)
+        else {
+            return;
+        };
+        self.gl.pass("outlines", || {
+            self.gl.set_raster_state(&RasterState::SCREEN);
+            inked.overwrite();
+            program.bind().texture_of("color_map", 0, targets.resolved.color(0)).texture_of(
+                "depth_map",
+                1,
+                targets.resolved.depth(),
+            );
+            self.draw_resolve(program, targets.layout(), view, layer.then_some(eye));
+        });
+    }
+
+    /// Draws outlines of a view whose picture was resolved without them, beside it, from what is still in its samples or
+    /// in that picture.
+    pub(crate) fn ink_beside(&self, targets: &mut Targets, view: &View) -> Result<(), GlError> {
+        if !self.ink {
+            return Ok(());
+        }
+        targets.ink_picture()?;
+        match &targets.inked {
+            Some(inked) if self.reads(targets) => self.read_samples(targets, view, true, inked),
+            _ => self.draw_ink(targets, view, Eye::Left),
+        }
+        Ok(())
+    }
+
+    /// Draws `render/resolve.frag` for each eye of an image, or for one layer.
+    fn draw_resolve(&self, program: &Program, layout: Layout, view: &View, layer: Option<Eye>) {
+        let vector = |v: [u32; 2]| IVec2::from(v.map(|n| n as i32));
+        program
+            .set("view_size", vector(view.size))
+            .set("line_width", line_width(view))
+            .set("nearer", nearer(view.depth.convention));
+        set_view(program, view);
+        let eyes = match (layer, layout) {
+            (Some(eye), _) => [Some(eye), None],
+            (None, Layout::DoubleWide(_)) => Eye::BOTH.map(Some),
+            (None, _) => [Some(Eye::Left), None],
+        };
+        for eye in eyes.into_iter().flatten() {
+            let origin = layout.origin(view.size, eye);
+            self.gl.set_viewport(origin, view.size);
+            program.set("view_origin", vector(origin)).set("view_layer", eye.index() as i32);
+            self.gl.draw_screen();
+        }
+    }
+
+    /// Computes the bloom of an eye's image in the targets.
+    pub(crate) fn shine(&self, targets: &Targets, view: &View, eye: Eye) {
+        if let Some((pass, bloom)) = self.bloom.as_ref().zip(targets.bloom.as_ref()) {
+            let shining = Shining {
+                picture: targets.color().color(0),
+                layer: targets.color_layer(eye),
+                origin: targets.layout().origin(view.size, eye),
+                size: view.size,
+                columns: targets.request.columns.map_or([0, view.size[0]], |columns| columns.always),
+            };
+            pass.run(bloom, &shining, self.settings.exposure);
+        }
+    }
+
+    /// Writes a part of an eye's image, from pixel `crop` of the eye on, with bloom. With `depth`, also writes the depth
+    /// of the image, to draw more over it.
+    pub(crate) fn develop(
+        &self,
+        targets: &Targets,
+        view: &View,
+        eye: Eye,
+        crop: [u32; 2],
+        to: &Destination,
+        depth: bool,
+    ) {
+        let kind = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
+        self.develop_as(targets, view, eye, crop, to, depth, kind);
+    }
+
+    /// Writes a part of an image and its depth, without bloom, into other targets.
+    fn load(&self, from: &Targets, view: &View, crop: [u32; 2], targets: &Targets, to: &Destination) {
+        let carries = if targets.carries() { targets.sample_count() } else { 0 };
+        let kind = Develop { carries, ..Develop::default() };
+        self.develop_as(from, view, Eye::Left, crop, to, true, kind);
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "a pass names what it reads and writes")]
+    fn develop_as(
+        &self,
+        targets: &Targets,
+        view: &View,
+        eye: Eye,
+        crop: [u32; 2],
+        to: &Destination,
+        depth: bool,
+        kind: Develop,
+    ) {
+        // Outlines of an array's eye are in a picture of its own.
+        let layer = targets.color_layer(eye);
+        let is_alone = targets.layer(eye).is_some() && layer.is_none();
+        let corner = if is_alone { [0, 0] } else { targets.layout().origin(view.size, eye) };
+        let bloom = kind.bloom;
+        if !depth && !bloom && layer.is_none() {
+            let from = [0, 1].map(|i| corner[i] + crop[i]);
+            self.gl.pass("copy", || targets.color().copy_color(from, to));
+            return;
+        }
+        let depth = depth.then(|| targets.depth(view.size, eye, crop));
+        let variant = Develop { depth: depth.map(|depth| depth.is_pair), layer: layer.is_some(), ..kind };
+        let Some((_, program)) = self.develop.iter().find(|(made, _)| *made == variant) else { return };
+        self.gl.pass("develop", || {
+            self.gl.overwrite(to, 1, depth.is_some());
+            let state = if depth.is_some() { RasterState::SCREEN_DEPTH } else { RasterState::SCREEN };
+            self.gl.set_raster_state(&state);
+            let offset = [0, 1].map(|i| (corner[i] + crop[i]) as i32 - to.origin[i] as i32);
+            program
+                .bind()
+                .texture_of("color_map", 0, targets.color().color(0))
+                .set("color_layer", layer.unwrap_or(0) as i32)
+                .set("offset", IVec2::from(offset))
+                .set("view_origin", IVec2::from(corner.map(|n| n as i32)))
+                .set("view_size", IVec2::from(view.size.map(|n| n as i32)));
+            if let Some(depth) = depth {
+                program.texture_of("depth_map", 1, depth.texture);
+            }
+            if let Some(targets) = targets.bloom.as_ref().filter(|_| bloom) {
+                program
+                    .texture("bloom", 2, targets.result().raw())
+                    .set("bloom_strength", self.bloom_strength());
+            }
+            self.gl.draw_screen();
+        });
+    }
+
+    /// Renders the surfaces in a slice (near and far plane in metres) and the sky behind it, without bloom and
+    /// outlines. [`Renderer::draw_near`] completes the view.
+    pub(crate) fn draw_far(
+        &self,
+        targets: &mut Targets,
+        scene: &GpuScene,
+        view: &View,
+        slice: [f32; 2],
+    ) -> Result<(), GlError> {
+        targets.fit(view.size, self.needs(true), None)?;
+        self.draw_on_sky(targets, scene, &[*view], &Part::Slice(slice));
+        self.resolve(targets, view, true, false, None)
+    }
+
+    /// Renders the surfaces in a slice over a part of another view, given by its lower left corner, and transparent
+    /// surfaces over both. With `depth`, the targets then hold the depth of opaque surfaces.
+    pub(crate) fn draw_near(
+        &self,
+        targets: &mut Targets,
+        scene: &GpuScene,
+        view: &View,
+        slice: Option<[f32; 2]>,
+        (far, far_view, crop): (&Targets, &View, [u32; 2]),
+        depth: bool,
+    ) -> Result<(), GlError> {
+        targets.fit(view.size, self.needs(depth), None)?;
+        targets.convention = view.depth.convention;
+        let views = std::slice::from_ref(view);
+        self.gl.pass("surfaces", || {
+            let to = targets.destination(view.size);
+            self.load(far, far_view, crop, targets, &to);
+            if let Some(slice) = slice {
+                let light = self.illuminate(Layout::Single, scene, views);
+                self.draw_opaque(Renderer::variant(targets), &light, views, &Part::Slice(slice), |_| {});
+            }
+        });
+        self.draw_transparent(targets, scene, views);
+        self.resolve(targets, view, depth, self.ink, None)?;
+        self.shine(targets, view, Eye::Left);
+        Ok(())
+    }
+
+    /// Renders the dominant eye so that [`Renderer::draw_reprojected`] can take its colours: the resolved picture is
+    /// without outlines, which are drawn beside it.
+    pub(crate) fn draw_dominant(
+        &self,
+        targets: &mut Targets,
+        scene: &GpuScene,
+        view: &View,
+    ) -> Result<(), GlError> {
+        targets.fit(view.size, self.needs(true), None)?;
+        let culler = Culler::of_view(view);
+        self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
+        self.resolve(targets, view, true, false, None)
+    }
+
+    /// Renders the second eye, and takes the colours of surfaces that the dominant eye sees from its image.
+    pub(crate) fn draw_reprojected(
+        &self,
+        targets: &mut Targets,
+        scene: &GpuScene,
+        view: &View,
+        from: &Reprojection,
+        depth: bool,
+    ) -> Result<(), GlError> {
+        targets.fit(view.size, self.needs(depth), None)?;
+        let culler = Culler::of_view(view);
+        self.draw_on_sky_as(targets, scene, &[*view], &Part::Selected(&culler), Some(from));
+        self.draw_transparent(targets, scene, std::slice::from_ref(view));
+        self.resolve(targets, view, depth, self.ink, None)?;
+        self.shine(targets, view, Eye::Left);
+        Ok(())
+    }
+}
+
+/// Sets the uniforms and textures of `include/reprojection.glsl`.
+fn set_reprojection(program: &Program, from: &Reprojection, view: &View) {
+    let (c, m) = view.depth.inverse_distance_law();
+    program
+        .texture_of("dominant_color", FREE_UNIT + 1, from.color)
+        .texture_of("depth_map", FREE_UNIT + 2, from.depth)
+        .set("law", Vec2::new(from.law.offset as f32, from.law.scale as f32))
+        .set("row_offset", from.row_offset)
+        .set("inverse_distance", Vec2::new(c as f32, m as f32))
+        .set("half_pixel", from.half_pixel);
+}

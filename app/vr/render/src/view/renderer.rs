@@ -1,0 +1,419 @@
+//! The renderer of a scene: lights surfaces as it draws them, with several samples in each pixel that never leave the
+//! tile of a tile-based GPU.
+//!
+//! opaque surfaces -> sky -> (transparent surfaces) -> average of the samples, and their nearest depth if something
+//! reads it -> bloom. Everything before the bloom is one pass on a tile-based GPU. Bloom is added where an eye is
+//! written last: by the synthesis, or by [`Renderer::develop`].
+
+use std::rc::Rc;
+
+use super::bloom::{self, BloomPass, hdr_defines};
+use super::carry::CarryPass;
+use super::cluster::Selection;
+use super::depth::{DepthImage, NearestDepth};
+use super::geometry::{GeometryPass, Part, Variant};
+use super::layout::Layout;
+use super::lights::Lights;
+use super::request::DrawRequest;
+use super::scene::GpuScene;
+use super::settings::{MAX_POINT_LIGHTS, RenderSettings};
+use super::shadow::ShadowMap;
+use super::targets::{Needs, Targets};
+use super::transparent::TransparentPass;
+use crate::stereo::EyeTarget;
+use yoro::eyes::{Eye, View};
+use yoro_assets::ShadingStyle;
+use yoro_gl::{Context, Destination, GlError, Program, RenderTarget, ShaderSource};
+
+/// The renderer of one scene: programs for the scene's style and materials, and its shadow map.
+/// After [`Renderer::new`] it is ready for single views. A stereo method compiles what else it needs once, in its first
+/// frame of the scene or in [`crate::stereo::StereoMethod::prepare`]. Nothing is compiled or allocated after that.
+pub struct Renderer {
+    pub(crate) gl: Rc<Context>,
+    pub(super) settings: RenderSettings,
+    scene_id: u64,
+    pub(super) shadow: Option<ShadowMap>,
+    /// True if the style has outlines, which compare samples with their neighbours.
+    pub(super) ink: bool,
+    pub(super) way: NearestDepth,
+    /// The defines of `include/shade.glsl`.
+    shading: Vec<(&'static str, String)>,
+    pub(super) geometry: Vec<GeometryPass>,
+    pub(super) transparent: TransparentPass,
+    pub(super) skies: Vec<(Variant, Program)>,
+    pub(super) carry: Option<CarryPass>,
+    pub(super) resolve: Vec<(Resolve, Program)>,
+    pub(super) bloom: Option<BloomPass>,
+    pub(super) develop: Vec<(Develop, Program)>,
+}
+
+/// A variant of `render/resolve.frag`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Resolve {
+    pub samples: u32,
+    pub ink: bool,
+    pub depth: bool,
+    pub layer: bool,
+}
+
+/// A variant of `render/develop.frag`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Develop {
+    pub bloom: bool,
+    /// Writes depth; `Some(true)` from pairs.
+    pub depth: Option<bool>,
+    pub layer: bool,
+    /// The number of samples of a target that carries depth; 0 if it does not.
+    pub carries: u32,
+}
+
+/// The images of one view. They are made when the first view is rendered, and reused for the next.
+#[derive(Default)]
+pub struct ViewTargets(Option<(RenderSettings, NearestDepth, Targets)>);
+
+/// A view that was rendered.
+#[derive(Clone, Copy)]
+pub struct RenderedView<'a> {
+    /// Display-referred sRGB colour with luma in alpha, filtered linearly. With several samples in each pixel, alpha is
+    /// undefined where something is cut out by a texture.
+    pub color: &'a RenderTarget,
+    /// Window depth, the nearest of each pixel's samples; without multisample textures (OpenGL ES 3.0) that of one.
+    pub depth: DepthImage<'a>,
+}
+
+/// Returns the width of ink outlines in pixels.
+pub(super) fn line_width(view: &View) -> i32 {
+    (view.size[1] as f32 / 900.0).round().max(1.0) as i32
+}
+
+/// Returns the defines of `include/shade.glsl` for a scene.
+fn shading_defines(scene: &GpuScene, settings: &RenderSettings) -> Vec<(&'static str, String)> {
+    let mut defines = scene.style_defines();
+    defines.extend(scene.has_sun().then(|| ("SUN", String::new())));
+    let has_shadows = scene.has_sun() && settings.shadow_map_size > 0;
+    defines.extend(has_shadows.then(|| ("SHADOWS", String::new())));
+    defines.push(("MAX_POINT_LIGHTS", MAX_POINT_LIGHTS.to_string()));
+    defines.extend(super::light_tiles::LightTiles::defines());
+    defines
+}
+
+/// What is public: single views.
+impl Renderer {
+    /// Compiles the programs for a scene and draws its shadow map.
+    ///
+    /// # Errors
+    /// [`GlError`] when the driver refuses a program or a target, or lacks the settings' number of samples.
+    pub fn new(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> Result<Renderer, GlError> {
+        settings.supported(gl.capabilities())?;
+        let ink = scene.style == ShadingStyle::Anime;
+        let mut way = NearestDepth::best(gl, settings.msaa, ink);
+        let mut carry = None;
+        if way == NearestDepth::Carried {
+            match CarryPass::new(gl, settings.msaa)? {
+                Some(pass) => carry = Some(pass),
+                None => way = NearestDepth::First,
+            }
+        }
+        let has_shadow = scene.has_sun() && settings.shadow_map_size > 0;
+        let mut renderer = Renderer {
+            gl: gl.clone(),
+            settings: settings.clone(),
+            scene_id: scene.id,
+            shadow: has_shadow.then(|| ShadowMap::new(gl, scene, settings.shadow_map_size)).transpose()?,
+            ink,
+            way,
+            shading: shading_defines(scene, settings),
+            geometry: Vec::new(),
+            transparent: TransparentPass::new(gl, scene),
+            skies: Vec::new(),
+            carry,
+            resolve: Vec::new(),
+            bloom: settings.bloom.then(|| BloomPass::new(gl)).transpose()?,
+            develop: Vec::new(),
+        };
+        renderer.prepare(scene, Layout::Single)?;
+        Ok(renderer)
+    }
+
+    /// Moves everything in a scene to its place at a time in seconds, and redraws its shadow map. Costs nothing if the
+    /// scene does not move or is there already.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for another scene than the renderer was made for.
+    pub fn set_time(&mut self, scene: &mut GpuScene, seconds: f64) -> Result<(), GlError> {
+        self.check_scene(scene)?;
+        if scene.set_time(seconds)
+            && let Some(shadow) = &mut self.shadow
+        {
+            shadow.renew(&self.gl, scene);
+        }
+        Ok(())
+    }
+
+    /// Renders the opaque part of a scene to colour and depth. Where nothing is drawn, depth is the far value and
+    /// colour is the sky.
+    ///
+    /// # Errors
+    /// [`GlError::Unsupported`] for another scene than the renderer was made for; as [`RenderTarget::new`].
+    pub fn render<'a>(
+        &self,
+        targets: &'a mut ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+        selection: Selection,
+    ) -> Result<RenderedView<'a>, GlError> {
+        let targets = self.fitting(targets, scene)?;
+        self.draw_source(targets, scene, view, &DrawRequest { selection, columns: None })?;
+        self.complete(targets, view)
+    }
+
+    /// Renders all of a scene, including transparent surfaces. Depth is that of opaque surfaces.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_all<'a>(
+        &self,
+        targets: &'a mut ViewTargets,
+        scene: &GpuScene,
+        view: &View,
+    ) -> Result<RenderedView<'a>, GlError> {
+        let targets = self.fitting(targets, scene)?;
+        self.draw_all(targets, scene, std::slice::from_ref(view), true, None)?;
+        self.complete(targets, view)
+    }
+
+    /// Returns the targets, or new ones if those were made for other settings.
+    fn fitting<'a>(&self, made: &'a mut ViewTargets, scene: &GpuScene) -> Result<&'a mut Targets, GlError> {
+        self.check_scene(scene)?;
+        let fits = |(settings, way, _): &(RenderSettings, NearestDepth, Targets)| {
+            *settings == self.settings && *way == self.way
+        };
+        let fitting = match made.0.take().filter(fits) {
+            Some(fitting) => fitting,
+            None => (self.settings.clone(), self.way, self.targets(Layout::Single)?),
+        };
+        Ok(&mut made.0.insert(fitting).2)
+    }
+
+    /// Develops the whole view in the targets.
+    fn complete<'a>(&self, targets: &'a mut Targets, view: &View) -> Result<RenderedView<'a>, GlError> {
+        if self.develops() {
+            let to = Destination::whole(targets.picture(view.size)?);
+            self.develop(targets, view, Eye::Left, [0, 0], &to, false);
+        }
+        let color = targets.developed.as_ref().filter(|_| self.develops()).unwrap_or(targets.color());
+        Ok(RenderedView { color, depth: targets.depth(view.size, Eye::Left, [0, 0]) })
+    }
+}
+
+/// What methods use to prepare themselves.
+impl Renderer {
+    /// Returns an error unless this is the scene that the renderer was made for.
+    pub(crate) fn check_scene(&self, scene: &GpuScene) -> Result<(), GlError> {
+        if scene.id == self.scene_id {
+            return Ok(());
+        }
+        Err(GlError::Unsupported(format!(
+            "this renderer was made for another scene than {}; make one for each scene",
+            scene.name
+        )))
+    }
+
+    /// Makes targets, to be fitted to each view that is rendered.
+    pub(crate) fn targets(&self, layout: Layout) -> Result<Targets, GlError> {
+        Targets::new(&self.gl, layout, &self.settings, self.way)
+    }
+
+    /// Returns how the nearest depth of views is had.
+    pub(crate) fn nearest_depth(&self) -> NearestDepth {
+        self.way
+    }
+
+    /// Returns the number of samples in each pixel.
+    pub(crate) fn samples(&self) -> u32 {
+        self.settings.msaa
+    }
+
+    /// True if bloom is added to the average of the samples.
+    pub(crate) fn develops(&self) -> bool {
+        self.bloom.is_some()
+    }
+
+    /// Returns the factor on the bloom in the targets.
+    pub(crate) fn bloom_strength(&self) -> f32 {
+        bloom::STRENGTH * self.settings.exposure
+    }
+
+    /// Compiles the programs for views of a layout, unless they are compiled already.
+    pub(crate) fn prepare(&mut self, scene: &GpuScene, layout: Layout) -> Result<(), GlError> {
+        let layer = layout == Layout::Layered;
+        let samples = if layer { 1 } else { self.settings.msaa };
+        let plain = Variant { layout, ..Variant::plain(samples) };
+        self.prepare_variant(scene, plain)?;
+        if self.way == NearestDepth::Carried && !layer {
+            self.prepare_variant(scene, Variant { carried: true, ..plain })?;
+        }
+        let samples = if self.way == NearestDepth::Read && !layer { self.settings.msaa } else { 1 };
+        if self.ink || self.way == NearestDepth::Read {
+            self.prepare_resolve(Resolve { samples, ink: self.ink, depth: samples > 1, layer })?;
+        }
+        if self.bloom.is_some() || layer {
+            self.prepare_develop(Develop { bloom: self.bloom.is_some(), layer, ..Develop::default() })?;
+        }
+        Ok(())
+    }
+
+    /// Compiles the programs that draw over a developed eye, with one sample in each pixel, too, and those that develop
+    /// it with its depth.
+    pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
+        self.prepare_variant(scene, Variant::plain(1))?;
+        let depth = Some(self.way == NearestDepth::Carried);
+        self.prepare_develop(Develop { bloom: self.bloom.is_some(), depth, ..Develop::default() })
+    }
+
+    /// Compiles the program that loads an image and its depth without bloom, and the resolve of a view without
+    /// outlines.
+    pub(crate) fn prepare_load(&mut self) -> Result<(), GlError> {
+        self.prepare_raw()?;
+        let carried = self.way == NearestDepth::Carried;
+        for carries in [false, true].into_iter().take(1 + usize::from(carried)) {
+            let carries = if carries { self.settings.msaa } else { 0 };
+            self.prepare_develop(Develop { depth: Some(carried), carries, ..Develop::default() })?;
+        }
+        Ok(())
+    }
+
+    /// Compiles the resolve of a view without outlines.
+    pub(crate) fn prepare_raw(&mut self) -> Result<(), GlError> {
+        if self.way == NearestDepth::Read {
+            let samples = self.settings.msaa;
+            self.prepare_resolve(Resolve { samples, ink: false, depth: true, layer: false })?;
+        }
+        Ok(())
+    }
+
+    /// Compiles the programs that take the dominant eye's colours.
+    pub(crate) fn prepare_reprojected(&mut self, scene: &GpuScene) -> Result<(), GlError> {
+        let plain = Variant::plain(self.settings.msaa);
+        if self.way == NearestDepth::Carried {
+            self.prepare_variant(scene, Variant { reprojected: true, carried: true, ..plain })?;
+        }
+        self.prepare_variant(scene, Variant { reprojected: true, ..plain })
+    }
+
+    fn prepare_variant(&mut self, scene: &GpuScene, variant: Variant) -> Result<(), GlError> {
+        if self.geometry.iter().any(|pass| pass.variant() == variant) {
+            return Ok(());
+        }
+        let gl = &self.gl;
+        let mut shading = self.shading.clone();
+        shading.extend((variant.samples > 1).then(|| ("MULTISAMPLE", String::new())));
+        shading.extend(self.ink.then(|| ("INK", String::new())));
+        if variant.reprojected && self.way == NearestDepth::Carried {
+            shading.push(("DEPTH_PAIRS", String::new()));
+        }
+        self.geometry.push(GeometryPass::new(gl, scene, variant, &shading)?);
+        if !variant.reprojected {
+            self.transparent.prepare(scene, variant, &self.shading)?;
+            let mut defines = self.shading.clone();
+            defines.extend(variant.carried.then(|| ("CARRIED", variant.samples.to_string())));
+            defines.extend((variant.layout == Layout::Layered).then(|| ("MULTIVIEW", String::new())));
+            self.skies.push((variant, Program::new(gl, ShaderSource::Screen("render/sky.frag"), &defines)?));
+        }
+        Ok(())
+    }
+
+    fn prepare_resolve(&mut self, variant: Resolve) -> Result<(), GlError> {
+        if self.resolve.iter().all(|(made, _)| *made != variant) {
+            let mut defines = vec![("SAMPLES", variant.samples.to_string())];
+            let flags = [("INK", variant.ink), ("WRITE_DEPTH", variant.depth), ("LAYER", variant.layer)];
+            defines.extend(flags.into_iter().filter(|(_, on)| *on).map(|(name, _)| (name, String::new())));
+            let program = Program::new(&self.gl, ShaderSource::Screen("render/resolve.frag"), &defines)?;
+            self.resolve.push((variant, program));
+        }
+        Ok(())
+    }
+
+    fn prepare_develop(&mut self, variant: Develop) -> Result<(), GlError> {
+        if self.develop.iter().all(|(made, _)| *made != variant) {
+            let flags = [
+                ("BLOOM", variant.bloom),
+                ("WRITE_DEPTH", variant.depth.is_some()),
+                ("DEPTH_PAIRS", variant.depth == Some(true)),
+                ("LAYER", variant.layer),
+            ];
+            let on = flags.into_iter().filter(|(_, on)| *on);
+            let mut defines: Vec<_> = on.map(|(name, _)| (name, String::new())).collect();
+            defines.extend((variant.carries > 0).then(|| ("CARRIED", variant.carries.to_string())));
+            defines.extend(hdr_defines(&self.gl));
+            let program = Program::new(&self.gl, ShaderSource::Screen("render/develop.frag"), &defines)?;
+            self.develop.push((variant, program));
+        }
+        Ok(())
+    }
+
+    /// Returns the point lights of one view or of both eyes, with positions relative to the first view.
+    pub(super) fn lights(&self, scene: &GpuScene, views: &[View]) -> Lights {
+        Lights::of(scene, views, self.settings.point_lights)
+    }
+}
+
+/// What methods use to draw.
+impl Renderer {
+    /// Renders the opaque part of a view for synthesis: its average colour without bloom, its nearest depth, and its
+    /// bloom.
+    pub(crate) fn draw_source(
+        &self,
+        targets: &mut Targets,
+        scene: &GpuScene,
+        view: &View,
+        request: &DrawRequest,
+    ) -> Result<(), GlError> {
+        targets.fit(view.size, self.needs(true), None)?;
+        targets.request = *request;
+        let drawn = request.bounds(view);
+        let culler = request.culler(view);
+        self.gl.within_columns(drawn, || {
+            self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
+        });
+        self.resolve(targets, view, true, self.ink, None)?;
+        if let Some(drawn) = drawn {
+            targets.repeat_columns(drawn)?;
+        }
+        self.shine(targets, view, Eye::Left);
+        Ok(())
+    }
+
+    /// Renders everything in one view, or in both eyes at once, and the bloom of a single view. With `depth`, the targets
+    /// then hold the depth of opaque surfaces. Returns true if the picture is complete in `to` already.
+    pub(crate) fn draw_all(
+        &self,
+        targets: &mut Targets,
+        scene: &GpuScene,
+        views: &[View],
+        depth: bool,
+        to: Option<&EyeTarget>,
+    ) -> Result<bool, GlError> {
+        let view = &views[0];
+        let to = to.filter(|_| !self.develops() && !self.ink);
+        let direct = targets.fit(view.size, self.needs(depth), to)?;
+        targets.request = DrawRequest::default();
+        let culler = super::cluster::Culler::of_view(view);
+        let part = match views.len() {
+            1 => Part::Selected(&culler),
+            _ => Part::Slice([view.depth.near, view.depth.far]),
+        };
+        self.draw_on_sky(targets, scene, views, &part);
+        self.draw_transparent(targets, scene, views);
+        self.resolve(targets, view, depth, self.ink, to.filter(|_| direct).map(|to| &to.color))?;
+        if views.len() == 1 && !direct {
+            self.shine(targets, view, Eye::Left);
+        }
+        Ok(direct)
+    }
+
+    /// Returns what a view needs whose depth is read or not.
+    pub(super) fn needs(&self, depth: bool) -> Needs {
+        Needs { depth, samples: self.way == NearestDepth::Read && (depth || self.ink) }
+    }
+}

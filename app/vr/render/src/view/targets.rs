@@ -1,0 +1,313 @@
+//! The images that a renderer draws into.
+
+use std::rc::Rc;
+
+use super::bloom::BloomTargets;
+use super::depth::{DepthImage, NearestDepth};
+use super::layout::Layout;
+use super::request::DrawRequest;
+use super::settings::{RenderSettings, SAMPLE_DEPTH};
+use crate::stereo::EyeTarget;
+use yoro::eyes::{DepthConvention, Eye};
+use yoro_gl::{Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, TileTarget};
+
+/// The format of pictures.
+const PICTURE: (Format, Filter) = (Format::Rgba8, Filter::Linear);
+
+/// What is needed of a view besides its colour.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Needs {
+    /// The nearest depth of each pixel.
+    pub depth: bool,
+    /// True if samples are read after drawing, for outlines.
+    pub samples: bool,
+}
+
+/// The framebuffer of the current view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Onto {
+    /// The resolved picture and its depth buffer: one sample in each pixel.
+    Resolved,
+    /// Samples in memory, unless they are discarded before a tile is written.
+    Samples,
+    /// Samples in tiles.
+    Tile,
+}
+
+/// The images of one view, or of both eyes at once.
+///
+/// A pixel costs 4 bytes of resolved colour and as many of depth, 8 to 12 for each sample that is not kept in tiles, and
+/// 4 of a complete picture where somebody reads it as a texture.
+pub struct Targets {
+    gl: Rc<Context>,
+    layout: Layout,
+    samples: u32,
+    way: NearestDepth,
+    /// Samples outside tiles, and whether they carry depth.
+    multisample: Option<(MultisampleTarget, bool)>,
+    /// Samples in tiles; `None` if the driver cannot keep them there.
+    tile: Option<TileTarget>,
+    onto: Onto,
+    /// True if the current view carries depth in a second colour.
+    carries: bool,
+    /// Average colour and, depending on the way, nearest depth.
+    pub resolved: RenderTarget,
+    /// The depth of two samples, made when first needed.
+    pair: Option<RenderTarget>,
+    /// The picture with outlines, where they are drawn beside the resolved one.
+    pub inked: Option<RenderTarget>,
+    pub bloom: Option<BloomTargets>,
+    /// The complete picture of a view, made when first needed.
+    pub developed: Option<RenderTarget>,
+    /// The request that the view in the targets was rendered for.
+    pub request: DrawRequest,
+    /// The depth convention of the view in the targets.
+    pub convention: DepthConvention,
+    /// True if the current depth belongs to what was drawn last.
+    pub has_depth: bool,
+    /// One column of colour, copied into the columns beside those that are drawn.
+    column: Option<RenderTarget>,
+}
+
+impl Targets {
+    /// Makes targets, to be fitted to a view before they are drawn into.
+    pub fn new(
+        gl: &Rc<Context>,
+        layout: Layout,
+        settings: &RenderSettings,
+        way: NearestDepth,
+    ) -> Result<Targets, GlError> {
+        let samples = if layout == Layout::Layered { 1 } else { settings.msaa };
+        let size = layout.texture_size([1, 1]);
+        let resolved = match layout {
+            Layout::Layered => RenderTarget::multiview(gl, size, &[PICTURE], Some(SAMPLE_DEPTH)),
+            _ => RenderTarget::new(gl, size, &[PICTURE], Some(SAMPLE_DEPTH)),
+        };
+        let tile = (samples > 1 && gl.capabilities().tile_samples).then(|| TileTarget::new(gl, samples));
+        Ok(Targets {
+            gl: gl.clone(),
+            layout,
+            samples,
+            way: if samples == 1 { NearestDepth::Single } else { way },
+            multisample: None,
+            tile: tile.transpose()?,
+            onto: Onto::Resolved,
+            carries: false,
+            resolved: resolved?,
+            pair: None,
+            inked: None,
+            bloom: settings.bloom.then(|| BloomTargets::new(gl)).transpose()?,
+            developed: None,
+            request: DrawRequest::default(),
+            convention: DepthConvention::Reversed,
+            has_depth: false,
+            column: None,
+        })
+    }
+
+    /// Fits the targets to views of `size` pixels, and chooses the framebuffer; does nothing else if they already fit.
+    /// Returns true if the average of the samples can be written to `to` without a copy.
+    pub fn fit(&mut self, size: [u32; 2], needs: Needs, to: Option<&EyeTarget>) -> Result<bool, GlError> {
+        let whole = self.layout.texture_size(size);
+        self.resolved.resize(whole)?;
+        self.bloom.as_mut().map_or(Ok(()), |bloom| bloom.resize(size))?;
+        self.has_depth = false;
+        (self.onto, self.carries) = (Onto::Resolved, false);
+        if self.samples == 1 {
+            return Ok(false);
+        }
+        let carries = needs.depth && self.way == NearestDepth::Carried;
+        self.carries = carries;
+        if carries {
+            if self.pair.is_none() {
+                let formats = [(Format::Rg16F, Filter::Nearest)];
+                self.pair = Some(RenderTarget::new(&self.gl, whole, &formats, None)?);
+            }
+            self.pair.as_mut().map_or(Ok(()), |pair| pair.resize(whole))?;
+        }
+        if !needs.samples && (carries || !needs.depth) && self.fit_tile(to.filter(|_| !carries))? {
+            self.onto = Onto::Tile;
+            return Ok(to.is_some_and(|to| to.texture.is_some()) && !carries);
+        }
+        self.onto = Onto::Samples;
+        let readable = self.way == NearestDepth::Read;
+        match &mut self.multisample {
+            Some((samples, carried)) if *carried == carries => samples.resize(whole)?,
+            slot => {
+                // The former samples are deleted first.
+                *slot = None;
+                let colors = &[Format::Rgba8, Format::Rg16F][..1 + usize::from(carries)];
+                let samples =
+                    MultisampleTarget::new(&self.gl, whole, self.samples, colors, SAMPLE_DEPTH, readable)?;
+                *slot = Some((samples, carries));
+            }
+        }
+        // OpenGL ES averages between equal rectangles only.
+        let is_direct = |to: &EyeTarget| self.layout == Layout::Single && to.color.origin == [0, 0];
+        Ok(!needs.samples && !needs.depth && to.is_some_and(is_direct))
+    }
+
+    /// Attaches what is drawn to the tiles; false if the driver has no such tiles. Colour goes to `to` if it is a
+    /// texture.
+    fn fit_tile(&mut self, to: Option<&EyeTarget>) -> Result<bool, GlError> {
+        let Some(tile) = &mut self.tile else { return Ok(false) };
+        let own = (self.resolved.color(0).raw(), self.resolved.color(0).image());
+        let color = to.and_then(|to| to.texture).unwrap_or(own);
+        let pair = self.pair.as_ref().filter(|_| self.carries);
+        let pair = pair.map(|pair| (pair.color(0).raw(), pair.color(0).image()));
+        let colors = [color, pair.unwrap_or(color)];
+        let colors = &colors[..1 + usize::from(pair.is_some())];
+        // SAFETY: textures of this context: our own, and the caller's by the contract of `EyeTarget`.
+        let fits = unsafe { tile.fit(colors, self.resolved.depth()) };
+        if fits.is_err() {
+            // The driver refuses these formats: it need not be asked again.
+            self.tile = None;
+        }
+        Ok(fits.is_ok())
+    }
+
+    /// Makes room for the complete picture of a view, and returns it.
+    pub fn picture(&mut self, size: [u32; 2]) -> Result<&RenderTarget, GlError> {
+        picture(&self.gl, &mut self.developed, size)
+    }
+
+    /// Makes room for a picture with outlines beside the resolved one, and returns it.
+    pub fn ink_picture(&mut self) -> Result<&RenderTarget, GlError> {
+        let size = self.resolved.size();
+        picture(&self.gl, &mut self.inked, size)
+    }
+
+    /// Fills the resolved colour to the left of columns `[first, end]` with the first of them, and to the right with
+    /// the last.
+    pub fn repeat_columns(&mut self, [first, end]: [u32; 2]) -> Result<(), GlError> {
+        let [width, height] = self.resolved.size();
+        if self.column.is_none() {
+            let formats = [(Format::Rgba8, Filter::Nearest)];
+            self.column = Some(RenderTarget::new(&self.gl, [1, height], &formats, None)?);
+        }
+        let Some(column) = &mut self.column else { return Ok(()) };
+        column.resize([1, height])?;
+        let column = Destination::whole(column);
+        let part = |x: u32, width: u32| Destination {
+            origin: [x, 0],
+            size: [width, height],
+            ..Destination::whole(&self.resolved)
+        };
+        self.gl.pass("repeat", || {
+            for (from, to, columns) in [(first, 0, first), (end - 1, end, width - end)] {
+                if columns > 0 {
+                    // OpenGL ES cannot copy within one image.
+                    self.gl.copy(&part(from, 1), &column);
+                    self.gl.copy(&column, &part(to, columns));
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// Returns which views the targets hold.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// Returns the framebuffer of the current view.
+    pub fn onto(&self) -> Onto {
+        self.onto
+    }
+
+    /// True if the current view carries depth in a second colour.
+    pub fn carries(&self) -> bool {
+        self.carries
+    }
+
+    /// Returns the samples outside tiles.
+    pub fn multisample(&self) -> Option<&MultisampleTarget> {
+        self.multisample.as_ref().map(|(samples, _)| samples)
+    }
+
+    /// Returns the samples in tiles.
+    pub fn tile(&self) -> Option<&TileTarget> {
+        self.tile.as_ref()
+    }
+
+    /// Returns the target of the depth of two samples.
+    pub fn pair(&self) -> Option<&RenderTarget> {
+        self.pair.as_ref()
+    }
+
+    /// Returns the number of samples in each pixel of what is drawn.
+    pub fn sample_count(&self) -> u32 {
+        self.samples
+    }
+
+    /// Returns the lower left part, of this size, of the image that is drawn into.
+    pub fn destination(&self, size: [u32; 2]) -> Destination {
+        match (self.onto, &self.multisample, &self.tile) {
+            (Onto::Samples, Some((samples, _)), _) => samples.part(size),
+            (Onto::Tile, _, Some(tile)) => tile.part(size),
+            _ => Destination { framebuffer: Some(self.resolved.raw()), origin: [0, 0], size },
+        }
+    }
+
+    /// Binds the image that is drawn into, with a viewport of `size` pixels.
+    pub fn bind(&self, size: [u32; 2]) {
+        if self.layout == Layout::Layered {
+            // Notes that several views are drawn at once.
+            self.resolved.bind();
+        }
+        let to = self.destination(size);
+        self.gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
+    }
+
+    /// Returns the resolved picture: display-referred sRGB without bloom, filtered linearly. Alpha is luma; with several
+    /// samples it is undefined where a cut-out material is.
+    pub fn color(&self) -> &RenderTarget {
+        self.inked.as_ref().unwrap_or(&self.resolved)
+    }
+
+    /// Returns the nearest depth of each pixel of an eye, whose image starts at `offset` from the eye's own corner.
+    ///
+    /// # Panics
+    /// If it was not requested since the last surface was drawn.
+    pub fn depth(&self, size: [u32; 2], eye: Eye, offset: [u32; 2]) -> DepthImage<'_> {
+        assert!(self.has_depth, "this view was rendered without its depth");
+        let corner = self.layout.origin(size, eye);
+        let is_pair = self.carries;
+        DepthImage {
+            texture: match &self.pair {
+                Some(pair) if is_pair => pair.color(0),
+                _ => self.resolved.depth(),
+            },
+            origin: [0, 1].map(|i| corner[i] + offset[i]),
+            layer: self.layer(eye),
+            is_pair,
+            convention: self.convention,
+        }
+    }
+
+    /// Returns the layer of an eye's colour, if the image is an array.
+    pub fn color_layer(&self, eye: Eye) -> Option<u32> {
+        self.layer(eye).filter(|_| self.inked.is_none())
+    }
+
+    /// Returns the layer of an eye, if the images are arrays.
+    pub fn layer(&self, eye: Eye) -> Option<u32> {
+        (self.layout == Layout::Layered).then_some(eye.index() as u32)
+    }
+}
+
+/// Returns a picture of this size, made on the first call.
+fn picture<'a>(
+    gl: &Rc<Context>,
+    slot: &'a mut Option<RenderTarget>,
+    size: [u32; 2],
+) -> Result<&'a RenderTarget, GlError> {
+    let target = match slot.take() {
+        Some(mut target) => {
+            target.resize(size)?;
+            target
+        }
+        None => RenderTarget::new(gl, size, &[PICTURE], None)?,
+    };
+    Ok(slot.insert(target))
+}
