@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_void};
 use std::rc::Rc;
 
-use yoro_gl::{Context, GlError};
+use yoro_gl::{Capabilities, Context, GlError};
 
 use crate::{Binding, Graphics, egl, osmesa};
 
@@ -87,17 +87,26 @@ impl Headless {
     /// # Errors
     /// [`ContextError`], as one sentence that names the missing library and the remedy.
     pub fn open(backend: Backend) -> Result<Headless, ContextError> {
+        Headless::open_limited(backend, |_| {})
+    }
+
+    /// Like [`Headless::open`]; `limit` takes capabilities away, to see what a lesser driver would do. For tests and
+    /// estimates.
+    ///
+    /// # Errors
+    /// Those of [`Headless::open`].
+    pub fn open_limited(backend: Backend, limit: fn(&mut Capabilities)) -> Result<Headless, ContextError> {
         match backend {
             Backend::Egl => {
                 let (holder, raw) = egl::EglContext::open().map_err(ContextError::Egl)?;
-                Headless::new(Backend::Egl, Holder::Egl(Box::new(holder)), raw)
+                Headless::new(Backend::Egl, Holder::Egl(Box::new(holder)), raw, limit)
             }
             Backend::Osmesa => {
                 let (holder, raw) = osmesa::OsmesaContext::open(false).map_err(ContextError::Osmesa)?;
-                Headless::new(Backend::Osmesa, Holder::Osmesa(holder), raw)
+                Headless::new(Backend::Osmesa, Holder::Osmesa(holder), raw, limit)
             }
-            Backend::Auto => Headless::open(Backend::Egl).or_else(|egl| {
-                Headless::open(Backend::Osmesa).map_err(|osmesa| match (egl, osmesa) {
+            Backend::Auto => Headless::open_limited(Backend::Egl, limit).or_else(|egl| {
+                Headless::open_limited(Backend::Osmesa, limit).map_err(|osmesa| match (egl, osmesa) {
                     (ContextError::Egl(egl), ContextError::Osmesa(osmesa)) => {
                         ContextError::None { egl, osmesa }
                     }
@@ -115,17 +124,22 @@ impl Headless {
     #[doc(hidden)]
     pub fn compatibility() -> Result<Headless, ContextError> {
         let (holder, raw) = osmesa::OsmesaContext::open(true).map_err(ContextError::Osmesa)?;
-        Headless::new(Backend::Osmesa, Holder::Osmesa(holder), raw)
+        Headless::new(Backend::Osmesa, Holder::Osmesa(holder), raw, |_| {})
     }
 
-    fn new(backend: Backend, holder: Holder, raw: glow::Context) -> Result<Headless, ContextError> {
+    fn new(
+        backend: Backend,
+        holder: Holder,
+        raw: glow::Context,
+        limit: fn(&mut Capabilities),
+    ) -> Result<Headless, ContextError> {
         let holder = Rc::new(holder);
         let load = |name: &CStr| match &*holder {
             Holder::Egl(egl) => egl.entry_point(name),
             Holder::Osmesa(osmesa) => osmesa.entry_point(name),
         };
         // SAFETY: both loaders return the entry points of the context that they have made current.
-        let context = unsafe { Context::owned(raw, load, holder.clone()) }?;
+        let context = unsafe { Context::owned(raw, load, holder.clone(), limit) }?;
         Ok(Headless { context, backend, holder })
     }
 

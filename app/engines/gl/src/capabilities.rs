@@ -192,6 +192,28 @@ impl Capabilities {
         }
     }
 
+    /// Takes away everything that OpenGL ES 3.0 lacks without extensions, but for the number of samples.
+    pub fn limit_to_es_300(&mut self) {
+        let known = self.clone();
+        *self = Capabilities {
+            api: GlApi::Es,
+            version: (3, 0),
+            compute: false,
+            float_render_targets: false,
+            debug_groups: false,
+            max_anisotropy: 1.0,
+            timer_queries: false,
+            multiview_timer_queries: false,
+            multiview: false,
+            clip_distances: false,
+            multisample_textures: false,
+            sample_masks: false,
+            tile_samples: false,
+            max_compute_shared_memory: 0,
+            ..known
+        };
+    }
+
     /// Checks that render targets support this many samples per pixel. One sample is always supported.
     ///
     /// # Errors

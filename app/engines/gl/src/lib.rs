@@ -148,7 +148,7 @@ impl Context {
     /// [`GlError::Unsupported`] if the context is older than OpenGL ES 3.0, or is desktop GL that does not compile GLSL
     /// ES 3.10.
     pub fn new(raw: glow::Context) -> Result<Rc<Context>, GlError> {
-        Context::with_entry_points(raw, EntryPoints::default(), None)
+        Context::with_entry_points(raw, EntryPoints::default(), None, |_| {})
     }
 
     /// Like [`Context::new`], with functions that glow does not wrap: multiview, sample masks, the bits of timer queries,
@@ -165,24 +165,26 @@ impl Context {
         load: impl FnMut(&CStr) -> *const c_void,
     ) -> Result<Rc<Context>, GlError> {
         // SAFETY: the contract of this function is the same.
-        unsafe { Context::loaded(raw, load, None) }
+        unsafe { Context::loaded(raw, load, None, |_| {}) }
     }
 
     /// Like [`Context::with_loader`], for a context and a library that `owner` destroys when it is dropped. The owner
-    /// is kept until the last object of the context is deleted.
+    /// is kept until the last object of the context is deleted. `limit` takes capabilities away, to see what a lesser
+    /// driver would do.
     ///
     /// # Errors
     /// Those of [`Context::new`].
     ///
     /// # Safety
-    /// Those of [`Context::with_loader`].
+    /// Those of [`Context::with_loader`]; `limit` only takes away.
     pub unsafe fn owned(
         raw: glow::Context,
         load: impl FnMut(&CStr) -> *const c_void,
         owner: Rc<dyn Any>,
+        limit: impl FnOnce(&mut Capabilities),
     ) -> Result<Rc<Context>, GlError> {
         // SAFETY: the contract of this function is the same.
-        unsafe { Context::loaded(raw, load, Some(owner)) }
+        unsafe { Context::loaded(raw, load, Some(owner), limit) }
     }
 
     /// # Safety
@@ -191,6 +193,7 @@ impl Context {
         raw: glow::Context,
         mut load: impl FnMut(&CStr) -> *const c_void,
         owner: Option<Rc<dyn Any>>,
+        limit: impl FnOnce(&mut Capabilities),
     ) -> Result<Rc<Context>, GlError> {
         // SAFETY: null becomes `None`; any other pointer is the entry point of that name, whose signature
         // GL_OVR_multiview, OpenGL 3.0 and OpenGL ES 3.0 and 3.2 define.
@@ -219,13 +222,14 @@ impl Context {
                     .map(|(is_enabled, get_boolean)| host::IndexedQueries { is_enabled, get_boolean }),
             }
         };
-        Context::with_entry_points(raw, entry_points, owner)
+        Context::with_entry_points(raw, entry_points, owner, limit)
     }
 
     fn with_entry_points(
         raw: glow::Context,
         entry_points: EntryPoints,
         owner: Option<Rc<dyn Any>>,
+        limit: impl FnOnce(&mut Capabilities),
     ) -> Result<Rc<Context>, GlError> {
         let has_multiview =
             cfg!(target_arch = "wasm32") || entry_points.framebuffer_texture_multiview.is_some();
@@ -233,7 +237,8 @@ impl Context {
             multiview: has_multiview,
             sample_masks: entry_points.sample_masks.is_some(),
         };
-        let capabilities = Capabilities::query(&raw, loaded, || entry_points.counts_time())?;
+        let mut capabilities = Capabilities::query(&raw, loaded, || entry_points.counts_time())?;
+        limit(&mut capabilities);
         let host = host::Host::new(&raw, &capabilities, entry_points.indexed)?;
         // SAFETY: creates an object, which `Context` deletes when it is dropped.
         let empty_vertex_array = unsafe { raw.create_vertex_array() }
