@@ -27,23 +27,23 @@ ivec2 in_image(ivec2 pixel) {
 
 #ifdef DEPTH_PAIRS
 // A texel holds the reversed depth of two of the pixel's samples.
-float nearest(vec4 texel) {
+float nearest_of(vec4 texel) {
     return max(texel.r, texel.g);
 }
 #else
-float nearest(vec4 texel) {
+float nearest_of(vec4 texel) {
     return texel.r;
 }
 #endif
 
 // Depth at a column from the left border of the source.
 float depth_texel(int column, int row) {
-    return nearest(texelFetch(depth_map, TEXEL_PLACE(in_image(ivec2(column, row))), 0));
+    return nearest_of(texelFetch(depth_map, TEXEL_PLACE(in_image(ivec2(column, row))), 0));
 }
 
 // Depth and colour at texture coordinates.
 float depth_sample(vec2 place) {
-    return nearest(textureLod(depth_map, TEXTURE_PLACE(place), 0.0));
+    return nearest_of(textureLod(depth_map, TEXTURE_PLACE(place), 0.0));
 }
 
 vec4 color_sample(vec2 place) {
@@ -58,10 +58,10 @@ vec4 depth_gather(vec2 place) {
     ivec2 low = clamp(corner, ivec2(0), last);
     ivec2 high = clamp(corner + 1, ivec2(0), last);
     return vec4(
-        nearest(texelFetch(depth_map, TEXEL_PLACE(ivec2(low.x, high.y)), 0)),
-        nearest(texelFetch(depth_map, TEXEL_PLACE(high), 0)),
-        nearest(texelFetch(depth_map, TEXEL_PLACE(ivec2(high.x, low.y)), 0)),
-        nearest(texelFetch(depth_map, TEXEL_PLACE(low), 0)));
+        nearest_of(texelFetch(depth_map, TEXEL_PLACE(ivec2(low.x, high.y)), 0)),
+        nearest_of(texelFetch(depth_map, TEXEL_PLACE(high), 0)),
+        nearest_of(texelFetch(depth_map, TEXEL_PLACE(ivec2(high.x, low.y)), 0)),
+        nearest_of(texelFetch(depth_map, TEXEL_PLACE(low), 0)));
 #elif defined(DEPTH_PAIRS)
     return max(textureGather(depth_map, TEXTURE_PLACE(place), 0), textureGather(depth_map, TEXTURE_PLACE(place), 1));
 #else

@@ -303,19 +303,19 @@ mod tests {
     /// Renders a measurement; `shows` checks each frame. Returns the choice, and the number of frames in each way.
     fn measure(
         rig: &mut Rig,
-        auto: &mut Auto,
+        method: &mut SelectedMethod,
         pair: &EyePair,
         shows: impl Fn(Way, [Vec<u8>; 2]) -> bool,
     ) -> (Choice, [u32; 2]) {
         let (mut now_ns, mut frames) = (0, [0; 2]);
-        while auto.is_measuring() {
-            let way = auto.chooser.way();
-            assert!(shows(way, rig.render(auto, pair)), "frame {frames:?}");
+        while method.auto().unwrap().is_measuring() {
+            let way = method.auto().unwrap().chooser.way();
+            assert!(shows(way, rig.render(method, pair)), "frame {frames:?}");
             frames[way.index()] += 1;
             now_ns += FRAME_NS;
-            auto.end_frame(now_ns, 60.0, None, None);
+            method.auto_mut().unwrap().end_frame(now_ns, 60.0, None, None);
         }
-        (auto.choice(), frames)
+        (method.auto().unwrap().choice(), frames)
     }
 
     #[test]
@@ -327,7 +327,7 @@ mod tests {
         let named = METHODS.map(|method| {
             rig.render(super::super::create(gl, method, &settings, &options).unwrap().as_mut(), &pair)
         });
-        let mut auto = Auto::new(gl, &settings, &options).unwrap();
+        let mut auto = SelectedMethod::new(gl, MethodChoice::Auto, &settings, &options).unwrap();
         let (choice, frames) = measure(&mut rig, &mut auto, &pair, |way, shown| shown == named[way.index()]);
         assert!(frames.iter().all(|n| *n >= 21), "{frames:?}");
         let costs = choice.costs_ms.unwrap();
@@ -335,7 +335,7 @@ mod tests {
             costs.iter().all(|ms| *ms < FRAME_NS as f32 * 1e-6),
             "the clock's times, not the display's: {costs:?}"
         );
-        assert_eq!(auto.method(), METHODS[usize::from(costs[1] <= costs[0])]);
+        assert_eq!(auto.auto().unwrap().method(), METHODS[usize::from(costs[1] <= costs[0])]);
     }
 
     #[test]
@@ -350,7 +350,7 @@ mod tests {
         let policy = Some(NearFieldPolicy { distance: 400.0, ..NearFieldPolicy::default() });
         for (pair, policy) in [(straight, policy), (canted, None)] {
             let options = StereoOptions { policy, ..StereoOptions::default() };
-            let mut auto = Auto::new(gl, &settings, &options).unwrap();
+            let mut auto = SelectedMethod::new(gl, MethodChoice::Auto, &settings, &options).unwrap();
             let (choice, _) = measure(&mut rig, &mut auto, &pair, |_, _| true);
             assert_eq!((choice.reason, choice.costs_ms), (Reason::Incomparable, None));
         }

@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn later_frames_show_the_render_where_the_head_is() {
         let head = Headless::open(Backend::Egl).unwrap();
-        let (gl, settings) = (head.gl(), local());
+        let (gl, settings) = (head.gl(), crate::view::RenderSettings { msaa: 4, ..local() });
         let options = StereoOptions { render_rate: Some(36.0), ..StereoOptions::default() };
         let mut rig = Rig::new(gl, &settings);
         let create = |method, options| super::super::create(gl, method, &settings, options).unwrap();

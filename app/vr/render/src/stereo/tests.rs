@@ -1,4 +1,4 @@
-//! Tests of private parts: seams, the mask of disocclusions, requested depths, guard bands.
+//! Tests of private parts: seams, reprojected shading, requested depths, guard bands, drivers.
 
 use std::rc::Rc;
 
@@ -6,12 +6,11 @@ use glam::{Quat, Vec3};
 
 use super::*;
 use crate::fixture::quad;
-use crate::render::{DepthCopy, GpuScene, Renderer, RendererKind, Seam};
+use crate::view::{DepthCopy, GpuScene, Renderer, Seam};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, Pose};
 use yoro_assets::motion::{Carrier, MovingMesh, Node, Track};
 use yoro_assets::{Alpha, Material, Model, Motion, Scene, ShadingStyle, Sky, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_estimate::{Command, Recorder};
 use yoro_gl::{Destination, Format, Profiling, RenderTarget};
 
 const SIZE: [u32; 2] = [160, 120];
@@ -61,9 +60,9 @@ fn move_last_quad(scene: &mut Scene) {
     scene.motion = Motion { loops: vec![0.4], nodes, meshes, ..Motion::default() };
 }
 
-/// Settings without effects that reach beyond a pixel: no ambient occlusion, no bloom.
+/// Settings without effects that reach beyond a pixel: no bloom, one sample.
 pub(super) fn local() -> RenderSettings {
-    RenderSettings { shadow_map_size: 256, ssao: false, bloom: false, ..RenderSettings::default() }
+    RenderSettings { shadow_map_size: 256, bloom: false, msaa: 1, ..RenderSettings::default() }
 }
 
 pub(super) fn pair(dominant: Eye, convention: DepthConvention) -> EyePair {
@@ -111,21 +110,14 @@ fn every_seam_separates_the_eyes() {
         };
         let gl = head.gl();
         let settings = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
-        let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
         let mut rig = Rig::new(gl, &settings);
-        let mut conventional =
-            Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options })
-                .unwrap();
+        let mut conventional = Conventional::default();
         for seam in [Seam::ClipDistance, Seam::Discard] {
             if seam == Seam::ClipDistance && !gl.capabilities().clip_distances {
                 eprintln!("SKIPPED: {backend:?} has no clip distances");
                 continue;
             }
-            let mut method = SinglePass::<DeferredPair>::new(
-                &Setup { gl, settings: &settings, options: &options },
-                Layout::DoubleWide(seam),
-            )
-            .unwrap();
+            let mut method = SinglePass::new(Layout::DoubleWide(seam));
             for size in [SIZE, [97, 60]] {
                 let pair = EyePair { size, ..pair(Eye::Left, DepthConvention::Reversed) };
                 let expected = rig.render(&mut conventional, &pair);
@@ -141,90 +133,26 @@ fn every_seam_separates_the_eyes() {
 }
 
 #[test]
-fn disocclusions_are_shaded_exactly_and_the_rest_closely() {
-    let head = Headless::open(Backend::Egl).unwrap();
-    let gl = head.gl();
-    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
-    let mut rig = Rig::new(gl, &local());
-    let mut conventional =
-        Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &local(), options: &options }).unwrap();
-    let mut method = ShadingReprojection::new(&Setup { gl, settings: &local(), options: &options }).unwrap();
-    for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
-        for dominant in Eye::BOTH {
-            let pair = pair(dominant, convention);
-            let expected = rig.render(&mut conventional, &pair);
-            let both = rig.render(&mut method, &pair);
-            assert_eq!(both[dominant.index()], expected[dominant.index()], "the dominant eye is rendered");
-            let second = dominant.other().index();
-            let mask = method.disocclusion().read_rgba8(0, [0, 0], SIZE);
-            let (mut disoccluded, mut sum) = (0, 0u32);
-            for ((m, a), b) in mask.chunks(4).zip(both[second].chunks(4)).zip(expected[second].chunks(4)) {
-                let difference = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
-                sum += u32::from(difference);
-                if m[0] == 255 {
-                    disoccluded += 1;
-                    assert!(difference <= 1, "{a:?} instead of {b:?}");
-                }
-            }
-            let pixels = SIZE[0] * SIZE[1];
-            assert!(disoccluded > pixels / 100 && disoccluded < pixels / 4, "{disoccluded} of {pixels}");
-            let mean = f64::from(sum) / f64::from(pixels);
-            assert!(mean < 1.0, "{convention:?}, {dominant:?}: mean difference {mean}");
-            let share = equal_share(&both[second], &expected[second]);
-            assert!(share > 0.9, "{convention:?}, {dominant:?}: {share} equal");
-        }
-    }
-    assert_eq!(gl.take_errors(), None);
-}
-
-#[test]
 fn ipd_0_disoccludes_nothing() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    let options = StereoOptions::default();
     let mut rig = Rig::new(gl, &local());
-    let mut method = ShadingReprojection::new(&Setup { gl, settings: &local(), options: &options }).unwrap();
+    let mut method = ShadingReprojection::default();
     let mut pair = pair(Eye::Left, DepthConvention::Standard);
     pair.poses = [Pose::IDENTITY; 2];
     let [left, right] = rig.render(&mut method, &pair);
-    assert_eq!(left, right);
-}
-
-#[test]
-fn ambient_occlusion_is_exact_at_rims_of_disocclusions() {
-    let head = Headless::open(Backend::Egl).unwrap();
-    let gl = head.gl();
-    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
-    for ssao_half_size in [false, true] {
-        let settings = RenderSettings { ssao: true, ssao_half_size, ..local() };
-        let mut rig = Rig::new(gl, &settings);
-        let mut conventional =
-            Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options })
-                .unwrap();
-        let mut method =
-            ShadingReprojection::new(&Setup { gl, settings: &settings, options: &options }).unwrap();
-        let pair = pair(Eye::Right, DepthConvention::Standard);
-        let expected = rig.render(&mut conventional, &pair);
-        let both = rig.render(&mut method, &pair);
-        let mask = method.disocclusion().read_rgba8(0, [0, 0], SIZE);
-        for (i, m) in mask.chunks(4).enumerate() {
-            let [a, b] = [&both[0], &expected[0]].map(|image| &image[i * 4..i * 4 + 4]);
-            let equal = a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1);
-            assert!(m[0] < 255 || equal, "half size {ssao_half_size}, pixel {i}: {a:?} instead of {b:?}");
-        }
-    }
+    // Alpha, luma, is that of rounded colours.
+    let differing = left.chunks(4).zip(right.chunks(4)).filter(|(a, b)| a[..3] != b[..3]).count();
+    assert_eq!(differing, 0);
 }
 
 #[test]
 fn mono_shows_each_eye_its_own_part_of_the_view() {
     let head = Headless::open(Backend::Egl).unwrap();
     let (gl, settings) = (head.gl(), local());
-    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
     let mut rig = Rig::new(gl, &settings);
-    let mut conventional =
-        Conventional::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options }).unwrap();
-    let mut mono =
-        Mono::<DeferredRenderer>::new(&Setup { gl, settings: &settings, options: &options }).unwrap();
+    let mut conventional = Conventional::default();
+    let mut mono = Mono::default();
     let plain = pair(Eye::Right, DepthConvention::Standard);
     let [left, right] = rig.render(&mut mono, &plain);
     assert!(left == right, "the same image where the frusta are the same");
@@ -258,10 +186,10 @@ fn auto_band() -> StereoOptions {
 fn an_automatic_band_gives_the_picture_of_a_whole_one() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    // Ambient occlusion and bloom, which reach far, are on.
-    let deferred = RenderSettings { shadow_map_size: 256, ..RenderSettings::default() };
-    let forward = RenderSettings { renderer: RendererKind::Forward, ..deferred.clone() };
-    for settings in [deferred, forward] {
+    // Bloom, which reaches far, is on.
+    let one = RenderSettings { shadow_map_size: 256, msaa: 1, ..RenderSettings::default() };
+    let four = RenderSettings { msaa: 4, ..one.clone() };
+    for settings in [one, four] {
         let mut rig = Rig::new(gl, &settings);
         for dominant in Eye::BOTH {
             let mut asymmetric = pair(dominant, DepthConvention::Reversed);
@@ -271,15 +199,15 @@ fn an_automatic_band_gives_the_picture_of_a_whole_one() {
                 let mut method = create(gl, Method::Synthesized, &settings, &auto_band()).unwrap();
                 // The result of a frame arrives two frames later.
                 let [whole, _, part] = [(); 3].map(|()| rig.render(&mut *method, &pair));
-                let looked = method.guard_band().unwrap();
+                let looked = method.report().guard_band.unwrap();
                 assert!(looked.columns == looked.most && looked.most > 30, "{looked:?}");
                 (0..2).for_each(|_| drop(rig.render(&mut *method, &pair)));
-                let used = method.guard_band().unwrap();
+                let used = method.report().guard_band.unwrap();
                 assert!(used.columns > 3 && used.columns < 20 && used.undrawn == 0, "{used:?}");
                 let [rendered, other] = [dominant, dominant.other()].map(Eye::index);
-                assert!(whole[rendered] == part[rendered], "{:?}, {dominant:?}", settings.renderer);
+                assert!(whole[rendered] == part[rendered], "{:?}, {dominant:?}", settings.msaa);
                 let share = equal_share(&whole[other], &part[other]);
-                assert!(share > 0.999, "{:?}, {dominant:?}: {share}", settings.renderer);
+                assert!(share > 0.999, "{:?}, {dominant:?}: {share}", settings.msaa);
             }
         }
     }
@@ -311,7 +239,7 @@ fn an_automatic_band_keeps_up_with_a_moving_head() {
             assert!(images[rendered] == expected[rendered], "{dominant:?}, frame {frame}");
             let share = equal_share(&images[other], &expected[other]);
             assert!(share > 0.999, "{dominant:?}, {sense}, frame {frame}: {share}");
-            if let Some(used) = auto.guard_band() {
+            if let Some(used) = auto.report().guard_band {
                 assert_eq!(used.undrawn, 0, "{dominant:?}, {sense}, frame {frame}");
                 narrow += u32::from(used.columns < used.most);
             }
@@ -331,25 +259,25 @@ fn a_new_surface_at_the_border_is_drawn_two_frames_later() {
     // A board at 40 cm that crosses the left border of both eyes.
     let corner = Vec3::new(-0.6, -0.5, -0.4);
     quad(&mut near.model, 2, corner, Vec3::X * 0.5, Vec3::Y);
-    for renderer in [RendererKind::Deferred, RendererKind::Forward] {
-        let settings = RenderSettings { renderer, ..local() };
+    for msaa in [1, 4] {
+        let settings = RenderSettings { msaa, ..local() };
         let mut rigs = [far.clone(), near.clone()].map(|scene| Rig::of(gl, &settings, scene));
         let pair = pair(Eye::Right, DepthConvention::Standard);
         let mut method = create(gl, Method::Synthesized, &settings, &auto_band()).unwrap();
         for _ in 0..5 {
             rigs[0].render(&mut *method, &pair);
         }
-        let narrow = method.guard_band().unwrap();
+        let narrow = method.report().guard_band.unwrap();
         assert!(narrow.columns <= 10 && narrow.undrawn == 0, "{narrow:?}");
         let [[filled, _], _, [drawn, _]] = [(); 3].map(|()| rigs[1].render(&mut *method, &pair));
-        let used = method.guard_band().unwrap();
-        assert!(used.columns <= 10 && used.undrawn > 500, "{renderer:?}: {used:?}");
+        let used = method.report().guard_band.unwrap();
+        assert!(used.columns <= 10 && used.undrawn > 500, "{msaa}: {used:?}");
         (0..2).for_each(|_| drop(rigs[1].render(&mut *method, &pair)));
-        let used = method.guard_band().unwrap();
-        assert!(used.columns >= 20 && used.undrawn == 0, "{renderer:?}: {used:?}");
+        let used = method.report().guard_band.unwrap();
+        assert!(used.columns >= 20 && used.undrawn == 0, "{msaa}: {used:?}");
         // The fill continues the board to the border.
         let share = equal_share(&filled, &drawn);
-        assert!(share > 0.95, "{renderer:?}: {share} of the picture as it should be");
+        assert!(share > 0.95, "{msaa}: {share} of the picture as it should be");
     }
     assert_eq!(gl.take_errors(), None);
 }
@@ -374,7 +302,7 @@ fn what_moves_at_the_border_is_drawn_at_once() {
         let [expected, images] = [&mut whole, &mut auto].map(|method| rig.render(&mut **method, &pair));
         let share = equal_share(&images[0], &expected[0]);
         assert!(share > 0.999 && images[1] == expected[1], "frame {frame}: {share}");
-        if let Some(used) = auto.guard_band() {
+        if let Some(used) = auto.report().guard_band {
             assert_eq!(used.undrawn, 0, "frame {frame}");
             narrow += u32::from(used.columns < used.most);
         }
@@ -384,8 +312,8 @@ fn what_moves_at_the_border_is_drawn_at_once() {
 }
 
 /// Settings with several samples in each pixel.
-fn forward() -> RenderSettings {
-    RenderSettings { renderer: RendererKind::Forward, ..local() }
+fn smooth() -> RenderSettings {
+    RenderSettings { msaa: 4, ..local() }
 }
 
 /// Counts the passes with a name in a frame. `wanted` says, by [`Eye::index`], whose depth is wanted.
@@ -418,79 +346,81 @@ fn count_passes_of(
     method.render_to(&mut rig.renderer, &rig.scene, pair, &targets).unwrap();
     let passes = gl.take_pass_times();
     gl.set_profiling(Profiling::Off);
-    assert!(passes.iter().any(|pass| pass.name == "forward"));
+    assert!(passes.iter().any(|pass| pass.name == "surfaces"));
     passes.iter().filter(|pass| pass.name == name).count()
 }
 
+/// Surfaces that the dominant eye sees take its colours, and the others are shaded as in a render of their own.
 #[test]
-fn the_nearest_depth_is_resolved_once_for_each_image_that_is_read() {
+fn reprojected_shading_is_close_to_a_render() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    let mut rig = Rig::new(gl, &forward());
-    let plain = StereoOptions::default();
-    let near = StereoOptions { near_field: Some(1.6), ..plain };
-    let [nobody, dominant, other, both] = [[false, false], [false, true], [true, false], [true, true]];
-    for (options, wanted, expected) in [
-        (plain, nobody, 1),
-        (plain, dominant, 1),
-        (plain, other, 1),
-        (near, nobody, 1),
-        (near, dominant, 2),
-        (near, both, 3),
-        (auto_band(), dominant, 1),
-    ] {
-        let mut method = create(gl, Method::Synthesized, &forward(), &options).unwrap();
-        let taken = count_passes(gl, &mut rig, &mut *method, wanted, "nearest depth");
-        assert_eq!(taken, expected, "{wanted:?}, {options:?}");
+    for settings in [local(), smooth()] {
+        let mut rig = Rig::new(gl, &settings);
+        let mut conventional = Conventional::default();
+        let mut method = ShadingReprojection::default();
+        for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
+            for dominant in Eye::BOTH {
+                let pair = pair(dominant, convention);
+                let expected = rig.render(&mut conventional, &pair);
+                let both = rig.render(&mut method, &pair);
+                let [eye, other] = [dominant, dominant.other()].map(Eye::index);
+                let rendered = equal_share(&both[eye], &expected[eye]);
+                assert!(rendered > 0.97, "{dominant:?}: {rendered} of the rendered eye is equal");
+                let share = equal_share(&both[other], &expected[other]);
+                assert!(share > 0.88, "{convention:?}, {dominant:?}, {}: {share}", settings.msaa);
+                let same = equal_share(&both[eye], &expected[other]);
+                assert!(share > same + 0.1, "the same image has {same}");
+            }
+        }
     }
-    // Everything is too near: the third frame is rendered twice, and the switch reads the dominant eye's depth.
-    let policy = Some(NearFieldPolicy { distance: 400.0, ..NearFieldPolicy::default() });
-    let mut method = create(gl, Method::Synthesized, &forward(), &StereoOptions { policy, ..plain }).unwrap();
-    assert_eq!(
-        [nobody, nobody, nobody, both].map(|wanted| count_passes(
-            gl,
-            &mut rig,
-            &mut *method,
-            wanted,
-            "nearest depth"
-        )),
-        [1, 1, 1, 2]
-    );
     assert_eq!(gl.take_errors(), None);
 }
 
-/// A copy costs 8 bytes a pixel. Glass is drawn over both eyes, and the depth of an eye comes from the intermediate
-/// image, so both need the copy.
+/// Depth for a compositor is that of the picture, for either eye, and asking for it changes no picture but glass: an eye
+/// whose depth is read has one sample where something is drawn over it.
 #[test]
-fn an_eye_that_is_complete_once_it_is_synthesized_is_not_copied() {
+fn depth_is_written_where_it_is_wanted() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
     let mut opaque = scene();
-    opaque.model.materials[3].alpha = Alpha::Opaque;
-    let [nobody, other] = [[false, false], [true, false]];
-    let mut pictures = Vec::new();
-    for (scene, wanted, copies) in [(scene(), nobody, 2), (opaque.clone(), nobody, 1), (opaque, other, 2)] {
-        let mut rig = Rig::of(gl, &forward(), scene);
-        let mut method = create(gl, Method::Synthesized, &forward(), &StereoOptions::default()).unwrap();
-        assert_eq!(count_passes(gl, &mut rig, &mut *method, wanted, "copy"), copies);
-        pictures.push(Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE)));
+    opaque.model.parts.pop();
+    for near_field in [None, Some(1.6)] {
+        let options = StereoOptions { near_field, ..StereoOptions::default() };
+        let mut rig = Rig::of(gl, &local(), opaque.clone());
+        let mut method = create(gl, Method::Synthesized, &local(), &options).unwrap();
+        let [unread, read] = [[false; 2], [true; 2]].map(|wanted| {
+            count_passes(gl, &mut rig, &mut *method, wanted, "depth copy");
+            Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE))
+        });
+        assert!(unread == read, "{near_field:?}");
     }
-    assert!(pictures[0] != pictures[1] && pictures[1] == pictures[2]);
     assert_eq!(gl.take_errors(), None);
 }
 
-/// While the head looks around, samples are kept and the other eye is copied where glass changes either eye, and hardly
-/// anywhere else.
+/// A copy costs 8 bytes a pixel: eyes are finished in their own targets.
+#[test]
+fn nothing_is_copied_unless_depth_is_read() {
+    let head = Headless::open(Backend::Egl).unwrap();
+    let gl = head.gl();
+    let settings = RenderSettings { bloom: true, ..smooth() };
+    for method in [Method::Conventional, Method::Synthesized] {
+        let mut rig = Rig::new(gl, &settings);
+        let mut method = create(gl, method, &settings, &StereoOptions::default()).unwrap();
+        assert_eq!(count_passes(gl, &mut rig, &mut *method, [false; 2], "copy"), 0);
+    }
+}
+
+/// Glass costs a pass over the samples only where it is in view.
 #[test]
 fn glass_out_of_view_costs_nothing() {
     let head = Headless::open(Backend::Egl).unwrap();
     let gl = head.gl();
-    let recorder = Recorder::new(gl);
     let mut opaque = scene();
     opaque.model.parts.pop();
-    let mut rigs = [scene(), opaque].map(|scene| Rig::of(gl, &forward(), scene));
+    let mut rigs = [scene(), opaque].map(|scene| Rig::of(gl, &smooth(), scene));
     let options = StereoOptions { policy: None, ..StereoOptions::default() };
-    let mut methods = [(); 2].map(|()| create(gl, Method::Synthesized, &forward(), &options).unwrap());
+    let mut methods = [(); 2].map(|()| create(gl, Method::Synthesized, &smooth(), &options).unwrap());
     let mut free = 0;
     for turn in 0..24 {
         let orientation = Quat::from_rotation_y(turn as f32 * std::f32::consts::TAU / 24.0);
@@ -499,17 +429,14 @@ fn glass_out_of_view_costs_nothing() {
         let pair = EyePair::parallel(pose, still.frusta[0], still.ipd(), still.depth, SIZE, still.dominant);
         let [glass, plain] = [0, 1].map(|i| {
             let (rig, method) = (&mut rigs[i], &mut *methods[i]);
-            recorder.start();
-            let copies = count_passes_of(gl, rig, method, &pair, [false; 2], "copy");
-            let kept = recorder.take().iter().filter(|c| matches!(c, Command::Discard(_, [true, _]))).count();
-            let eyes = Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE));
-            (eyes, copies, kept)
+            let resolved = count_passes_of(gl, rig, method, &pair, [false; 2], "resolve");
+            (Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE)), resolved)
         });
         if glass.1 == 1 {
             assert!(glass == plain, "turn {turn}");
             free += 1;
         } else {
-            assert!(glass.1 == 2 && glass.2 != plain.2, "turn {turn}");
+            assert!(glass.1 == 3, "turn {turn}");
         }
     }
     // The view is 67 degrees wide, the glass 19.
@@ -517,19 +444,40 @@ fn glass_out_of_view_costs_nothing() {
     assert_eq!(gl.take_errors(), None);
 }
 
+/// A driver that lacks everything beyond OpenGL ES 3.0, and one that carries depth as phones do, draw the same frame.
 #[test]
-fn reading_the_nearest_depth_changes_no_picture() {
-    let head = Headless::open(Backend::Egl).unwrap();
-    let gl = head.gl();
-    for near_field in [None, Some(1.6)] {
-        let options = StereoOptions { near_field, ..StereoOptions::default() };
-        let mut rig = Rig::new(gl, &forward());
-        let mut method = create(gl, Method::Synthesized, &forward(), &options).unwrap();
-        let [unread, read] = [[false; 2], [true; 2]].map(|wanted| {
-            count_passes(gl, &mut rig, &mut *method, wanted, "nearest depth");
-            Eye::BOTH.map(|eye| rig.frame.eye(eye).read_rgba8(0, [0, 0], SIZE))
-        });
-        assert!(unread == read, "{near_field:?}");
+fn lesser_drivers_draw_the_same_frame() {
+    let limits: [fn(&mut yoro_gl::Capabilities); 2] =
+        [|capabilities| capabilities.multisample_textures = false, yoro_gl::Capabilities::limit_to_es_300];
+    let settings = RenderSettings { bloom: true, ..smooth() };
+    let pair = pair(Eye::Right, DepthConvention::Standard);
+    let frame = |head: &Headless, method| {
+        let gl = head.gl();
+        let mut rig = Rig::new(gl, &settings);
+        let mut method = create(gl, method, &settings, &StereoOptions::default()).unwrap();
+        let eyes = rig.render(&mut *method, &pair);
+        assert_eq!(gl.take_errors(), None);
+        eyes
+    };
+    let methods = [
+        Method::Conventional,
+        Method::Instanced,
+        Method::Hybrid,
+        Method::ShadingReprojection,
+        Method::Mono,
+        Method::Synthesized,
+    ];
+    let best = Headless::open(Backend::Egl).unwrap();
+    let expected = methods.map(|method| frame(&best, method));
+    for limit in limits {
+        let head = Headless::open_limited(Backend::Egl, limit).unwrap();
+        for (method, expected) in methods.into_iter().zip(&expected) {
+            let eyes = frame(&head, method);
+            for eye in 0..2 {
+                let share = equal_share(&eyes[eye], &expected[eye]);
+                // At edges, a driver without sample masks takes another sample's depth.
+                assert!(share > 0.92, "{method:?}, eye {eye}: {share} of the picture is equal");
+            }
+        }
     }
-    assert_eq!(gl.take_errors(), None);
 }

@@ -12,8 +12,8 @@ use yoro_gl::{Context, Destination, GlError, Program, RasterState, ShaderSource,
 pub enum NearestDepth {
     /// A pixel has one sample, whose depth buffer is the texture.
     Single,
-    /// A second colour carries the depth of two samples through the average (`include/carried.glsl`), so that no sample
-    /// leaves the tile of a tile-based GPU.
+    /// A second colour carries the reversed depth of two samples through the average (`include/carried.glsl`), so that no
+    /// sample leaves the tile of a tile-based GPU. Views whose depth is not reversed get that of one sample.
     Carried,
     /// A pass reads all samples.
     Read,

@@ -88,7 +88,6 @@ impl Renderer {
         from: Option<&Reprojection>,
     ) {
         let view = &views[0];
-        targets.convention = view.depth.convention;
         self.gl.pass("surfaces", || {
             targets.bind(targets.layout().texture_size(view.size));
             self.gl.clear(Some(view.depth.clear_value()));
@@ -417,7 +416,7 @@ impl Renderer {
         view: &View,
         slice: [f32; 2],
     ) -> Result<(), GlError> {
-        targets.fit(view.size, self.needs(true), None)?;
+        targets.fit(view, self.needs(true), None)?;
         self.draw_on_sky(targets, scene, &[*view], &Part::Slice(slice));
         self.resolve(targets, view, true, false, None)
     }
@@ -433,8 +432,7 @@ impl Renderer {
         (far, far_view, crop): (&Targets, &View, [u32; 2]),
         depth: bool,
     ) -> Result<(), GlError> {
-        targets.fit(view.size, self.needs(depth), None)?;
-        targets.convention = view.depth.convention;
+        targets.fit(view, self.needs(depth), None)?;
         let views = std::slice::from_ref(view);
         self.gl.pass("surfaces", || {
             let to = targets.destination(view.size);
@@ -458,7 +456,7 @@ impl Renderer {
         scene: &GpuScene,
         view: &View,
     ) -> Result<(), GlError> {
-        targets.fit(view.size, self.needs(true), None)?;
+        targets.fit(view, self.needs(true), None)?;
         let culler = Culler::of_view(view);
         self.draw_on_sky(targets, scene, &[*view], &Part::Selected(&culler));
         self.resolve(targets, view, true, false, None)
@@ -473,7 +471,7 @@ impl Renderer {
         from: &Reprojection,
         depth: bool,
     ) -> Result<(), GlError> {
-        targets.fit(view.size, self.needs(depth), None)?;
+        targets.fit(view, self.needs(depth), None)?;
         let culler = Culler::of_view(view);
         self.draw_on_sky_as(targets, scene, &[*view], &Part::Selected(&culler), Some(from));
         self.draw_transparent(targets, scene, std::slice::from_ref(view));

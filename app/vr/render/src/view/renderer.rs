@@ -369,7 +369,7 @@ impl Renderer {
         view: &View,
         request: &DrawRequest,
     ) -> Result<(), GlError> {
-        targets.fit(view.size, self.needs(true), None)?;
+        targets.fit(view, self.needs(true), None)?;
         targets.request = *request;
         let drawn = request.bounds(view);
         let culler = request.culler(view);
@@ -396,7 +396,7 @@ impl Renderer {
     ) -> Result<bool, GlError> {
         let view = &views[0];
         let to = to.filter(|_| !self.develops() && !self.ink);
-        let direct = targets.fit(view.size, self.needs(depth), to)?;
+        let direct = targets.fit(view, self.needs(depth), to)?;
         targets.request = DrawRequest::default();
         let culler = super::cluster::Culler::of_view(view);
         let part = match views.len() {

@@ -8,7 +8,7 @@ use super::layout::Layout;
 use super::request::DrawRequest;
 use super::settings::{RenderSettings, SAMPLE_DEPTH};
 use crate::stereo::EyeTarget;
-use yoro::eyes::{DepthConvention, Eye};
+use yoro::eyes::{DepthConvention, Eye, View};
 use yoro_gl::{Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, TileTarget};
 
 /// The format of pictures.
@@ -105,9 +105,11 @@ impl Targets {
         })
     }
 
-    /// Fits the targets to views of `size` pixels, and chooses the framebuffer; does nothing else if they already fit.
+    /// Fits the targets to views like this one, and chooses the framebuffer; does nothing else if they already fit.
     /// Returns true if the average of the samples can be written to `to` without a copy.
-    pub fn fit(&mut self, size: [u32; 2], needs: Needs, to: Option<&EyeTarget>) -> Result<bool, GlError> {
+    pub fn fit(&mut self, view: &View, needs: Needs, to: Option<&EyeTarget>) -> Result<bool, GlError> {
+        let size = view.size;
+        self.convention = view.depth.convention;
         let whole = self.layout.texture_size(size);
         self.resolved.resize(whole)?;
         self.bloom.as_mut().map_or(Ok(()), |bloom| bloom.resize(size))?;
@@ -116,7 +118,8 @@ impl Targets {
         if self.samples == 1 {
             return Ok(false);
         }
-        let carries = needs.depth && self.way == NearestDepth::Carried;
+        let is_reversed = view.depth.convention == DepthConvention::Reversed;
+        let carries = needs.depth && self.way == NearestDepth::Carried && is_reversed;
         self.carries = carries;
         if carries {
             if self.pair.is_none() {

@@ -6,13 +6,11 @@ use glam::Vec3;
 
 use super::*;
 use crate::fixture::quad;
-use bloom::BloomPass;
-use deferred::{first_renderable, hdr_format};
-use tonemap::TonemapPass;
+use bloom::{first_renderable, hdr_format};
 use yoro::eyes::{DepthConvention, DepthRange, Frustum, Pose, View};
 use yoro_assets::{Alpha, Material, Model, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 use yoro_context::{Backend, Headless};
-use yoro_gl::{Context, Destination, Filter, Format, Program, RenderTarget, ShaderSource, Texture};
+use yoro_gl::{Context, Format};
 
 const SIZE: [u32; 2] = [144, 112];
 
@@ -116,25 +114,11 @@ impl Rig {
     }
 }
 
-/// Draws transparent surfaces over a view that the deferred renderer rendered, and reads it back.
-fn draw_transparent(rig: &mut Rig, view: &View) -> Vec<u8> {
-    let rendered = rig.renderer.render(&mut rig.targets, &rig.scene, view, Selection::All).unwrap();
-    let Renderer::Deferred(renderer) = &rig.renderer else { unreachable!() };
-    let (to, depth) = (Destination::whole(rendered.color), DepthImage::whole(rendered.depth));
-    renderer.draw_transparent(&to, depth, &rig.scene, view);
-    rendered.color.read_rgba8(0, [0, 0], view.size)
-}
-
 /// Returns the window depth of each pixel.
-pub fn depths(gl: &Rc<Context>, depth: &Texture, view: &View) -> Vec<f32> {
-    let formats = [(Format::R32F, Filter::Nearest)];
-    let copy = RenderTarget::new(gl, view.size, &formats, None).unwrap();
-    gl.set_raster_state(&yoro_gl::RasterState::SCREEN);
-    copy.bind();
-    let program = Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[]).unwrap();
-    program.bind().texture("source", 0, depth.raw());
-    gl.draw_screen();
-    copy.read_rgba32f(0, [0, 0], view.size).iter().map(|t| t[0]).collect()
+pub fn depths(gl: &Rc<Context>, depth: &DepthImage, view: &View) -> Vec<f32> {
+    let mut reader = DepthReader::new(gl).unwrap();
+    reader.copy(depth, view.size).unwrap();
+    reader.read()
 }
 
 fn largest_difference(a: &[u8], b: &[u8]) -> u8 {
@@ -167,24 +151,11 @@ fn every_style_renders_its_own_picture() {
     }
 }
 
-/// The programs for drivers without float render targets.
-#[test]
-fn programs_without_float_targets_compile() {
-    let head = open();
-    let gl = head.gl();
-    let scene = GpuScene::upload(gl, self::scene(ShadingStyle::Realistic)).unwrap();
-    let mut defines = lighting::shading_defines(gl, &scene, &settings());
-    defines.push(("NO_FLOAT_TARGETS", String::new()));
-    Program::new(gl, ShaderSource::Screen("render/lighting.frag"), &defines).unwrap();
-    BloomPass::new(gl, &defines).unwrap();
-    TonemapPass::new(gl, &defines).unwrap();
-}
-
 #[test]
 fn both_depth_conventions_give_one_picture() {
     let head = open();
-    for settings in [settings(), RenderSettings { ssao_half_size: true, ..settings() }] {
-        let mut rig = Rig::new(head.gl(), scene(ShadingStyle::Realistic), &settings);
+    {
+        let mut rig = Rig::new(head.gl(), scene(ShadingStyle::Realistic), &settings());
         let standard = rig.render(&view(DepthConvention::Standard), Selection::All);
         let reversed = rig.render(&view(DepthConvention::Reversed), Selection::All);
         assert!(largest_difference(&standard, &reversed) <= 2);
@@ -206,7 +177,7 @@ fn depth_is_the_distance_in_the_views_convention() {
     let mut rig = Rig::new(gl, wall, &settings());
     for convention in [DepthConvention::Standard, DepthConvention::Reversed] {
         let view = View { pose: Pose { position: EYE, ..Pose::IDENTITY }, ..view(convention) };
-        let depths = depths(gl, rig.draw(&view, Selection::All).depth, &view);
+        let depths = depths(gl, &rig.draw(&view, Selection::All).depth, &view);
         let row = &depths[SIZE[0] as usize * 50..][..SIZE[0] as usize];
         assert!((view.depth.distance(row[40]) - 2.5).abs() < 1e-3, "{convention:?}");
         assert_eq!(row[110], view.depth.clear_value(), "{convention:?}: nothing was drawn there");
@@ -218,21 +189,18 @@ fn targets_follow_the_size_and_nothing_leaks() {
     let head = open();
     let gl = head.gl();
     let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
-    let fxaa = Fxaa::new(gl).unwrap();
-    let smooth = RenderTarget::new(gl, SIZE, &[(Format::Rgba8, Filter::Linear)], None).unwrap();
     let (small, mut large) = (view(DepthConvention::Standard), view(DepthConvention::Standard));
     large.size = [301, 97];
     let first = rig.render(&small, Selection::All);
     let objects = gl.object_count();
     for _ in 0..5 {
         let picture = rig.draw(&large, Selection::All);
-        assert_eq!((picture.color.size(), picture.depth.size()), (large.size, large.size));
+        assert_eq!((picture.color.size(), picture.depth.texture.size()), (large.size, large.size));
         assert_eq!(rig.render(&small, Selection::All), first, "a repeated frame is identical");
-        fxaa.run(rig.draw(&small, Selection::All).color.color(0), [0, 0], &Destination::whole(&smooth));
     }
     assert_eq!(gl.object_count(), objects);
     assert_eq!(gl.take_errors(), None);
-    drop((rig, fxaa, smooth));
+    drop(rig);
     assert_eq!(gl.object_count(), 0, "everything is deleted");
 }
 
@@ -240,7 +208,7 @@ fn targets_follow_the_size_and_nothing_leaks() {
 fn nearer_and_farther_composite_to_the_whole() {
     let head = open();
     let gl = head.gl();
-    let settings = RenderSettings { ssao: false, bloom: false, ..settings() };
+    let settings = RenderSettings { msaa: 1, bloom: false, ..settings() };
     let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings);
     let view = view(DepthConvention::Standard);
     let whole = rig.render(&view, Selection::All);
@@ -248,7 +216,7 @@ fn nearer_and_farther_composite_to_the_whole() {
         [Selection::Nearer { from: EYE, distance: 3.0 }, Selection::Farther { from: EYE, distance: 3.0 }]
             .map(|selection| {
                 let drawn = rig.draw(&view, selection);
-                (drawn.color.read_rgba8(0, [0, 0], SIZE), depths(gl, drawn.depth, &view))
+                (drawn.color.read_rgba8(0, [0, 0], SIZE), depths(gl, &drawn.depth, &view))
             });
     let drawn = near_depth.iter().filter(|&&d| d < 1.0).count();
     assert!(drawn > 500 && drawn < near_depth.len() - 500, "{drawn} pixels are near");
@@ -270,10 +238,11 @@ fn transparent_surfaces_are_hidden_by_nearer_ones_only() {
         // One pane in front of everything on the left, one behind the floor.
         quad(&mut scene.model, 5, Vec3::new(-0.5, 0.9, -0.2), Vec3::X * 0.4, Vec3::Y * 0.8);
         quad(&mut scene.model, 5, Vec3::new(-8.0, -0.5, 5.0), Vec3::X * 16.0, Vec3::NEG_Z * 30.0);
-        let mut rig = Rig::new(gl, scene, &settings());
+        let mut rig = Rig::new(gl, scene, &RenderSettings { bloom: false, msaa: 1, ..settings() });
         let view = view(convention);
         let before = rig.render(&view, Selection::All);
-        let after = draw_transparent(&mut rig, &view);
+        let drawn = rig.renderer.render_all(&mut rig.targets, &rig.scene, &view).unwrap();
+        let after = drawn.color.read_rgba8(0, [0, 0], view.size);
         let changed: Vec<usize> =
             (0..before.len() / 4).filter(|i| before[4 * i..][..3] != after[4 * i..][..3]).collect();
         assert!(changed.len() > 300, "{convention:?}: {}", changed.len());
@@ -281,26 +250,6 @@ fn transparent_surfaces_are_hidden_by_nearer_ones_only() {
         assert!(before.iter().skip(3).step_by(4).eq(after.iter().skip(3).step_by(4)), "luma stays");
         assert_eq!(gl.take_errors(), None);
     }
-}
-
-#[test]
-fn fxaa_of_a_crop_is_the_crop_of_fxaa() {
-    let head = open();
-    let gl = head.gl();
-    let mut rig = Rig::new(gl, scene(ShadingStyle::Realistic), &settings());
-    let source = rig.draw(&view(DepthConvention::Standard), Selection::All).color;
-    let raw = source.read_rgba8(0, [0, 0], SIZE);
-    let fxaa = Fxaa::new(gl).unwrap();
-    let target = |size| RenderTarget::new(gl, size, &[(Format::Rgba8, Filter::Nearest)], None).unwrap();
-    let (whole, part) = (target(SIZE), target([100, 90]));
-    fxaa.run(source.color(0), [0, 0], &Destination::whole(&whole));
-    let to = Destination { framebuffer: Some(part.raw()), origin: [10, 20], size: [80, 60] };
-    fxaa.run(source.color(0), [32, 16], &to);
-    let smooth = whole.read_rgba8(0, [32, 16], [80, 60]);
-    assert_eq!(smooth, part.read_rgba8(0, [10, 20], [80, 60]));
-    let whole = whole.read_rgba8(0, [0, 0], SIZE);
-    let changed = whole.chunks(4).zip(raw.chunks(4)).filter(|(a, b)| a != b).count();
-    assert!(changed > 100 && changed < whole.len() / 4 / 2, "{changed} pixels were smoothed");
 }
 
 #[test]
