@@ -7,7 +7,7 @@ use crate::program::succeed;
 
 #[test]
 fn a_measurement_is_reported() {
-    let Some(mut page) = Page::open("#display=left&renderer=forward", None) else { return };
+    let Some(mut page) = Page::open("#display=left&msaa=1", None) else { return };
     page.evaluate(
         "document.getElementById('measure-size').append(new Option('64x48')); \
          document.getElementById('measure-seconds').append(new Option('4', 4)); 0",

@@ -24,8 +24,8 @@ use yoro_bench::inpaint::{Patcher, PatcherKind};
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_gl::Context;
-use yoro_render::stereo::{ImBufferSize, Pipeline};
 use yoro_render::PreparedScene;
+use yoro_render::stereo::{ImBufferSize, Pipeline};
 use yoro_scenes::{self, BUILTINS};
 
 /// The kinds of pictures in a group. Each has a folder of this name.

@@ -1,4 +1,4 @@
-//! Suites whose settings have a label: the shading style, or the kind of anti-aliasing.
+//! Suites whose settings have a label: the shading style, or the number of samples.
 
 use super::cells::{CONVENTIONAL, cell};
 use super::dots::papers_mark;
