@@ -151,10 +151,7 @@ fn groups_go_into_synthesize() {
 #[test]
 fn reprojected_and_patched_differ_in_holes_alone() {
     let dir = tempfile::tempdir().unwrap();
-    succeed(
-        dir.path(),
-        "dataset prototype --groups 1 --size 96 --out data --patcher navier-stokes --anti-aliasing",
-    );
+    succeed(dir.path(), "dataset prototype --groups 1 --size 96 --out data --patcher navier-stokes --msaa 4");
     let scene = dir.path().join("data/prototype");
     let load = |kind: &str| yoro_media::load_color(&scene.join(format!("{kind}/000000.png"))).unwrap();
     let mask = yoro_media::load_mask(&scene.join("mask/000000.png")).unwrap();

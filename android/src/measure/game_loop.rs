@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn each_scenario_is_one_session_of_settings_that_exist() {
         for (scenario, steps) in [(1, Pipeline::ALL.len()), (2, 3), (3, 1)] {
-            let extras = [("scenario", "2"), ("seconds", "4"), ("ssao", "off")];
+            let extras = [("scenario", "2"), ("seconds", "4"), ("msaa", "1")];
             let extras = extras.map(|(key, value)| (key.to_owned(), value.to_owned())).to_vec();
             let mut game_loop = GameLoop::new(scenario, extras).unwrap();
             let mut runs = Vec::new();

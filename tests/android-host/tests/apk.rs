@@ -22,16 +22,15 @@ use yoro_openxr_stub::script::{At, Event, Eye, Fault, Pictures, Script as Headse
 use host::{READY, Run, device, layer, play, play_arm64, show};
 
 /// The settings of all devices, and of the desktop for comparison. A CPU renders this scene and quality quickly.
-const SETTINGS: [(&str, &str); 9] = [
+const SETTINGS: [(&str, &str); 8] = [
     ("scene", "prototype"),
     ("method", "yoro"),
     ("hud", "false"),
     ("shadow-map", "512"),
-    ("ssao", "off"),
+    ("msaa", "1"),
     ("bloom", "false"),
     ("point-lights", "0"),
     ("render-scale", "0.5"),
-    ("anti-aliasing", "off"),
 ];
 const SIZE: [u32; 2] = [320, 180];
 const DPI: f32 = 74.0;

@@ -4,26 +4,24 @@ use std::fmt::Write as _;
 
 use crate::traffic::{Piece, Traffic};
 use yoro_gl::Image;
-use yoro_render::RendererKind;
 
 /// A row of the table: a piece of work, and how often each method does it in a frame.
 struct Line {
-    renderer: RendererKind,
     text: String,
     methods: Vec<(String, u32)>,
 }
 
 /// Returns a table in Markdown with a row for each kind of work on a framebuffer, from frames with the names of their
 /// methods.
-pub fn pass_table(frames: &[(RendererKind, String, Vec<Piece>)]) -> String {
+pub fn pass_table(frames: &[(String, Vec<Piece>)]) -> String {
     let mut lines: Vec<Line> = Vec::new();
-    for (renderer, method, pieces) in frames {
+    for (method, pieces) in frames {
         for piece in pieces {
             let text =
                 format!("{} | {} | {}", piece.passes.join(", "), images(&piece.images), textures(piece));
-            let at = lines.iter().position(|line| line.renderer == *renderer && line.text == text);
+            let at = lines.iter().position(|line| line.text == text);
             let at = at.unwrap_or_else(|| {
-                lines.push(Line { renderer: *renderer, text, methods: Vec::new() });
+                lines.push(Line { text, methods: Vec::new() });
                 lines.len() - 1
             });
             match lines[at].methods.iter_mut().find(|(name, _)| name == method) {
@@ -32,13 +30,11 @@ pub fn pass_table(frames: &[(RendererKind, String, Vec<Piece>)]) -> String {
             }
         }
     }
-    lines.sort_by_key(|line| line.renderer.name());
-    let mut out =
-        "| renderer | pass | draws into | reads | times in a frame |\n|---|---|---|---|---|\n".to_owned();
+    let mut out = "| pass | draws into | reads | times in a frame |\n|---|---|---|---|\n".to_owned();
     for line in &lines {
         let methods: Vec<String> =
             line.methods.iter().map(|(name, times)| format!("{name} {times}")).collect();
-        let _ = writeln!(out, "| {} | {} | {} |", line.renderer.name(), line.text, methods.join(", "));
+        let _ = writeln!(out, "| {} | {} |", line.text, methods.join(", "));
     }
     out
 }

@@ -7,7 +7,8 @@ use std::rc::Rc;
 use glow::HasContext;
 
 use yoro_gl::{
-    Attachments, Blend, Context, DepthTest, Event, GlApi, Image, Observer, ProgramRecipe, RasterState, Shape,
+    Aspect, Attachments, Blend, Context, DepthTest, Event, GlApi, Image, Observer, ProgramRecipe,
+    RasterState, Shape,
 };
 
 /// A draw call.
@@ -184,7 +185,8 @@ impl State {
             Event::Discarded { framebuffer, color, depth } => {
                 self.push(Command::Discard(self.target(Some(framebuffer)), [color, depth]), None);
             }
-            Event::Copied { from, to, size, depth } => {
+            Event::Copied { from, to, size, aspect } => {
+                let depth = aspect == Aspect::Depth;
                 let (pass, from, to) = (self.pass(), self.target(from), self.target(to));
                 self.push(Command::Copy { pass, from, to, size, depth }, None);
             }

@@ -113,7 +113,7 @@ pub(crate) mod tests {
                 .unwrap()
             };
             let two = 80.0 + 60.0 * index as f64;
-            let render = [("g-buffer", two * 0.3), ("lighting", two * 0.15)];
+            let render = [("surfaces", two * 0.3), ("bloom", two * 0.15)];
             let with = |name: &'static str, ms: f64| [render[0], render[1], (name, ms)];
             SceneReport {
                 name: names[index % 4].into(),

@@ -290,11 +290,11 @@ mod tests {
         let mut telemetry = Telemetry::default();
         for ms in [2, 4] {
             let pass = |name, ms| (name, Duration::from_millis(ms));
-            telemetry.gpu([pass("geometry", ms), pass("fxaa", 1), pass("fxaa", 1)], 1);
+            telemetry.gpu([pass("surfaces", ms), pass("resolve", 1), pass("resolve", 1)], 1);
         }
         let line = telemetry.line(0, &viewer(), &DeviceState::default());
         let times: Vec<_> = line.stages.iter().map(|s| (s.name.as_str(), s.milliseconds)).collect();
-        assert_eq!(times, [("geometry", 3.0), ("fxaa", 2.0)]);
+        assert_eq!(times, [("surfaces", 3.0), ("resolve", 2.0)]);
         assert_eq!(line.gpu_ms, Some(5.0));
     }
 }

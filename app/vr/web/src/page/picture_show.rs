@@ -5,7 +5,7 @@ use std::rc::Rc;
 use wasm_bindgen::JsError;
 use yoro::eyes::Eye;
 use yoro::opengl::{Gather, Options, Outputs, Source};
-use yoro_gl::{Context, Destination, Filter, Format, GlError, Texture};
+use yoro_gl::{Context, Destination, Filter, Format, Texture};
 use yoro_render::stereo::StereoFrame;
 
 use super::error::sentence;
