@@ -270,32 +270,27 @@ fn whole_frames_are_counted_for_every_method_and_gpu() {
     let text = succeed(at, line).stdout;
     assert!(text.contains("Executed slots over two renders"), "{text}");
     let records = records(&at.join("f.jsonl"));
-    for renderer in ["deferred", "forward"] {
-        let of_renderer: Vec<Value> =
-            records.iter().filter(|r| r["label"] == renderer || r["record"] == "round").cloned().collect();
-        let sum = |contender: &str, prefix: &str| -> f64 {
-            let measured = of_kind(&of_renderer, "measurement");
-            let own = measured.iter().find(|m| m["contender"] == contender).expect(contender);
-            let values = own["values"].as_object().unwrap().iter();
-            values
-                .filter(|(name, _)| name.starts_with(prefix) && !name.contains("/vertices"))
-                .map(|(_, v)| v[0].as_f64().unwrap())
-                .sum()
-        };
-        for gpu in ["a650", "a740", "g52", "g57", "g610"] {
-            let slots = |contender: &str| sum(contender, &format!("slots/{gpu}/"));
-            let two = slots("conventional");
-            let [mono, both] = ["mono", "multiview"].map(|contender| slots(contender) / two);
-            // Without vertices, of which such small pictures have many per pixel, one view for both eyes costs half,
-            // and drawing both at once costs the same.
-            assert!((0.4..0.6).contains(&mono) && (0.9..1.1).contains(&both), "{gpu}: {mono} {both}");
-            assert!(slots("yoro-gather") > mono * two, "{gpu}");
-        }
-        // Each pixel of both eyes shows either a surface or the sky.
-        let surfaces = if renderer == "deferred" { "fragments/lighting" } else { "fragments/forward" };
-        assert!(sum("conventional", surfaces) >= 2.0, "{renderer}");
-        assert!(sum("yoro-gather", "bytes/") > 8.0, "{renderer}");
+    let measured = of_kind(&records, "measurement");
+    let sum = |contender: &str, prefix: &str| -> f64 {
+        let own = measured.iter().find(|m| m["contender"] == contender).expect(contender);
+        let values = own["values"].as_object().unwrap().iter();
+        values
+            .filter(|(name, _)| name.starts_with(prefix) && !name.contains("/vertices"))
+            .map(|(_, v)| v[0].as_f64().unwrap())
+            .sum()
+    };
+    for gpu in ["a650", "a740", "g52", "g57", "g610"] {
+        let slots = |contender: &str| sum(contender, &format!("slots/{gpu}/"));
+        let two = slots("conventional");
+        let [mono, both] = ["mono", "multiview"].map(|contender| slots(contender) / two);
+        // Without vertices, of which such small pictures have many per pixel, one view for both eyes costs half,
+        // and drawing both at once costs the same.
+        assert!((0.4..0.6).contains(&mono) && (0.9..1.1).contains(&both), "{gpu}: {mono} {both}");
+        assert!(slots("yoro-gather") > mono * two, "{gpu}");
     }
+    // Each pixel of both eyes shows either a surface or the sky.
+    assert!(sum("conventional", "fragments/surfaces") >= 2.0);
+    assert!(sum("yoro-gather", "bytes/") > 8.0);
 }
 
 #[test]

@@ -7,8 +7,7 @@ use image::RgbImage;
 use crate::program::{Run, finish, run, succeed, yoro};
 
 /// A screen of 110 x 62 mm with few pixels, and cheap rendering.
-const SMALL: &str =
-    "--screen 384x216 --dpi 88 --viewer v1 --set shadow-map=0 --set ssao=off --set bloom=false";
+const SMALL: &str = "--screen 384x216 --dpi 88 --viewer v1 --set shadow-map=0 --set msaa=1 --set bloom=false";
 
 fn view(folder: &Path, line: &str) -> RgbImage {
     let run = succeed(folder, &format!("view --png view.png {SMALL} {line}"));

@@ -28,7 +28,7 @@ use yoro_viewer::{render_settings, stereo_options};
 use crate::program::{Run, finish, yoro};
 
 /// Settings that make rendering cheap.
-const CHEAP: [&str; 4] = ["shadow-map=0", "ssao=off", "bloom=false", "hud=false"];
+const CHEAP: [&str; 4] = ["shadow-map=0", "msaa=1", "bloom=false", "hud=false"];
 /// Time limits of a run: the usual one, and that of large pictures of large scenes.
 const LIMIT: Duration = Duration::from_secs(60);
 const LARGE_LIMIT: Duration = Duration::from_secs(600);

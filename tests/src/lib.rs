@@ -43,15 +43,12 @@ pub fn on_every_backend(body: impl Fn(&Rc<Context>) -> anyhow::Result<()>) -> an
 pub const MULTIVIEW_EXPECTED: &str = "YORO_TEST_MULTIVIEW_EXPECTED";
 
 /// True if a method can be tested with these settings on this driver. Otherwise prints what the driver lacks. Says
-/// nothing about multiview, which is tested by `tests/gl/multiview.rs`, or about what a renderer supports on no driver.
+/// nothing about multiview, which is tested by `tests/gl/multiview.rs`.
 ///
 /// # Panics
 /// Panics if the driver lacks what it was chosen for.
 pub fn is_tested(method: Method, settings: &RenderSettings, gl: &Context) -> bool {
     let Err(reason) = settings.supports(method, gl.capabilities()) else { return true };
-    if settings.is_forward() && matches!(method, Method::Multiview | Method::ShadingReprojection) {
-        return false;
-    }
     if method != Method::Multiview {
         eprintln!("SKIPPED: {} is not tested here: {reason}", method.name());
     }

@@ -12,17 +12,17 @@ use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_estimate::Recorder;
 use yoro_gl::{Context, Program, ProgramRecipe, ShaderSource};
-use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
-use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer, RendererKind};
+use yoro_render::stereo::{self, ImBufferSize, Method, Paper, PaperOptions, StereoOptions};
+use yoro_render::{DepthCopy, GpuScene, RenderSettings, Renderer};
 use yoro_shaders::{Assembled, MissingFile};
 
 use crate::{is_tested, scene};
 
 /// The variants of the renderer's programs to build. Other programs are always built in every variant, except synthesis
-/// from parts and from layers of textures.
+/// from parts, from layers of textures and from pairs of depths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variants {
-    /// All combinations of maps, opacity, style, light and settings, and synthesis from parts and from layers.
+    /// All combinations of maps, opacity, style, light and settings, and synthesis from every kind of source.
     Every,
     /// With default settings, materials without maps and with all maps: the cost of other materials lies between these.
     /// All methods in the realistic style only.
@@ -67,8 +67,9 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
     }
     if variants == Variants::Every {
-        for (parts, array_textures) in [(true, false), (false, true), (true, true)] {
-            let options = Options { parts, array_textures, ..Options::default() };
+        let sources = [(true, false, false), (false, true, false), (true, true, false), (false, false, true)];
+        for (parts, array_textures, depth_pairs) in sources {
+            let options = Options { parts, array_textures, depth_pairs, ..Options::default() };
             Gather::new(gl, &options, Outputs::default())?;
             for depth in [false, true] {
                 AnyView::new(gl, &options, Outputs { depth, ..Outputs::default() })?;
@@ -110,14 +111,8 @@ fn renderer(gl: &Rc<Context>, scene: Scene, all_settings: bool) -> anyhow::Resul
     methods(gl, &settings, &scene)?;
     if all_settings {
         methods(gl, &RenderSettings { shadow_map_size: 0, ..settings.clone() }, &scene)?;
-        methods(gl, &RenderSettings { ssao: false, bloom: false, ..settings.clone() }, &scene)?;
-        methods(gl, &RenderSettings { ssao_half_size: true, ..settings.clone() }, &scene)?;
-    }
-    let forward = RenderSettings { renderer: RendererKind::Forward, ..settings };
-    methods(gl, &forward, &scene)?;
-    if all_settings {
-        methods(gl, &RenderSettings { msaa: 1, ..forward.clone() }, &scene)?;
-        methods(gl, &RenderSettings { shadow_map_size: 0, bloom: false, ..forward }, &scene)?;
+        methods(gl, &RenderSettings { msaa: 1, ..settings.clone() }, &scene)?;
+        methods(gl, &RenderSettings { shadow_map_size: 0, bloom: false, ..settings }, &scene)?;
     }
     Ok(())
 }
@@ -132,10 +127,7 @@ fn rendering(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
         // Materials without and with all maps, in every kind of opacity, represent all others under other settings.
         scene::keep_plain_and_full(&mut scene);
         if !every && style != ShadingStyle::Realistic {
-            let scene = GpuScene::upload(gl, scene)?;
-            for renderer in RendererKind::ALL {
-                Renderer::new(gl, &RenderSettings { renderer, ..settings() }, &scene)?;
-            }
+            Renderer::new(gl, &settings(), &GpuScene::upload(gl, scene)?)?;
             continue;
         }
         renderer(gl, scene.clone(), every)?;
@@ -169,17 +161,11 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
 
 fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
     let settings = RenderSettings::default();
-    for anti_aliasing in [AntiAliasing::After, AntiAliasing::Before, AntiAliasing::Off] {
-        let options = StereoOptions {
-            anti_aliasing,
-            near_field: Some(1.0),
-            guard_band: GuardBand::AUTO,
-            ..StereoOptions::default()
-        };
-        let there = |m: &Method| settings.supports(*m, gl.capabilities()).is_ok();
-        for method in Method::ALL.into_iter().filter(there) {
-            stereo::create(gl, method, &settings, &options)?;
-        }
+    let options =
+        StereoOptions { near_field: Some(1.0), guard_band: GuardBand::AUTO, ..StereoOptions::default() };
+    let there = |m: &Method| settings.supports(*m, gl.capabilities()).is_ok();
+    for method in Method::ALL.into_iter().filter(there) {
+        stereo::create(gl, method, &settings, &options)?;
     }
     Ok(())
 }
@@ -212,8 +198,7 @@ pub struct StageText {
 
 /// The macros for drivers with other extensions: multiview instead of views in layers of an array, and `discard`
 /// instead of clip distances.
-const COUNTERPARTS: [(&str, &str); 3] =
-    [("CLIP_DISTANCE", "MULTIVIEW"), ("CLIP_DISTANCE", "SEAM_DISCARD"), ("HALF", "LAYER")];
+const COUNTERPARTS: [(&str, &str); 2] = [("CLIP_DISTANCE", "MULTIVIEW"), ("CLIP_DISTANCE", "SEAM_DISCARD")];
 
 /// Returns the texts of the [made](make) programs and of their counterparts for other drivers, sorted by name.
 ///
@@ -223,10 +208,6 @@ pub fn texts(made: &BTreeSet<ProgramRecipe>) -> anyhow::Result<Vec<ProgramText>>
     let mut recipes: BTreeSet<ProgramRecipe> = BTreeSet::new();
     for recipe in made {
         for (from, to) in COUNTERPARTS {
-            // The forward renderer does not render into layers.
-            if to == "MULTIVIEW" && recipe.defines.iter().any(|(name, _)| name == "FORWARD") {
-                continue;
-            }
             if let Some(at) = recipe.defines.iter().position(|(name, _)| name == from) {
                 let mut counterpart = recipe.clone();
                 to.clone_into(&mut counterpart.defines[at].0);

@@ -19,7 +19,7 @@ fn a_measurement_is_reported() {
     page.evaluate("document.getElementById('measure').click()");
     page.until("yoro.busy !== null || yoro.measured !== undefined");
     // Settings that affect the measurement cannot be changed meanwhile, neither by controls nor by links.
-    for id in ["scene", "renderer", "anti-aliasing", "ipd", "dominant", "measure-size", "files"] {
+    for id in ["scene", "msaa", "ipd", "dominant", "measure-size", "files"] {
         let locked = format!("document.getElementById('{id}').matches(':disabled')");
         assert_eq!(page.evaluate(&locked), json!(true), "{id}");
     }

@@ -139,7 +139,7 @@ impl Desktop {
     }
 
     fn real(&mut self, pair: &EyePair, eye: Eye) -> RgbImage {
-        let mut reader = ViewReader::new(self._headless.gl(), true).unwrap();
+        let mut reader = ViewReader::new(self._headless.gl()).unwrap();
         let PreparedScene { scene, renderer } = &mut self.prepared;
         rgb_image(&reader.color(renderer, scene, &pair.view(eye)).unwrap(), pair.size)
     }

@@ -17,11 +17,11 @@ const WRONG_TYPE: &str = "if (location.search === '?again') {
 
 #[test]
 fn a_link_sets_everything_and_the_page_lasts() {
-    let fragment = "#viewpoint=2&method=hybrid&renderer=forward&anti-aliasing=off&ipd=70&dominant=left&display=anaglyph&scale=0.5";
+    let fragment = "#viewpoint=2&method=hybrid&msaa=1&ipd=70&dominant=left&display=anaglyph&scale=0.5";
     let Some(mut page) = Page::open(fragment, Some(WRONG_TYPE)) else { return };
-    let shown = "['viewpoint', 'method', 'renderer', 'anti-aliasing', 'ipd', 'dominant', 'display', 'scale'].map((id) => \
+    let shown = "['viewpoint', 'method', 'msaa', 'ipd', 'dominant', 'display', 'scale'].map((id) => \
                  document.getElementById(id).value).join()";
-    assert_eq!(page.evaluate(shown), "2,hybrid,forward,off,70,left,anaglyph,0.5");
+    assert_eq!(page.evaluate(shown), "2,hybrid,1,70,left,anaglyph,0.5");
     assert_eq!(page.message(), None);
     page.until("performance.getEntriesByName('first-picture').length === 1");
     let first = page.evaluate("performance.getEntriesByName('first-picture')[0].startTime");
@@ -33,17 +33,13 @@ fn a_link_sets_everything_and_the_page_lasts() {
     let fragment = page.evaluate("location.hash");
     assert!(fragment.as_str().unwrap().contains("method=hybrid"), "{fragment}");
 
-    // Each renderer selects its own anti-aliasing. An unsupported choice is refused, and the previous one stays.
-    for (renderer, smoothing) in [("deferred", "after"), ("forward", "msaa")] {
-        page.choose("renderer", renderer);
-        assert_eq!(page.evaluate("yoro.settings['anti-aliasing']"), smoothing);
-    }
-    page.until("location.hash.includes('renderer=forward') && !location.hash.includes('anti-aliasing')");
-    page.choose("renderer", "deferred");
-    page.choose("method", "shading-reprojection");
-    page.choose("renderer", "forward");
-    assert!(page.message().unwrap().contains("g-buffer"));
-    assert_eq!(page.evaluate("yoro.page.renderer"), "deferred");
+    // A default is left out of the link. An unsupported choice is refused, and the previous one stays.
+    page.choose("msaa", "4");
+    page.until("location.hash.includes('ipd=70') && !location.hash.includes('msaa')");
+    page.evaluate("document.getElementById('msaa').append(new Option('2')); 0");
+    page.choose("msaa", "2");
+    assert!(page.message().unwrap().contains("samples"));
+    assert_eq!(page.evaluate("yoro.settings.msaa"), 4);
     page.evaluate(&draw([64, 48]));
     assert_eq!(page.evaluate("yoro.page.takeErrors() ?? null"), Value::Null);
 
@@ -107,8 +103,8 @@ fn a_link_sets_everything_and_the_page_lasts() {
         )
     };
     page.choose("method", "yoro");
-    for renderer in ["forward", "deferred"] {
-        page.choose("renderer", renderer);
+    for samples in ["1", "4"] {
+        page.choose("msaa", samples);
         let before = page.evaluate(&frames(10));
         for _ in 0..5 {
             assert_eq!(page.evaluate(&frames(100)), before);
@@ -163,7 +159,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
 
     // Invalid parts of a link are reported, and the rest is applied, even if another scene is selected while the first
     // one loads. A wrong MIME type of the module does not matter.
-    let link = "?again#scene=conference&viewpoint=1&ipd=%20&method=none&size=3&anti-aliasing=msaa&toString=1&__proto__=1&at=1e9,,0,0,0";
+    let link = "?again#scene=conference&viewpoint=1&ipd=%20&method=none&size=3&msaa=3&toString=1&__proto__=1&at=1e9,,0,0,0";
     page.browser.go(&format!("{}{link}", page.server.address));
     page.until("globalThis.yoro?.wanted?.builtin === 'conference'");
     let told = page.message().unwrap();
@@ -171,7 +167,7 @@ fn a_link_sets_everything_and_the_page_lasts() {
         "ipd is “ ”",
         "method is “none”",
         "“size”",
-        "anti-aliasing is “msaa”",
+        "msaa is “3”",
         "“toString”",
         "“__proto__”",
         "place is “1e9",

@@ -9,8 +9,8 @@ use yoro_bench::bench::{PreparedContender, frame_contenders};
 use yoro_context::{Backend, Headless};
 use yoro_estimate::{Command, Recorder, pass_table, pieces};
 use yoro_gl::{Filter, Format, GlApi, Program, RasterState, RenderTarget, ShaderSource, Shape, Texture};
+use yoro_render::PreparedScene;
 use yoro_render::stereo::StereoFrame;
-use yoro_render::{PreparedScene, RendererKind};
 use yoro_settings::Settings;
 use yoro_tests::{golden::BLESS, on_every_backend, scene};
 use yoro_viewer::render_settings;
@@ -21,23 +21,20 @@ fn every_pass_reads_and_writes_what_the_table_says() {
     let headless = Headless::open(Backend::Egl).unwrap();
     let gl = headless.gl();
     let recorder = Recorder::new(gl);
+    let settings = render_settings(&Settings { shadow_map: 64, ..Settings::default() });
+    let mut scene = scene::every_material(ShadingStyle::Realistic);
+    scene::keep_plain_and_full(&mut scene);
+    let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
+    let options = EyeOptions { size: [96, 64], ..EyeOptions::default() };
+    let pair = options.pair(prepared.scene.viewpoints[0].pose());
+    let mut frame = StereoFrame::new(gl, pair.size).unwrap();
     let mut frames = Vec::new();
-    for renderer in RendererKind::ALL {
-        let settings = Settings { renderer, shadow_map: 64, ..Settings::default() };
-        let settings = render_settings(&settings);
-        let mut scene = scene::every_material(ShadingStyle::Realistic);
-        scene::keep_plain_and_full(&mut scene);
-        let mut prepared = PreparedScene::new(gl, scene, &settings).unwrap();
-        let options = EyeOptions { size: [96, 64], ..EyeOptions::default() };
-        let pair = options.pair(prepared.scene.viewpoints[0].pose());
-        let mut frame = StereoFrame::new(gl, pair.size).unwrap();
-        for contender in frame_contenders(renderer) {
-            let (method, options) = contender.method().unwrap();
-            let mut ready = PreparedContender::new(gl, method, &settings, &options).unwrap();
-            recorder.start();
-            ready.render(&mut prepared, &pair, &mut frame).unwrap();
-            frames.push((renderer, contender.name(), pieces(&recorder.take())));
-        }
+    for contender in frame_contenders() {
+        let (method, options) = contender.method().unwrap();
+        let mut ready = PreparedContender::new(gl, method, &settings, &options).unwrap();
+        recorder.start();
+        ready.render(&mut prepared, &pair, &mut frame).unwrap();
+        frames.push((contender.name(), pieces(&recorder.take())));
     }
     let table = pass_table(&frames);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/passes.txt");
@@ -57,7 +54,7 @@ fn a_record_says_what_was_drawn() {
         let formats = [(Format::Rgba8, Filter::Nearest)];
         let target = RenderTarget::new(gl, [8, 4], &formats, Some(Format::Depth24))?;
         let source = Texture::new(gl, [16, 2], Format::Rgba8, Filter::Linear)?;
-        let program = Program::new(gl, ShaderSource::Screen("render/fxaa.frag"), &[])?;
+        let program = Program::new(gl, ShaderSource::Screen("render/bloom_down.frag"), &[])?;
         let draw = || {
             gl.pass("smooth", || {
                 target.bind();
@@ -73,7 +70,7 @@ fn a_record_says_what_was_drawn() {
         let commands = recorder.take();
         let [Command::Draw(drawn)] = &commands[..] else { panic!("{commands:?}") };
         assert_eq!((drawn.pass, drawn.area, drawn.shape), ("smooth", [3, 4], Shape::Screen));
-        assert_eq!(drawn.program.files, ["screen.vert", "render/fxaa.frag"]);
+        assert_eq!(drawn.program.files, ["screen.vert", "render/bloom_down.frag"]);
         let images = drawn.target.as_ref().unwrap();
         assert_eq!((images.color[0].size, images.depth.unwrap().format), ([8, 4], Format::Depth24));
         let [(name, image)] = &drawn.textures[..] else { panic!("{:?}", drawn.textures) };

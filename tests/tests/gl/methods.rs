@@ -7,8 +7,8 @@ use glam::Quat;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_gl::Context;
-use yoro_render::stereo::{self, AntiAliasing, Method, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
+use yoro_render::stereo::{self, Method, StereoFrame, StereoOptions};
+use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_tests::{is_tested, on_every_backend, scene};
 
 const SIZE: [u32; 2] = [128, 96];
@@ -26,11 +26,11 @@ type Eyes = [Vec<u8>; 2];
 
 impl Stage {
     fn new(gl: &Rc<Context>, scene: Scene) -> anyhow::Result<Stage> {
-        Stage::of(gl, scene, RendererKind::Deferred)
+        Stage::of(gl, scene, RenderSettings::default().msaa)
     }
 
-    fn of(gl: &Rc<Context>, scene: Scene, renderer: RendererKind) -> anyhow::Result<Stage> {
-        let settings = RenderSettings { renderer, shadow_map_size: 512, ..RenderSettings::default() };
+    fn of(gl: &Rc<Context>, scene: Scene, msaa: u32) -> anyhow::Result<Stage> {
+        let settings = RenderSettings { msaa, shadow_map_size: 512, ..RenderSettings::default() };
         let scene = GpuScene::upload(gl, scene)?;
         let renderer = Renderer::new(gl, &settings, &scene)?;
         Ok(Stage { gl: gl.clone(), settings, scene, renderer, frame: StereoFrame::new(gl, SIZE)? })
@@ -50,11 +50,10 @@ impl Stage {
     }
 }
 
-/// Returns all scenes with the deferred renderer, and the small one with the forward renderer.
-fn scenes_and_renderers() -> impl Iterator<Item = (Scene, RendererKind)> {
+/// Returns all scenes with one sample a pixel, and the small one with four.
+fn scenes_and_samples() -> impl Iterator<Item = (Scene, u32)> {
     let small = scenes().swap_remove(0);
-    let deferred = scenes().into_iter().map(|scene| (scene, RendererKind::Deferred));
-    deferred.chain([(small, RendererKind::Forward)])
+    scenes().into_iter().map(|scene| (scene, 1)).chain([(small, 4)])
 }
 
 /// Returns pairs of parallel and canted eyes, with symmetric and asymmetric frusta, both depth conventions and both
@@ -108,14 +107,14 @@ fn mean_difference(a: &[u8], b: &[u8]) -> f64 {
 #[test]
 fn single_pass_stereo_equals_two_renders() {
     on_every_backend(|gl| {
-        // Anti-aliasing would turn one differently rounded edge pixel into several different pixels.
-        let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..StereoOptions::default() };
-        for (scene, renderer) in scenes_and_renderers() {
-            let mut stage = Stage::of(gl, scene, renderer)?;
+        let options = StereoOptions::default();
+        for (scene, samples) in scenes_and_samples() {
+            let mut stage = Stage::of(gl, scene, samples)?;
             for (name, pair) in pairs(&stage) {
                 let expected = stage.render(Method::Conventional, &options, &pair)?;
                 for method in [Method::Instanced, Method::Multiview] {
-                    if !is_tested(method, &stage.settings, gl) {
+                    // Multiview draws one sample a pixel.
+                    if method == Method::Multiview && samples > 1 || !is_tested(method, &stage.settings, gl) {
                         continue;
                     }
                     let both = stage.render(method, &options, &pair)?;
@@ -136,24 +135,18 @@ fn single_pass_stereo_equals_two_renders() {
 fn a_missing_driver_feature_is_one_sentence() {
     on_every_backend(|gl| {
         for method in Method::ALL {
-            for renderer in RendererKind::ALL {
-                let settings = RenderSettings { renderer, ..RenderSettings::default() };
-                let made = stereo::create(gl, method, &settings, &StereoOptions::default());
-                let Err(reason) = settings.supports(method, gl.capabilities()) else {
-                    made?;
-                    continue;
-                };
-                let sentence = reason.to_string();
-                let remedy = match (method, renderer) {
-                    (Method::Multiview, RendererKind::Deferred) => "GL_OVR_multiview2; use instanced",
-                    (Method::Multiview | Method::ShadingReprojection, RendererKind::Forward) => {
-                        "choose the deferred renderer"
-                    }
-                    _ => "nothing",
-                };
-                ensure!(sentence.contains(remedy), "{sentence}");
-                ensure!(made.err().is_some_and(|e| e.to_string() == sentence));
-            }
+            let settings = RenderSettings::default();
+            let made = stereo::create(gl, method, &settings, &StereoOptions::default());
+            let Err(reason) = settings.supports(method, gl.capabilities()) else {
+                made?;
+                continue;
+            };
+            let sentence = reason.to_string();
+            ensure!(
+                method == Method::Multiview && sentence.contains("GL_OVR_multiview2; use instanced"),
+                "{sentence}"
+            );
+            ensure!(made.err().is_some_and(|e| e.to_string() == sentence));
         }
         Ok(())
     })
@@ -164,8 +157,8 @@ fn a_missing_driver_feature_is_one_sentence() {
 fn hybrid_is_conventional_where_everything_is_near() {
     on_every_backend(|gl| {
         // The split is beyond the far plane, or beyond all objects.
-        for renderer in RendererKind::ALL {
-            let mut stage = Stage::of(gl, scenes().swap_remove(0), renderer)?;
+        for samples in [1, 4] {
+            let mut stage = Stage::of(gl, scenes().swap_remove(0), samples)?;
             for (threshold, pair) in [
                 (1e-3, stage.pair(Eye::Left, DepthConvention::Standard)),
                 (0.05, stage.pair(Eye::Right, DepthConvention::Reversed)),
@@ -203,8 +196,8 @@ fn the_far_field_of_hybrid_is_the_same_for_both_eyes() {
 #[test]
 fn hybrid_with_a_split_is_close_to_conventional() {
     on_every_backend(|gl| {
-        for (scene, renderer) in scenes_and_renderers() {
-            let mut stage = Stage::of(gl, scene, renderer)?;
+        for (scene, samples) in scenes_and_samples() {
+            let mut stage = Stage::of(gl, scene, samples)?;
             for (name, pair) in pairs(&stage).into_iter().filter(|(name, _)| *name != "canted") {
                 // The small scene's squares and floor lie on both sides of 3 metres, the room on both sides of 7.
                 let split = if is_small(&stage.scene) { 3.0 } else { 7.0 };

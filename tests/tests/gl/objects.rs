@@ -6,8 +6,8 @@ use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, 
 use yoro_assets::ShadingStyle;
 use yoro_context::Headless;
 use yoro_gl::Context;
-use yoro_render::stereo::{self, AntiAliasing, ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions};
-use yoro_render::{GpuScene, RenderSettings, Renderer, RendererKind};
+use yoro_render::stereo::{self, ImBufferSize, Method, Pipeline, StereoFrame, StereoOptions};
+use yoro_render::{GpuScene, RenderSettings, Renderer};
 use yoro_tests::{backends, is_tested, scene};
 
 /// Returns every way to render a frame, by name.
@@ -18,7 +18,6 @@ fn ways(gl: &Context, settings: &RenderSettings) -> Vec<(&'static str, Method, S
     let near_field = StereoOptions {
         near_field: Some(2.5),
         policy: None,
-        anti_aliasing: AntiAliasing::Before,
         guard_band: GuardBand::Pixels(4),
         ..StereoOptions::default()
     };
@@ -49,13 +48,9 @@ fn tiny(gl: &Rc<Context>) -> GpuScene {
     GpuScene::upload(gl, scene).unwrap()
 }
 
-/// Returns settings for both renderers.
+/// Returns settings with one sample a pixel and with several.
 fn settings() -> [RenderSettings; 2] {
-    RendererKind::ALL.map(|renderer| RenderSettings {
-        renderer,
-        shadow_map_size: 64,
-        ..RenderSettings::default()
-    })
+    [1, 4].map(|msaa| RenderSettings { msaa, shadow_map_size: 64, ..RenderSettings::default() })
 }
 
 /// Returns the eyes of a moving head.
@@ -84,7 +79,7 @@ fn a_hundred_frames_hold_as_many_objects_as_ten() {
                         after_ten = gl.object_count();
                     }
                 }
-                let name = format!("{backend:?}, {name}, {}", settings.summary());
+                let name = format!("{backend:?}, {name}, {} samples", settings.msaa);
                 assert_eq!(gl.take_errors(), None, "{name}");
                 assert_eq!(gl.object_count(), after_ten, "{name}");
             }

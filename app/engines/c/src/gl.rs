@@ -355,7 +355,7 @@ impl Gl {
         let context = unsafe { Context::with_loader(entry_points::wrap(load)?, load)? };
         let has = |bit| info.sources & bit != 0;
         let (parts, array_textures) = (has(YORO_GL_SOURCE_PARTS), has(YORO_GL_SOURCE_LAYERS));
-        let options = Options { gl_state, parts, array_textures };
+        let options = Options { gl_state, parts, array_textures, depth_pairs: false };
         let passes = match pose {
             true => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
             false => Passes::Eyes(Box::new(Gather::new(&context, &options, outputs)?)),

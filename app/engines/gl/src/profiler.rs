@@ -225,10 +225,13 @@ fn read(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::capabilities::Loaded;
     use yoro_context::{Backend, Headless};
 
+    const NOTHING: Loaded = Loaded { multiview: false, sample_masks: false };
+
     fn profiler(gl: &glow::Context, timer_queries: bool) -> Profiler {
-        Profiler::new(&Capabilities { timer_queries, ..Capabilities::query(gl, false, || true).unwrap() })
+        Profiler::new(&Capabilities { timer_queries, ..Capabilities::query(gl, NOTHING, || true).unwrap() })
     }
 
     /// llvmpipe has timer queries; their values do not matter here.

@@ -36,19 +36,12 @@ pub struct GroupOptions {
     pub synthesis: PipelineOptions,
     /// The guard band by which the dominant eye is rendered wider.
     pub guard_band: GuardBand,
-    /// Applies FXAA to both rendered images. As in the paper, the reprojected image then moves blended edge pixels with
-    /// one of their surfaces.
-    pub anti_aliasing: bool,
 }
 
 impl Default for GroupOptions {
-    /// Returns options without a guard band and without anti-aliasing, so that every pixel belongs to one surface.
+    /// Returns options without a guard band.
     fn default() -> GroupOptions {
-        GroupOptions {
-            synthesis: PipelineOptions::default(),
-            guard_band: GuardBand::None,
-            anti_aliasing: false,
-        }
+        GroupOptions { synthesis: PipelineOptions::default(), guard_band: GuardBand::None }
     }
 }
 
@@ -101,7 +94,7 @@ impl GroupRenderer {
     pub fn new(gl: &Rc<Context>, options: &GroupOptions) -> Result<GroupRenderer, GlError> {
         Ok(GroupRenderer {
             options: *options,
-            reader: ViewReader::new(gl, options.anti_aliasing)?,
+            reader: ViewReader::new(gl)?,
             offline: Offline::new(gl, &options.synthesis)?,
         })
     }

@@ -207,7 +207,7 @@ impl BenchArgs {
             render: if self.frame {
                 render_settings(self.renderer.settings())
             } else {
-                self.renderer.render_settings()?
+                self.renderer.render_settings()
             },
             rounds: self.rounds.unwrap_or(of(5, 2)),
             viewpoints: self.viewpoints.unwrap_or(of(3, 1)) as usize,

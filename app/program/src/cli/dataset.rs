@@ -15,7 +15,7 @@ use crate::cli::args::{GlArgs, PatcherArgs, Shard};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::outputs::Files;
-use crate::cli::settings::{Renderer, SettingOptions, Synthesis};
+use crate::cli::settings::{OneSample, SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{DepthConvention, DisparityLaw, Eye, Frustum, GuardBand, Pose};
 use yoro_assets::{CameraPath, Scene, ShadingStyle, Viewpoint, path};
@@ -25,7 +25,7 @@ use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_gl::Context;
 use yoro_render::stereo::{ImBufferSize, Pipeline};
-use yoro_render::{PreparedScene, RenderSettings};
+use yoro_render::PreparedScene;
 use yoro_scenes::{self, BUILTINS};
 
 /// The kinds of pictures in a group. Each has a folder of this name.
@@ -52,9 +52,6 @@ pub struct DatasetArgs {
     /// Folder for the groups; one folder for each scene is made in it. Finished groups in it are kept
     #[arg(long, default_value = "dataset", value_name = "FOLDER")]
     out: PathBuf,
-    /// Smooth the edges of both rendered images (FXAA) before reprojection, as in the paper
-    #[arg(long)]
-    anti_aliasing: bool,
     /// Another shading style than the scene's own
     #[arg(long, value_parser = choices::style())]
     style: Option<ShadingStyle>,
@@ -68,7 +65,7 @@ pub struct DatasetArgs {
     #[command(flatten)]
     patcher: PatcherArgs,
     #[command(flatten)]
-    renderer: SettingOptions<Renderer>,
+    renderer: SettingOptions<OneSample>,
     #[command(flatten)]
     gl: GlArgs,
 }
@@ -91,9 +88,7 @@ struct Settings<'a> {
     depth: DepthConvention,
     patcher: Option<PatcherKind>,
     model: Option<&'a Path>,
-    /// The forward renderer's settings; absent for the deferred renderer, so that its existing folders stay valid.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    renderer: Option<String>,
+    msaa: u32,
     #[serde(flatten)]
     options: GroupOptions,
 }
@@ -209,11 +204,7 @@ impl Subcommand for DatasetArgs {
 }
 
 fn group_options(args: &DatasetArgs) -> GroupOptions {
-    GroupOptions {
-        synthesis: args.synthesis.options(),
-        guard_band: GuardBand::None,
-        anti_aliasing: args.anti_aliasing,
-    }
+    GroupOptions { synthesis: args.synthesis.options(), guard_band: GuardBand::None }
 }
 
 /// The missing groups of one scene.
@@ -252,9 +243,7 @@ impl<'a> Job<'a> {
             depth: args.eyes.pair(Pose::IDENTITY).depth.convention,
             patcher: args.patcher.patcher,
             model: args.patcher.model.as_deref(),
-            renderer: Some(args.renderer.render_settings()?)
-                .filter(RenderSettings::is_forward)
-                .map(|s| s.summary()),
+            msaa: args.renderer.render_settings().msaa,
             options: group_options(args),
         })?;
         check_settings(&folder, &settings)?;
@@ -276,7 +265,7 @@ impl<'a> Job<'a> {
         bar.set_message(format!("{}: preparing", self.name));
         stop(args)?;
         files::write(&self.folder.join(SETTINGS), format!("{:#}\n", self.settings).as_bytes())?;
-        let settings = args.renderer.render_settings()?;
+        let settings = args.renderer.render_settings();
         let scene: Scene = yoro_scenes::load(self.name, args.seed, args.style)?;
         let path = CameraPath::new(path.unwrap_or(&scene.viewpoints));
         let PreparedScene { scene, mut renderer } = PreparedScene::new(gl, scene, &settings)?;

@@ -163,7 +163,7 @@ impl Subcommand for RenderArgs {
     /// Renders and writes the pictures.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
-        let settings = self.renderer.render_settings()?;
+        let settings = self.renderer.render_settings();
         let scene = yoro_scenes::load(&self.scene, self.seed, self.style)?;
         let path = CameraPath::new(&scene.viewpoints);
         let heads = match (eyes::viewpoint(self.position, self.target), self.frames) {

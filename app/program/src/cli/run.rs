@@ -102,7 +102,7 @@ impl Subcommand for RunArgs {
     /// Measures, writes the report and prints its table.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
-        let settings = self.renderer.render_settings()?;
+        let settings = self.renderer.render_settings();
         let names = self.names();
         yoro_scenes::check(&names, self.seed)?;
         files::create_folder(&self.out)?;
@@ -198,15 +198,13 @@ fn parameters(args: &RunArgs, settings: &RenderSettings) -> Vec<Parameter> {
         ("near and far plane, metres", format!("{} and {}", eyes.near, eyes.far)),
         ("depth", if eyes.reversed_z { "reversed" } else { "standard" }.into()),
         ("dominant eye", eyes.dominant.name().into()),
+        ("samples per pixel", settings.msaa.to_string()),
         ("viewpoints per scene", args.viewpoints.to_string()),
         ("seed", args.seed.to_string()),
     ];
-    if settings.is_forward() {
-        parameters.push(("renderer", settings.summary()));
-    }
     for &pipeline in &args.pipelines {
         let o = args.stereo.options_of(pipeline);
-        let mut text = format!("guard band {:?}, anti-aliasing {:?}", o.guard_band, o.anti_aliasing);
+        let mut text = format!("guard band {:?}", o.guard_band);
         if pipeline == Pipeline::Paper {
             text += &format!(", {:?}", o.synthesis.paper);
         }
@@ -223,7 +221,7 @@ fn timing_method(args: &RunArgs, gl: &Context) -> String {
         "Pass times are wall-clock times with glFinish before and after each pass (timer queries of a CPU rasterizer are wrong)"
     };
     format!(
-        "Frame times: wall clock of a whole stereo frame up to glFinish, both eyes finished and anti-aliased; one warm-up frame per method, then {} interleaved rounds over {} viewpoints, the order of the methods rotated; medians. {passes}, medians over frames of their own at the first viewpoint.",
+        "Frame times: wall clock of a whole stereo frame up to glFinish, both eyes finished; one warm-up frame per method, then {} interleaved rounds over {} viewpoints, the order of the methods rotated; medians. {passes}, medians over frames of their own at the first viewpoint.",
         args.rounds, args.viewpoints
     )
 }

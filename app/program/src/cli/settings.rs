@@ -4,19 +4,20 @@ use std::ffi::OsStr;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
-use yoro_settings::{RendererKind, Setting, Settings};
+use yoro_settings::{Setting, Settings};
 use yoro_viewer::stereo_options;
 
 /// A group of settings that a subcommand has options for.
 pub trait Group {
     /// The keys of the settings, in the order of the help.
     const KEYS: &'static [&'static str];
+    /// Defaults other than those of the table, as `key=value`.
+    const DEFAULTS: &'static [&'static str] = &[];
 }
 
 /// The settings of the renderer.
@@ -24,7 +25,16 @@ pub trait Group {
 pub struct Renderer;
 
 impl Group for Renderer {
-    const KEYS: &'static [&'static str] = &["renderer", "msaa", "depth-bits"];
+    const KEYS: &'static [&'static str] = &["msaa"];
+}
+
+/// The settings of the renderer of image groups: each pixel belongs to one surface by default.
+#[derive(Clone, Copy, Debug)]
+pub struct OneSample;
+
+impl Group for OneSample {
+    const KEYS: &'static [&'static str] = Renderer::KEYS;
+    const DEFAULTS: &'static [&'static str] = &["msaa=1"];
 }
 
 /// The settings of the synthesis pipeline.
@@ -48,7 +58,6 @@ impl Group for Stereo {
         "kernel-height",
         "strict",
         "guard-band",
-        "anti-aliasing",
         "near-field",
         "switch",
         "split-disparity",
@@ -87,17 +96,18 @@ impl<G: Group> SettingOptions<G> {
     fn rows() -> impl Iterator<Item = &'static Setting> {
         G::KEYS.iter().map(|key| Setting::find(key).expect("a key of the table"))
     }
+
+    /// Returns the default of a setting that differs from the table's.
+    fn default_of(setting: &Setting) -> Option<String> {
+        let pairs = G::DEFAULTS.iter().filter_map(|pair| pair.split_once('='));
+        pairs.filter(|(key, _)| *key == setting.key).map(|(_, value)| value.to_owned()).next()
+    }
 }
 
-impl SettingOptions<Renderer> {
+impl<G: Group> SettingOptions<G> {
     /// Returns the renderer's settings. Those without an option have the desktop's defaults.
-    pub fn render_settings(&self) -> anyhow::Result<RenderSettings> {
-        let Settings { renderer, msaa, depth_bits, .. } = self.settings;
-        let of_forward = self.given.iter().find(|(key, _)| *key != "renderer");
-        if let Some((key, _)) = of_forward.filter(|_| renderer != RendererKind::Forward) {
-            bail!("--{key} goes with --renderer forward only: give that, or leave it out");
-        }
-        Ok(RenderSettings { renderer, msaa, depth_bits, ..RenderSettings::default() })
+    pub fn render_settings(&self) -> RenderSettings {
+        RenderSettings { msaa: self.settings.msaa, ..RenderSettings::default() }
     }
 }
 
@@ -122,7 +132,7 @@ impl SettingOptions<Stereo> {
 
 impl<G: Group> clap::Args for SettingOptions<G> {
     fn augment_args(command: Command) -> Command {
-        command.args(Self::rows().map(option))
+        command.args(Self::rows().map(|setting| option(setting, Self::default_of(setting))))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -142,8 +152,9 @@ impl<G: Group> clap::FromArgMatches for SettingOptions<G> {
         };
         let given: Vec<_> = Self::rows().filter_map(value).collect();
         let pairs = given.iter().map(|(key, value)| format!("{key}={value}"));
-        let settings = Settings::resolve(None, pairs)
-            .map_err(|error| clap::Error::raw(clap::error::ErrorKind::ValueValidation, error))?;
+        let settings =
+            Settings::resolve(None, G::DEFAULTS.iter().map(|pair| (*pair).to_owned()).chain(pairs))
+                .map_err(|error| clap::Error::raw(clap::error::ErrorKind::ValueValidation, error))?;
         Ok(SettingOptions { settings, given, group: PhantomData })
     }
 
@@ -153,8 +164,8 @@ impl<G: Group> clap::FromArgMatches for SettingOptions<G> {
     }
 }
 
-/// Returns the command-line option for a setting.
-fn option(setting: &'static Setting) -> Arg {
+/// Returns the command-line option for a setting, whose default may differ from the table's.
+fn option(setting: &'static Setting, default: Option<String>) -> Arg {
     let help = setting.help().replace('`', "");
     if setting.is_bool {
         let (name, help) = match setting.off_help {
@@ -163,10 +174,10 @@ fn option(setting: &'static Setting) -> Arg {
         };
         return Arg::new(setting.key).long(name).help(help).action(ArgAction::SetTrue);
     }
-    let default = match setting.auto {
+    let default = default.or_else(|| match setting.auto {
         Some(default) => Some(default.to_owned()),
         None => Some(setting.default()).filter(|_| !setting.is_optional),
-    };
+    });
     let default = default.map_or_else(String::new, |default| format!(" [default: {default}]"));
     let name = setting.value_name.map_or_else(|| setting.key.to_uppercase().replace('-', "_"), str::to_owned);
     Arg::new(setting.key)

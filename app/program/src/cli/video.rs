@@ -35,7 +35,7 @@ pub fn render(
 ) -> anyhow::Result<()> {
     let PreparedScene { mut scene, mut renderer } = prepared;
     let seconds = |frame: usize| time + frame as f64 / f64::from(frame_rate);
-    let mut reader = ViewReader::new(gl, true)?;
+    let mut reader = ViewReader::new(gl)?;
     // Everything is rendered twice: the 8 bits of depth cover the distances of all frames, which must be known first.
     let bar = progress_bar(2 * heads.len() as u64);
     bar.set_message("distances");

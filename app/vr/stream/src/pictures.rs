@@ -65,7 +65,7 @@ impl FrameRenderer {
     /// # Errors
     /// [`GlError`] if the driver refuses.
     pub fn new(gl: &Rc<Context>, mode: Mode) -> Result<FrameRenderer, GlError> {
-        Ok(FrameRenderer { reader: ViewReader::new(gl, true)?, span: DepthSpan::default(), mode })
+        Ok(FrameRenderer { reader: ViewReader::new(gl)?, span: DepthSpan::default(), mode })
     }
 
     /// Returns the picture that answers a request.

@@ -7,11 +7,11 @@ use crate::error::ViewerError;
 use crate::options::{render_settings, stereo_options};
 use crate::scene_slot::Shown;
 use yoro::choice::Cost;
-use yoro::eyes::{EyePair, EyesError};
+use yoro::eyes::EyePair;
 use yoro_gl::{Context, GlError};
 use yoro_render::stereo::{
-    self, Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,
-    StereoOptions, Substitute,
+    Auto, EyeTarget, GuardBandUse, ImBufferSize, Method, MethodChoice, Pipeline, SelectedMethod,
+    StereoMethod as _, StereoOptions, Substituted,
 };
 use yoro_settings::Settings;
 
@@ -26,14 +26,12 @@ pub(crate) struct MethodSlot {
     is_mixed: bool,
     /// The quality that the controller asked for last.
     quality: Quality,
-    /// The reason why neither eye of the last frame could be synthesized from the other, if so.
-    unfit: Option<EyesError>,
+    /// The reason that was logged last for rendering both eyes instead of using the method, while it holds.
+    substituted: Option<Substituted>,
     /// The compiled method, while a scene is shown.
     made: Option<SelectedMethod>,
     /// True while both eyes are rendered for a comparison with the method.
     is_comparing: bool,
-    /// Renders both eyes while they are unfit for synthesis or compared.
-    substitute: Substitute,
     /// Time of the last frame that was rendered, while that frame may be shown again.
     rendered_ns: Option<i64>,
 }
@@ -48,10 +46,9 @@ impl MethodSlot {
             headroom: None,
             is_mixed: false,
             quality: Quality::FULL,
-            unfit: None,
+            substituted: None,
             made: None,
             is_comparing: false,
-            substitute: Substitute::default(),
             rendered_ns: None,
         }
     }
@@ -147,7 +144,6 @@ impl MethodSlot {
         self.rendered_ns = None;
         if let Some(gl) = gl {
             self.made = Some(self.create(gl, settings)?);
-            self.substitute = Substitute::default();
         }
         self.controller.restart();
         Ok(())
@@ -173,7 +169,7 @@ impl MethodSlot {
 
     /// Drops the objects on the GPU.
     pub fn drop_made(&mut self) {
-        (self.made, self.substitute) = (None, Substitute::default());
+        self.made = None;
     }
 
     /// Switches to the next (1) or previous (-1) method of the settings' list that the driver supports.
@@ -208,24 +204,9 @@ impl MethodSlot {
         Ok(None)
     }
 
-    /// Checks whether one of the eyes can be synthesized from the other, if the method needs that.
-    pub fn judge(&mut self, pair: &EyePair) {
-        let unfit = Substitute::reason(self.choice.first(), pair);
-        if unfit.as_ref().map(std::mem::discriminant) != self.unfit.as_ref().map(std::mem::discriminant) {
-            match &unfit {
-                Some(reason) => {
-                    log::warn!("both eyes are rendered instead of using {}: {reason}", self.choice.name())
-                }
-                None => log::info!("{} can be used again", self.choice.name()),
-            }
-        }
-        self.unfit = unfit;
-    }
-
     /// Compiles two real renders, so that the first frame of a comparison does not have to.
-    pub fn prepare_comparison(&mut self, gl: &Rc<Context>, settings: &Settings) -> Result<(), GlError> {
-        let (render, options) = (render_settings(settings), self.options(settings));
-        self.substitute.get(|method| stereo::create(gl, method, &render, &options)).map(drop)
+    pub fn prepare_comparison(&mut self) -> Result<(), GlError> {
+        self.made.as_mut().map_or(Ok(()), SelectedMethod::prepare_comparison)
     }
 
     /// Starts or ends a comparison; returns true if this is a change.
@@ -245,43 +226,51 @@ impl MethodSlot {
         let Some(rate) = settings.render_rate else { return Ok(false) };
         let refresh_ns = if refresh_hz > 0.0 { 1e9 / refresh_hz } else { 0.0 };
         let is_due = |rendered_ns: i64| (now_ns - rendered_ns) as f32 + refresh_ns / 2.0 >= 1e9 / rate;
-        let shows_method = !self.is_comparing && self.unfit.is_none();
-        if shows_method && self.rendered_ns.is_some_and(|ns| !is_due(ns)) {
+        if !self.is_comparing && self.rendered_ns.is_some_and(|ns| !is_due(ns)) {
             let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
-            if made.method().show_again(pair, to)? {
+            if made.show_again(pair, to)? {
                 return Ok(true);
             }
         }
-        self.rendered_ns = shows_method.then_some(now_ns);
+        self.rendered_ns = (!self.is_comparing).then_some(now_ns);
         Ok(false)
     }
 
-    /// Renders both eyes. Eyes that are unfit for synthesis or compared are rendered by the substitute.
+    /// Renders both eyes. Returns the use of the guard band, if there is anything to say about it.
     pub fn render(
         &mut self,
-        gl: &Rc<Context>,
-        settings: &Settings,
         shown: &mut Shown,
         pair: &EyePair,
         to: &[EyeTarget; 2],
-    ) -> Result<(), ViewerError> {
-        let (render, options) = (render_settings(settings), self.options(settings));
-        let method = match &mut self.made {
-            // The automatic choice handles unfit eyes itself.
-            Some(SelectedMethod::Auto(auto)) if !self.is_comparing => auto.as_mut(),
-            _ if self.is_comparing || self.unfit.is_some() => {
-                self.substitute.get(|method| stereo::create(gl, method, &render, &options))?
-            }
-            Some(SelectedMethod::Named(method)) => method.as_mut(),
-            Some(SelectedMethod::Auto(auto)) => auto.as_mut(),
-            None => return Err(ViewerError::NoContext),
-        };
-        Ok(method.render_to(&mut shown.renderer, &shown.scene, pair, to)?)
+    ) -> Result<Option<GuardBandUse>, ViewerError> {
+        let made = self.made.as_mut().ok_or(ViewerError::NoContext)?;
+        made.compare(self.is_comparing)?;
+        made.render_to(&mut shown.renderer, &shown.scene, pair, to)?;
+        let report = made.report();
+        self.tell(report.substituted);
+        Ok(report.guard_band)
     }
 
-    /// Returns `StereoMethod::guard_band`; `None` while both eyes are rendered instead of one being synthesized.
-    pub fn guard_band(&mut self) -> Option<GuardBandUse> {
-        self.made.as_mut().filter(|_| self.unfit.is_none())?.method().guard_band()
+    /// Logs the reason for rendering both eyes, if it is another one than before.
+    fn tell(&mut self, substituted: Option<Substituted>) {
+        let kind = |reason: &Substituted| {
+            let eyes = match reason {
+                Substituted::Eyes(error) => Some(std::mem::discriminant(error)),
+                _ => None,
+            };
+            (std::mem::discriminant(reason), eyes)
+        };
+        if substituted.as_ref().map(kind) != self.substituted.as_ref().map(kind) {
+            let name = self.choice.name();
+            match &substituted {
+                Some(Substituted::Eyes(reason)) => {
+                    log::warn!("both eyes are rendered instead of using {name}: {reason}");
+                }
+                Some(reason) => log::info!("both eyes are rendered instead of using {name}: {reason}"),
+                None => log::info!("{name} can be used again"),
+            }
+        }
+        self.substituted = substituted;
     }
 
     /// Ends a frame that was handed to the display, with the GPU time of an earlier frame if it is known by now.

@@ -2,17 +2,13 @@
 
 use yoro_render::RenderSettings;
 use yoro_render::stereo::{NearFieldPolicy, PaperOptions, Pipeline, PipelineOptions, StereoOptions};
-use yoro_settings::{Settings, Ssao};
+use yoro_settings::Settings;
 
 /// Returns the renderer's settings for those of the viewer.
 pub fn render_settings(settings: &Settings) -> RenderSettings {
     RenderSettings {
-        renderer: settings.renderer,
         msaa: settings.msaa,
-        depth_bits: settings.depth_bits,
         shadow_map_size: settings.shadow_map,
-        ssao: settings.ssao != Ssao::Off,
-        ssao_half_size: settings.ssao == Ssao::Half,
         bloom: settings.bloom,
         point_lights: settings.point_lights,
         ..RenderSettings::default()
@@ -32,7 +28,6 @@ pub fn stereo_options(settings: &Settings, pipeline: Pipeline) -> StereoOptions 
     StereoOptions {
         synthesis: PipelineOptions { paper, ..options.synthesis },
         guard_band: settings.guard_band.unwrap_or(options.guard_band),
-        anti_aliasing: settings.anti_aliasing.unwrap_or(options.anti_aliasing),
         near_field: settings.near_field,
         policy: settings.switch.then(NearFieldPolicy::default),
         render_rate: settings.render_rate,
@@ -55,7 +50,6 @@ mod tests {
                 "kernel-height=5",
                 "strict=true",
                 "guard-band=40px",
-                "anti-aliasing=off",
                 "near-field=1",
                 "switch=false",
                 "render-rate=36",

@@ -27,10 +27,7 @@ export function keepPlace() {
 /** Reads the settings from the address or from the fragment of another link, and shows a message about its faults. */
 export function readAddress(link = location.hash) {
   const here = (list) => list.filter(({ reason }) => !reason).map(({ name }) => name);
-  const { settings, faults } = parse(link, {
-    scenes: here(app.scenes),
-    methods: Object.fromEntries(Object.entries(app.methods).map(([renderer, list]) => [renderer, here(list)])),
-  });
+  const { settings, faults } = parse(link, { scenes: here(app.scenes), methods: here(app.methods) });
   app.settings = settings;
   if (faults.length) say(faults.join(' '));
 }

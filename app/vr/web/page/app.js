@@ -46,8 +46,8 @@ export const app = {
   facts: null,
   /** The built-in scenes: `{name, title, kiloTriangles}`. */
   scenes: [],
-  /** The methods of each renderer: `{name, reason}`, with a reason if it cannot be used. */
-  methods: {},
+  /** The methods: `{name, reason}`, with a reason if it cannot be used. */
+  methods: [],
   /** @type {Run | null} */
   busy: null,
 };

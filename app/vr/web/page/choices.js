@@ -3,38 +3,31 @@
 import { keep } from './address.js';
 import { app, element } from './app.js';
 import { changed } from './drawing.js';
-import { antiAliasing } from './link.js';
 import { clear, say } from './messages.js';
 import { explanations } from './methods.js';
 import { sentence } from './sentence.js';
 
 /** The settings that have an element of the same name. */
-const choices = [
-  'scene', 'viewpoint', 'method', 'renderer', 'anti-aliasing', 'dominant', 'display', 'scale', 'ipd',
-];
-const numbers = ['viewpoint', 'scale', 'ipd'];
+const choices = ['scene', 'viewpoint', 'method', 'msaa', 'dominant', 'display', 'scale', 'ipd'];
+const numbers = ['viewpoint', 'msaa', 'scale', 'ipd'];
 /** The settings that do not apply to pictures. */
-const ofScenes = ['viewpoint', 'method', 'renderer', 'anti-aliasing', 'dominant'];
+const ofScenes = ['viewpoint', 'method', 'msaa', 'dominant'];
 /** The displays that compare with a real render, which pictures lack. */
 const comparing = ['divider', 'difference', 'flicker'];
-let offered = null;
 
-/** Offers the methods and the kinds of anti-aliasing of a renderer. */
-function offerRenderer(renderer) {
-  offered = renderer;
-  element('method').replaceChildren(...app.methods[renderer].map(({ name, reason }) => {
+/** Offers the methods. */
+export function offerMethods() {
+  element('method').replaceChildren(...app.methods.map(({ name, reason }) => {
     const option = new Option(reason ? `${name} (not here)` : name, name);
     option.disabled = Boolean(reason);
     option.title = reason ?? explanations[name];
     return option;
   }));
-  for (const option of element('anti-aliasing').options) option.disabled = !antiAliasing[renderer].includes(option.value);
 }
 
 /** Shows the settings in the elements. */
 export function showChoices() {
   const { settings, source, wanted } = app;
-  if (offered !== settings.renderer) offerRenderer(settings.renderer);
   for (const key of choices) element(key).value = String(settings[key]);
   const shown = wanted ?? source;
   element('scene').value = shown ? shown.builtin ?? 'own' : '';
@@ -51,12 +44,10 @@ export function apply() {
   const { settings } = app;
   showChoices();
   if (!app.page) return;
-  const smoothing = settings['anti-aliasing'];
   app.page.configure(JSON.stringify({
-    method: settings.method, renderer: settings.renderer, ipd: settings.ipd / 1000, dominant: settings.dominant,
+    method: settings.method, msaa: settings.msaa, ipd: settings.ipd / 1000, dominant: settings.dominant,
     // A viewer and a headset show both eyes, whatever the screen shows.
     display: app.busy?.immersive ? 'side-by-side' : settings.display,
-    ...(smoothing === 'msaa' ? { msaa: 4 } : { 'anti-aliasing': smoothing, msaa: 1 }),
   }));
   keep();
   changed();
@@ -81,7 +72,6 @@ function choose(key, value) {
   if (!app.page) return;
   clear();
   app.settings[key] = value;
-  if (key === 'renderer') [app.settings['anti-aliasing']] = antiAliasing[value];
   if (key === 'viewpoint') {
     app.settings.at = null;
     app.page.goTo(value);

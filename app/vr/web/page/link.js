@@ -1,19 +1,13 @@
 // The settings in the address's fragment. Settings with their default value are left out.
 
-/** The defaults. Those of method, IPD and dominant eye are the module's. */
+/** The defaults. Those of method, samples, IPD and dominant eye are the module's. */
 export const defaults = {
-  scene: 'prototype', viewpoint: 0, method: '', renderer: 'deferred', 'anti-aliasing': 'after', ipd: 0,
+  scene: 'prototype', viewpoint: 0, method: '', msaa: 0, ipd: 0,
   dominant: '', display: 'divider', divider: 50, scale: 1, at: null, stream: null,
 };
 
-/** The kinds of anti-aliasing of each renderer, its default first. */
-export const antiAliasing = {
-  deferred: ['after', 'before', 'off'],
-  forward: ['msaa', 'after', 'before', 'off'],
-};
-
 const allowed = {
-  renderer: Object.keys(antiAliasing),
+  msaa: ['4', '1'],
   dominant: ['right', 'left'],
   display: ['divider', 'difference', 'side-by-side', 'cross-eyed', 'anaglyph', 'left', 'right', 'flicker'],
   scale: ['1', '0.75', '0.5'],
@@ -41,16 +35,13 @@ function place(text) {
   return numbers.length === 5 && numbers.every((n) => Math.abs(n) < FARTHEST) ? numbers : null;
 }
 
-/** Returns the settings of a fragment, and a sentence for each invalid part. `known`: the names of scenes, and of the
- * methods of each renderer. */
+/** Returns the settings of a fragment, and a sentence for each invalid part. `known`: the names of scenes and
+ * of methods. */
 export function parse(fragment, known) {
   const fields = new URLSearchParams(fragment.replace(/^#/, ''));
-  const renderer = allowed.renderer.find((name) => name === fields.get('renderer')) ?? defaults.renderer;
-  const settings = { ...defaults, renderer, 'anti-aliasing': antiAliasing[renderer][0] };
+  const settings = { ...defaults };
   const faults = [];
-  const lists = {
-    ...allowed, 'anti-aliasing': antiAliasing[renderer], scene: known.scenes, method: known.methods[renderer],
-  };
+  const lists = { ...allowed, scene: known.scenes, method: known.methods };
   for (const [key, value] of fields) {
     if (!Object.hasOwn(defaults, key)) {
       faults.push(`The link has a setting “${key}” that this page does not know; it was left out.`);
@@ -71,11 +62,10 @@ export function parse(fragment, known) {
 /** Returns the fragment of settings. Without a built-in scene, it has no place either. */
 export function format(settings) {
   const fields = new URLSearchParams();
-  const usual = { ...defaults, 'anti-aliasing': antiAliasing[settings.renderer][0] };
   for (const [key, value] of Object.entries(settings)) {
     if (!settings.scene && ['viewpoint', 'at'].includes(key)) continue;
     if (key === 'at' && value) fields.set(key, value.map((n) => +n.toFixed(4)).join(','));
-    else if (value !== null && value !== usual[key]) fields.set(key, value);
+    else if (value !== null && value !== defaults[key]) fields.set(key, value);
   }
   return `#${fields}`.replaceAll('%2C', ',');
 }

@@ -3,12 +3,12 @@
 import init, { Page, builtinScenes } from './yoro_web.js';
 import { goThere, keepNow, readAddress } from './address.js';
 import { app, element } from './app.js';
-import { apply, listenToChoices, step } from './choices.js';
+import { apply, listenToChoices, offerMethods, step } from './choices.js';
 import { changed, listenToPicture, savePicture, saveWiggle, startLoop } from './drawing.js';
 import { listenToFiles, take } from './files.js';
 import { offerHeadset } from './headset.js';
 import { listenToKeys } from './keys.js';
-import { antiAliasing, learn, most } from './link.js';
+import { learn, most } from './link.js';
 import { offerMeasure } from './measure.js';
 import { clear, loading, say } from './messages.js';
 import { offerPhone } from './phone.js';
@@ -148,9 +148,8 @@ export async function start() {
     option.title = title;
     return option;
   }));
-  for (const renderer of Object.keys(antiAliasing)) {
-    app.methods[renderer] = JSON.parse(app.page.methods(JSON.stringify({ renderer })));
-  }
+  app.methods = JSON.parse(app.page.methods());
+  offerMethods();
   element('gpu').textContent = `${app.page.gpu}; ${app.page.glVersion}`;
   readAddress();
   apply();

@@ -120,8 +120,7 @@ function lines(settings, size, seconds, result) {
     'size per eye, pixels': size.join('x'),
     'IPD, mm': String(settings.ipd),
     'dominant eye': settings.dominant,
-    'renderer': app.page.renderer,
-    'anti-aliasing': settings['anti-aliasing'],
+    'samples per pixel': String(settings.msaa),
     'seconds': String(seconds),
     'browser': navigator.userAgent,
     'refresh rate of the display, Hz': rate.toFixed(1),
@@ -165,7 +164,7 @@ function show(size, result, run) {
   const figure = (values, digits, unit = '') => (values.length ? `${median(values).toFixed(digits)}${unit}` : 'not told');
   const table = document.createElement('table');
   const caption = table.createCaption();
-  caption.textContent = `${app.page.gpu}: ${app.facts.name}, ${size.join('x')} pixels of each eye, ${app.page.renderer}, ${records.length / facts.contenders.length} rounds`;
+  caption.textContent = `${app.page.gpu}: ${app.facts.name}, ${size.join('x')} pixels of each eye, ${app.settings.msaa} samples a pixel, ${records.length / facts.contenders.length} rounds`;
   const head = table.createTHead().insertRow();
   for (const text of ['Method', 'Of two renders', 'Frame, ms', 'GPU, ms']) head.append(cell('th', text, 'col'));
   const body = table.createTBody();

@@ -28,9 +28,9 @@ export function explain() {
 
 function make() {
   if (!app.page || !app.facts || app.busy || document.hidden) return;
-  const { dominant, ipd, renderer, viewpoint } = app.settings;
+  const { dominant, ipd, viewpoint } = app.settings;
   const height = Math.max(1, Math.round((WIDTH * app.canvas.clientHeight) / app.canvas.clientWidth));
-  const now = [app.facts.name, viewpoint, app.page.place, dominant, ipd, renderer, height].join();
+  const now = [app.facts.name, viewpoint, app.page.place, dominant, ipd, height].join();
   if (now === about || ipd === 0) return;
   about = now;
   try {

@@ -5,10 +5,8 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthRange, Eye, EyeOptions, EyePair, Pose};
 use yoro_gl::{Capabilities, Context, GlError};
-use yoro_render::stereo::{
-    self, AntiAliasing, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions,
-};
-use yoro_render::{RenderSettings, RendererKind};
+use yoro_render::RenderSettings;
+use yoro_render::stereo::{self, Method, MethodChoice, SelectedMethod, StereoMethod, StereoOptions};
 use yoro_settings::Ipd;
 
 /// The way in which two images are shown on a flat screen.
@@ -65,12 +63,8 @@ impl Display {
 pub struct Settings {
     /// The stereo method, or the cheaper one of two.
     pub method: MethodChoice,
-    /// The renderer of a view.
-    pub renderer: RendererKind,
-    /// Samples per pixel of the forward renderer.
+    /// Samples per pixel.
     pub msaa: u32,
-    /// Anti-aliasing of images with one sample per pixel: before synthesis, after it, or none.
-    pub anti_aliasing: AntiAliasing,
     /// Distance between the eyes in metres.
     pub ipd: Ipd,
     /// The eye that is rendered.
@@ -81,12 +75,10 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        let yoro_settings::Settings { renderer, msaa, dominant, .. } = Default::default();
+        let yoro_settings::Settings { msaa, dominant, .. } = Default::default();
         Settings {
             method: MethodChoice::default(),
-            renderer,
             msaa,
-            anti_aliasing: AntiAliasing::After,
             ipd: Ipd::DEFAULT,
             dominant,
             display: Display::SideBySide,
@@ -105,13 +97,13 @@ impl Settings {
 
     /// Returns the renderer's settings; those without a choice are as on the desktop.
     pub fn render_settings(&self) -> RenderSettings {
-        RenderSettings { renderer: self.renderer, msaa: self.msaa, ..RenderSettings::default() }
+        RenderSettings { msaa: self.msaa, ..RenderSettings::default() }
     }
 
     /// Returns the methods' options. They differ from the desktop's in one: frames are never rendered twice because
     /// much of the view is near, since detecting that would make the browser wait for the GPU.
     pub fn stereo_options(&self) -> StereoOptions {
-        StereoOptions { anti_aliasing: self.anti_aliasing, policy: None, ..StereoOptions::default() }
+        StereoOptions { policy: None, ..StereoOptions::default() }
     }
 
     /// Returns the method in use, or the automatic choice between two. Displays that compare with a real render never
@@ -131,7 +123,7 @@ impl Settings {
     pub fn lacks(&self, method: Method, capabilities: &Capabilities) -> Option<String> {
         let reason = self.render_settings().supports(method, capabilities).err()?;
         // On the desktop, the advice is to use another driver.
-        let browser = method == Method::Multiview && self.renderer == RendererKind::Deferred;
+        let browser = method == Method::Multiview && self.render_settings().supported(capabilities).is_ok();
         Some(if browser {
             "This browser has no OVR_multiview2, which headsets' browsers have: choose instanced.".into()
         } else {
@@ -177,21 +169,13 @@ mod tests {
         let json = r#"{"method":"shading-reprojection","ipd":0.07,"dominant":"left","display":"cross-eyed"}"#;
         let settings = Settings::parse(json).unwrap();
         assert_eq!((settings.method, settings.dominant), (Method::ShadingReprojection.into(), Eye::Left));
-        assert_eq!(settings.anti_aliasing, AntiAliasing::After);
         assert_eq!(settings.render_settings(), RenderSettings::default());
         // Displays with a comparison do not use the automatic choice.
         let chosen = |json| Settings::parse(json).unwrap().choice();
         assert_eq!(chosen(r#"{"display":"anaglyph"}"#), MethodChoice::Auto);
         assert_eq!(chosen(r#"{"display":"divider"}"#), Method::Synthesized.into());
-        let forward = Settings::parse(r#"{"renderer":"forward","msaa":1}"#).unwrap();
-        assert_eq!(forward.render_settings().summary(), "forward, 1 samples a pixel");
-        for wrong in [
-            r#"{"ipd":0.09}"#,
-            r#"{"method":"none"}"#,
-            r#"{"renderer":"ray"}"#,
-            r#"{"colour":"red"}"#,
-            r#"{"ipd":null}"#,
-        ] {
+        assert_eq!(Settings::parse(r#"{"msaa":1}"#).unwrap().render_settings().msaa, 1);
+        for wrong in [r#"{"ipd":0.09}"#, r#"{"method":"none"}"#, r#"{"colour":"red"}"#, r#"{"ipd":null}"#] {
             let error = Settings::parse(wrong).unwrap_err();
             assert!(error.ends_with('.'), "{error}");
         }

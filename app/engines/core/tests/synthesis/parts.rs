@@ -166,7 +166,8 @@ fn the_hosts_array_textures_are_preserved() {
     on_every_backend(|gl| {
         let picture = Picture::new([48, 16], Eye::Right, 2);
         let (textures, source) = Textures::new(gl, &picture, true, true);
-        let options = Options { gl_state: GlState::Preserve, parts: true, array_textures: true };
+        let options =
+            Options { gl_state: GlState::Preserve, parts: true, array_textures: true, ..Options::default() };
         let formats = [(Format::Rgba8, Filter::Nearest), (Format::R32Ui, Filter::Nearest)];
         let target = RenderTarget::new(gl, picture.warp.target_size, &formats, None).unwrap();
         // SAFETY: textures of this context.

@@ -58,7 +58,7 @@ impl BlankFinder {
         }
         let PreparedScene { renderer, scene } = prepared;
         let rendered = renderer.render(&mut self.targets, scene, &view, Selection::All)?;
-        self.depth.copy(rendered.depth, view.size)?;
+        self.depth.copy(&rendered.depth, view.size)?;
         let far = view.depth.clear_value();
         Ok(self.depth.read().iter().all(|depth| *depth == far))
     }

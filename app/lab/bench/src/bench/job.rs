@@ -7,7 +7,6 @@ use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
 use yoro_estimate::Device;
 use yoro_render::RenderSettings;
-use yoro_render::stereo::AntiAliasing;
 
 /// H.264's quantizers in the suite `stream`.
 pub(super) const STREAM_QUANTIZERS: [u8; 3] = [20, 26, 32];
@@ -76,8 +75,6 @@ pub struct Job {
     pub render: RenderSettings,
     /// The eyes.
     pub eyes: EyeOptions,
-    /// The anti-aliasing of all contenders; `None` leaves it to each method.
-    pub anti_aliasing: Option<AntiAliasing>,
     /// The divisor of the ImBuffer's resolution.
     pub imbuffer: u32,
     /// The kind of measurement.

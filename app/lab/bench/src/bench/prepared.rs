@@ -82,9 +82,9 @@ impl PreparedContender {
         Ok(FrameTime { wall: start.elapsed(), cpu: process::cpu_time().saturating_sub(cpu) })
     }
 
-    /// Returns [`StereoMethod::guard_band`].
+    /// Returns the use of the guard band, as [`StereoMethod::report`] says it.
     pub fn guard_band(&self) -> Option<GuardBandUse> {
-        self.method.guard_band()
+        self.method.report().guard_band
     }
 
     /// Renders a frame after settling, with a timer around each pass. Returns the passes' names in the order of their

@@ -14,8 +14,8 @@ use crate::machine::Parameter;
 use yoro::eyes::EyeOptions;
 use yoro_assets::ShadingStyle;
 use yoro_estimate::DEVICES;
-use yoro_render::stereo::{AntiAliasing, Pipeline};
-use yoro_render::{RenderSettings, RendererKind};
+use yoro_render::stereo::Pipeline;
+use yoro_render::{MSAA, RenderSettings};
 use yoro_scenes::BUILTINS;
 
 /// Defines [`Suite`] from one list: the variant, its name on the command line and in files, and what it measures.
@@ -62,7 +62,7 @@ suites! {
     Imbuffer "imbuffer" "Frame time and quality with the ImBuffer at 1 to 1/16 of the resolution, with and without interpolation",
     Lights "lights" "Frame time of every method with four lights: the paper's setting for single-pass instancing",
     Resolution "resolution" "Frame time and quality of every method from 512 to 2048 pixels per eye",
-    AntiAliasing "anti-aliasing" "Quality and frame time by anti-aliasing: one sample per pixel, FXAA, MSAA",
+    AntiAliasing "anti-aliasing" "Quality and frame time with one, two and four samples per pixel",
     Flicker "flicker" "Flicker of the synthesized eye from frame to frame along a camera path",
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
@@ -105,12 +105,6 @@ const QUICK_SCENES: [&str; 1] = ["prototype"];
 const SIZES: [usize; 2] = [9, 5];
 /// The number of lights of the suite `lights`: the paper has fewer than five.
 const FEW_LIGHTS: usize = 4;
-/// The settings of the suite `anti-aliasing`.
-const SMOOTHING: [(&str, RendererKind, AntiAliasing); 3] = [
-    ("one sample", RendererKind::Deferred, AntiAliasing::Off),
-    ("FXAA", RendererKind::Deferred, AntiAliasing::After),
-    ("MSAA", RendererKind::Forward, AntiAliasing::After),
-];
 /// The number of frames of the suite `flicker`, and in the short form.
 const FLICKER_FRAMES: [usize; 2] = [12, 4];
 /// The scenes of the suite `stream`.
@@ -237,10 +231,12 @@ impl Choices {
     }
 
     fn anti_aliasing(&self, sweep: Sweep, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        sweep.over(self.scenes(scenes), SMOOTHING, |job, (label, renderer, anti_aliasing)| {
-            job.conditions.label = Some(label.to_owned());
-            job.render.renderer = renderer;
-            job.anti_aliasing = Some(anti_aliasing);
+        sweep.over(self.scenes(scenes), MSAA, |job, samples| {
+            job.conditions.label = Some(match samples {
+                1 => "1 sample".to_owned(),
+                n => format!("{n} samples"),
+            });
+            job.render.msaa = samples;
         })
     }
 
@@ -271,11 +267,9 @@ impl Choices {
     }
 
     fn whole_frames(&self, sweep: Sweep, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        sweep.over(self.scenes(scenes), RendererKind::ALL, |job, renderer| {
+        sweep.over(self.scenes(scenes), [()], |job, ()| {
             job.conditions.suite = frame::SUITE.to_owned();
-            job.conditions.label = Some(renderer.name().to_owned());
-            job.render.renderer = renderer;
-            job.contenders = frame::contenders(renderer);
+            job.contenders = frame::contenders();
         })
     }
 
@@ -285,8 +279,7 @@ impl Choices {
             job.contenders.clear();
             job.measure = Measure::Executed(device);
             // Only depth matters.
-            job.render =
-                RenderSettings { ssao: false, bloom: false, shadow_map_size: 0, ..job.render.clone() };
+            job.render = RenderSettings { bloom: false, shadow_map_size: 0, ..job.render.clone() };
             job.eyes.size = device.size;
             job.conditions.label = Some(device.name.to_owned());
         })
@@ -312,13 +305,14 @@ impl Choices {
         };
         let object =
             self.object.as_ref().map_or_else(|| "built-in".into(), |path| path.display().to_string());
-        let mut parameters = vec![
+        let parameters = vec![
             ("size of each eye, pixels", format!("{} x {}", eyes.size[0], eyes.size[1])),
             ("vertical field of view, degrees", format!("{:.0}", eyes.fov_y.to_degrees())),
             ("IPD, metres", eyes.ipd.to_string()),
             ("near and far plane, metres", format!("{} and {}", eyes.depth.near, eyes.depth.far)),
             ("dominant eye", eyes.dominant.name().into()),
             ("rounds", self.rounds.to_string()),
+            ("samples per pixel", self.render.msaa.to_string()),
             ("viewpoints per scene", self.viewpoints.to_string()),
             ("seed", self.seed.to_string()),
             ("scenes", list(self.scenes.clone())),
@@ -326,9 +320,6 @@ impl Choices {
             ("object", object),
             ("largest scene, triangles", self.max_triangles.to_string()),
         ];
-        if self.render.is_forward() {
-            parameters.push(("renderer", self.render.summary()));
-        }
         parameters.into_iter().map(|(name, value)| Parameter { name: name.into(), value }).collect()
     }
 }
@@ -383,7 +374,6 @@ impl Sweep<'_> {
                     style: None,
                     render: choices.render.clone(),
                     eyes: choices.eyes,
-                    anti_aliasing: None,
                     imbuffer: 1,
                     measure: self.measure,
                     contenders: contenders.clone(),

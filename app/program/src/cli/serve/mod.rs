@@ -261,7 +261,7 @@ fn scene(args: &ServeArgs, gl: &Rc<Context>) -> anyhow::Result<(Source, FromServ
         "browsers do not decode three pictures of {} pixels: give --max-size {MAX_SIDE_OF_THREE_PARTS} or less with --mode eyes-depth",
         args.max_size
     );
-    let settings = args.renderer.render_settings()?;
+    let settings = args.renderer.render_settings();
     let scene = yoro_scenes::load(&args.scene, yoro_scenes::DEFAULT_SEED, None)?;
     let home = eyes::scene_pose(&scene, args.pose)?;
     let prepared = Box::new(PreparedScene::new(gl, scene, &settings)?);

@@ -11,7 +11,8 @@ use super::error::{XrError, call, check};
 use super::graphics::make_current;
 use yoro::eyes::Eye;
 use yoro_context::Graphics;
-use yoro_gl::{Context, Destination, ForeignTarget};
+use yoro_gl::{Context, Destination, ForeignTarget, Format, Image};
+use yoro_render::stereo::EyeTarget;
 
 /// A compositor that holds an image for longer than this is considered stuck.
 const TIMEOUT: Duration = Duration::from_secs(3);
@@ -33,9 +34,10 @@ pub(super) struct Images {
     // Dropped first: the framebuffers refer to the swapchain's images.
     /// Indexed by image and layer.
     framebuffers: Vec<Vec<ForeignTarget>>,
+    textures: Vec<glow::Texture>,
     swapchain: xr::Swapchain<xr::OpenGlEs>,
     instance: xr::Instance,
-    layers: u32,
+    kind: Kind,
     /// The image that is being drawn into.
     current: Option<usize>,
 }
@@ -72,21 +74,25 @@ impl Images {
         if images.is_empty() {
             return Err(XrError::Nonsense("offers a swapchain without images".into()));
         }
-        let framebuffers = images.into_iter().map(|image| {
-            let name = NonZeroU32::new(image)
-                .ok_or_else(|| XrError::Nonsense("offers an image without a name".into()))?;
+        let name = |image| match NonZeroU32::new(image) {
+            Some(name) => Ok(glow::NativeTexture(name)),
+            None => Err(XrError::Nonsense("offers an image without a name".into())),
+        };
+        let textures = images.into_iter().map(name).collect::<Result<Vec<_>, _>>()?;
+        let framebuffers = textures.iter().map(|texture| {
             let framebuffer = |layer| {
                 let layer = (kind.layers > 1).then_some(layer);
                 // SAFETY: the textures live as long as the swapchain, which the framebuffers do not outlive.
-                unsafe { ForeignTarget::new(gl, glow::NativeTexture(name), layer, kind.is_depth, kind.size) }
+                unsafe { ForeignTarget::new(gl, *texture, layer, kind.is_depth, kind.size) }
             };
             (0..kind.layers).map(framebuffer).collect::<Result<Vec<_>, _>>().map_err(XrError::Gl)
         });
         Ok(Images {
             framebuffers: framebuffers.collect::<Result<_, _>>()?,
+            textures,
             swapchain,
             instance: session.instance().clone(),
-            layers: kind.layers,
+            kind,
             current: None,
         })
     }
@@ -147,6 +153,14 @@ impl Images {
         Some(image.get(layer as usize)?.part(size))
     }
 
+    /// Returns the acquired image, if it is a plain 2-D texture of 8-bit sRGB.
+    fn texture(&self) -> Option<(glow::Texture, Image)> {
+        let Kind { format, size, layers, .. } = self.kind;
+        let is_plain = layers == 1 && format == glow::SRGB8_ALPHA8;
+        let texture = *self.textures.get(self.current?)?;
+        is_plain.then_some((texture, Image { format: Format::Srgb8Alpha8, size, samples: 1 }))
+    }
+
     /// Returns the lower left part of a layer, as xrEndFrame takes it.
     pub fn sub_image(&self, layer: u32, size: [u32; 2]) -> sys::SwapchainSubImage {
         sys::SwapchainSubImage {
@@ -190,7 +204,7 @@ impl EyeImages {
     fn of(&self, eye: Eye) -> (&Images, u32) {
         match self.0.as_slice() {
             [_, right] if eye == Eye::Right => (right, 0),
-            [left, ..] if left.layers == 1 => (left, 0),
+            [left, ..] if left.kind.layers == 1 => (left, 0),
             _ => (&self.0[0], eye.index() as u32),
         }
     }
@@ -214,6 +228,15 @@ impl EyeImages {
             images.destination(layer, size)
         });
         Some([left?, right?])
+    }
+
+    /// Returns the images of both eyes as targets, without depth.
+    pub fn targets(&self, size: [u32; 2]) -> Option<[EyeTarget<'static>; 2]> {
+        let colors = self.destinations(size)?;
+        Some(Eye::BOTH.map(|eye| EyeTarget {
+            texture: self.of(eye).0.texture(),
+            ..EyeTarget::rectangle(colors[eye.index()])
+        }))
     }
 
     pub fn sub_image(&self, eye: Eye, size: [u32; 2]) -> sys::SwapchainSubImage {

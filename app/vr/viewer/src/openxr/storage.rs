@@ -10,13 +10,14 @@ use std::rc::Rc;
 use glow::HasContext as _;
 
 use yoro_gl::{
-    Context, Destination, Filter, Format, GlError, Program, RasterState, RenderTarget, ShaderSource,
+    Context, Destination, Filter, Format, GlError, MultisampleTarget, Program, RasterState, RenderTarget,
+    ShaderSource, Texture, TileTarget,
 };
 use yoro_render::stereo::{EyeTarget, StereoFrame};
 
 /// Formats of eye images, best first: stored as sRGB, with enough bits for linear colour, or neither.
 pub(super) const COLOR_FORMATS: [u32; 4] = [glow::SRGB8_ALPHA8, glow::RGBA16F, glow::RGB10_A2, glow::RGBA8];
-/// Formats of depth images, best first: 24 bits or floats, as in the g-buffer, or else 16 bits.
+/// Formats of depth images, best first: 24 bits or floats, or else 16 bits.
 pub(super) const DEPTH_FORMATS: [u32; 5] = [
     glow::DEPTH_COMPONENT24,
     glow::DEPTH24_STENCIL8,
@@ -88,15 +89,15 @@ impl Storage {
     }
 
     /// Begins a frame. Returns the targets for eyes that are to end up in `images`.
-    pub fn begin(&mut self, images: [Destination; 2]) -> Result<[Destination; 2], GlError> {
+    pub fn begin(&mut self, images: [EyeTarget<'static>; 2]) -> Result<[EyeTarget<'static>; 2], GlError> {
         match &mut self.detour {
             None => {
                 set_encoding(&self.gl, false);
                 Ok(images)
             }
             Some((frame, _)) => {
-                frame.resize(images[0].size)?;
-                Ok(frame.targets().map(|EyeTarget { color, .. }| color))
+                frame.resize(images[0].color.size)?;
+                Ok(frame.targets())
             }
         }
     }
@@ -122,10 +123,11 @@ impl Storage {
     }
 }
 
-/// Tests whether an sRGB framebuffer keeps the bits of what is drawn, cleared, and copied into it while encoding is
-/// off.
+/// Tests whether an sRGB framebuffer keeps the bits of what is drawn, cleared, copied and averaged into it while
+/// encoding is off. Drivers may refuse to average samples of another format into it.
 fn stores_as_written(gl: &Rc<Context>) -> Result<bool, GlError> {
     const SIZE: [u32; 2] = [4, 4];
+    const SAMPLES: u32 = 4;
     const GREY: [f32; 4] = [100.0 / 255.0, 100.0 / 255.0, 100.0 / 255.0, 1.0];
     let target = |format| RenderTarget::new(gl, SIZE, &[(format, Filter::Nearest)], None);
     let (plain, first, second) =
@@ -155,6 +157,31 @@ fn stores_as_written(gl: &Rc<Context>) -> Result<bool, GlError> {
         .set("used", 1.0);
     gl.draw_screen();
     fine &= is_grey(&second);
+    let empty = || {
+        second.bind();
+        gl.fill([0, 0], SIZE, [0.0; 4]);
+    };
+    if gl.capabilities().check_samples(SAMPLES).is_ok() {
+        let samples = MultisampleTarget::new(gl, SIZE, SAMPLES, &[Format::Rgba8], Format::Depth32F, false)?;
+        empty();
+        samples.bind(SIZE);
+        gl.fill([0, 0], SIZE, GREY);
+        samples.average(0, &Destination::whole(&second));
+        fine &= gl.take_errors().is_none() && is_grey(&second);
+    }
+    if gl.capabilities().tile_samples {
+        let (mut tile, depth) =
+            (TileTarget::new(gl, SAMPLES)?, Texture::new(gl, SIZE, Format::Depth32F, Filter::Nearest)?);
+        let color = (second.color(0).raw(), second.color(0).image());
+        empty();
+        // SAFETY: the colour is a 2-D texture of this context.
+        if unsafe { tile.fit(&[color], &depth) }.is_ok() {
+            let to = tile.part(SIZE);
+            gl.bind_framebuffer(to.framebuffer, to.origin, SIZE);
+            gl.fill([0, 0], SIZE, GREY);
+            fine &= is_grey(&second);
+        }
+    }
     set_encoding(gl, true);
     Ok(fine)
 }
@@ -181,9 +208,9 @@ mod tests {
             let image = || RenderTarget::new(gl, size, &[(Format::Srgb8Alpha8, Filter::Nearest)], None);
             let images = [image().unwrap(), image().unwrap()];
             let to = [Destination::whole(&images[0]), Destination::whole(&images[1])];
-            let eyes = storage.begin(to).unwrap();
+            let eyes = storage.begin(to.map(EyeTarget::rectangle)).unwrap();
             for x in 0..64u32 {
-                for (eye, way) in Eye::BOTH.into_iter().zip(eyes) {
+                for (eye, EyeTarget { color: way, .. }) in Eye::BOTH.into_iter().zip(eyes) {
                     gl.bind_framebuffer(way.framebuffer, way.origin, way.size);
                     let grey = (x * 4 + eye.index() as u32) as f32 / 255.0;
                     gl.fill([x, 0], [1, 4], [grey, grey, grey, 1.0]);

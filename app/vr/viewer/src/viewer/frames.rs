@@ -37,9 +37,8 @@ impl Viewer {
     pub fn render_eyes(&mut self, pair: &EyePair, to: &[EyeTarget; 2]) -> Result<(), ViewerError> {
         self.stats.look(pair.poses[pair.dominant.index()].orientation, self.now_ns);
         let gl = &self.attached.as_ref().ok_or(ViewerError::NoContext)?.gl;
-        self.method.judge(pair);
         let Some(shown) = self.scene.shown() else {
-            for EyeTarget { color, depth } in to {
+            for EyeTarget { color, depth, .. } in to {
                 if let Some(DepthTarget { to, .. }) = depth {
                     gl.bind_framebuffer(to.framebuffer, to.origin, to.size);
                     gl.clear_rectangle(to.origin, to.size, Some(pair.depth.clear_value()));
@@ -53,8 +52,7 @@ impl Viewer {
             return Ok(());
         }
         shown.move_on(self.now_ns)?;
-        self.method.render(gl, &self.settings, shown, pair, to)?;
-        if let Some(used) = self.method.guard_band() {
+        if let Some(used) = self.method.render(shown, pair, to)? {
             self.stats.guard_band(used);
         }
         Ok(())

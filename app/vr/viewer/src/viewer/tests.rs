@@ -28,8 +28,7 @@ fn window(gl: &Rc<Context>) -> RenderTarget {
 }
 
 fn settings(pairs: &[&str]) -> Settings {
-    let cheap =
-        ["scene=prototype", "viewer=v1", "shadow-map=0", "ssao=off", "bloom=false", "render-scale=0.5"];
+    let cheap = ["scene=prototype", "viewer=v1", "shadow-map=0", "msaa=1", "bloom=false", "render-scale=0.5"];
     Settings::measured().changed(None, cheap.iter().chain(pairs)).unwrap()
 }
 
@@ -227,7 +226,7 @@ fn choices_on_this_machine() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("wall.obj"), "v -2 -2 -3\nv 2 -2 -3\nv 2 2 -3\nv -2 2 -3\nf 1 2 3 4\n")
         .unwrap();
-    let bare = ["renderer=forward", "msaa=1", "shadow-map=0", "point-lights=0", "bloom=false"];
+    let bare = ["msaa=1", "shadow-map=0", "point-lights=0", "bloom=false"];
     for (scene, more) in [
         ("wall", &bare[..]),
         ("prototype", &bare),
@@ -235,7 +234,6 @@ fn choices_on_this_machine() {
         ("prototype", &[]),
         ("street", &[]),
         ("atrium", &[]),
-        ("atrium", &["renderer=forward"]),
     ] {
         let scene = format!("scene={scene}");
         let pairs: Vec<&str> =
@@ -358,7 +356,7 @@ const TIMING: FrameTiming = FrameTiming { now_ns: 1, expected_display_ns: 2, ref
 fn ready(headless: &Headless) -> Cardboard {
     let screen = Screen { size: [256, 128], dpi: [0.0; 2], rotation: Rotation::LandscapeLeft };
     let mut settings = Settings::default();
-    for pair in ["scene=prototype", "render-scale=0.25", "shadow-map=0", "ssao=off", "bloom=false"] {
+    for pair in ["scene=prototype", "render-scale=0.25", "shadow-map=0", "msaa=1", "bloom=false"] {
         settings.apply(pair).unwrap();
     }
     let mut viewer = Cardboard::new(settings, screen, &[]).unwrap();
@@ -395,7 +393,7 @@ fn only_settings_that_differ_take_effect() {
     viewer.event(Event::Tap).unwrap();
     assert_ne!(viewer.viewer().method(), Method::Mono.into());
     let tapped = viewer.viewer().method();
-    viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "ssao=half"]), &[]).unwrap();
+    viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "msaa=2"]), &[]).unwrap();
     assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, Ipd::nearest(0.05)));
     assert!((viewer.optics().params().inter_lens - 0.060).abs() < 1e-6);
     let told = viewer.optics().screen();

@@ -104,13 +104,14 @@ impl Page {
     }
 
     /// Returns the defaults of the choices that all programs have, and the largest distance between the eyes, as JSON:
-    /// `{"method", "dominant", "ipd", "mostIpd"}`. Distances are in millimetres.
+    /// `{"method", "msaa", "dominant", "ipd", "mostIpd"}`. Distances are in millimetres.
     #[wasm_bindgen(js_name = defaultChoices)]
     pub fn default_choices() -> String {
-        let Settings { method, dominant, ipd, .. } = Settings::default();
+        let Settings { method, msaa, dominant, ipd, .. } = Settings::default();
         let millimetres = |ipd: Ipd| (ipd.metres() * 1e3).round();
         serde_json::json!({
             "method": method,
+            "msaa": msaa,
             "dominant": dominant,
             "ipd": millimetres(ipd),
             "mostIpd": millimetres(Ipd::MAX),
@@ -118,26 +119,16 @@ impl Page {
         .to_string()
     }
 
-    /// Returns the methods for the renderer of these choices (JSON as for [`Page::configure`]) as JSON: `[{"name",
-    /// "reason"}]`. A reason is given if the browser or the renderer does not support the method.
-    ///
-    /// # Errors
-    /// A sentence.
-    pub fn methods(&self, json: &str) -> Result<String, JsError> {
-        let settings = Settings::parse(json).map_err(sentence)?;
+    /// Returns the methods as JSON: `[{"name", "reason"}]`. A reason is given if the browser does not support the
+    /// method.
+    pub fn methods(&self) -> String {
         let reason = |choice| match choice {
             MethodChoice::Auto => None,
-            MethodChoice::Named(method) => settings.lacks(method, self.gl.capabilities()),
+            MethodChoice::Named(method) => self.settings.lacks(method, self.gl.capabilities()),
         };
         let entry =
             |choice: MethodChoice| serde_json::json!({ "name": choice.name(), "reason": reason(choice) });
-        Ok(serde_json::Value::from_iter(MethodChoice::ALL.map(entry)).to_string())
-    }
-
-    /// Returns a short description of the renderer: `forward, 4 samples a pixel`.
-    #[wasm_bindgen(getter)]
-    pub fn renderer(&self) -> String {
-        self.settings.render_settings().summary()
+        serde_json::Value::from_iter(MethodChoice::ALL.map(entry)).to_string()
     }
 
     /// Applies the page's choices, as JSON.

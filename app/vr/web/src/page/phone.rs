@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::*;
 use yoro::eyes::{DepthRange, Eye, EyePair, Pose};
 use yoro_gl::Destination;
 use yoro_lenses::{LensPass, Optics, neck_offset, read_qr};
-use yoro_render::stereo::StereoFrame;
+use yoro_render::stereo::{StereoFrame, StereoMethod as _};
 
 use super::error::sentence;
 use super::scene_show::SceneShow;
@@ -102,7 +102,6 @@ impl Phone {
             Content::Scene(scene) => {
                 let SceneShow { prepared, method, .. } = &mut **scene;
                 method
-                    .method()
                     .render(&mut prepared.renderer, &prepared.scene, &pair, &mut self.frame)
                     .map_err(sentence)?;
             }

@@ -85,7 +85,7 @@ impl SceneShow {
             self.measure_again();
         }
         let PreparedScene { renderer, scene, .. } = &mut self.prepared;
-        self.method.method().render(renderer, scene, &pair, &mut self.frame)?;
+        self.method.render(renderer, scene, &pair, &mut self.frame)?;
         self.pair = Some(pair);
         if !settings.display.needs_truth() {
             self.truth = None;
@@ -109,11 +109,8 @@ impl SceneShow {
     pub fn repeat(&mut self, real: bool, count: u32) -> Result<(), StereoError> {
         let (Some(truth), Some(pair)) = (&mut self.truth, &self.pair) else { return Ok(()) };
         let PreparedScene { renderer, scene, .. } = &mut self.prepared;
-        let (method, frame): (&mut dyn StereoMethod, _) = if real {
-            (&mut *truth.method, &mut truth.frame)
-        } else {
-            (self.method.method(), &mut self.frame)
-        };
+        let (method, frame): (&mut dyn StereoMethod, _) =
+            if real { (&mut *truth.method, &mut truth.frame) } else { (&mut self.method, &mut self.frame) };
         for _ in 0..count {
             method.render(renderer, scene, pair, frame)?;
         }

@@ -7,9 +7,7 @@ use yoro::eyes::{EyePair, GuardBand};
 use yoro::opengl::{Gather, Options, Outputs, Source};
 use yoro_gl::{Context, Destination, Filter, Format, RenderTarget};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{
-    self, AntiAliasing, DepthTarget, EyeTarget, Method, StereoError, StereoFrame, StereoOptions,
-};
+use yoro_render::stereo::{self, DepthTarget, EyeTarget, Method, StereoError, StereoFrame, StereoOptions};
 
 use super::Page;
 use super::error::sentence;
@@ -65,7 +63,7 @@ impl Why {
 /// Renders the dominant eye, as wide as the method does, and synthesizes the other one with its source map.
 fn explain(gl: &Rc<Context>, page: &mut Page, pair: &EyePair) -> Result<Option<Explanation>, StereoError> {
     let settings = page.settings;
-    let options = StereoOptions { anti_aliasing: AntiAliasing::Off, ..settings.stereo_options() };
+    let options = settings.stereo_options();
     let views = pair.synthesis_views(match options.guard_band {
         GuardBand::Auto(distance) => GuardBand::Distance(distance),
         band => band,

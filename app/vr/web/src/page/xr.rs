@@ -5,7 +5,7 @@ use yoro::eyes::{DepthRange, EyePair};
 use yoro_gl::{Destination, Filter, Format, RenderTarget};
 use yoro_lenses::{Content as HudContent, Hud, Placement};
 use yoro_render::DepthCopy;
-use yoro_render::stereo::{DepthTarget, EyeTarget, SelectedMethod, StereoMethod, Substitute};
+use yoro_render::stereo::{DepthTarget, EyeTarget, StereoMethod as _, Substituted};
 
 use super::error::sentence;
 use super::scene_show::SceneShow;
@@ -24,10 +24,6 @@ pub struct Headset {
     eyes: [RenderTarget; 2],
     copy: DepthCopy,
     hud: Hud,
-    /// Renders both eyes if neither can be synthesized from the other.
-    substitute: Substitute,
-    /// The choices that the substitute was created for.
-    settings: Settings,
 }
 
 #[wasm_bindgen]
@@ -51,8 +47,6 @@ impl Headset {
             eyes: [eye()?, eye()?],
             copy: DepthCopy::new(&page.gl).map_err(sentence)?,
             hud: Hud::new(&page.gl).map_err(sentence)?,
-            substitute: Substitute::default(),
-            settings: page.settings,
         })
     }
 
@@ -74,30 +68,18 @@ impl Headset {
         let Some(pair) = eyes(views, &page.settings, &page.walker, size) else {
             return Err(JsError::new("The headset's views cannot be understood."));
         };
-        let (gl, settings) = (page.gl.clone(), page.settings);
-        if !settings.makes_same(&self.settings) {
-            (self.substitute, self.settings) = (Substitute::default(), settings);
-        }
-        let Headset { eyes: images, copy, hud, substitute, .. } = self;
+        let Headset { eyes: images, copy, hud } = self;
         images.iter_mut().try_for_each(|image| image.resize(size)).map_err(sentence)?;
         let mut fits = true;
         match &mut page.content {
             Content::Scene(scene) => {
                 let SceneShow { prepared, method, .. } = &mut **scene;
-                fits = Substitute::reason(settings.choice().first(), &pair).is_none();
-                let method: &mut dyn StereoMethod = match method {
-                    // The automatic choice handles unfit eyes itself.
-                    SelectedMethod::Auto(auto) => auto.as_mut(),
-                    SelectedMethod::Named(method) if fits => method.as_mut(),
-                    SelectedMethod::Named(_) => {
-                        substitute.get(|method| settings.create(&gl, method)).map_err(sentence)?
-                    }
-                };
                 let to = [0, 1].map(|i| EyeTarget {
-                    color: images[i].color_only(),
                     depth: Some(DepthTarget { to: images[i].depth_only(), copy }),
+                    ..EyeTarget::of(&images[i])
                 });
                 method.render_to(&mut prepared.renderer, &prepared.scene, &pair, &to).map_err(sentence)?;
+                fits = !matches!(method.report().substituted, Some(Substituted::Eyes(_)));
             }
             Content::Stream(stream) => {
                 stream

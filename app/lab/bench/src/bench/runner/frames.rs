@@ -173,7 +173,6 @@ impl Runner<'_> {
             if job.imbuffer > 1 {
                 options.synthesis.paper.imbuffer = ImBufferSize::Divisor(job.imbuffer);
             }
-            options.anti_aliasing = job.anti_aliasing.unwrap_or(options.anti_aliasing);
             let before = self.gl.texture_bytes();
             let made =
                 PreparedContender::new(self.gl, method, &job.render, &options).map_err(anyhow::Error::from);

@@ -160,7 +160,7 @@ impl Timer {
     }
 }
 
-/// Renders views with one sample per pixel and shows them at other poses.
+/// Renders views and shows them at other poses.
 struct Reprojector {
     gl: Rc<Context>,
     any_view: AnyView,
@@ -188,7 +188,7 @@ impl Reprojector {
     fn render(&mut self, prepared: &PreparedScene, view: &View) -> Result<(RgbImage, Source), GlError> {
         let rendered = prepared.renderer.render_all(&mut self.rendered, &prepared.scene, view)?;
         let image = yoro_media::rgb_image(&rendered.color.read_rgba8(0, [0, 0], view.size), view.size);
-        Ok((image, Source::new(rendered.color.color(0).raw(), rendered.depth.raw())))
+        Ok((image, Source::new(rendered.color.color(0).raw(), rendered.depth.texture.raw())))
     }
 
     fn show(&mut self, source: Source, warp: &PoseWarp) -> Result<RgbImage, GlError> {

@@ -39,7 +39,7 @@ impl Runner<'_> {
         let then = &views.pairs[..job.frames];
         let shown = views.clone().last(job.frames);
         let now = &shown.pairs;
-        let mut reader = ViewReader::new(self.gl, true)?;
+        let mut reader = ViewReader::new(self.gl)?;
         let mut eye = |prepared: &mut PreparedScene, pair: &EyePair, eye| -> anyhow::Result<RgbImage> {
             interrupt::check()?;
             let rgba = reader.color(&mut prepared.renderer, &prepared.scene, &pair.view(eye))?;

@@ -98,7 +98,7 @@ impl Runner<'_> {
         let PreparedScene { renderer, scene } = prepared;
         let rendered = renderer.render(&mut targets, scene, &view, Selection::All)?;
         let mut reader = DepthReader::new(self.gl)?;
-        reader.copy(rendered.depth, view.size)?;
+        reader.copy(&rendered.depth, view.size)?;
         Ok(Lamps::new(&view, &reader.read(), &scene.lights))
     }
 }

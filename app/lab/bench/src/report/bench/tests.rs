@@ -173,7 +173,7 @@ fn write_results(path: &Path, header: &Header) {
     for (style, psnr) in [("realistic", 33.0), ("cartoon", 35.0), ("anime", 31.0)] {
         append(w, &conditions("styles", "talk", Some(style), None), "Chat", 117_000, 1, |_| qualities(psnr));
     }
-    for (label, psnr) in [("one sample", 29.0), ("FXAA", 31.0), ("MSAA", 34.0)] {
+    for (label, psnr) in [("1 sample", 29.0), ("2 samples", 31.0), ("4 samples", 34.0)] {
         append(w, &conditions("anti-aliasing", "talk", Some(label), None), "Chat", 117_000, 1, |round| {
             both(80.0, psnr, round)
         });

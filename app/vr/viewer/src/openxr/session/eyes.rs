@@ -7,7 +7,7 @@ use super::state::Session;
 use crate::openxr::error::{XrError, call};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthRange, EyePair, EyesError, Frustum, GuardBand, Pose};
-use yoro_render::stereo::Substitute;
+use yoro_render::stereo;
 use yoro_settings::Settings;
 
 /// The largest magnitude of a field of view's angles that is accepted, in radians.
@@ -48,7 +48,7 @@ impl Session {
 
     /// Returns eyes that the viewer's method can use, close to those of the runtime.
     pub(super) fn align(&mut self, viewer: &Viewer, native: EyePair) -> EyePair {
-        let reason = Substitute::reason(viewer.method().first(), &native);
+        let reason = stereo::unfit(viewer.method().first(), &native);
         let aligned = match reason {
             None => None,
             Some(EyesError::Density { .. } | EyesError::Rows { .. }) => Some(native.row_aligned()),

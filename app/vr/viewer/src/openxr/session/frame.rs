@@ -11,7 +11,6 @@ use crate::openxr::error::{XrError, check};
 use crate::viewer::Viewer;
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Pose};
 use yoro_context::Graphics;
-use yoro_gl::Destination;
 use yoro_lenses::{Board, board_metres};
 use yoro_render::stereo::{DepthTarget, EyeTarget};
 use yoro_settings::Ipd;
@@ -64,10 +63,10 @@ impl Session {
             depth.images.acquire(graphics)?;
         }
         let no_image = || XrError::Nonsense("has no image to draw into".into());
-        let images = self.eyes.destinations(size).ok_or_else(no_image)?;
+        let images = self.eyes.targets(size).ok_or_else(no_image)?;
         let rendered = self.render_eyes(viewer, &pair, images)?;
         if capture && rendered {
-            let eyes = images.map(|image| self.gl.read_rgba8(&image));
+            let eyes = images.map(|image| self.gl.read_rgba8(&image.color));
             *captured = Some(Capture { eyes, pair });
         }
         self.eyes.release(graphics)?;
@@ -86,21 +85,21 @@ impl Session {
         &mut self,
         viewer: &mut Viewer,
         pair: &EyePair,
-        images: [Destination; 2],
+        images: [EyeTarget<'static>; 2],
     ) -> Result<bool, XrError> {
-        let color = self.storage.begin(images)?;
+        let eyes = self.storage.begin(images)?;
         let depth = self.depth.as_ref().and_then(|depth| {
             Some(depth.images.destinations(pair.size)?.map(|to| DepthTarget { to, copy: &depth.copy }))
         });
         let targets = Eye::BOTH
-            .map(|eye| EyeTarget { color: color[eye.index()], depth: depth.map(|depth| depth[eye.index()]) });
+            .map(|eye| EyeTarget { depth: depth.map(|depth| depth[eye.index()]), ..eyes[eye.index()] });
         let rendered = viewer.render_eyes(pair, &targets);
         if let Some(mask) = &self.mask
             && self.realigned.is_none()
         {
-            mask.draw(&pair.frusta, &color);
+            mask.draw(&pair.frusta, &eyes.map(|eye| eye.color));
         }
-        self.storage.end(images);
+        self.storage.end(images.map(|image| image.color));
         // The runtime may read the images on another queue. SAFETY: `flush` has no arguments.
         unsafe { glow::HasContext::flush(self.gl.raw()) };
         Ok(self.told(rendered).is_some())

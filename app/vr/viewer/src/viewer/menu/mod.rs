@@ -2,8 +2,8 @@
 
 mod logic;
 
+use super::Viewer;
 use super::input::IPD_STEP;
-use super::{Viewer, gl_with_scene};
 use crate::error::ViewerError;
 use crate::event::Action;
 pub(super) use logic::Menu;
@@ -48,8 +48,7 @@ impl Viewer {
             self.menu.open();
         }
         self.write_menu();
-        let gl = gl_with_scene(&self.attached, &self.scene);
-        if let Some(Err(error)) = gl.map(|gl| self.method.prepare_comparison(gl, &self.settings)) {
+        if let Err(error) = self.method.prepare_comparison() {
             log::warn!("nothing to compare with: {error}");
         }
         Action::Menu(true)

@@ -7,13 +7,12 @@ use yoro_report::grid::{Cell, Table};
 use yoro_report::stats::{mean, unique};
 
 /// The passes whose cost depends on the application's surfaces.
-const SURFACES: [&str; 3] = ["g-buffer", "lighting", "forward"];
+const SURFACES: [&str; 1] = ["surfaces"];
 
-/// A contender with one of the renderers.
+/// A contender.
 #[derive(Clone, Copy)]
 struct Entry<'a> {
     suite: &'a Suite,
-    renderer: &'a str,
     name: &'a str,
     /// True if vertices are shaded once for both eyes.
     once: bool,
@@ -22,16 +21,13 @@ struct Entry<'a> {
 impl<'a> Entry<'a> {
     fn all(suite: &'a Suite) -> Vec<Entry<'a>> {
         let mut entries = Vec::new();
-        for renderer in suite.labels() {
-            let of_renderer =
-                suite.settings.iter().filter(|s| s.conditions.label.as_deref() == Some(renderer));
-            for name in unique(of_renderer.flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()))) {
-                let entry = Entry { suite, renderer, name, once: false };
-                if name == estimate::MULTIVIEW {
-                    entries.push(Entry { once: true, ..entry });
-                }
-                entries.push(entry);
+        let all = suite.settings.iter();
+        for name in unique(all.flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()))) {
+            let entry = Entry { suite, name, once: false };
+            if name == estimate::MULTIVIEW {
+                entries.push(Entry { once: true, ..entry });
             }
+            entries.push(entry);
         }
         entries
     }
@@ -50,8 +46,7 @@ impl<'a> Entry<'a> {
     }
 
     fn settings(&self) -> impl Iterator<Item = &'a SettingData> {
-        let renderer = self.renderer;
-        self.suite.settings.iter().filter(move |s| s.conditions.label.as_deref() == Some(renderer))
+        self.suite.settings.iter()
     }
 
     /// Returns the value of each scene.
@@ -59,7 +54,7 @@ impl<'a> Entry<'a> {
         self.settings().filter_map(|setting| Some(value(setting.find(self.name)?))).collect()
     }
 
-    /// Returns two renders with the same renderer.
+    /// Returns two renders.
     fn baseline(&self) -> Entry<'a> {
         Entry { name: CONVENTIONAL, once: false, ..*self }
     }
@@ -142,12 +137,12 @@ fn gpu_columns<'a>(first: &[&'a str]) -> Vec<&'a str> {
 }
 
 fn ratios(entries: &[Entry]) -> Table {
-    let mut columns = gpu_columns(&["<renderer", "<method"]);
+    let mut columns = gpu_columns(&["<method"]);
     columns.extend(["bytes a pixel", "bytes, ratio"]);
     let mut table =
         Table::new("Executed slots over two renders: mean of the scenes, least and most", &columns);
-    for (i, entry) in entries.iter().enumerate() {
-        let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
+    for entry in entries {
+        let mut cells = vec![Cell::plain(entry.title())];
         for gpu in estimate::GPUS {
             let (own, base) = (entry.slots(gpu.gpu, |_| true), entry.baseline().slots(gpu.gpu, |_| true));
             let ratios: Vec<f64> = own.iter().zip(&base).map(|(own, base)| own / base).collect();
@@ -165,7 +160,7 @@ fn ratios(entries: &[Entry]) -> Table {
         let (own, base) = (average(&entry.bytes()), average(&entry.baseline().bytes()));
         cells.push(Cell::ours(Some(format!("{own:.0}"))));
         cells.push(Cell::ours(Some(format!("{:.2}", own / base))));
-        table.push_grouped(cells, i > 0 && entries[i - 1].renderer != entry.renderer);
+        table.push(cells);
     }
     table
 }
@@ -178,9 +173,9 @@ fn spread(values: &[f64]) -> String {
 
 fn break_evens(entries: &[Entry]) -> Table {
     let title = "Synthesis pays if surfaces cost more than this, in slots for each pixel of an eye with overdraw; in these scenes";
-    let mut table = Table::new(title, &gpu_columns(&["<renderer", "<method"]));
+    let mut table = Table::new(title, &gpu_columns(&["<method"]));
     for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
-        let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
+        let mut cells = vec![Cell::plain(entry.title())];
         for gpu in estimate::GPUS {
             let both = [entry.baseline(), *entry];
             let surfaces = both.map(|entry| average(&entry.slots(gpu.gpu, |pass| SURFACES.contains(&pass))));
@@ -200,10 +195,10 @@ fn break_evens(entries: &[Entry]) -> Table {
 
 fn bandwidth(entries: &[Entry]) -> Table {
     let title = "Bytes beyond those of two renders, for each pixel of an eye, and the time that they take at each GPU's bandwidth, in ms";
-    let mut table = Table::new(title, &gpu_columns(&["<renderer", "<method", "bytes"]));
+    let mut table = Table::new(title, &gpu_columns(&["<method", "bytes"]));
     for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
         let more = average(&entry.bytes()) - average(&entry.baseline().bytes());
-        let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title())];
+        let mut cells = vec![Cell::plain(entry.title())];
         cells.push(Cell::ours(Some(format!("{more:+.0}"))));
         for gpu in estimate::GPUS {
             let pixels = f64::from(gpu.size[0]) * f64::from(gpu.size[1]);
@@ -219,7 +214,7 @@ fn bandwidth(entries: &[Entry]) -> Table {
 }
 
 fn passes(entries: &[Entry]) -> Table {
-    let mut columns = gpu_columns(&["<renderer", "<method", "<pass", "fragments"]);
+    let mut columns = gpu_columns(&["<method", "<pass", "fragments"]);
     columns.push("bytes");
     let title = "Pass by pass: fragments, slots and bytes for each pixel of an eye, means of the scenes";
     let mut table = Table::new(title, &columns);
@@ -236,7 +231,7 @@ fn passes(entries: &[Entry]) -> Table {
             };
             let shown =
                 |value: f64, digits: usize| Cell::ours((value > 0.0).then(|| format!("{value:.digits$}")));
-            let mut cells = vec![Cell::plain(entry.renderer), Cell::plain(entry.title()), Cell::plain(name)];
+            let mut cells = vec![Cell::plain(entry.title()), Cell::plain(name)];
             cells.push(shown(mean(format!("fragments/{name}")), 2));
             let slots = estimate::GPUS.map(|gpu| shown(mean(format!("slots/{}/{name}", gpu.gpu)), 1));
             cells.extend(slots);

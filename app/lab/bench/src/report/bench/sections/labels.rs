@@ -48,12 +48,11 @@ pub fn anti_aliasing(suite: &Suite) -> Section {
     let section = Section::new(
         "anti-aliasing",
         "Anti-aliasing",
-        "Each synthesized eye against the same eye rendered in the same way: with one sample per pixel, with FXAA \
-         after synthesis, and with MSAA, where synthesis takes the mean colour and the nearest depth of each pixel's \
-         samples.",
+        "Each synthesized eye against the same eye rendered with as many samples per pixel. Synthesis takes the mean \
+         colour and the nearest depth of each pixel's samples.",
     );
     let labels = Labels {
-        column: "<anti-aliasing",
+        column: "<samples per pixel",
         title: "PSNR in dB / SSIM / frame time over two renders, means over the scenes",
         details: "Every scene in full",
         papers: &[],
