@@ -80,6 +80,8 @@ pub enum Event<'a> {
     ColorMasked,
     /// Depth writes are off until the state is set again.
     DepthMasked,
+    /// Only the samples of this mask are drawn; `None` for all.
+    SamplesMasked(Option<u32>),
     /// A draw call follows.
     DrawBegins(Shape),
     /// The draw call has been made.

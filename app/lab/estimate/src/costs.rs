@@ -202,7 +202,7 @@ fn work(text: &str) -> Option<Work> {
 
 /// True if the shader's only loop is the one over lamps.
 fn is_lit(file: &str) -> bool {
-    ["render/lighting.frag", "render/forward.frag", "render/transparent.frag"].contains(&file)
+    ["render/forward.frag", "render/transparent.frag"].contains(&file)
 }
 
 #[cfg(test)]

@@ -11,7 +11,6 @@ mod gpus;
 mod lamps;
 pub mod metric;
 mod model;
-mod pass_table;
 mod record;
 mod traffic;
 mod waves;
@@ -19,7 +18,8 @@ mod waves;
 pub use gather::Meter;
 pub use gpus::{DEVICES, Device, GPUS};
 pub use lamps::Lamps;
-pub use model::{Frame, FrameModel, MULTIVIEW, SIZE, SYNTHESIS, VERTICES, VERTICES_ONCE};
-pub use pass_table::pass_table;
+pub use model::{
+    BYTES, BYTES_16, BYTES_BLIT, Frame, FrameModel, MULTIVIEW, SIZE, SYNTHESIS, VERTICES, VERTICES_ONCE,
+};
 pub use record::{Command, Draw, Recorder};
-pub use traffic::{Piece, Traffic, pieces};
+pub use traffic::{Assumed, Piece, Traffic, pieces};

@@ -6,7 +6,7 @@ use crate::costs::Costs;
 use crate::gpus::{Device, GPUS};
 use crate::lamps::Lamps;
 use crate::record::{Command, Draw};
-use crate::traffic::{fragments, pieces};
+use crate::traffic::{Assumed, fragments, pieces};
 use yoro_gl::{ProgramRecipe, Shape};
 
 /// The prefix of the names of synthesis passes. Their execution is counted by [`Meter`](crate::Meter).
@@ -20,11 +20,17 @@ pub const MULTIVIEW: &str = "multiview";
 pub const VERTICES: &str = "vertices";
 /// The same with each vertex shaded once for both eyes, as multiview allows.
 pub const VERTICES_ONCE: &str = "vertices once";
+/// The prefix of metrics of bytes: OpenGL ES, samples averaged in the tiles.
+pub const BYTES: &str = "bytes/";
+/// The prefix of the simulated row "16-bit depth, as a Vulkan host resolves it".
+pub const BYTES_16: &str = "bytes-16/";
+/// The prefix of bytes where `glBlitFramebuffer` averages in memory.
+pub const BYTES_BLIT: &str = "bytes-blit/";
 /// Fragments shaded per covered pixel of a surface with several samples. This is an assumption: at an edge between
 /// triangles, the pixel is shaded once for each triangle.
 const EDGE_FRAGMENTS: f64 = 1.05;
 
-/// The costs of a frame per pixel of an eye, by metric: `slots/a740/g-buffer`, `bytes/g-buffer`, `fragments/g-buffer`.
+/// The costs of a frame per pixel of an eye, by metric: `slots/a740/surfaces`, `bytes/surfaces`, `fragments/surfaces`.
 pub type Frame = BTreeMap<String, f64>;
 
 /// Computes the costs of recorded frames.
@@ -42,17 +48,31 @@ impl FrameModel {
         Ok(FrameModel { costs: costs.collect::<anyhow::Result<_>>()? })
     }
 
-    /// Returns the costs of a recorded frame whose eyes have this size, without what the synthesis executes.
+    /// Returns the costs of a recorded frame whose eyes have this size, without what the synthesis executes. `laws` is
+    /// the share of the synthesized pixels whose tile has a law, 0 to 1.
     ///
     /// # Errors
     /// If the table lacks a shader.
-    pub fn frame(&self, commands: &[Command], size: [u32; 2], lamps: &mut Lamps) -> anyhow::Result<Frame> {
+    pub fn frame(
+        &self,
+        commands: &[Command],
+        size: [u32; 2],
+        lamps: &mut Lamps,
+        laws: f64,
+    ) -> anyhow::Result<Frame> {
         let pixels = f64::from(size[0]) * f64::from(size[1]);
         let mut frame = Frame::new();
         let mut add = |metric: String, value: f64| *frame.entry(metric).or_default() += value / pixels;
-        for piece in pieces(commands) {
-            add(format!("bytes/{}", piece.passes.join(", ")), piece.bytes());
-            add(format!("bytes/{VERTICES}"), piece.vertex_bytes);
+        let tiles = Assumed { laws, ..Assumed::default() };
+        for (prefix, assumed) in [
+            (BYTES, tiles),
+            (BYTES_16, Assumed { depth_in_16_bits: true, ..tiles }),
+            (BYTES_BLIT, Assumed { averages_in_memory: true, ..tiles }),
+        ] {
+            for piece in pieces(commands, &assumed) {
+                add(format!("{prefix}{}", piece.passes.join(", ")), piece.bytes());
+                add(format!("{prefix}{VERTICES}"), piece.vertex_bytes);
+            }
         }
         for command in commands {
             let Command::Draw(draw) = command else { continue };
@@ -86,7 +106,7 @@ impl FrameModel {
         lamps: &mut Lamps,
     ) -> anyhow::Result<Frame> {
         let commands: Vec<Command> = commands.iter().map(with_layers).collect();
-        let mut frame = self.frame(&commands, size, lamps)?;
+        let mut frame = self.frame(&commands, size, lamps, 0.0)?;
         for (gpu, _) in &self.costs {
             let twice = frame.get(&format!("slots/{}/{VERTICES}", gpu.gpu)).copied().unwrap_or(0.0);
             frame.insert(format!("slots/{}/{VERTICES_ONCE}", gpu.gpu), 0.5 * twice);
@@ -106,12 +126,8 @@ fn shaded(draw: &Draw) -> f64 {
 /// Returns the draw call as multiview would make it, with the programs that draw into layers and read them.
 fn with_layers(command: &Command) -> Command {
     let Command::Draw(draw) = command else { return command.clone() };
-    // The forward renderer has no layers. Its surfaces are counted as instanced.
-    let is_forward = draw.program.defines.iter().any(|(name, _)| name == "FORWARD");
     let rename = |name: &str| match name {
-        "CLIP_DISTANCE" | "SEAM_DISCARD" if is_forward => "CLIP_DISTANCE".to_owned(),
         "CLIP_DISTANCE" | "SEAM_DISCARD" => "MULTIVIEW".to_owned(),
-        "HALF" => "LAYER".to_owned(),
         other => other.to_owned(),
     };
     let defines = draw.program.defines.iter().map(|(name, value)| (rename(name), value.clone())).collect();
@@ -144,19 +160,20 @@ mod tests {
                 blends: false,
                 uses_depth: false,
                 writes_depth: false,
+                masks_samples: false,
                 samples_passed,
             })
         };
         let mesh = Shape::Mesh { indices: 30, vertices: 20, vertex_bytes: 32 };
         let commands = [
-            draw("g-buffer", "render/geometry.frag", mesh, Some(120)),
-            draw("fxaa", "render/fxaa.frag", Shape::Screen, None),
+            draw("surfaces", "render/forward.frag", mesh, Some(120)),
+            draw("bloom", "render/bloom_up.frag", Shape::Screen, None),
             draw("gather march", "synthesis/gather/march.frag", Shape::Screen, None),
         ];
         let pair = EyeOptions { size, ..EyeOptions::default() }.pair(Pose::IDENTITY);
         let mut lamps = Lamps::new(&pair.view(pair.dominant), &[pair.depth.clear_value(); 100], &[]);
         let model = FrameModel::new().unwrap();
-        let frame = model.frame(&commands, size, &mut lamps).unwrap();
+        let frame = model.frame(&commands, size, &mut lamps, 0.0).unwrap();
         let told = |file: &str, stage: &str, column: usize| {
             let table = include_str!("../shader-cost.csv");
             let line = table.lines().find(|line| line.starts_with(&format!("a740,{file},{stage},"))).unwrap();
@@ -166,11 +183,11 @@ mod tests {
             let value = frame[metric];
             assert!((value - expected).abs() < 1e-9 * expected, "{metric}: {value}, not {expected}");
         };
-        close("slots/a740/g-buffer", 1.2 * told("render/geometry.frag", "fragment", 4));
-        close("slots/a740/vertices", 0.2 * told("render/geometry.frag", "vertex", 3));
-        close("slots/a740/fxaa", told("render/fxaa.frag", "fragment", 4));
-        close("fragments/g-buffer", 1.2);
-        close("bytes/g-buffer", 8.0);
+        close("slots/a740/surfaces", 1.2 * told("render/forward.frag", "fragment", 4));
+        close("slots/a740/vertices", 0.2 * told("render/forward.frag", "vertex", 3));
+        close("slots/a740/bloom", told("render/bloom_up.frag", "fragment", 4));
+        close("fragments/surfaces", 1.2);
+        close("bytes/surfaces", 8.0);
         close("bytes/vertices", (20.0 * 32.0 + 30.0 * 4.0) / 100.0);
         // The execution of the synthesis is counted elsewhere.
         assert!(!frame.contains_key("slots/a740/gather march") && frame.contains_key("bytes/gather march"));

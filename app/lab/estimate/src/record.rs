@@ -34,6 +34,8 @@ pub struct Draw {
     pub uses_depth: bool,
     /// True if the depth attachment is written.
     pub writes_depth: bool,
+    /// True if a mask lets only some of each pixel's samples through.
+    pub masks_samples: bool,
     /// Samples that passed the depth test and were not discarded. Counted by desktop GL only.
     pub samples_passed: Option<u64>,
 }
@@ -47,7 +49,7 @@ pub enum Command {
     Clear(Option<Rc<Attachments>>, bool),
     /// Discards the contents of colour, depth or both.
     Discard(Option<Rc<Attachments>>, [bool; 2]),
-    /// Copies or averages `size` pixels of colour, or of depth, into another framebuffer.
+    /// Copies or averages `size` pixels of an attachment into another framebuffer's first attachment of its kind.
     Copy {
         /// The innermost pass.
         pass: &'static str,
@@ -57,8 +59,8 @@ pub enum Command {
         to: Option<Rc<Attachments>>,
         /// Width and height in pixels.
         size: [u32; 2],
-        /// True for depth, false for the first colour attachment.
-        depth: bool,
+        /// The attachment of the source.
+        aspect: Aspect,
     },
 }
 
@@ -84,6 +86,7 @@ struct State {
     raster: Option<RasterState>,
     masks_color: bool,
     masks_depth: bool,
+    masks_samples: bool,
 }
 
 impl State {
@@ -123,6 +126,7 @@ impl State {
             blends: raster.blend != Blend::Off,
             uses_depth,
             writes_depth: uses_depth && !self.masks_depth && raster.depth != DepthTest::Equal,
+            masks_samples: self.masks_samples,
             samples_passed: None,
         })
     }
@@ -176,6 +180,7 @@ impl State {
             }
             Event::ColorMasked => self.masks_color = true,
             Event::DepthMasked => self.masks_depth = true,
+            Event::SamplesMasked(mask) => self.masks_samples = mask.is_some(),
             Event::DrawBegins(shape) => self.begin_draw(gl, shape),
             Event::DrawEnds if self.open.take().is_some() => {
                 // SAFETY: ends the query that the draw call began.
@@ -186,9 +191,8 @@ impl State {
                 self.push(Command::Discard(self.target(Some(framebuffer)), [color, depth]), None);
             }
             Event::Copied { from, to, size, aspect } => {
-                let depth = aspect == Aspect::Depth;
                 let (pass, from, to) = (self.pass(), self.target(from), self.target(to));
-                self.push(Command::Copy { pass, from, to, size, depth }, None);
+                self.push(Command::Copy { pass, from, to, size, aspect }, None);
             }
             _ => {}
         }

@@ -6,20 +6,50 @@
 //! 2. An image is read into the tiles at the start unless it is cleared, or first drawn by a triangle that covers the
 //!    view without blending and without a test against its depth.
 //! 3. An image is written to memory at the end if anything was drawn into it, unless it is discarded.
-//! 4. Samples are averaged in the tiles if this directly follows drawing them.
+//! 4. Samples are averaged in the tiles if this directly follows drawing them. With
+//!    [`Assumed::averages_in_memory`], they are written and read back by every `glBlitFramebuffer`.
 //! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads one texel of each texture per
-//!    fragment. The shadow map is always read once per fragment.
+//!    fragment. The shadow map is always read once per fragment. The march reads depth only where a tile has no law,
+//!    unless it writes depth.
 
 use std::rc::Rc;
 
 use crate::record::{Command, Draw};
-use yoro_gl::{Attachments, Image, Shape};
+use yoro_gl::{Aspect, Attachments, Format, Image, Shape};
 
 /// The texture that every draw call reads at one place per fragment.
 const SHADOW_MAP: &str = "shadow_map";
 
+/// The pass that reads the depth of a tile of 16 x 8 pixels in each fragment.
+const TILES: &str = "gather tiles";
+/// The pass that reads depth where it needs it.
+const MARCH: &str = "gather march";
+
+/// What is assumed of the driver, and known of the frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Assumed {
+    /// True if `glBlitFramebuffer` averages samples in memory instead of in the tiles.
+    pub averages_in_memory: bool,
+    /// True if the depth that is carried in two half floats ([`yoro_render::NearestDepth::Carried`]) takes 2 bytes
+    /// instead of 4, as a Vulkan host stores it that resolves depth into 16 bits. A simulation: OpenGL ES cannot.
+    pub depth_in_16_bits: bool,
+    /// Share of the synthesized pixels whose tile has a law, 0 to 1.
+    pub laws: f64,
+}
+
+impl Assumed {
+    /// Returns the bytes of a pixel's samples in an image.
+    fn texel_bytes(&self, image: &Image) -> f64 {
+        let bytes = match image.format {
+            Format::Rg16F if self.depth_in_16_bits => 2,
+            format => format.bytes(),
+        };
+        bytes as f64 * f64::from(image.samples)
+    }
+}
+
 /// An image that a piece of work draws into.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traffic {
     /// The image.
     pub image: Image,
@@ -29,6 +59,10 @@ pub struct Traffic {
     pub stored: bool,
     /// True if anything has drawn into or cleared the image.
     touched: bool,
+    /// True if the image was read from memory before it was discarded.
+    kept: bool,
+    /// Bytes of a pixel.
+    bytes: f64,
 }
 
 /// A piece of work on one framebuffer.
@@ -38,7 +72,7 @@ pub struct Piece {
     pub passes: Vec<&'static str>,
     /// The colour attachments, then depth.
     pub images: Vec<Traffic>,
-    /// The textures: name, image, and number of texels that are read.
+    /// The textures: name, image, and the bytes that are read.
     pub textures: Vec<(String, Image, f64)>,
     /// The columns and rows that are drawn.
     pub area: [u32; 2],
@@ -52,13 +86,16 @@ fn pixels(size: [u32; 2]) -> f64 {
     f64::from(size[0]) * f64::from(size[1])
 }
 
-fn texel_bytes(image: &Image) -> f64 {
-    image.format.bytes() as f64 * f64::from(image.samples)
-}
-
 impl Piece {
-    fn new(target: &Rc<Attachments>) -> Piece {
-        let traffic = |image: &Image| Traffic { image: *image, loaded: false, stored: false, touched: false };
+    fn new(target: &Rc<Attachments>, assumed: &Assumed) -> Piece {
+        let traffic = |image: &Image| Traffic {
+            image: *image,
+            loaded: false,
+            stored: false,
+            touched: false,
+            kept: false,
+            bytes: assumed.texel_bytes(image),
+        };
         let images = target.color.iter().chain(&target.depth).map(traffic).collect();
         Piece {
             passes: Vec::new(),
@@ -72,9 +109,9 @@ impl Piece {
 
     /// Returns the bytes moved for images and textures.
     pub fn bytes(&self) -> f64 {
-        let moved = |t: &Traffic| (f64::from(t.loaded) + f64::from(t.stored)) * texel_bytes(&t.image);
+        let moved = |t: &Traffic| (f64::from(t.loaded) + f64::from(t.stored)) * t.bytes;
         let images: f64 = self.images.iter().map(moved).sum();
-        let textures: f64 = self.textures.iter().map(|(_, image, texels)| texels * texel_bytes(image)).sum();
+        let textures: f64 = self.textures.iter().map(|(.., bytes)| bytes).sum();
         images * pixels(self.area) + textures
     }
 
@@ -92,6 +129,17 @@ impl Piece {
         self.images.iter_mut().filter(move |traffic| traffic.image.format.is_depth() == depth)
     }
 
+    /// Notes that samples are written to memory, whatever is discarded later.
+    fn keep(&mut self, aspect: Aspect) {
+        let image = match aspect {
+            Aspect::Color(i) => self.of_kind(false).nth(i),
+            Aspect::Depth => self.of_kind(true).next(),
+        };
+        if let Some(image) = image {
+            image.kept = true;
+        }
+    }
+
     fn clear(&mut self, depth: bool) {
         let cleared = |t: &mut Traffic| (t.touched, t.stored) = (true, true);
         self.of_kind(false).for_each(cleared);
@@ -100,7 +148,7 @@ impl Piece {
         }
     }
 
-    fn draw(&mut self, draw: &Draw) {
+    fn draw(&mut self, draw: &Draw, assumed: &Assumed) {
         self.name(draw.pass);
         let covers = draw.shape == Shape::Screen;
         if pixels(draw.area) > pixels(self.area) {
@@ -118,11 +166,19 @@ impl Piece {
             self.of_kind(true).for_each(|t| touch(t, covers && draw.writes_depth, draw.writes_depth));
         }
         for (name, image) in &draw.textures {
-            let texels =
-                if covers && name != SHADOW_MAP { texels_once(image, draw.area) } else { fragments(draw) };
+            let mut texels = match covers && name != SHADOW_MAP {
+                true if draw.pass == TILES => pixels(image.size),
+                true => texels_once(image, draw.area),
+                false => fragments(draw),
+            };
+            let has_depth = draw.program.defines.iter().any(|(name, _)| name == "WRITE_DEPTH");
+            if draw.pass == MARCH && name == "depth_map" && !has_depth {
+                texels *= 1.0 - assumed.laws;
+            }
+            let bytes = texels * assumed.texel_bytes(image);
             match self.textures.iter_mut().find(|(other, at, _)| other == name && at == image) {
-                Some((.., sum)) => *sum += texels,
-                None => self.textures.push((name.clone(), *image, texels)),
+                Some((.., sum)) => *sum += bytes,
+                None => self.textures.push((name.clone(), *image, bytes)),
             }
         }
         if let Shape::Mesh { indices, vertices, vertex_bytes } = draw.shape {
@@ -131,8 +187,12 @@ impl Piece {
     }
 }
 
-/// Returns the number of fragments of a draw call: the counted ones, or else all pixels of the view.
+/// Returns the number of fragments of a draw call: the counted ones, or else all pixels of the view. With a mask of
+/// samples, a triangle that covers the view passes fewer samples of as many pixels.
 pub fn fragments(draw: &Draw) -> f64 {
+    if draw.masks_samples {
+        return pixels(draw.area);
+    }
     let samples =
         draw.target.as_ref().and_then(|target| target.color.first()).map_or(1, |image| image.samples);
     draw.samples_passed.map_or(pixels(draw.area), |passed| passed as f64 / f64::from(samples))
@@ -147,17 +207,17 @@ fn texels_once(image: &Image, area: [u32; 2]) -> f64 {
 }
 
 /// Returns the pieces of work of a recorded frame.
-pub fn pieces(commands: &[Command]) -> Vec<Piece> {
+pub fn pieces(commands: &[Command], assumed: &Assumed) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
     // True if the next draw call into the last piece's framebuffer belongs to that piece.
     let mut open = false;
     for command in commands {
         match command {
             Command::Clear(Some(target), depth) => {
-                begin(&mut pieces, &mut open, target).clear(*depth);
+                begin(&mut pieces, &mut open, target, assumed).clear(*depth);
             }
             Command::Draw(draw @ Draw { target: Some(target), .. }) => {
-                begin(&mut pieces, &mut open, target).draw(draw);
+                begin(&mut pieces, &mut open, target, assumed).draw(draw, assumed);
             }
             Command::Discard(Some(target), given_up) => {
                 let of = |piece: &&mut Piece| piece.draws_into(target);
@@ -165,22 +225,38 @@ pub fn pieces(commands: &[Command]) -> Vec<Piece> {
                     for (depth, _) in
                         [false, true].into_iter().zip(given_up).filter(|(_, given_up)| **given_up)
                     {
-                        piece.of_kind(depth).for_each(|t| t.stored = false);
+                        piece.of_kind(depth).for_each(|t| t.stored = t.kept);
                     }
                 }
             }
-            Command::Copy { pass, from, to, size, depth } => {
-                let image = |target: &Option<Rc<Attachments>>| {
+            Command::Copy { pass, from, to, size, aspect } => {
+                let image = |target: &Option<Rc<Attachments>>, color: usize| {
                     let images = target.as_ref()?;
-                    if *depth { images.depth } else { images.color.first().copied() }
+                    if *aspect == Aspect::Depth { images.depth } else { images.color.get(color).copied() }
                 };
-                let (Some(source), Some(target)) = (image(from), image(to)) else { continue };
+                let color = if let Aspect::Color(i) = aspect { *i } else { 0 };
+                let (Some(source), Some(target)) = (image(from, color), image(to, 0)) else { continue };
                 let follows = from.as_ref().is_some_and(|from| is_of_last(&pieces, from));
-                let in_tile = source.samples > 1 && follows;
+                let is_average = source.samples > 1 && follows;
+                let in_tile = is_average && !assumed.averages_in_memory;
+                if is_average
+                    && !in_tile
+                    && let Some(drawn) = pieces.iter_mut().rev().find(|piece| piece.framebuffer.is_some())
+                {
+                    drawn.keep(*aspect);
+                }
+                let read = if in_tile { 0.0 } else { pixels(*size) * assumed.texel_bytes(&source) };
                 pieces.push(Piece {
                     passes: vec![*pass],
-                    images: vec![Traffic { image: target, loaded: false, stored: true, touched: true }],
-                    textures: vec![("samples".into(), source, if in_tile { 0.0 } else { pixels(*size) })],
+                    images: vec![Traffic {
+                        image: target,
+                        loaded: false,
+                        stored: true,
+                        touched: true,
+                        kept: false,
+                        bytes: assumed.texel_bytes(&target),
+                    }],
+                    textures: vec![("samples".into(), source, read)],
                     area: *size,
                     framebuffer: None,
                     vertex_bytes: 0.0,
@@ -201,10 +277,15 @@ fn is_of_last(pieces: &[Piece], target: &Rc<Attachments>) -> bool {
 }
 
 /// Returns the open piece if it draws into this framebuffer, or else a new one.
-fn begin<'a>(pieces: &'a mut Vec<Piece>, open: &mut bool, target: &Rc<Attachments>) -> &'a mut Piece {
+fn begin<'a>(
+    pieces: &'a mut Vec<Piece>,
+    open: &mut bool,
+    target: &Rc<Attachments>,
+    assumed: &Assumed,
+) -> &'a mut Piece {
     let goes_on = *open && pieces.last().is_some_and(|piece| piece.draws_into(target));
     if !goes_on {
-        pieces.push(Piece::new(target));
+        pieces.push(Piece::new(target, assumed));
         *open = true;
     }
     pieces.last_mut().expect("one was pushed if there was none")
@@ -244,6 +325,7 @@ mod tests {
             blends: false,
             uses_depth: is_mesh,
             writes_depth: is_mesh,
+            masks_samples: false,
             samples_passed: is_mesh.then_some(4 * 30),
         }
     }
@@ -261,7 +343,7 @@ mod tests {
             from: samples.clone(),
             to: resolved.clone(),
             size: SIZE,
-            depth: false,
+            aspect: Aspect::Color(0),
         };
         let forward = [
             Command::Clear(samples.clone(), true),
@@ -271,7 +353,7 @@ mod tests {
         ];
         let bytes = |given_up: [bool; 2], more: &[Command]| {
             let discard = [Command::Discard(samples.clone(), given_up)];
-            let pieces = pieces(&[&forward[..], &discard, more].concat());
+            let pieces = pieces(&[&forward[..], &discard, more].concat(), &assumed);
             pieces.iter().map(|piece| (piece.passes.join(", "), piece.bytes())).collect::<Vec<_>>()
         };
         // The 30 fragments of each draw call read a texel of 4 bytes.
@@ -299,7 +381,9 @@ mod tests {
         let [a, b] = [0, 1].map(|_| target(image(Format::Rgba8, 1), None));
         let screen = |to| Command::Draw(draw("screen", to, Shape::Screen, &[]));
         let blended = |to| Command::Draw(Draw { blends: true, ..draw("blend", to, Shape::Screen, &[]) });
-        let bytes = |commands: &[Command]| pieces(commands).iter().map(Piece::bytes).sum::<f64>();
+        let bytes = |commands: &[Command]| {
+            pieces(commands, &Assumed::default()).iter().map(Piece::bytes).sum::<f64>()
+        };
         // The image is written once, and blended with while it is in the tile.
         assert_eq!(bytes(&[screen(&a), blended(&a)]), 4.0 * PIXELS);
         // Another image is drawn in between, so that this one is written, and then read and written again.
@@ -318,7 +402,7 @@ mod tests {
     #[test]
     fn vertices_and_indices_are_read_once() {
         let to = target(image(Format::Rgba8, 1), None);
-        let pieces = pieces(&[Command::Draw(draw("g-buffer", &to, MESH, &[]))]);
+        let pieces = pieces(&[Command::Draw(draw("surfaces", &to, MESH, &[]))], &Assumed::default());
         assert_eq!(pieces[0].vertex_bytes, 4.0 * 32.0 + 6.0 * 4.0);
     }
 }
