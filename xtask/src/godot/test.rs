@@ -39,6 +39,7 @@ const SCENES: [Scene; 2] = [
             ["glow", "left", "glow"],
             ["linear", "left", "linear"],
             ["resized", "left", "resized"],
+            ["lamp", "left", "lamp"],
         ],
         facts: &[
             "fact warnings 0, transparent 2",

@@ -56,6 +56,11 @@ func _ready() -> void:
 		await _frames(2)
 		_save("debug-%d" % view)
 	camera.debug_view = YoroCamera3D.DebugView.NONE
+	# Shadow maps are drawn with the stereo layers alone before Godot renders both eyes.
+	room.lamp.shadow_enabled = true
+	await _frames(2)
+	await _case("lamp")
+	room.lamp.shadow_enabled = false
 	# The initial size again, after everything above.
 	get_window().size = Vector2i(1024, 512)
 	await _frames(2)

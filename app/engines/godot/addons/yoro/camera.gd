@@ -81,6 +81,7 @@ var _compositor := Compositor.new()
 var _world_effects: Array[CompositorEffect] = []
 var _trouble := ""
 var _drawn := _Drawn.ALL
+var _shown_layers := 0
 
 
 ## Returns one sentence that says why no eye is synthesized although [member mode] is not [code]BOTH_VIEWS[/code], or why
@@ -282,7 +283,7 @@ func _draw_stereo_layers() -> void:
 	wanted.push_front(_put)
 	_set_effects(wanted)
 	var camera := get_camera_rid()
-	RenderingServer.camera_set_cull_mask(camera, cull_mask & stereo_layers)
+	_show_layers(cull_mask & stereo_layers)
 	RenderingServer.camera_set_environment(camera, _environment.copy.get_rid() if _environment.copy != null else RID())
 	_latch_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	_drawn = _Drawn.STEREO_LAYERS
@@ -301,7 +302,7 @@ func _draw_all(drawn := _Drawn.ALL) -> void:
 	var camera := get_camera_rid()
 	if _drawn == _Drawn.STEREO_LAYERS:
 		_rest()
-		RenderingServer.camera_set_cull_mask(camera, cull_mask)
+		_show_layers(cull_mask)
 		RenderingServer.camera_set_environment(camera, environment.get_rid() if environment != null else RID())
 	if drawn == _Drawn.ALL_WATCHED:
 		var wanted: Array[CompositorEffect] = [_nearness]
@@ -310,6 +311,14 @@ func _draw_all(drawn := _Drawn.ALL) -> void:
 	elif drawn != _drawn:
 		RenderingServer.camera_set_compositor(camera, compositor.get_rid() if compositor != null else RID())
 	_drawn = drawn
+
+
+## Lets the renderer's camera show these layers.
+func _show_layers(layers: int) -> void:
+	RenderingServer.camera_set_cull_mask(get_camera_rid(), layers)
+	if layers != _shown_layers and is_inside_tree():
+		YoroEye.renew_shadows(get_viewport())
+	_shown_layers = layers
 
 
 ## Stops drawing the eye from which the other one is synthesized.

@@ -87,7 +87,7 @@ func _process(_delta: float) -> void:
 		shown.set_perspective(camera.fov, camera.near, camera.far)
 		shown.global_transform = camera.get_camera_transform() * Transform3D(Basis(), Vector3((i - 0.5) * ipd, 0.0, 0.0))
 		shown.attributes = camera.attributes
-		shown.cull_mask = camera.cull_mask if both else camera.cull_mask & camera.stereo_layers
+		YoroEye.show_layers(eyes[i], shown, camera.cull_mask if both else camera.cull_mask & camera.stereo_layers)
 		shown.environment = camera.shown_environment() if both else _environment.copy
 		var wanted: Array[CompositorEffect] = camera.effects(true)
 		if both:
