@@ -15,6 +15,7 @@ var source: YoroEye
 ## Why both eyes are rendered although one could be synthesized, or an empty text.
 var trouble := ""
 var _cameras: Array[Camera3D] = []
+var _pictures: Array[TextureRect] = []
 var _puts: Array[YoroPut] = []
 var _environment := YoroEnvironment.new(YoroCamera3D.SHOWN_OVERRIDES)
 
@@ -31,7 +32,6 @@ func _init(of: YoroCamera3D) -> void:
 	for eye in 2:
 		var viewport := SubViewport.new()
 		viewport.gui_disable_input = true
-		viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 		var shown := Camera3D.new()
 		var put := YoroPut.new(source.synthesis)
 		put.eye = eye
@@ -48,6 +48,8 @@ func _init(of: YoroCamera3D) -> void:
 		picture.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 		picture.size_flags_vertical = Control.SIZE_EXPAND_FILL
 		add_child(picture)
+		_pictures.append(picture)
+	_show(false)
 
 
 ## Returns why a camera cannot be previewed, or an empty text.
@@ -55,10 +57,19 @@ static func fault(of: Camera3D) -> String:
 	return "" if of.projection == Camera3D.PROJECTION_PERSPECTIVE else "the camera's projection is not a perspective"
 
 
+func _show(shown: bool) -> void:
+	for eye in 2:
+		_pictures[eye].visible = shown
+		eyes[eye].render_target_update_mode = SubViewport.UPDATE_ALWAYS if shown else SubViewport.UPDATE_DISABLED
+	if not shown:
+		source.rest()
+
+
 func _process(_delta: float) -> void:
 	if not is_instance_valid(camera) or not camera.is_inside_tree() or not is_visible_in_tree() or fault(camera) != "":
-		source.rest()
+		_show(false)
 		return
+	_show(true)
 	# Controls have logical sizes, which may be stretched to the window's pixels.
 	var pixels := size * get_viewport().get_stretch_transform().get_scale()
 	var eye := Vector2i(maxi(roundi(pixels.x / 2.0), 16), maxi(roundi(pixels.y), 16))
