@@ -4,9 +4,10 @@
 //! and returns the text. This crate handles text only: it knows neither OpenGL nor any other graphics interface.
 //!
 //! Folders are named after the modules that use them. Each `#include "PATH"` is resolved once, and `#line` is added, so
-//! that a driver's messages can be traced to file and line ([`Assembled::name_files`]). With the feature `hot-reload`,
-//! the environment variable `YORO_SHADERS` may name a folder from which shaders are read instead, so that changes take
-//! effect at the next start, without compiling.
+//! that a driver's messages can be traced to file and line ([`Assembled::name_files`]). Engines need only the files of
+//! synthesis; the feature `app` embeds all others, too. With the feature `hot-reload`, the environment variable
+//! `YORO_SHADERS` may name a folder from which shaders are read instead, so that changes take effect at the next start,
+//! without compiling.
 
 use std::fmt::Write as _;
 
@@ -15,36 +16,53 @@ macro_rules! embed {
     ($($path:literal,)*) => { &[$(($path, include_str!(concat!("../", $path)))),*] };
 }
 
-/// Path and content of each file, sorted by path.
-static FILES: &[(&str, &str)] = embed![
+/// A file's path and content.
+type File = (&'static str, &'static str);
+
+/// The files that synthesis needs, sorted by path.
+static SYNTHESIS: &[File] = embed![
     "include/any_view.glsl",
     "include/bits.glsl",
-    "include/carried.glsl",
     "include/color.glsl",
-    "include/depth_map.glsl",
     "include/develop.glsl",
     "include/extensions.glsl",
     "include/fill.glsl",
     "include/hdr.glsl",
-    "include/imbuffer.glsl",
-    "include/ink.glsl",
     "include/interface.glsl",
     "include/laws.glsl",
-    "include/material.glsl",
     "include/planes.glsl",
-    "include/reprojection.glsl",
-    "include/seam.glsl",
     "include/segments.glsl",
-    "include/shade.glsl",
     "include/silhouettes.glsl",
     "include/source.glsl",
     "include/span.glsl",
-    "include/surface.glsl",
     "include/tiles.glsl",
     "include/trips.glsl",
     "include/uniforms.glsl",
     "include/version.glsl",
     "include/warp.glsl",
+    "screen.vert",
+    "synthesis/any_view/march.frag",
+    "synthesis/any_view/spans.frag",
+    "synthesis/any_view/tiles.frag",
+    "synthesis/gather/march.frag",
+    "synthesis/gather/spans.frag",
+    "synthesis/gather/tiles.frag",
+    "synthesis/march.vert",
+    "synthesis/nearest_depth.frag",
+];
+
+/// All other files, sorted by path.
+#[cfg(any(test, feature = "app"))]
+static APP: &[File] = embed![
+    "include/carried.glsl",
+    "include/depth_map.glsl",
+    "include/imbuffer.glsl",
+    "include/ink.glsl",
+    "include/material.glsl",
+    "include/reprojection.glsl",
+    "include/seam.glsl",
+    "include/shade.glsl",
+    "include/surface.glsl",
     "inpaint/gather.frag",
     "inpaint/holes.glsl",
     "inpaint/median.frag",
@@ -65,20 +83,11 @@ static FILES: &[(&str, &str)] = embed![
     "render/shadow.frag",
     "render/sky.frag",
     "render/transparent.frag",
-    "screen.vert",
     "stereo/border_profile.frag",
     "stereo/near_fraction.frag",
     "stereo/paper/patch.frag",
     "stereo/paper/reproject.frag",
     "stereo/paper/scatter.comp",
-    "synthesis/any_view/march.frag",
-    "synthesis/any_view/spans.frag",
-    "synthesis/any_view/tiles.frag",
-    "synthesis/gather/march.frag",
-    "synthesis/gather/spans.frag",
-    "synthesis/gather/tiles.frag",
-    "synthesis/march.vert",
-    "synthesis/nearest_depth.frag",
     "viewer/decoded.frag",
     "viewer/hud.frag",
     "viewer/lens.frag",
@@ -86,6 +95,8 @@ static FILES: &[(&str, &str)] = embed![
     "viewer/menu.frag",
     "viewer/show.frag",
 ];
+#[cfg(not(any(test, feature = "app")))]
+static APP: &[File] = &[];
 
 /// The `#extension` directives, which GLSL requires before every declaration.
 const EXTENSIONS: &str = "include/extensions.glsl";
@@ -94,9 +105,9 @@ const EXTENSIONS: &str = "include/extensions.glsl";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingFile(pub String);
 
-/// Returns the paths of all files, sorted.
+/// Returns the paths of all embedded files: those of synthesis, then the others, each sorted.
 pub fn files() -> impl Iterator<Item = &'static str> {
-    FILES.iter().map(|(path, _)| *path)
+    SYNTHESIS.iter().chain(APP).map(|(path, _)| *path)
 }
 
 /// A shader's text with its includes resolved.
@@ -186,8 +197,8 @@ fn read(path: &str) -> Result<std::borrow::Cow<'static, str>, MissingFile> {
 use embedded as read;
 
 fn embedded(path: &str) -> Result<&'static str, MissingFile> {
-    let found = FILES.binary_search_by_key(&path, |(name, _)| name);
-    found.map(|i| FILES[i].1).map_err(|_| MissingFile(path.to_owned()))
+    let find = |files: &[File]| files.binary_search_by_key(&path, |(name, _)| name).ok().map(|i| files[i].1);
+    find(SYNTHESIS).or_else(|| find(APP)).ok_or_else(|| MissingFile(path.to_owned()))
 }
 
 #[cfg(test)]
@@ -214,7 +225,23 @@ mod tests {
         let mut found: Vec<&str> =
             found.iter().map(|path| path.strip_prefix(root).unwrap().to_str().unwrap()).collect();
         found.sort_unstable();
-        assert_eq!(files().collect::<Vec<_>>(), found);
+        assert!(SYNTHESIS.is_sorted() && APP.is_sorted());
+        let mut embedded: Vec<&str> = files().collect();
+        embedded.sort_unstable();
+        assert_eq!(embedded, found);
+    }
+
+    /// An engine has no other files.
+    #[test]
+    fn synthesis_includes_only_its_own_files() {
+        let has = |path: &str| SYNTHESIS.iter().any(|(name, _)| *name == path);
+        for (path, content) in SYNTHESIS {
+            let included = content.lines().filter_map(|line| line.trim_start().strip_prefix("#include"));
+            for name in included.map(|name| name.trim().trim_matches('"')) {
+                assert!(has(name), "{path} includes {name}");
+            }
+        }
+        assert!(has(EXTENSIONS));
     }
 
     #[test]

@@ -34,7 +34,8 @@ pub fn run() -> anyhow::Result<()> {
 pub fn test() -> anyhow::Result<()> {
     let start = Instant::now();
     setup::vulkan();
-    perform("test", &[], &[])?;
+    // The tests print their figures.
+    perform("test", &["--", "--nocapture"], &[])?;
     match hello_xr::make() {
         Ok(programs) => {
             let folder = target_folder()?.join("bevy-tests");

@@ -205,3 +205,53 @@ fn perform(task: Task) -> anyhow::Result<bool> {
     }
     Ok(true)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::error::ErrorKind;
+    use std::fs;
+    use std::path::Path;
+
+    /// Adds the text of all Markdown files except build results.
+    fn documents(folder: &Path, found: &mut Vec<String>) {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            if name.starts_with('.') || ["target", "out"].contains(&name.as_str()) {
+                continue;
+            }
+            match path.is_dir() {
+                true => documents(&path, found),
+                false if name.ends_with(".md") => found.push(fs::read_to_string(&path).unwrap()),
+                false => {}
+            }
+        }
+    }
+
+    /// Names of commands may lack their arguments, and syntax descriptions have brackets.
+    #[test]
+    fn every_command_in_a_document_is_one() {
+        use ErrorKind::{DisplayHelpOnMissingArgumentOrSubcommand, InvalidValue, MissingRequiredArgument};
+        let mut texts = Vec::new();
+        documents(&folders::root(), &mut texts);
+        let mut count = 0;
+        for text in texts.iter().flat_map(|text| text.split('`').skip(1).step_by(2)) {
+            // A block, or a command that may be wrapped.
+            let lines = if text.starts_with("sh\n") { text.to_owned() } else { text.replace('\n', " ") };
+            for line in lines.lines().filter_map(|line| line.strip_prefix("cargo xtask ")) {
+                let command = line.split(" #").next().unwrap().split(" && ").next().unwrap();
+                if command.contains('[') || command.contains("...") {
+                    continue;
+                }
+                count += 1;
+                let words = ["cargo xtask"].into_iter().chain(command.split_whitespace());
+                if let Err(error) = Arguments::try_parse_from(words) {
+                    let kinds =
+                        [DisplayHelpOnMissingArgumentOrSubcommand, InvalidValue, MissingRequiredArgument];
+                    assert!(kinds.contains(&error.kind()), "cargo xtask {command}: {error}");
+                }
+            }
+        }
+        assert!(count > 50, "the commands are gone");
+    }
+}

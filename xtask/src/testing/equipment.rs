@@ -27,7 +27,7 @@ struct Item {
     build: Option<fn() -> anyhow::Result<PathBuf>>,
 }
 
-static ITEMS: [Item; 11] = [
+static ITEMS: [Item; 12] = [
     Item {
         what: "the page",
         variable: "WEB",
@@ -85,6 +85,13 @@ static ITEMS: [Item; 11] = [
         users: &[("yoro-tests", "shader_cost::")],
         fetch: || Ok(Compilers::make()?.folder().to_owned()),
         build: None,
+    },
+    Item {
+        what: "the C library's package",
+        variable: "C_PACKAGE",
+        users: &[("yoro-c", "the_package")],
+        fetch: package::fetch_users_tools,
+        build: Some(|| package::package(&[package::Target::Linux])?.pop().context("no package was made")),
     },
     Item {
         what: "the APK (cargo xtask doctor)",

@@ -64,6 +64,7 @@ int main(int argc, char **argv) {
   YoroPoses poses;
   YORO_INIT(poses);
   poses.near_z = 0.1f;
+  /* As in widened(): reversed depth without a far plane. Other depth: see gles.c. */
   poses.far_z = INFINITY;
   poses.depth = YORO_DEPTH_REVERSED;
   poses.source = &guarded.view;

@@ -47,9 +47,11 @@ int main(int argc, char **argv) {
     eyes.fovs[eye].angle_up = up;
     eyes.fovs[eye].angle_down = -up;
   }
+  /* The planes of the engine's projection, and what its depth buffer means: here it is cleared to 1 and tested with
+   * LESS. If it is cleared to 0 and tested with GREATER: YORO_DEPTH_REVERSED. Without a far plane: INFINITY. */
   eyes.near_z = 0.1f;
-  eyes.far_z = INFINITY;
-  eyes.depth = YORO_DEPTH_REVERSED;
+  eyes.far_z = 100.0f;
+  eyes.depth = YORO_DEPTH_STANDARD;
   eyes.guard_band = YORO_GUARD_BAND;
   eyes.messages.callback = on_error;
   YoroViews views;

@@ -9,7 +9,8 @@
  * framebuffer or image, with its depth if you ask for it. While sizes stay the same, nothing is allocated, compiled or waited for in
  * a frame.
  *
- * STEP BY STEP, on OpenGL ES 3.0 and desktop OpenGL 4.5. Fields left at 0 mean OpenGL's conventions and the defaults.
+ * STEP BY STEP, on OpenGL ES 3.0 and desktop OpenGL 4.5, or 4.3 with GL_ARB_ES3_1_compatibility. Fields left at 0 mean OpenGL's
+ * conventions, which include a depth buffer that is cleared to 1 and tested with LESS, and the defaults.
  *
  *   Once, with the engine's context current:
  *
@@ -22,8 +23,9 @@
  *   the head; both orientations are the head's, {0, 0, 0, 1} is identity. angle_left and angle_down are negative.
  *
  *     YoroEyes eyes = {.struct_size = sizeof eyes, .rendered = YORO_EYE_RIGHT, .width = 1832, .height = 1920,
- *                      .near_z = 0.1f, .far_z = INFINITY, .depth = YORO_DEPTH_REVERSED, .guard_band = YORO_GUARD_BAND,
- *                      .messages = {on_error, NULL}};
+ *                      .near_z = 0.1f, .far_z = 1000, .guard_band = YORO_GUARD_BAND, .messages = {on_error, NULL}};
+ *     // The planes are your projection's. If depth is reversed (cleared to 0, tested with GREATER): eyes.depth = YORO_DEPTH_REVERSED,
+ *     // with glClipControl also eyes.clip = YORO_CLIP_Y_UP_Z_0_1. Without a far plane: eyes.far_z = INFINITY.
  *     for (int i = 0; i < 2; ++i) {
  *       memcpy(&eyes.poses[i], &located[i].pose, sizeof eyes.poses[i]);
  *       memcpy(&eyes.fovs[i], &located[i].fov, sizeof eyes.fovs[i]);
@@ -181,7 +183,7 @@ typedef int32_t YoroResult;
  */
 #define YORO_ERROR_NO_CONTEXT (-11)
 /**
- * The driver is too old, or lacks a feature that was asked for.
+ * The GL context or the driver is too old, or lacks a feature that was asked for.
  */
 #define YORO_ERROR_UNSUPPORTED (-12)
 /**
@@ -1014,9 +1016,10 @@ typedef uint32_t YoroGlState;
  */
 typedef uint32_t YoroGlSourceFlags;
 /**
- * The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution, or
- * both eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
- * sizes.
+ * The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution.
+ * Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest sizes. These textures
+ * cannot be the framebuffer's, not even other parts of them: if both eyes are shown from one texture, render into
+ * others, synthesize into that one at x and y of YoroGlImages, and blit the rendered eye's part beside it.
  */
 #define YORO_GL_SOURCE_PARTS 1
 /**
@@ -1326,8 +1329,8 @@ YoroResult yoro_guarded_view(const YoroHeadMotion *motion,
                              YoroGuardedView *guarded);
 
 /**
- * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at
- * startup, not in a frame.
+ * Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later (4.3 with GL_ARB_ES3_1_compatibility),
+ * and compiles its shaders. Call it at startup, not in a frame.
  *
  * Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated; the error flag is
  * left as it is.

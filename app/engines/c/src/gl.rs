@@ -49,9 +49,10 @@ pub const YORO_GL_STATE_PRESERVE: YoroGlState = 1;
 
 /// Bits that describe where sources lie in their textures.
 pub type YoroGlSourceFlags = u32;
-/// The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution, or
-/// both eyes side by side. Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest
-/// sizes.
+/// The rendered image is a part of larger textures, and its size may change in each frame: for dynamic resolution.
+/// Buffers then only grow, so that nothing is allocated after yoro_gl_prepare with the largest sizes. These textures
+/// cannot be the framebuffer's, not even other parts of them: if both eyes are shown from one texture, render into
+/// others, synthesize into that one at x and y of YoroGlImages, and blit the rendered eye's part beside it.
 pub const YORO_GL_SOURCE_PARTS: YoroGlSourceFlags = 1;
 /// The rendered image is a layer of a GL_TEXTURE_2D_ARRAY, in colour and in depth: for the textures of GL_OVR_multiview
 /// and the OpenXR swapchains used with it.
@@ -87,8 +88,8 @@ pub struct YoroGlInfo {
 
 versioned!(YoroGlInfo);
 
-/// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later, and compiles its shaders. Call it at
-/// startup, not in a frame.
+/// Creates a context for OpenGL ES 3.0 or later, or desktop OpenGL 4.5 or later (4.3 with GL_ARB_ES3_1_compatibility),
+/// and compiles its shaders. Call it at startup, not in a frame.
 ///
 /// Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated; the error flag is
 /// left as it is.

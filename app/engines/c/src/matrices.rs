@@ -83,22 +83,47 @@ fn wrong(sentence: String) -> Failure {
     Failure::new(YORO_ERROR_MATRIX, sentence)
 }
 
+/// Adds to a remedy that a matrix of the caller's has its rows where columns belong.
+fn or_transposed(remedy: &str, transposed_fits: bool) -> String {
+    let hint = if transposed_fits { " (yours is row-major: transpose it)" } else { "" };
+    format!("{remedy}{hint}")
+}
+
+/// True for a perspective projection without rotation or shear.
+fn is_perspective(matrix: &DMat4) -> bool {
+    let w = matrix.row(3);
+    let zeros = [matrix.x_axis.y, matrix.x_axis.z, matrix.y_axis.x, matrix.y_axis.z];
+    let offsets = [matrix.w_axis.x, matrix.w_axis.y, w.x, w.y, w.w, w.z.abs() - 1.0];
+    // Written so that NaN fails too.
+    matrix.is_finite() && zeros.iter().chain(&offsets).all(|n| n.abs() <= 1e-5)
+}
+
+/// True for a rotation, or a reflection, with a translation.
+fn is_rigid(matrix: &DMat4) -> bool {
+    let rotation = DMat3::from_mat4(*matrix);
+    let gram = rotation * rotation.transpose() - DMat3::IDENTITY;
+    let last = matrix.row(3) - DVec4::W;
+    // Written so that NaN fails too.
+    let small = |n: f64| n.abs() < 1e-3;
+    matrix.is_finite()
+        && gram.to_cols_array().into_iter().all(small)
+        && last.to_array().into_iter().all(small)
+}
+
 impl Projection {
     fn new(elements: &[f32; 16], clip: &Clip, eye: Eye) -> Result<Projection, Failure> {
         let name = eye.name();
         let matrix = DMat4::from_cols_array(&elements.map(f64::from));
-        let w = matrix.row(3);
-        let zeros = [matrix.x_axis.y, matrix.x_axis.z, matrix.y_axis.x, matrix.y_axis.z];
-        let offsets = [matrix.w_axis.x, matrix.w_axis.y, w.x, w.y, w.w, w.z.abs() - 1.0];
-        let is_zero = |n: &f64| n.abs() <= 1e-5;
-        // Written so that NaN fails too.
-        if !(matrix.is_finite() && zeros.iter().chain(&offsets).all(is_zero)) {
+        if !is_perspective(&matrix) {
             return Err(wrong(format!(
-                "the {name} eye's projection is not a perspective one: give a column-major matrix with -1 or 1 in element \
-                 11, without rotation or shear"
+                "the {name} eye's projection is not a perspective one: give {}",
+                or_transposed(
+                    "a column-major matrix with -1 or 1 in element 11, without rotation or shear",
+                    is_perspective(&matrix.transpose())
+                )
             )));
         }
-        let sense = -w.z.signum();
+        let sense = -matrix.row(3).z.signum();
         let [x, y, z] = [0, 1, 2].map(|row| matrix.row(row));
         let up = clip.up * y.y;
         if !(x.x > 0.0 && up > 0.0) {
@@ -152,22 +177,18 @@ struct EyeView {
 
 fn eye_view(elements: &[f32; 16], sense: f64, eye: Eye) -> Result<EyeView, Failure> {
     let matrix = DMat4::from_cols_array(&elements.map(f64::from));
-    let mut rotation = DMat3::from_mat4(matrix);
-    let mut translation = matrix.w_axis.truncate();
-    let gram = rotation * rotation.transpose() - DMat3::IDENTITY;
-    let last = matrix.row(3) - DVec4::W;
-    // Written so that NaN fails too.
-    let small = |n: f64| n.abs() < 1e-3;
-    if !(matrix.is_finite()
-        && gram.to_cols_array().into_iter().all(small)
-        && last.to_array().into_iter().all(small))
-    {
+    if !is_rigid(&matrix) {
         return Err(wrong(format!(
-            "the {} eye's view is more than rotation and translation: give a column-major matrix from the world to the \
-             eye, without scale",
-            eye.name()
+            "the {} eye's view is more than rotation and translation: give {}",
+            eye.name(),
+            or_transposed(
+                "a column-major matrix from the world to the eye, without scale",
+                is_rigid(&matrix.transpose())
+            )
         )));
     }
+    let mut rotation = DMat3::from_mat4(matrix);
+    let mut translation = matrix.w_axis.truncate();
     if sense < 0.0 {
         // Converts an eye that looks along +Z to one that looks along -Z.
         let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));

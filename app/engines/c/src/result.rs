@@ -37,7 +37,7 @@ pub const YORO_ERROR_EYES_ROWS: YoroResult = -9;
 pub const YORO_ERROR_TOO_LARGE: YoroResult = -10;
 /// No GL context is current on this thread, or the loader does not return the API's entry points.
 pub const YORO_ERROR_NO_CONTEXT: YoroResult = -11;
-/// The driver is too old, or lacks a feature that was asked for.
+/// The GL context or the driver is too old, or lacks a feature that was asked for.
 pub const YORO_ERROR_UNSUPPORTED: YoroResult = -12;
 /// A texture, image or framebuffer does not exist, or has the wrong format, type or size.
 pub const YORO_ERROR_FORMAT: YoroResult = -13;

@@ -9,6 +9,7 @@ use std::ptr::{null, null_mut};
 use common::{
     framebuffer, gl_info, good_eyes, matrices_of, messages, texture, views_of, views_of_matrices, zeroed,
 };
+use glow::HasContext as _;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use yoro_c::*;
@@ -139,6 +140,17 @@ fn impossible_matrices_return_their_codes() {
     for (i, (change, expected)) in table.iter().enumerate() {
         assert_eq!(wrong(change), *expected, "row {i}");
     }
+    // What is row-major as a whole is called so.
+    let sentence = |change: &dyn Fn(&mut YoroMatrices)| {
+        let mut noted = Vec::new();
+        let mut matrices = YoroMatrices { messages: messages(&mut noted), ..good };
+        change(&mut matrices);
+        views_of_matrices(&matrices).unwrap_err();
+        noted[0].1.contains("transpose")
+    };
+    assert!(sentence(&|m| m.view = m.view.map(transposed)));
+    assert!(sentence(&|m| m.projection = m.projection.map(transposed)));
+    assert!(!sentence(&|m| m.projection = [[0.0; 16]; 2]));
 }
 
 /// Generates eyes that can be synthesized, in all conventions.
@@ -410,6 +422,15 @@ fn wrong_images_return_their_codes() {
         assert_eq!(with(change), *expected, "row {i}: {:?}", noted.last());
         assert_eq!(headless.gl().take_errors(), None, "row {i}");
     }
+    // SAFETY: the context is current.
+    let renderbuffer = unsafe {
+        let renderbuffer = gl.create_renderbuffer().unwrap();
+        gl.bind_renderbuffer(glow::RENDERBUFFER, Some(renderbuffer));
+        gl.bind_renderbuffer(glow::RENDERBUFFER, None);
+        renderbuffer.0.get()
+    };
+    assert_eq!(with(&|i| i.depth_texture = renderbuffer), YORO_ERROR_FORMAT);
+    assert!(noted.last().unwrap().1.contains("is also a renderbuffer"), "{noted:?}");
     let mut capabilities: YoroCapabilities = zeroed(|c: &mut YoroCapabilities| &mut c.struct_size);
     // SAFETY: a live context, and null or a complete structure.
     unsafe {

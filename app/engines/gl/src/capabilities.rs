@@ -11,8 +11,19 @@ use crate::{Format, GlError};
 pub enum GlApi {
     /// OpenGL ES.
     Es,
-    /// Desktop OpenGL with GL_ARB_ES3_1_compatibility.
+    /// Desktop OpenGL 4.5, or 4.3 with GL_ARB_ES3_1_compatibility.
     Desktop,
+}
+
+impl GlApi {
+    /// True if a context of this version runs the shaders. A program that asks for a version gets that one from many
+    /// drivers, although they have newer ones.
+    fn runs_shaders(self, version: (u32, u32), has_es_3_1_compatibility: bool) -> bool {
+        match self {
+            GlApi::Es => version >= (3, 0),
+            GlApi::Desktop => version >= (4, 5) || (version >= (4, 3) && has_es_3_1_compatibility),
+        }
+    }
 }
 
 /// The driver, its version and its optional features.
@@ -137,13 +148,10 @@ impl Capabilities {
             let has = |name: &str| has_extension(gl, name);
             let api = if version.is_embedded { GlApi::Es } else { GlApi::Desktop };
             let number = (version.major, version.minor);
-            let too_old = match api {
-                GlApi::Es => number < (3, 0),
-                GlApi::Desktop => number < (4, 3) || !(number >= (4, 5) || has("GL_ARB_ES3_1_compatibility")),
-            };
-            if too_old {
+            if !api.runs_shaders(number, has("GL_ARB_ES3_1_compatibility")) {
                 return Err(GlError::Unsupported(format!(
-                    "the GL driver ({renderer}, {version_string}) is too old; OpenGL ES 3.0 (3.1 for compute pipelines) or desktop OpenGL 4.5 is needed: update the driver"
+                    "the GL context ({renderer}, {version_string}) is too old: ask for one of OpenGL ES 3.0 or of OpenGL 4.5 (4.3 \
+                     with GL_ARB_ES3_1_compatibility), and if the driver has none, update it"
                 )));
             }
             let compute = api == GlApi::Desktop || number >= (3, 1);
@@ -250,5 +258,18 @@ impl Capabilities {
         feature(self.tile_samples, "samples in tiles");
         feature(self.max_anisotropy > 1.0, "anisotropic filtering");
         format!("{}, {} ({})", self.renderer, self.version_string, features.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::GlApi::{Desktop, Es};
+
+    #[test]
+    fn a_contexts_version_decides_whether_shaders_run() {
+        let contexts = [(Es, (2, 0)), (Es, (3, 0)), (Desktop, (3, 3)), (Desktop, (4, 3)), (Desktop, (4, 6))];
+        let runs = |has| contexts.map(|(api, version)| api.runs_shaders(version, has));
+        assert_eq!(runs(false), [false, true, false, false, true]);
+        assert_eq!(runs(true), [false, true, false, true, true]);
     }
 }

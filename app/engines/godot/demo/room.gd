@@ -6,6 +6,7 @@ extends Node3D
 const STEREO := YoroMarks.LAYER
 
 var environment := WorldEnvironment.new()
+var lamp := OmniLight3D.new()
 
 
 func _init() -> void:
@@ -48,7 +49,6 @@ func _init() -> void:
 	sun.shadow_enabled = true
 	sun.layers |= STEREO
 	add_child(sun)
-	var lamp := OmniLight3D.new()
 	lamp.position = Vector3(-0.9, 1.9, -2.4)
 	lamp.omni_range = 6.0
 	lamp.light_energy = 2.0

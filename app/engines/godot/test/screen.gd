@@ -12,12 +12,12 @@ func _ready() -> void:
 		out = argument.trim_prefix("out=") if argument.begins_with("out=") else out
 	get_window().size = Vector2i(1024, 512)
 	await _frames(3)
-	print("fact warnings %d, transparent %d" % [YoroMarks.warnings(room, camera.stereo_layers).size(), YoroMarks.transparent(room).size()])
+	print("fact warnings %d, transparent %d" % [_warnings(), YoroMarks.transparent(room).size()])
 	var light := YoroMarks.lights(room)[0]
 	var glass := YoroMarks.transparent(room)[0]
 	light.layers = 1
 	glass.layers = 1
-	print("fact warnings %d" % YoroMarks.warnings(room, camera.stereo_layers).size())
+	print("fact warnings %d" % _warnings())
 	light.layers |= camera.stereo_layers
 	glass.layers = camera.stereo_layers
 	print("fact served %s" % [_served()])
@@ -56,14 +56,82 @@ func _ready() -> void:
 		await _frames(2)
 		_save("debug-%d" % view)
 	camera.debug_view = YoroCamera3D.DebugView.NONE
+	# Shadow maps are drawn with the stereo layers alone before Godot renders both eyes.
+	room.lamp.shadow_enabled = true
+	await _frames(2)
+	await _case("lamp")
+	room.lamp.shadow_enabled = false
 	# The initial size again, after everything above.
 	get_window().size = Vector2i(1024, 512)
 	await _frames(2)
+	await _follows()
+	await _takes_turns()
 	camera.preview_without_headset = false
 	await _frames(3)
-	print("fact preview %s" % [camera.preview() == null])
+	print("fact preview %s" % [camera.preview() == null and not get_viewport().disable_3d])
 	print("fact done")
 	get_tree().quit()
+
+
+func _warnings() -> int:
+	return YoroMarks.warnings(room, camera.stereo_layers, camera.cull_mask).size()
+
+
+## The preview has the window's pixels and the camera's lens, also while the scene is paused, or says why there is none.
+func _follows() -> void:
+	var window := get_window()
+	window.content_scale_mode = Window.CONTENT_SCALE_MODE_CANVAS_ITEMS
+	window.content_scale_size = Vector2i(512, 256)
+	window.content_scale_aspect = Window.CONTENT_SCALE_ASPECT_IGNORE
+	window.size = Vector2i(256, 64)
+	await _frames(4)
+	var eyes := camera.preview().eyes
+	print("fact pixels of an eye in a stretched window: %s" % eyes[0].size)
+	get_tree().paused = true
+	camera.rotation.y = PI
+	camera.keep_aspect = Camera3D.KEEP_WIDTH
+	camera.h_offset = 0.25
+	await _frames(2)
+	var shown := eyes[0].get_camera_3d()
+	var left := camera.to_global(Vector3(0.25 - 0.5 * YoroPreview.IPD, 0.0, 0.0))
+	print("fact follows while paused %s" % [shown.global_position.distance_to(left) < 1e-4
+			and shown.global_basis.is_equal_approx(camera.global_basis)])
+	var across := tan(deg_to_rad(camera.fov) / 2.0)
+	var rendered := camera.synthesis().views.frustum
+	print("fact the angle is kept across %s, %s" % [absf(shown.get_camera_projection().get_fov() - camera.fov) < 0.01,
+			absf(rendered[2] - across / 2.0) < 1e-4])
+	get_tree().paused = false
+	camera.rotation.y = 0.0
+	camera.keep_aspect = Camera3D.KEEP_HEIGHT
+	camera.h_offset = 0.0
+	camera.projection = Camera3D.PROJECTION_ORTHOGONAL
+	await _frames(2)
+	print("fact orthogonal %s, %s" % [camera.preview() == null and not get_viewport().disable_3d, camera.trouble()])
+	camera.projection = Camera3D.PROJECTION_PERSPECTIVE
+	await _frames(2)
+
+
+## Of several cameras, only the current one has a preview, also if its script has callbacks of its own. When it is
+## freed, nothing remains.
+func _takes_turns() -> void:
+	var own: YoroCamera3D = preload("own.gd").new()
+	own.preview_without_headset = true
+	camera.get_parent().add_child(own)
+	await _frames(2)
+	var first := [camera.preview() != null, own.preview() != null, own.trouble()]
+	own.current = true
+	await _frames(3)
+	print("fact turns %s, then %s" % [first, [camera.preview() != null, own.preview() != null, own.trouble(), get_viewport().disable_3d]])
+	var other := Camera3D.new()
+	add_child(other)
+	own.queue_free()
+	other.current = true
+	await _frames(2)
+	print("fact freed: 3D %s, preview %s" % [not get_viewport().disable_3d, camera.preview() != null])
+	other.queue_free()
+	camera.current = true
+	await _frames(2)
+	print("fact back: preview %s" % [camera.preview() != null])
 
 
 ## Returns whether an eye can be synthesized, for eyes that are parallel, parallel except for rounding, turned, raised,

@@ -135,7 +135,17 @@ fn check_texture(
     size: [u32; 2],
     fits: impl FnOnce(&Level) -> bool,
 ) -> Result<(), Failure> {
+    // Textures and renderbuffers have the same names, so that a renderbuffer's is often that of some other texture.
     // SAFETY: a query of the current context.
+    let is_renderbuffer = unsafe { context.raw().is_renderbuffer(glow::NativeRenderbuffer(texture.0)) };
+    let wrong = |sentence: String| match is_renderbuffer {
+        true => wrong(format!(
+            "{sentence}; {} is also a renderbuffer, which cannot be read: give a texture",
+            texture.0
+        )),
+        false => wrong(sentence),
+    };
+    // SAFETY: as above.
     if !unsafe { context.raw().is_texture(texture) } {
         return Err(wrong(format!("{what} is {}, which is not a texture of this GL context", texture.0)));
     }

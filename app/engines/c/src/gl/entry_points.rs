@@ -10,7 +10,7 @@ use crate::result::{Failure, YORO_ERROR_NO_CONTEXT};
 /// The functions that glow calls to find out the version.
 const FIRST: [&CStr; 3] = [c"glGetString", c"glGetStringi", c"glGetIntegerv"];
 /// Functions of OpenGL ES 3.0.
-const ES_3_0: [&CStr; 63] = [
+const ES_3_0: [&CStr; 64] = [
     c"glActiveTexture",
     c"glAttachShader",
     c"glBindFramebuffer",
@@ -59,6 +59,7 @@ const ES_3_0: [&CStr; 63] = [
     c"glGetUniformLocation",
     c"glIsEnabled",
     c"glIsProgram",
+    c"glIsRenderbuffer",
     c"glIsTexture",
     c"glLinkProgram",
     c"glSamplerParameteri",

@@ -2,7 +2,8 @@
 //!
 //! [`Gather`] takes a [`Warp`](crate::eyes::Warp) between parallel eyes, [`AnyView`] a
 //! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. Both are a [`Pipeline`], and need OpenGL
-//! ES 3.0, desktop OpenGL 4.5 or WebGL 2. `examples/engine.rs` uses one in a separate engine.
+//! ES 3.0, desktop OpenGL 4.5 (4.3 with GL_ARB_ES3_1_compatibility) or WebGL 2. `examples/engine.rs` uses one in a
+//! separate engine.
 //!
 //! [`Context::set_profiling`] times the passes, named `gather tiles`, `gather spans` and `gather march`, or
 //! `any view tiles` and so on. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without

@@ -54,7 +54,8 @@ const _SWITCH_OFF := 0.35
 @export_range(0.0, 2.0, 0.01) var ipd_scale := 1.0
 ## Godot draws things on these layers for both eyes. Everything else is drawn once and moved; transparent things move
 ## with what lies behind them. Lights must be on these layers, too, or things there are dark: the editor's yoro menu
-## marks both. If no layer is set, shadow maps are drawn only once, which is cheaper.
+## marks both. Things on these layers cast no shadow on others, and receive none from them. If no layer is set, shadow
+## maps are drawn only once, which is cheaper.
 @export_flags_3d_render var stereo_layers := 0:
 	set(value):
 		stereo_layers = value
@@ -64,7 +65,8 @@ const _SWITCH_OFF := 0.35
 @export_range(0.0, 2.0, 0.05, "or_greater", "suffix:m") var near_limit := 0.4
 ## Shows how the synthesis works.
 @export var debug_view := DebugView.NONE
-## Shows both eyes side by side when there is no headset.
+## Shows both eyes side by side when there is no headset, while this camera is the current one and its projection is a
+## perspective.
 @export var preview_without_headset := false
 
 var _passes: YoroPasses
@@ -79,10 +81,11 @@ var _compositor := Compositor.new()
 var _world_effects: Array[CompositorEffect] = []
 var _trouble := ""
 var _drawn := _Drawn.ALL
+var _shown_layers := 0
 
 
-## Returns one sentence that says why Godot renders both eyes although [member mode] is not [code]BOTH_VIEWS[/code], or
-## an empty text if it does not.
+## Returns one sentence that says why no eye is synthesized although [member mode] is not [code]BOTH_VIEWS[/code], or why
+## there is no preview; an empty text if neither is so.
 func trouble() -> String:
 	return _trouble
 
@@ -134,9 +137,19 @@ class _Follower:
 		camera._follow()
 
 
-func _ready() -> void:
+# Not _ready and _exit_tree, of which Godot calls only those of the last script, which may extend this one.
+func _notification(what: int) -> void:
 	if Engine.is_editor_hint():
 		return
+	match what:
+		NOTIFICATION_READY:
+			_begin()
+		NOTIFICATION_EXIT_TREE:
+			_show_preview(false)
+			_draw_all()
+
+
+func _begin() -> void:
 	for node: WorldEnvironment in get_tree().root.find_children("*", "WorldEnvironment", true, false):
 		if node.compositor != null:
 			_world_effects = node.compositor.compositor_effects
@@ -146,18 +159,24 @@ func _ready() -> void:
 	add_child(_Follower.new(self), false, INTERNAL_MODE_BACK)
 
 
-func _exit_tree() -> void:
-	if not Engine.is_editor_hint():
-		_draw_all()
-
-
 func _follow() -> void:
 	var viewport := get_viewport()
 	var interface := XRServer.primary_interface
 	var in_xr := viewport.use_xr and interface != null and interface.is_initialized()
-	_show_preview(preview_without_headset and not in_xr)
-	if not in_xr or mode == Mode.BOTH_VIEWS or viewport.get_camera_3d() != self:
-		_refuse("")
+	var is_current := viewport.get_camera_3d() == self
+	var to_preview := preview_without_headset and is_current and not in_xr
+	var fault := YoroPreview.fault(self) if to_preview else ""
+	_show_preview(to_preview and fault == "")
+	if not is_current:
+		# This is not a fault, so there is no warning.
+		_trouble = "another camera is current"
+		_draw_all()
+		return
+	if fault != "":
+		_refuse(fault, "there is no preview")
+		return
+	if not in_xr or mode == Mode.BOTH_VIEWS:
+		_refuse(preview().trouble if to_preview else "")
 		return
 	if interface is OpenXRInterface and not _is_shown(interface):
 		# The session is paused, so nothing is visible. Godot does not draw this camera's viewport either.
@@ -264,16 +283,16 @@ func _draw_stereo_layers() -> void:
 	wanted.push_front(_put)
 	_set_effects(wanted)
 	var camera := get_camera_rid()
-	RenderingServer.camera_set_cull_mask(camera, cull_mask & stereo_layers)
+	_show_layers(cull_mask & stereo_layers)
 	RenderingServer.camera_set_environment(camera, _environment.copy.get_rid() if _environment.copy != null else RID())
 	_latch_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	_drawn = _Drawn.STEREO_LAYERS
 
 
-## Lets Godot render both eyes, and warns of [param reason] if there is one.
-func _refuse(reason: String) -> void:
+## Lets Godot render both eyes, and warns of [param reason] if there is one, and of what follows from it.
+func _refuse(reason: String, consequence := "Godot renders both eyes") -> void:
 	if reason != "" and reason != _trouble:
-		push_warning("YoroCamera3D: Godot renders both eyes, since %s." % reason)
+		push_warning("YoroCamera3D: %s, since %s." % [consequence, reason])
 	_trouble = reason
 	_draw_all()
 
@@ -283,7 +302,7 @@ func _draw_all(drawn := _Drawn.ALL) -> void:
 	var camera := get_camera_rid()
 	if _drawn == _Drawn.STEREO_LAYERS:
 		_rest()
-		RenderingServer.camera_set_cull_mask(camera, cull_mask)
+		_show_layers(cull_mask)
 		RenderingServer.camera_set_environment(camera, environment.get_rid() if environment != null else RID())
 	if drawn == _Drawn.ALL_WATCHED:
 		var wanted: Array[CompositorEffect] = [_nearness]
@@ -294,6 +313,14 @@ func _draw_all(drawn := _Drawn.ALL) -> void:
 	_drawn = drawn
 
 
+## Lets the renderer's camera show these layers.
+func _show_layers(layers: int) -> void:
+	RenderingServer.camera_set_cull_mask(get_camera_rid(), layers)
+	if layers != _shown_layers and is_inside_tree():
+		YoroEye.renew_shadows(get_viewport())
+	_shown_layers = layers
+
+
 ## Stops drawing the eye from which the other one is synthesized.
 func _rest() -> void:
 	if _eye != null:
@@ -302,11 +329,13 @@ func _rest() -> void:
 
 
 func _show_preview(shown: bool) -> void:
+	if shown:
+		# Nothing is drawn behind the preview. In each frame, since another camera's preview may have ended in this one.
+		get_viewport().disable_3d = true
 	if shown == (_preview != null):
 		return
-	# Nothing is drawn behind the preview.
-	get_viewport().disable_3d = shown
 	if _preview != null:
+		get_viewport().disable_3d = false
 		_preview.queue_free()
 		_preview = null
 		return
@@ -326,10 +355,12 @@ func _get_configuration_warnings() -> PackedStringArray:
 		warnings.append("Temporal anti-aliasing needs motion vectors, which the synthesized eye does not have: use MSAA.")
 	if ProjectSettings.get_setting("rendering/driver/threads/thread_model", 1) == 2:
 		warnings.append("Rendering on a separate thread was not tried with this add-on: set Rendering > Driver > Thread Model to Safe.")
+	if preview_without_headset and YoroPreview.fault(self) != "":
+		warnings.append("There will be no preview, since %s." % YoroPreview.fault(self))
 	for effect in effects(true):
 		if effect.needs_normal_roughness or effect.needs_separate_specular or effect.needs_motion_vectors:
 			warnings.append("An effect after transparent objects reads normals, specular light or motion: it gets those of things on the stereo layers only.")
 			break
 	if is_inside_tree() and Engine.is_editor_hint():
-		warnings.append_array(YoroMarks.warnings(get_tree().edited_scene_root, stereo_layers))
+		warnings.append_array(YoroMarks.warnings(get_tree().edited_scene_root, stereo_layers, cull_mask))
 	return warnings

@@ -42,12 +42,26 @@ func follow(like: YoroCamera3D, shown: Viewport, effects: Array[CompositorEffect
 	_environment.follow(like.shown_environment())
 	camera.environment = _environment.copy
 	camera.attributes = like.attributes
-	camera.cull_mask = like.cull_mask & ~like.stereo_layers
+	show_layers(self, camera, like.cull_mask & ~like.stereo_layers)
 	if effects != _effects or camera.compositor.compositor_effects.is_empty():
 		_effects = effects.duplicate()
 		var all := _effects.duplicate()
 		all.append(synthesis)
 		camera.compositor.compositor_effects = all
+
+
+## Lets a camera show these layers. Godot culls what casts shadows by them, too, but renews the shadow maps of lamps and
+## spotlights only if something moves, or, as here, with the viewport's atlas.
+static func show_layers(in_viewport: Viewport, of: Camera3D, layers: int) -> void:
+	if of.cull_mask != layers:
+		of.cull_mask = layers
+		renew_shadows(in_viewport)
+
+
+## Lets a viewport draw all its shadow maps anew.
+static func renew_shadows(of: Viewport) -> void:
+	for size: int in [0, of.positional_shadow_atlas_size]:
+		RenderingServer.viewport_set_positional_shadow_atlas_size(of.get_viewport_rid(), size, of.positional_shadow_atlas_16_bits)
 
 
 ## Draws [param views] from [param at] in this frame.

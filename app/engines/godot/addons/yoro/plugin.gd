@@ -38,7 +38,9 @@ func _choose(id: int) -> void:
 				else:
 					replace(camera)
 				return
-			_say("This scene has no XRCamera3D to replace.")
+			var others := scene.find_children("*", "Camera3D") if scene != null else []
+			_say("This scene has no XRCamera3D to replace%s." % (
+					"" if others.is_empty() else ": make %s one first, by Change Type in its menu" % others[0].name))
 		_Item.MARK:
 			var camera := _camera(scene)
 			if camera == null:
@@ -59,26 +61,20 @@ func replace(camera: XRCamera3D) -> void:
 	camera.update_configuration_warnings()
 
 
-## Puts transparent things and lights onto the stereo layers, which become [constant YoroMarks.LAYER] if none was set.
+## Puts transparent things and lights onto the stereo layers.
 func mark(scene: Node, camera: YoroCamera3D) -> void:
 	var undo := get_undo_redo()
 	undo.create_action("Draw Transparent Things for Both Eyes", UndoRedo.MERGE_DISABLE, scene)
-	var layers := camera.stereo_layers if camera.stereo_layers != 0 else YoroMarks.LAYER
-	undo.add_do_property(camera, &"stereo_layers", layers)
-	undo.add_undo_property(camera, &"stereo_layers", camera.stereo_layers)
-	for thing in YoroMarks.transparent(scene):
-		undo.add_do_property(thing, &"layers", layers)
-		undo.add_undo_property(thing, &"layers", thing.layers)
-	for light in YoroMarks.lights(scene):
-		undo.add_do_property(light, &"layers", light.layers | layers)
-		undo.add_undo_property(light, &"layers", light.layers)
+	for change in YoroMarks.changes(scene, camera):
+		undo.add_do_property(change.node, change.property, change.value)
+		undo.add_undo_property(change.node, change.property, change.node.get(change.property))
 	undo.commit_action()
 	camera.update_configuration_warnings()
 
 
 func _process(_delta: float) -> void:
 	if _preview != null:
-		_preview.camera = _camera(EditorInterface.get_edited_scene_root())
+		_preview.camera = _previewed()
 
 
 func _show_preview(shown: bool) -> void:
@@ -93,13 +89,23 @@ func _show_preview(shown: bool) -> void:
 		_preview.queue_free()
 		_preview = null
 		return
-	var camera := _camera(EditorInterface.get_edited_scene_root())
-	_preview = YoroPreview.new(camera)
+	_preview = YoroPreview.new(_previewed())
 	_preview.custom_minimum_size = Vector2(0, 240)
 	add_control_to_bottom_panel(_preview, "yoro")
 	make_bottom_panel_item_visible(_preview)
+	var camera := _camera(EditorInterface.get_edited_scene_root())
 	if camera == null:
 		_say("This scene has no YoroCamera3D yet.")
+	elif _previewed() == null:
+		_say("The editor does not run the script of %s, which is no @tool: preview it in the running project." % camera.name)
+	elif YoroPreview.fault(camera) != "":
+		_say("There is no preview of %s, since %s." % [camera.name, YoroPreview.fault(camera)])
+
+
+## Returns the edited scene's camera, or null if it has none that runs in the editor.
+func _previewed() -> YoroCamera3D:
+	var camera := _camera(EditorInterface.get_edited_scene_root())
+	return camera if camera != null and (camera.get_script() as Script).is_tool() else null
 
 
 func _cameras(scene: Node) -> Array[Node]:

@@ -5,18 +5,26 @@ extends HBoxContainer
 
 ## The distance between the eyes in metres.
 const IPD := 0.063
+## The properties that are copied from the viewport that is shown, since they affect what becomes of a finished picture.
+const _FINISHING: PackedStringArray = ["use_debanding", "screen_space_aa"]
 
 var camera: YoroCamera3D
 ## The left eye's and the right eye's image.
 var eyes: Array[SubViewport] = []
 var source: YoroEye
+## Why both eyes are rendered although one could be synthesized, or an empty text.
+var trouble := ""
 var _cameras: Array[Camera3D] = []
+var _pictures: Array[TextureRect] = []
 var _puts: Array[YoroPut] = []
 var _environment := YoroEnvironment.new(YoroCamera3D.SHOWN_OVERRIDES)
 
 
 func _init(of: YoroCamera3D) -> void:
 	camera = of
+	# A scene is also shown while it is paused. After the scripts that move things, and the camera's own.
+	process_mode = PROCESS_MODE_ALWAYS
+	process_priority = 1001
 	add_theme_constant_override("separation", 0)
 	# Sibling viewports are drawn in this order, so the source comes first.
 	source = YoroEye.new(YoroPasses.new())
@@ -24,7 +32,6 @@ func _init(of: YoroCamera3D) -> void:
 	for eye in 2:
 		var viewport := SubViewport.new()
 		viewport.gui_disable_input = true
-		viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 		var shown := Camera3D.new()
 		var put := YoroPut.new(source.synthesis)
 		put.eye = eye
@@ -41,19 +48,40 @@ func _init(of: YoroCamera3D) -> void:
 		picture.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 		picture.size_flags_vertical = Control.SIZE_EXPAND_FILL
 		add_child(picture)
+		_pictures.append(picture)
+	_show(false)
+
+
+## Returns why a camera cannot be previewed, or an empty text.
+static func fault(of: Camera3D) -> String:
+	return "" if of.projection == Camera3D.PROJECTION_PERSPECTIVE else "the camera's projection is not a perspective"
+
+
+func _show(shown: bool) -> void:
+	for eye in 2:
+		_pictures[eye].visible = shown
+		eyes[eye].render_target_update_mode = SubViewport.UPDATE_ALWAYS if shown else SubViewport.UPDATE_DISABLED
+	if not shown:
+		source.rest()
 
 
 func _process(_delta: float) -> void:
-	if not is_instance_valid(camera) or not camera.is_inside_tree() or not is_visible_in_tree():
-		source.rest()
+	if not is_instance_valid(camera) or not camera.is_inside_tree() or not is_visible_in_tree() or fault(camera) != "":
+		_show(false)
 		return
-	var eye := Vector2i(maxi(int(size.x / 2.0), 16), maxi(int(size.y), 16))
+	_show(true)
+	# Controls have logical sizes, which may be stretched to the window's pixels.
+	var pixels := size * get_viewport().get_stretch_transform().get_scale()
+	var eye := Vector2i(maxi(roundi(pixels.x / 2.0), 16), maxi(roundi(pixels.y), 16))
 	var ipd := IPD * camera.ipd_scale
 	var up := tan(deg_to_rad(camera.fov) / 2.0)
+	if camera.keep_aspect == Camera3D.KEEP_WIDTH:
+		up *= float(eye.y) / eye.x
 	var across := up * eye.x / eye.y
 	var frustum: Array[float] = [-across, across, up, -up]
 	var between := Transform3D(Basis.IDENTITY, Vector3(ipd, 0.0, 0.0))
 	var views := YoroViews.of([frustum, frustum], between, camera.near, camera.far, camera.dominant_eye, eye, camera.guard_band)
+	trouble = views.trouble if camera.mode != YoroCamera3D.Mode.BOTH_VIEWS else ""
 	var both := views.trouble != "" or camera.mode == YoroCamera3D.Mode.BOTH_VIEWS
 	_environment.follow(camera.shown_environment(), camera.cull_mask & camera.stereo_layers != 0)
 	var effects := camera.effects(false)
@@ -63,13 +91,14 @@ func _process(_delta: float) -> void:
 			eyes[i].size = eye
 		if eyes[i].world_3d != camera.get_world_3d():
 			eyes[i].world_3d = camera.get_world_3d()
-		for name in YoroEye.SHARED:
+		for name in YoroEye.SHARED + _FINISHING:
 			if eyes[i].get(name) != camera.get_viewport().get(name):
 				eyes[i].set(name, camera.get_viewport().get(name))
+		shown.keep_aspect = camera.keep_aspect
 		shown.set_perspective(camera.fov, camera.near, camera.far)
-		shown.global_transform = camera.global_transform * Transform3D(Basis(), Vector3((i - 0.5) * ipd, 0.0, 0.0))
+		shown.global_transform = camera.get_camera_transform() * Transform3D(Basis(), Vector3((i - 0.5) * ipd, 0.0, 0.0))
 		shown.attributes = camera.attributes
-		shown.cull_mask = camera.cull_mask if both else camera.cull_mask & camera.stereo_layers
+		YoroEye.show_layers(eyes[i], shown, camera.cull_mask if both else camera.cull_mask & camera.stereo_layers)
 		shown.environment = camera.shown_environment() if both else _environment.copy
 		var wanted: Array[CompositorEffect] = camera.effects(true)
 		if both:
