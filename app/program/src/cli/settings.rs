@@ -99,8 +99,8 @@ impl<G: Group> SettingOptions<G> {
 
     /// Returns the default of a setting that differs from the table's.
     fn default_of(setting: &Setting) -> Option<String> {
-        let pairs = G::DEFAULTS.iter().filter_map(|pair| pair.split_once('='));
-        pairs.filter(|(key, _)| *key == setting.key).map(|(_, value)| value.to_owned()).next()
+        let mut pairs = G::DEFAULTS.iter().filter_map(|pair| pair.split_once('='));
+        pairs.find(|(key, _)| *key == setting.key).map(|(_, value)| value.to_owned())
     }
 }
 
