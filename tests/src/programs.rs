@@ -81,8 +81,20 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     // The march split into parts, to determine the cost of each.
     let march =
         ShaderSource::Raster { vertex: "synthesis/march.vert", fragment: "synthesis/gather/march.frag" };
-    for parts in MARCH_PARTS {
-        Program::new(gl, march, &[("PARTS", parts.to_owned())])?;
+    let define = |name| (name, String::new());
+    for pairs in [None, Some("DEPTH_PAIRS")] {
+        let part = |more: Option<&'static str>, parts: &str| {
+            let defines: Vec<_> = pairs.into_iter().chain(more).map(define).collect();
+            Program::new(gl, march, &[defines, vec![("PARTS", parts.to_owned())]].concat())
+        };
+        MARCH_PARTS.iter().try_for_each(|parts| part(None, parts).map(drop))?;
+        part(Some("WRITE_DEPTH"), MARCH_PARTS[0])?;
+    }
+    Program::new(gl, march, &[define("BLOOM"), ("PARTS", MARCH_PARTS[0].to_owned())])?;
+    // As above, of samples in a tile.
+    let options = Options { depth_pairs: true, ..Options::default() };
+    for (depth, macros) in [(false, &["BLOOM"][..]), (true, &["BLOOM"]), (false, &[]), (true, &[])] {
+        Gather::with_macros(gl, &options, Outputs { depth, ..Outputs::default() }, macros)?;
     }
     Ok(())
 }

@@ -209,7 +209,7 @@ fn is_lit(file: &str) -> bool {
 mod tests {
     use super::*;
 
-    const GPUS: [&str; 5] = ["a650", "a740", "g52", "g57", "g610"];
+    const GPUS: [&str; 6] = ["a650", "a740", "a750", "g52", "g57", "g610"];
 
     fn recipe(file: &str, defines: &[&str]) -> ProgramRecipe {
         let define = |text: &&str| {

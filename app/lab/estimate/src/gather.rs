@@ -11,12 +11,14 @@ use anyhow::ensure;
 use crate::costs::Work;
 use crate::gpus::Device;
 use crate::metric;
+use crate::record::{Command, Draw};
+use crate::traffic::MARCH;
 use crate::waves::{combine, wave_size};
-use yoro::eyes::{EyePair, GuardBand, SynthesisViews};
+use yoro::eyes::{DepthConvention, DepthRange, EyePair, GuardBand, SynthesisViews};
 use yoro::opengl::{Gather, Options, Outputs};
 use yoro::synthesis::Uniforms;
 use yoro_gl::{Context, Filter, Format, RenderTarget};
-use yoro_render::{PreparedScene, ViewTargets};
+use yoro_render::{NearestDepth, PreparedScene, ViewTargets};
 
 /// The size of a tile in pixels. The first two passes draw one fragment per tile.
 const TILE: [u32; 2] = [16, 8];
@@ -30,6 +32,30 @@ const DEPTH_BYTES: f64 = 4.0;
 
 /// The largest number of source tiles that a law is made of (`LAW_TILES` in `include/laws.glsl`).
 const LAW_TILES: f64 = 4.0;
+
+/// A variant of the march.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct March {
+    /// True if it adds bloom.
+    pub bloom: bool,
+    /// True if it writes depth, for surfaces that are drawn over the synthesized eye.
+    pub depth: bool,
+}
+
+impl March {
+    /// Returns the variant that a recorded frame runs.
+    pub fn of(commands: &[Command]) -> March {
+        let draws = commands.iter().filter_map(|command| match command {
+            Command::Draw(draw @ Draw { pass: MARCH, .. }) => Some(draw),
+            _ => None,
+        });
+        let defines = draws.flat_map(|draw| draw.program.defines.iter().map(|(name, _)| name.as_str()));
+        defines.fold(March::default(), |march, name| March {
+            bloom: march.bloom || name == "BLOOM",
+            depth: march.depth || name == "WRITE_DEPTH",
+        })
+    }
+}
 
 /// How often the march's parts run, from a [`Gather`] with `COUNT_TRIPS`: for one pixel, or the maximum over a wave's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,14 +111,18 @@ struct Costs {
 }
 
 impl Costs {
-    /// Reads the costs on a GPU, and gives each loop a name for what it does in the shader.
+    /// Reads the costs on a GPU, and gives each loop a name for what it does in the shader. With `pairs`, depth is that
+    /// of two samples.
     ///
     /// # Errors
     /// If the table has no entry for this GPU, or a program has an unexpected number of loops.
-    fn of(gpu: &str) -> anyhow::Result<Costs> {
+    fn of(gpu: &str, pairs: bool) -> anyhow::Result<Costs> {
         let table = crate::costs::Costs::of(gpu)?;
         let of = |pass: &str, more: &[&str], loops: usize| {
-            let parts = table.parts(&format!("synthesis/gather/{pass}.frag"), more)?;
+            let reads_depth = pairs && pass != "spans";
+            let macros: Vec<&str> =
+                reads_depth.then_some("DEPTH_PAIRS").into_iter().chain(more.iter().copied()).collect();
+            let parts = table.parts(&format!("synthesis/gather/{pass}.frag"), &macros)?;
             let found = parts.loops.len();
             ensure!(
                 found == loops,
@@ -100,7 +130,7 @@ impl Costs {
             );
             Ok(parts)
         };
-        let (tiles, spans, march) = (of("tiles", &[], 1)?, of("spans", &[], 3)?, of("march", &[], 3)?);
+        let (tiles, spans) = (of("tiles", &[], 1)?, of("spans", &[], 3)?);
         // Each program adds one part to the previous one: see tests/src/programs.rs.
         let law = of("march", &["PARTS=1"], 0)?;
         let short = of("march", &["PARTS=2"], 1)?;
@@ -108,6 +138,10 @@ impl Costs {
         let events = of("march", &["PARTS=14"], 2)?;
         let fill = of("march", &["PARTS=30"], 2)?;
         let all = of("march", &["PARTS=62"], 3)?;
+        let depth = of("march", &["WRITE_DEPTH", "PARTS=1"], 0)?;
+        // Bloom reads no depth.
+        let bloom = table.parts("synthesis/gather/march.frag", &["BLOOM", "PARTS=1"])?;
+        let without_bloom = table.parts("synthesis/gather/march.frag", &["PARTS=1"])?;
         // The loop over segments is the second one, the loop to a crossing is the last. Events are handled in two
         // places, one of them before the loop.
         let event = events.loops[1].minus(segments.loops[1]);
@@ -121,6 +155,8 @@ impl Costs {
             ("spans: plane", spans.loops[1]),
             ("spans: joint", spans.loops[2]),
             ("march: law", law.straight),
+            ("march: depth of a law", depth.straight.minus(law.straight)),
+            ("march: bloom", bloom.straight.minus(without_bloom.straight)),
             ("march: short way", short.straight),
             ("march: short step", short.loops[0]),
             ("march: long way", long),
@@ -129,7 +165,7 @@ impl Costs {
             ("march: fill", fill.total().minus(events.total())),
             ("march: crossing", all.loops[2]),
         ];
-        Ok(Costs { lanes: march.lanes, parts })
+        Ok(Costs { lanes: all.lanes, parts })
     }
 
     /// Returns the cost of running a part once.
@@ -140,9 +176,12 @@ impl Costs {
 
     /// Returns a lower bound of what a wave executes for each of its pixels: each part as often as the pixel that runs
     /// it most often. Lanes that run parts at different times also wait for each other, which is not counted.
-    fn march(&self, trips: Trips) -> Work {
+    fn march(&self, trips: Trips, march: March) -> Work {
         let runs = [
             ("march: law", trips.law),
+            ("march: depth of a law", if march.depth { trips.law } else { 0.0 }),
+            // Both ways end with it.
+            ("march: bloom", if march.bloom { trips.law + trips.searches } else { 0.0 }),
             ("march: short way", trips.searches),
             ("march: short step", trips.short),
             ("march: long way", trips.takes_long_way),
@@ -205,15 +244,17 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Compiles the counting pipeline.
+    /// Compiles the counting pipeline, for views whose nearest depth is had in this way.
     ///
     /// # Errors
     /// If the driver refuses it, or if the table lacks a program.
-    pub fn new(gl: &Rc<Context>, device: Device) -> anyhow::Result<Meter> {
+    pub fn new(gl: &Rc<Context>, device: Device, depth: NearestDepth) -> anyhow::Result<Meter> {
+        let depth_pairs = depth == NearestDepth::Carried;
+        let options = Options { depth_pairs, ..Options::default() };
         Ok(Meter {
             device,
-            costs: Costs::of(device.gpu)?,
-            counting: Gather::with_macros(gl, &Options::default(), Outputs::default(), &["COUNT_TRIPS"])?,
+            costs: Costs::of(device.gpu, depth_pairs)?,
+            counting: Gather::with_macros(gl, &options, Outputs::default(), &["COUNT_TRIPS"])?,
             targets: ViewTargets::default(),
             counts: RenderTarget::new(gl, [1, 1], &[(Format::Rgba8, Filter::Nearest)], None)?,
         })
@@ -229,10 +270,11 @@ impl Meter {
         pair: &EyePair,
     ) -> anyhow::Result<Vec<(&'static str, f64)>> {
         let (views, pixels) = self.count(prepared, pair)?;
-        Ok(self.values(&views, &pixels, pair.size))
+        Ok(self.values(&views, &pixels, pair.size, March::default()))
     }
 
-    /// Returns the views of one frame with a guard band from 1 m, and the counts at the synthesized eye's pixels, from which [`Meter::values`] of any device are computed.
+    /// Returns the views of one frame with a guard band from 1 m, and the counts at the synthesized eye's pixels, from
+    /// which [`Meter::values`] of any device are computed.
     ///
     /// # Errors
     /// Those of [`Meter::measure`].
@@ -241,18 +283,26 @@ impl Meter {
         prepared: &mut PreparedScene,
         pair: &EyePair,
     ) -> anyhow::Result<(SynthesisViews, Vec<u8>)> {
-        let views = pair.synthesis_views(GuardBand::Distance(1.0))?;
+        // Only reversed depth can be carried.
+        let depth = DepthRange { convention: DepthConvention::Reversed, ..pair.depth };
+        let views = EyePair { depth, ..*pair }.synthesis_views(GuardBand::Distance(1.0))?;
         prepared.synthesize(&mut self.counting, &mut self.targets, &views, &mut self.counts)?;
         Ok((views, self.counts.read_rgba8(0, [0, 0], pair.size)))
     }
 
-    /// Returns the values of a counted frame whose eyes have this size, by metric.
-    pub fn values(&self, views: &SynthesisViews, pixels: &[u8], size: [u32; 2]) -> Vec<(&'static str, f64)> {
+    /// Returns the values of a counted frame whose eyes have this size, by metric, with this variant of the march.
+    pub fn values(
+        &self,
+        views: &SynthesisViews,
+        pixels: &[u8],
+        size: [u32; 2],
+        variant: March,
+    ) -> Vec<(&'static str, f64)> {
         let counts = Counts { pixels, size };
         let Meter { device, costs, .. } = self;
         let waves = counts.waves(wave_size(costs.lanes));
         let each = counts.waves([1, 1]);
-        let march: Vec<Work> = waves.iter().map(|wave| costs.march(*wave)).collect();
+        let march: Vec<Work> = waves.iter().map(|wave| costs.march(*wave, variant)).collect();
         let march = Work {
             slots: mean(march.iter().map(|work| work.slots)),
             fetches: mean(march.iter().map(|work| work.fetches)),
@@ -297,7 +347,7 @@ mod tests {
     #[test]
     fn all_devices_have_all_parts() {
         for device in DEVICES {
-            let costs = Costs::of(device.gpu).unwrap();
+            let costs = Costs::of(device.gpu, false).unwrap();
             let law = costs.part("march: law");
             let short = costs.part("march: short way");
             assert!(short.slots > law.slots && law.slots > 15.0, "{}: {short:?}, {law:?}", device.name);
@@ -310,7 +360,7 @@ mod tests {
                 assert!((15.0..250.0).contains(&slots), "{}: {slots} slots of {part}", device.name);
             }
         }
-        assert!(Costs::of("a999").is_err());
+        assert!(Costs::of("a999", false).is_err());
     }
 
     #[test]
@@ -346,6 +396,8 @@ mod tests {
         let body = |slots, fetches| Work { slots, fetches };
         let parts = vec![
             ("march: law", body(30.0, 2.0)),
+            ("march: depth of a law", body(5.0, 2.0)),
+            ("march: bloom", body(50.0, 1.0)),
             ("march: short way", body(80.0, 3.0)),
             ("march: short step", body(20.0, 1.0)),
             ("march: long way", body(90.0, 2.0)),
@@ -356,12 +408,13 @@ mod tests {
         ];
         let costs = Costs { lanes: 128, parts };
         let lawful = Trips { law: 1.0, ..Trips::default() };
-        assert_eq!(costs.march(lawful), body(30.0, 2.0));
+        assert_eq!(costs.march(lawful, March::default()), body(30.0, 2.0));
+        assert_eq!(costs.march(lawful, March { bloom: true, depth: true }), body(85.0, 5.0));
         let short = Trips { searches: 1.0, short: 2.0, ..Trips::default() };
-        assert_eq!(costs.march(short), body(80.0 + 40.0, 3.0 + 2.0));
+        assert_eq!(costs.march(short, March::default()), body(80.0 + 40.0, 3.0 + 2.0));
         let long =
             Trips { takes_long_way: 1.0, segments: 3.0, events: 2.0, crossings: 1.0, holes: 1.0, ..short };
         let slots = 80.0 + 40.0 + 90.0 + 180.0 + 80.0 + 70.0 + 75.0;
-        assert_eq!(costs.march(long), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 1.0 + 8.0));
+        assert_eq!(costs.march(long, March::default()), body(slots, 3.0 + 2.0 + 2.0 + 6.0 + 1.0 + 8.0));
     }
 }

@@ -15,7 +15,7 @@ mod record;
 mod traffic;
 mod waves;
 
-pub use gather::Meter;
+pub use gather::{March, Meter};
 pub use gpus::{DEVICES, Device, GPUS};
 pub use lamps::Lamps;
 pub use model::{

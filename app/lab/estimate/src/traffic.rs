@@ -23,7 +23,7 @@ const SHADOW_MAP: &str = "shadow_map";
 /// The pass that reads the depth of a tile of 16 x 8 pixels in each fragment.
 const TILES: &str = "gather tiles";
 /// The pass that reads depth where it needs it.
-const MARCH: &str = "gather march";
+pub const MARCH: &str = "gather march";
 
 /// What is assumed of the driver, and known of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -256,7 +256,7 @@ pub fn pieces(commands: &[Command], assumed: &Assumed) -> Vec<Piece> {
                         kept: false,
                         bytes: assumed.texel_bytes(&target),
                     }],
-                    textures: vec![("samples".into(), source, read)],
+                    textures: vec![("copied".into(), source, read)],
                     area: *size,
                     framebuffer: None,
                     vertex_bytes: 0.0,

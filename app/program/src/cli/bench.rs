@@ -23,7 +23,7 @@ use yoro_bench::inpaint::PatcherOptions;
 use yoro_bench::report::bench::BenchReport;
 use yoro_context::{Backend, Headless};
 use yoro_files::interrupt::Interrupted;
-use yoro_gl::{Context, GlApi};
+use yoro_gl::{Capabilities, Context, GlApi};
 use yoro_settings::Ipd;
 use yoro_viewer::render_settings;
 
@@ -36,7 +36,7 @@ pub struct BenchArgs {
     /// The short form: smaller images, fewer scenes, points, viewpoints and rounds
     #[arg(long)]
     quick: bool,
-    /// shader-cost: whole stereo frames by every method on five mobile GPUs, in place of the synthesis alone. Counts
+    /// shader-cost: whole stereo frames by two renders and synthesis on six mobile GPUs, in place of the synthesis alone. Counts
     /// samples by desktop GL, so that the GL context comes from OSMesa unless --gl says otherwise
     #[arg(long)]
     frame: bool,
@@ -121,38 +121,52 @@ impl Subcommand for BenchArgs {
         let object = self.object.as_deref().map(Object::load).transpose()?;
         let object = LazyObject::new(Box::new(|| object.unwrap_or_else(Object::hare)));
         let jobs = jobs(self, &choices, &object)?;
-        let headless = self.open()?;
-        let gl = headless.gl();
         let out = self.out();
-        let (writer, before) = Writer::open(&out, &header(self, &choices, gl))?;
-        let finished = jobs.iter().filter(|job| before.rounds(&job.conditions) >= job.rounds).count();
-        if finished > 0 {
-            log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
-        }
+        // Outlines read samples, which other frames are recorded without. Contexts are open one at a time.
+        let (limited, whole): (Vec<Job>, Vec<Job>) = jobs.iter().cloned().partition(bench::is_limited);
         let bar = progress_bar(jobs.iter().map(Job::steps).sum());
-        let bounds = Bounds {
-            memory_mib: self.max_memory_mib.map_or_else(
-                || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available),
-                |mib| mib as f64,
-            ),
-            frame: Duration::from_millis(self.max_frame_ms),
-        };
-        let patchers = PatcherOptions { model: self.model.clone() };
-        let inputs = Inputs { choices: &choices, object: &object, path: path.as_deref(), bounds, patchers };
-        let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
-        for job in &jobs {
-            if let Err(error) = runner.run(job) {
-                bar.finish_and_clear();
-                if error.is::<Interrupted>() {
-                    bail!(
-                        "interrupted: the finished rounds are in {}; the same command with --out {} goes on",
-                        out.display(),
-                        out.display()
-                    );
-                }
-                return Err(error.context(format!("cannot measure {}", job.conditions)));
+        let mut file = None;
+        for (jobs, limit) in [(limited, bench::limit as fn(&mut Capabilities)), (whole, |_| {})] {
+            if jobs.is_empty() {
+                continue;
             }
+            let headless = self.open(limit)?;
+            let gl = headless.gl();
+            let (writer, before) = match file.take() {
+                Some(file) => file,
+                None => Writer::open(&out, &header(self, &choices, gl))?,
+            };
+            let finished = jobs.iter().filter(|job| before.rounds(&job.conditions) >= job.rounds).count();
+            if finished > 0 {
+                log::warn!("{}: {finished} of {} settings are measured already", out.display(), jobs.len());
+            }
+            let bounds = Bounds {
+                memory_mib: self.max_memory_mib.map_or_else(
+                    || process::available_mib().map_or(f64::INFINITY, |available| 0.5 * available),
+                    |mib| mib as f64,
+                ),
+                frame: Duration::from_millis(self.max_frame_ms),
+            };
+            let patchers = PatcherOptions { model: self.model.clone() };
+            let inputs =
+                Inputs { choices: &choices, object: &object, path: path.as_deref(), bounds, patchers };
+            let mut runner = Runner::new(gl, inputs, (writer, before), bar.clone());
+            for job in &jobs {
+                if let Err(error) = runner.run(job) {
+                    bar.finish_and_clear();
+                    if error.is::<Interrupted>() {
+                        bail!(
+                            "interrupted: the finished rounds are in {}; the same command with --out {} goes on",
+                            out.display(),
+                            out.display()
+                        );
+                    }
+                    return Err(error.context(format!("cannot measure {}", job.conditions)));
+                }
+            }
+            file = Some(runner.finish());
         }
+        drop(file);
         bar.finish_and_clear();
         let results = bench::Results::read(&out)?;
         if self.frame {
@@ -166,7 +180,7 @@ impl Subcommand for BenchArgs {
 }
 
 impl BenchArgs {
-    fn open(&self) -> anyhow::Result<Headless> {
+    fn open(&self, limit: fn(&mut Capabilities)) -> anyhow::Result<Headless> {
         if !self.frame {
             return Ok(self.gl.open()?);
         }
@@ -178,7 +192,8 @@ impl BenchArgs {
             Backend::Auto => Backend::Osmesa,
             given => given,
         };
-        let headless = GlArgs { backend }.open()?;
+        let headless = Headless::open_limited(backend, limit)?;
+        log::info!("{}", headless.gl().capabilities().summary());
         ensure!(
             headless.gl().capabilities().api == GlApi::Desktop,
             "shader-cost --frame counts samples, which OpenGL ES does not: give --gl osmesa"

@@ -24,7 +24,7 @@ mod views;
 
 pub use blank::BlankFinder;
 pub use contender::Contender;
-pub use frame::{SUITE as FRAME_SUITE, contenders as frame_contenders};
+pub use frame::{SUITE as FRAME_SUITE, is_limited, limit};
 pub use holes::HoleFinder;
 pub use job::{Displaced, Job, Measure, Source};
 pub use motion::Motion;

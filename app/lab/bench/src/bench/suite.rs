@@ -67,7 +67,7 @@ suites! {
     GuardBand "guard-band" "Width, frame time and quality at the border by guard band, along a camera path",
     Reprojection "reprojection" "Quality of one render shown at a later pose of the head, and of canted eyes",
     Stream "stream" "Bit rate and quality of a stream of one eye with depth, against both eyes, by quantizer and delay",
-    ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on five, none of which need be here",
+    ShaderCost "shader-cost" "Estimate of what the synthesis takes on three mobile GPUs, and with --frame whole frames on six, none of which need be here",
 }
 
 /// The user's choices for all suites.
@@ -267,8 +267,10 @@ impl Choices {
     }
 
     fn whole_frames(&self, sweep: Sweep, scenes: &[&str]) -> anyhow::Result<Vec<Job>> {
-        sweep.over(self.scenes(scenes), [()], |job, ()| {
+        sweep.over(self.scenes(scenes), frame::LABELS, |job, (label, bloom)| {
             job.conditions.suite = frame::SUITE.to_owned();
+            job.conditions.label = Some(label.to_owned());
+            job.render.bloom = bloom;
             job.contenders = frame::contenders();
         })
     }

@@ -3,6 +3,7 @@
 mod bloom;
 mod carry;
 mod cluster;
+mod declared;
 mod depth;
 mod geometry;
 mod layout;
@@ -27,6 +28,7 @@ mod transparent;
 mod uniforms;
 
 pub use cluster::Selection;
+pub use declared::{PASSES, Part as TilePart, Pass};
 pub(crate) use depth::DepthProgram;
 pub use depth::{DepthCopy, DepthImage, NearestDepth};
 pub(crate) use layout::{Layout, Seam};

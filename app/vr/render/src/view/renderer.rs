@@ -225,7 +225,7 @@ impl Renderer {
     }
 
     /// Returns how the nearest depth of views is had.
-    pub(crate) fn nearest_depth(&self) -> NearestDepth {
+    pub fn nearest_depth(&self) -> NearestDepth {
         self.way
     }
 

@@ -88,6 +88,11 @@ impl<'a> Runner<'a> {
         Runner { gl, inputs, writer, before, bar, prepared: None, recorder: None }
     }
 
+    /// Returns the file, for a runner with another context.
+    pub fn finish(self) -> (Writer, Results) {
+        (self.writer, self.before)
+    }
+
     /// Measures the rounds of a job that the file does not have yet.
     ///
     /// # Errors

@@ -88,7 +88,7 @@ impl Runner<'_> {
         prepared: &mut PreparedScene,
     ) -> anyhow::Result<()> {
         let views = Views::spread(job, prepared)?;
-        let mut meter = Meter::new(self.gl, *device)?;
+        let mut meter = Meter::new(self.gl, *device, prepared.renderer.nearest_depth())?;
         let mut measurement = Measurement::new(&job.conditions, device.name, 0);
         self.bar.set_message(job.conditions.to_string());
         for pair in &views.pairs {

@@ -8,8 +8,8 @@ use crate::bench::job::Job;
 use crate::bench::prepared::PreparedContender;
 use crate::bench::record::{Measurement, Record, metric};
 use crate::bench::views::Views;
-use yoro::eyes::EyePair;
-use yoro_estimate::{FrameModel, GPUS, Lamps, MULTIVIEW, Meter};
+use yoro::eyes::{DepthConvention, DepthRange, EyePair};
+use yoro_estimate::{FrameModel, GPUS, Lamps, MULTIVIEW, March, Meter};
 use yoro_files::interrupt;
 use yoro_render::stereo::{Method, Pipeline, StereoFrame};
 use yoro_render::{DepthReader, PreparedScene, Selection, ViewTargets};
@@ -42,7 +42,8 @@ impl Runner<'_> {
         let mut meters = Vec::new();
         if contenders.iter().any(|(contender, _)| *contender == GATHER) {
             for gpu in GPUS {
-                meters.push((gpu.gpu, Meter::new(self.gl, gpu)?));
+                let meter = Meter::new(self.gl, gpu, prepared.renderer.nearest_depth())?;
+                meters.push((gpu.gpu, meter));
             }
         }
         let mut frame = StereoFrame::new(self.gl, job.eyes.size)?;
@@ -57,6 +58,15 @@ impl Runner<'_> {
         self.bar.set_message(job.conditions.to_string());
         for pair in &views.pairs {
             let mut lamps = self.lamps(prepared, pair)?;
+            let counts = meters.first_mut().map(|(_, meter)| meter.count(prepared, pair)).transpose()?;
+            let values = |meter: &Meter, march: March| {
+                counts.as_ref().map(|(views, pixels)| meter.values(views, pixels, pair.size, march))
+            };
+            let find = |values: &[(&str, f64)], metric: &str| {
+                values.iter().find(|(name, _)| *name == metric).map_or(0.0, |(_, value)| *value)
+            };
+            let first = meters.first().and_then(|(_, meter)| values(meter, March::default()));
+            let laws = first.map_or(0.0, |values| find(&values, metric::LAW_PIXEL));
             for (contender, ready) in &mut contenders {
                 interrupt::check()?;
                 let recorder = self.recorder.as_ref().context("whole frames need a recorder")?;
@@ -64,28 +74,22 @@ impl Runner<'_> {
                 ready.render(prepared, pair, &mut frame)?;
                 let commands = recorder.take();
                 let name = contender.name();
-                let costs = model.frame(&commands, pair.size, &mut lamps).with_context(|| name.clone())?;
+                let costs =
+                    model.frame(&commands, pair.size, &mut lamps, laws).with_context(|| name.clone())?;
                 costs.into_iter().for_each(|(metric, value)| push(&name, metric, value));
                 if *contender == Contender::Method(Method::Instanced) {
                     let costs = model.multiview(&commands, pair.size, &mut lamps)?;
                     costs.into_iter().for_each(|(metric, value)| push(MULTIVIEW, metric, value));
                 }
-                self.bar.inc(1);
-            }
-            let counts = meters.first_mut().map(|(_, meter)| meter.count(prepared, pair)).transpose()?;
-            let values =
-                |meter: &Meter| counts.as_ref().map(|(views, pixels)| meter.values(views, pixels, pair.size));
-            for (gpu, meter) in &meters {
-                let values = values(meter).unwrap_or_default();
-                for (metric, pass) in PASSES {
-                    let value =
-                        values.iter().find(|(name, _)| *name == metric).map_or(0.0, |(_, value)| *value);
-                    for contender in
-                        contenders.iter().map(|(contender, _)| contender).filter(|c| **c == GATHER)
-                    {
-                        push(&contender.name(), format!("slots/{gpu}/{pass}"), value);
+                if *contender == GATHER {
+                    for (gpu, meter) in &meters {
+                        let values = values(meter, March::of(&commands)).unwrap_or_default();
+                        for (metric, pass) in PASSES {
+                            push(&name, format!("slots/{gpu}/{pass}"), find(&values, metric));
+                        }
                     }
                 }
+                self.bar.inc(1);
             }
         }
         self.finish_round(job, 0, records, measurements)
@@ -93,7 +97,9 @@ impl Runner<'_> {
 
     /// Returns the lights that reach the surfaces visible to the dominant eye.
     fn lamps(&self, prepared: &mut PreparedScene, pair: &EyePair) -> anyhow::Result<Lamps> {
-        let view = pair.view(pair.dominant);
+        // Only reversed depth can be carried.
+        let depth = DepthRange { convention: DepthConvention::Reversed, ..pair.depth };
+        let view = EyePair { depth, ..*pair }.view(pair.dominant);
         let mut targets = ViewTargets::default();
         let PreparedScene { renderer, scene } = prepared;
         let rendered = renderer.render(&mut targets, scene, &view, Selection::All)?;

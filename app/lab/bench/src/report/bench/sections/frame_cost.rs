@@ -2,7 +2,7 @@
 
 use super::section::Section;
 use crate::report::bench::data::{CONVENTIONAL, Measured, SettingData, Suite};
-use yoro_estimate::{self as estimate, SYNTHESIS};
+use yoro_estimate::{self as estimate, Device, SYNTHESIS};
 use yoro_report::grid::{Cell, Table};
 use yoro_report::stats::{mean, unique};
 
@@ -65,8 +65,20 @@ impl<'a> Entry<'a> {
         self.sums(&format!("slots/{gpu}/"), |pass| pass != left_out && counts(pass))
     }
 
-    fn bytes(&self) -> Vec<f64> {
-        self.sums("bytes/", |_| true)
+    /// Returns the bytes per pixel of an eye in each scene, under the assumption that `prefix` stands for.
+    fn bytes(&self, prefix: &str) -> Vec<f64> {
+        self.sums(prefix, |_| true)
+    }
+
+    /// Returns the values of each scene over those of two renders.
+    fn over_two(&self, values: impl Fn(&Entry) -> Vec<f64>) -> Vec<f64> {
+        values(self).iter().zip(values(&self.baseline())).map(|(own, base)| own / base).collect()
+    }
+
+    /// Returns the milliseconds that a GPU needs at least for the frame of each scene.
+    fn times(&self, gpu: &Device) -> Vec<f64> {
+        let (slots, bytes) = (self.slots(gpu.gpu, |_| true), self.bytes(estimate::BYTES));
+        slots.into_iter().zip(bytes).map(|(slots, bytes)| milliseconds(gpu, slots, bytes)).collect()
     }
 
     /// Returns in each scene the sum of the metrics that start with `prefix` and for whose rest `counts` is true.
@@ -102,6 +114,12 @@ fn measured_pixels(suite: &Suite) -> f64 {
     parts.unwrap_or(pixels(estimate::SIZE))
 }
 
+/// Returns the time of a frame with these slots and bytes for each pixel of an eye: that of the slots alone or of the bytes
+/// alone, whichever is longer.
+fn milliseconds(gpu: &Device, slots: f64, bytes: f64) -> f64 {
+    1e3 * pixels(gpu.size) * (slots / gpu.slots).max(bytes / gpu.bytes)
+}
+
 fn average(values: &[f64]) -> f64 {
     mean(values.iter().copied()).unwrap_or(f64::NAN)
 }
@@ -125,9 +143,13 @@ pub fn section(suite: &Suite) -> Section {
          by waves. Bytes are those that a tile-based GPU moves between tiles and memory.",
     );
     let entries = Entry::all(suite);
+    for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
+        section.table(by_scene(entry));
+        section.table(times(entry));
+    }
     section.table(ratios(&entries));
+    section.table(worth(&entries));
     section.table(break_evens(&entries));
-    section.table(bandwidth(&entries));
     section.table(passes(&entries));
     section
 }
@@ -136,31 +158,81 @@ fn gpu_columns<'a>(first: &[&'a str]) -> Vec<&'a str> {
     first.iter().copied().chain(estimate::GPUS.iter().map(|gpu| gpu.name)).collect()
 }
 
+/// Returns the bytes and slots of synthesis over those of two renders, scene by scene.
+fn by_scene(entry: &Entry) -> Table {
+    let first =
+        ["<scene", "<glass", "two renders", "yoro", "bytes", "bytes, 16-bit depth", "bytes, blits in memory"];
+    let title = format!(
+        "{} with {}: bytes a pixel of an eye, bytes and slots over two renders",
+        entry.title(),
+        entry.label
+    );
+    let mut table = Table::new(&title, &gpu_columns(&first));
+    let (own, base) = (entry.bytes(estimate::BYTES), entry.baseline().bytes(estimate::BYTES));
+    let mut ratios: Vec<Vec<f64>> = [estimate::BYTES, estimate::BYTES_16, estimate::BYTES_BLIT]
+        .map(|prefix| entry.over_two(|entry| entry.bytes(prefix)))
+        .to_vec();
+    ratios.extend(estimate::GPUS.map(|gpu| entry.over_two(|entry| entry.slots(gpu.gpu, |_| true))));
+    let cells = |name: &str, glass: &str, bytes: [f64; 2], ratios: Vec<f64>| {
+        let mut cells = vec![Cell::plain(name), Cell::plain(glass)];
+        cells.push(Cell::base(Some(format!("{:.1}", bytes[0]))));
+        cells.push(Cell::ours(Some(format!("{:.1}", bytes[1]))));
+        cells.extend(ratios.iter().map(|ratio| Cell::ours(Some(format!("{ratio:.2}")))));
+        cells
+    };
+    let measured = entry.settings().filter_map(|setting| Some((setting, setting.find(entry.name)?)));
+    for (i, (setting, measured)) in measured.enumerate() {
+        let glass = if measured.mean("fragments/transparent").is_some() { "in view" } else { "" };
+        let of_scene = ratios.iter().map(|ratios| ratios[i]).collect();
+        table.push(cells(&setting.conditions.scene, glass, [base[i], own[i]], of_scene));
+    }
+    let means = ratios.iter().map(|ratios| average(ratios)).collect();
+    table.push_grouped(cells("mean", "", [average(&base), average(&own)], means), true);
+    table.note = "16-bit depth is simulated: carried depth is counted with 2 bytes, as a Vulkan host resolves it. With blits in memory, glBlitFramebuffer writes and reads all samples.".into();
+    table
+}
+
+/// Returns the times of synthesis over those of two renders, scene by scene.
+fn times(entry: &Entry) -> Table {
+    let title = format!(
+        "{} with {}: time over two renders. `auto` chooses synthesis where it is below 1",
+        entry.title(),
+        entry.label
+    );
+    let mut table = Table::new(&title, &gpu_columns(&["<scene"]));
+    let ratios = estimate::GPUS.map(|gpu| entry.over_two(|entry| entry.times(&gpu)));
+    let cells = |name: &str, ratios: Vec<f64>| {
+        let ratios = ratios.into_iter().map(|ratio| Cell::ours(Some(format!("{ratio:.2}"))));
+        [Cell::plain(name)].into_iter().chain(ratios).collect::<Vec<_>>()
+    };
+    for (i, setting) in entry.settings().filter(|setting| setting.find(entry.name).is_some()).enumerate() {
+        table.push(cells(&setting.conditions.scene, ratios.iter().map(|ratios| ratios[i]).collect()));
+    }
+    table.push_grouped(cells("mean", ratios.iter().map(|ratios| average(ratios)).collect()), true);
+    table.note =
+        "A frame takes as long as its slots or its bytes, whichever take longer at the GPU's rates.".into();
+    table
+}
+
 fn ratios(entries: &[Entry]) -> Table {
-    let mut columns = gpu_columns(&["<method"]);
-    columns.extend(["bytes a pixel", "bytes, ratio"]);
+    let mut columns = gpu_columns(&["<frames", "<method"]);
+    columns.extend(["bytes a pixel", "bytes, ratio", "bytes, 16-bit depth", "bytes, blits in memory"]);
     let mut table =
         Table::new("Executed slots over two renders: mean of the scenes, least and most", &columns);
-    for entry in entries {
-        let mut cells = vec![Cell::plain(entry.title())];
+    for (i, entry) in entries.iter().enumerate() {
+        let mut cells = vec![Cell::plain(entry.label), Cell::plain(entry.title())];
         for gpu in estimate::GPUS {
-            let (own, base) = (entry.slots(gpu.gpu, |_| true), entry.baseline().slots(gpu.gpu, |_| true));
-            let ratios: Vec<f64> = own.iter().zip(&base).map(|(own, base)| own / base).collect();
-            let text = if entry.name == CONVENTIONAL {
-                format!("{:.0} slots", average(&own))
-            } else {
-                spread(&ratios)
-            };
             cells.push(if entry.name == CONVENTIONAL {
-                Cell::base(Some(text))
+                Cell::base(Some(format!("{:.0} slots", average(&entry.slots(gpu.gpu, |_| true)))))
             } else {
-                Cell::ours(Some(text))
+                Cell::ours(Some(spread(&entry.over_two(|entry| entry.slots(gpu.gpu, |_| true)))))
             });
         }
-        let (own, base) = (average(&entry.bytes()), average(&entry.baseline().bytes()));
-        cells.push(Cell::ours(Some(format!("{own:.0}"))));
-        cells.push(Cell::ours(Some(format!("{:.2}", own / base))));
-        table.push(cells);
+        cells.push(Cell::ours(Some(format!("{:.0}", average(&entry.bytes(estimate::BYTES))))));
+        for prefix in [estimate::BYTES, estimate::BYTES_16, estimate::BYTES_BLIT] {
+            cells.push(Cell::ours(Some(spread(&entry.over_two(|entry| entry.bytes(prefix))))));
+        }
+        table.push_grouped(cells, i > 0 && entries[i - 1].label != entry.label);
     }
     table
 }
@@ -171,11 +243,45 @@ fn spread(values: &[f64]) -> String {
     format!("{:.2} ({low:.2}–{high:.2})", average(values))
 }
 
+/// Returns the cost of a view above which synthesis is worth it.
+fn worth(entries: &[Entry]) -> Table {
+    let title = "Synthesis is worth it when a view costs the GPU more than this, in ms";
+    let mut table = Table::new(title, &gpu_columns(&["<frames", "<method"]));
+    for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
+        let both = [entry.baseline(), *entry];
+        let [two, wide] =
+            both.map(|entry| average(&entry.sums("fragments/", |pass| SURFACES.contains(&pass))));
+        let mut cells = vec![Cell::plain(entry.label), Cell::plain(entry.title())];
+        for gpu in estimate::GPUS {
+            let slots = both.map(|entry| average(&entry.slots(gpu.gpu, |_| true)));
+            let bytes = both.map(|entry| average(&entry.bytes(estimate::BYTES)));
+            let [slots, bytes] = [slots, bytes].map(|[two_views, own]| own - wide / two * two_views);
+            let limit = least_view(milliseconds(&gpu, slots, bytes), 2.0 * wide / two);
+            cells.push(Cell::ours(Some(limit.map_or("never".into(), |limit| format!("{limit:.1}")))));
+        }
+        table.push(cells);
+    }
+    let sizes = estimate::GPUS.map(|gpu| {
+        format!("{} {} x {} pixels an eye, {} GB/s", gpu.name, gpu.size[0], gpu.size[1], gpu.bytes / 1e9)
+    });
+    table.note = format!(
+        "What synthesis costs beyond one view with its guard band, in slots or bytes, whichever take longer. Assumed: {}.",
+        sizes.join("; ")
+    );
+    table
+}
+
+/// Returns the time of a view from which on the other eye costs less by synthesis, if synthesis takes `more` and draws
+/// `wider` times as much of the first view.
+fn least_view(more: f64, wider: f64) -> Option<f64> {
+    (wider < 2.0).then(|| (more / (2.0 - wider)).max(0.0))
+}
+
 fn break_evens(entries: &[Entry]) -> Table {
     let title = "Synthesis pays if surfaces cost more than this, in slots for each pixel of an eye with overdraw; in these scenes";
-    let mut table = Table::new(title, &gpu_columns(&["<method"]));
+    let mut table = Table::new(title, &gpu_columns(&["<frames", "<method"]));
     for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
-        let mut cells = vec![Cell::plain(entry.title())];
+        let mut cells = vec![Cell::plain(entry.label), Cell::plain(entry.title())];
         for gpu in estimate::GPUS {
             let both = [entry.baseline(), *entry];
             let surfaces = both.map(|entry| average(&entry.slots(gpu.gpu, |pass| SURFACES.contains(&pass))));
@@ -193,26 +299,6 @@ fn break_evens(entries: &[Entry]) -> Table {
     table
 }
 
-fn bandwidth(entries: &[Entry]) -> Table {
-    let title = "Bytes beyond those of two renders, for each pixel of an eye, and the time that they take at each GPU's bandwidth, in ms";
-    let mut table = Table::new(title, &gpu_columns(&["<method", "bytes"]));
-    for entry in entries.iter().filter(|entry| entry.is_synthesis()) {
-        let more = average(&entry.bytes()) - average(&entry.baseline().bytes());
-        let mut cells = vec![Cell::plain(entry.title())];
-        cells.push(Cell::ours(Some(format!("{more:+.0}"))));
-        for gpu in estimate::GPUS {
-            let pixels = f64::from(gpu.size[0]) * f64::from(gpu.size[1]);
-            cells.push(Cell::ours(Some(format!("{:+.2}", 1e3 * more * pixels / gpu.bytes))));
-        }
-        table.push(cells);
-    }
-    let sizes = estimate::GPUS.map(|gpu| {
-        format!("{} {} x {} pixels an eye, {} GB/s", gpu.name, gpu.size[0], gpu.size[1], gpu.bytes / 1e9)
-    });
-    table.note = format!("Assumed: {}.", sizes.join("; "));
-    table
-}
-
 fn passes(entries: &[Entry]) -> Table {
     let mut columns = gpu_columns(&["<method", "<pass", "fragments"]);
     columns.push("bytes");
@@ -222,7 +308,11 @@ fn passes(entries: &[Entry]) -> Table {
         let measured = entry.settings().filter_map(|setting| setting.find(entry.name));
         let names = unique(measured.flat_map(Measured::metrics).filter_map(|metric| {
             let (kind, rest) = metric.split_once('/')?;
-            if kind == "slots" { Some(rest.split_once('/')?.1) } else { Some(rest) }
+            match kind {
+                "slots" => Some(rest.split_once('/')?.1),
+                "bytes" | "fragments" => Some(rest),
+                _ => None,
+            }
         }));
         for (i, name) in names.into_iter().filter(|name| *name != estimate::VERTICES_ONCE).enumerate() {
             let mean = |metric: String| {
@@ -260,5 +350,13 @@ mod tests {
         let x = slots / 300.0;
         assert!((x * surfaces[0] + rest[0] - x * surfaces[1] - rest[1]).abs() < 1e-9);
         assert_eq!(break_even([600.0, 600.0], rest), None);
+    }
+
+    /// A view of 5 ms: two take 10, and one with a guard band and 4.5 ms of synthesis takes as long.
+    #[test]
+    fn a_view_at_the_limit_costs_as_much_by_synthesis() {
+        let least = least_view(4.5, 1.1).unwrap();
+        assert!((least - 5.0).abs() < 1e-12 && (2.0 * least - (1.1 * least + 4.5)).abs() < 1e-12, "{least}");
+        assert_eq!(least_view(1.0, 2.0), None);
     }
 }
