@@ -32,8 +32,12 @@ vec4 lawful(vec3 affine, out Surface surface) {
     float place = affine.x + affine.y * gl_FragCoord.x + affine.z * gl_FragCoord.y;
 #if defined(WRITE_DEPTH) || defined(SOURCE_MAP)
     surface.source = clamp((place - columns.y) / columns.x - 0.5, 0.0, float(source_size.x - 1));
-    vec2 depths = depth_pair(floor(surface.source));
-    surface.depth = mix(depths.x, depths.y, fract(surface.source));
+    // The surface's own displacement tells its depth, so that none is read, unless nothing is displaced.
+    surface.depth = (origins.x * gl_FragCoord.x + origins.y - surface.source) / law.y;
+    if (law.y == 0.0) {
+        vec2 depths = depth_pair(floor(surface.source));
+        surface.depth = mix(depths.x, depths.y, fract(surface.source));
+    }
     surface.hole = false;
 #endif
     vec2 at = vec2(place, row_at(0.0));

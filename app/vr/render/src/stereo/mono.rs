@@ -39,12 +39,12 @@ impl StereoMethod for Mono {
         renderer.draw_all(targets, scene, std::slice::from_ref(source), wants_depth, None)?;
         let [dominant, other] = [pair.dominant, pair.dominant.other()];
         let (origin, other_origin) = (views.dominant_crop, origin_in(source, &views.target));
-        renderer.develop(targets, source, Eye::Left, origin, &frame.to(dominant).color, false);
+        renderer.develop(targets, source, Eye::Left, origin, &frame.to(dominant).color, None);
         if other_origin == origin {
             let gl = &renderer.gl;
             gl.pass("copy", || gl.copy(&frame.to(dominant).color, &frame.to(other).color));
         } else {
-            renderer.develop(targets, source, Eye::Left, other_origin, &frame.to(other).color, false);
+            renderer.develop(targets, source, Eye::Left, other_origin, &frame.to(other).color, None);
         }
         for (eye, origin) in [(dominant, origin), (other, other_origin)] {
             if frame.wants_depth(eye) {

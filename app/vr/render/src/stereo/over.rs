@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::frame::Frame;
-use crate::view::{DepthImage, Renderer, Selection};
+use crate::view::{DepthImage, Rectangle, Renderer, Selection};
 use yoro::eyes::{DepthConvention, Eye};
 use yoro_gl::{
     Context, Destination, Filter, Format, GlError, MultisampleTarget, RenderTarget, Texture, TileTarget,
@@ -24,6 +24,16 @@ impl OverlaySurfaces {
     /// True if anything is drawn. It is then tested against the depth of either eye.
     pub(super) fn is_any(&self) -> bool {
         self.transparent || self.near.is_some()
+    }
+
+    /// Returns the part of an eye in which its depth is needed: where anything is drawn over it, or all of it if its
+    /// depth is wanted.
+    pub(super) fn depth_part(&self, frame: &Frame, eye: Eye) -> Option<Rectangle> {
+        let whole = Rectangle::whole(frame.pair.size);
+        if self.near.is_some() || frame.wants_depth(eye) {
+            return Some(whole);
+        }
+        frame.scene.transparent_part(&frame.pair.view(eye)).filter(|_| self.transparent)
     }
 }
 

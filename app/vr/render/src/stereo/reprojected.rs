@@ -144,7 +144,7 @@ impl StereoMethod for Reprojected {
         renderer.draw_all(targets, scene, std::slice::from_ref(&view), true, None)?;
         if renderer.develops() {
             let to = Destination::whole(targets.picture(view.size)?);
-            renderer.develop(targets, &view, Eye::Left, [0, 0], &to, false);
+            renderer.develop(targets, &view, Eye::Left, [0, 0], &to, None);
         }
         self.rendered = Some(view);
         self.show(&view, pair, to)

@@ -67,13 +67,14 @@ impl StereoMethod for ShadingReprojection {
         };
         let wants_depth = frame.wants_depth(other);
         renderer.draw_reprojected(second, scene, &other_view, &from, wants_depth)?;
-        renderer.develop(second, &other_view, Eye::Left, [0, 0], &frame.to(other).color, false);
+        renderer.develop(second, &other_view, Eye::Left, [0, 0], &frame.to(other).color, None);
         if wants_depth {
             frame.write_depth(other, &second.depth(view.size, Eye::Left, [0, 0]));
         }
         let surfaces = OverlaySurfaces { near: None, transparent: scene.is_transparent_in(&view) };
         let (place, has_depth) = over.begin(&frame, eye, &surfaces)?;
-        renderer.develop(dominant, &view, Eye::Left, [0, 0], &place, has_depth);
+        let part = surfaces.depth_part(&frame, eye).filter(|_| has_depth);
+        renderer.develop(dominant, &view, Eye::Left, [0, 0], &place, part);
         over.finish(&frame, eye, &surfaces);
         Ok(())
     }

@@ -56,7 +56,7 @@ impl StereoMethod for SinglePass {
             let view = &views[eye.index()];
             frame.renderer.ink_layer(targets, view, eye)?;
             frame.renderer.shine(targets, view, eye);
-            frame.renderer.develop(targets, view, eye, [0, 0], &frame.to(eye).color, false);
+            frame.renderer.develop(targets, view, eye, [0, 0], &frame.to(eye).color, None);
             if frame.wants_depth(eye) {
                 frame.write_depth(eye, &targets.depth(view.size, eye, [0, 0]));
             }

@@ -170,7 +170,7 @@ impl Synthesized {
         let is_developed = develops_first && renderer.develops();
         if is_developed {
             let to = Destination::whole(targets.picture(views.source.size)?);
-            renderer.develop(targets, &views.source, Eye::Left, [0, 0], &to, false);
+            renderer.develop(targets, &views.source, Eye::Left, [0, 0], &to, None);
         }
         let picture = targets.developed.as_ref().filter(|_| is_developed).unwrap_or(targets.color());
         let depth = targets.depth(views.source.size, Eye::Left, [0, 0]);
@@ -189,7 +189,8 @@ impl Synthesized {
         self.measure(frame, &views)?;
         let Some(Made { targets, over, .. }) = &mut self.made else { return Ok(()) };
         let (to, has_depth) = over.begin(frame, dominant, &surfaces)?;
-        renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, has_depth);
+        let part = surfaces.depth_part(frame, dominant).filter(|_| has_depth);
+        renderer.develop(targets, &views.source, Eye::Left, views.dominant_crop, &to, part);
         over.finish(frame, dominant, &surfaces);
         Ok(())
     }

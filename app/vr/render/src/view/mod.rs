@@ -35,7 +35,7 @@ pub(crate) use layout::{Layout, Seam};
 pub(crate) use passes::Reprojection;
 pub use read_back::{DepthReader, ViewReader};
 pub use renderer::{RenderedView, Renderer, ViewTargets};
-pub(crate) use request::{Columns, DrawRequest, of_columns};
+pub(crate) use request::{Columns, DrawRequest, Rectangle, of_columns};
 pub use scene::GpuScene;
 pub use settings::{MAX_POINT_LIGHTS, MSAA, RenderSettings};
 pub(crate) use targets::Targets;

@@ -4,11 +4,13 @@ use glam::{IVec2, Mat3, Vec2, Vec3};
 
 use super::bloom::Shining;
 use super::cluster::{Culler, Selection};
+use super::depth::DepthImage;
 use super::geometry::{Part, Variant};
 use super::layout::Layout;
 use super::light_tiles::LightTiles;
 use super::lights::Lights;
 use super::renderer::{Develop, Renderer, Resolve, line_width};
+use super::request::Rectangle;
 use super::scene::{FREE_UNIT, GpuScene};
 use super::shadow::ShadowMap;
 use super::targets::{Onto, Targets};
@@ -337,8 +339,8 @@ impl Renderer {
         }
     }
 
-    /// Writes a part of an eye's image, from pixel `crop` of the eye on, with bloom. With `depth`, also writes the depth
-    /// of the image, to draw more over it.
+    /// Writes a part of an eye's image, from pixel `crop` of the eye on, with bloom. In the rectangle `depth` of the target
+    /// it also writes the depth of the image, to draw more over it.
     pub(crate) fn develop(
         &self,
         targets: &Targets,
@@ -346,7 +348,7 @@ impl Renderer {
         eye: Eye,
         crop: [u32; 2],
         to: &Destination,
-        depth: bool,
+        depth: Option<Rectangle>,
     ) {
         let kind = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
         self.develop_as(targets, view, eye, crop, to, depth, kind);
@@ -356,7 +358,7 @@ impl Renderer {
     fn load(&self, from: &Targets, view: &View, crop: [u32; 2], targets: &Targets, to: &Destination) {
         let carries = if targets.carries() { targets.sample_count() } else { 0 };
         let kind = Develop { carries, ..Develop::default() };
-        self.develop_as(from, view, Eye::Left, crop, to, true, kind);
+        self.develop_as(from, view, Eye::Left, crop, to, Some(Rectangle::whole(to.size)), kind);
     }
 
     #[allow(clippy::too_many_arguments, reason = "a pass names what it reads and writes")]
@@ -367,27 +369,29 @@ impl Renderer {
         eye: Eye,
         crop: [u32; 2],
         to: &Destination,
-        depth: bool,
+        depth: Option<Rectangle>,
         kind: Develop,
     ) {
         // Outlines of an array's eye are in a picture of its own.
         let layer = targets.color_layer(eye);
         let is_alone = targets.layer(eye).is_some() && layer.is_none();
         let corner = if is_alone { [0, 0] } else { targets.layout().origin(view.size, eye) };
-        let bloom = kind.bloom;
-        if !depth && !bloom && layer.is_none() {
+        let bloom = targets.bloom.as_ref().filter(|_| kind.bloom);
+        if depth.is_none() && bloom.is_none() && layer.is_none() {
             let from = [0, 1].map(|i| corner[i] + crop[i]);
             self.gl.pass("copy", || targets.color().copy_color(from, to));
             return;
         }
-        let depth = depth.then(|| targets.depth(view.size, eye, crop));
-        let variant = Develop { depth: depth.map(|depth| depth.is_pair), layer: layer.is_some(), ..kind };
-        let Some((_, program)) = self.develop.iter().find(|(made, _)| *made == variant) else { return };
-        self.gl.pass("develop", || {
-            self.gl.overwrite(to, 1, depth.is_some());
-            let state = if depth.is_some() { RasterState::SCREEN_DEPTH } else { RasterState::SCREEN };
+        let plain = Develop { layer: layer.is_some(), ..kind };
+        let offset = [0, 1].map(|i| (corner[i] + crop[i]) as i32 - to.origin[i] as i32);
+        let draw = |variant: Develop, image: Option<&DepthImage>, part: &Rectangle| {
+            let Some((_, program)) = self.develop.iter().find(|(made, _)| *made == variant) else { return };
+            if part.size.contains(&0) {
+                return;
+            }
+            let state = if image.is_some() { RasterState::SCREEN_DEPTH } else { RasterState::SCREEN };
             self.gl.set_raster_state(&state);
-            let offset = [0, 1].map(|i| (corner[i] + crop[i]) as i32 - to.origin[i] as i32);
+            self.gl.set_viewport([0, 1].map(|i| to.origin[i] + part.origin[i]), part.size);
             program
                 .bind()
                 .texture_of("color_map", 0, targets.color().color(0))
@@ -395,15 +399,22 @@ impl Renderer {
                 .set("offset", IVec2::from(offset))
                 .set("view_origin", IVec2::from(corner.map(|n| n as i32)))
                 .set("view_size", IVec2::from(view.size.map(|n| n as i32)));
-            if let Some(depth) = depth {
-                program.texture_of("depth_map", 1, depth.texture);
+            if let Some(image) = image {
+                program.texture_of("depth_map", 1, image.texture);
             }
-            if let Some(targets) = targets.bloom.as_ref().filter(|_| bloom) {
+            if let Some(bloom) = bloom {
                 program
-                    .texture("bloom", 2, targets.result().raw())
+                    .texture("bloom", 2, bloom.result().raw())
                     .set("bloom_strength", self.bloom_strength());
             }
             self.gl.draw_screen();
+        };
+        self.gl.pass("develop", || {
+            self.gl.overwrite(to, 1, depth.is_some());
+            let Some(part) = depth else { return draw(plain, None, &Rectangle::whole(to.size)) };
+            let image = targets.depth(view.size, eye, crop);
+            draw(Develop { depth: Some(image.is_pair), ..plain }, Some(&image), &part);
+            part.around(to.size).iter().for_each(|part| draw(plain, None, part));
         });
     }
 

@@ -199,7 +199,7 @@ impl Renderer {
     fn complete<'a>(&self, targets: &'a mut Targets, view: &View) -> Result<RenderedView<'a>, GlError> {
         if self.develops() {
             let to = Destination::whole(targets.picture(view.size)?);
-            self.develop(targets, view, Eye::Left, [0, 0], &to, false);
+            self.develop(targets, view, Eye::Left, [0, 0], &to, None);
         }
         let color = targets.developed.as_ref().filter(|_| self.develops()).unwrap_or(targets.color());
         Ok(RenderedView { color, depth: targets.depth(view.size, Eye::Left, [0, 0]) })
@@ -268,7 +268,9 @@ impl Renderer {
     pub(crate) fn prepare_over(&mut self, scene: &GpuScene) -> Result<(), GlError> {
         self.prepare_variant(scene, Variant::plain(1))?;
         let depth = Some(self.way == NearestDepth::Carried);
-        self.prepare_develop(Develop { bloom: self.bloom.is_some(), depth, ..Develop::default() })
+        let plain = Develop { bloom: self.bloom.is_some(), ..Develop::default() };
+        self.prepare_develop(plain)?;
+        self.prepare_develop(Develop { depth, ..plain })
     }
 
     /// Compiles the program that loads an image and its depth without bloom, and the resolve of a view without

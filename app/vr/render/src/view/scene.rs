@@ -3,10 +3,12 @@
 use std::rc::Rc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::{Vec3, Vec4};
+use glam::{BVec3, Vec2, Vec3, Vec4};
 
 use super::cluster::{self, Batch, Cluster, Culler, VERTEX_ATTRIBUTES};
 use super::moving::Moving;
+use super::request::Rectangle;
+use super::uniforms::eye_to_clip;
 use yoro::eyes::{DepthRange, View};
 use yoro_assets::{Alpha, Bounds, Material, PointLight, Scene, ShadingStyle, Sky, TextureImage, Viewpoint};
 use yoro_gl::{Context, Filter, Format, GlError, Mesh, Program, Texture};
@@ -249,6 +251,33 @@ impl GpuScene {
     pub(crate) fn is_transparent_in(&self, view: &View) -> bool {
         let culler = Culler::of_view(view);
         self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]).any(|c| culler.sees(&c.bounds))
+    }
+
+    /// Returns the smallest rectangle of a view's pixels around all blended surfaces that may be visible; `None` if there
+    /// are none.
+    pub(crate) fn transparent_part(&self, view: &View) -> Option<Rectangle> {
+        let (culler, to_clip, eye) = (Culler::of_view(view), eye_to_clip(view), view.pose.position);
+        let size = Vec2::from(view.size.map(|n| n as f32));
+        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for cluster in self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]) {
+            if !culler.sees(&cluster.bounds) {
+                continue;
+            }
+            let Bounds { min, max } = cluster.bounds;
+            for i in 0..8 {
+                let corner = Vec3::select(BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), max, min);
+                let clip = to_clip * (corner - eye).extend(1.0);
+                if clip.w < view.depth.near {
+                    return Some(Rectangle::whole(view.size));
+                }
+                let pixel = (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * size;
+                (low, high) = (low.min(pixel), high.max(pixel));
+            }
+        }
+        let first = low.floor().clamp(Vec2::ZERO, size).as_uvec2();
+        let end = high.ceil().clamp(Vec2::ZERO, size).as_uvec2();
+        let is_empty = first.cmpge(end).any();
+        (!is_empty).then(|| Rectangle { origin: first.to_array(), size: (end - first).to_array() })
     }
 
     /// Returns the batches of blended triangles.
