@@ -133,6 +133,8 @@ pub struct Context {
     profiler: RefCell<profiler::Profiler>,
     objects: Cell<usize>,
     texture_bytes: Cell<usize>,
+    /// The number of textures that were deleted: their names may come again.
+    deleted_textures: Cell<u64>,
     /// The argument of [`Context::within_columns`].
     columns: Cell<Option<[u32; 2]>>,
     empty_vertex_array: glow::VertexArray,
@@ -254,6 +256,7 @@ impl Context {
             profiler,
             objects: Cell::new(0),
             texture_bytes: Cell::new(0),
+            deleted_textures: Cell::new(0),
             columns: Cell::new(None),
             empty_vertex_array,
             observer: RefCell::default(),

@@ -286,6 +286,8 @@ pub struct TileTarget {
     samples: u32,
     /// The colour textures and the depth texture.
     textures: Vec<glow::Texture>,
+    /// The number of textures that had been deleted when these were attached.
+    deleted: u64,
 }
 
 impl TileTarget {
@@ -302,7 +304,13 @@ impl TileTarget {
                 capabilities.renderer
             )));
         }
-        Ok(TileTarget { gl: gl.clone(), framebuffer: Framebuffer::new(gl)?, samples, textures: Vec::new() })
+        Ok(TileTarget {
+            gl: gl.clone(),
+            framebuffer: Framebuffer::new(gl)?,
+            samples,
+            textures: Vec::new(),
+            deleted: 0,
+        })
     }
 
     /// Attaches colour textures, which receive the averages, and a depth texture of the same size, which is never
@@ -319,7 +327,8 @@ impl TileTarget {
         depth: &Texture,
     ) -> Result<(), GlError> {
         let textures = || colors.iter().map(|(raw, _)| *raw).chain([depth.raw()]);
-        if self.textures.iter().copied().eq(textures()) {
+        let deleted = self.gl.deleted_textures.get();
+        if self.textures.iter().copied().eq(textures()) && self.deleted == deleted {
             return Ok(());
         }
         self.textures.clear();
@@ -349,6 +358,7 @@ impl TileTarget {
             )));
         }
         self.textures = textures().collect();
+        self.deleted = deleted;
         let color = colors.iter().map(|(_, image)| *image).collect();
         let images = Attachments { color, depth: Some(depth.image()) };
         self.gl.tell(Event::FramebufferMade(self.framebuffer.raw, images));

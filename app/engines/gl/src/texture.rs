@@ -292,6 +292,7 @@ impl Context {
 
 impl Drop for Texture {
     fn drop(&mut self) {
+        self.gl.deleted_textures.set(self.gl.deleted_textures.get() + 1);
         self.gl.tell(Event::TextureDeleted(self.raw));
         // SAFETY: created in `new`, deleted once.
         unsafe { self.gl.raw().delete_texture(self.raw) };

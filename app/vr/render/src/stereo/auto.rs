@@ -179,7 +179,9 @@ pub struct Auto {
     gl: Rc<Context>,
     methods: [Box<dyn StereoMethod>; 2],
     chooser: Chooser,
-    /// How the last frame was rendered, and its time by the clock.
+    /// How the last frame was rendered.
+    shown: Option<Way>,
+    /// The same if it counts as that method's, and its time by the clock.
     rendered: Option<Way>,
     clock_ms: Option<f32>,
     /// True until the first frame is rendered.
@@ -193,6 +195,7 @@ impl Auto {
             gl: gl.clone(),
             methods: [two_views?, synthesis?],
             chooser: Chooser::new(Way::Synthesis),
+            shown: None,
             rendered: None,
             clock_ms: None,
             is_new: true,
@@ -216,7 +219,7 @@ impl Auto {
 
     /// Notes that a frame was rendered by neither method, for its eyes or for a comparison.
     fn skip_frame(&mut self) {
-        (self.rendered, self.clock_ms) = (None, None);
+        (self.shown, self.rendered, self.clock_ms) = (None, None, None);
     }
 
     /// Starts a new choice, for another place in the scene.
@@ -242,7 +245,7 @@ impl StereoMethod for Auto {
     }
 
     fn report(&self) -> MethodReport {
-        self.rendered.map_or(MethodReport::default(), |way| self.methods[way.index()].report())
+        self.shown.map_or(MethodReport::default(), |way| self.methods[way.index()].report())
     }
 
     fn render_to(
@@ -266,6 +269,7 @@ impl StereoMethod for Auto {
         });
         let method = &mut self.methods[way.index()];
         method.render_to(renderer, scene, pair, to)?;
+        self.shown = Some(way);
         self.rendered = method.report().substituted.is_none().then_some(way);
         self.clock_ms = begin.map(|begin| {
             self.gl.finish_drawing(&targets);

@@ -2,7 +2,6 @@
 
 use glam::{Quat, Vec3};
 
-use super::settings::MSAA;
 use super::tests::{open, scene, settings, view};
 use super::*;
 use crate::PreparedScene;
