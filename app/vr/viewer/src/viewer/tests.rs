@@ -396,7 +396,7 @@ fn only_settings_that_differ_take_effect() {
     viewer.event(Event::Tap).unwrap();
     assert_ne!(viewer.viewer().method(), Method::Mono.into());
     let tapped = viewer.viewer().method();
-    viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "msaa=2"]), &[]).unwrap();
+    viewer.configure(with(&viewer, &["ipd=0.05", "viewer=v1", "msaa=4"]), &[]).unwrap();
     assert_eq!((viewer.viewer().method(), viewer.viewer().ipd()), (tapped, Ipd::nearest(0.05)));
     assert!((viewer.optics().params().inter_lens - 0.060).abs() < 1e-6);
     let told = viewer.optics().screen();

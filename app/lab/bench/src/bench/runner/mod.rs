@@ -109,6 +109,12 @@ impl<'a> Runner<'a> {
         if let Some(reason) = self.too_large(job) {
             return self.leave_out(job, reason);
         }
+        // Where a suite varies the samples, the driver may lack some of them. What the user asks for is an error instead.
+        if job.render.msaa != self.inputs.choices.render.msaa
+            && let Err(reason) = job.render.supported(self.gl.capabilities())
+        {
+            return self.leave_out(job, reason.to_string());
+        }
         if matches!(job.measure, Measure::WholeFrames) && self.recorder.is_none() {
             self.prepared = None;
             self.recorder = Some(Recorder::new(self.gl));
