@@ -347,13 +347,13 @@ mod tests {
         };
         let forward = [
             Command::Clear(samples.clone(), true),
-            Command::Draw(draw("forward", &samples, MESH, &map)),
+            Command::Draw(draw("surfaces", &samples, MESH, &map)),
             Command::Draw(draw("transparent", &samples, MESH, &map)),
             copy,
         ];
         let bytes = |given_up: [bool; 2], more: &[Command]| {
             let discard = [Command::Discard(samples.clone(), given_up)];
-            let pieces = pieces(&[&forward[..], &discard, more].concat(), &assumed);
+            let pieces = pieces(&[&forward[..], &discard, more].concat(), &Assumed::default());
             pieces.iter().map(|piece| (piece.passes.join(", "), piece.bytes())).collect::<Vec<_>>()
         };
         // The 30 fragments of each draw call read a texel of 4 bytes.
@@ -361,7 +361,7 @@ mod tests {
         let named = |name: &str, bytes: f64| (name.to_owned(), bytes);
         assert_eq!(
             bytes([true, true], &[]),
-            [named("forward, transparent", maps), named("resolve", 4.0 * PIXELS)]
+            [named("surfaces, transparent", maps), named("resolve", 4.0 * PIXELS)]
         );
         let mut nearest =
             draw("nearest depth", &resolved, Shape::Screen, &[("depth_map", image(Format::Depth32F, 4))]);
@@ -369,11 +369,64 @@ mod tests {
         assert_eq!(
             bytes([true, false], &[Command::Draw(nearest)]),
             [
-                named("forward, transparent", maps + 16.0 * PIXELS),
+                named("surfaces, transparent", maps + 16.0 * PIXELS),
                 named("resolve", 4.0 * PIXELS),
                 named("nearest depth", (16.0 + 4.0) * PIXELS),
             ]
         );
+    }
+
+    /// A second colour carries depth; both are averaged, and all samples discarded.
+    #[test]
+    fn averages_in_memory_write_and_read_all_samples_that_are_averaged() {
+        let pair = |samples| image(Format::Rg16F, samples);
+        let color = vec![image(Format::Rgba8, 4), pair(4)];
+        let samples = Some(Rc::new(Attachments { color, depth: Some(image(Format::Depth32F, 4)) }));
+        let [to, depth] = [image(Format::Rgba8, 1), pair(1)].map(|image| target(image, None));
+        let mut carry = draw("carry", &samples, Shape::Screen, &[]);
+        (carry.masks_samples, carry.samples_passed) = (true, Some(3 * PIXELS as u64));
+        assert_eq!(fragments(&carry), PIXELS);
+        let average = |i, to: &Option<Rc<Attachments>>| Command::Copy {
+            pass: "resolve",
+            from: samples.clone(),
+            to: to.clone(),
+            size: SIZE,
+            aspect: Aspect::Color(i),
+        };
+        let commands = [
+            Command::Clear(samples.clone(), true),
+            Command::Draw(draw("surfaces", &samples, MESH, &[])),
+            Command::Draw(carry),
+            average(0, &to),
+            average(1, &depth),
+            Command::Discard(samples.clone(), [true, true]),
+        ];
+        let bytes = |assumed: Assumed| -> Vec<f64> {
+            pieces(&commands, &assumed).iter().map(|piece| piece.bytes() / PIXELS).collect()
+        };
+        assert_eq!(bytes(Assumed::default()), [0.0, 4.0, 4.0]);
+        assert_eq!(bytes(Assumed { depth_in_16_bits: true, ..Assumed::default() }), [0.0, 4.0, 2.0]);
+        let in_memory = Assumed { averages_in_memory: true, ..Assumed::default() };
+        assert_eq!(bytes(in_memory), [16.0 + 16.0, 16.0 + 4.0, 16.0 + 4.0]);
+    }
+
+    #[test]
+    fn the_synthesis_reads_depth_where_it_needs_it() {
+        let depth = Image { format: Format::Rg16F, size: [32, 16], samples: 1 };
+        let to = target(Image { format: Format::Rgba8, size: [32, 16], samples: 1 }, None);
+        let bytes = |pass, area, defines: &[&str]| {
+            let mut draw = draw(pass, &to, Shape::Screen, &[("depth_map", depth)]);
+            draw.area = area;
+            let defines = defines.iter().map(|name| ((*name).to_owned(), String::new())).collect();
+            draw.program = ProgramRecipe { files: vec!["a.frag".into()], defines }.into();
+            let assumed = Assumed { laws: 0.75, ..Assumed::default() };
+            pieces(&[Command::Draw(draw)], &assumed)[0].textures[0].2
+        };
+        let all = 4.0 * 32.0 * 16.0;
+        // A fragment for each tile of 16 x 8 pixels.
+        assert_eq!(bytes(TILES, [2, 2], &[]), all);
+        assert_eq!(bytes(MARCH, [32, 16], &[]), 0.25 * all);
+        assert_eq!(bytes(MARCH, [32, 16], &["WRITE_DEPTH"]), all);
     }
 
     #[test]
