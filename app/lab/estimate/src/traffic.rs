@@ -9,8 +9,7 @@
 //! 4. Samples are averaged in the tiles if this directly follows drawing them. With
 //!    [`Assumed::averages_in_memory`], they are written and read back by every `glBlitFramebuffer`.
 //! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads one texel of each texture per
-//!    fragment. The shadow map is always read once per fragment. The march reads depth only where a tile has no law,
-//!    unless it writes depth.
+//!    fragment. The shadow map is always read once per fragment. The march reads depth only where a tile has no law.
 
 use std::rc::Rc;
 
@@ -151,8 +150,8 @@ impl Piece {
     fn draw(&mut self, draw: &Draw, assumed: &Assumed) {
         self.name(draw.pass);
         let covers = draw.shape == Shape::Screen;
-        if pixels(draw.area) > pixels(self.area) {
-            self.area = draw.area;
+        if pixels(draw.view) > pixels(self.area) {
+            self.area = draw.view;
         }
         let touch = |t: &mut Traffic, overwritten: bool, written: bool| {
             t.loaded |= !t.touched && !overwritten;
@@ -168,11 +167,10 @@ impl Piece {
         for (name, image) in &draw.textures {
             let mut texels = match covers && name != SHADOW_MAP {
                 true if draw.pass == TILES => pixels(image.size),
-                true => texels_once(image, draw.area),
+                true => texels_once(image, draw.area, draw.view),
                 false => fragments(draw),
             };
-            let has_depth = draw.program.defines.iter().any(|(name, _)| name == "WRITE_DEPTH");
-            if draw.pass == MARCH && name == "depth_map" && !has_depth {
+            if draw.pass == MARCH && name == "depth_map" {
                 texels *= 1.0 - assumed.laws;
             }
             let bytes = texels * assumed.texel_bytes(image);
@@ -198,10 +196,10 @@ pub fn fragments(draw: &Draw) -> f64 {
     draw.samples_passed.map_or(pixels(draw.area), |passed| passed as f64 / f64::from(samples))
 }
 
-/// Returns the number of texels that are read by a triangle that covers a view of this size. The texture may hold two
-/// views side by side, and may be larger or smaller than the view.
-fn texels_once(image: &Image, area: [u32; 2]) -> f64 {
-    let scale = (f64::from(image.size[1]) / f64::from(area[1].max(1))).round().max(1.0);
+/// Returns the number of texels that are read by a triangle that covers a part of a view, of this size. The texture may
+/// hold two views side by side, and may be larger or smaller than the view.
+fn texels_once(image: &Image, area: [u32; 2], view: [u32; 2]) -> f64 {
+    let scale = f64::from(image.size[1]) / f64::from(view[1].max(1));
     let part = [0, 1].map(|i| f64::from(image.size[i]).min(f64::from(area[i]) * scale));
     part[0] * part[1]
 }
@@ -320,6 +318,7 @@ mod tests {
             target: to.clone(),
             textures: textures.iter().map(|(name, image)| ((*name).to_owned(), *image)).collect(),
             area: SIZE,
+            view: SIZE,
             shape,
             writes_color: true,
             blends: false,
@@ -414,19 +413,16 @@ mod tests {
     fn the_synthesis_reads_depth_where_it_needs_it() {
         let depth = Image { format: Format::Rg16F, size: [32, 16], samples: 1 };
         let to = target(Image { format: Format::Rgba8, size: [32, 16], samples: 1 }, None);
-        let bytes = |pass, area, defines: &[&str]| {
+        let bytes = |pass, area| {
             let mut draw = draw(pass, &to, Shape::Screen, &[("depth_map", depth)]);
-            draw.area = area;
-            let defines = defines.iter().map(|name| ((*name).to_owned(), String::new())).collect();
-            draw.program = ProgramRecipe { files: vec!["a.frag".into()], defines }.into();
+            (draw.area, draw.view) = (area, area);
             let assumed = Assumed { laws: 0.75, ..Assumed::default() };
             pieces(&[Command::Draw(draw)], &assumed)[0].textures[0].2
         };
         let all = 4.0 * 32.0 * 16.0;
         // A fragment for each tile of 16 x 8 pixels.
-        assert_eq!(bytes(TILES, [2, 2], &[]), all);
-        assert_eq!(bytes(MARCH, [32, 16], &[]), 0.25 * all);
-        assert_eq!(bytes(MARCH, [32, 16], &["WRITE_DEPTH"]), all);
+        assert_eq!(bytes(TILES, [2, 2]), all);
+        assert_eq!(bytes(MARCH, [32, 16]), 0.25 * all);
     }
 
     #[test]
@@ -446,10 +442,13 @@ mod tests {
     #[test]
     fn a_view_beside_another_is_half_of_the_texture() {
         let wide = Image { format: Format::Rgba8, size: [20, 4], samples: 1 };
-        assert_eq!(texels_once(&wide, SIZE), PIXELS);
+        assert_eq!(texels_once(&wide, SIZE, SIZE), PIXELS);
         // A texture of twice the size is read in full, and so is a small one.
-        assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, SIZE), 4.0 * PIXELS);
-        assert_eq!(texels_once(&Image { size: [5, 2], ..wide }, SIZE), 10.0);
+        assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, SIZE, SIZE), 4.0 * PIXELS);
+        assert_eq!(texels_once(&Image { size: [5, 2], ..wide }, SIZE, SIZE), 10.0);
+        // A part of the view reads as large a part.
+        assert_eq!(texels_once(&Image { size: SIZE, ..wide }, [3, 2], SIZE), 6.0);
+        assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, [3, 2], SIZE), 24.0);
     }
 
     #[test]
