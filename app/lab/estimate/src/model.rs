@@ -155,6 +155,7 @@ mod tests {
                 target: Some(Rc::new(Attachments { color: vec![image], depth: None })),
                 textures: Vec::new(),
                 area: size,
+                view: size,
                 shape,
                 writes_color: true,
                 blends: false,

@@ -24,6 +24,8 @@ pub struct Draw {
     pub textures: Vec<(String, Image)>,
     /// The number of columns and rows of the viewport that are drawn.
     pub area: [u32; 2],
+    /// The same of the viewport with which the framebuffer was bound, of which the current one may be a part.
+    pub view: [u32; 2],
     /// The triangles.
     pub shape: Shape,
     /// True if the colour attachments are written.
@@ -83,6 +85,8 @@ struct State {
     textures: HashMap<glow::Program, HashMap<String, Image>>,
     framebuffer: Option<glow::Framebuffer>,
     viewport: [u32; 2],
+    /// The viewport that came with the framebuffer; `None` until it comes.
+    view: Option<[u32; 2]>,
     raster: Option<RasterState>,
     masks_color: bool,
     masks_depth: bool,
@@ -109,10 +113,10 @@ impl State {
         let (raw, program) = self.program.as_ref()?;
         let mut textures: Vec<_> = self.textures.get(raw).into_iter().flatten().collect();
         textures.sort_by_key(|(name, _)| *name);
-        let [mut width, height] = self.viewport;
-        if let Some([first, end]) = gl.columns() {
-            width = end.min(width).saturating_sub(first);
-        }
+        let drawn = |[width, height]: [u32; 2]| match gl.columns() {
+            Some([first, end]) => [end.min(width).saturating_sub(first), height],
+            None => [width, height],
+        };
         let raster = self.raster.unwrap_or(RasterState::SCREEN);
         let uses_depth = raster.depth != DepthTest::Off;
         Some(Draw {
@@ -120,7 +124,8 @@ impl State {
             program: program.clone(),
             target: self.target(self.framebuffer),
             textures: textures.into_iter().map(|(name, image)| (name.clone(), *image)).collect(),
-            area: [width, height],
+            area: drawn(self.viewport),
+            view: drawn(self.view.unwrap_or(self.viewport)),
             shape,
             writes_color: !self.masks_color,
             blends: raster.blend != Blend::Off,
@@ -167,8 +172,11 @@ impl State {
             Event::PassEnds => {
                 self.passes.pop();
             }
-            Event::FramebufferBound(framebuffer) => self.framebuffer = framebuffer,
-            Event::ViewportSet(size) => self.viewport = size,
+            Event::FramebufferBound(framebuffer) => (self.framebuffer, self.view) = (framebuffer, None),
+            Event::ViewportSet(size) => {
+                self.viewport = size;
+                self.view.get_or_insert(size);
+            }
             Event::ProgramBound(raw, recipe) => self.program = Some((raw, recipe.clone())),
             Event::TextureSampled { program, name, texture } => {
                 if let Some(image) = self.images.get(&texture) {

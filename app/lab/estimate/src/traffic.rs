@@ -9,8 +9,7 @@
 //! 4. Samples are averaged in the tiles if this directly follows drawing them. With
 //!    [`Assumed::averages_in_memory`], they are written and read back by every `glBlitFramebuffer`.
 //! 5. A triangle that covers the view reads each texel of its textures once. A mesh reads one texel of each texture per
-//!    fragment. The shadow map is always read once per fragment. The march reads depth only where a tile has no law,
-//!    unless it writes depth.
+//!    fragment. The shadow map is always read once per fragment. The march reads depth only where a tile has no law.
 
 use std::rc::Rc;
 
@@ -151,8 +150,8 @@ impl Piece {
     fn draw(&mut self, draw: &Draw, assumed: &Assumed) {
         self.name(draw.pass);
         let covers = draw.shape == Shape::Screen;
-        if pixels(draw.area) > pixels(self.area) {
-            self.area = draw.area;
+        if pixels(draw.view) > pixels(self.area) {
+            self.area = draw.view;
         }
         let touch = |t: &mut Traffic, overwritten: bool, written: bool| {
             t.loaded |= !t.touched && !overwritten;
@@ -168,11 +167,10 @@ impl Piece {
         for (name, image) in &draw.textures {
             let mut texels = match covers && name != SHADOW_MAP {
                 true if draw.pass == TILES => pixels(image.size),
-                true => texels_once(image, draw.area),
+                true => texels_once(image, draw.area, draw.view),
                 false => fragments(draw),
             };
-            let has_depth = draw.program.defines.iter().any(|(name, _)| name == "WRITE_DEPTH");
-            if draw.pass == MARCH && name == "depth_map" && !has_depth {
+            if draw.pass == MARCH && name == "depth_map" {
                 texels *= 1.0 - assumed.laws;
             }
             let bytes = texels * assumed.texel_bytes(image);
@@ -198,10 +196,10 @@ pub fn fragments(draw: &Draw) -> f64 {
     draw.samples_passed.map_or(pixels(draw.area), |passed| passed as f64 / f64::from(samples))
 }
 
-/// Returns the number of texels that are read by a triangle that covers a view of this size. The texture may hold two
-/// views side by side, and may be larger or smaller than the view.
-fn texels_once(image: &Image, area: [u32; 2]) -> f64 {
-    let scale = (f64::from(image.size[1]) / f64::from(area[1].max(1))).round().max(1.0);
+/// Returns the number of texels that are read by a triangle that covers a part of a view, of this size. The texture may
+/// hold two views side by side, and may be larger or smaller than the view.
+fn texels_once(image: &Image, area: [u32; 2], view: [u32; 2]) -> f64 {
+    let scale = f64::from(image.size[1]) / f64::from(view[1].max(1));
     let part = [0, 1].map(|i| f64::from(image.size[i]).min(f64::from(area[i]) * scale));
     part[0] * part[1]
 }
@@ -320,6 +318,7 @@ mod tests {
             target: to.clone(),
             textures: textures.iter().map(|(name, image)| ((*name).to_owned(), *image)).collect(),
             area: SIZE,
+            view: SIZE,
             shape,
             writes_color: true,
             blends: false,
@@ -347,13 +346,13 @@ mod tests {
         };
         let forward = [
             Command::Clear(samples.clone(), true),
-            Command::Draw(draw("forward", &samples, MESH, &map)),
+            Command::Draw(draw("surfaces", &samples, MESH, &map)),
             Command::Draw(draw("transparent", &samples, MESH, &map)),
             copy,
         ];
         let bytes = |given_up: [bool; 2], more: &[Command]| {
             let discard = [Command::Discard(samples.clone(), given_up)];
-            let pieces = pieces(&[&forward[..], &discard, more].concat(), &assumed);
+            let pieces = pieces(&[&forward[..], &discard, more].concat(), &Assumed::default());
             pieces.iter().map(|piece| (piece.passes.join(", "), piece.bytes())).collect::<Vec<_>>()
         };
         // The 30 fragments of each draw call read a texel of 4 bytes.
@@ -361,7 +360,7 @@ mod tests {
         let named = |name: &str, bytes: f64| (name.to_owned(), bytes);
         assert_eq!(
             bytes([true, true], &[]),
-            [named("forward, transparent", maps), named("resolve", 4.0 * PIXELS)]
+            [named("surfaces, transparent", maps), named("resolve", 4.0 * PIXELS)]
         );
         let mut nearest =
             draw("nearest depth", &resolved, Shape::Screen, &[("depth_map", image(Format::Depth32F, 4))]);
@@ -369,11 +368,61 @@ mod tests {
         assert_eq!(
             bytes([true, false], &[Command::Draw(nearest)]),
             [
-                named("forward, transparent", maps + 16.0 * PIXELS),
+                named("surfaces, transparent", maps + 16.0 * PIXELS),
                 named("resolve", 4.0 * PIXELS),
                 named("nearest depth", (16.0 + 4.0) * PIXELS),
             ]
         );
+    }
+
+    /// A second colour carries depth; both are averaged, and all samples discarded.
+    #[test]
+    fn averages_in_memory_write_and_read_all_samples_that_are_averaged() {
+        let pair = |samples| image(Format::Rg16F, samples);
+        let color = vec![image(Format::Rgba8, 4), pair(4)];
+        let samples = Some(Rc::new(Attachments { color, depth: Some(image(Format::Depth32F, 4)) }));
+        let [to, depth] = [image(Format::Rgba8, 1), pair(1)].map(|image| target(image, None));
+        let mut carry = draw("carry", &samples, Shape::Screen, &[]);
+        (carry.masks_samples, carry.samples_passed) = (true, Some(3 * PIXELS as u64));
+        assert_eq!(fragments(&carry), PIXELS);
+        let average = |i, to: &Option<Rc<Attachments>>| Command::Copy {
+            pass: "resolve",
+            from: samples.clone(),
+            to: to.clone(),
+            size: SIZE,
+            aspect: Aspect::Color(i),
+        };
+        let commands = [
+            Command::Clear(samples.clone(), true),
+            Command::Draw(draw("surfaces", &samples, MESH, &[])),
+            Command::Draw(carry),
+            average(0, &to),
+            average(1, &depth),
+            Command::Discard(samples.clone(), [true, true]),
+        ];
+        let bytes = |assumed: Assumed| -> Vec<f64> {
+            pieces(&commands, &assumed).iter().map(|piece| piece.bytes() / PIXELS).collect()
+        };
+        assert_eq!(bytes(Assumed::default()), [0.0, 4.0, 4.0]);
+        assert_eq!(bytes(Assumed { depth_in_16_bits: true, ..Assumed::default() }), [0.0, 4.0, 2.0]);
+        let in_memory = Assumed { averages_in_memory: true, ..Assumed::default() };
+        assert_eq!(bytes(in_memory), [16.0 + 16.0, 16.0 + 4.0, 16.0 + 4.0]);
+    }
+
+    #[test]
+    fn the_synthesis_reads_depth_where_it_needs_it() {
+        let depth = Image { format: Format::Rg16F, size: [32, 16], samples: 1 };
+        let to = target(Image { format: Format::Rgba8, size: [32, 16], samples: 1 }, None);
+        let bytes = |pass, area| {
+            let mut draw = draw(pass, &to, Shape::Screen, &[("depth_map", depth)]);
+            (draw.area, draw.view) = (area, area);
+            let assumed = Assumed { laws: 0.75, ..Assumed::default() };
+            pieces(&[Command::Draw(draw)], &assumed)[0].textures[0].2
+        };
+        let all = 4.0 * 32.0 * 16.0;
+        // A fragment for each tile of 16 x 8 pixels.
+        assert_eq!(bytes(TILES, [2, 2]), all);
+        assert_eq!(bytes(MARCH, [32, 16]), 0.25 * all);
     }
 
     #[test]
@@ -393,10 +442,13 @@ mod tests {
     #[test]
     fn a_view_beside_another_is_half_of_the_texture() {
         let wide = Image { format: Format::Rgba8, size: [20, 4], samples: 1 };
-        assert_eq!(texels_once(&wide, SIZE), PIXELS);
+        assert_eq!(texels_once(&wide, SIZE, SIZE), PIXELS);
         // A texture of twice the size is read in full, and so is a small one.
-        assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, SIZE), 4.0 * PIXELS);
-        assert_eq!(texels_once(&Image { size: [5, 2], ..wide }, SIZE), 10.0);
+        assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, SIZE, SIZE), 4.0 * PIXELS);
+        assert_eq!(texels_once(&Image { size: [5, 2], ..wide }, SIZE, SIZE), 10.0);
+        // A part of the view reads as large a part.
+        assert_eq!(texels_once(&Image { size: SIZE, ..wide }, [3, 2], SIZE), 6.0);
+        assert_eq!(texels_once(&Image { size: [20, 8], ..wide }, [3, 2], SIZE), 24.0);
     }
 
     #[test]

@@ -9,10 +9,12 @@ use yoro_report::stats::{mean, unique};
 /// The passes whose cost depends on the application's surfaces.
 const SURFACES: [&str; 1] = ["surfaces"];
 
-/// A contender.
+/// A contender, with bloom or without.
 #[derive(Clone, Copy)]
 struct Entry<'a> {
     suite: &'a Suite,
+    /// With bloom or without.
+    label: &'a str,
     name: &'a str,
     /// True if vertices are shaded once for both eyes.
     once: bool,
@@ -21,13 +23,15 @@ struct Entry<'a> {
 impl<'a> Entry<'a> {
     fn all(suite: &'a Suite) -> Vec<Entry<'a>> {
         let mut entries = Vec::new();
-        let all = suite.settings.iter();
-        for name in unique(all.flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()))) {
-            let entry = Entry { suite, name, once: false };
-            if name == estimate::MULTIVIEW {
-                entries.push(Entry { once: true, ..entry });
+        for label in suite.labels() {
+            let of_label = suite.settings.iter().filter(|s| s.conditions.label.as_deref() == Some(label));
+            for name in unique(of_label.flat_map(|s| s.contenders.iter().map(|m| m.name.as_str()))) {
+                let entry = Entry { suite, label, name, once: false };
+                if name == estimate::MULTIVIEW {
+                    entries.push(Entry { once: true, ..entry });
+                }
+                entries.push(entry);
             }
-            entries.push(entry);
         }
         entries
     }
@@ -46,7 +50,8 @@ impl<'a> Entry<'a> {
     }
 
     fn settings(&self) -> impl Iterator<Item = &'a SettingData> {
-        self.suite.settings.iter()
+        let label = self.label;
+        self.suite.settings.iter().filter(move |s| s.conditions.label.as_deref() == Some(label))
     }
 
     /// Returns the value of each scene.
@@ -54,7 +59,7 @@ impl<'a> Entry<'a> {
         self.settings().filter_map(|setting| Some(value(setting.find(self.name)?))).collect()
     }
 
-    /// Returns two renders.
+    /// Returns two renders, with bloom or without as this one.
     fn baseline(&self) -> Entry<'a> {
         Entry { name: CONVENTIONAL, once: false, ..*self }
     }
@@ -300,7 +305,7 @@ fn break_evens(entries: &[Entry]) -> Table {
 }
 
 fn passes(entries: &[Entry]) -> Table {
-    let mut columns = gpu_columns(&["<method", "<pass", "fragments"]);
+    let mut columns = gpu_columns(&["<frames", "<method", "<pass", "fragments"]);
     columns.push("bytes");
     let title = "Pass by pass: fragments, slots and bytes for each pixel of an eye, means of the scenes";
     let mut table = Table::new(title, &columns);
@@ -321,7 +326,7 @@ fn passes(entries: &[Entry]) -> Table {
             };
             let shown =
                 |value: f64, digits: usize| Cell::ours((value > 0.0).then(|| format!("{value:.digits$}")));
-            let mut cells = vec![Cell::plain(entry.title()), Cell::plain(name)];
+            let mut cells = vec![Cell::plain(entry.label), Cell::plain(entry.title()), Cell::plain(name)];
             cells.push(shown(mean(format!("fragments/{name}")), 2));
             let slots = estimate::GPUS.map(|gpu| shown(mean(format!("slots/{}/{name}", gpu.gpu)), 1));
             cells.extend(slots);
