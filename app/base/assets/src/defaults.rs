@@ -33,11 +33,26 @@ pub(super) fn viewpoints(model: &Model, rays: &Rays) -> (Vec<Viewpoint>, &'stati
     let bounds = model.bounds();
     if (bounds.max - bounds.min).max_element() >= ROOM {
         let walk = walk(&bounds, rays);
-        if !walk.is_empty() {
+        if !walk.is_empty() && !is_inside_body(&walk, rays, bounds) {
             return (walk, "a walk at eye height");
         }
     }
     (orbit(&bounds), "a circle around it")
+}
+
+/// True if nothing but the backs of faces is seen from viewpoints: they are inside a solid body, not in a room, which
+/// contains something.
+fn is_inside_body(viewpoints: &[Viewpoint], rays: &Rays, bounds: Bounds) -> bool {
+    let reach = (bounds.max - bounds.min).length() * 2.0 + 1.0;
+    let directions = [-45.0, -20.0, 0.0, 30.0]
+        .into_iter()
+        .flat_map(|elevation| (0..16).map(move |i| direction(i as f32 * TAU / 16.0, elevation)));
+    let directions: Vec<Vec3> = directions.collect();
+    let cast = |v: &Viewpoint, d: Vec3| rays.cast(v.position, d, reach);
+    let hits = viewpoints.iter().flat_map(|v| directions.iter().filter_map(move |&d| cast(v, d)));
+    let (all, behind) =
+        hits.fold((0, 0), |(all, behind), hit| (all + 1, behind + usize::from(hit.is_behind)));
+    behind * 100 > all * 99
 }
 
 fn direction(azimuth: f32, elevation_degrees: f32) -> Vec3 {

@@ -53,7 +53,8 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Fi
         Ok(())
     })?;
     let notes = SceneNotes {
-        scale: None,
+        // Stated, so that large scenes are not taken for ones in centimetres.
+        scale: Some(1.0),
         style: scene.style,
         sky: Some(scene.sky),
         lights: Some(scene.lights.clone()),
@@ -86,7 +87,7 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Fi
 }
 
 fn notes(material: &Material) -> MaterialNotes {
-    MaterialNotes { alpha: material.alpha.into(), double_sided: material.double_sided }
+    MaterialNotes { alpha: material.alpha.into(), double_sided: material.double_sided, unlit: material.unlit }
 }
 
 fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[String]) -> io::Result<()> {

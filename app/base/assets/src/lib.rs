@@ -27,7 +27,7 @@ mod textures;
 
 pub use error::SceneError;
 pub use export::export;
-pub use load::load;
+pub use load::{load, load_animated};
 pub use model::*;
 pub use motion::{Moment, Motion};
 pub use path::CameraPath;
