@@ -10,6 +10,8 @@ pub mod export;
 #[cfg(test)]
 mod file_tests;
 mod gltf;
+#[cfg(test)]
+mod gltf_tests;
 pub mod load;
 pub mod model;
 pub mod motion;
