@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use image::RgbImage;
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, list};
+use crate::cli::args::{self, GlArgs, list};
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::machine;
 use crate::cli::outputs::Files;
@@ -31,10 +31,10 @@ pub struct RunArgs {
     /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
     scenes: Vec<String>,
     /// Viewpoints of each scene that are measured, spread over its camera path
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64), value_name = "N")]
+    #[arg(long, default_value_t = 1, value_parser = args::whole::<u32>(1..=64), value_name = "N")]
     viewpoints: u32,
     /// Timed rounds; in each, every method renders one frame at each viewpoint
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
+    #[arg(long, default_value_t = 1, value_parser = args::whole::<u32>(1..=1000), value_name = "N")]
     rounds: u32,
     /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
     #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Synthesized.name(), value_name = "METHODS")]
@@ -43,7 +43,7 @@ pub struct RunArgs {
     #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = list(Pipeline::ALL.map(Pipeline::name)))]
     pipelines: Vec<Pipeline>,
     /// Seed of the built-in scenes
-    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
     seed: u64,
     /// Folder for the report and the pictures
     #[arg(long, default_value = "out", value_name = "FOLDER")]
@@ -102,6 +102,8 @@ impl Subcommand for RunArgs {
     /// Measures, writes the report and prints its table.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
+        self.stereo.check_effect("here: --pipelines says what is compared", |key| key != "pipeline")?;
+        self.stereo.check(&self.methods, &self.pipelines)?;
         let settings = self.renderer.render_settings();
         let names = self.names();
         yoro_scenes::check(&names, self.seed)?;

@@ -17,7 +17,9 @@ use yoro_bench::inpaint::{Patcher, Reprojected};
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_media::video::Reader;
-use yoro_media::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
+use yoro_media::{
+    self, DepthImage, DepthSamples, Nearness, PictureError, StoredDepth, StoredDepthError, rgb_image,
+};
 use yoro_render::stereo::{Offline, SynthesizedImage};
 use yoro_settings::Ipd;
 
@@ -143,6 +145,20 @@ impl SourceEye {
 }
 
 impl Job {
+    /// Refuses outputs whose format is not the one that will be written, before any is.
+    fn check(&self) -> Result<(), PictureError> {
+        let exr = |path: &&PathBuf| !files::has_extension(path, &["exr"]);
+        let png = |path: &&PathBuf| !files::has_extension(path, &["png"]);
+        let wrong = |path: &PathBuf, allowed| PictureError::Extension { path: path.clone(), allowed };
+        if let Some(path) = [Some(&self.out), self.mask.as_ref()].into_iter().flatten().find(png) {
+            return Err(wrong(path, ".png"));
+        }
+        match [&self.disparity, &self.source].into_iter().flatten().find(exr) {
+            Some(path) => Err(wrong(path, ".exr")),
+            None => Ok(()),
+        }
+    }
+
     /// Returns all files that will be written, with a description of each.
     fn outputs(&self, dominant: SourceEye) -> Vec<(PathBuf, String)> {
         let kinds = [
@@ -174,6 +190,7 @@ impl Subcommand for SynthesizeArgs {
             return Ok(files);
         }
         for job in jobs(self)? {
+            job.check()?;
             files.read([&job.color, &job.depth]);
             job.outputs(self.dominant).into_iter().for_each(|(path, what)| files.write(path, what));
         }

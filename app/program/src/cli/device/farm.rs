@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use anyhow::ensure;
 
 use crate::cli::Subcommand;
+use crate::cli::args;
 use crate::cli::outputs::Files;
 use yoro_devices::capture::{FaultKind, Outcome};
 use yoro_devices::farm;
@@ -20,7 +21,7 @@ pub struct FarmArgs {
     apk: String,
     /// Scenarios: 1 every pipeline, 2 a minute of each method, 3 ten minutes for heat
     #[arg(long, value_delimiter = ',', default_value = "1,2,3", value_name = "N,N",
-          value_parser = clap::value_parser!(u32).range(1..=3))]
+          value_parser = args::whole::<u32>(1..=3))]
     scenarios: Vec<u32>,
     /// Read results: a folder with a folder for each device, of Firebase Test Lab or AWS Device Farm
     #[arg(long, value_name = "FOLDER")]

@@ -253,7 +253,7 @@ impl GpuScene {
     }
 
     /// True if a blended surface may be visible in a view.
-    pub(crate) fn is_transparent_in(&self, view: &View) -> bool {
+    pub fn is_transparent_in(&self, view: &View) -> bool {
         let culler = Culler::of_view(view);
         self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]).any(|c| culler.sees(&c.bounds))
     }
