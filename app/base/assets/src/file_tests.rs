@@ -493,6 +493,16 @@ fn no_viewpoint_is_inside_a_body() {
     }
 }
 
+/// A plane that faces down, drawn from its front only.
+#[test]
+fn what_faces_down_is_seen_from_below() {
+    let folder = Folder::new();
+    let mut model = load(&folder.put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3")).unwrap().model;
+    model.materials[0].double_sided = false;
+    let (viewpoints, _) = defaults::viewpoints(&model, &rays::Rays::new(&model));
+    assert!(viewpoints.iter().all(|v| v.position.y < 0.0), "{viewpoints:?}");
+}
+
 /// Ten metres, five thousand kilometres away, with steps of a centimetre.
 #[test]
 fn a_far_model_is_brought_to_the_origin() {

@@ -222,8 +222,10 @@ fn timing_method(args: &RunArgs, gl: &Context) -> String {
     } else {
         "Pass times are wall-clock times with glFinish before and after each pass (timer queries of a CPU rasterizer are wrong)"
     };
+    let count = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     format!(
-        "Frame times: wall clock of a whole stereo frame up to glFinish, both eyes finished; one warm-up frame per method, then {} interleaved rounds over {} viewpoints, the order of the methods rotated; medians. {passes}, medians over frames of their own at the first viewpoint.",
-        args.rounds, args.viewpoints
+        "Frame times: wall clock of a whole stereo frame up to glFinish, both eyes finished; one warm-up frame per method, then {} over {}, the order of the methods rotated; medians. {passes}, medians over frames of their own at the first viewpoint.",
+        count(args.rounds, "interleaved round"),
+        count(args.viewpoints, "viewpoint")
     )
 }

@@ -75,7 +75,7 @@ fn coordinates(m: &gltf::Material) -> Vec<(&'static str, Coordinates)> {
     let maps = if m.unlit() {
         [("base colour", color), ("", None), ("", None), ("", None)]
     } else {
-        [("base colour", color), ("metalness or gloss", surface), ("emissive", emissive), ("normal", normal)]
+        [("base colour", color), ("metalness", surface), ("emissive", emissive), ("normal", normal)]
     };
     maps.into_iter().filter_map(|(name, coordinates)| Some((name, coordinates?))).collect()
 }
@@ -228,10 +228,10 @@ impl Reader<'_> {
         if let Some((main, of_vertices)) = maps.first() {
             (wanted.set, wanted.placement) = (of_vertices.set, of_vertices.placement);
             let others = maps.iter().filter(|(_, c)| c != of_vertices).map(|(name, _)| *name);
-            let others = others.collect::<Vec<_>>().join(" and ");
+            let others = others.collect::<Vec<_>>().join(", ");
             if !others.is_empty() {
                 log::warn!(
-                    "{}: the {others} map of the material {name} has texture coordinates of its own; those of the {main} map are used",
+                    "{}: maps of the material {name} have texture coordinates of their own, and those of the {main} map are used: {others}",
                     self.path.display()
                 );
             }
