@@ -606,6 +606,7 @@ fn rich_scene() -> Scene {
         viewpoints: (0..8)
             .map(|i| Viewpoint { position: Vec3::new(i as f32 * 0.1, 1.6, 5.0), target: Vec3::Y })
             .collect(),
+        has_made_up_viewpoints: false,
         motion: Motion::default(),
     }
 }

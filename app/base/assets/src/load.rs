@@ -226,16 +226,12 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
         camera_path::check(&viewpoints).map_err(|what| SceneError::Sidecar { path: file, what })?;
         cameras = viewpoints;
     }
+    let has_made_up_viewpoints = cameras.is_empty();
     if cameras.is_empty() || sky.is_none() || lights.is_none() {
         let rays = Rays::new(&model);
         if cameras.is_empty() {
             let (made, how) = defaults::viewpoints(&model, &rays);
-            log::warn!(
-                "{}: {} viewpoints are made up, {how}: write others into {}.camera.json beside it",
-                path.display(),
-                made.len(),
-                path.file_stem().unwrap_or_default().display()
-            );
+            log::info!("{}: {} viewpoints are made up: {how}", path.display(), made.len());
             cameras = made;
         }
         let (default_sky, default_lights) = defaults::light(&model, &rays, &cameras);
@@ -250,6 +246,7 @@ pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, Scen
         sky: sky.unwrap_or_default(),
         lights: lights.unwrap_or_default(),
         viewpoints: cameras,
+        has_made_up_viewpoints,
         motion,
     })
 }

@@ -102,7 +102,7 @@ pub struct RenderArgs {
     /// The pictures to write
     #[arg(long, value_enum, value_delimiter = ',', default_value = list([Output::Left, Output::Right, Output::SideBySide].map(Output::name)))]
     outputs: Vec<Output>,
-    /// Write the frames as an RGBD video (.mp4) instead of pictures: the rendered eye with its guard band, and its
+    /// Write the frames as an RGBD video instead of pictures, such as `--frames 120 --video a.mp4`: the rendered eye with its guard band, and its
     /// depth beside it. `yoro synthesize FILE` makes stereo of it
     #[arg(long, value_name = "FILE", requires = "frames", conflicts_with_all = ["out", "outputs", "measure", "json", "method"])]
     video: Option<PathBuf>,
@@ -174,6 +174,9 @@ impl Subcommand for RenderArgs {
         let settings = self.renderer.render_settings();
         let scene =
             yoro_scenes::load_animated(&self.scene, self.seed, self.style, self.animation.as_deref())?;
+        if self.position.is_none() {
+            scene.warn_of_made_up_viewpoints();
+        }
         let path = CameraPath::new(&scene.viewpoints);
         let heads = match (eyes::viewpoint(self.position, self.target), self.frames) {
             (Some(viewpoint), _) => vec![viewpoint.pose()],
@@ -181,7 +184,7 @@ impl Subcommand for RenderArgs {
             (None, None) => vec![eyes::scene_pose(&scene, self.pose)?],
         };
         let options = self.stereo.options();
-        log::info!("{options:?}");
+        log::info!("{}", self.stereo.summary());
         log::info!("{}", self.eyes.distances(options.guard_band));
         let headless = self.gl.open()?;
         let gl = headless.gl();
@@ -260,10 +263,11 @@ fn warn_of_blank(
     if let Some(first) = blanks.first() {
         let option = message::plane(*first).map_or_else(String::new, |option| format!(" ({option})"));
         log::warn!(
-            "{} of {} frames of {} show nothing of it: {first}{option}",
+            "{} of {} frames of {} show nothing of it: {}{option}",
             blanks.len(),
             heads.len(),
-            prepared.scene.name
+            prepared.scene.name,
+            first.remedy(&prepared.scene.name)
         );
     }
     Ok(())

@@ -89,6 +89,12 @@ impl<G: Group> SettingOptions<G> {
         self.given.iter().map(|(key, value)| format!("{key}={value}"))
     }
 
+    /// Returns the values of all options as `key=value`.
+    pub fn summary(&self) -> String {
+        let values = Self::rows().map(|setting| format!("{}={}", setting.key, setting.text(&self.settings)));
+        values.collect::<Vec<_>>().join(" ")
+    }
+
     /// Refuses an option that was given although it has no effect there. `acts` says which keys have one; `place` is the
     /// end of the sentence, such as "on a video".
     pub fn check_effect(&self, place: &str, acts: impl Fn(&str) -> bool) -> anyhow::Result<()> {

@@ -145,18 +145,21 @@ impl SourceEye {
 }
 
 impl Job {
-    /// Refuses outputs whose format is not the one that will be written, before any is.
+    /// Refuses outputs whose format is not one that will be written, before any is.
     fn check(&self) -> Result<(), PictureError> {
-        let exr = |path: &&PathBuf| !files::has_extension(path, &["exr"]);
-        let png = |path: &&PathBuf| !files::has_extension(path, &["png"]);
-        let wrong = |path: &PathBuf, allowed| PictureError::Extension { path: path.clone(), allowed };
-        if let Some(path) = [Some(&self.out), self.mask.as_ref()].into_iter().flatten().find(png) {
-            return Err(wrong(path, ".png"));
+        let floats = (&["png", "exr"][..], ".png or .exr");
+        let outputs = [
+            (Some(&self.out), (&["png", "jpg", "jpeg"][..], ".png or .jpg")),
+            (self.mask.as_ref(), (&["png"][..], ".png")),
+            (self.disparity.as_ref(), floats),
+            (self.source.as_ref(), floats),
+        ];
+        for (path, (extensions, allowed)) in outputs {
+            if let Some(path) = path.filter(|path| !files::has_extension(path, extensions)) {
+                return Err(PictureError::Extension { path: path.clone(), allowed });
+            }
         }
-        match [&self.disparity, &self.source].into_iter().flatten().find(exr) {
-            Some(path) => Err(wrong(path, ".exr")),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     /// Returns all files that will be written, with a description of each.

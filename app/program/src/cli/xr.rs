@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::{bail, ensure};
+use anyhow::{anyhow, bail, ensure};
 use serde::Serialize;
 
 use crate::cli::Subcommand;
@@ -84,7 +84,17 @@ impl XrArgs {
                 vec![if is_manifest { Place::Manifest(file.clone()) } else { Place::Loader(file.clone()) }]
             }
         };
-        Ok(runtime::find(&places, &NoBroker, None)?)
+        // Where it was looked for is for those who have installed one.
+        runtime::find(&places, &NoBroker, None).map_err(|error| {
+            log::info!("{error}");
+            match &self.runtime {
+                None if error.nothing_installed() => anyhow!(
+                    "no OpenXR runtime is installed here: install one (headset.md), or name its manifest or library with --runtime FILE"
+                ),
+                None => anyhow!("{error}; name another with --runtime FILE"),
+                Some(_) => error.into(),
+            }
+        })
     }
 }
 

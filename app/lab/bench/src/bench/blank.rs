@@ -1,6 +1,5 @@
 //! Finding views that show nothing to measure.
 
-use std::fmt;
 use std::rc::Rc;
 
 use yoro::eyes::{DepthRange, EyePair, View};
@@ -10,7 +9,7 @@ use yoro_render::{DepthReader, GpuScene, PreparedScene, Selection, ViewTargets};
 /// The longest edge in pixels of the image that is examined. Whatever is smaller on the screen is negligible.
 const EDGE: u32 = 256;
 
-/// The reason why a view shows nothing of a scene; as text, with the remedy.
+/// The reason why a view shows nothing of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blank {
     /// It looks elsewhere.
@@ -31,17 +30,18 @@ pub enum Blank {
     },
 }
 
-impl fmt::Display for Blank {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Blank {
+    /// Returns the reason and the remedy in a scene of this name.
+    pub fn remedy(&self, scene: &str) -> String {
         match self {
             Blank::Elsewhere => {
-                f.write_str("write viewpoints that show the model into camera.json beside it")
+                format!("write viewpoints that show the model into {scene}.camera.json beside it")
             }
             Blank::Beyond { far, enough } => {
-                write!(f, "all of it lies beyond the far plane of {far} m: move that to {enough} m")
+                format!("all of it lies beyond the far plane of {far} m: move that to {enough} m")
             }
             Blank::Before { near, enough } => {
-                write!(f, "all of it lies before the near plane of {near} m: move that to {enough} m")
+                format!("all of it lies before the near plane of {near} m: move that to {enough} m")
             }
         }
     }
@@ -49,7 +49,7 @@ impl fmt::Display for Blank {
 
 /// The error for a view that shows nothing.
 #[derive(Debug, thiserror::Error)]
-#[error("{view} of {scene} shows nothing, so there is nothing to measure: {blank}")]
+#[error("{view} of {scene} shows nothing, so there is nothing to measure: {}", blank.remedy(scene))]
 pub struct BlankView {
     /// The view's name.
     pub view: String,

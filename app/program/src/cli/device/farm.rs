@@ -1,6 +1,6 @@
 //! `yoro device farm`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::ensure;
 
@@ -46,16 +46,25 @@ impl Subcommand for FarmArgs {
             println!("{}", farm::command(&self.apk, &self.scenarios, &self.devices));
             return Ok(());
         };
+        let place = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let own = |path: &Path| path.canonicalize().unwrap_or_else(|_| place(path));
+        ensure!(
+            !own(&self.out).starts_with(own(folder)),
+            "the captures would be written into {}, and read as results the next time: choose another folder with --out",
+            folder.display()
+        );
         for run in farm::read(folder, &self.out)? {
             let simulated = if run.device.simulated { "SIMULATED: " } else { "" };
             let end = match &run.outcome {
                 Outcome::Complete => "complete",
                 Outcome::Interrupted { reason } | Outcome::Failed { reason } => reason,
             };
+            let wrong = run.faults.iter().find(|fault| fault.kind == FaultKind::Pictures);
+            let wrong = wrong.map_or_else(String::new, |fault| format!("; WRONG PICTURES: {}", fault.detail));
             let is_plugged = run.faults.iter().any(|fault| fault.kind == FaultKind::PluggedIn);
             let power = if is_plugged { "; power na: on a charger" } else { "" };
             println!(
-                "{simulated}{}: {} in {}: {:.0} s, {end}{power}",
+                "{simulated}{}: {} in {}: {:.0} s, {end}{power}{wrong}",
                 run.device.serial, run.method, run.scene, run.duration_s
             );
         }

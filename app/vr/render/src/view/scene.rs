@@ -159,7 +159,7 @@ impl GpuScene {
     /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::OutOfMemory`] if memory runs out.
     pub fn upload(gl: &Rc<Context>, scene: Scene) -> Result<GpuScene, GlError> {
         static NEXT_ID: AtomicU64 = AtomicU64::new(0);
-        let Scene { name, mut model, style, sky, lights, viewpoints, motion } = scene;
+        let Scene { name, mut model, style, sky, lights, viewpoints, motion, .. } = scene;
         let (still, reached) = (model.bounds(), motion.bounds());
         let bounds =
             if reached.is_empty() { still } else { still.including(reached.min).including(reached.max) };
