@@ -228,9 +228,9 @@ fn numbers_have_a_remedy() {
     let dir = tempfile::tempdir().unwrap();
     for (line, remedy) in [
         ("run prototype --rounds x", "give a whole number from 1 to 1000"),
-        ("dataset --groups -1 prototype", "give a whole number from 1 to 1000000"),
+        ("dataset --groups=-1 prototype", "give a whole number from 1 to 1000000"),
         ("render prototype --seed 1.5", "give a whole number from 0"),
-        ("render prototype --pose -2", "give a whole number from 0"),
+        ("render prototype --pose=-2", "give a whole number from 0"),
         ("render prototype --frames 99999999999", "give a whole number from 1 to 100000"),
         ("view --png v.png --yaw-degrees left", "give a finite number"),
         ("device farm husky --scenarios 4", "give a whole number from 1 to 3"),

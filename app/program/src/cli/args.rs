@@ -125,6 +125,12 @@ pub fn parse_positive(text: &str) -> Result<f32, String> {
     }
 }
 
+/// Parses the distance of a far plane in metres, which may be infinite.
+pub fn parse_far(text: &str) -> Result<f32, String> {
+    let far = text.parse::<f32>().ok().filter(|far| *far > 0.0);
+    far.ok_or_else(|| "give metres above 0, or inf".into())
+}
+
 /// Parses an angle in degrees that is possible for a flat image, and returns radians.
 pub fn parse_fov(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {

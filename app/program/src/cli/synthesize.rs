@@ -6,7 +6,7 @@ use anyhow::{Context as _, anyhow, bail, ensure};
 use image::{GrayImage, Luma};
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, PatcherArgs, parse_finite, parse_fov, parse_positive};
+use crate::cli::args::{GlArgs, PatcherArgs, parse_far, parse_finite, parse_fov, parse_positive};
 use crate::cli::outputs::Files;
 use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
@@ -76,7 +76,7 @@ pub struct SynthesizeArgs {
     #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive, allow_negative_numbers = true)]
     near: f32,
     /// Far plane in metres; `inf` for none
-    #[arg(long, default_value_t = DepthRange::PAPER.far, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = DepthRange::PAPER.far, value_parser = parse_far, allow_negative_numbers = true)]
     far: f32,
     /// metres: distance of the largest value of an integer PNG
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive, allow_negative_numbers = true)]

@@ -11,6 +11,7 @@ mod primitive;
 mod reader;
 
 use std::collections::{HashMap, HashSet};
+use std::iter::repeat_n;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -307,8 +308,7 @@ impl Reader<'_> {
                     let colors =
                         self.colors(&primitive)?.filter(|c| c.len() == raw.vertices.len()).map(Rc::new);
                     let carried = self.carried(&mut moves, at, &mesh, &primitive)?;
-                    for instance in &instances {
-                        let mut raw = raw.clone();
+                    for (instance, mut raw) in instances.iter().zip(repeat_n(raw, instances.len())) {
                         let mirrors = instance.determinant() < 0.0;
                         match &carried {
                             // Left in the frame of what carries it, and reversed if that mirrors it.

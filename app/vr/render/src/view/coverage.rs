@@ -1,13 +1,16 @@
 //! Mip levels of pictures that cut holes.
 //!
-//! Averaging alpha makes leaves vanish and moves other cuts with distance. Here the alpha of each level is scaled so that
-//! as much of it is above the cut-off as of the picture itself (Castaño 2010, "Computing Alpha Mipmaps"). Where alpha
-//! is a ramp, that is so without scaling, and the cut stays where it is.
+//! Averaging alpha makes leaves vanish with distance. Here the alpha of each level is scaled up until about as much of it
+//! is above the cut-off as of the picture itself (Castaño 2010, "Computing Alpha Mipmaps"). Where alpha is a ramp, that
+//! is so without scaling, and the cut stays where it is.
 
 use std::collections::HashMap;
 
 use yoro_assets::{Alpha, Model, TextureImage};
 
+/// The share of a picture's coverage that its levels keep. Less than all of it, since lines get thinner and thicker
+/// where cuts through ramps must stay.
+const KEPT: f64 = 0.9;
 /// Largest factor of alpha.
 const MAX_SCALE: f32 = 4.0;
 /// Levels with fewer texels are interpolated for counting, at this many places along each edge of a texel.
@@ -131,19 +134,15 @@ impl Histogram {
         self.counts[threshold..].iter().sum::<u64>() as f64 / self.total.max(1) as f64
     }
 
-    /// Returns the factor after which a share of the values is not below the cut-off: of those that come closest to the
-    /// share, the one nearest to 1.
+    /// Returns the factor, 1 or more, after which at least [`KEPT`] of a share of the values is not below the cut-off.
     fn scale_for(&self, share: f64, cutoff: f32) -> f32 {
         let unscaled = threshold(cutoff);
+        let wanted = share * KEPT;
         let least = ((cutoff * 255.0 / MAX_SCALE) as usize).max(1);
-        // One value more or less is no reason to scale.
-        let slack = 1.0 / 256.0;
-        let error = |threshold: usize| ((self.share_from(threshold) - share).abs() - slack).max(0.0);
-        let best = (least..256).min_by(|&a, &b| {
-            error(a).total_cmp(&error(b)).then(unscaled.abs_diff(a).cmp(&unscaled.abs_diff(b)))
-        });
-        match best {
-            Some(best) if best != unscaled => cutoff * 255.0 / best as f32,
+        let error = |threshold: usize| (self.share_from(threshold) - share).abs();
+        match (least..=unscaled).rev().find(|&t| self.share_from(t) >= wanted) {
+            // Values that are all alike go from nothing to everything.
+            Some(best) if error(best) < error(unscaled) => cutoff * 255.0 / best as f32,
             _ => 1.0,
         }
     }
