@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::program::{run, succeed};
 
 /// From here, squares at a distance of 2 m are seen as far as 1.15 m to all sides.
-const LOOK: &str = "--position 0,0,0 --target 0,0,-1 --size 96 --outputs right --ipd 0.05 --renderer forward";
+const LOOK: &str = "--position 0,0,0 --target 0,0,-1 --size 96 --outputs right --ipd 0.05";
 
 /// The corners of a square from -1 to 1 that faces +Z, its texture coordinates, and two triangles.
 fn square() -> Vec<u8> {

@@ -247,6 +247,11 @@ impl GpuScene {
         self.sky.sun_color.max_element() > 0.0
     }
 
+    /// True if any surface is lit. What is unlit shines no brighter than white, so a scene without has no bloom.
+    pub(super) fn is_lit(&self) -> bool {
+        self.materials.iter().any(|material| !material.features.contains(Features::UNLIT))
+    }
+
     /// True if any surface is blended.
     pub fn has_transparent(&self) -> bool {
         self.blended().next().is_some()
