@@ -172,6 +172,11 @@ pub enum LoadError {
     /// The file cannot be loaded.
     #[error(transparent)]
     File(#[from] SceneError),
+    /// An animation of a built-in scene was asked for.
+    #[error(
+        "{0} is a built-in scene, whose motion has no names: only glTF files have animations to choose from"
+    )]
+    NoAnimations(String),
 }
 
 /// Loads a built-in scene by name, or a file, in the given style or its own.
@@ -179,11 +184,25 @@ pub enum LoadError {
 /// # Errors
 /// [`LoadError`].
 pub fn load(name: &str, seed: u64, style: Option<ShadingStyle>) -> Result<Scene, LoadError> {
+    load_animated(name, seed, style, None)
+}
+
+/// Like [`load`], but of a glTF file's animations plays only the one with this name or number, if one is given.
+///
+/// # Errors
+/// [`LoadError`].
+pub fn load_animated(
+    name: &str,
+    seed: u64,
+    style: Option<ShadingStyle>,
+    animation: Option<&str>,
+) -> Result<Scene, LoadError> {
     let path = Path::new(name);
     let looks_like_path = path.components().count() > 1 || path.extension().is_some() || path.exists();
     let mut scene = match build(name, seed) {
+        Ok(_) if animation.is_some() => return Err(LoadError::NoAnimations(name.into())),
         Ok(scene) => scene,
-        Err(_) if looks_like_path => yoro_assets::load(path)?,
+        Err(_) if looks_like_path => yoro_assets::load_animated(path, animation)?,
         Err(error) => return Err(error.into()),
     };
     scene.style = style.unwrap_or(scene.style);

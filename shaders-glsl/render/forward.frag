@@ -21,6 +21,9 @@ void main() {
         discard;
     }
 #endif
+#ifdef UNLIT
+    vec3 c = srgb_encode(color.rgb);
+#else
     // Beyond the surface's edge, where only some samples are covered, the extrapolated distance may be invalid.
     float distance = 1.0 / max(gl_FragCoord.w, 1e-6);
     Surface surface = material_surface(color.rgb);
@@ -32,6 +35,7 @@ void main() {
     }
 #else
     vec3 c = tonemap(exposure * aerial(shade(surface, v_position), distance));
+#endif
 #endif
     CARRY_DEPTH(gl_FragCoord.z)
 #if defined(CUTOUT) && defined(MULTISAMPLE)

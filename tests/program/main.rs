@@ -12,6 +12,7 @@ mod interrupt;
 mod layer;
 mod memory;
 mod mistakes;
+mod models;
 mod pair;
 mod render;
 mod report;

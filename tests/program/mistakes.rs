@@ -190,3 +190,63 @@ fn a_closed_pipe_is_no_error() {
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
     assert_eq!(output.status.code(), Some(0));
 }
+
+/// An option that would change nothing is a mistake, too.
+#[test]
+fn options_without_effect_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for (line, naming) in [
+        (
+            "render prototype --frames 2 --video v.mp4 --pipeline paper",
+            ["--pipeline has no effect on a video", "leave it out"],
+        ),
+        ("render prototype --frames 2 --video v.mp4 --near-field 1", ["--near-field has no effect", "video"]),
+        ("render prototype --frames 2 --video v.mp4 --no-switch", ["--no-switch has no effect", "video"]),
+        (
+            "render prototype --method conventional --pipeline paper",
+            ["--pipeline has no effect", "conventional"],
+        ),
+        ("render prototype --split-disparity 2", ["--split-disparity has no effect", "yoro"]),
+        ("render prototype --kernel-height 5", ["--kernel-height has no effect", "pipeline gather"]),
+        ("run prototype --pipeline paper", ["--pipeline has no effect", "--pipelines"]),
+        (
+            "view --png v.png --set render-rate=36 --set near-field=2",
+            ["near-field has no effect", "render-rate"],
+        ),
+        (
+            "view --png v.png --set render-rate=36 --set pipeline=paper",
+            ["pipeline=paper has no effect", "render-rate"],
+        ),
+    ] {
+        run(dir.path(), line).refuses(&naming);
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0, "nothing was written");
+}
+
+#[test]
+fn numbers_have_a_remedy() {
+    let dir = tempfile::tempdir().unwrap();
+    for (line, remedy) in [
+        ("run prototype --rounds x", "give a whole number from 1 to 1000"),
+        ("dataset --groups=-1 prototype", "give a whole number from 1 to 1000000"),
+        ("render prototype --seed 1.5", "give a whole number from 0"),
+        ("render prototype --pose=-2", "give a whole number from 0"),
+        ("render prototype --frames 99999999999", "give a whole number from 1 to 100000"),
+        ("view --png v.png --yaw-degrees left", "give a finite number"),
+        ("device farm husky --scenarios 4", "give a whole number from 1 to 3"),
+        ("study plan --participants none", "give a whole number from 1 to 1000"),
+    ] {
+        let told = run(dir.path(), line);
+        assert!(told.code == Some(2) && told.stderr.contains(remedy), "{line}: {}", told.stderr);
+    }
+}
+
+/// No output is written if another one cannot be.
+#[test]
+fn every_output_is_checked_before_the_first() {
+    let dir = tempfile::tempdir().unwrap();
+    color_and_depth(dir.path());
+    let line = "synthesize --color color.png --depth depth.png --out o.png --disparity-out x.txt";
+    run(dir.path(), line).refuses(&["x.txt", ".exr"]);
+    assert!(!dir.path().join("o.png").exists());
+}

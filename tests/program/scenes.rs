@@ -3,7 +3,7 @@
 use yoro_metrics::{Channels, SsimWindow, ssim};
 use yoro_scenes::BUILTINS;
 
-use crate::program::{run, succeed};
+use crate::program::{interrupt, run, succeed};
 
 #[test]
 fn the_list_has_every_scene() {
@@ -33,6 +33,13 @@ fn an_exported_scene_renders_as_the_built_in_one() {
         let likeness = ssim(&load("b"), &load("a"), SsimWindow::Gaussian11, Channels::Rgb).unwrap();
         assert!(likeness > 0.99, "{eye}: SSIM {likeness:.4}");
     }
+}
+
+#[test]
+fn an_export_ends_when_interrupted() {
+    let dir = tempfile::tempdir().unwrap();
+    interrupt(dir.path(), "scenes export street out", || dir.path().join("out").exists());
+    assert!(!dir.path().join("out/street.obj").exists());
 }
 
 #[test]

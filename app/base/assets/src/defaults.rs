@@ -33,11 +33,36 @@ pub(super) fn viewpoints(model: &Model, rays: &Rays) -> (Vec<Viewpoint>, &'stati
     let bounds = model.bounds();
     if (bounds.max - bounds.min).max_element() >= ROOM {
         let walk = walk(&bounds, rays);
-        if !walk.is_empty() {
+        if !walk.is_empty() && !is_inside_body(&walk, rays, bounds) {
             return (walk, "a walk at eye height");
         }
     }
-    (orbit(&bounds), "a circle around it")
+    // Planes are drawn from one side only, which may be the lower one.
+    let reach = (bounds.max - bounds.min).length() * 4.0 + 1.0;
+    let shows = |v: &Viewpoint| seen(v, rays, reach) > 0.0;
+    let above = orbit(&bounds, ELEVATION);
+    let mut circle = if above.iter().any(shows) { above } else { orbit(&bounds, -ELEVATION) };
+    let first = circle.iter().position(shows).unwrap_or(0);
+    circle.rotate_left(first);
+    (circle, "a circle around it")
+}
+
+/// Degrees above the horizon from which a model is seen.
+const ELEVATION: f32 = 18.0;
+
+/// True if nothing but the backs of faces is seen from viewpoints: they are inside a solid body, not in a room, which
+/// contains something.
+fn is_inside_body(viewpoints: &[Viewpoint], rays: &Rays, bounds: Bounds) -> bool {
+    let reach = (bounds.max - bounds.min).length() * 2.0 + 1.0;
+    let directions = [-45.0, -20.0, 0.0, 30.0]
+        .into_iter()
+        .flat_map(|elevation| (0..16).map(move |i| direction(i as f32 * TAU / 16.0, elevation)));
+    let directions: Vec<Vec3> = directions.collect();
+    let cast = |v: &Viewpoint, d: Vec3| rays.cast(v.position, d, reach);
+    let hits = viewpoints.iter().flat_map(|v| directions.iter().filter_map(move |&d| cast(v, d)));
+    let (all, behind) =
+        hits.fold((0, 0), |(all, behind), hit| (all + 1, behind + usize::from(hit.is_behind)));
+    behind * 100 > all * 99
 }
 
 fn direction(azimuth: f32, elevation_degrees: f32) -> Vec3 {
@@ -45,7 +70,7 @@ fn direction(azimuth: f32, elevation_degrees: f32) -> Vec3 {
     Vec3::new(azimuth.sin() * level, up, -azimuth.cos() * level)
 }
 
-fn orbit(bounds: &Bounds) -> Vec<Viewpoint> {
+fn orbit(bounds: &Bounds, elevation: f32) -> Vec<Viewpoint> {
     let radius = (bounds.max - bounds.min).length() * 0.5;
     let target = bounds.center();
     // The bounding sphere fits into 60 degrees.
@@ -53,7 +78,7 @@ fn orbit(bounds: &Bounds) -> Vec<Viewpoint> {
     // The first is from the front, a little to the side.
     let azimuth = |i: usize| std::f32::consts::PI - 0.4 + i as f32 * TAU / COUNT as f32;
     (0..COUNT)
-        .map(|i| Viewpoint { position: target + direction(azimuth(i), 18.0) * distance, target })
+        .map(|i| Viewpoint { position: target + direction(azimuth(i), elevation) * distance, target })
         .collect()
 }
 

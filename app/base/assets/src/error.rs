@@ -95,6 +95,10 @@ impl SceneError {
 /// and bounds the memory that a damaged or hostile file can take.
 pub(super) const MAX_ELEMENTS: usize = 1 << 27;
 
+/// Distance from the origin, in a file's units, from which positions are brought to it before they are rounded to f32,
+/// which distinguishes 1/128 unit there.
+pub(super) const FAR: f64 = 1e5;
+
 /// Checks that a path is a regular file and returns its size in bytes.
 pub(super) fn file_size(path: &Path) -> Result<u64, SceneError> {
     let size = yoro_files::size(path).map_err(|source| match source.kind() {

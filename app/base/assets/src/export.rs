@@ -8,7 +8,7 @@ use super::load::{MaterialNotes, SceneNotes};
 use super::model::{Alpha, Material};
 use super::scene::Scene;
 use super::textures::unique;
-use yoro_files::{FileError, create_folder, write_with};
+use yoro_files::{FileError, create_folder, interrupt, write_with};
 
 /// Writes `NAME.obj`, `NAME.mtl`, `textures/*.png`, `NAME.camera.json`, `NAME.scene.json` and `LICENSE.txt` into a
 /// folder, which is created if necessary. [`crate::load()`] reads the same scene back. `license` is the text of the
@@ -18,7 +18,7 @@ use yoro_files::{FileError, create_folder, write_with};
 /// OBJ file.
 ///
 /// # Errors
-/// [`FileError`] if a file or folder cannot be written.
+/// [`FileError`] if a file or folder cannot be written, or the user has asked to stop.
 pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, FileError> {
     create_folder(folder)?;
     let mut taken = HashSet::new();
@@ -27,6 +27,7 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Fi
     let textures: Vec<String> =
         scene.model.textures.iter().map(|t| unique(&mut taken, t.name.clone())).collect();
     for (texture, file) in scene.model.textures.iter().zip(&textures) {
+        interrupt::check()?;
         let [w, h] = texture.size;
         let picture = image::RgbaImage::from_raw(w, h, texture.rgba.clone());
         write_with(&folder.join(format!("textures/{file}.png")), |out| {
@@ -53,7 +54,8 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Fi
         Ok(())
     })?;
     let notes = SceneNotes {
-        scale: None,
+        // Stated, so that large scenes are not taken for ones in centimetres.
+        scale: Some(1.0),
         style: scene.style,
         sky: Some(scene.sky),
         lights: Some(scene.lights.clone()),
@@ -80,13 +82,14 @@ pub fn export(scene: &Scene, folder: &Path, license: &str) -> Result<PathBuf, Fi
         Ok(serde_json::to_writer_pretty(out, &scene.viewpoints)?)
     })?;
     write_with(&folder.join("LICENSE.txt"), |out| writeln!(out, "{}", license.trim_end()))?;
+    interrupt::check()?;
     let obj = folder.join(format!("{name}.obj"));
     write_with(&obj, |out| write_obj(out, scene, &name, &materials))?;
     Ok(obj)
 }
 
 fn notes(material: &Material) -> MaterialNotes {
-    MaterialNotes { alpha: material.alpha.into(), double_sided: material.double_sided }
+    MaterialNotes { alpha: material.alpha.into(), double_sided: material.double_sided, unlit: material.unlit }
 }
 
 fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[String]) -> io::Result<()> {
@@ -112,6 +115,7 @@ fn write_obj(out: &mut impl Write, scene: &Scene, name: &str, materials: &[Strin
             .map(|c| if c.is_control() || c == '#' || c == '\\' { '_' } else { c })
             .collect();
         writeln!(out, "g {group}\nusemtl {}", materials[part.material])?;
+        interrupt::check().map_err(io::Error::other)?;
         for t in model.indices[part.indices.clone()].chunks_exact(3) {
             write!(out, "f")?;
             for i in t.iter().map(|i| *i as usize) {

@@ -256,6 +256,14 @@ fn textures_are_found_in_all_spellings_of_their_path() {
         let moved = name.starts_with("-s");
         assert_eq!(model.vertices[2].uv, if moved { Vec2::new(2.5, 2.0) } else { Vec2::ONE });
     }
+    // Names count from the library, then from the OBJ file.
+    folder.picture("mats/tex/wood.png", 4, |_, _| [1, 2, 3, 255]);
+    folder.picture("tex/wood.png", 4, |_, _| [9, 9, 9, 255]);
+    folder.put("mats/b.mtl", "newmtl m\nmap_Kd tex/wood.png\nnewmtl n\nmap_Kd Textures/my wood.png\n");
+    let text = square("mtllib mats/b.mtl\nusemtl m\nf 1 2 3\nusemtl n\nf 1 2 4");
+    let model = load(&folder.put("b.obj", text)).unwrap().model;
+    let colour = |i: usize| model.textures[model.materials[i].diffuse_map.unwrap()].rgba[..3].to_vec();
+    assert_eq!([colour(0), colour(1)], [[1, 2, 3], [200, 100, 50]]);
     for name in ["gone.png", "a.obj"] {
         folder.put("a.mtl", format!("newmtl m\nKd .5 .5 .5\nmap_Kd {name}\n"));
         let model = load(&folder.0.path().join("a.obj")).unwrap().model;
@@ -467,6 +475,54 @@ fn large_things_without_a_floor_are_circled() {
     }
 }
 
+/// Solid bodies whose faces are drawn from both sides, as those of OBJ files are.
+#[test]
+fn no_viewpoint_is_inside_a_body() {
+    let folder = Folder::new();
+    let block = box_obj([-4.0, 0.0, -4.0], [4.0, 4.0, 4.0]);
+    let blocks: String = (0..9)
+        .map(|i| [(i % 3) as f32 * 10.0, (i / 3) as f32 * 10.0])
+        .map(|[x, z]| box_obj([x, 0.0, z], [x + 5.0, 5.0, z + 5.0]))
+        .collect();
+    for text in [block, blocks] {
+        let s = load(&folder.put("a.obj", text)).unwrap();
+        let rays = rays::Rays::new(&s.model);
+        for v in &s.viewpoints {
+            assert!(rays.cast(v.position, v.pose().forward(), 1e3).is_none_or(|h| !h.is_behind), "{v:?}");
+        }
+    }
+}
+
+/// A plane that faces down, drawn from its front only.
+#[test]
+fn what_faces_down_is_seen_from_below() {
+    let folder = Folder::new();
+    let mut model = load(&folder.put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3")).unwrap().model;
+    model.materials[0].double_sided = false;
+    let (viewpoints, _) = defaults::viewpoints(&model, &rays::Rays::new(&model));
+    assert!(viewpoints.iter().all(|v| v.position.y < 0.0), "{viewpoints:?}");
+}
+
+/// Ten metres, five thousand kilometres away, with steps of a centimetre.
+#[test]
+fn a_far_model_is_brought_to_the_origin() {
+    let folder = Folder::new();
+    let far = "v 500000.01 5219000.02 410\nv 500010.01 5219000.02 410\nv 500010.01 5219005.03 410.5\nf 1 2 3";
+    let s = load(&folder.put("a.obj", far)).unwrap();
+    let bounds = s.model.bounds();
+    assert!(bounds.center().length() < 10.0, "{bounds:?}");
+    assert!((bounds.max - bounds.min - Vec3::new(10.0, 5.01, 0.5)).abs().max_element() < 1e-4, "{bounds:?}");
+    // A small unit brings a model nearer without bringing its details nearer.
+    folder.put("scene.json", r#"{"scale": 0.01}"#);
+    let scaled = load(&folder.0.path().join("a.obj")).unwrap().model.bounds();
+    assert!((scaled.max - scaled.min - Vec3::new(0.1, 0.0501, 0.005)).abs().max_element() < 1e-6);
+    fs::remove_file(folder.0.path().join("scene.json")).unwrap();
+    // What is large stays where it is, even if it begins far away.
+    let large = "v 200000 0 0\nv -200000 0 0\nv 0 0 -50\nf 1 2 3";
+    let bounds = load(&folder.put("b.obj", large)).unwrap().model.bounds();
+    assert_eq!((bounds.min, bounds.max), (Vec3::new(-2e5, 0.0, -50.0), Vec3::new(2e5, 0.0, 0.0)));
+}
+
 /// A terrace with a small house has ground to walk on, but no viewpoint may see only sky.
 #[test]
 fn a_walk_shows_the_model() {
@@ -550,6 +606,7 @@ fn rich_scene() -> Scene {
         viewpoints: (0..8)
             .map(|i| Viewpoint { position: Vec3::new(i as f32 * 0.1, 1.6, 5.0), target: Vec3::Y })
             .collect(),
+        has_made_up_viewpoints: false,
         motion: Motion::default(),
     }
 }

@@ -10,6 +10,8 @@ pub mod export;
 #[cfg(test)]
 mod file_tests;
 mod gltf;
+#[cfg(test)]
+mod gltf_tests;
 pub mod load;
 pub mod model;
 pub mod motion;
@@ -27,7 +29,7 @@ mod textures;
 
 pub use error::SceneError;
 pub use export::export;
-pub use load::load;
+pub use load::{load, load_animated};
 pub use model::*;
 pub use motion::{Moment, Motion};
 pub use path::CameraPath;

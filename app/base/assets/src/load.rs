@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::defaults;
 use super::error::{SceneError, file_size};
-use super::gltf::load_gltf;
-use super::model::{Alpha, PointLight, ShadingStyle, Sky, Viewpoint};
+use super::gltf::{GltfScene, load_gltf};
+use super::model::{Alpha, Model, PointLight, ShadingStyle, Sky, Viewpoint};
 use super::motion::Motion;
 use super::obj::load_obj;
 use super::path as camera_path;
@@ -49,6 +50,9 @@ pub struct MaterialNotes {
     pub alpha: AlphaNotes,
     /// Drawn from both sides.
     pub double_sided: bool,
+    /// Shown in its own colour, whatever the light.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub unlit: bool,
 }
 
 /// [`Alpha`] in a file: `"opaque"`, `{"cutout": 0.5}` or `{"blend": 0.3}`.
@@ -83,39 +87,127 @@ impl From<AlphaNotes> for Alpha {
     }
 }
 
+/// The contents of a model file and the files beside it.
+struct Loaded {
+    model: Model,
+    cameras: Vec<Viewpoint>,
+    sky: Option<Sky>,
+    lights: Option<Vec<PointLight>>,
+    motion: Motion,
+    /// What was subtracted from all positions, in the model's units.
+    subtracted: DVec3,
+}
+
+impl Loaded {
+    fn shift(&mut self, by: Vec3) {
+        self.model.vertices.iter_mut().for_each(|v| v.position += by);
+        self.lights.iter_mut().flatten().for_each(|light| light.position += by);
+        self.motion.shift(by);
+        self.cameras
+            .iter_mut()
+            .for_each(|v| *v = Viewpoint { position: v.position + by, target: v.target + by });
+    }
+
+    fn enlarge(&mut self, scale: f32) {
+        self.model.vertices.iter_mut().for_each(|v| v.position *= scale);
+        self.lights.iter_mut().flatten().for_each(|light| light.position *= scale);
+        self.motion.enlarge(scale);
+        self.cameras
+            .iter_mut()
+            .for_each(|v| *v = Viewpoint { position: v.position * scale, target: v.target * scale });
+        self.subtracted *= f64::from(scale);
+    }
+
+    /// Moves a model to the origin if f32 has no places for its details where it is; otherwise leaves it there.
+    fn bring_near(&mut self, path: &Path) {
+        let bounds = self.model.bounds();
+        let (center, extent) = (bounds.center(), (bounds.max - bounds.min).max_element());
+        let place = self.subtracted + center.as_dvec3();
+        if place.length() <= FARTHEST_CENTER.min(FARTHEST_EXTENTS * f64::from(extent)) {
+            let back = std::mem::take(&mut self.subtracted).as_vec3();
+            if back != Vec3::ZERO {
+                self.shift(back);
+            }
+            return;
+        }
+        let rest = if center.length() > extent { center.round() } else { Vec3::ZERO };
+        self.shift(-rest);
+        let DVec3 { x, y, z } = self.subtracted + rest.as_dvec3();
+        log::warn!(
+            "{} is {} m away from the origin, so {x}, {y}, {z} was subtracted from its positions: viewpoints and lights count from there",
+            path.display(),
+            metres(place.length())
+        );
+    }
+}
+
+/// Distance from the origin, in metres and in extents of a model, beyond which the model is moved to the origin.
+const FARTHEST_CENTER: f64 = camera_path::FARTHEST as f64;
+const FARTHEST_EXTENTS: f64 = 1e4;
+
+/// Extent in metres from which a model is taken for one in another unit, unless its scale is stated.
+const LARGE: f32 = 50.0;
+
+/// Returns a length that a person can read.
+fn metres(length: f64) -> String {
+    match length {
+        _ if !(1e-3..1e7).contains(&length) => format!("{length:.1e}"),
+        _ if length < 10.0 => format!("{length:.3}"),
+        _ => format!("{length:.0}"),
+    }
+}
+
 /// Loads a scene from an `.obj`, `.gltf` or `.glb` file.
 ///
 /// Viewpoints come from `NAME.camera.json` or `camera.json` beside the file (an array of [`Viewpoint`]), light and
 /// style from `NAME.scene.json` or `scene.json` ([`SceneNotes`]). Without these files, a glTF file's own cameras and
 /// lights are used. Anything still missing is generated: at least 8 viewpoints around the model or through it at eye
-/// height, point lights for glowing surfaces, and a sky, or lamps where no sky is visible.
+/// height, point lights for glowing surfaces, and a sky, or lamps where no sky is visible. A model farther from the
+/// origin than f32 can tell its details is moved there, with a warning that says by how much.
 ///
 /// # Errors
 /// [`SceneError`], one sentence for the user.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
+    load_animated(path, None)
+}
+
+/// Like [`load`], but of a glTF file's animations plays only the one with this name or number, if one is given.
+///
+/// # Errors
+/// As [`load`], and if the file has no such animation.
+pub fn load_animated(path: &Path, animation: Option<&str>) -> Result<Scene, SceneError> {
     file_size(path)?;
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let (mut model, mut cameras, mut sky, mut lights, mut motion) = match extension.as_str() {
-        "obj" => (load_obj(path)?, Vec::new(), None, None, Motion::default()),
-        "gltf" | "glb" => {
-            let file = load_gltf(path)?;
-            (file.model, file.cameras, file.sky, file.lights, file.motion)
+    let mut file = match (extension.as_str(), animation) {
+        ("obj", None) => {
+            let (model, subtracted) = load_obj(path)?;
+            let (cameras, motion) = (Vec::new(), Motion::default());
+            Loaded { model, cameras, sky: None, lights: None, motion, subtracted }
+        }
+        ("obj", Some(animation)) => {
+            let what = format!("it has no animation {animation}: OBJ files have none, glTF files may");
+            return Err(SceneError::unusable(path, what));
+        }
+        ("gltf" | "glb", _) => {
+            let GltfScene { model, cameras, sky, lights, motion, subtracted } = load_gltf(path, animation)?;
+            Loaded { model, cameras, sky, lights, motion, subtracted }
         }
         _ => return Err(SceneError::UnknownFormat { path: path.into() }),
     };
+    let notes = sidecar::<SceneNotes>(path, "scene.json")?;
+    let scale =
+        notes.as_ref().map_or(Ok(None), |(file, notes)| check_notes(file, notes).map(|()| notes.scale))?;
+    if let Some(scale) = scale {
+        file.enlarge(scale);
+    }
+    check_extent(path, &file.model, scale.is_some())?;
+    file.bring_near(path);
+    let Loaded { mut model, mut cameras, mut sky, mut lights, mut motion, .. } = file;
     let mut style = ShadingStyle::default();
-    if let Some((file, notes)) = sidecar::<SceneNotes>(path, "scene.json")? {
-        check_notes(&file, &notes)?;
-        let scale = notes.scale.unwrap_or(1.0);
-        model.vertices.iter_mut().for_each(|v| v.position *= scale);
-        lights.iter_mut().flatten().for_each(|light| light.position *= scale);
-        motion.enlarge(scale);
-        cameras
-            .iter_mut()
-            .for_each(|v| *v = Viewpoint { position: v.position * scale, target: v.target * scale });
+    if let Some((_, notes)) = notes {
         for m in &mut model.materials {
             if let Some(n) = notes.materials.get(&m.name) {
-                (m.alpha, m.double_sided) = (n.alpha.into(), n.double_sided);
+                (m.alpha, m.double_sided, m.unlit) = (n.alpha.into(), n.double_sided, n.unlit);
             }
         }
         model.textures.iter_mut().filter(|t| notes.nearest.contains(&t.name)).for_each(|t| t.nearest = true);
@@ -134,28 +226,12 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         camera_path::check(&viewpoints).map_err(|what| SceneError::Sidecar { path: file, what })?;
         cameras = viewpoints;
     }
-    let bounds = model.bounds();
-    let extent = (bounds.max - bounds.min).max_element();
-    if !(1e-3..1e6).contains(&extent) || bounds.center().length() > camera_path::FARTHEST {
-        return Err(SceneError::unusable(
-            path,
-            format!(
-                "it is {extent} m large, {} m away from the origin: write {{\"scale\": ...}} into a scene.json beside it, in metres per unit",
-                bounds.center().length()
-            ),
-        ));
-    }
-    if extent > 1000.0 {
-        log::warn!(
-            "{} is {extent:.0} m large, a unit being a metre: if its unit is the centimetre, write {{\"scale\": 0.01}} into a scene.json beside it",
-            path.display()
-        );
-    }
+    let has_made_up_viewpoints = cameras.is_empty();
     if cameras.is_empty() || sky.is_none() || lights.is_none() {
         let rays = Rays::new(&model);
         if cameras.is_empty() {
             let (made, how) = defaults::viewpoints(&model, &rays);
-            log::info!("{}: no camera.json, so {} viewpoints are made up: {how}", path.display(), made.len());
+            log::info!("{}: {} viewpoints are made up: {how}", path.display(), made.len());
             cameras = made;
         }
         let (default_sky, default_lights) = defaults::light(&model, &rays, &cameras);
@@ -170,8 +246,30 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
         sky: sky.unwrap_or_default(),
         lights: lights.unwrap_or_default(),
         viewpoints: cameras,
+        has_made_up_viewpoints,
         motion,
     })
+}
+
+/// Refuses a model that is too small or large, and warns about one that is so large that its unit is probably not the
+/// metre.
+fn check_extent(path: &Path, model: &Model, is_scaled: bool) -> Result<(), SceneError> {
+    let bounds = model.bounds();
+    let extent = (bounds.max - bounds.min).max_element();
+    let large = metres(extent.into());
+    if !(1e-3..1e6).contains(&extent) {
+        let what = format!(
+            "it is {large} m large: write {{\"scale\": ...}} into a scene.json beside it, in metres per unit"
+        );
+        return Err(SceneError::unusable(path, what));
+    }
+    if extent > LARGE && !is_scaled {
+        log::warn!(
+            "{} is {large} m large, a unit being a metre: if its unit is the centimetre, write {{\"scale\": 0.01}} into a scene.json beside it, otherwise {{\"scale\": 1}}",
+            path.display()
+        );
+    }
+    Ok(())
 }
 
 /// Returns `NAME.suffix` beside a file, or else `suffix`; `None` if neither exists.

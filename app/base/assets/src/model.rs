@@ -45,7 +45,7 @@ pub enum Alpha {
     /// Ignored.
     #[default]
     Opaque,
-    /// Fragments with alpha below this are discarded: leaves, fences, grilles. Drawn from both sides.
+    /// Fragments with alpha below this are discarded: leaves, fences, grilles.
     Cutout(f32),
     /// Blended after the opaque surfaces, with this opacity times the map's alpha.
     Blend(f32),
@@ -68,6 +68,8 @@ pub struct Material {
     pub alpha: Alpha,
     /// Drawn from both sides; normals face the eye.
     pub double_sided: bool,
+    /// Shown in its diffuse colour whatever the light, without tone mapping: scans that contain their light.
+    pub unlit: bool,
     /// Diffuse colour map; as all maps, an index into [`Model::textures`].
     pub diffuse_map: Option<usize>,
     /// Specular colour map.
@@ -88,6 +90,7 @@ impl Default for Material {
             roughness: 0.7,
             alpha: Alpha::Opaque,
             double_sided: false,
+            unlit: false,
             diffuse_map: None,
             specular_map: None,
             emissive_map: None,

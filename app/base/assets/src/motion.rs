@@ -329,6 +329,13 @@ impl Motion {
         all
     }
 
+    /// Moves everything by a vector.
+    pub(crate) fn shift(&mut self, by: Vec3) {
+        for node in self.nodes.iter_mut().filter(|node| node.parent.is_none()) {
+            node.fixed = Affine3A::from_translation(by) * node.fixed;
+        }
+    }
+
     /// Scales everything around the origin.
     pub(crate) fn enlarge(&mut self, scale: f32) {
         for node in self.nodes.iter_mut().filter(|node| node.parent.is_none()) {

@@ -9,9 +9,9 @@ use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read, Write as _};
 use std::path::{Path, PathBuf};
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
-use super::error::{MAX_ELEMENTS, SceneError};
+use super::error::{FAR, MAX_ELEMENTS, SceneError};
 use super::model::{Alpha, Material, Model, Vertex};
 use super::mtl::{self, MapStatement, MtlEntry};
 use super::palette::{paint, palette};
@@ -31,11 +31,12 @@ const FACES_PER_MODEL: usize = 1 << 16;
 /// Reads an OBJ file with its materials and textures. One unit is one metre.
 ///
 /// Missing libraries and textures are replaced by a default material or a plain colour, with a warning. Missing normals
-/// and texture coordinates are generated. Materials are double-sided.
+/// and texture coordinates are generated. Materials are double-sided. Also returns what was subtracted from all
+/// positions: not zero if the model is far from its origin.
 ///
 /// # Errors
 /// [`SceneError`] if the file cannot be read or parsed, or a texture exists but is damaged.
-pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
+pub(crate) fn load_obj(path: &Path) -> Result<(Model, DVec3), SceneError> {
     let file = yoro_files::open(path).map_err(|source| SceneError::Read { path: path.into(), source })?;
     let mut input = Normalizer::new(path, BufReader::with_capacity(1 << 20, file));
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
@@ -64,8 +65,10 @@ pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
             log::warn!("{}: the material {name} is not defined; a default takes its place", path.display());
         }
         let shown = if name.is_empty() { "default".to_owned() } else { name.clone() };
-        materials
-            .push(Material { name: shown, ..entry.map_or_else(mtl::obj_default, |e| e.material.clone()) });
+        materials.push(Material {
+            name: shown,
+            ..entry.map_or_else(mtl::obj_default, |(e, _)| e.material.clone())
+        });
         wanted.push(entry.map_or_else(Wanted::default, |e| Wanted::new(path, e, &mut textures)));
     }
     let mut built = textures.build()?;
@@ -90,14 +93,16 @@ pub(crate) fn load_obj(path: &Path) -> Result<Model, SceneError> {
         }
         built.images.push(palette());
     }
+    let subtracted = input.subtracted.unwrap_or_default();
     drop(input);
     let (mut model, _) = assemble(path, meshes, materials)?;
     model.textures = built.images;
-    Ok(model)
+    Ok((model, subtracted))
 }
 
-/// Reads the libraries that an OBJ file names, or else the one with its own name. First definitions count.
-fn libraries(path: &Path, input: &Normalizer<impl BufRead>) -> HashMap<String, MtlEntry> {
+/// Reads the libraries that an OBJ file names, or else the one with its own name. First definitions count. Returns the
+/// materials by their names, with the folders of their libraries.
+fn libraries(path: &Path, input: &Normalizer<impl BufRead>) -> HashMap<String, (MtlEntry, PathBuf)> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files: Vec<PathBuf> = Vec::new();
     for statement in &input.libraries {
@@ -121,7 +126,8 @@ fn libraries(path: &Path, input: &Normalizer<impl BufRead>) -> HashMap<String, M
         let mut bytes = Vec::new();
         match yoro_files::open(&file).and_then(|f| f.take(MAX_LIBRARY).read_to_end(&mut bytes)) {
             Ok(_) => mtl::parse(&file, &bytes).into_iter().for_each(|e| {
-                entries.entry(e.material.name.clone()).or_insert(e);
+                let beside = file.parent().unwrap_or(folder).to_owned();
+                entries.entry(e.material.name.clone()).or_insert((e, beside));
             }),
             Err(e) => log::warn!("the material library {} cannot be read ({e})", file.display()),
         }
@@ -141,11 +147,13 @@ struct Wanted {
 }
 
 impl Wanted {
-    fn new(path: &Path, entry: &MtlEntry, textures: &mut TextureSet) -> Wanted {
+    fn new(path: &Path, (entry, beside): &(MtlEntry, PathBuf), textures: &mut TextureSet) -> Wanted {
         let folder = path.parent().unwrap_or(Path::new(""));
         let source = |map: &Option<MapStatement>| {
             let map = map.as_ref()?;
-            let found = find_file(folder, &map.file).map(Source::File);
+            // Names count from the library that has them; some exporters write them as seen from the OBJ file.
+            let found =
+                find_file(beside, &map.file).or_else(|| find_file(folder, &map.file)).map(Source::File);
             if found.is_none() {
                 log::warn!(
                     "{}: the texture {} of {} is missing",
@@ -273,6 +281,9 @@ struct Normalizer<R> {
     corners: usize,
     /// True if the first vertex had a colour; then all of them get one.
     coloured: bool,
+    /// What is subtracted from all vertices, which tobj reads as f32: a place near the first vertex if that is far from
+    /// the origin.
+    subtracted: Option<DVec3>,
     name: String,
     material: String,
     flat: bool,
@@ -302,6 +313,7 @@ impl<R: BufRead> Normalizer<R> {
             counts: [0; 3],
             corners: 0,
             coloured: false,
+            subtracted: None,
             name: "model".into(),
             material: String::new(),
             flat: false,
@@ -422,6 +434,8 @@ impl<R: BufRead> Normalizer<R> {
         }
         if kind == 0 && self.counts[0] == 0 {
             self.coloured = n >= 6;
+            let first = DVec3::from([0, 1, 2].map(|i| words[i].parse().unwrap_or(f64::NAN))).round();
+            self.subtracted = (first.is_finite() && first.length() > FAR).then_some(first);
         }
         self.counts[kind] += 1;
         if self.counts[kind] > MAX_ELEMENTS {
@@ -430,6 +444,14 @@ impl<R: BufRead> Normalizer<R> {
                 limit: MAX_ELEMENTS,
                 what: "vertices",
             });
+        }
+        let mut near = [const { String::new() }; 3];
+        if let Some(subtracted) = self.subtracted.filter(|_| kind == 0) {
+            for ((near, word), subtracted) in near.iter_mut().zip(&mut words).zip(subtracted.to_array()) {
+                // What is not a number stays one.
+                *near = (word.parse().unwrap_or(f64::NAN) - subtracted).to_string();
+                *word = near;
+            }
         }
         let [a, b, c, colour @ ..] = words;
         let written = match kind {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::model::{Alpha, Bounds, Model};
+use super::model::{Bounds, Model};
 
 /// Triangles in a leaf.
 const LEAF: usize = 8;
@@ -33,12 +33,13 @@ pub(super) struct Hit {
     pub normal: Vec3,
     /// True if the side that the ray hits is drawn; the inside of a solid body is usually not.
     pub is_drawn: bool,
+    /// True if the ray hits the face from behind, by its winding.
+    pub is_behind: bool,
 }
 
 impl<'a> Rays<'a> {
     pub fn new(model: &'a Model) -> Rays<'a> {
-        let two_sided =
-            model.materials.iter().map(|m| m.double_sided || matches!(m.alpha, Alpha::Cutout(_))).collect();
+        let two_sided = model.materials.iter().map(|m| m.double_sided).collect();
         let triangles = (0..model.triangle_count() as u32).collect();
         let mut rays = Rays { model, two_sided, triangles, nodes: Vec::new() };
         let mut triangles = std::mem::take(&mut rays.triangles);
@@ -128,6 +129,7 @@ impl<'a> Rays<'a> {
             distance,
             normal: u.cross(v).normalize_or_zero(),
             is_drawn: determinant > 0.0 || self.is_two_sided(triangle),
+            is_behind: determinant < 0.0,
         })
     }
 

@@ -18,11 +18,25 @@ pub struct Scene {
     pub lights: Vec<PointLight>,
     /// Camera path: key viewpoints, at least one, interpolated by [`crate::path`].
     pub viewpoints: Vec<Viewpoint>,
+    /// True if the viewpoints are made up, since no file states any.
+    #[serde(default)]
+    pub has_made_up_viewpoints: bool,
     /// What moves. The other fields are the scene's state at time 0.
     pub motion: Motion,
 }
 
 impl Scene {
+    /// Warns if the viewpoints are made up: for programs that use them.
+    pub fn warn_of_made_up_viewpoints(&self) {
+        if self.has_made_up_viewpoints {
+            log::warn!(
+                "{0}: {1} viewpoints are made up; write others into {0}.camera.json beside it",
+                self.name,
+                self.viewpoints.len()
+            );
+        }
+    }
+
     /// Returns the scene in its state at a time in seconds, without motion.
     pub fn at(&self, seconds: f64) -> Scene {
         let mut scene = Scene { motion: Motion::default(), ..self.clone() };

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::io::{Cursor, Read as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
 use image::error::{DecodingError, ImageFormatHint};
@@ -60,12 +61,24 @@ pub(super) enum AlphaUse {
     Blend,
 }
 
+/// The values that a texture's alpha has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum AlphaLevels {
+    /// 1 everywhere.
+    Full,
+    /// 0 and 1.
+    Two,
+    /// Others as well.
+    Many,
+}
+
 /// A finished texture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Finished {
     /// Index into [`Built::images`].
     pub index: usize,
     pub alpha: AlphaUse,
+    pub levels: AlphaLevels,
     /// For [`Recipe::Metal`] the mean roughness; for [`Recipe::Specular`] 1 minus the mean glossiness.
     pub roughness: f32,
 }
@@ -95,6 +108,8 @@ pub(super) struct TextureSet {
     /// The recipes, each with true if it is not filtered when magnified.
     recipes: Vec<(Recipe, bool)>,
     known: HashMap<(Recipe, bool), usize>,
+    /// Pictures that were warned of.
+    left_out: Mutex<HashSet<PathBuf>>,
 }
 
 impl TextureSet {
@@ -139,7 +154,7 @@ impl TextureSet {
         let mut names = HashSet::new();
         for ((recipe, nearest), made) in self.recipes.iter().zip(made) {
             let finished = made.map(|(image, roughness)| {
-                let alpha = alpha_use(&image);
+                let (alpha, levels) = (alpha_use(&image), alpha_levels(&image));
                 let suffix = match recipe {
                     Recipe::Metal { specular: true, .. } | Recipe::Specular(_) => "-specular",
                     Recipe::Metal { .. } | Recipe::Gloss { .. } => "-diffuse",
@@ -153,7 +168,7 @@ impl TextureSet {
                     srgb: !matches!(recipe, Recipe::Bump { .. }),
                     nearest: *nearest,
                 });
-                Finished { index: built.images.len() - 1, alpha, roughness }
+                Finished { index: built.images.len() - 1, alpha, levels, roughness }
             });
             built.finished.push(finished);
         }
@@ -218,13 +233,18 @@ impl TextureSet {
             }
             Ok(Some((w, h))) => Ok(Some([w, h])),
             Ok(None) | Err(ImageError::Unsupported(_)) => {
-                log::warn!(
-                    "the texture {} has an unknown format and is left out: convert it to PNG or JPEG",
-                    path.display()
-                );
+                self.warn_once(path, "has an unknown format and is left out: convert it to PNG or JPEG");
                 Ok(None)
             }
             Err(e) => Err(SceneError::Texture { path: path.into(), what: e.to_string() }),
+        }
+    }
+
+    /// Warns about a picture, once.
+    fn warn_once(&self, path: &Path, what: &str) {
+        let mut left_out = self.left_out.lock().unwrap_or_else(PoisonError::into_inner);
+        if left_out.insert(path.into()) {
+            log::warn!("the texture {} {what}", path.display());
         }
     }
 
@@ -247,9 +267,9 @@ impl TextureSet {
                 Ok(Some(if [w, h] == size { image } else { image::imageops::thumbnail(&image, w, h) }))
             }
             Err(ImageError::Unsupported(_)) => {
-                log::warn!(
-                    "the texture {} is of an unknown kind and is left out: convert it to PNG",
-                    self.path(source).display()
+                self.warn_once(
+                    self.path(source),
+                    "is of an unknown kind and is left out: convert it to PNG or JPEG",
                 );
                 Ok(None)
             }
@@ -320,7 +340,17 @@ fn fitted([w, h]: [u32; 2], edge: u32) -> [u32; 2] {
     [w, h].map(|n| ((n as u64 * edge as u64 / longest as u64) as u32).max(1))
 }
 
-/// Returns how the alpha channel is used. Some hold something else, such as gloss, so transparency is assumed only if a
+fn alpha_levels(image: &RgbaImage) -> AlphaLevels {
+    if image.pixels().all(|p| p[3] == 255) {
+        AlphaLevels::Full
+    } else if image.pixels().all(|p| matches!(p[3], 0 | 255)) {
+        AlphaLevels::Two
+    } else {
+        AlphaLevels::Many
+    }
+}
+
+/// Returns how the alpha channel is used, where the file does not say it. Some hold something else, such as gloss, so transparency is assumed only if a
 /// good part is clearly opaque or nearly everything is translucent.
 fn alpha_use(image: &RgbaImage) -> AlphaUse {
     let total = image.pixels().len().max(1) as f32;
@@ -544,6 +574,10 @@ mod tests {
         );
         assert_eq!(with(|_| 128), AlphaUse::Blend);
         assert_eq!(with(|x| (x * 2) as u8), AlphaUse::Blend);
+        let levels = |f: fn(u32) -> u8| alpha_levels(&picture(100, 1, |x, _| [9, 9, 9, f(x)]));
+        assert_eq!(levels(|_| 255), AlphaLevels::Full);
+        assert_eq!(levels(|x| (x % 2) as u8 * 255), AlphaLevels::Two);
+        assert_eq!(levels(|x| if x == 50 { 254 } else { 255 }), AlphaLevels::Many);
     }
 
     #[test]

@@ -57,6 +57,9 @@ pub enum FileError {
         /// The operating system's error.
         source: io::Error,
     },
+    /// The user has asked to stop.
+    #[error(transparent)]
+    Interrupted(#[from] interrupt::Interrupted),
     /// Another process appends to the file.
     #[error("{} is being written by another yoro: wait until that has ended, or choose another place", path.display())]
     InUse {
@@ -113,7 +116,10 @@ pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
 ) -> Result<(), FileError> {
-    let failed = |source| FileError::Write { path: path.into(), source };
+    let failed = |source: io::Error| match source.downcast::<interrupt::Interrupted>() {
+        Ok(interrupted) => interrupted.into(),
+        Err(source) => FileError::Write { path: path.into(), source },
+    };
     if path.is_dir() {
         return Err(FileError::IsFolder { path: path.into() });
     }

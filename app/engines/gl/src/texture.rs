@@ -212,16 +212,25 @@ impl Texture {
     /// # Panics
     /// If `bytes` does not have [`Texture::byte_len`] bytes.
     pub fn upload(&self, bytes: &[u8]) {
+        self.upload_level(0, bytes);
+    }
+
+    /// Uploads a mip level, which has half the size of the one before, rounded down, from tightly packed pixels, with
+    /// rows from the bottom.
+    ///
+    /// # Panics
+    /// If `bytes` does not have the level's size.
+    pub fn upload_level(&self, level: u32, bytes: &[u8]) {
         let (_, format, ty) = self.format.gl();
-        let [w, h] = self.size;
-        assert_eq!(bytes.len(), self.byte_len(), "upload of the wrong size");
+        let [w, h] = self.size.map(|n| (n >> level).max(1));
+        assert_eq!(bytes.len(), w as usize * h as usize * self.format.bytes(), "upload of the wrong size");
         self.gl.set_tight_unpack();
         // SAFETY: the slice is as long as GL reads.
         unsafe {
             let gl = self.gl.raw();
             gl.bind_texture(glow::TEXTURE_2D, Some(self.raw));
             let data = glow::PixelUnpackData::Slice(Some(bytes));
-            gl.tex_sub_image_2d(glow::TEXTURE_2D, 0, 0, 0, w as i32, h as i32, format, ty, data);
+            gl.tex_sub_image_2d(glow::TEXTURE_2D, level as i32, 0, 0, w as i32, h as i32, format, ty, data);
         }
     }
 

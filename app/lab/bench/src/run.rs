@@ -125,6 +125,7 @@ impl<'a> Field<'a> {
         interrupt::check()?;
         let settings = &plan.render;
         let loaded = yoro_scenes::load(scene, plan.seed, None)?;
+        loaded.warn_of_made_up_viewpoints();
         let keys = spread(loaded.viewpoints.len(), plan.viewpoints);
         let pairs: Vec<EyePair> = keys.iter().map(|&k| plan.eyes.pair(loaded.viewpoints[k].pose())).collect();
         let mut prepared = PreparedScene::new(gl, loaded, settings)?;

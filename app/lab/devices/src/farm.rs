@@ -18,6 +18,8 @@ use crate::reading::{LineContent, Reading};
 
 /// How the run names of game loops begin: `loop-SCENARIO-STEP`.
 const RUN: &str = "loop-";
+/// Start of the runs of scenario 1, each of which checks the pictures of one pipeline.
+pub(crate) const PICTURE_CHECK: &str = "loop-1-";
 /// Seconds at the beginning of a step that are discarded as warm-up.
 const WARM_UP_S: f64 = 5.0;
 /// Full names or extensions of the files that are read.
@@ -140,7 +142,7 @@ fn runs(bytes: &[u8]) -> BTreeSet<String> {
 fn pictures(text: &str, run: &str) -> Option<Pictures> {
     let Kind::Entry(entry) = log::parse(text) else { return None };
     let read: Pictures = (entry.tag == LOG_TAG).then_some(entry.message)?.parse().ok()?;
-    run.strip_prefix("loop-1-").is_some_and(|pipeline| pipeline == read.pipeline).then_some(read)
+    run.strip_prefix(PICTURE_CHECK).is_some_and(|pipeline| pipeline == read.pipeline).then_some(read)
 }
 
 /// The lines of a step.
@@ -312,6 +314,11 @@ mod tests {
         let set: Vec<_> = capture::find(std::slice::from_ref(&out)).unwrap().into_iter().collect();
         let set: Vec<_> = set.into_iter().map(|run| (run.clone(), capture::read(&run).unwrap())).collect();
         let report = DeviceReport::new(&[set], "conventional", &BTreeMap::new(), String::new());
+        // Five seconds of a picture check are no measurement, but wrong pictures are told with the figures.
+        assert!(report.left_out.iter().any(|note| note.name == "picture check"), "{:?}", report.left_out);
+        assert!(report.to_text().contains("WRONG PICTURES"), "{}", report.to_text());
+        let plugged = report.left_out.iter().filter(|note| note.name == "plugged in").count();
+        assert_eq!(plugged, 1, "one line for all runs: {:?}", report.left_out);
         let report = serde_json::to_string(&report).unwrap();
         assert!(report.contains("husky") && report.contains("plugged in"), "{report}");
 

@@ -1,12 +1,13 @@
 //! Options that several subcommands share.
 
-use std::fmt;
-use std::ops::Range;
+use std::fmt::{self, Display};
+use std::ops::{Range, RangeInclusive};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::str::FromStr;
 
 use anyhow::ensure;
+use clap::builder::{StringValueParser, TypedValueParser};
 
 use crate::cli::choices;
 use yoro_bench::inpaint::{self, InpaintError, Patcher, PatcherKind, PatcherOptions};
@@ -97,6 +98,17 @@ pub fn list(names: impl IntoIterator<Item = &'static str>) -> String {
     names.into_iter().collect::<Vec<_>>().join(",")
 }
 
+/// Returns a parser of whole numbers in a range, whose message says which these are.
+pub fn whole<T>(range: RangeInclusive<T>) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    StringValueParser::new().try_map(move |text| {
+        let number = text.parse::<T>().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("give a whole number from {} to {}", range.start(), range.end()))
+    })
+}
+
 /// Parses a finite number.
 pub fn parse_finite(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
@@ -113,6 +125,12 @@ pub fn parse_positive(text: &str) -> Result<f32, String> {
     }
 }
 
+/// Parses the distance of a far plane in metres, which may be infinite.
+pub fn parse_far(text: &str) -> Result<f32, String> {
+    let far = text.parse::<f32>().ok().filter(|far| *far > 0.0);
+    far.ok_or_else(|| "give metres above 0, or inf".into())
+}
+
 /// Parses an angle in degrees that is possible for a flat image, and returns radians.
 pub fn parse_fov(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
@@ -124,6 +142,17 @@ pub fn parse_fov(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_beyond_a_range_are_told_the_range() {
+        let command = clap::Command::new("x").arg(clap::Arg::new("n").value_parser(whole(1..=64u32)));
+        let parse = |text: &str| command.clone().try_get_matches_from(["x", text]);
+        assert_eq!(parse("64").unwrap().get_one::<u32>("n"), Some(&64));
+        for wrong in ["", "0", "65", "-1", "1.5", "x", "99999999999"] {
+            let message = parse(wrong).unwrap_err().to_string();
+            assert!(message.contains("give a whole number from 1 to 64"), "{message}");
+        }
+    }
 
     #[test]
     fn shards_are_everything_once() {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::{bail, ensure};
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, Shard, parse_fov};
+use crate::cli::args::{self, GlArgs, Shard, parse_fov};
 use crate::cli::choices;
 use crate::cli::eyes;
 use crate::cli::machine;
@@ -41,10 +41,10 @@ pub struct BenchArgs {
     #[arg(long)]
     frame: bool,
     /// Timed rounds; in each, every contender renders every frame once [default: 5; quick: 2]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = args::whole::<u32>(1..=1000))]
     rounds: Option<u32>,
     /// Viewpoints of each scene, spread over its camera path [default: 3; quick: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", value_parser = args::whole::<u32>(1..=64))]
     viewpoints: Option<u32>,
     /// Size of each eye's image in pixels [default: 1024x1024; --frame: 1680x1760; quick: 512x512]
     #[arg(long, value_name = "WxH", value_parser = eyes::parse_size)]
@@ -76,20 +76,20 @@ pub struct BenchArgs {
     #[arg(long, value_parser = eyes::parse_eye, default_value = "right")]
     dominant: Eye,
     /// Seed of the built-in scenes
-    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
     seed: u64,
     /// distance, complexity: the object, an OBJ, glTF or GLB file such as the Stanford bunny, instead of the
     /// built-in hare
     #[arg(long, value_name = "FILE")]
     object: Option<PathBuf>,
     /// complexity: triangles of the largest scene [default: 13104000, the paper's; quick: 1500000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=200_000_000))]
+    #[arg(long, value_name = "N", value_parser = args::whole::<u64>(1..=200_000_000))]
     max_triangles: Option<u64>,
     /// complexity: skip scenes that need more memory than this [default: half of what is available]
-    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "MIB", value_parser = args::whole::<u64>(1..=u64::MAX))]
     max_memory_mib: Option<u64>,
     /// complexity: skip scenes whose conventional frame takes longer than this
-    #[arg(long, default_value_t = 10_000, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 10_000, value_name = "MS", value_parser = args::whole::<u64>(1..=u64::MAX))]
     max_frame_ms: u64,
     /// patchers: another ONNX file than the built-in model of the neural one
     #[arg(long, value_name = "FILE")]

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, PatcherArgs, Shard};
+use crate::cli::args::{self, GlArgs, PatcherArgs, Shard};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::outputs::Files;
@@ -41,7 +41,7 @@ pub struct DatasetArgs {
     /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
     scenes: Vec<String>,
     /// Groups of each scene, at even pace along its camera path
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1_000_000), value_name = "N")]
+    #[arg(long, default_value_t = 16, value_parser = args::whole::<u32>(1..=1_000_000), value_name = "N")]
     groups: u32,
     /// Only this part of all groups, for array jobs: 1/8 up to 8/8. Parts may share a folder
     #[arg(long, value_name = "I/N")]
@@ -56,7 +56,7 @@ pub struct DatasetArgs {
     #[arg(long, value_parser = choices::style())]
     style: Option<ShadingStyle>,
     /// Seed of the built-in scenes
-    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
     seed: u64,
     #[command(flatten)]
     eyes: EyeArgs,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::ensure;
 use glam::Vec3;
 
-use crate::cli::args::{parse_fov, parse_positive};
+use crate::cli::args::{parse_far, parse_fov, parse_positive};
 use yoro::eyes::{
     DepthConvention, DepthRange, Eye, EyeOptions, EyePair, GuardBand, Pose, full_overlap_distance,
     minimum_object_distance,
@@ -34,7 +34,7 @@ pub struct EyeArgs {
     #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive, allow_negative_numbers = true)]
     pub near: f32,
     /// Far plane in metres; `inf` for none
-    #[arg(long, default_value_t = DepthRange::PAPER.far, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = DepthRange::PAPER.far, value_parser = parse_far, allow_negative_numbers = true)]
     pub far: f32,
     /// Reversed depth, 1 near to 0 far, in float
     #[arg(long)]

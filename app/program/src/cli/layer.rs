@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use super::Subcommand;
 use super::outputs::Files;
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use yoro_files as files;
 use yoro_files::xdg;
 use yoro_openxr_layer::library::version;
@@ -77,8 +77,8 @@ impl LibraryArgs {
 
     fn look(&self) -> anyhow::Result<PathBuf> {
         if let Some(library) = &self.library {
-            return library.canonicalize().with_context(|| {
-                format!(
+            return library.canonicalize().map_err(|_| {
+                anyhow!(
                     "{}: there is no such library; give that of the package yoro-openxr-layer",
                     library.display()
                 )
@@ -241,8 +241,11 @@ fn status() -> anyhow::Result<()> {
 fn show_log(follow: bool) -> anyhow::Result<()> {
     let path = yoro_openxr_layer::log::path();
     let path = path.context("neither XDG_STATE_HOME nor HOME is an absolute path; set one of them")?;
-    let mut file = fs::File::open(&path).with_context(|| {
-        format!("{}: no program has run with the layer yet; see `yoro layer run`", path.display())
+    let mut file = fs::File::open(&path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => {
+            anyhow!("{}: no program has run with the layer yet; see `yoro layer run`", path.display())
+        }
+        _ => anyhow!("{} cannot be read ({error}): check its permissions", path.display()),
     })?;
     if !file.metadata()?.is_file() {
         bail!("{} is no file; remove it, so that the layer can write its log there", path.display());

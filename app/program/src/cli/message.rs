@@ -2,6 +2,7 @@
 //! libraries do not know the options.
 
 use yoro_bench::bench::record::RecordError;
+use yoro_bench::bench::{Blank, BlankView};
 use yoro_context::ContextError;
 use yoro_devices::adb::{DeviceError, quoted};
 use yoro_devices::experiment::ExperimentError;
@@ -57,6 +58,9 @@ fn option(error: &anyhow::Error) -> Option<String> {
                 _ => None,
             };
         }
+        if let Some(error) = cause.downcast_ref::<BlankView>() {
+            return plane(error.blank);
+        }
         use {ExperimentError as Experiment, FileError::InUse, RecordError as Record};
         let other_out =
             matches!(cause.downcast_ref(), Some(Experiment::Other { .. } | Experiment::File(InUse { .. })))
@@ -66,6 +70,15 @@ fn option(error: &anyhow::Error) -> Option<String> {
                 );
         other_out.then(|| "--out".into())
     })
+}
+
+/// Returns the option that moves the plane by which a view shows nothing.
+pub fn plane(blank: Blank) -> Option<String> {
+    match blank {
+        Blank::Elsewhere => None,
+        Blank::Beyond { enough, .. } => Some(format!("--far {enough}")),
+        Blank::Before { enough, .. } => Some(format!("--near {enough}")),
+    }
 }
 
 #[cfg(test)]

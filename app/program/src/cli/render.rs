@@ -9,9 +9,10 @@ use image::RgbImage;
 use serde::Serialize;
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, list};
+use crate::cli::args::{self, GlArgs, list};
 use crate::cli::choices;
 use crate::cli::eyes::{self, EyeArgs};
+use crate::cli::message;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, Stereo};
 use crate::cli::terminal::progress_bar;
@@ -72,14 +73,17 @@ pub struct RenderArgs {
     #[arg(long, value_parser = settings::value_of::<Method>("method"), default_value = Method::Synthesized.name())]
     method: Method,
     /// Number of the scene's viewpoint, from 0
-    #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_name = "N")]
+    #[arg(long, default_value_t = 0, conflicts_with_all = ["frames", "position"], value_parser = args::whole::<usize>(0..=usize::MAX), value_name = "N")]
     pose: usize,
     /// Render N frames along the scene's camera path instead of one viewpoint
-    #[arg(long, value_name = "N", conflicts_with = "position", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", conflicts_with = "position", value_parser = args::whole::<u32>(1..=100_000))]
     frames: Option<u32>,
     /// The time in seconds for what moves in the scene; with --frames, the time of the first frame
     #[arg(long, default_value_t = 0.0, value_parser = seconds, value_name = "SECONDS", allow_hyphen_values = true)]
     time: f64,
+    /// The one animation of a glTF file that plays, by its name or number from 0 [default: all that move different things]
+    #[arg(long, value_name = "NAME")]
+    animation: Option<String>,
     /// Head position in metres, instead of a viewpoint of the scene
     #[arg(long, value_parser = eyes::parse_point, value_name = "X,Y,Z", allow_hyphen_values = true)]
     position: Option<Vec3>,
@@ -90,7 +94,7 @@ pub struct RenderArgs {
     #[arg(long, value_parser = choices::style())]
     style: Option<ShadingStyle>,
     /// Seed of a built-in scene
-    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
     seed: u64,
     /// Folder for the pictures
     #[arg(long, default_value = "out", value_name = "FOLDER")]
@@ -98,12 +102,12 @@ pub struct RenderArgs {
     /// The pictures to write
     #[arg(long, value_enum, value_delimiter = ',', default_value = list([Output::Left, Output::Right, Output::SideBySide].map(Output::name)))]
     outputs: Vec<Output>,
-    /// Write the frames as an RGBD video (.mp4) instead of pictures: the rendered eye with its guard band, and its
+    /// Write the frames as an RGBD video instead of pictures, such as `--frames 120 --video a.mp4`: the rendered eye with its guard band, and its
     /// depth beside it. `yoro synthesize FILE` makes stereo of it
     #[arg(long, value_name = "FILE", requires = "frames", conflicts_with_all = ["out", "outputs", "measure", "json", "method"])]
     video: Option<PathBuf>,
     /// Frames a second, of videos and for what moves
-    #[arg(long, default_value_t = 30, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 30, value_name = "HZ", value_parser = args::whole::<u32>(1..=1000))]
     frame_rate: u32,
     #[command(flatten)]
     encoding: EncodingArgs,
@@ -163,8 +167,16 @@ impl Subcommand for RenderArgs {
     /// Renders and writes the pictures.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
+        match &self.video {
+            Some(_) => self.stereo.check_effect("on a video", |key| key == "guard-band")?,
+            None => self.stereo.check(&[self.method], &[self.stereo.settings().pipeline])?,
+        }
         let settings = self.renderer.render_settings();
-        let scene = yoro_scenes::load(&self.scene, self.seed, self.style)?;
+        let scene =
+            yoro_scenes::load_animated(&self.scene, self.seed, self.style, self.animation.as_deref())?;
+        if self.position.is_none() {
+            scene.warn_of_made_up_viewpoints();
+        }
         let path = CameraPath::new(&scene.viewpoints);
         let heads = match (eyes::viewpoint(self.position, self.target), self.frames) {
             (Some(viewpoint), _) => vec![viewpoint.pose()],
@@ -172,7 +184,7 @@ impl Subcommand for RenderArgs {
             (None, None) => vec![eyes::scene_pose(&scene, self.pose)?],
         };
         let options = self.stereo.options();
-        log::info!("{options:?}");
+        log::info!("{}", self.stereo.summary());
         log::info!("{}", self.eyes.distances(options.guard_band));
         let headless = self.gl.open()?;
         let gl = headless.gl();
@@ -243,13 +255,20 @@ fn warn_of_blank(
     heads: &[Pose],
 ) -> anyhow::Result<()> {
     let mut finder = BlankFinder::new(gl)?;
-    let mut blank = 0;
+    let mut blanks = Vec::new();
     for &head in heads {
         interrupt::check()?;
-        blank += usize::from(finder.is_blank(prepared, &args.eyes.pair(head))?);
+        blanks.extend(finder.blank(prepared, &args.eyes.pair(head))?);
     }
-    if blank > 0 {
-        log::warn!("{blank} of {} frames of {} show nothing of it", heads.len(), prepared.scene.name);
+    if let Some(first) = blanks.first() {
+        let option = message::plane(*first).map_or_else(String::new, |option| format!(" ({option})"));
+        log::warn!(
+            "{} of {} frames of {} show nothing of it: {}{option}",
+            blanks.len(),
+            heads.len(),
+            prepared.scene.name,
+            first.remedy(&prepared.scene.name)
+        );
     }
     Ok(())
 }

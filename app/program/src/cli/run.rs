@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use image::RgbImage;
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, list};
+use crate::cli::args::{self, GlArgs, list};
 use crate::cli::eyes::{self, EyeArgs};
 use crate::cli::machine;
 use crate::cli::outputs::Files;
@@ -31,10 +31,10 @@ pub struct RunArgs {
     /// Built-in scenes, OBJ, glTF or GLB files [default: all built-in scenes]
     scenes: Vec<String>,
     /// Viewpoints of each scene that are measured, spread over its camera path
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64), value_name = "N")]
+    #[arg(long, default_value_t = 1, value_parser = args::whole::<u32>(1..=64), value_name = "N")]
     viewpoints: u32,
     /// Timed rounds; in each, every method renders one frame at each viewpoint
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000), value_name = "N")]
+    #[arg(long, default_value_t = 1, value_parser = args::whole::<u32>(1..=1000), value_name = "N")]
     rounds: u32,
     /// Methods to compare with rendering both eyes; `yoro` stands for all of --pipelines
     #[arg(long = "method", value_parser = settings::value_of::<Method>("method"), value_delimiter = ',', default_value = Method::Synthesized.name(), value_name = "METHODS")]
@@ -43,7 +43,7 @@ pub struct RunArgs {
     #[arg(long, value_parser = settings::value_of::<Pipeline>("pipeline"), value_delimiter = ',', default_value = list(Pipeline::ALL.map(Pipeline::name)))]
     pipelines: Vec<Pipeline>,
     /// Seed of the built-in scenes
-    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED)]
+    #[arg(long, default_value_t = yoro_scenes::DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
     seed: u64,
     /// Folder for the report and the pictures
     #[arg(long, default_value = "out", value_name = "FOLDER")]
@@ -102,6 +102,8 @@ impl Subcommand for RunArgs {
     /// Measures, writes the report and prints its table.
     fn run(&self) -> anyhow::Result<()> {
         self.eyes.check()?;
+        self.stereo.check_effect("here: --pipelines says what is compared", |key| key != "pipeline")?;
+        self.stereo.check(&self.methods, &self.pipelines)?;
         let settings = self.renderer.render_settings();
         let names = self.names();
         yoro_scenes::check(&names, self.seed)?;
@@ -220,8 +222,10 @@ fn timing_method(args: &RunArgs, gl: &Context) -> String {
     } else {
         "Pass times are wall-clock times with glFinish before and after each pass (timer queries of a CPU rasterizer are wrong)"
     };
+    let count = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     format!(
-        "Frame times: wall clock of a whole stereo frame up to glFinish, both eyes finished; one warm-up frame per method, then {} interleaved rounds over {} viewpoints, the order of the methods rotated; medians. {passes}, medians over frames of their own at the first viewpoint.",
-        args.rounds, args.viewpoints
+        "Frame times: wall clock of a whole stereo frame up to glFinish, both eyes finished; one warm-up frame per method, then {} over {}, the order of the methods rotated; medians. {passes}, medians over frames of their own at the first viewpoint.",
+        count(args.rounds, "interleaved round"),
+        count(args.viewpoints, "viewpoint")
     )
 }

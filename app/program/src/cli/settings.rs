@@ -4,11 +4,12 @@ use std::ffi::OsStr;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
+use anyhow::bail;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 
 use yoro_render::RenderSettings;
-use yoro_render::stereo::{Pipeline, PipelineOptions, StereoOptions};
+use yoro_render::stereo::{Method, Pipeline, PipelineOptions, StereoOptions};
 use yoro_settings::{Setting, Settings};
 use yoro_viewer::stereo_options;
 
@@ -88,6 +89,24 @@ impl<G: Group> SettingOptions<G> {
         self.given.iter().map(|(key, value)| format!("{key}={value}"))
     }
 
+    /// Returns the values of all options as `key=value`.
+    pub fn summary(&self) -> String {
+        let values = Self::rows().map(|setting| format!("{}={}", setting.key, setting.text(&self.settings)));
+        values.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Refuses an option that was given although it has no effect there. `acts` says which keys have one; `place` is the
+    /// end of the sentence, such as "on a video".
+    pub fn check_effect(&self, place: &str, acts: impl Fn(&str) -> bool) -> anyhow::Result<()> {
+        match self.given.iter().find(|(key, _)| !acts(key)) {
+            Some((key, value)) => {
+                let no = if value == "false" { "no-" } else { "" };
+                bail!("--{no}{key} has no effect {place}: leave it out")
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Returns the default settings, changed by the given options.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -119,6 +138,25 @@ impl SettingOptions<Synthesis> {
 }
 
 impl SettingOptions<Stereo> {
+    /// Refuses options that have no effect on any of the methods, of which `yoro` runs the `pipelines`.
+    pub fn check(&self, methods: &[Method], pipelines: &[Pipeline]) -> anyhow::Result<()> {
+        let is_synthesized = methods.contains(&Method::Synthesized);
+        let is_paper = is_synthesized && pipelines.contains(&Pipeline::Paper);
+        let reads_band = |m: &Method| !matches!(m, Method::Conventional | Method::Mono);
+        let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();
+        self.check_effect(&format!("on the method {}", names.join(",")), |key| match key {
+            "pipeline" | "near-field" | "switch" => is_synthesized,
+            "guard-band" => methods.iter().any(reads_band),
+            "split-disparity" => methods.contains(&Method::Hybrid),
+            _ => true,
+        })?;
+        let names: Vec<&str> = pipelines.iter().map(|pipeline| pipeline.name()).collect();
+        self.check_effect(&format!("on the pipeline {}", names.join(",")), |key| match key {
+            "imbuffer" | "linear-interpolation" | "kernel-height" | "strict" => is_paper,
+            _ => true,
+        })
+    }
+
     /// Returns the options with the chosen pipeline.
     pub fn options(&self) -> StereoOptions {
         self.options_of(self.settings.pipeline)
@@ -257,6 +295,14 @@ impl SettingsArgs {
     ) -> anyhow::Result<Settings> {
         let hud = self.no_hud.then(|| "hud=false".to_owned());
         let overrides = self.overrides.iter().cloned().chain(named).chain(hud);
-        Ok(defaults.changed(self.settings.as_deref(), overrides)?)
+        let settings = defaults.changed(self.settings.as_deref(), overrides)?;
+        if settings.render_rate.is_some() {
+            let near_field = settings.near_field.is_some().then_some("near-field");
+            let paper = (settings.pipeline == Pipeline::Paper).then_some("pipeline=paper");
+            if let Some(other) = near_field.or(paper) {
+                bail!("{other} has no effect with render-rate: leave one of them out");
+            }
+        }
+        Ok(settings)
     }
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail, ensure};
 
 use crate::cli::Subcommand;
+use crate::cli::args;
 use crate::cli::machine;
 use crate::cli::outputs::Files;
 use yoro_devices::study::{Collected, Condition, Options, Plan, Ratings, Study, StudyError, read_trials};
@@ -33,7 +34,7 @@ enum Command {
 #[derive(clap::Args, Clone, Debug)]
 struct PlanArgs {
     /// Number of participants
-    #[arg(long, default_value_t = 14, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, default_value_t = 14, value_parser = args::whole::<u16>(1..=1000))]
     participants: u16,
     /// Methods to be compared, separated by commas
     #[arg(long, value_delimiter = ',', default_value = "conventional,yoro", value_name = "METHOD,...")]
@@ -54,7 +55,7 @@ struct PlanArgs {
     )]
     questions: Vec<String>,
     /// Random seed of the orders
-    #[arg(long, default_value_t = DEFAULT_SEED)]
+    #[arg(long, default_value_t = DEFAULT_SEED, value_parser = args::whole::<u64>(0..=u64::MAX), value_name = "N")]
     seed: u64,
     /// The plan, as CSV or, if the name ends in .json, as JSON
     #[arg(long, default_value = "plan.csv", value_name = "FILE")]

@@ -6,7 +6,7 @@ use anyhow::{Context as _, anyhow, bail, ensure};
 use image::{GrayImage, Luma};
 
 use crate::cli::Subcommand;
-use crate::cli::args::{GlArgs, PatcherArgs, parse_finite, parse_fov, parse_positive};
+use crate::cli::args::{GlArgs, PatcherArgs, parse_far, parse_finite, parse_fov, parse_positive};
 use crate::cli::outputs::Files;
 use crate::cli::settings::{SettingOptions, Synthesis};
 use crate::cli::terminal::progress_bar;
@@ -17,7 +17,9 @@ use yoro_bench::inpaint::{Patcher, Reprojected};
 use yoro_files as files;
 use yoro_files::interrupt;
 use yoro_media::video::Reader;
-use yoro_media::{self, DepthImage, DepthSamples, Nearness, StoredDepth, StoredDepthError, rgb_image};
+use yoro_media::{
+    self, DepthImage, DepthSamples, Nearness, PictureError, StoredDepth, StoredDepthError, rgb_image,
+};
 use yoro_render::stereo::{Offline, SynthesizedImage};
 use yoro_settings::Ipd;
 
@@ -74,7 +76,7 @@ pub struct SynthesizeArgs {
     #[arg(long, default_value_t = DepthRange::PAPER.near, value_parser = parse_positive, allow_negative_numbers = true)]
     near: f32,
     /// Far plane in metres; `inf` for none
-    #[arg(long, default_value_t = DepthRange::PAPER.far, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = DepthRange::PAPER.far, value_parser = parse_far, allow_negative_numbers = true)]
     far: f32,
     /// metres: distance of the largest value of an integer PNG
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive, allow_negative_numbers = true)]
@@ -143,6 +145,23 @@ impl SourceEye {
 }
 
 impl Job {
+    /// Refuses outputs whose format is not one that will be written, before any is.
+    fn check(&self) -> Result<(), PictureError> {
+        let floats = (&["png", "exr"][..], ".png or .exr");
+        let outputs = [
+            (Some(&self.out), (&["png", "jpg", "jpeg"][..], ".png or .jpg")),
+            (self.mask.as_ref(), (&["png"][..], ".png")),
+            (self.disparity.as_ref(), floats),
+            (self.source.as_ref(), floats),
+        ];
+        for (path, (extensions, allowed)) in outputs {
+            if let Some(path) = path.filter(|path| !files::has_extension(path, extensions)) {
+                return Err(PictureError::Extension { path: path.clone(), allowed });
+            }
+        }
+        Ok(())
+    }
+
     /// Returns all files that will be written, with a description of each.
     fn outputs(&self, dominant: SourceEye) -> Vec<(PathBuf, String)> {
         let kinds = [
@@ -174,6 +193,7 @@ impl Subcommand for SynthesizeArgs {
             return Ok(files);
         }
         for job in jobs(self)? {
+            job.check()?;
             files.read([&job.color, &job.depth]);
             job.outputs(self.dominant).into_iter().for_each(|(path, what)| files.write(path, what));
         }

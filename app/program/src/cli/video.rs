@@ -6,6 +6,7 @@ use std::rc::Rc;
 use anyhow::{Context as _, bail};
 use image::imageops;
 
+use crate::cli::args;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::terminal::progress_bar;
 use yoro::eyes::{Eye, Pose};
@@ -20,7 +21,7 @@ use yoro_render::{PreparedScene, ViewReader};
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct EncodingArgs {
     /// Videos: H.264's quantizer, 0 (best) to 51
-    #[arg(long, default_value_t = 20, value_name = "QP", value_parser = clap::value_parser!(u8).range(0..=51))]
+    #[arg(long, default_value_t = 20, value_name = "QP", value_parser = args::whole::<u8>(0..=51))]
     pub quantizer: u8,
 }
 

@@ -41,16 +41,16 @@ pub struct ViewArgs {
     #[arg(long, default_value_t = 420.0, value_parser = args::parse_positive)]
     dpi: f32,
     /// The head's turn to the left in degrees
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
     yaw_degrees: f32,
     /// The head's turn upwards in degrees
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
     pitch_degrees: f32,
     /// The head's tilt to the left in degrees
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
     roll_degrees: f32,
     /// Turn to the left, in degrees, between rendering and display, which timewarp corrects
-    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_name = "DEGREES")]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = args::parse_finite, value_name = "DEGREES")]
     late_yaw_degrees: f32,
     #[command(flatten)]
     renderer: SettingOptions<Renderer>,

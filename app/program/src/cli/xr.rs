@@ -4,11 +4,11 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::{bail, ensure};
+use anyhow::{anyhow, bail, ensure};
 use serde::Serialize;
 
 use crate::cli::Subcommand;
-use crate::cli::args::GlArgs;
+use crate::cli::args::{self, GlArgs};
 use crate::cli::outputs::Files;
 use crate::cli::settings::{self, Renderer, SettingOptions, SettingsArgs};
 use crate::cli::terminal::progress_bar;
@@ -39,7 +39,7 @@ pub struct XrArgs {
     #[arg(long, value_name = "FILE")]
     runtime: Option<PathBuf>,
     /// Stop after this many frames of the scene with each method [default: run until Ctrl-C]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..), value_name = "N")]
+    #[arg(long, value_parser = args::whole::<u32>(1..=u32::MAX), value_name = "N")]
     frames: Option<u32>,
     /// The stereo methods, one after the other with --frames [default: yoro with --frames, else auto]
     #[arg(long = "method", value_parser = settings::value_of::<MethodChoice>("method"), value_delimiter = ',', value_name = "METHODS")]
@@ -84,7 +84,17 @@ impl XrArgs {
                 vec![if is_manifest { Place::Manifest(file.clone()) } else { Place::Loader(file.clone()) }]
             }
         };
-        Ok(runtime::find(&places, &NoBroker, None)?)
+        // Where it was looked for is for those who have installed one.
+        runtime::find(&places, &NoBroker, None).map_err(|error| {
+            log::info!("{error}");
+            match &self.runtime {
+                None if error.nothing_installed() => anyhow!(
+                    "no OpenXR runtime is installed here: install one (headset.md), or name its manifest or library with --runtime FILE"
+                ),
+                None => anyhow!("{error}; name another with --runtime FILE"),
+                Some(_) => error.into(),
+            }
+        })
     }
 }
 

@@ -1,11 +1,13 @@
-//! The glTF file: checks its JSON and reads its buffers.
+//! The glTF file: reads and checks its JSON, and reads its buffers.
 
+use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
 
 use base64::Engine as _;
 use gltf::Document;
 use gltf::json::validation::{Checked, Error as Fault, Validate as _};
+use serde_json::{Value, json};
 
 use crate::error::{SceneError, file_size};
 use crate::textures::find_file;
@@ -27,28 +29,102 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     Ok(bytes)
 }
 
-/// Refuses extensions that cannot be read. Must run first: what such an extension leaves out may look like a mistake.
+/// Parses a `.gltf` or `.glb` file. Returns its JSON and its binary part.
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), SceneError> {
+    let unusable = |what: String| SceneError::unusable(path, what);
+    let invalid =
+        |what: String| unusable(format!("this is not valid glTF 2.0 ({what}); export the model again"));
+    let first =
+        || unusable("this is glTF 1.0, and only 2.0 can be read: export the model again as glTF 2.0".into());
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        let number = |at: usize| {
+            let bytes = bytes.get(at..at + 4)?;
+            Some(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+        };
+        if number(4) == Some(1) {
+            return Err(first());
+        }
+        // The crate subtracts the header's size from this length unchecked.
+        if number(8).is_none_or(|length| length < 20) {
+            return Err(unusable("the binary header is cut off; export the model again".into()));
+        }
+        let glb = gltf::Glb::from_slice(bytes).map_err(|e| invalid(e.to_string()))?;
+        (glb.json, glb.bin.map(Cow::into_owned))
+    } else {
+        (Cow::Borrowed(bytes), None)
+    };
+    let mut root: Value = serde_json::from_slice(&text).map_err(|e| invalid(e.to_string()))?;
+    drop(text);
+    let version =
+        root.pointer("/asset/version").map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
+    // Version 1.0 has maps where 2.0 has lists.
+    if version.is_some_and(|v| v == "1" || v.starts_with("1.")) || root["meshes"].is_object() {
+        return Err(first());
+    }
+    complete(&mut root);
+    let root = serde_json::from_value(root).map_err(|e| invalid(e.to_string()))?;
+    Ok((Document::from_json_without_validation(root), blob))
+}
+
+/// Adds what glTF 2.0 lets a file leave out but the crate requires, and removes the channels of animations that move no
+/// node (KHR_animation_pointer).
+fn complete(root: &mut Value) {
+    let scenes = root.get_mut("scenes").and_then(Value::as_array_mut);
+    for scene in scenes.into_iter().flatten().filter_map(Value::as_object_mut) {
+        scene.entry("nodes").or_insert_with(|| json!([]));
+    }
+    let animations = root.get_mut("animations").and_then(Value::as_array_mut);
+    for animation in animations.into_iter().flatten() {
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            channels
+                .retain(|channel| !channel["target"].is_object() || channel["target"].get("node").is_some());
+        }
+    }
+}
+
+/// The extensions that are read, and those without which nothing looks different.
+const KNOWN: [&str; 10] = [
+    "EXT_mesh_gpu_instancing",
+    "EXT_texture_webp",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+    "KHR_xmp_json_ld",
+];
+
+/// The extensions that compress geometry.
+const COMPRESSION: [&str; 3] =
+    ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Refuses extensions without which a file cannot be read, and warns about those that are left out. Must run first:
+/// what such an extension leaves out may look like a mistake.
 pub(super) fn check_extensions(path: &Path, document: &Document) -> Result<(), SceneError> {
     let root = document.as_json();
-    // Without their extensions, materials look plainer; geometry cannot be read at all.
-    let readable = |e: &str| {
-        e.starts_with("KHR_materials_")
-            || [
-                "KHR_texture_transform",
-                "KHR_lights_punctual",
-                "KHR_mesh_quantization",
-                "EXT_texture_webp",
-                "KHR_texture_basisu",
-            ]
-            .contains(&e)
-    };
-    match root.extensions_required.iter().find(|e| !readable(e)) {
-        Some(e) => Err(SceneError::unusable(
+    // Without their extensions, materials look plainer and less moves; geometry cannot be read at all.
+    let readable =
+        |e: &str| KNOWN.contains(&e) || e.starts_with("KHR_materials_") || e == "KHR_animation_pointer";
+    if let Some(e) = root.extensions_required.iter().find(|e| !readable(e)) {
+        return Err(SceneError::unusable(
             path,
             format!("it needs the extension {e}, which is not supported: export the model without it"),
-        )),
-        None => Ok(()),
+        ));
     }
+    let mut left_out: Vec<&str> = root.extensions_used.iter().map(String::as_str).collect();
+    left_out.retain(|e| !KNOWN.contains(e) && !COMPRESSION.contains(e));
+    if !left_out.is_empty() {
+        log::warn!("{}: what these extensions add is left out: {}", path.display(), left_out.join(", "));
+    }
+    Ok(())
+}
+
+/// Returns the extension that compresses a file's geometry, if it uses one.
+pub(super) fn compression(document: &Document) -> Option<&'static str> {
+    let used = &document.as_json().extensions_used;
+    COMPRESSION.into_iter().find(|e| used.iter().any(|used| used == e))
 }
 
 /// Runs the crate's validation, except for extensions, and checks what it relies on without checking it.
@@ -97,7 +173,7 @@ pub(super) fn check(path: &Path, document: &Document) -> Result<(), SceneError> 
     if let Some(fault) = fault {
         return Err(SceneError::unusable(
             path,
-            format!("this is no valid glTF 2.0 ({fault}); export the model again"),
+            format!("this is not valid glTF 2.0 ({fault}); export the model again"),
         ));
     }
     Ok(())

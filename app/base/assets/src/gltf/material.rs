@@ -1,14 +1,14 @@
 //! Materials, and the textures that they use.
 
 use glam::{Vec2, Vec3};
-use gltf::material::{PbrMetallicRoughness, PbrSpecularGlossiness};
+use gltf::material::{AlphaMode, PbrMetallicRoughness, PbrSpecularGlossiness};
 use gltf::texture::{MagFilter, WrappingMode};
 
 use super::file::{data_uri, external};
 use super::reader::Reader;
 use crate::error::SceneError;
 use crate::model::{Alpha, Material};
-use crate::textures::{AlphaUse, Built, METAL_DIFFUSE_LOSS, Recipe, Source, diffuse_of_gloss, to_srgb};
+use crate::textures::{AlphaLevels, Built, METAL_DIFFUSE_LOSS, Recipe, Source, diffuse_of_gloss, to_srgb};
 
 /// The textures of one material, by their number in the [`TextureSet`].
 #[derive(Default)]
@@ -19,7 +19,8 @@ pub(super) struct MaterialTextures {
     normal: Option<usize>,
     /// The roughness at texture values 0 and 1, if it is computed as a texture's mean.
     roughness: Option<[f32; 2]>,
-    blended: bool,
+    /// True if nothing of the material's surfaces is drawn: its opacity is below its cut-off.
+    pub(super) invisible: bool,
     /// True if a sampler clamps or mirrors one of the textures.
     pub(super) unrepeated: bool,
     /// True if texture coordinates make that visible.
@@ -29,25 +30,57 @@ pub(super) struct MaterialTextures {
     pub(super) placement: Option<[Vec2; 3]>,
 }
 
-impl MaterialTextures {
-    /// Takes the texture coordinates of the material's main map, or those of the first other map that it has.
-    fn take_coordinates(&mut self, material: &gltf::Material, main: Option<&gltf::texture::Info>) {
-        let Some(info) = main else {
-            let emissive = material.emissive_texture().map(|i| i.tex_coord());
-            let normal = || material.normal_texture().map(|n| n.tex_coord());
-            self.set = emissive.or_else(normal).unwrap_or(0);
-            return;
-        };
-        self.set = info.tex_coord();
-        if let Some(t) = info.texture_transform() {
-            self.set = t.tex_coord().unwrap_or(self.set);
-            let (sin, cos) = t.rotation().sin_cos();
-            let scale = t.scale();
-            self.placement =
-                Some([Vec2::new(cos, -sin) * scale[0], Vec2::new(sin, cos) * scale[1], t.offset().into()]);
+/// A set of texture coordinates and their transform, as columns.
+#[derive(Clone, Copy, PartialEq)]
+struct Coordinates {
+    set: u32,
+    placement: Option<[Vec2; 3]>,
+}
+
+impl Coordinates {
+    fn of(info: &gltf::texture::Info) -> Coordinates {
+        match info.texture_transform() {
+            Some(t) => {
+                let set = t.tex_coord().unwrap_or(info.tex_coord());
+                Coordinates::placed(set, t.offset(), t.rotation(), t.scale())
+            }
+            None => Coordinates { set: info.tex_coord(), placement: None },
         }
     }
 
+    fn of_normal(texture: &gltf::material::NormalTexture) -> Coordinates {
+        let Some(t) = texture.extension_value("KHR_texture_transform") else {
+            return Coordinates { set: texture.tex_coord(), placement: None };
+        };
+        let number =
+            |value: &serde_json::Value, otherwise: f32| value.as_f64().map_or(otherwise, |x| x as f32);
+        let pair = |key: &str, otherwise: f32| [0, 1].map(|i| number(&t[key][i], otherwise));
+        let set = t["texCoord"].as_u64().and_then(|set| set.try_into().ok()).unwrap_or(texture.tex_coord());
+        Coordinates::placed(set, pair("offset", 0.0), number(&t["rotation"], 0.0), pair("scale", 1.0))
+    }
+
+    fn placed(set: u32, offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Coordinates {
+        let (sin, cos) = rotation.sin_cos();
+        let columns = [Vec2::new(cos, -sin) * scale[0], Vec2::new(sin, cos) * scale[1], offset.into()];
+        Coordinates { set, placement: Some(columns).filter(|c| *c != [Vec2::X, Vec2::Y, Vec2::ZERO]) }
+    }
+}
+
+/// Returns the texture coordinates of each of a material's maps that is drawn, with the map's name. The first ones are
+/// those of the vertices.
+fn coordinates(m: &gltf::Material) -> Vec<(&'static str, Coordinates)> {
+    let [color, surface] = surface_textures(m).map(|info| info.map(|info| Coordinates::of(&info)));
+    let emissive = m.emissive_texture().map(|info| Coordinates::of(&info));
+    let normal = m.normal_texture().map(|texture| Coordinates::of_normal(&texture));
+    let maps = if m.unlit() {
+        [("base colour", color), ("", None), ("", None), ("", None)]
+    } else {
+        [("base colour", color), ("metalness", surface), ("emissive", emissive), ("normal", normal)]
+    };
+    maps.into_iter().filter_map(|(name, coordinates)| Some((name, coordinates?))).collect()
+}
+
+impl MaterialTextures {
     pub(super) fn apply(&self, material: &mut Material, built: &Built) {
         material.diffuse_map = built.index(self.diffuse);
         material.specular_map = built.index(self.specular);
@@ -56,12 +89,13 @@ impl MaterialTextures {
         if let (Some([least, most]), Some(map)) = (self.roughness, built.get(self.specular)) {
             material.roughness = (least + (most - least) * map.roughness).clamp(0.0, 1.0);
         }
-        if let (true, Alpha::Blend(opacity)) = (self.blended && self.diffuse.is_some(), material.alpha) {
-            // Exporters mark everything with an alpha channel as blended, but leaves look better cut out.
-            material.alpha = match built.get(self.diffuse).map(|f| f.alpha) {
-                Some(AlphaUse::Mask) if opacity >= 1.0 => Alpha::Cutout(0.5),
-                Some(AlphaUse::Opaque) | None if opacity >= 1.0 => Alpha::Opaque,
-                _ => Alpha::Blend(opacity),
+        if material.alpha == Alpha::Blend(1.0) {
+            // Exporters mark everything with an alpha channel as blended. What looks the same without blending has a
+            // depth, for shadows and synthesis.
+            material.alpha = match built.get(self.diffuse).map_or(AlphaLevels::Full, |f| f.levels) {
+                AlphaLevels::Full => Alpha::Opaque,
+                AlphaLevels::Two => Alpha::Cutout(0.5),
+                AlphaLevels::Many => Alpha::Blend(1.0),
             };
         }
     }
@@ -98,23 +132,47 @@ pub(super) fn surface_textures<'a>(m: &gltf::Material<'a>) -> [Option<gltf::text
     }
 }
 
+/// Returns how a material's alpha is used, with its opacity, 0 to 1. The opacity is a factor of the map's alpha, also
+/// before a cut-off.
+fn alpha(m: &gltf::Material, opacity: f32, wanted: &mut MaterialTextures) -> Alpha {
+    match m.alpha_mode() {
+        AlphaMode::Opaque => Alpha::Opaque,
+        AlphaMode::Blend => Alpha::Blend(opacity),
+        AlphaMode::Mask => {
+            let cutoff = m.alpha_cutoff().filter(|c| c.is_finite()).unwrap_or(0.5).max(0.0);
+            wanted.invisible = opacity < cutoff;
+            if wanted.invisible || cutoff == 0.0 || wanted.diffuse.is_none() {
+                Alpha::Opaque
+            } else {
+                Alpha::Cutout(cutoff / opacity)
+            }
+        }
+    }
+}
+
 impl Reader<'_> {
+    /// Returns the name of the picture of a texture whose formats are all in extensions.
+    fn picture_name(&self, texture: &gltf::Texture) -> String {
+        let mut stated = texture.extensions().into_iter().flat_map(|extensions| extensions.values());
+        let image = stated.find_map(|e| self.pictures.get(usize::try_from(e["source"].as_u64()?).ok()?));
+        image.cloned().unwrap_or_else(|| texture.index().to_string())
+    }
+
     fn source(&mut self, texture: gltf::Texture) -> Result<Option<Source>, SceneError> {
         let Some(image) = texture.source() else {
-            log::warn!(
-                "{}: texture {} is in a format that is not supported; it is left out",
-                self.path.display(),
-                texture.index()
-            );
+            if self.unknown.insert(texture.index()) {
+                log::warn!(
+                    "{}: the texture {} has an unknown format and is left out: convert it to PNG or JPEG",
+                    self.path.display(),
+                    self.picture_name(&texture)
+                );
+            }
             return Ok(None);
         };
         if let Some(known) = self.images.get(&image.index()) {
             return Ok(known.clone());
         }
-        let name = image
-            .name()
-            .filter(|n| !n.is_empty())
-            .map_or_else(|| format!("image-{}", image.index()), |n| n.replace('/', "_"));
+        let name = self.pictures[image.index()].clone();
         let embedded = match image.source() {
             gltf::image::Source::View { view, .. } => Some(self.view(&view)?.to_vec()),
             gltf::image::Source::Uri { uri, .. } => match data_uri(uri) {
@@ -165,9 +223,36 @@ impl Reader<'_> {
     ) -> Result<(Material, MaterialTextures), SceneError> {
         let srgb = |v: Vec3| Vec3::from(v.to_array().map(to_srgb));
         let mut wanted = MaterialTextures::default();
-
+        let name = m.name().map_or_else(|| format!("material-{}", m.index().unwrap_or(0)), str::to_owned);
+        let maps = coordinates(m);
+        if let Some((main, of_vertices)) = maps.first() {
+            (wanted.set, wanted.placement) = (of_vertices.set, of_vertices.placement);
+            let others = maps.iter().filter(|(_, c)| c != of_vertices).map(|(name, _)| *name);
+            let others = others.collect::<Vec<_>>().join(", ");
+            if !others.is_empty() {
+                log::warn!(
+                    "{}: maps of the material {name} have texture coordinates of their own, and those of the {main} map are used: {others}",
+                    self.path.display()
+                );
+            }
+        }
         let [color_info, surface_info] = surface_textures(m);
-        wanted.take_coordinates(m, color_info.as_ref().or(surface_info.as_ref()));
+        if m.unlit() {
+            let color = color_info.map_or(Ok(None), |i| self.map(i.texture(), &mut wanted))?;
+            wanted.diffuse = self.request(color, Recipe::Color);
+            let [r, g, b, opacity] = m.pbr_metallic_roughness().base_color_factor().map(unit);
+            let material = Material {
+                name,
+                diffuse: srgb(Vec3::new(r, g, b)),
+                specular: Vec3::ZERO,
+                roughness: 1.0,
+                alpha: alpha(m, opacity, &mut wanted),
+                double_sided: m.double_sided(),
+                unlit: true,
+                ..Material::default()
+            };
+            return Ok((material, wanted));
+        }
         let color = color_info.map_or(Ok(None), |i| self.map(i.texture(), &mut wanted))?;
         let surface = surface_info.map_or(Ok(None), |i| self.map(i.texture(), &mut wanted))?;
         let normal = m.normal_texture().map_or(Ok(None), |n| self.map(n.texture(), &mut wanted))?;
@@ -185,21 +270,13 @@ impl Reader<'_> {
         });
         wanted.emissive = self.request(emissive_map, Recipe::Color);
         let glow = Vec3::from(m.emissive_factor()) * m.emissive_strength().unwrap_or(1.0);
-        let alpha = match m.alpha_mode() {
-            gltf::material::AlphaMode::Opaque => Alpha::Opaque,
-            gltf::material::AlphaMode::Mask => Alpha::Cutout(unit(m.alpha_cutoff().unwrap_or(0.5))),
-            gltf::material::AlphaMode::Blend => {
-                wanted.blended = true;
-                if opacity >= 1.0 && wanted.diffuse.is_none() { Alpha::Opaque } else { Alpha::Blend(opacity) }
-            }
-        };
         let material = Material {
-            name: m.name().map_or_else(|| format!("material-{}", m.index().unwrap_or(0)), str::to_owned),
+            name,
             diffuse: srgb(diffuse),
             specular: srgb(specular),
             emissive: if glow.is_finite() { srgb(glow.max(Vec3::ZERO)) } else { Vec3::ZERO },
             roughness,
-            alpha,
+            alpha: alpha(m, opacity, &mut wanted),
             double_sided: m.double_sided(),
             ..Material::default()
         };

@@ -4,22 +4,26 @@
 //! checked, because the crate's own readers panic on damaged ones.
 
 mod file;
+mod instances;
 mod material;
 mod motion;
 mod primitive;
 mod reader;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::iter::repeat_n;
 use std::path::Path;
+use std::rc::Rc;
 
-use glam::{Mat4, Vec2, Vec3};
+use glam::{DVec3, Mat4, Vec2, Vec3};
 use gltf::Document;
 use gltf::json::extensions::scene::khr_lights_punctual as khr_lights;
 use gltf::json::validation::Checked;
 
-use self::file::{buffers, check, check_extensions, read_file};
+use self::file::{buffers, check, check_extensions, compression, parse, read_file};
 use self::material::MaterialTextures;
 use self::motion::{Carried, Standing, place_carried};
+use self::primitive::transform;
 use self::reader::Reader;
 use super::error::{MAX_ELEMENTS, SceneError};
 use super::model::{Material, Model, PointLight, Sky, Viewpoint};
@@ -41,34 +45,27 @@ pub struct GltfScene {
     pub lights: Option<Vec<PointLight>>,
     /// What moves. Everything else is in its state at time 0.
     pub motion: Motion,
+    /// What was subtracted from all positions, in the file's units: not zero if the model is far from its origin.
+    pub subtracted: DVec3,
 }
 
 /// Reads a `.gltf` or `.glb` file, with nodes, skins and morph targets in their state at the start of the animations.
 ///
-/// Of several animations of the same node, the first is used; each repeats from its end. Cameras stand still.
+/// Of several animations of the same node, the first is used, or `animation` alone, by its name or number; each repeats
+/// from its end. Cameras stand still. Instances (EXT_mesh_gpu_instancing) are triangles like all others.
 ///
 /// Metallic-roughness materials become diffuse and specular colours. If a texture says what is metal, both are computed
 /// pixel by pixel, and the roughness is the texture's mean. Specular-glossiness materials are treated likewise, and
 /// take precedence over the metallic-roughness that a file may contain for readers without them.
 ///
 /// Vertex colours are drawn if the material has no texture, with one colour per triangle. They are ignored if it has
-/// one, as are samplers that clamp or mirror a texture, with a warning that names the material.
+/// one, as are samplers that clamp or mirror a texture, and texture coordinates that differ from those of the base
+/// colour, with a warning that names the material.
 ///
 /// # Errors
 /// [`SceneError`] for files that are damaged, incomplete or need extensions that change geometry (Draco, meshopt).
-pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
-    let unusable = |what: String| SceneError::unusable(path, what);
-    let damaged = |what: &str| unusable(format!("{what}; export the model again"));
-    let bytes = read_file(path)?;
-    // The crate subtracts the header's size from this length unchecked.
-    if bytes.starts_with(b"glTF")
-        && bytes.get(8..12).is_none_or(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) < 20)
-    {
-        return Err(damaged("the binary header is cut off"));
-    }
-    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(&bytes)
-        .map_err(|e| damaged(&format!("this is not valid glTF 2.0 ({e})")))?;
-    drop(bytes);
+pub(crate) fn load_gltf(path: &Path, animation: Option<&str>) -> Result<GltfScene, SceneError> {
+    let (document, blob) = parse(path, &read_file(path)?)?;
     check_extensions(path, &document)?;
     check(path, &document)?;
 
@@ -77,6 +74,9 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
         buffers: buffers(path, &document, blob)?,
         textures: TextureSet::default(),
         images: HashMap::new(),
+        pictures: document.images().map(|image| picture_name(&image)).collect(),
+        unknown: HashSet::new(),
+        animation,
     };
     let mut materials = Vec::new();
     let mut wanted = Vec::new();
@@ -88,7 +88,7 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     // Last is the material of primitives without one.
     materials.push(Material::default());
     wanted.push(MaterialTextures::default());
-    let Nodes { mut meshes, colors, cameras, lamps, sun, mut motion, carried } =
+    let Nodes { mut meshes, colors, cameras, lamps, sun, mut motion, carried, subtracted } =
         reader.nodes(&document, &mut wanted)?;
     let mut built = reader.textures.build()?;
     for (material, wanted) in materials.iter_mut().zip(&wanted) {
@@ -106,7 +106,16 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     if !meshes.iter().any(|m| m.material == materials.len() - 1) {
         materials.pop();
     }
-    let (mut model, placed) = assemble(path, meshes, materials)?;
+    let (mut model, placed) =
+        assemble(path, meshes, materials).map_err(|error| match (error, compression(&document)) {
+            (SceneError::Empty { path }, Some(e)) => SceneError::unusable(
+                &path,
+                format!(
+                    "its triangles are compressed by {e}, which is not supported: export the model without it"
+                ),
+            ),
+            (error, _) => error,
+        })?;
     model.textures = built.images;
     place_carried(&carried, placed, &mut motion, &mut model);
     motion.sun = sun.and_then(|(_, _, mover)| mover);
@@ -119,7 +128,7 @@ pub(crate) fn load_gltf(path: &Path) -> Result<GltfScene, SceneError> {
     if motion.is_still() {
         motion = Motion::default();
     }
-    Ok(GltfScene { model, cameras, sky, lights, motion })
+    Ok(GltfScene { model, cameras, sky, lights, motion, subtracted })
 }
 
 /// A point or spot light.
@@ -138,7 +147,7 @@ struct Lamp {
 struct Nodes {
     meshes: Vec<RawMesh>,
     /// Vertex colours of each mesh; `None` if all vertices are white.
-    colors: Vec<Option<Vec<Vec3>>>,
+    colors: Vec<Option<Rc<Vec<Vec3>>>>,
     cameras: Vec<Viewpoint>,
     lamps: Vec<Lamp>,
     /// Direction and colour of the first directional light, and the node of [`Motion`] that carries it, if it moves.
@@ -146,6 +155,8 @@ struct Nodes {
     motion: Motion,
     /// What carries meshes, by [`RawMesh::moving`].
     carried: Vec<Carried>,
+    /// See [`GltfScene::subtracted`].
+    subtracted: DVec3,
 }
 
 impl Nodes {
@@ -171,6 +182,16 @@ impl Nodes {
     }
 }
 
+/// Returns the name of a picture for messages, without folders.
+fn picture_name(image: &gltf::Image) -> String {
+    let file = match image.source() {
+        gltf::image::Source::Uri { uri, .. } if !uri.starts_with("data:") => uri.rsplit('/').next(),
+        _ => None,
+    };
+    let name = image.name().filter(|name| !name.is_empty()).map(|name| name.replace('/', "_"));
+    name.or(file.map(str::to_owned)).unwrap_or_else(|| format!("image-{}", image.index()))
+}
+
 /// Returns a node's position, and the direction of its camera or light.
 fn placed(to_world: &Mat4) -> (Vec3, Vec3) {
     let forward = to_world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
@@ -182,7 +203,7 @@ fn placed(to_world: &Mat4) -> (Vec3, Vec3) {
 fn paint_meshes(
     path: &Path,
     meshes: &mut [RawMesh],
-    colors: &[Option<Vec<Vec3>>],
+    colors: &[Option<Rc<Vec<Vec3>>>],
     materials: &mut [Material],
     built: &mut Built,
 ) {
@@ -263,15 +284,16 @@ impl Reader<'_> {
             let Standing { node, to_world, mover } = moves.standing[at].clone();
             if let Some(mesh) = node.mesh() {
                 let name = node.name().or(mesh.name()).unwrap_or("mesh");
+                let instances = self.instances(document, &node)?;
                 for primitive in mesh.primitives() {
-                    let carried = self.carried(&mut moves, at, &mesh, &primitive)?;
-                    let standing = match &carried {
-                        // Left in the frame of what carries it, and reversed if that mirrors it.
-                        Some(carried) => (Mat4::IDENTITY, carried.mirrored),
-                        None => (to_world, to_world.determinant() < 0.0),
-                    };
-                    let Some(mut raw) = self.primitive(&primitive, standing)? else { continue };
-                    corners += raw.indices.len().max(raw.vertices.len());
+                    let material = primitive.material().index().unwrap_or(wanted.len() - 1);
+                    let wanted = &mut wanted[material];
+                    if wanted.invisible {
+                        continue;
+                    }
+                    let Some(mut raw) = self.primitive(&primitive, wanted.set)? else { continue };
+                    let count = raw.indices.len().max(raw.vertices.len()).saturating_mul(instances.len());
+                    corners = count.saturating_add(corners);
                     if corners > MAX_ELEMENTS {
                         return Err(SceneError::TooLarge {
                             path: self.path.into(),
@@ -279,19 +301,31 @@ impl Reader<'_> {
                             what: "corners of triangles",
                         });
                     }
-                    if let Some(carried) = carried {
-                        raw.moving = Some(nodes.carried.len());
-                        raw.sources = (0..raw.vertices.len() as u32).collect();
-                        nodes.carried.push(carried);
-                    }
-                    raw.name = name.into();
-                    raw.material = primitive.material().index().unwrap_or(wanted.len() - 1);
-                    let wanted = &mut wanted[raw.material];
+                    (raw.name, raw.material) = (name.into(), material);
                     place(&mut raw, wanted.placement);
                     let within = |uv: Vec2| !uv.is_finite() || (uv - 0.5).abs().max_element() < 0.501;
                     wanted.wrapped |= wanted.unrepeated && !raw.vertices.iter().all(|v| within(v.uv));
-                    nodes.colors.push(self.colors(&primitive)?.filter(|c| c.len() == raw.vertices.len()));
-                    nodes.meshes.push(raw);
+                    let colors =
+                        self.colors(&primitive)?.filter(|c| c.len() == raw.vertices.len()).map(Rc::new);
+                    let carried = self.carried(&mut moves, at, &mesh, &primitive)?;
+                    for (instance, mut raw) in instances.iter().zip(repeat_n(raw, instances.len())) {
+                        let mirrors = instance.determinant() < 0.0;
+                        match &carried {
+                            // Left in the frame of what carries it, and reversed if that mirrors it.
+                            Some(carried) => transform(&mut raw, *instance, mirrors != carried.mirrored),
+                            None => {
+                                let to_world = to_world * *instance;
+                                transform(&mut raw, to_world, to_world.determinant() < 0.0);
+                            }
+                        }
+                        if let Some(carried) = &carried {
+                            raw.moving = Some(nodes.carried.len());
+                            raw.sources = (0..raw.vertices.len() as u32).collect();
+                            nodes.carried.push(carried.clone());
+                        }
+                        nodes.colors.push(colors.clone());
+                        nodes.meshes.push(raw);
+                    }
                 }
             }
             let (position, forward) = placed(&to_world);
@@ -302,7 +336,7 @@ impl Reader<'_> {
                 nodes.add_light(document, &light, &to_world, mover);
             }
         }
-        nodes.motion = moves.motion;
+        (nodes.motion, nodes.subtracted) = (moves.motion, moves.subtracted);
         Ok(nodes)
     }
 }

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use glam::{Affine3A, Mat4, Quat, Vec3};
+use glam::{Affine3A, DMat4, DVec3, Mat4, Quat, Vec3};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::animation::Property;
 use gltf::{Document, Mesh, Node, Primitive, Semantic};
 
 use super::reader::Reader;
-use crate::error::{MAX_ELEMENTS, SceneError};
+use crate::error::{FAR, MAX_ELEMENTS, SceneError};
 use crate::model::Model;
 use crate::motion::{self, Carrier, Influence, Interpolation, Morph, Motion, MovingMesh, Track};
 use crate::repair::Placed;
@@ -28,6 +28,9 @@ pub(super) struct Moves<'a> {
     pub standing: Vec<Standing<'a>>,
     /// The motion's nodes and clocks.
     pub motion: Motion,
+    /// What is subtracted from all positions: nodes far from the origin are brought to it before f32 rounds their
+    /// places.
+    pub subtracted: DVec3,
     /// The weights of morph targets by node.
     weights: HashMap<usize, Track>,
     /// Indices into `standing` by node.
@@ -37,6 +40,7 @@ pub(super) struct Moves<'a> {
 }
 
 /// The triangles of a primitive that is carried by a node or by joints.
+#[derive(Clone)]
 pub(super) struct Carried {
     carrier: Carrier,
     morph: Option<Morph>,
@@ -109,6 +113,8 @@ impl Reader<'_> {
         let Tracks { loops, mut tracks } = self.tracks(document)?;
         let mut motion = Motion { loops, ..Motion::default() };
         let mut standing: Vec<Standing> = Vec::new();
+        // By node of `standing`, and by node of the motion that has no moving parent.
+        let (mut worlds, mut fixed): (Vec<DMat4>, Vec<(usize, DMat4)>) = (Vec::new(), Vec::new());
         let mut visited = vec![false; document.nodes().len()];
         let scene = document.default_scene().or_else(|| document.scenes().next());
         let mut open: Vec<(Node, Option<usize>)> = match scene {
@@ -123,17 +129,18 @@ impl Reader<'_> {
                 continue;
             }
             let (parent_world, parent_mover) =
-                parent.map_or((Mat4::IDENTITY, None), |p: usize| (standing[p].to_world, standing[p].mover));
+                parent.map_or((DMat4::IDENTITY, None), |p: usize| (worlds[p], standing[p].mover));
             let mut take = |property| tracks.remove(&target(&node, property));
             let (moves, turns, grows) =
                 (take(Property::Translation), take(Property::Rotation), take(Property::Scale));
             let stored = Mat4::from_cols_array_2d(&node.transform().matrix());
+            let to_world = parent_world * stored.as_dmat4();
             let keyed = moves.is_some() || turns.is_some() || grows.is_some();
             let mover = (keyed || parent_mover.is_some()).then(|| {
                 let mut own =
                     motion::Node { parent: parent_mover, moves, turns, grows, ..motion::Node::default() };
                 if parent_mover.is_none() {
-                    own.fixed = Affine3A::from_mat4(parent_world);
+                    fixed.push((motion.nodes.len(), if keyed { parent_world } else { to_world }));
                 }
                 if keyed {
                     let (translation, rotation, scale) = node.transform().decomposed();
@@ -141,15 +148,24 @@ impl Reader<'_> {
                     own.rotation = Quat::from_array(rotation);
                     own.scale = scale.into();
                 } else {
-                    own.fixed *= Affine3A::from_mat4(stored);
+                    own.fixed = Affine3A::from_mat4(stored);
                 }
                 motion.nodes.push(own);
                 motion.nodes.len() - 1
             });
             places.insert(node.index(), standing.len());
             open.extend(node.children().map(|child| (child, Some(standing.len()))));
-            standing.push(Standing { node, to_world: parent_world * stored, mover });
+            worlds.push(to_world);
+            standing.push(Standing { node, to_world: Mat4::IDENTITY, mover });
         }
+        let first = standing.iter().zip(&worlds).find(|(s, _)| s.node.mesh().is_some());
+        let first = first.map_or(DVec3::ZERO, |(_, world)| world.w_axis.truncate().round());
+        let subtracted = if first.is_finite() && first.length() > FAR { first } else { DVec3::ZERO };
+        let to_origin = |world: &DMat4| (DMat4::from_translation(-subtracted) * *world).as_mat4();
+        standing.iter_mut().zip(&worlds).for_each(|(s, world)| s.to_world = to_origin(world));
+        fixed
+            .iter()
+            .for_each(|(node, world)| motion.nodes[*node].fixed = Affine3A::from_mat4(to_origin(world)));
         let start = motion.nodes_at_start();
         for Standing { to_world, mover, .. } in &mut standing {
             if let Some(mover) = *mover {
@@ -158,13 +174,33 @@ impl Reader<'_> {
         }
         // What is left of nodes in the scene are weights.
         let weights = tracks.into_iter().map(|((node, _), track)| (node, track)).collect();
-        Ok(Moves { standing, motion, weights, places, still: HashMap::new() })
+        Ok(Moves { standing, motion, subtracted, weights, places, still: HashMap::new() })
     }
 
-    /// Reads the animations. Skips an animation that would move something that an earlier one moves.
+    /// Reads the animations, or the chosen one. Skips an animation that would move something that an earlier one moves.
     fn tracks(&self, document: &Document) -> Result<Tracks, SceneError> {
         let mut played = Tracks::default();
-        for animation in document.animations() {
+        let name = |animation: &gltf::Animation| {
+            animation.name().map_or_else(|| animation.index().to_string(), str::to_owned)
+        };
+        let chosen = match self.animation {
+            Some(wanted) => {
+                let called = document.animations().find(|a| a.name() == Some(wanted));
+                let found = called.or_else(|| document.animations().nth(wanted.parse().ok()?));
+                let names: Vec<String> = document.animations().map(|a| name(&a)).collect();
+                let unknown = || {
+                    let remedy = match names.as_slice() {
+                        [] => "it has none".to_owned(),
+                        _ => format!("choose one of {}", names.join(", ")),
+                    };
+                    SceneError::unusable(self.path, format!("it has no animation {wanted}: {remedy}"))
+                };
+                Some(found.ok_or_else(unknown)?.index())
+            }
+            None => None,
+        };
+        let mut left_out = Vec::new();
+        for animation in document.animations().filter(|a| chosen.is_none_or(|chosen| a.index() == chosen)) {
             let clock = played.loops.len();
             let mut tracks = HashMap::new();
             for channel in animation.channels() {
@@ -223,17 +259,20 @@ impl Reader<'_> {
                 let track = Track { clock, times, values, interpolation };
                 tracks.insert(target(&node, property), track);
             }
-            if let Some((node, _)) = tracks.keys().find(|target| played.tracks.contains_key(*target)) {
-                log::info!(
-                    "{}: animation {} is left out: another one moves node {node}",
-                    self.path.display(),
-                    animation.name().map_or_else(|| animation.index().to_string(), str::to_owned)
-                );
+            if tracks.keys().any(|target| played.tracks.contains_key(target)) {
+                left_out.push(name(&animation));
                 continue;
             }
             let last = tracks.values().filter_map(|track| track.times.last()).copied();
             played.loops.push(last.fold(0.0, f32::max));
             played.tracks.extend(tracks);
+        }
+        if !left_out.is_empty() {
+            log::warn!(
+                "{}: animations that move what earlier ones move are left out: {}",
+                self.path.display(),
+                left_out.join(", ")
+            );
         }
         Ok(played)
     }

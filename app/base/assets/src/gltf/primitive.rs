@@ -5,19 +5,33 @@ use gltf::accessor::Dimensions;
 use gltf::mesh::Mode;
 use gltf::{Primitive, Semantic};
 
-use super::material::{surface_textures, unit};
+use super::material::unit;
 use super::reader::Reader;
 use crate::error::SceneError;
 use crate::model::Vertex;
 use crate::repair::{NO_NORMAL, NO_UV, RawMesh};
 
+/// Transforms triangles, and reverses their winding if they are `turned`.
+pub(super) fn transform(mesh: &mut RawMesh, matrix: Mat4, turned: bool) {
+    let linear = Mat3::from_mat4(matrix);
+    // Normals transform with the inverse transpose, which is the matrix of cofactors without the division.
+    let normal_matrix = Mat3::from_cols(
+        linear.y_axis.cross(linear.z_axis),
+        linear.z_axis.cross(linear.x_axis),
+        linear.x_axis.cross(linear.y_axis),
+    ) * if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    for v in &mut mesh.vertices {
+        v.position = matrix.transform_point3(v.position);
+        v.normal = normal_matrix * v.normal;
+    }
+    if turned {
+        mesh.indices.chunks_exact_mut(3).for_each(|t| t.swap(1, 2));
+    }
+}
+
 impl Reader<'_> {
-    /// Returns the triangles of a primitive, transformed, and with their winding reversed if `turned`.
-    pub(super) fn primitive(
-        &self,
-        primitive: &Primitive,
-        (to_world, turned): (Mat4, bool),
-    ) -> Result<Option<RawMesh>, SceneError> {
+    /// Returns the triangles of a primitive in its own frame, with a set of texture coordinates.
+    pub(super) fn primitive(&self, primitive: &Primitive, set: u32) -> Result<Option<RawMesh>, SceneError> {
         let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(None) };
         let positions = self.floats::<3>(&positions, &[Dimensions::Vec3])?;
         let normals = primitive
@@ -25,25 +39,17 @@ impl Reader<'_> {
             .map(|a| self.floats::<3>(&a, &[Dimensions::Vec3]))
             .transpose()?
             .unwrap_or_default();
-        let set = self.texture_set(primitive);
         let uvs = primitive
             .get(&Semantic::TexCoords(set))
             .map(|a| self.floats::<2>(&a, &[Dimensions::Vec2]))
             .transpose()?
             .unwrap_or_default();
-        let linear = Mat3::from_mat4(to_world);
-        // Normals transform with the inverse transpose, which is the matrix of cofactors without the division.
-        let normal_matrix = Mat3::from_cols(
-            linear.y_axis.cross(linear.z_axis),
-            linear.z_axis.cross(linear.x_axis),
-            linear.x_axis.cross(linear.y_axis),
-        ) * if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
         let vertices: Vec<Vertex> = positions
             .iter()
             .enumerate()
             .map(|(i, p)| Vertex {
-                position: to_world.transform_point3((*p).into()),
-                normal: normals.get(i).map_or(NO_NORMAL, |n| normal_matrix * Vec3::from(*n)),
+                position: (*p).into(),
+                normal: normals.get(i).map_or(NO_NORMAL, |n| (*n).into()),
                 uv: uvs.get(i).map_or(NO_UV, |t| (*t).into()),
             })
             .collect();
@@ -66,18 +72,8 @@ impl Reader<'_> {
             Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => return Ok(None),
         };
         indices.truncate(indices.len() / 3 * 3);
-        if turned {
-            indices.chunks_exact_mut(3).for_each(|t| t.swap(1, 2));
-        }
         // The specification requires flat normals if none are given.
         Ok(Some(RawMesh { vertices, indices, flat: true, ..RawMesh::default() }))
-    }
-
-    fn texture_set(&self, primitive: &Primitive) -> u32 {
-        let [color, surface] = surface_textures(&primitive.material());
-        color
-            .or(surface)
-            .map_or(0, |i| i.texture_transform().and_then(|t| t.tex_coord()).unwrap_or(i.tex_coord()))
     }
 
     /// Returns the colours of a primitive's vertices, linear RGB; `None` if there are none, or if all are white.

@@ -1,7 +1,7 @@
 //! Reads numbers from buffers, with every range checked.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use gltf::accessor::{DataType, Dimensions};
@@ -16,6 +16,12 @@ pub(super) struct Reader<'a> {
     pub(super) textures: TextureSet,
     /// Sources of pictures by their number.
     pub(super) images: HashMap<usize, Option<Source>>,
+    /// Names of pictures by their number.
+    pub(super) pictures: Vec<String>,
+    /// Textures in unknown formats that were warned of.
+    pub(super) unknown: HashSet<usize>,
+    /// The one animation that is played, by its name or number, if not all.
+    pub(super) animation: Option<&'a str>,
 }
 
 impl Reader<'_> {

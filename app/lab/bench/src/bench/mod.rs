@@ -22,7 +22,7 @@ mod suite;
 mod summary;
 mod views;
 
-pub use blank::BlankFinder;
+pub use blank::{Blank, BlankFinder, BlankView};
 pub use contender::Contender;
 pub use frame::{SUITE as FRAME_SUITE, is_limited, limit};
 pub use holes::HoleFinder;

@@ -132,8 +132,8 @@ impl DeviceReport {
             baseline: baseline.into(),
             confidence: CONFIDENCE,
             made_by,
-            left_out: left_out(&runs, &devices, baseline),
-            faults: faults(&runs),
+            left_out: joined(left_out(&runs, &devices, baseline)),
+            faults: joined(faults(&runs)),
             devices,
             differences,
             means,
@@ -290,6 +290,29 @@ fn left_out(runs: &[Run], devices: &[Device], baseline: &str) -> Vec<Note> {
         }
     }
     notes
+}
+
+/// Returns the notes with one for all those that say the same.
+fn joined(notes: Vec<Note>) -> Vec<Note> {
+    let mut all: Vec<(Note, usize)> = Vec::new();
+    for note in notes {
+        match all.iter_mut().find(|(known, _)| known.name == note.name && known.detail == note.detail) {
+            Some((known, count)) => {
+                *count += 1;
+                if *count <= 3 {
+                    known.of = format!("{}; {}", known.of, note.of);
+                }
+            }
+            None => all.push((note, 1)),
+        }
+    }
+    let finish = |(mut note, count): (Note, usize)| {
+        if count > 3 {
+            note.of = format!("{} and {} more", note.of, page::count(count - 3, "run"));
+        }
+        note
+    };
+    all.into_iter().map(finish).collect()
 }
 
 fn faults(runs: &[Run]) -> Vec<Note> {

@@ -1,5 +1,6 @@
 //! The figures of one run, and the reasons for excluding it.
 
+use crate::farm;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -347,6 +348,11 @@ impl Run {
             Outcome::Complete => {}
             Outcome::Interrupted { reason } => return Some(("interrupted", reason.clone())),
             Outcome::Failed { reason } => return Some(("failed", reason.clone())),
+        }
+        if self.method.starts_with(farm::PICTURE_CHECK) {
+            let reason =
+                "a few seconds that check a pipeline's pictures, warm-up included; scenario 2 measures";
+            return Some(("picture check", reason.into()));
         }
         if let Some(fault) = self.find(FaultKind::Rebooted) {
             return Some(("rebooted", fault.detail.clone()));

@@ -10,7 +10,7 @@ use anyhow::{Context, bail, ensure};
 
 use super::which::WhichArgs;
 use crate::cli::Subcommand;
-use crate::cli::args::parse_positive;
+use crate::cli::args::{self, parse_positive};
 use crate::cli::message;
 use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
@@ -59,7 +59,7 @@ pub struct LogcatArgs {
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
     /// Number of the repetition in the capture: those of the same number, scene and device are compared
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = args::whole::<u32>(1..=u32::MAX))]
     repetition: u32,
     #[command(flatten)]
     which: WhichArgs,

@@ -6,7 +6,7 @@ use anyhow::bail;
 
 use super::which::{WhichArgs, each, folder_of};
 use crate::cli::Subcommand;
-use crate::cli::args::parse_positive;
+use crate::cli::args::{self, parse_positive};
 use crate::cli::outputs::Files;
 use yoro_devices::adb::{Device, DeviceError};
 use yoro_devices::capture::Outcome;
@@ -36,7 +36,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "NAME", requires = "package")]
     log_process: Option<String>,
     /// Number of the repetition: runs of the same number, scene and device are compared
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = args::whole::<u32>(1..=u32::MAX))]
     repetition: u32,
     /// Settings of the viewer in a TOML file
     #[arg(long, value_name = "FILE")]
@@ -51,10 +51,10 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 60.0, value_parser = parse_positive, value_name = "S")]
     seconds: f32,
     /// Warm-up time to discard
-    #[arg(long, default_value_t = 5, value_name = "S")]
+    #[arg(long, default_value_t = 5, value_name = "S", value_parser = args::whole::<u32>(0..=3600))]
     warm_up_seconds: u32,
     /// Brightness to pin the screen to, 0 to 255
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = args::whole::<u8>(0..=u8::MAX))]
     brightness: Option<u8>,
     /// Refresh rate to pin the display to, in Hz
     #[arg(long, value_parser = parse_positive, value_name = "HZ")]

@@ -28,7 +28,7 @@ use self::session::{Limits, Server};
 use self::source::{Source, Video};
 use self::web_server::WebServer;
 use crate::cli::Subcommand;
-use crate::cli::args::GlArgs;
+use crate::cli::args::{self, GlArgs};
 use crate::cli::eyes;
 use crate::cli::outputs::Files;
 use crate::cli::settings::{Renderer, SettingOptions};
@@ -45,33 +45,33 @@ pub struct ServeArgs {
     /// over
     scene: String,
     /// Number of the scene's viewpoint, from 0
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_parser = args::whole::<usize>(0..=usize::MAX), value_name = "N")]
     pose: usize,
     /// What is sent
     #[arg(long, value_enum, default_value = "depth")]
     mode: ModeArg,
     /// H.264's quantizer, 12 (best) to 44; it grows where the connection is too slow
-    #[arg(long, default_value_t = 24, value_name = "QP", value_parser = clap::value_parser!(u8).range(12..=44))]
+    #[arg(long, default_value_t = 24, value_name = "QP", value_parser = args::whole::<u8>(12..=44))]
     quantizer: u8,
     /// The video encoder
     #[arg(long, value_enum, default_value = "auto")]
     encoder: EncoderArg,
     /// The largest number of frames per second
-    #[arg(long, default_value_t = 60, value_name = "HZ", value_parser = clap::value_parser!(u16).range(1..=240))]
+    #[arg(long, default_value_t = 60, value_name = "HZ", value_parser = args::whole::<u16>(1..=240))]
     frame_rate: u16,
     /// The largest length of an eye's longer side in pixels
-    #[arg(long, default_value_t = 1024, value_name = "N", value_parser = clap::value_parser!(u16).range(64..=1400))]
+    #[arg(long, default_value_t = 1024, value_name = "N", value_parser = args::whole::<u16>(64..=1400))]
     max_size: u16,
     /// Serve to the local network by https, at this address of this machine [default: the one by which it reaches
     /// others]
-    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true)]
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, require_equals = true, value_parser = address)]
     #[expect(clippy::option_option, reason = "clap's form of an option whose value may be left out")]
     lan: Option<Option<IpAddr>>,
     /// Serve a page of this origin (https://HOST), too, to which the program prints a link
     #[arg(long, value_name = "ORIGIN", requires = "lan", value_parser = origin)]
     allow_origin: Option<String>,
     /// The port; 0 for a free one
-    #[arg(long, default_value_t = 8080)]
+    #[arg(long, default_value_t = 8080, value_parser = args::whole::<u16>(0..=u16::MAX), value_name = "N")]
     port: u16,
     /// The folder of the built page [default: the one beside the program's]
     #[arg(long, value_name = "FOLDER")]
@@ -239,6 +239,11 @@ fn origin(text: &str) -> Result<String, String> {
     } else {
         Err("an origin is https://HOST, without a path".into())
     }
+}
+
+/// Parses an address of this machine.
+fn address(text: &str) -> Result<IpAddr, String> {
+    text.parse().map_err(|_| "give an address of this machine, such as 192.168.1.20".into())
 }
 
 /// True if the name is that of a video file.

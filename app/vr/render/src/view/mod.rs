@@ -3,6 +3,7 @@
 mod bloom;
 mod carry;
 mod cluster;
+mod coverage;
 mod declared;
 mod depth;
 mod geometry;

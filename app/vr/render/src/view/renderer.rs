@@ -128,7 +128,7 @@ impl Renderer {
             skies: Vec::new(),
             carry,
             resolve: Vec::new(),
-            bloom: settings.bloom.then(|| BloomPass::new(gl)).transpose()?,
+            bloom: (settings.bloom && scene.is_lit()).then(|| BloomPass::new(gl)).transpose()?,
             develop: Vec::new(),
         };
         renderer.prepare(scene, Layout::Single)?;

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{BVec3, Vec2, Vec3, Vec4};
 
 use super::cluster::{self, Batch, Cluster, Culler, VERTEX_ATTRIBUTES};
+use super::coverage;
 use super::moving::Moving;
 use super::request::Rectangle;
 use super::uniforms::eye_to_clip;
@@ -23,15 +24,17 @@ impl Features {
     pub const EMISSIVE_MAP: Features = Features(4);
     pub const NORMAL_MAP: Features = Features(8);
     pub const CUTOUT: Features = Features(16);
+    pub const UNLIT: Features = Features(32);
     /// Number of combinations.
-    pub const COMBINATIONS: usize = 32;
+    pub const COMBINATIONS: usize = 64;
 
-    const NAMES: [(Features, &str); 5] = [
+    const NAMES: [(Features, &str); 6] = [
         (Features::DIFFUSE_MAP, "DIFFUSE_MAP"),
         (Features::SPECULAR_MAP, "SPECULAR_MAP"),
         (Features::EMISSIVE_MAP, "EMISSIVE_MAP"),
         (Features::NORMAL_MAP, "NORMAL_MAP"),
         (Features::CUTOUT, "CUTOUT"),
+        (Features::UNLIT, "UNLIT"),
     ];
 
     fn of(material: &Material) -> Features {
@@ -41,6 +44,7 @@ impl Features {
             material.emissive_map.is_some(),
             material.normal_map.is_some(),
             matches!(material.alpha, Alpha::Cutout(_)),
+            material.unlit,
         ];
         Features(Features::NAMES.iter().zip(present).fold(0, |bits, ((f, _), on)| bits | (f.0 * on as u8)))
     }
@@ -107,7 +111,7 @@ impl GpuMaterial {
         let reflectance = (specular * REFLECTANCE_OF_WHITE).min(0.9);
         GpuMaterial {
             features: Features::of(material),
-            double_sided: material.double_sided || matches!(material.alpha, Alpha::Cutout(_)),
+            double_sided: material.double_sided,
             blended: matches!(material.alpha, Alpha::Blend(_)),
             diffuse: linear(material.diffuse).extend(opacity),
             emissive: linear(material.emissive),
@@ -155,7 +159,7 @@ impl GpuScene {
     /// [`GlError::TooLarge`] for a picture beyond the driver's limit, [`GlError::OutOfMemory`] if memory runs out.
     pub fn upload(gl: &Rc<Context>, scene: Scene) -> Result<GpuScene, GlError> {
         static NEXT_ID: AtomicU64 = AtomicU64::new(0);
-        let Scene { name, mut model, style, sky, lights, viewpoints, motion } = scene;
+        let Scene { name, mut model, style, sky, lights, viewpoints, motion, .. } = scene;
         let (still, reached) = (model.bounds(), motion.bounds());
         let bounds =
             if reached.is_empty() { still } else { still.including(reached.min).including(reached.max) };
@@ -173,10 +177,11 @@ impl GpuScene {
         drop(indices);
         // Textures of voxel worlds are never filtered, whatever file they come from.
         let unfiltered = style == ShadingStyle::Voxel;
-        let upload = |image: TextureImage| {
-            upload_picture(gl, TextureImage { nearest: image.nearest || unfiltered, ..image })
+        let cutoffs = coverage::split(&mut model);
+        let upload = |(image, cutoff): (TextureImage, Option<f32>)| {
+            upload_picture(gl, TextureImage { nearest: image.nearest || unfiltered, ..image }, cutoff)
         };
-        let textures = model.textures.into_iter().map(upload).collect::<Result<_, _>>()?;
+        let textures = model.textures.into_iter().zip(cutoffs).map(upload).collect::<Result<_, _>>()?;
         let materials = model.materials.iter().enumerate().map(|(i, m)| GpuMaterial::new(i, m)).collect();
         Ok(GpuScene {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
@@ -242,13 +247,18 @@ impl GpuScene {
         self.sky.sun_color.max_element() > 0.0
     }
 
+    /// True if any surface is lit. What is unlit shines no brighter than white, so a scene without has no bloom.
+    pub(super) fn is_lit(&self) -> bool {
+        self.materials.iter().any(|material| !material.features.contains(Features::UNLIT))
+    }
+
     /// True if any surface is blended.
     pub fn has_transparent(&self) -> bool {
         self.blended().next().is_some()
     }
 
     /// True if a blended surface may be visible in a view.
-    pub(crate) fn is_transparent_in(&self, view: &View) -> bool {
+    pub fn is_transparent_in(&self, view: &View) -> bool {
         let culler = Culler::of_view(view);
         self.blended().flat_map(|b| &self.clusters[b.clusters.clone()]).any(|c| culler.sees(&c.bounds))
     }
@@ -330,13 +340,24 @@ impl GpuScene {
     }
 }
 
-fn upload_picture(gl: &Rc<Context>, mut image: TextureImage) -> Result<Texture, GlError> {
+/// Uploads a picture with its mip levels. With a cut-off, these keep as much of it as the picture has.
+fn upload_picture(
+    gl: &Rc<Context>,
+    mut image: TextureImage,
+    cutoff: Option<f32>,
+) -> Result<Texture, GlError> {
     let format = if image.srgb { Format::Srgb8Alpha8 } else { Format::Rgba8 };
     let filter = if image.nearest { Filter::MaterialNearest } else { Filter::Material };
     let texture = Texture::new(gl, image.size, format, filter)?;
     flip_rows(&mut image.rgba, image.size[0] as usize * 4);
     texture.upload(&image.rgba);
-    texture.generate_mipmaps();
+    match cutoff {
+        Some(cutoff) => {
+            let levels = coverage::levels(image.rgba, image.size, image.srgb, cutoff);
+            (1..).zip(levels).for_each(|(level, rgba)| texture.upload_level(level, &rgba));
+        }
+        None => texture.generate_mipmaps(),
+    }
     Ok(texture)
 }
 

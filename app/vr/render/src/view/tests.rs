@@ -47,7 +47,13 @@ pub fn scene(style: ShadingStyle) -> Scene {
     model.materials = vec![
         Material { diffuse_map: Some(0), diffuse: Vec3::ONE, ..plain.clone() },
         Material { name: "red".into(), diffuse: Vec3::new(0.8, 0.2, 0.15), ..plain.clone() },
-        Material { name: "fence".into(), diffuse_map: Some(1), alpha: Alpha::Cutout(0.5), ..plain.clone() },
+        Material {
+            name: "fence".into(),
+            diffuse_map: Some(1),
+            alpha: Alpha::Cutout(0.5),
+            double_sided: true,
+            ..plain.clone()
+        },
         Material { name: "relief".into(), normal_map: Some(2), roughness: 0.3, ..plain.clone() },
         Material { name: "lamp".into(), emissive: Vec3::new(3.0, 2.0, 1.0), ..plain.clone() },
         Material { name: "glass".into(), alpha: Alpha::Blend(0.4), ..plain },

@@ -14,7 +14,7 @@ pub const MONO: &str = "mono";
 pub struct Suite {
     /// Its name.
     pub name: String,
-    /// Machine, command and parameters; those of the first file if several are combined.
+    /// Machine, command and parameters; those of the first file if several are combined, without its `--shard`.
     pub header: Header,
     /// The settings in the order of measurement.
     pub settings: Vec<SettingData>,
@@ -259,12 +259,26 @@ pub fn suites(files: &[Results]) -> Vec<Suite> {
     suites
 }
 
+/// Returns a command that measures all parts of the work, given that of one part.
+fn without_shard(command: &str) -> String {
+    let mut words: Vec<&str> = command.split(' ').collect();
+    while let Some(at) = words.iter().position(|word| *word == "--shard" || word.starts_with("--shard=")) {
+        let count = if words[at] == "--shard" { 2 } else { 1 };
+        words.drain(at..(at + count).min(words.len()));
+    }
+    words.join(" ")
+}
+
 fn entry<'a>(suites: &'a mut Vec<Suite>, header: &Header, conditions: &Conditions) -> &'a mut SettingData {
     let found = suites.iter().position(|s| s.name == conditions.suite && same_conditions(&s.header, header));
     let suite = found.unwrap_or_else(|| {
         suites.push(Suite { name: conditions.suite.clone(), header: header.clone(), settings: Vec::new() });
         suites.len() - 1
     });
+    let command = &mut suites[suite].header.machine.command;
+    if *command != header.machine.command {
+        *command = without_shard(command);
+    }
     let settings = &mut suites[suite].settings;
     let found = settings.iter().position(|s| s.conditions == *conditions);
     let index = found.unwrap_or_else(|| {

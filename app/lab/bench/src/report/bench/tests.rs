@@ -383,6 +383,16 @@ fn machines_stand_side_by_side_and_files_of_one_are_merged() {
     let start = markdown.find("**Frame times in full**").unwrap();
     let line = markdown[start..].lines().find(|l| l.contains("| yoro-gather |")).unwrap();
     assert!(line.contains("| yoro-gather | 12 |"), "three rounds of two frames, twice: {line}");
+    // The command of a part would measure a part.
+    let parts = ["1/2", "2/2"].map(|shard| {
+        let mut part = header("llvmpipe");
+        part.machine.command = format!("yoro bench complexity --shard {shard} --quick");
+        let path = dir.path().join(format!("{}.jsonl", &shard[..1]));
+        write_results(&path, &part);
+        path
+    });
+    let markdown = read(&[&parts[0], &parts[1]]).to_markdown();
+    assert!(markdown.contains("`yoro bench complexity --quick`") && !markdown.contains("--shard"));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::format::{NO_SCATTER, change, change_format, count, number, signed, without_scatter};
+use crate::capture::FaultKind;
 use crate::report::{CONFIDENCE, DeviceReport, Quantity};
 use yoro_report::inference::{Basis, BlockInterval, Interval};
 
@@ -86,6 +87,15 @@ pub fn answers(report: &DeviceReport) -> Vec<Answer> {
                 let (pairs, scenes) = (count(d.pairs, "pair"), count(scenes, "scene"));
                 format!("{pairs} of runs on {scenes}; {basis}.")
             });
+            let of_device = report.runs.iter().filter(|run| run.device == device.name);
+            let wrong = of_device.flat_map(|run| &run.faults).find(|fault| fault.kind == FaultKind::Pictures);
+            let how_sure = match wrong {
+                Some(fault) => format!(
+                    "WRONG PICTURES on this device, so its figures mean nothing ({}). {how_sure}",
+                    fault.detail
+                ),
+                None => how_sure,
+            };
             let (device, method) = (device.name.clone(), method.clone());
             answers.push(Answer { device, method, changes: changes.into(), how_sure });
         }

@@ -3,6 +3,7 @@
 use super::cells::cell;
 use super::section::Section;
 use super::tables::push_refusals;
+use crate::bench;
 use crate::report::bench::data::Suite;
 use yoro_report::grid::{Cell, Table};
 use yoro_report::stats::unique;
@@ -10,7 +11,9 @@ use yoro_report::text::{fixed, slug};
 
 /// Returns a section with every metric of a suite.
 pub fn section(suite: &Suite) -> Section {
-    let mut section = Section::new(&slug(&suite.name), &format!("Suite {}", suite.name), "");
+    let known = bench::Suite::EACH.iter().find(|known| known.name() == suite.name);
+    let intro = known.map_or_else(String::new, |known| format!("{}.", known.about()));
+    let mut section = Section::new(&slug(&suite.name), &title(&suite.name), &intro);
     let measured = suite.settings.iter().flat_map(|setting| &setting.contenders);
     let metrics = unique(measured.flat_map(|measured| measured.metrics()));
     let mut columns = vec!["<setting", "<method"];
@@ -26,4 +29,11 @@ pub fn section(suite: &Suite) -> Section {
     push_refusals(&mut table, suite);
     section.table(table);
     section
+}
+
+/// Returns the name of a suite as a title: "Guard band".
+fn title(name: &str) -> String {
+    let mut letters = name.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(letters.map(|c| if c == '-' { ' ' } else { c })).collect()
 }
