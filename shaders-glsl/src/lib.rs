@@ -89,6 +89,7 @@ static FILES: &[(&str, &str)] = embed![
     "synthesis/gather/march.frag",
     "synthesis/gather/spans.frag",
     "synthesis/gather/tiles.frag",
+    "synthesis/guessed_depth.frag",
     "synthesis/march.vert",
     "synthesis/nearest_depth.frag",
     "viewer/decoded.frag",
