@@ -29,7 +29,7 @@ pub fn module() -> io::Result<String> {
     let mut module = format!(
         "// yoro {}, synthesis passes, written from its GLSL by `cargo xtask maintain three`. Do not edit.\n\
          // SPDX-License-Identifier: MIT OR Apache-2.0\n\
-         const precisions = '{PRECISIONS}';\n",
+         export const precisions = '{PRECISIONS}';\n",
         env!("CARGO_PKG_VERSION")
     );
     for (name, source) in TEXTS {

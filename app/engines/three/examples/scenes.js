@@ -87,6 +87,10 @@ function teapots(scene, renderer, materialOf) {
   const walls = new RoomEnvironment();
   walls.position.y = -1;
   walls.scale.setScalar(0.25);
+  // Its lamp is for the room's full size.
+  walls.traverse((object) => {
+    if (object.isLight) object.visible = false;
+  });
   const sun = new THREE.SpotLight(0xffffff, 60, 0, 0.9, 0.5);
   sun.position.set(1.5, 4, 2);
   sun.target.position.z = -0.5;

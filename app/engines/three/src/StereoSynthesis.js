@@ -1,6 +1,6 @@
 import {
   ArrayCamera, Color, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, Mesh,
-  MeshBasicMaterial, NearestFilter, OrthographicCamera, PerspectiveCamera, PlaneGeometry, StereoCamera, UnsignedByteType,
+  MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, PlaneGeometry, StereoCamera, UnsignedByteType,
   UnsignedInt248Type, UnsignedIntType, Vector2, Vector4, WebGLRenderTarget,
 } from 'three';
 import { Chooser } from './choice.js';
@@ -13,8 +13,8 @@ import { project, viewsOf } from './views.js';
 const EYE_LAYERS = 0b110;
 /** Both eyes are rendered once this share of the view is too near, until less than the second share is. */
 const NEAR_SHARES = [0.5, 0.35];
-/** Frames between two looks at what is near. Without synthesis, a look costs the draw calls of an eye. */
-const LOOKS = { synthesized: 12, rendered: 45 };
+/** Frames between two looks at what is near: with synthesis, and without, where a look costs an eye's draw calls. */
+const LOOKS = [12, 45];
 
 /**
  * Renders a scene for one eye, and synthesizes the other eye from its colour and depth: side by side on a canvas, or for
@@ -26,6 +26,36 @@ const LOOKS = { synthesized: 12, rendered: 45 };
  * ```
  */
 export class StereoSynthesis {
+  #stencil;
+  #chooser = new Chooser();
+  #timer;
+  /** Readers of what is near, and of how colour is encoded. */
+  #share;
+  #code;
+  /** The source's camera. */
+  #camera = new PerspectiveCamera();
+  /** The eyes on a canvas. */
+  #pair;
+  #size = new Vector2();
+  #between = new Matrix4();
+  /** What is made for the present kind of target. */
+  #made = '';
+  #source = null;
+  #small = null;
+  #passes = null;
+  /** The passes of `synthesize`. */
+  #given = null;
+  #drawnTo;
+  /** True if three's materials write encoded colour into a target of ours; null until it is known. */
+  #encodes = null;
+  /** True if three collects frames in a buffer of linear colour (its `outputBufferType`). */
+  #isBuffered = false;
+  #byLists = true;
+  #isNear = false;
+  #isBusy = false;
+  #frames = 0;
+  #shape = '';
+
   /**
    * @param {import('three').WebGLRenderer} renderer
    * @param {Object} [options]
@@ -37,54 +67,46 @@ export class StereoSynthesis {
    * @param {number} [options.nearLimit=0.4] - With `auto`, both eyes are rendered while half of the view is nearer.
    * @param {number} [options.eyeSeparation=0.064] - The eyes' distance on a canvas. Headsets have their own.
    */
-  constructor(renderer, options = {}) {
-    if (!renderer?.isWebGLRenderer) throw new TypeError('StereoSynthesis needs a WebGLRenderer: WebGPURenderer is not supported yet.');
-    const gl = renderer.getContext(), attributes = gl.getContextAttributes() ?? {};
+  constructor(renderer, { mode = 'auto', dominantEye = 'right', samples, guardBand = 1, nearLimit = 0.4, eyeSeparation = 0.064 } = {}) {
+    if (!renderer?.isWebGLRenderer) throw new TypeError('StereoSynthesis needs a WebGLRenderer; WebGPURenderer is not supported yet');
+    const { antialias, stencil } = renderer.getContext().getContextAttributes() ?? {};
     this.renderer = renderer;
     /** 'synthesized'; 'rendered' for three's own two eyes; 'auto' for the cheaper of both. */
-    this.mode = options.mode ?? 'auto';
-    this.dominantEye = options.dominantEye ?? 'right';
-    this.samples = options.samples ?? (attributes.antialias ? 4 : 0);
-    this.guardBand = options.guardBand ?? 1;
-    this.nearLimit = options.nearLimit ?? 0.4;
+    this.mode = mode;
+    this.dominantEye = dominantEye;
+    this.samples = samples ?? (antialias ? 4 : 0);
+    this.guardBand = guardBand;
+    this.nearLimit = nearLimit;
     /** A mask of layers: objects on them are drawn for both eyes, after the synthesis, such as hands. */
     this.bothEyes = 0;
     /** How the last frame was made: 'synthesized' or 'rendered'. */
     this.way = null;
     /** Why both eyes had to be rendered in the last frame, in a sentence, or null. */
     this.trouble = null;
-    /** Its `eyeSep` is the eyes' distance on a canvas, its `aspect` that of an eye to the camera's. */
+    /** Its `eyeSep` is the eyes' distance on a canvas, its `aspect` that of an eye relative to the camera's. */
     this.stereoCamera = new StereoCamera();
     this.stereoCamera.aspect = 0.5;
-    this.stereoCamera.eyeSep = options.eyeSeparation ?? 0.064;
-    this.chooser = new Chooser();
+    this.stereoCamera.eyeSep = eyeSeparation;
 
-    this._stencil = Boolean(attributes.stencil);
-    this._timer = new Timer(gl);
-    this._share = new Readback(gl);
-    this._code = new Readback(gl);
-    this._camera = new PerspectiveCamera();
-    this._camera.matrixAutoUpdate = this._camera.matrixWorldAutoUpdate = false;
+    this.#stencil = stencil;
+    const { cameraL, cameraR } = this.stereoCamera;
+    this.#pair = new ArrayCamera([cameraL, cameraR]);
+    for (const eye of [cameraL, cameraR]) eye.viewport = new Vector4();
+    for (const camera of [this.#pair, this.#camera]) camera.matrixAutoUpdate = camera.matrixWorldAutoUpdate = false;
     // Its matrices are not those of an angle.
-    this._camera.updateProjectionMatrix = () => {};
-    this._pair = new ArrayCamera([this.stereoCamera.cameraL, this.stereoCamera.cameraR]);
-    this._pair.matrixAutoUpdate = this._pair.matrixWorldAutoUpdate = false;
-    for (const eye of this._pair.cameras) eye.viewport = new Vector4();
-    this._size = new Vector2();
-    this._between = new Matrix4();
-    this._restored = () => this._forget();
-    renderer.domElement.addEventListener?.('webglcontextrestored', this._restored);
-    this._forget();
+    this.#camera.updateProjectionMatrix = () => {};
+    renderer.domElement.addEventListener?.('webglcontextrestored', this.#begin);
+    this.#begin();
   }
 
-  /** The last choice of `auto`: its way and reason and, if they could be compared, both costs in milliseconds. */
+  /** The last choice of `auto`: its way and reason and, if they could be compared, the costs of both ways in ms. */
   get choice() {
-    return this.chooser.choice;
+    return this.#chooser.choice;
   }
 
   /** Has `auto` measure again: for another scene, or another place in it. */
   sceneChanged() {
-    this.chooser.sceneChanged();
+    this.#chooser.sceneChanged();
   }
 
   /**
@@ -94,16 +116,17 @@ export class StereoSynthesis {
    * @param {import('three').Camera} camera
    */
   render(scene, camera) {
-    const { renderer } = this;
-    if (renderer.getContext().isContextLost()) return;
+    if (this.renderer.getContext().isContextLost()) return;
     const { matrixWorldAutoUpdate } = scene;
     if (matrixWorldAutoUpdate) scene.updateMatrixWorld();
     if (camera.parent === null && camera.matrixWorldAutoUpdate) camera.updateMatrixWorld();
-    // The scene is drawn in up to two parts, of the same matrices.
+    // The scene is drawn in up to two parts, with the same matrices.
     scene.matrixWorldAutoUpdate = false;
+    this.#isBusy = true;
     try {
-      this._frame(scene, camera);
+      this.#frame(scene, camera);
     } finally {
+      this.#isBusy = false;
       scene.matrixWorldAutoUpdate = matrixWorldAutoUpdate;
     }
   }
@@ -115,17 +138,11 @@ export class StereoSynthesis {
   install() {
     const { renderer } = this;
     const { render } = renderer;
-    let isBusy = false;
     const both = (scene, camera) => {
       const target = renderer.getRenderTarget();
-      const isShown = target === null || target.isXRRenderTarget === true;
-      if (isBusy || !isShown || !camera?.isPerspectiveCamera) return render.call(renderer, scene, camera);
-      isBusy = true;
-      try {
-        this.render(scene, camera);
-      } finally {
-        isBusy = false;
-      }
+      const isShown = target === null || target.isXRRenderTarget;
+      if (this.#isBusy || !isShown || !camera?.isPerspectiveCamera) render.call(renderer, scene, camera);
+      else this.render(scene, camera);
     };
     renderer.render = both;
     return () => {
@@ -141,7 +158,7 @@ export class StereoSynthesis {
    */
   eyes(camera) {
     const { xr } = this.renderer;
-    if (!this._isPresenting) return this._halves(camera);
+    if (!this.#isPresenting) return this.#halves(camera);
     if (xr.cameraAutoUpdate) xr.updateCamera(camera);
     return xr.getCamera();
   }
@@ -153,184 +170,187 @@ export class StereoSynthesis {
    * @param {import('three').ArrayCamera} eyes - From `eyes`.
    */
   view(eyes) {
-    const views = this._views(eyes);
-    this.trouble = typeof views === 'string' ? views : null;
-    if (this.trouble !== null) return null;
-    return { camera: this._see(eyes.cameras[this._rendered], views), width: views.size[0], height: views.size[1] };
+    const views = this.#find(eyes);
+    return views && { camera: this.#look(eyes, views), width: views.size[0], height: views.size[1] };
   }
 
   /**
-   * Draws both eyes from textures of the view that `view` has named: for images with effects of their own. Colours are
+   * Draws both eyes from textures of the view that `view` has named: for pictures with effects of their own. Colours are
    * drawn as they are. Returns false if the other eye cannot be synthesized; then nothing is drawn.
    *
-   * @param {{color: import('three').Texture, depth: import('three').DepthTexture, samples?: number}} source - Images of
-   * the view's size. With samples, depth was resolved from them.
+   * @param {{color: import('three').Texture, depth: import('three').DepthTexture, samples?: number}} source - Textures
+   * of the view's size. With samples, depth was resolved from them.
    * @param {import('three').ArrayCamera} eyes - From `eyes`.
    * @param {import('three').WebGLRenderTarget|null} [target] - Where to draw; the canvas by default.
    */
   synthesize({ color, depth, samples = 0 }, eyes, target = null) {
     const { renderer } = this;
-    const views = this._views(eyes);
-    this.trouble = typeof views === 'string' ? views : null;
-    if (this.trouble !== null) return false;
-    this._raw ??= new Passes(renderer, false);
-    const { xr, autoClear } = renderer;
-    const { enabled } = xr;
-    xr.enabled = renderer.autoClear = false;
-    try {
-      this._raw.prepare(views, { color, depth, guess: samples > 0 });
-      renderer.setRenderTarget(target);
-      this._assign(this._raw);
-      renderer.render(this._raw.eyes, eyes);
-    } finally {
-      xr.enabled = enabled;
-      renderer.autoClear = autoClear;
-    }
+    const views = this.#find(eyes);
+    if (!views) return false;
+    const passes = this.#given ??= new Passes(renderer, false);
+    this.#aside(() => passes.prepare(views, color, depth, samples > 0));
+    renderer.setRenderTarget(target);
+    this.#assign(passes);
+    this.#once(() => {
+      renderer.xr.enabled = false;
+      renderer.render(passes.eyes, eyes);
+    });
     return true;
   }
 
   /** Frees what this has on the GPU. */
   dispose() {
-    this.renderer.domElement.removeEventListener?.('webglcontextrestored', this._restored);
-    this._timer.dispose();
-    this._share.dispose();
-    this._code.dispose();
-    this._release();
-    this._raw?.dispose();
-    this._raw = null;
+    this.renderer.domElement.removeEventListener?.('webglcontextrestored', this.#begin);
+    for (const reader of [this.#timer, this.#share, this.#code]) reader.dispose();
+    this.#release();
+    this.#given?.dispose();
+    this.#given = null;
   }
 
-  get _isPresenting() {
+  get #isPresenting() {
     const { xr } = this.renderer;
     return xr.enabled && xr.isPresenting;
   }
 
   /** The index of the rendered eye. */
-  get _rendered() {
+  get #rendered() {
     return this.dominantEye === 'left' ? 0 : 1;
   }
 
-  /** Begins anew: nothing is known of the GPU, which has lost all objects. */
-  _forget() {
-    const gl = this.renderer.getContext();
-    this._timer = new Timer(gl);
-    this._share = new Readback(gl);
-    this._code = new Readback(gl);
-    /** Whether three's materials write encoded colour into a target of ours; null until it is known. */
-    this._encodes = null;
-    /** True if three collects frames in a buffer of linear colour (its `outputBufferType`). */
-    this._isBuffered ??= false;
-    this._byLists = true;
-    this._isNear = false;
-    this._frames = 0;
-    this._kind = '';
-    this.chooser.sceneChanged();
+  get #isReversed() {
+    return Boolean(this.renderer.capabilities.reversedDepthBuffer);
   }
 
-  _frame(scene, camera) {
-    const { renderer, chooser } = this;
-    const isPresenting = this._isPresenting;
+  /** Begins with a new context, or one that has lost its objects. */
+  #begin = () => {
+    const gl = this.renderer.getContext();
+    this.#timer = new Timer(gl);
+    this.#share = new Readback(gl);
+    this.#code = new Readback(gl);
+    this.#isNear = false;
+    this.#chooser.sceneChanged();
+  };
+
+  /** Draws, and restores what the user has set. */
+  #once(draw) {
+    const { renderer } = this;
+    const { xr, shadowMap, autoClear } = renderer;
+    const { enabled } = xr;
+    const { autoUpdate } = shadowMap;
+    try {
+      return draw();
+    } finally {
+      xr.enabled = enabled;
+      renderer.autoClear = autoClear;
+      shadowMap.autoUpdate = autoUpdate;
+    }
+  }
+
+  /** Draws into targets of ours that need not be cleared. */
+  #aside(draw) {
+    const { renderer } = this;
+    const target = renderer.getRenderTarget();
+    this.#once(() => {
+      renderer.xr.enabled = renderer.autoClear = false;
+      draw();
+    });
+    renderer.setRenderTarget(target);
+  }
+
+  #frame(scene, camera) {
+    const { renderer } = this;
+    const isPresenting = this.#isPresenting;
     const isAuto = this.mode === 'auto';
+    const chooser = this.#chooser;
+    this.way = 'rendered';
     if (!isPresenting && !camera.isPerspectiveCamera) {
       this.trouble = 'the camera has no perspective';
-      this.way = 'rendered';
       renderer.render(scene, camera);
       return;
     }
-    if (isAuto) this._timer.begin();
+    if (isAuto) this.#timer.begin();
     const eyes = this.eyes(camera);
     const shown = isPresenting ? camera : eyes;
-    const views = this.mode === 'rendered' ? null : this._views(eyes);
-    this.trouble = typeof views === 'string' ? views : null;
-    const isPossible = views !== null && this.trouble === null;
-    if (isAuto && isPossible) this._watch(eyes.cameras[0].viewport, isPresenting);
-    const isSynthesized = isPossible && !(isAuto && (this._isNear || chooser.way === 'rendered'));
-    this.way = isSynthesized ? 'synthesized' : 'rendered';
-    if (isSynthesized) {
-      this._synthesized(scene, camera, eyes, shown, views);
+    this.trouble = null;
+    const views = this.mode === 'rendered' ? null : this.#find(eyes);
+    if (isAuto && views) this.#watch(`${views.size} ${isPresenting}`);
+    if (views && !(isAuto && (this.#isNear || chooser.way === 'rendered'))) {
+      this.way = 'synthesized';
+      this.#synthesize(scene, eyes, shown, views);
     } else {
-      if (isAuto && isPossible && this._isNear) this._look(scene, camera, eyes, views);
+      if (isAuto && views && this.#isNear) this.#lookNear(scene, eyes, views);
       renderer.render(scene, shown);
     }
     if (!isAuto) return;
-    this._timer.end();
-    chooser.endFrame({
-      now: performance.now(),
-      refresh: isPresenting ? renderer.xr.getSession()?.frameRate ?? 0 : 0,
-      rendered: isPossible && !this._isNear ? this.way : null,
-      cost: this._timer.take(),
-    });
+    this.#timer.end();
+    const refresh = isPresenting ? renderer.xr.getSession()?.frameRate ?? 0 : 0;
+    chooser.endFrame(performance.now(), refresh, views && !this.#isNear ? this.way : null, this.#timer.take());
   }
 
-  /** Follows changes of size and what is near. */
-  _watch({ z: width, w: height }, isPresenting) {
-    const kind = `${width} ${height} ${isPresenting}`;
-    if (kind !== this._kind) {
-      if (this._kind !== '') this.chooser.sceneChanged();
-      this._kind = kind;
-    }
-    this._frames++;
-    const bytes = this._share.take();
+  /** Follows the picture's size, and what is near. */
+  #watch(shape) {
+    if (this.#shape !== shape) this.#chooser.sceneChanged();
+    this.#shape = shape;
+    this.#frames++;
+    const bytes = this.#share.take();
     if (!bytes) return;
     let sum = 0;
-    for (let i = 0; i < bytes.length; i += 4) sum += bytes[i];
-    this._isNear = sum / (255 * bytes.length / 4) >= NEAR_SHARES[Number(this._isNear)];
+    for (const byte of bytes) sum += byte;
+    // All four channels are the share.
+    this.#isNear = sum / (255 * bytes.length) >= NEAR_SHARES[Number(this.#isNear)];
   }
 
-  _synthesized(scene, camera, eyes, shown, views) {
+  #synthesize(scene, eyes, shown, views) {
     const { renderer } = this;
-    const { xr, info } = renderer;
-    const { enabled } = xr;
+    const { info } = renderer;
     const { autoReset } = info;
     const target = renderer.getRenderTarget();
     // The figures of a frame are those of all its passes.
     if (autoReset) info.reset();
     info.autoReset = false;
     try {
-      for (let isDone = false; !isDone;) {
-        const passes = this._allocate(target);
-        xr.enabled = false;
-        const eye = this._see(eyes.cameras[this._rendered], views);
-        const left = this._draw(this._source, views.size, scene, eye);
-        this._pass(() => {
-          passes.prepare(views, {
-            color: this._source.texture, depth: this._source.depthTexture, guess: this._source.samples > 0,
-          });
-          if (this.mode === 'auto' && this._frames % LOOKS.synthesized === 0) this._count(views, passes.uniforms.depth_map.value);
+      let isDone = false;
+      while (!isDone) {
+        this.#allocate(target);
+        const source = this.#source, passes = this.#passes;
+        const left = this.#draw(source, views.size, scene, this.#look(eyes, views));
+        this.#aside(() => {
+          passes.prepare(views, source.texture, source.depthTexture, source.samples > 0);
+          if (this.mode === 'auto' && this.#frames % LOOKS[0] === 0) this.#count(views);
         });
-        xr.enabled = enabled;
-        renderer.setRenderTarget(target);
-        this._assign(passes);
-        this._show(scene, camera, shown, left);
-        // Known when the first picture is drawn, which is then drawn again.
-        isDone = this._isBuffered || this._drawnTo === target;
-        this._isBuffered ||= !isDone;
+        this.#assign(passes);
+        this.#show(scene, shown, left);
+        // Whether three collects frames is known once a picture is drawn, which is then drawn again.
+        isDone = this.#isBuffered || this.#drawnTo === target;
+        this.#isBuffered ||= !isDone;
       }
     } finally {
-      xr.enabled = enabled;
       renderer.setRenderTarget(target);
       info.autoReset = autoReset;
     }
   }
 
   /** The eyes on the halves of the canvas or render target. */
-  _halves(camera) {
-    const { renderer, _pair: pair, _size: size, stereoCamera } = this;
+  #halves(camera) {
+    const { renderer, stereoCamera } = this;
+    const pair = this.#pair, size = this.#size;
     const target = renderer.getRenderTarget();
     if (target) size.set(target.width, target.height);
     else renderer.getDrawingBufferSize(size);
     const half = Math.floor(size.x / 2);
-    if (renderer.capabilities.reversedDepthBuffer) {
+    if (this.#isReversed) {
       // The renderer would do this later, and change the eyes' matrices.
-      if (camera.reversedDepth !== true) {
+      if (!camera.reversedDepth) {
         camera._reversedDepth = true;
         camera.updateProjectionMatrix();
       }
       for (const each of [pair, ...pair.cameras]) each._reversedDepth = true;
     }
     stereoCamera.update(camera);
-    pair.near = camera.near;
-    pair.far = camera.far;
+    for (const each of [pair, ...pair.cameras]) {
+      each.near = camera.near;
+      each.far = camera.far;
+    }
     pair.matrixWorld.copy(camera.matrixWorld);
     pair.matrixWorldInverse.copy(pair.matrixWorld).invert();
     pair.projectionMatrix.copy(camera.projectionMatrix);
@@ -338,8 +358,6 @@ export class StereoSynthesis {
     pair.layers.mask = camera.layers.mask | EYE_LAYERS;
     pair.cameras.forEach((eye, i) => {
       eye.updateMatrixWorld();
-      eye.near = camera.near;
-      eye.far = camera.far;
       eye.projectionMatrixInverse.copy(eye.projectionMatrix).invert();
       eye.viewport.set(i * half, 0, half, size.y);
       eye.layers.mask = pair.layers.mask & ~(0b100 >> i);
@@ -347,219 +365,196 @@ export class StereoSynthesis {
     return pair;
   }
 
-  /** What to render; or in a sentence why the other eye cannot be synthesized. */
-  _views({ cameras }) {
-    const { renderer } = this;
-    const { capabilities, xr } = renderer;
-    const reversed = Boolean(capabilities.reversedDepthBuffer);
-    if (cameras.length !== 2) return `there are ${cameras.length} eyes`;
-    if (capabilities.logarithmicDepthBuffer) return 'the depth buffer is logarithmic: create the renderer without logarithmicDepthBuffer';
-    if (reversed && this._isPresenting) return 'three has no reversed depth in headsets: create the renderer without reversedDepthBuffer';
-    if (reversed && cameras[0].reversedDepth !== true) return 'this version of three does not say that depth is reversed';
-    if (this._isPresenting && xr.hasDepthSensing?.()) return 'real things hide the scene: the session uses depth sensing';
-    if (!renderer.autoClear) return 'the picture is not cleared before it is drawn: renderer.autoClear is false';
-    const views = viewsOf(cameras, this._rendered, this.guardBand, reversed, this._between);
-    if (typeof views === 'string') return views;
-    const { maxTextureSize } = capabilities;
-    if (Math.max(...views.size) > maxTextureSize) return `the rendered eye would have ${views.size.join(' x ')} pixels, and this GPU’s textures ${maxTextureSize} at most`;
-    if (this._isLinear(renderer.getRenderTarget()) && !this._hasHalfFloats()) return 'this GPU cannot render to half floats, which linear colour needs';
-    return views;
+  /** Returns what to render, or null; then `trouble` says why. */
+  #find(eyes) {
+    const views = this.#check(eyes) ?? viewsOf(eyes.cameras, this.#rendered, this.guardBand, this.#isReversed, this.#between);
+    const { maxTextureSize } = this.renderer.capabilities;
+    this.trouble = typeof views === 'string' ? views
+      : Math.max(...views.size) > maxTextureSize ? `the rendered eye would be larger than this GPU’s largest texture (${maxTextureSize} pixels)`
+        : null;
+    return this.trouble === null ? views : null;
   }
 
-  _hasHalfFloats() {
-    const gl = this.renderer.getContext();
-    return Boolean(gl.getExtension('EXT_color_buffer_float') ?? gl.getExtension('EXT_color_buffer_half_float'));
+  /** Returns what the renderer has that synthesis cannot deal with, in a sentence. */
+  #check({ cameras }) {
+    const { renderer } = this;
+    const { capabilities, xr } = renderer;
+    const isPresenting = this.#isPresenting;
+    if (cameras.length !== 2) return `there are ${cameras.length} eyes, not two`;
+    if (capabilities.logarithmicDepthBuffer) return 'the depth buffer is logarithmic: create the renderer without logarithmicDepthBuffer';
+    if (this.#isReversed && isPresenting) return 'three has no reversed depth in headsets: create the renderer without reversedDepthBuffer';
+    if (this.#isReversed && !cameras[0].reversedDepth) return 'this version of three does not tell that depth is reversed';
+    if (isPresenting && xr.hasDepthSensing?.()) return 'the session hides the scene behind real things: depth sensing';
+    if (!renderer.autoClear) return 'the picture is not cleared before it is drawn: renderer.autoClear is false';
+    const gl = renderer.getContext();
+    const hasHalfFloats = () => gl.getExtension('EXT_color_buffer_float') ?? gl.getExtension('EXT_color_buffer_half_float');
+    return this.#isLinear(renderer.getRenderTarget()) && !hasHalfFloats() ? 'this GPU cannot render to half floats, which linear colour needs' : null;
   }
 
   /** True if colour must stay linear until it is drawn into a target. */
-  _isLinear(target) {
-    return this._isBuffered || this._encodes === false || (target !== null && target.isXRRenderTarget !== true);
+  #isLinear(target) {
+    return this.#isBuffered || this.#encodes === false || (target !== null && !target.isXRRenderTarget);
   }
 
-  /** Makes the source's target and the passes for what is drawn to, unless they are there. */
-  _allocate(target) {
+  /** Makes the source's target and the passes for a kind of target, unless they are there. */
+  #allocate(target) {
     const { renderer } = this;
-    this._findEncoding();
-    const isLinear = this._isLinear(target);
+    this.#findEncoding();
+    const isLinear = this.#isLinear(target);
     // Where three resolves samples in the tile, depth is lost.
-    const isResolved = renderer.extensions.has('WEBGL_multisampled_render_to_texture') && !renderer.properties?.get;
-    const samples = isResolved ? 0 : Math.min(this.samples, renderer.capabilities.maxSamples ?? this.samples);
-    const kind = `${isLinear} ${samples}`;
-    if (this._made !== kind) {
-      this._release();
-      this._made = kind;
-      this._source = this._target(isLinear, samples);
-      this._passes = new Passes(renderer, isLinear);
-      this._passes.own.onBeforeRender = () => {
-        this._drawnTo = renderer.getRenderTarget();
+    const isLost = renderer.extensions.has('WEBGL_multisampled_render_to_texture') && !renderer.properties?.get;
+    const made = `${isLinear} ${isLost ? 0 : this.samples}`;
+    if (this.#made !== made) {
+      this.#release();
+      this.#made = made;
+      this.#source = this.#target(isLinear, isLost ? 0 : this.samples);
+      this.#passes = new Passes(renderer, isLinear);
+      this.#passes.own.onBeforeRender = () => {
+        this.#drawnTo = renderer.getRenderTarget();
       };
     }
-    if (!isLinear) this._source.texture.colorSpace = renderer.outputColorSpace;
-    return this._passes;
+    if (!isLinear) this.#source.texture.colorSpace = renderer.outputColorSpace;
   }
 
-  _target(isLinear, samples) {
+  #target(isLinear, samples) {
     const target = new WebGLRenderTarget(1, 1, {
       samples, type: isLinear ? HalfFloatType : UnsignedByteType, minFilter: LinearFilter, magFilter: LinearFilter,
-      generateMipmaps: false, stencilBuffer: this._stencil,
+      generateMipmaps: false, stencilBuffer: this.#stencil,
     });
-    target.depthTexture = new DepthTexture(1, 1, this.renderer.capabilities.reversedDepthBuffer ? FloatType : UnsignedIntType);
-    if (this._stencil) Object.assign(target.depthTexture, { format: DepthStencilFormat, type: UnsignedInt248Type });
-    if (!isLinear) markEncoded(target, this.renderer);
+    target.depthTexture = new DepthTexture(1, 1, this.#isReversed ? FloatType : UnsignedIntType);
+    if (this.#stencil) Object.assign(target.depthTexture, { format: DepthStencilFormat, type: UnsignedInt248Type });
+    if (!isLinear) this.#encode(target);
     return target;
   }
 
-  _release() {
-    for (const target of [this._source, this._small]) {
+  #release() {
+    for (const target of [this.#source, this.#small]) {
       target?.depthTexture.dispose();
       target?.dispose();
     }
-    this._passes?.dispose();
-    this._source = this._small = this._passes = this._made = null;
+    this.#passes?.dispose();
+    this.#source = this.#small = this.#passes = null;
+    this.#made = '';
+  }
+
+  /** Has materials write tone mapped and encoded colour into a target, as into a headset's. */
+  #encode(target) {
+    target.isXRRenderTarget = true;
+    target.texture.internalFormat = 'RGBA8';
+    target.texture.colorSpace = this.renderer.outputColorSpace;
   }
 
   /**
-   * Finds out whether three's materials write encoded colour into targets of ours, as they do into a headset's: a grey
-   * pixel tells it some frames later. If not, colour stays linear until the last pass.
+   * Finds out whether materials do so. That is not a public promise of three's; a grey pixel tells it some frames later.
+   * If they do not, colour stays linear until the last pass.
    */
-  _findEncoding() {
-    const { renderer, _code: code } = this;
-    if (this._encodes !== null) return;
-    if (code.sync !== null || code.bytes !== null) {
-      const bytes = code.take();
-      if (bytes) this._encodes = bytes[0] > 150;
-      return;
-    }
-    const target = new WebGLRenderTarget(1, 1, { depthBuffer: false, magFilter: NearestFilter });
-    markEncoded(target, renderer);
+  #findEncoding() {
+    const { renderer } = this;
+    const code = this.#code;
+    const bytes = code.take();
+    if (bytes) this.#encodes = bytes[0] > 150;
+    if (this.#encodes !== null || code.isWaiting) return;
+    const target = new WebGLRenderTarget(1, 1, { depthBuffer: false });
+    this.#encode(target);
     const material = new MeshBasicMaterial({ color: new Color().setRGB(0.5, 0.5, 0.5), toneMapped: false });
     const plane = new Mesh(new PlaneGeometry(2, 2), material);
-    plane.frustumCulled = false;
-    const { xr } = renderer;
-    const { enabled } = xr;
-    const before = renderer.getRenderTarget();
-    xr.enabled = false;
-    renderer.setRenderTarget(target);
-    renderer.render(plane, new OrthographicCamera(-1, 1, 1, -1, -1, 1));
-    code.begin(1, 1);
-    renderer.setRenderTarget(before);
-    xr.enabled = enabled;
+    this.#aside(() => {
+      renderer.setRenderTarget(target);
+      renderer.render(plane, new OrthographicCamera(-1, 1, 1, -1, -1, 1));
+      code.begin(1);
+    });
     plane.geometry.dispose();
     material.dispose();
     target.dispose();
   }
 
   /** Returns the camera of the source. */
-  _see(eye, { frustum }) {
-    const { _camera: camera } = this;
+  #look(eyes, { frustum }) {
+    const eye = eyes.cameras[this.#rendered], camera = this.#camera;
     camera.near = eye.near;
     camera.far = eye.far;
-    camera.matrixWorld.copy(eye.matrixWorld);
+    camera.matrixWorld.copy(eye.matrixWorld).decompose(camera.position, camera.quaternion, camera.scale);
     camera.matrixWorldInverse.copy(eye.matrixWorld).invert();
-    camera.matrixWorld.decompose(camera.position, camera.quaternion, camera.scale);
     camera.projectionMatrix.copy(eye.projectionMatrix);
     project(camera.projectionMatrix, frustum);
     camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
-    camera._reversedDepth = Boolean(this.renderer.capabilities.reversedDepthBuffer);
+    camera._reversedDepth = this.#isReversed;
     // What one eye alone sees is left out, but counted.
     camera.layers.mask = eye.layers.mask | EYE_LAYERS;
     return camera;
   }
 
   /** True for what is drawn for each eye, after the synthesis. */
-  _isLater(object) {
+  #isLater(object) {
     const { mask } = object.layers;
-    return (mask & this._camera.layers.mask & ~EYE_LAYERS) === 0 || (mask & this.bothEyes) !== 0;
+    return (mask & this.#camera.layers.mask & ~EYE_LAYERS) === 0 || (mask & this.bothEyes) !== 0;
   }
 
   /** Draws what moves with the synthesis into a target. Returns how many objects are left. */
-  _draw(target, size, scene, camera) {
+  #draw(target, size, scene, camera) {
     const { renderer } = this;
+    const before = renderer.getRenderTarget();
     target.setSize(...size);
     if (target.samples > 0 && renderer.properties?.get) renderer.properties.get(target).__useRenderToTexture = false;
-    renderer.setRenderTarget(target);
-    return this._part(scene, (object, isTransparent) => !isTransparent && !this._isLater(object), () => renderer.render(scene, camera));
-  }
-
-  _part(scene, isWanted, draw) {
-    const lists = this._byLists ? this.renderer.renderLists : null;
-    const list = lists?.get?.(scene, 0);
-    const left = drawPart(list?.finish ? list : null, scene, isWanted, draw);
-    // From the next frame on, objects are hidden by their layers.
-    if (left < 0) this._byLists = false;
+    const isWanted = (object, isTransparent) => !isTransparent && !this.#isLater(object);
+    const left = this.#once(() => {
+      renderer.xr.enabled = false;
+      renderer.setRenderTarget(target);
+      return this.#part(scene, isWanted, camera);
+    });
+    renderer.setRenderTarget(before);
     return left;
   }
 
-  _pass(draw) {
+  /** Draws a part of the scene. Its list is not a public promise of three's; without it, layers hide objects. */
+  #part(scene, isWanted, camera) {
     const { renderer } = this;
-    const { autoClear } = renderer;
-    renderer.autoClear = false;
-    try {
-      draw();
-    } finally {
-      renderer.autoClear = autoClear;
-    }
+    const list = this.#byLists ? renderer.renderLists?.get?.(scene, 0) : null;
+    const left = drawPart(list?.finish ? list : null, scene, isWanted, () => renderer.render(scene, camera));
+    if (left < 0) this.#byLists = false;
+    return left;
   }
 
-  /** Counts how much of a source is near, to be known some frames later. */
-  _count({ size, constant, slope }, depth) {
-    if (this._share.isWaiting) return;
-    this.renderer.setRenderTarget(this._passes.nearPart(size, depth, (1 / this.nearLimit - constant) / slope, slope > 0));
-    this._share.begin(16, 16);
+  /** Counts how much is near, to be known some frames later. */
+  #count(views, size, depth) {
+    if (this.#share.isWaiting) return;
+    this.#passes.drawNear(views, (1 / this.nearLimit - views.constant) / views.slope, size, depth);
+    this.#share.begin(16);
   }
 
-  /** While both eyes are rendered because much is near: looks whether that is still so, in a small picture. */
-  _look(scene, camera, eyes, views) {
-    if (this._frames % LOOKS.rendered !== 0 || !this._passes) return;
-    const { renderer } = this;
-    const { xr } = renderer;
-    const { enabled } = xr;
-    const target = renderer.getRenderTarget();
-    this._small ??= this._target(false, 0);
-    xr.enabled = false;
-    try {
-      const size = [64, 64];
-      this._draw(this._small, size, scene, this._see(eyes.cameras[this._rendered], views));
-      this._pass(() => this._count({ ...views, size }, this._small.depthTexture));
-    } finally {
-      xr.enabled = enabled;
-      renderer.setRenderTarget(target);
-    }
+  /** While both eyes are rendered because much is near: looks whether it still is, in a small picture. */
+  #lookNear(scene, eyes, views) {
+    if (this.#frames % LOOKS[1] !== 0 || !this.#passes) return;
+    const small = this.#small ??= this.#target(false, 0), size = [64, 64];
+    this.#draw(small, size, scene, this.#look(eyes, views));
+    this.#aside(() => this.#count(views, size, small.depthTexture));
   }
 
   /** Gives each eye its picture, by three's layers of one eye. */
-  _assign({ own, other }) {
-    own.layers.set(1 + this._rendered);
-    other.layers.set(2 - this._rendered);
+  #assign({ own, other }) {
+    own.layers.set(1 + this.#rendered);
+    other.layers.set(2 - this.#rendered);
   }
 
   /** Draws both eyes, and over them what is left of the scene, in one pass. */
-  _show(scene, camera, shown, left) {
-    const { renderer, _passes: { eyes, own, other } } = this;
-    const { shadowMap } = renderer;
+  #show(scene, shown, left) {
+    const { renderer } = this;
+    const { eyes, own, other } = this.#passes;
     const { background, overrideMaterial } = scene;
-    const { autoUpdate } = shadowMap;
     if (left === 0 || overrideMaterial) renderer.render(eyes, shown);
     if (left === 0) return;
-    const isWanted = (object, isTransparent) => object === own || object === other || isTransparent || this._isLater(object);
-    shadowMap.autoUpdate = false;
+    const isWanted = (object, isTransparent) => object === own || object === other || isTransparent || this.#isLater(object);
     scene.background = null;
     if (!overrideMaterial) scene.children.unshift(eyes);
-    const draw = () => this._part(scene, isWanted, () => renderer.render(scene, shown));
     try {
-      if (overrideMaterial) this._pass(draw);
-      else draw();
+      this.#once(() => {
+        renderer.shadowMap.autoUpdate = false;
+        if (overrideMaterial) renderer.autoClear = false;
+        this.#part(scene, isWanted, shown);
+      });
     } finally {
       if (!overrideMaterial) scene.children.splice(scene.children.indexOf(eyes), 1);
       scene.background = background;
-      shadowMap.autoUpdate = autoUpdate;
     }
   }
-}
-
-/** Has materials write tone mapped and encoded colour into a target, as into a headset's. */
-function markEncoded(target, renderer) {
-  target.isXRRenderTarget = true;
-  target.texture.internalFormat = 'RGBA8';
-  target.texture.colorSpace = renderer.outputColorSpace;
 }

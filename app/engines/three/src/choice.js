@@ -3,6 +3,7 @@
 
 /** @typedef {'synthesized'|'rendered'} Way */
 
+/** Frames whose times may still come. */
 const REMEMBERED = 64;
 const SETTLING = 250, TURN = 125, MEASURING = 1000, WATCH = 2000;
 /** Longer times between frames are pauses. */
@@ -16,20 +17,22 @@ const MAX_REFRESHES = 1.25;
 const SWITCH_BELOW = 0.9;
 /** The share of the time that measuring may cost. */
 const OVERHEAD = 0.002;
-const SHORTEST_REST = 30_000, REST = [60_000, 600_000];
+const SHORTEST_REST = 3e4, LEAST_REST = 6e4, LONGEST_REST = 6e5;
 /** A change of cost or pace that is worth another measurement. */
 const DRIFT = 1.3;
 
-/** @param {Way} way @return {Way} */
-const otherThan = (way) => (way === 'rendered' ? 'synthesized' : 'rendered');
+const [SETTLES, MEASURES, COLLECTS, RESTS] = [0, 1, 2, 3];
+/** Indices of what is measured; what is watched counts for neither way. */
+const WAYS = /** @type {Way[]} */ (['rendered', 'synthesized']);
+const WATCHED = 2;
 
 /** The mean of the middle half, or null for fewer than four times. */
 function middle(times) {
   if (times.length < 4) return null;
-  const sorted = [...times].sort((a, b) => a - b);
+  const sorted = times.slice().sort((a, b) => a - b);
   const quarter = sorted.length >> 2;
   const half = sorted.slice(quarter, sorted.length - quarter);
-  return half.reduce((sum, time) => sum + time, 0) / half.length;
+  return half.reduce((sum, time) => sum + time) / half.length;
 }
 
 const add = (times, ms) => {
@@ -38,150 +41,184 @@ const add = (times, ms) => {
 
 /** Measures both ways in turns, and chooses the cheaper one. */
 export class Chooser {
+  #phase = SETTLES;
+  /** When the phase began; null if it has not. */
+  #begin = null;
+  #turn = 0;
+  #turnBegin = 0;
+  /** Frames of the turn, or frames that are still waited for. */
+  #count = 0;
+  #until = 0;
+  /** What the times of the last frames count for. */
+  #tags = [];
+  #frames = 0;
+  #last = null;
+  #refresh = 0;
+  /** By index: both ways, and what is watched. */
+  #costs = [[], [], []];
+  #intervals = [[], [], []];
+  #watchBegin = null;
+  #first = null;
+  #way = 1;
+  #choice = null;
+
   constructor() {
-    /** The last choice: way, reason and, if they could be compared, the times of both ways. */
-    this.choice = { way: /** @type {Way} */ ('synthesized'), reason: 'unmeasured', costs: null };
-    this.tags = new Array(REMEMBERED).fill(null);
-    this.frames = 0;
     this.sceneChanged();
   }
 
   /** Measures again: for another scene, place or resolution. */
   sceneChanged() {
-    this.phase = { name: 'settling', begin: null };
-    this.choice = { way: this.choice.way, reason: 'unmeasured', costs: null };
-    this.last = null;
+    this.#phase = SETTLES;
+    this.#begin = this.#last = null;
+    this.#choose(this.#way, 'unmeasured');
+  }
+
+  /** The last choice: way, reason and, if they could be compared, the times of both ways. */
+  get choice() {
+    return this.#choice;
   }
 
   /** The way to make the next frame. */
   get way() {
-    const { phase, choice } = this;
-    return phase.name === 'measuring' && phase.turn % 2 === 1 ? otherThan(choice.way) : choice.way;
+    return WAYS[this.#next];
   }
 
   get isMeasuring() {
-    return this.phase.name !== 'resting';
+    return this.#phase !== RESTS;
+  }
+
+  get #next() {
+    return this.#phase === MEASURES && this.#turn % 2 === 1 ? 1 - this.#way : this.#way;
   }
 
   /**
    * Counts a frame.
    *
-   * @param {Object} end
-   * @param {number} end.now - The time.
-   * @param {number} end.refresh - The display's refreshes per second, or 0 if unknown.
-   * @param {Way|null} end.rendered - How the frame was made, or null if it counts for no way.
-   * @param {{framesAgo: number, ms: number}|null} end.cost - The GPU's time of this or an earlier frame, if it is known now.
+   * @param {number} now - The time.
+   * @param {number} refresh - The display's refreshes per second, or 0 if unknown.
+   * @param {Way|null} rendered - How the frame was made, or null if it counts for no way.
+   * @param {[number, number]|null} cost - How many frames ago was a frame whose GPU time has become known, and that time.
    */
-  endFrame({ now, refresh, rendered, cost }) {
-    const interval = this.last === null ? null : now - this.last;
-    this.last = now;
+  endFrame(now, refresh, rendered, cost) {
+    const interval = this.#last === null ? null : now - this.#last;
+    this.#last = now;
+    let tag = null;
     if (interval !== null && !(interval >= 0 && interval < PAUSE)) {
-      this.tags[this.frames++ % REMEMBERED] = null;
-      if (this.isMeasuring) this.phase = { name: 'settling', begin: now };
-      else this.watch = { ...this.watch, begin: null, costs: [], intervals: [] };
+      if (this.isMeasuring) {
+        this.#phase = SETTLES;
+        this.#begin = now;
+      } else {
+        this.#watch();
+      }
+      this.#tags[this.#frames++ % REMEMBERED] = tag;
       return;
     }
-    const { phase } = this;
-    let tag = null;
     if (rendered === this.way) {
-      if (phase.name === 'measuring' && phase.frames >= UNCOUNTED_FRAMES) tag = rendered;
-      else if (phase.name === 'resting') tag = 'watched';
+      if (this.#phase === MEASURES && this.#count >= UNCOUNTED_FRAMES) tag = this.#next;
+      else if (this.#phase === RESTS) tag = WATCHED;
     }
-    this.tags[this.frames % REMEMBERED] = tag;
-    if (interval !== null && tag === 'watched') {
-      if (refresh > 0) add(this.watch.intervals, interval);
-    } else if (interval !== null && tag) {
-      add(this.intervals[tag], interval);
-      this.refresh = refresh;
+    this.#tags[this.#frames % REMEMBERED] = tag;
+    // Without a display's pace, the time between frames says nothing about the cost of those that are watched.
+    if (interval !== null && tag !== null && (tag !== WATCHED || refresh > 0)) {
+      add(this.#intervals[tag], interval);
+      this.#refresh = refresh;
     }
-    if (cost && cost.framesAgo < REMEMBERED && cost.framesAgo <= this.frames && cost.ms > 0 && cost.ms < Infinity) {
-      const of = this.tags[(this.frames - cost.framesAgo) % REMEMBERED];
-      if (of) add(of === 'watched' ? this.watch.costs : this.costs[of], cost.ms);
+    if (cost) {
+      const [ago, ms] = cost;
+      const of = ago < REMEMBERED && ago <= this.#frames ? this.#tags[(this.#frames - ago) % REMEMBERED] ?? null : null;
+      if (of !== null && ms > 0 && ms < Infinity) add(this.#costs[of], ms);
     }
-    this.frames++;
-    this.proceed(now);
+    this.#frames++;
+    this.#proceed(now);
   }
 
   /** Begins the next turn or phase, if it is time. */
-  proceed(now) {
-    const { phase } = this;
-    if (phase.name === 'settling') {
-      phase.begin ??= now;
-      if (now - phase.begin >= SETTLING) this.measure(now);
-    } else if (phase.name === 'measuring') {
-      if (++phase.frames < TURN_FRAMES || now - phase.turnBegin < TURN) return;
-      const turns = phase.turn + 1;
-      if (turns >= TURNS && turns % 2 === 0 && now - phase.begin >= MEASURING) {
-        this.phase = { name: 'collecting', begin: phase.begin, left: LATE_FRAMES };
-        this.collect(now);
-      } else {
-        Object.assign(phase, { turn: turns, turnBegin: now, frames: 0 });
-      }
-    } else if (phase.name === 'collecting') {
-      this.collect(now);
-    } else {
-      const hasDrifted = this.hasDrifted(now);
-      if (now >= phase.until || (now - phase.since >= SHORTEST_REST && hasDrifted)) this.measure(now);
+  #proceed(now) {
+    if (this.#phase === SETTLES) {
+      this.#begin ??= now;
+      if (now - this.#begin >= SETTLING) this.#measure(now);
+    } else if (this.#phase === MEASURES) {
+      if (++this.#count < TURN_FRAMES || now - this.#turnBegin < TURN) return;
+      this.#turnBegin = now;
+      this.#count = 0;
+      if (++this.#turn < TURNS || this.#turn % 2 === 1 || now - this.#begin < MEASURING) return;
+      this.#phase = COLLECTS;
+      this.#count = LATE_FRAMES;
+      this.#collect(now);
+    } else if (this.#phase === COLLECTS) {
+      this.#collect(now);
+    } else if ((this.#hasDrifted(now) && now - this.#begin >= SHORTEST_REST) || now >= this.#until) {
+      this.#measure(now);
     }
   }
 
-  measure(now) {
-    this.costs = { rendered: [], synthesized: [] };
-    this.intervals = { rendered: [], synthesized: [] };
-    this.refresh = 0;
-    this.tags.fill(null);
-    this.phase = { name: 'measuring', begin: now, turn: 0, turnBegin: now, frames: 0 };
+  #measure(now) {
+    this.#costs = [[], [], []];
+    this.#intervals = [[], [], []];
+    this.#tags = [];
+    this.#phase = MEASURES;
+    this.#begin = this.#turnBegin = now;
+    this.#turn = this.#count = this.#refresh = 0;
   }
 
   /** Chooses, once the times of all frames are known or the wait for them is over. */
-  collect(now) {
-    const { phase, costs, intervals } = this;
-    const isMissing = (way) => costs[way].length < intervals[way].length;
-    if (phase.left-- > 0 && (isMissing('rendered') || isMissing('synthesized'))) return;
-    this.choice = this.choose();
-    const { costs: both, reason } = this.choice;
-    let rest = SHORTEST_REST * 2;
-    if (both) {
-      const { rendered: a, synthesized: b } = both;
+  #collect(now) {
+    const isMissing = (way) => this.#costs[way].length < this.#intervals[way].length;
+    if (this.#count-- > 0 && (isMissing(0) || isMissing(1))) return;
+    const took = now - this.#begin;
+    this.#compare();
+    const { costs, reason } = this.#choice;
+    let rest = reason === 'both hold the rate' ? LONGEST_REST : LEAST_REST;
+    if (costs) {
+      const [a, b] = [costs.rendered, costs.synthesized];
       const more = (Math.max(a, b) / Math.min(a, b) - 1) / 2;
-      rest = Math.min(Math.max((now - phase.begin) * more / OVERHEAD, REST[0]), REST[1]);
-    } else if (reason === 'both hold the rate') {
-      rest = REST[1];
+      rest = Math.min(Math.max(took * more / OVERHEAD, LEAST_REST), LONGEST_REST);
     }
-    this.watch = { begin: null, costs: [], intervals: [], first: null };
-    this.phase = { name: 'resting', since: now, until: now + rest };
+    this.#watch();
+    this.#first = null;
+    this.#phase = RESTS;
+    this.#begin = now;
+    this.#until = now + rest;
   }
 
-  choose() {
-    const ofBoth = ({ rendered, synthesized }) => {
-      const both = { rendered: middle(rendered), synthesized: middle(synthesized) };
-      return both.rendered !== null && both.synthesized !== null ? both : null;
+  #compare() {
+    const ofBoth = (times) => {
+      const [a, b] = [middle(times[0]), middle(times[1])];
+      return a !== null && b !== null ? [a, b] : null;
     };
-    const known = ofBoth(this.costs), intervals = ofBoth(this.intervals);
-    const { way, reason: before } = this.choice;
-    if (!intervals) return { way, reason: 'incomparable', costs: null };
-    if (this.refresh > 0) {
-      const holds = (each) => intervals[each] * this.refresh <= 1000 * MAX_REFRESHES;
-      if (holds('rendered') !== holds('synthesized')) {
-        return { way: holds('rendered') ? 'rendered' : 'synthesized', reason: 'holds the rate', costs: intervals };
-      }
-      if (!known && holds('rendered')) return { way, reason: 'both hold the rate', costs: null };
+    const known = ofBoth(this.#costs), intervals = ofBoth(this.#intervals);
+    const way = this.#way;
+    if (!intervals) return this.#choose(way, 'incomparable');
+    if (this.#refresh > 0) {
+      const [a, b] = intervals.map((ms) => ms * this.#refresh <= 1000 * MAX_REFRESHES);
+      if (a !== b) return this.#choose(Number(b), 'holds the rate', intervals);
+      if (!known && a) return this.#choose(way, 'both hold the rate');
     }
     const costs = known ?? intervals;
-    const [now, other] = [costs[way], costs[otherThan(way)]];
-    if (other < now * (before === 'unmeasured' ? 1 : SWITCH_BELOW)) return { way: otherThan(way), reason: 'cheaper', costs };
-    return { way, reason: now <= other ? 'cheaper' : 'similar', costs };
+    const [now, other] = [costs[way], costs[1 - way]];
+    const isCheaper = other < now * (this.#choice.reason === 'unmeasured' ? 1 : SWITCH_BELOW);
+    return this.#choose(isCheaper ? 1 - way : way, isCheaper || now <= other ? 'cheaper' : 'similar', costs);
+  }
+
+  #choose(way, reason, costs = null) {
+    this.#way = way;
+    this.#choice = { way: WAYS[way], reason, costs: costs && { rendered: costs[0], synthesized: costs[1] } };
+  }
+
+  /** Begins a window of frames that are watched. */
+  #watch() {
+    this.#watchBegin = null;
+    this.#costs[WATCHED] = [];
+    this.#intervals[WATCHED] = [];
   }
 
   /** True if a window ends now whose times differ from those of the first window. */
-  hasDrifted(now) {
-    const { watch } = this;
-    watch.begin ??= now;
-    if (now - watch.begin < WATCH) return false;
-    const times = [middle(watch.costs), middle(watch.intervals)];
-    const { first } = watch;
-    this.watch = { begin: null, costs: [], intervals: [], first: first ?? times };
-    return first !== null && times.some((time, i) => time !== null && first[i] !== null
-      && (time > first[i] * DRIFT || time * DRIFT < first[i]));
+  #hasDrifted(now) {
+    this.#watchBegin ??= now;
+    if (now - this.#watchBegin < WATCH) return false;
+    const times = [this.#costs, this.#intervals].map((all) => middle(all[WATCHED]));
+    this.#watch();
+    const first = this.#first ??= times;
+    return times.some((time, i) => time !== null && first[i] !== null && (time > first[i] * DRIFT || time * DRIFT < first[i]));
   }
 }

@@ -1,153 +1,143 @@
 // The passes: materials and targets of three's own.
 
 import {
-  AlwaysDepth, BufferGeometry, DepthTexture, Group, GLSL3, Mesh, NearestFilter, NoBlending, OrthographicCamera,
+  AlwaysDepth, BufferGeometry, DepthTexture, FloatType, Group, GLSL3, Mesh, NearestFilter, NoBlending, OrthographicCamera,
   RawShaderMaterial, RedFormat, RGBAIntegerFormat, ShaderMaterial, UnsignedIntType, WebGLRenderTarget,
 } from 'three';
-import { guessedDepth, march, marchVertex, nearFraction, screenVertex, spans, tiles } from './shaders.js';
+import { guessedDepth, march, marchVertex, nearFraction, precisions, screenVertex, spans, tiles } from './shaders.js';
 
 // The rendered eye, a part of the source.
-const copy = /* glsl */`precision highp float;
-precision highp int;
-precision highp sampler2D;
-uniform sampler2D color_map;
+const copy = /* glsl */`${precisions}
 uniform sampler2D depth_map;
+uniform sampler2D color_map;
 uniform ivec2 crop;
-layout(location = 0) out vec4 color;
-void main() {
-ivec2 pixel = ivec2(gl_FragCoord.xy) + crop;
-color = texelFetch(color_map, pixel, 0);
-gl_FragDepth = texelFetch(depth_map, pixel, 0).r;
-}`;
+layout(location=0)out vec4 color;
+void main(){ivec2 pixel=ivec2(gl_FragCoord.xy)+crop;color=texelFetch(color_map,pixel,0);gl_FragDepth=texelFetch(depth_map,pixel,0).r;}`;
 
 // Linear colour becomes what three's own materials would have written.
 const output = /* glsl */`
-void main() {
+void main(){
 picture();
 #ifdef TONE_MAPPING
-color.rgb = toneMapping(color.rgb);
+color.rgb=toneMapping(color.rgb);
 #endif
-color = linearToOutputTexel(color);
-}`;
-
-const NAMES = [
-  'source_size', 'target_size', 'law', 'mirrored', 'row_offset', 'target_origin', 'far_displacement', 'near_displacement',
-  'columns', 'origins', 'span_place', 'rows', 'first_row', 'farthest', 'source_origin', 'texel', 'crop', 'depth_map',
-  'color_map', 'tile_map', 'span_map',
-];
-/** Sides of the picture of the near part. */
-const GRID = 16;
+color=linearToOutputTexel(color);}`;
 
 const writesDepth = { depthTest: true, depthWrite: true, depthFunc: AlwaysDepth };
-
-/** A triangle over the viewport, without vertex buffers. */
-function triangle(name, vertexShader, fragmentShader, uniforms, settings = {}, linear = false) {
-  const geometry = new BufferGeometry();
-  geometry.setDrawRange(0, 3);
-  const Material = linear ? ShaderMaterial : RawShaderMaterial;
-  if (linear) fragmentShader = fragmentShader.replace('void main()', 'void picture()') + output;
-  const mesh = new Mesh(geometry, new Material({
-    name, vertexShader, fragmentShader, uniforms, glslVersion: GLSL3, blending: NoBlending, depthTest: false,
-    depthWrite: false, ...settings,
-  }));
-  mesh.frustumCulled = mesh.matrixAutoUpdate = mesh.matrixWorldAutoUpdate = false;
-  return mesh;
-}
+const exact = { minFilter: NearestFilter, magFilter: NearestFilter, generateMipmaps: false };
 
 /** A target of a texel for each tile. */
-const map = () => new WebGLRenderTarget(1, 1, {
-  format: RGBAIntegerFormat, internalFormat: 'RGBA32UI', type: UnsignedIntType, minFilter: NearestFilter,
-  magFilter: NearestFilter, depthBuffer: false, generateMipmaps: false,
-});
+const map = () => new WebGLRenderTarget(1, 1, { ...exact, format: RGBAIntegerFormat, internalFormat: 'RGBA32UI', type: UnsignedIntType, depthBuffer: false });
 
 /** Draws both eyes from one eye's colour and depth. */
 export class Passes {
+  #renderer;
+  #camera = new OrthographicCamera();
+  /** What all passes read. */
+  #shared = { depth_map: { value: null }, color_map: { value: null }, tile_map: { value: null }, span_map: { value: null } };
+  #meshes = [];
+  #maps = [map(), map()];
+  #tiles;
+  #spans;
+  #guess;
+  #guessed;
+  #near;
+  #share;
+
   /**
    * @param {import('three').WebGLRenderer} renderer
    * @param {boolean} linear - True if colour is linear, and tone mapped and encoded after the synthesis.
    */
   constructor(renderer, linear) {
-    this.renderer = renderer;
-    this.uniforms = Object.fromEntries(NAMES.map((name) => [name, { value: null }]));
-    // The guess reads the depth that it replaces for all other passes.
-    this.resolved = { ...this.uniforms, depth_map: { value: null } };
-    this.near = { ...this.uniforms, origin: { value: [0, 0] }, size: this.uniforms.source_size, near_depth: { value: 0 }, reversed: { value: false } };
-    this.maps = [map(), map()];
-    this.uniforms.tile_map.value = this.maps[0].texture;
-    this.uniforms.span_map.value = this.maps[1].texture;
-    this.tiles = triangle('yoro tiles', screenVertex, tiles, this.uniforms);
-    this.spans = triangle('yoro spans', screenVertex, spans, this.uniforms);
-    this.own = triangle('yoro own', screenVertex, copy, this.uniforms, writesDepth, linear);
-    this.other = triangle('yoro march', marchVertex, march, this.uniforms, writesDepth, linear);
-    /** Both eyes' pictures; never a child of the user's scene for longer than a draw. */
+    this.#renderer = renderer;
+    const [tileMap, spanMap] = this.#maps;
+    this.#shared.tile_map.value = tileMap.texture;
+    this.#shared.span_map.value = spanMap.texture;
+    for (const name of ['source_size', 'target_size', 'law', 'mirrored', 'row_offset', 'target_origin', 'far_displacement', 'near_displacement', 'columns', 'origins', 'span_place', 'rows', 'first_row', 'farthest', 'source_origin', 'texel', 'crop']) this.#shared[name] = { value: null };
+    this.#tiles = this.#triangle(screenVertex, tiles);
+    this.#spans = this.#triangle(screenVertex, spans);
+    this.own = this.#triangle(screenVertex, copy, writesDepth, {}, linear);
+    this.other = this.#triangle(marchVertex, march, writesDepth, {}, linear);
+    /** Both eyes' pictures, which are drawn before everything else, whether that is in a group with an order or not. */
     this.eyes = new Group();
     this.eyes.matrixWorldAutoUpdate = false;
-    this.eyes.renderOrder = -Infinity;
+    this.eyes.renderOrder = this.own.renderOrder = this.other.renderOrder = -Infinity;
     this.eyes.add(this.own, this.other);
-    // Before everything else, whether in a group with an order or not.
-    this.own.renderOrder = this.other.renderOrder = -Infinity;
-    this.camera = new OrthographicCamera();
   }
 
   /**
    * Finds what lies where.
    *
    * @param {Object} views - What `viewsOf` returned.
-   * @param {{color: import('three').Texture, depth: import('three').Texture, guess: boolean}} source
+   * @param {import('three').Texture} color
+   * @param {import('three').DepthTexture} depth
+   * @param {boolean} isResolved - True if depth is that of one of several samples.
    */
-  prepare(views, { color, depth, guess }) {
-    const { uniforms } = this;
-    for (const name in views.uniforms) uniforms[name].value = views.uniforms[name];
-    uniforms.color_map.value = color;
-    uniforms.depth_map.value = guess ? this.guess(views.size, depth) : depth;
-    [this.tiles, this.spans].forEach((mesh, i) => {
-      this.maps[i].setSize(...views.maps[i]);
-      this.draw(mesh, this.maps[i]);
+  prepare(views, color, depth, isResolved) {
+    const shared = this.#shared;
+    for (const name in views.uniforms) shared[name].value = views.uniforms[name];
+    shared.color_map.value = color;
+    shared.depth_map.value = isResolved ? this.#guessFrom(views.size, depth) : depth;
+    [this.#tiles, this.#spans].forEach((mesh, i) => {
+      this.#maps[i].setSize(...views.maps[i]);
+      this.#draw(mesh, this.#maps[i]);
     });
   }
 
-  /** Returns a texture of each pixel's guessed nearest depth. */
-  guess(size, depth) {
-    if (!this.guessed) {
-      this.guessed = new WebGLRenderTarget(1, 1, { format: RedFormat, minFilter: NearestFilter, magFilter: NearestFilter, generateMipmaps: false });
-      this.guessed.depthTexture = new DepthTexture(1, 1, depth.type);
-      this.guessing = triangle('yoro guessed depth', screenVertex, guessedDepth, this.resolved, { ...writesDepth, colorWrite: false });
-    }
-    this.guessed.setSize(...size);
-    this.resolved.depth_map.value = depth;
-    this.draw(this.guessing, this.guessed);
-    return this.guessed.depthTexture;
-  }
-
-  /**
-   * Draws the share of a source that is nearer than a depth, and returns the target with 16 x 16 partial shares.
-   */
-  nearPart(size, depth, nearDepth, reversed) {
-    if (!this.share) {
-      this.share = new WebGLRenderTarget(GRID, GRID, { depthBuffer: false, generateMipmaps: false });
-      this.sharing = triangle('yoro near fraction', screenVertex, nearFraction, this.near);
-    }
-    this.uniforms.source_size.value = size;
-    this.uniforms.depth_map.value = depth;
-    this.near.near_depth.value = nearDepth;
-    this.near.reversed.value = reversed;
-    this.draw(this.sharing, this.share);
-    return this.share;
-  }
-
-  draw(mesh, target) {
-    this.renderer.setRenderTarget(target);
-    this.renderer.render(mesh, this.camera);
+  /** Draws how much of the prepared source, or of another one of its eye, is nearer than a depth: 16 x 16 shares. */
+  drawNear(views, nearDepth, size = views.size, depth = this.#shared.depth_map.value) {
+    const value = (of) => ({ value: of });
+    this.#share ??= new WebGLRenderTarget(16, 16, { depthBuffer: false, generateMipmaps: false });
+    this.#near ??= this.#triangle(screenVertex, nearFraction, {}, { depth_map: value(null), origin: value([0, 0]), size: value(null), near_depth: value(0), reversed: value(false) });
+    const { uniforms } = this.#near.material;
+    uniforms.depth_map.value = depth;
+    uniforms.size.value = size;
+    uniforms.near_depth.value = nearDepth;
+    uniforms.reversed.value = views.slope > 0;
+    this.#draw(this.#near, this.#share);
   }
 
   dispose() {
-    for (const target of [...this.maps, this.guessed, this.share]) {
+    for (const target of [...this.#maps, this.#guessed, this.#share]) {
       target?.depthTexture?.dispose();
       target?.dispose();
     }
-    for (const mesh of [this.tiles, this.spans, this.own, this.other, this.guessing, this.sharing]) {
-      mesh?.geometry.dispose();
-      mesh?.material.dispose();
+    for (const { geometry, material } of this.#meshes) {
+      geometry.dispose();
+      material.dispose();
     }
+  }
+
+  /** Returns a texture of each pixel's guessed nearest depth. */
+  #guessFrom(size, depth) {
+    if (!this.#guessed) {
+      this.#guessed = new WebGLRenderTarget(1, 1, { ...exact, format: RedFormat });
+      this.#guessed.depthTexture = new DepthTexture(1, 1, depth.type === FloatType ? FloatType : UnsignedIntType);
+      this.#guess = this.#triangle(screenVertex, guessedDepth, { ...writesDepth, colorWrite: false }, { depth_map: { value: null } });
+    }
+    this.#guessed.setSize(...size);
+    this.#guess.material.uniforms.depth_map.value = depth;
+    this.#draw(this.#guess, this.#guessed);
+    return this.#guessed.depthTexture;
+  }
+
+  #draw(mesh, target) {
+    this.#renderer.setRenderTarget(target);
+    this.#renderer.render(mesh, this.#camera);
+  }
+
+  /** Returns a triangle over the viewport, without vertex buffers. */
+  #triangle(vertexShader, fragmentShader, settings = {}, own = {}, linear = false) {
+    const geometry = new BufferGeometry();
+    geometry.setDrawRange(0, 3);
+    const Material = linear ? ShaderMaterial : RawShaderMaterial;
+    if (linear) fragmentShader = fragmentShader.replace('void main()', 'void picture()') + output;
+    const mesh = new Mesh(geometry, new Material({
+      name: 'yoro', vertexShader, fragmentShader, uniforms: { ...this.#shared, ...own }, glslVersion: GLSL3,
+      blending: NoBlending, depthTest: false, depthWrite: false, ...settings,
+    }));
+    mesh.frustumCulled = mesh.matrixAutoUpdate = mesh.matrixWorldAutoUpdate = false;
+    this.#meshes.push(mesh);
+    return mesh;
   }
 }

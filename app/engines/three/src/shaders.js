@@ -1,6 +1,6 @@
 // yoro 0.1.0, synthesis passes, written from its GLSL by `cargo xtask maintain three`. Do not edit.
 // SPDX-License-Identifier: MIT OR Apache-2.0
-const precisions = 'precision highp float;precision highp int;precision highp sampler2D;precision highp usampler2D;';
+export const precisions = 'precision highp float;precision highp int;precision highp sampler2D;precision highp usampler2D;';
 export const screenVertex = /* glsl */`${precisions}
 void main(){int id=gl_VertexID;vec2 corner=vec2(float((id<<1)&2),float(id&2));gl_Position=vec4(corner*2.0-1.0,0.0,1.0);}`;
 export const marchVertex = /* glsl */`${precisions}
