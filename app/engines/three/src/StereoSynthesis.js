@@ -95,7 +95,7 @@ export class StereoSynthesis {
     for (const camera of [this.#pair, this.#camera]) camera.matrixAutoUpdate = camera.matrixWorldAutoUpdate = false;
     // Its matrices are not those of an angle.
     this.#camera.updateProjectionMatrix = () => {};
-    renderer.domElement.addEventListener?.('webglcontextrestored', this.#begin);
+    this.#listen('addEventListener');
     this.#begin();
   }
 
@@ -200,11 +200,8 @@ export class StereoSynthesis {
 
   /** Frees what this has on the GPU. */
   dispose() {
-    this.renderer.domElement.removeEventListener?.('webglcontextrestored', this.#begin);
-    for (const reader of [this.#timer, this.#share, this.#code]) reader.dispose();
-    this.#release();
-    this.#given?.dispose();
-    this.#given = null;
+    this.#listen('removeEventListener');
+    this.#free();
   }
 
   get #isPresenting() {
@@ -221,7 +218,21 @@ export class StereoSynthesis {
     return Boolean(this.renderer.capabilities.reversedDepthBuffer);
   }
 
-  /** Begins with a new context, or one that has lost its objects. */
+  #listen(change) {
+    const { domElement } = this.renderer;
+    // Objects of a lost context are freed while it is lost.
+    domElement[change]?.('webglcontextlost', this.#free);
+    domElement[change]?.('webglcontextrestored', this.#begin);
+  }
+
+  #free = () => {
+    for (const reader of [this.#timer, this.#share, this.#code]) reader.dispose();
+    this.#release();
+    this.#given?.dispose();
+    this.#given = null;
+  };
+
+  /** Begins with a new context, or one that was restored. */
   #begin = () => {
     const gl = this.renderer.getContext();
     this.#timer = new Timer(gl);

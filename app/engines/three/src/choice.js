@@ -13,6 +13,8 @@ const UNCOUNTED_FRAMES = 3;
 const TURN_FRAMES = 7, TURNS = 6, LATE_FRAMES = 16, MAX_SAMPLES = 128;
 /** A way holds the display's rate up to this number of refreshes between frames. */
 const MAX_REFRESHES = 1.25;
+/** Without a timer and the display's rate, ways whose frames come at times that differ by less hold the same rate. */
+const SAME_RATE = 0.05;
 /** A choice changes if the other way costs less than this share. */
 const SWITCH_BELOW = 0.9;
 /** The share of the time that measuring may cost. */
@@ -190,10 +192,12 @@ export class Chooser {
     const way = this.#way;
     if (!intervals) return this.#choose(way, 'incomparable');
     if (this.#refresh > 0) {
-      const [a, b] = intervals.map((ms) => ms * this.#refresh <= 1000 * MAX_REFRESHES);
-      if (a !== b) return this.#choose(Number(b), 'holds the rate', intervals);
-      if (!known && a) return this.#choose(way, 'both hold the rate');
+      const [first, second] = intervals.map((ms) => ms * this.#refresh <= 1000 * MAX_REFRESHES);
+      if (first !== second) return this.#choose(Number(second), 'holds the rate', intervals);
+      if (!known && first) return this.#choose(way, 'both hold the rate');
     }
+    const [a, b] = intervals;
+    if (!known && Math.abs(a - b) < SAME_RATE * a) return this.#choose(way, 'both hold the rate');
     const costs = known ?? intervals;
     const [now, other] = [costs[way], costs[1 - way]];
     const isCheaper = other < now * (this.#choice.reason === 'unmeasured' ? 1 : SWITCH_BELOW);
