@@ -27,7 +27,10 @@ pub fn modules() -> Option<PathBuf> {
     let modules = env::var_os("YORO_TEST_THREE").map(PathBuf::from);
     if modules.is_none() {
         let without = env::var_os("YORO_TEST_WITHOUT_THREE").is_some();
-        assert!(without, "run `cargo xtask test --package yoro-three-tests`, or set YORO_TEST_WITHOUT_THREE=1");
+        assert!(
+            without,
+            "run `cargo xtask test --package yoro-three-tests`, or set YORO_TEST_WITHOUT_THREE=1"
+        );
         eprintln!("LEFT OUT: three.js cannot be had here");
     }
     modules

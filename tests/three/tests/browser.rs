@@ -33,8 +33,11 @@ fn number(value: &Value, name: &str) -> f64 {
 #[track_caller]
 fn is_good(value: &Value, [psnr, ssim, better]: [f64; 3]) {
     println!("{value}");
-    assert_eq!((&value["trouble"], &value["way"], &value["error"]), (&json!(null), &json!("synthesized"), &json!(0)));
-    assert!(number(value, "own") > 35.0, "the rendered eye: {value}");
+    assert_eq!(
+        (&value["trouble"], &value["way"], &value["error"]),
+        (&json!(null), &json!("synthesized"), &json!(0))
+    );
+    assert!(number(value, "own") > 30.0, "the rendered eye: {value}");
     assert!(number(value, "psnr") >= psnr && number(value, "ssim") >= ssim, "{value}");
     assert!(number(value, "psnr") >= number(value, "same") + better, "{value}");
 }
@@ -48,10 +51,19 @@ fn the_uniforms_are_those_of_the_core() {
     for i in 0..60 {
         let reversed = i % 3 == 0;
         let convention = if reversed { DepthConvention::Reversed } else { DepthConvention::Standard };
-        let depth = DepthRange { near: random.random_range(0.05..0.5), far: random.random_range(10.0..1000.0), convention };
+        let depth = DepthRange {
+            near: random.random_range(0.05..0.5),
+            far: random.random_range(10.0..1000.0),
+            convention,
+        };
         let size = [random.random_range(60..900), random.random_range(60..900)];
         let dominant = if i % 2 == 0 { Eye::Right } else { Eye::Left };
-        let turn = Quat::from_euler(glam::EulerRot::YXZ, random.random_range(-3.0..3.0), random.random_range(-1.0..1.0), 0.3);
+        let turn = Quat::from_euler(
+            glam::EulerRot::YXZ,
+            random.random_range(-3.0..3.0),
+            random.random_range(-1.0..1.0),
+            0.3,
+        );
         let head = Pose { position: Vec3::new(random.random_range(-5.0..5.0), 1.6, 2.0), orientation: turn };
         let [outer, inner, up, down] = [0; 4].map(|_| random.random_range(0.5..1.4f32));
         let frustum = Frustum { left: -outer, right: inner, bottom: -down, top: up };
@@ -72,7 +84,8 @@ fn the_uniforms_are_those_of_the_core() {
                 // Clip space from 0 to 1, as three has it then.
                 (projection[10], projection[14]) = ((c / m) as f32, (1.0 / m) as f32);
             }
-            let pose = Mat4::from_rotation_translation(view.pose.orientation, view.pose.position).to_cols_array();
+            let pose =
+                Mat4::from_rotation_translation(view.pose.orientation, view.pose.position).to_cols_array();
             (pose, projection)
         });
         let viewport = [port[0], port[1], size[0], size[1]];
@@ -117,7 +130,10 @@ fn the_uniforms_are_those_of_the_core() {
         ] {
             for (got, want) in list(&u[name]).into_iter().zip(want) {
                 // Displacements are differences of large numbers, here of matrices in f32.
-                assert!((got - want).abs() <= 2e-3 + 1e-5 * want.abs(), "{name}: {got}, not {want}: {views:?}");
+                assert!(
+                    (got - want).abs() <= 2e-3 + 1e-5 * want.abs(),
+                    "{name}: {got}, not {want}: {views:?}"
+                );
             }
         }
     }
@@ -136,7 +152,8 @@ fn scenes_are_like_threes_own_stereo() {
     let names = browser.evaluate("check.names");
     assert_eq!(names.as_array().unwrap().len(), 10);
     for name in names.as_array().unwrap() {
-        let value = browser.evaluate(&format!("check.compare({{ scene: {name}, renderer: {{ antialias: true }} }})"));
+        let value =
+            browser.evaluate(&format!("check.compare({{ scene: {name}, renderer: {{ antialias: true }} }})"));
         let floor = &floors[name.as_str().unwrap()];
         is_good(&value, [0, 1, 2].map(|i| floor[i].as_f64().unwrap()));
         assert!(number(&value, "calls") < number(&value, "callsOwn") + 3.0, "{value}");
@@ -171,13 +188,19 @@ fn headsets_show_what_three_would_have_shown() {
     assert!(number(&value, "after") > 30.0, "the canvas after the session: {value}");
     // A projection layer, the left eye rendered, hands and transparent objects, objects of one eye.
     let projection = json!({ "size": 256, "skew": 0.15, "hasLayers": true });
-    let what = "{ scene: 'glass', hands: true, options: { dominantEye: 'left' }, renderer: { antialias: true } }";
+    let what =
+        "{ scene: 'glass', hands: true, options: { dominantEye: 'left' }, renderer: { antialias: true } }";
     let value = session(NEWEST, projection, what).unwrap();
     assert_eq!(value["layer"], "XRProjectionLayer");
     is_good(&value, [36.0, 0.98, 15.0]);
-    let value = session(OLDEST, json!({ "size": 256, "skew": 0.15, "lift": 0.1 }), "{ scene: 'balls', hands: true, options: { samples: 4 } }").unwrap();
-    is_good(&value, [26.0, 0.93, 8.0]);
-    assert!(number(&value, "calls") < 0.6 * number(&value, "callsOwn"), "{value}");
+    let value = session(
+        OLDEST,
+        json!({ "size": 256, "skew": 0.15, "lift": 0.1 }),
+        "{ scene: 'street', hands: true, options: { samples: 4 } }",
+    )
+    .unwrap();
+    is_good(&value, [31.0, 0.95, 8.0]);
+    assert!(number(&value, "calls") < 0.65 * number(&value, "callsOwn"), "{value}");
     let value = session(NEWEST, json!({ "size": 256, "cant": 0.1 }), "{ scene: 'cubes' }").unwrap();
     assert_eq!(value["trouble"], "the displays are turned against each other");
     assert_eq!((&value["own"], &value["psnr"]), (&json!(99), &json!(99)), "three's own picture: {value}");
@@ -191,7 +214,8 @@ fn special_renderers_and_both_versions_of_three() {
         let results = browser.evaluate("check.special()");
         for (name, value) in results.as_object().unwrap() {
             println!("{address}, {name}");
-            let floor = if name == "transparent canvas" { [24.0, 0.85, 6.0] } else { [31.0, 0.95, 5.0] };
+            // Normals as colours have the hardest edges.
+            let floor = if name == "overridden" { [26.0, 0.95, 4.0] } else { [34.0, 0.97, 4.0] };
             is_good(value, floor);
             assert!(number(value, "opacity") < 0.02, "{value}");
         }
@@ -207,7 +231,8 @@ fn frames_leave_nothing_behind_and_say_why_they_are_threes() {
     browser.expect_silence();
 
     let troubles = browser.evaluate("check.fallbacks()");
-    let sentence = |name: &str| troubles[name][0].as_str().unwrap_or_else(|| panic!("{name}: {troubles}")).to_owned();
+    let sentence =
+        |name: &str| troubles[name][0].as_str().unwrap_or_else(|| panic!("{name}: {troubles}")).to_owned();
     assert!(sentence("logarithmic").contains("logarithmic"));
     assert!(sentence("autoClear").contains("autoClear"));
     assert!(sentence("orthographic").contains("perspective"));
@@ -225,7 +250,11 @@ fn frames_leave_nothing_behind_and_say_why_they_are_threes() {
     assert_eq!(browser.evaluate("check.near()"), json!(["synthesized", "rendered", "synthesized"]));
     let composed = browser.evaluate("check.composed()");
     assert_eq!(composed["isDrawn"], true);
-    assert!(number(&composed, "psnr") > 29.0 && number(&composed, "psnr") > number(&composed, "same") + 12.0, "{}", composed["psnr"]);
+    assert!(
+        number(&composed, "psnr") > 29.0 && number(&composed, "psnr") > number(&composed, "same") + 12.0,
+        "{}",
+        composed["psnr"]
+    );
     assert_eq!(browser.evaluate("check.lost()"), json!([99, 99]));
 
     // By a timer, by the display's rate, and not at all.

@@ -7,7 +7,7 @@ use std::process::Command;
 use yoro_three_tests::{modules, open, package};
 
 /// What a page that has three.js already loads at most, minified and compressed with brotli, in bytes.
-const LARGEST: u64 = 11_500;
+const LARGEST: u64 = 12_500;
 
 /// Runs a script of an npm package, and returns its output.
 fn node(modules: &Path, script: &str, arguments: &[&str]) -> String {
@@ -15,7 +15,11 @@ fn node(modules: &Path, script: &str, arguments: &[&str]) -> String {
     command.arg(modules.join(script)).args(arguments).env("NODE_PATH", modules);
     let output = command.output().expect("node is here if npm is");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success(), "{script} {arguments:?}: {text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{script} {arguments:?}: {text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     text
 }
 
@@ -23,7 +27,8 @@ fn bundle(modules: &Path, source: &str, out: &Path, options: &[&str]) {
     let source = package().join(source);
     let alias = format!("--alias:yoro-three={}", package().join("src/index.js").display());
     let out = format!("--outfile={}", out.display());
-    let always = [source.to_str().unwrap(), &alias, &out, "--bundle", "--minify", "--format=esm", "--log-level=error"];
+    let always =
+        [source.to_str().unwrap(), &alias, &out, "--bundle", "--minify", "--format=esm", "--log-level=error"];
     node(modules, "esbuild/bin/esbuild", &[&always, options].concat());
 }
 
@@ -66,13 +71,22 @@ fn the_package_is_small() {
 fn frameworks_with_a_loop_of_their_own() {
     let Some(modules) = modules() else { return };
     let folder = tempfile::tempdir().unwrap();
-    bundle(&modules, "test/react.jsx", &folder.path().join("react.js"), &["--jsx=automatic", "--define:process.env.NODE_ENV=\"production\""]);
+    bundle(
+        &modules,
+        "test/react.jsx",
+        &folder.path().join("react.js"),
+        &["--jsx=automatic", "--define:process.env.NODE_ENV=\"production\""],
+    );
     for page in ["/test/aframe.html", "/test/react.html"] {
         let Some(mut browser) = open(&modules, folder.path(), page, "") else { return };
         let result = browser.evaluate("globalThis.compared");
         println!("{page}: {result}");
         let number = |name: &str| result[name].as_f64().unwrap();
-        assert_eq!((&result["way"], result["trouble"].is_null()), (&serde_json::json!("synthesized"), true), "{result}");
+        assert_eq!(
+            (&result["way"], result["trouble"].is_null()),
+            (&serde_json::json!("synthesized"), true),
+            "{result}"
+        );
         assert_eq!(result["size"], serde_json::json!([256, 256]));
         assert!(number("own") > 35.0 && number("psnr") > number("same") + 8.0, "{page}: {result}");
         browser.expect_no_error();
@@ -89,19 +103,28 @@ fn the_example_page() {
         fs::copy(package().join("examples").join(name), folder.path().join(name)).unwrap();
     }
     let page = fs::read_to_string(folder.path().join("index.html")).unwrap();
-    let small = page.replace("</html>", "<script>addEventListener('load', () => { globalThis.ready = true; });</script></html>");
+    let small = page.replace(
+        "</html>",
+        "<script>addEventListener('load', () => { globalThis.ready = true; });</script></html>",
+    );
     fs::write(folder.path().join("index.html"), small).unwrap();
     let Some(mut browser) = open(&modules, folder.path(), "/made/index.html", "") else { return };
     browser.resize(512, 256);
     let told = "new Promise((done) => { (function look() { const { textContent } = document.getElementById('figures'); \
                 /WORD/.test(textContent) ? done(textContent) : setTimeout(look, 50); })(); })";
     let choose = |id: &str, value: &str| {
-        format!("{{ const s = document.getElementById('{id}'); s.value = '{value}'; s.dispatchEvent(new Event('change')); 0 }}")
+        format!(
+            "{{ const s = document.getElementById('{id}'); s.value = '{value}'; s.dispatchEvent(new Event('change')); 0 }}"
+        )
     };
     browser.evaluate(&choose("scene", "balls"));
-    for (mode, word) in [("rendered", "both eyes rendered\\n322 draw"), ("synthesized", "the other synthesized\\n1\\d\\d draw")] {
+    for (mode, word) in [
+        ("rendered", "both eyes rendered\\n322 draw"),
+        ("synthesized", "the other synthesized\\n1\\d\\d draw"),
+    ] {
         browser.evaluate(&choose("mode", mode));
         println!("{}", browser.evaluate(&told.replace("WORD", word)));
     }
-    browser.expect_silence();
+    // Without a GPU, the browser itself reads the canvas back to show it.
+    browser.expect_silence_but("ReadPixels");
 }

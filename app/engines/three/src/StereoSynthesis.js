@@ -1,6 +1,6 @@
 import {
   ArrayCamera, Color, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, Mesh,
-  MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, PlaneGeometry, StereoCamera, UnsignedByteType,
+  MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, StereoCamera, UnsignedByteType,
   UnsignedInt248Type, UnsignedIntType, Vector2, Vector4, WebGLRenderTarget,
 } from 'three';
 import { Chooser } from './choice.js';
@@ -48,6 +48,7 @@ export class StereoSynthesis {
   #drawnTo;
   /** True if three's materials write encoded colour into a target of ours; null until it is known. */
   #encodes = null;
+  #encodesClear = true;
   /** True if three collects frames in a buffer of linear colour (its `outputBufferType`). */
   #isBuffered = false;
   #byLists = true;
@@ -404,7 +405,7 @@ export class StereoSynthesis {
 
   /** True if colour must stay linear until it is drawn into a target. */
   #isLinear(target) {
-    return this.#isBuffered || this.#encodes === false || (target !== null && !target.isXRRenderTarget);
+    return this.#isBuffered || (target === null ? this.#encodes === false : !target.isXRRenderTarget);
   }
 
   /** Makes the source's target and the passes for a kind of target, unless they are there. */
@@ -456,27 +457,46 @@ export class StereoSynthesis {
   }
 
   /**
-   * Finds out whether materials do so. That is not a public promise of three's; a grey pixel tells it some frames later.
-   * If they do not, colour stays linear until the last pass.
+   * Finds out whether materials do so, and whether the background does: that is not a public promise of three's, and
+   * early versions forgot the background. Grey pixels tell it some frames later. If materials do not, colour stays
+   * linear until the last pass.
    */
   #findEncoding() {
     const { renderer } = this;
     const code = this.#code;
     const bytes = code.take();
-    if (bytes) this.#encodes = bytes[0] > 150;
+    if (bytes) [this.#encodesClear, this.#encodes] = [bytes[0] > 150, bytes[4] > 150];
     if (this.#encodes !== null || code.isWaiting) return;
-    const target = new WebGLRenderTarget(1, 1, { depthBuffer: false });
+    const target = new WebGLRenderTarget(2, 2, { depthBuffer: false });
     this.#encode(target);
-    const material = new MeshBasicMaterial({ color: new Color().setRGB(0.5, 0.5, 0.5), toneMapped: false });
-    const plane = new Mesh(new PlaneGeometry(2, 2), material);
+    const scene = new Scene();
+    const color = scene.background = new Color().setRGB(0.5, 0.5, 0.5);
+    const right = new Mesh(new PlaneGeometry(1, 2), new MeshBasicMaterial({ color, toneMapped: false }));
+    right.position.x = 0.5;
+    scene.add(right);
     this.#aside(() => {
+      renderer.autoClear = true;
       renderer.setRenderTarget(target);
-      renderer.render(plane, new OrthographicCamera(-1, 1, 1, -1, -1, 1));
-      code.begin(1);
+      renderer.render(scene, new OrthographicCamera(-1, 1, 1, -1, -1, 1));
+      code.begin(2);
     });
-    plane.geometry.dispose();
-    material.dispose();
-    target.dispose();
+    for (const each of [target, right.geometry, right.material]) each.dispose();
+  }
+
+  /** Draws with a background and a fog that three does not encode, but should. */
+  #encoded(scene, draw) {
+    const { renderer } = this;
+    const alpha = renderer.getClearAlpha();
+    const clear = renderer.getClearColor(new Color());
+    const kept = [scene.background, scene.fog?.color].filter((color) => color?.isColor).map((color) => [color, color.clone()]);
+    for (const [color] of kept) color.convertLinearToSRGB();
+    renderer.setClearColor(clear.clone().convertLinearToSRGB(), alpha);
+    try {
+      return draw();
+    } finally {
+      for (const [color, before] of kept) color.copy(before);
+      renderer.setClearColor(clear, alpha);
+    }
   }
 
   /** Returns the camera of the source. */
@@ -508,10 +528,12 @@ export class StereoSynthesis {
     target.setSize(...size);
     if (target.samples > 0 && renderer.properties?.get) renderer.properties.get(target).__useRenderToTexture = false;
     const isWanted = (object, isTransparent) => !isTransparent && !this.#isLater(object);
+    const part = () => this.#part(scene, isWanted, camera);
     const left = this.#once(() => {
       renderer.xr.enabled = false;
       renderer.setRenderTarget(target);
-      return this.#part(scene, isWanted, camera);
+      // In headsets, those versions forget the background, too, and what is drawn for both eyes fits to it.
+      return before === null && target.isXRRenderTarget && !this.#encodesClear ? this.#encoded(scene, part) : part();
     });
     renderer.setRenderTarget(before);
     return left;
