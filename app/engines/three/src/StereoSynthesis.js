@@ -1,12 +1,13 @@
 import {
-  ArrayCamera, Color, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, Mesh,
-  MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, StereoCamera, UnsignedByteType,
-  UnsignedInt248Type, UnsignedIntType, Vector2, Vector4, WebGLRenderTarget,
+  ArrayCamera, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, Matrix4, PerspectiveCamera,
+  StereoCamera, UnsignedByteType, UnsignedInt248Type, UnsignedIntType, Vector2, Vector4, WebGLRenderTarget,
 } from 'three';
 import { Chooser } from './choice.js';
+import { encode, Encoding } from './encoding.js';
 import { Readback, Timer } from './gpu.js';
 import { drawPart } from './part.js';
 import { Passes } from './passes.js';
+import { troubleOf } from './trouble.js';
 import { project, viewsOf } from './views.js';
 
 /** The layers that three reserves for what one eye alone sees: 1 for the left eye, 2 for the right one. */
@@ -29,9 +30,8 @@ export class StereoSynthesis {
   #stencil;
   #chooser = new Chooser();
   #timer;
-  /** Readers of what is near, and of how colour is encoded. */
+  /** Reads what is near. */
   #share;
-  #code;
   /** The source's camera. */
   #camera = new PerspectiveCamera();
   /** The eyes on a canvas. */
@@ -46,9 +46,7 @@ export class StereoSynthesis {
   /** The passes of `synthesize`. */
   #given = null;
   #drawnTo;
-  /** True if three's materials write encoded colour into a target of ours; null until it is known. */
-  #encodes = null;
-  #encodesClear = true;
+  #encoding;
   /** True if three collects frames in a buffer of linear colour (its `outputBufferType`). */
   #isBuffered = false;
   #byLists = true;
@@ -227,7 +225,7 @@ export class StereoSynthesis {
   }
 
   #free = () => {
-    for (const reader of [this.#timer, this.#share, this.#code]) reader.dispose();
+    for (const reader of [this.#timer, this.#share, this.#encoding]) reader.dispose();
     this.#release();
     this.#given?.dispose();
     this.#given = null;
@@ -238,7 +236,7 @@ export class StereoSynthesis {
     const gl = this.renderer.getContext();
     this.#timer = new Timer(gl);
     this.#share = new Readback(gl);
-    this.#code = new Readback(gl);
+    this.#encoding = new Encoding(this.renderer);
     this.#isNear = false;
     this.#chooser.sceneChanged();
   };
@@ -379,39 +377,23 @@ export class StereoSynthesis {
 
   /** Returns what to render, or null; then `trouble` says why. */
   #find(eyes) {
-    const views = this.#check(eyes) ?? viewsOf(eyes.cameras, this.#rendered, this.guardBand, this.#isReversed, this.#between);
-    const { maxTextureSize } = this.renderer.capabilities;
-    this.trouble = typeof views === 'string' ? views
-      : Math.max(...views.size) > maxTextureSize ? `the rendered eye would be larger than this GPU’s largest texture (${maxTextureSize} pixels)`
-        : null;
-    return this.trouble === null ? views : null;
-  }
-
-  /** Returns what the renderer has that synthesis cannot deal with, in a sentence. */
-  #check({ cameras }) {
     const { renderer } = this;
-    const { capabilities, xr } = renderer;
-    const isPresenting = this.#isPresenting;
-    if (cameras.length !== 2) return `there are ${cameras.length} eyes, not two`;
-    if (capabilities.logarithmicDepthBuffer) return 'the depth buffer is logarithmic: create the renderer without logarithmicDepthBuffer';
-    if (this.#isReversed && isPresenting) return 'three has no reversed depth in headsets: create the renderer without reversedDepthBuffer';
-    if (this.#isReversed && !cameras[0].reversedDepth) return 'this version of three does not tell that depth is reversed';
-    if (isPresenting && xr.hasDepthSensing?.()) return 'the session hides the scene behind real things: depth sensing';
-    if (!renderer.autoClear) return 'the picture is not cleared before it is drawn: renderer.autoClear is false';
-    const gl = renderer.getContext();
-    const hasHalfFloats = () => gl.getExtension('EXT_color_buffer_float') ?? gl.getExtension('EXT_color_buffer_half_float');
-    return this.#isLinear(renderer.getRenderTarget()) && !hasHalfFloats() ? 'this GPU cannot render to half floats, which linear colour needs' : null;
+    const { cameras } = eyes;
+    const views = troubleOf(renderer, cameras, this.#isPresenting, this.#isLinear(renderer.getRenderTarget()))
+      ?? viewsOf(cameras, this.#rendered, this.guardBand, this.#isReversed, renderer.capabilities.maxTextureSize, this.#between);
+    this.trouble = typeof views === 'string' ? views : null;
+    return this.trouble === null ? views : null;
   }
 
   /** True if colour must stay linear until it is drawn into a target. */
   #isLinear(target) {
-    return this.#isBuffered || (target === null ? this.#encodes === false : !target.isXRRenderTarget);
+    return this.#isBuffered || (target === null ? this.#encoding.isMissing : !target.isXRRenderTarget);
   }
 
   /** Makes the source's target and the passes for a kind of target, unless they are there. */
   #allocate(target) {
     const { renderer } = this;
-    this.#findEncoding();
+    this.#aside(() => this.#encoding.find());
     const isLinear = this.#isLinear(target);
     // Where three resolves samples in the tile, depth is lost.
     const isLost = renderer.extensions.has('WEBGL_multisampled_render_to_texture') && !renderer.properties?.get;
@@ -435,7 +417,7 @@ export class StereoSynthesis {
     });
     target.depthTexture = new DepthTexture(1, 1, this.#isReversed ? FloatType : UnsignedIntType);
     if (this.#stencil) Object.assign(target.depthTexture, { format: DepthStencilFormat, type: UnsignedInt248Type });
-    if (!isLinear) this.#encode(target);
+    if (!isLinear) encode(target, this.renderer);
     return target;
   }
 
@@ -447,56 +429,6 @@ export class StereoSynthesis {
     this.#passes?.dispose();
     this.#source = this.#small = this.#passes = null;
     this.#made = '';
-  }
-
-  /** Has materials write tone mapped and encoded colour into a target, as into a headset's. */
-  #encode(target) {
-    target.isXRRenderTarget = true;
-    target.texture.internalFormat = 'RGBA8';
-    target.texture.colorSpace = this.renderer.outputColorSpace;
-  }
-
-  /**
-   * Finds out whether materials do so, and whether the background does: that is not a public promise of three's, and
-   * early versions forgot the background. Grey pixels tell it some frames later. If materials do not, colour stays
-   * linear until the last pass.
-   */
-  #findEncoding() {
-    const { renderer } = this;
-    const code = this.#code;
-    const bytes = code.take();
-    if (bytes) [this.#encodesClear, this.#encodes] = [bytes[0] > 150, bytes[4] > 150];
-    if (this.#encodes !== null || code.isWaiting) return;
-    const target = new WebGLRenderTarget(2, 2, { depthBuffer: false });
-    this.#encode(target);
-    const scene = new Scene();
-    const color = scene.background = new Color().setRGB(0.5, 0.5, 0.5);
-    const right = new Mesh(new PlaneGeometry(1, 2), new MeshBasicMaterial({ color, toneMapped: false }));
-    right.position.x = 0.5;
-    scene.add(right);
-    this.#aside(() => {
-      renderer.autoClear = true;
-      renderer.setRenderTarget(target);
-      renderer.render(scene, new OrthographicCamera(-1, 1, 1, -1, -1, 1));
-      code.begin(2);
-    });
-    for (const each of [target, right.geometry, right.material]) each.dispose();
-  }
-
-  /** Draws with a background and a fog that three does not encode, but should. */
-  #encoded(scene, draw) {
-    const { renderer } = this;
-    const alpha = renderer.getClearAlpha();
-    const clear = renderer.getClearColor(new Color());
-    const kept = [scene.background, scene.fog?.color].filter((color) => color?.isColor).map((color) => [color, color.clone()]);
-    for (const [color] of kept) color.convertLinearToSRGB();
-    renderer.setClearColor(clear.clone().convertLinearToSRGB(), alpha);
-    try {
-      return draw();
-    } finally {
-      for (const [color, before] of kept) color.copy(before);
-      renderer.setClearColor(clear, alpha);
-    }
   }
 
   /** Returns the camera of the source. */
@@ -533,7 +465,7 @@ export class StereoSynthesis {
       renderer.xr.enabled = false;
       renderer.setRenderTarget(target);
       // In headsets, those versions forget the background, too, and what is drawn for both eyes fits to it.
-      return before === null && target.isXRRenderTarget && !this.#encodesClear ? this.#encoded(scene, part) : part();
+      return before === null && target.isXRRenderTarget ? this.#encoding.draw(scene, part) : part();
     });
     renderer.setRenderTarget(before);
     return left;

@@ -26,10 +26,11 @@ const tangents = ({ elements: e }) => ({
  * @param {number} rendered - The eye that is rendered: 0 for the left one, 1 for the right one.
  * @param {number} guardBand - From this distance on, nothing is missing at the other eye's outer border; 0 for no band.
  * @param {boolean} zeroToOne - True if clip space's z runs from 0 to 1, as with reversed depth, and not from -1 to 1.
+ * @param {number} largest - The largest side of an image in pixels.
  * @param {import('three').Matrix4} between - Receives the other eye's pose in the rendered eye's space.
  * @return {string|Object}
  */
-export function viewsOf(cameras, rendered, guardBand, zeroToOne, between) {
+export function viewsOf(cameras, rendered, guardBand, zeroToOne, largest, between) {
   const [source, target] = [cameras[rendered], cameras[1 - rendered]];
   const pose = between.copy(source.matrixWorld).invert().multiply(target.matrixWorld).elements;
   const ipd = Math.abs(pose[12]);
@@ -59,6 +60,7 @@ export function viewsOf(cameras, rendered, guardBand, zeroToOne, between) {
   const right = roundedUp((t.right - s.right) / dx) + (toLeft ? 0 : guard);
   const below = roundedUp((s.down - t.down) / dy), above = roundedUp((t.up - s.up) / dy);
   const size = [width + left + right, height + below + above];
+  if (Math.max(...size) > largest) return `the rendered eye would be larger than this GPU’s largest image (${largest} pixels)`;
   const frustum = { left: s.left - left * dx, right: s.right + right * dx, down: s.down - below * dy, up: s.up + above * dy };
 
   // 1 / distance = constant + slope * depth, read from the projection: three's near and far may be a frame ahead of it.

@@ -121,7 +121,7 @@ function views(cases) {
       matrixWorld: new THREE.Matrix4().fromArray(pose), projectionMatrix: new THREE.Matrix4().fromArray(projections[i]),
       viewport: new THREE.Vector4(...viewports[i]),
     }));
-    return viewsOf(cameras, rendered, guardBand, reversed, new THREE.Matrix4());
+    return viewsOf(cameras, rendered, guardBand, reversed, 8192, new THREE.Matrix4());
   });
 }
 
