@@ -119,7 +119,7 @@ fn the_example_page() {
     };
     browser.evaluate(&choose("scene", "balls"));
     for (mode, word) in [
-        ("rendered", "both eyes rendered\\n322 draw"),
+        ("rendered", "both eyes rendered\\n3\\d\\d draw"),
         ("synthesized", "the other synthesized\\n1\\d\\d draw"),
     ] {
         browser.evaluate(&choose("mode", mode));

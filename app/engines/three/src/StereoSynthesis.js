@@ -17,6 +17,8 @@ const NEAR_SHARES = [0.5, 0.35];
 /** Frames between two looks at what is near: with synthesis, and without, where a look costs an eye's draw calls. */
 const LOOKS = [12, 45];
 
+const isOfOneEye = (camera) => camera?.isPerspectiveCamera && !camera.isArrayCamera;
+
 /**
  * Renders a scene for one eye, and synthesizes the other eye from its colour and depth: side by side on a canvas, or for
  * both eyes of a WebXR session.
@@ -140,7 +142,7 @@ export class StereoSynthesis {
     const both = (scene, camera) => {
       const target = renderer.getRenderTarget();
       const isShown = target === null || target.isXRRenderTarget;
-      if (this.#isBusy || !isShown || !camera?.isPerspectiveCamera) render.call(renderer, scene, camera);
+      if (this.#isBusy || !isShown || !isOfOneEye(camera)) render.call(renderer, scene, camera);
       else this.render(scene, camera);
     };
     renderer.render = both;
@@ -273,8 +275,8 @@ export class StereoSynthesis {
     const isAuto = this.mode === 'auto';
     const chooser = this.#chooser;
     this.way = 'rendered';
-    if (!isPresenting && !camera.isPerspectiveCamera) {
-      this.trouble = 'the camera has no perspective';
+    if (!isPresenting && !isOfOneEye(camera)) {
+      this.trouble = 'the camera has no perspective, or several';
       renderer.render(scene, camera);
       return;
     }
