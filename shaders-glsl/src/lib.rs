@@ -47,6 +47,7 @@ static SYNTHESIS: &[File] = embed![
     "synthesis/gather/march.frag",
     "synthesis/gather/spans.frag",
     "synthesis/gather/tiles.frag",
+    "synthesis/guessed_depth.frag",
     "synthesis/march.vert",
     "synthesis/nearest_depth.frag",
 ];

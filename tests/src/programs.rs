@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
-use yoro::opengl::{AnyView, Gather, Options, Outputs};
+use yoro::opengl::{AnyView, Gather, GuessedDepth, Options, Outputs};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_estimate::Recorder;
@@ -76,6 +76,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
             }
         }
     }
+    GuessedDepth::new(gl, &Options::default())?;
     // What OpenGL ES 3.0 and WebGL 2 compile.
     Gather::with_macros(gl, &Options::default(), Outputs::default(), &["WITHOUT_ES_310"])?;
     // The march split into parts, to determine the cost of each.

@@ -92,7 +92,7 @@ enum Task {
         file: PathBuf,
     },
     /// Pack the C library into target/package: with pkg-config and CMake files for Linux, as an AAR for
-    /// Android; the OpenXR layer for Android; the add-on for Godot
+    /// Android; the OpenXR layer for Android; the add-on for Godot; the package for three.js
     Package {
         /// Make only these packages [default: all]
         #[arg(long = "target", value_name = "NAME", value_delimiter = ',')]

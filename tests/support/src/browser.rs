@@ -244,6 +244,16 @@ impl Browser {
     }
 }
 
+impl Browser {
+    /// Fails as [`Browser::expect_silence`] does, except for lines in the console that contain a word.
+    #[track_caller]
+    pub fn expect_silence_but(&mut self, word: &str) {
+        self.expect_no_error();
+        self.console.retain(|line| !line.contains(word));
+        assert!(self.console.is_empty(), "{:#?}", self.console);
+    }
+}
+
 impl Drop for Browser {
     fn drop(&mut self) {
         let _ = self.child.kill();

@@ -8,7 +8,7 @@ pub mod shader_cost;
 
 use clap::Subcommand;
 
-use crate::console;
+use crate::{console, kit};
 
 #[derive(Subcommand)]
 pub(crate) enum Task {
@@ -28,6 +28,8 @@ pub(crate) enum Task {
     Spirv,
     /// Compile the synthesis shaders for wgpu: app/engines/wgpu/src/wgsl
     Wgsl,
+    /// Write the synthesis shaders for three.js: app/engines/three/src/shaders.js
+    Three,
     /// Set up Monado, an OpenXR runtime with a simulated headset, below target/, and print how to use it
     Monado,
     /// Set up hello_xr, Khronos's example of an OpenXR application, below target/, and print how to use it
@@ -46,6 +48,7 @@ pub(crate) fn perform(task: Task) -> anyhow::Result<bool> {
         }
         Task::Spirv => (compile::spirv()?, true),
         Task::Wgsl => (compile::wgsl()?, true),
+        Task::Three => (kit::three()?, true),
         Task::Monado => (monado::usage()?, true),
         Task::HelloXr => (hello_xr::usage()?, true),
         Task::Godot => (godot::usage()?, true),

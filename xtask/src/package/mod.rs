@@ -1,4 +1,5 @@
-//! Packages for others' builds: the C library for Linux and Android, the OpenXR layer for Android, the Godot add-on.
+//! Packages for others' builds: the C library for Linux and Android, the OpenXR layer for Android, the Godot add-on, the
+//! package for three.js.
 
 mod android;
 mod godot;
@@ -6,6 +7,7 @@ mod layer;
 mod linux;
 mod portable;
 mod texts;
+mod three;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -35,6 +37,8 @@ pub enum Target {
     AndroidLayer,
     /// The add-on for Godot, a zip
     Godot,
+    /// The package for three.js, a tarball of npm's
+    Three,
 }
 
 /// Makes these packages, or all if none is given, and returns their paths.
@@ -51,6 +55,7 @@ pub fn package(targets: &[Target]) -> anyhow::Result<Vec<PathBuf>> {
         Target::Android => android::aar(&folder),
         Target::AndroidLayer => layer::aar(&folder),
         Target::Godot => godot::zip(&folder),
+        Target::Three => three::tarball(&folder),
     };
     targets.iter().map(make).collect()
 }

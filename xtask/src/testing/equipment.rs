@@ -45,15 +45,22 @@ static ITEMS: [Item; 12] = [
     Item {
         what: "the WebXR emulator",
         variable: "WEBXR",
-        users: &[("yoro-cli", "web::")],
+        users: &[("yoro-cli", "web::"), ("yoro-three-tests", "headsets")],
         fetch: web::emulator,
+        build: None,
+    },
+    Item {
+        what: "three.js",
+        variable: "THREE",
+        users: &[("yoro-three-tests", "")],
+        fetch: web::three_modules,
         build: None,
     },
     Item {
         what: "Chromium",
         variable: "CHROMIUM",
         // The test names of this program do not show which of them open a page.
-        users: &[("yoro-cli", "")],
+        users: &[("yoro-cli", ""), ("yoro-three-tests", "")],
         fetch: || setup::browser().context("it cannot be installed"),
         build: None,
     },

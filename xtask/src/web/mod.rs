@@ -3,6 +3,7 @@
 mod npm;
 mod serve;
 mod site;
+mod three;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +16,7 @@ use crate::cargo::{self, announce};
 use crate::folders::{copy, remove, root, target_folder};
 use crate::rust::{Panic, Rust, anonymous_paths, build_std};
 
-pub use npm::{check_types, emulator};
+pub use npm::{check_types, emulator, npm, three as three_modules};
 pub use serve::serve;
 pub use site::publish;
 
@@ -90,6 +91,9 @@ pub fn build() -> anyhow::Result<PathBuf> {
     copy(&video, &renamed)?;
     bind(&renamed, &unfinished.join(site::VERSION), &site::sources())?;
     site::assemble(&unfinished)?;
+    if let Err(error) = three::example(&unfinished.join("three")) {
+        println!("the example for three.js was left out: {error:#}");
+    }
     remove(&folder)?;
     fs::rename(&unfinished, &folder).with_context(|| format!("{} cannot be written", folder.display()))?;
     println!(

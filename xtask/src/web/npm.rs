@@ -1,4 +1,4 @@
-//! npm packages that check the page: an emulated headset for its tests, and a type checker.
+//! npm packages: an emulated headset for tests, a type checker, and what the package for three.js is tested with.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,7 +6,8 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-use crate::folders::{make_once, root, target_folder};
+use crate::apt;
+use crate::folders::{copy, make_once, root, target_folder};
 
 /// Returns the script of the Immersive Web Emulation Runtime, which emulates a headset in the page's tests.
 ///
@@ -14,6 +15,43 @@ use crate::folders::{make_once, root, target_folder};
 /// Fails if npm is missing, or cannot fetch the package.
 pub fn emulator() -> anyhow::Result<PathBuf> {
     fetch("iwer", "iwer@2.5.0", "build/iwer.min.js")
+}
+
+/// Returns the folder of the npm packages that the package for three.js is tested with: three.js in its oldest and its
+/// newest version, frameworks, a bundler. `tests/three/package.json` lists them.
+///
+/// # Errors
+/// Fails if npm is missing, or cannot fetch them.
+pub fn three() -> anyhow::Result<PathBuf> {
+    let (source, folder) = (root().join("tests/three"), target_folder()?.join("three"));
+    let lock = "package-lock.json";
+    let recipe = fs::read_to_string(source.join(lock)).with_context(|| format!("{lock} cannot be read"))?;
+    make_once(&folder, &recipe, || {
+        for name in ["package.json", lock] {
+            copy(&source.join(name), &folder.join(name))?;
+        }
+        let mut npm = npm();
+        npm.args(["ci", "--silent", "--ignore-scripts", "--no-audit", "--no-fund"]).current_dir(&folder);
+        let output = npm.output().context(NO_NPM)?;
+        if !output.status.success() {
+            bail!("npm cannot fetch three.js: {}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        Ok(())
+    })?;
+    Ok(folder.join("node_modules"))
+}
+
+const NO_NPM: &str = "npm cannot be started: apt-get install npm";
+
+/// Returns the command `npm`. Installs it if it is missing and apt has it.
+pub fn npm() -> Command {
+    if apt::find_program("npm").is_none()
+        && apt::find_program("apt-get").is_some()
+        && let Err(error) = apt::install(&[&["npm"]])
+    {
+        eprintln!("warning: {error:#}");
+    }
+    Command::new("npm")
 }
 
 /// Checks the types of the page's scripts by their JSDoc comments. Returns true if no fault was found. If the type
@@ -40,9 +78,9 @@ fn fetch(name: &str, package: &str, script: &str) -> anyhow::Result<PathBuf> {
     let script = folder.join("package").join(script);
     make_once(&folder, package, || {
         fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
-        let mut npm = Command::new("npm");
+        let mut npm = npm();
         npm.args(["pack", "--silent", package]).current_dir(&folder);
-        let output = npm.output().context("npm cannot be started: apt-get install npm")?;
+        let output = npm.output().context(NO_NPM)?;
         if !output.status.success() {
             bail!("npm cannot fetch {package}: {}", String::from_utf8_lossy(&output.stderr).trim());
         }

@@ -1,5 +1,8 @@
 //! The files of the shader kit: the gather pipeline and any view, for engines that bring their own passes.
 
+#[path = "three.rs"]
+mod three;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::io;
@@ -8,12 +11,13 @@ use std::path::Path;
 use yoro::synthesis::{PoseUniforms, Uniforms};
 
 /// Each file of the kit, and the file of `yoro-shaders` that it is made from.
-const SHADERS: [(&str, &str); 8] = [
+const SHADERS: [(&str, &str); 9] = [
     ("screen.vert", "screen.vert"),
     ("march.vert", "synthesis/march.vert"),
     ("tiles.frag", "synthesis/gather/tiles.frag"),
     ("spans.frag", "synthesis/gather/spans.frag"),
     ("march.frag", "synthesis/gather/march.frag"),
+    ("guessed_depth.frag", "synthesis/guessed_depth.frag"),
     ("any_view_tiles.frag", "synthesis/any_view/tiles.frag"),
     ("any_view_spans.frag", "synthesis/any_view/spans.frag"),
     ("any_view_march.frag", "synthesis/any_view/march.frag"),
@@ -58,6 +62,8 @@ pub fn write(folder: &Path) -> io::Result<()> {
     for (name, vertex, fragment, versions) in GODOT {
         put(&folder.join("godot").join(name), &godot(vertex, fragment, versions)?)?;
     }
+    fs::create_dir_all(folder.join("three"))?;
+    put(&folder.join("three/shaders.js"), &three::module()?)?;
     for (name, text) in [
         ("yoro_kit.h", include_str!("yoro_kit.h")),
         ("example.c", include_str!("example.c")),

@@ -3,12 +3,14 @@
 //! [`Gather`] takes a [`Warp`](crate::eyes::Warp) between parallel eyes, [`AnyView`] a
 //! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. Both are a [`Pipeline`], and need OpenGL
 //! ES 3.0, desktop OpenGL 4.5 (4.3 with GL_ARB_ES3_1_compatibility) or WebGL 2. `examples/engine.rs` uses one in a
-//! separate engine.
+//! separate engine. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
+//! be had.
 //!
 //! [`Context::set_profiling`] times the passes, named `gather tiles`, `gather spans` and `gather march`, or
 //! `any view tiles` and so on. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without
 //! waiting; [`Context::take_pass_times`] waits.
 
+mod guessed_depth;
 mod pipeline;
 
 use crate::synthesis::Uniforms;
@@ -16,6 +18,7 @@ use crate::synthesis::backend::{Places, WarpKind, map_sizes};
 use yoro_gl::Program;
 
 pub use glow;
+pub use guessed_depth::GuessedDepth;
 pub use pipeline::{AnyView, Gather, Pipeline};
 /// The types of `yoro-gl` that a host needs: its context in a wrapper, and where to draw.
 pub use yoro_gl::{Capabilities, Context, Destination, GlApi, GlError, PassTime, Profiling};

@@ -1,6 +1,7 @@
 //! The gather pipeline against its f64 reference, and the laws that it must keep, on every available GL backend.
 
 mod any_view;
+mod guessed_depth;
 mod host;
 mod parts;
 mod reference;

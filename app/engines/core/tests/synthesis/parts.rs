@@ -12,15 +12,15 @@ use yoro::opengl::{Context, Destination, Gather, GlState, Options, Outputs, Part
 use yoro_gl::{Filter, Format, RenderTarget};
 
 /// The corner of every source in its textures.
-const ORIGIN: [u32; 2] = [5, 3];
+pub const ORIGIN: [u32; 2] = [5, 3];
 const MARGIN: [u32; 2] = [9, 6];
 const LAYER: u32 = 1;
 
 /// A rendered eye in memory.
-struct Picture {
-    warp: Warp,
-    rgba: Vec<u8>,
-    depth: Vec<u8>,
+pub struct Picture {
+    pub warp: Warp,
+    pub rgba: Vec<u8>,
+    pub depth: Vec<u8>,
 }
 
 impl Picture {
@@ -33,13 +33,13 @@ impl Picture {
 }
 
 /// A colour and a depth texture, optionally arrays of two layers, with noise around the source.
-struct Textures {
+pub struct Textures {
     gl: Rc<Context>,
     names: [glow::Texture; 2],
 }
 
 impl Textures {
-    fn new(gl: &Rc<Context>, picture: &Picture, parts: bool, layers: bool) -> (Textures, Source) {
+    pub fn new(gl: &Rc<Context>, picture: &Picture, parts: bool, layers: bool) -> (Textures, Source) {
         let size = picture.warp.source_size;
         let (origin, image_size) =
             if parts { (ORIGIN, [0, 1].map(|i| ORIGIN[i] + size[i] + MARGIN[i])) } else { ([0, 0], size) };

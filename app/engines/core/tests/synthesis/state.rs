@@ -76,27 +76,27 @@ impl Lent {
         (
             self.target.read_rgba8(0, [0, 0], size),
             self.target.read_u32(1, [0, 0], size),
-            reader.read(gl, self.target.depth()),
+            reader.read(gl, self.target.depth().raw()),
         )
     }
 }
 
 /// Reads depth as bits, with its own pass: OpenGL ES cannot read depth back directly.
-struct DepthReader {
+pub struct DepthReader {
     program: glow::Program,
     vertex_array: glow::VertexArray,
     target: RenderTarget,
 }
 
 impl DepthReader {
-    fn new(gl: &Rc<Context>, size: [u32; 2]) -> DepthReader {
+    pub fn new(gl: &Rc<Context>, size: [u32; 2]) -> DepthReader {
         let fragment =
             "void main() { bits = floatBitsToUint(texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r); }";
         DepthReader {
             program: program(
                 gl,
                 "void main() { gl_Position = vec4(float(gl_VertexID / 2) * 4.0 - 1.0, float(gl_VertexID % 2) * 4.0 - 1.0, 0.0, 1.0); }",
-                &format!("uniform sampler2D depth; out uint bits; {fragment}"),
+                &format!("uniform highp sampler2D depth; out uint bits; {fragment}"),
             ),
             // SAFETY: plain creation.
             vertex_array: unsafe { gl.raw().create_vertex_array().unwrap() },
@@ -105,13 +105,14 @@ impl DepthReader {
     }
 
     /// Reads depth. Leaves a state in which nothing keeps draws from being visible.
-    fn read(self, gl: &Rc<Context>, depth: &Texture) -> Vec<u32> {
+    pub fn read(self, gl: &Rc<Context>, depth: glow::Texture) -> Vec<u32> {
         let raw = gl.raw();
         clean(gl);
         self.target.bind();
-        depth.bind(0);
         // SAFETY: live objects; the vertex array has no attributes.
         unsafe {
+            raw.active_texture(glow::TEXTURE0);
+            raw.bind_texture(glow::TEXTURE_2D, Some(depth));
             raw.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_COMPARE_MODE, glow::NONE as i32);
             raw.use_program(Some(self.program));
             raw.bind_vertex_array(Some(self.vertex_array));
