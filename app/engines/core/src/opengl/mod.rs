@@ -4,16 +4,20 @@
 //! [`PoseWarp`](crate::eyes::PoseWarp) to a view in any pose near the source's. Both are a [`Pipeline`], and need OpenGL
 //! ES 3.0, desktop OpenGL 4.5 or WebGL 2. `examples/engine.rs` uses one in a separate engine.
 //!
+//! A [`Composer`] makes an eye from the levels of a foveated view.
+//!
 //! [`Context::set_profiling`] times the passes, named `gather tiles`, `gather spans` and `gather march`, or
-//! `any view tiles` and so on. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without
+//! `any view tiles` and so on, and `compose`. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without
 //! waiting; [`Context::take_pass_times`] waits.
 
+mod composer;
 mod pipeline;
 
 use crate::synthesis::Uniforms;
 use crate::synthesis::backend::{Places, WarpKind, map_sizes};
 use yoro_gl::Program;
 
+pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
 pub use glow;
 pub use pipeline::{AnyView, Gather, Pipeline};
 /// The types of `yoro-gl` that a host needs: its context in a wrapper, and where to draw.

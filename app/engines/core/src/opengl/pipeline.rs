@@ -210,7 +210,12 @@ impl<W: WarpKind> Pipeline<W> {
 }
 
 /// Runs `body`, and restores the host's state afterwards, even if it fails, if the options say so.
-fn preserving<R>(gl: &Context, options: &Options, outputs: Outputs, body: impl FnOnce() -> R) -> R {
+pub(super) fn preserving<R>(
+    gl: &Context,
+    options: &Options,
+    outputs: Outputs,
+    body: impl FnOnce() -> R,
+) -> R {
     if options.gl_state == GlState::Leave {
         return body();
     }
