@@ -2,6 +2,7 @@
 
 mod any_view;
 mod host;
+mod levels;
 mod parts;
 mod reference;
 mod state;
