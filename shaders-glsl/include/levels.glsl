@@ -4,9 +4,11 @@
 
 #include "include/interface.glsl"
 
-TEXTURE(0) uniform highp sampler2D inset_depth;  // nearest; read only if inset_source.z is not 0
-TEXTURE(1) uniform sampler2D wide_map;           // linear
-TEXTURE(2) uniform sampler2D inset_map;          // linear
+// Not filtered; read only if inset_source.z is not 0.
+TEXTURE(0) uniform highp sampler2D inset_depth;
+// Filtered linearly.
+TEXTURE(1) uniform sampler2D wide_map;
+TEXTURE(2) uniform sampler2D inset_map;
 
 #ifdef UNIFORM_BLOCK
 UNIFORM_BLOCK uniform Levels {
