@@ -101,12 +101,7 @@ impl LevelUniforms {
 
     /// Returns the uniforms for images whose rows are counted from the top.
     pub fn rows_from_top(composition: &Composition, places: &LevelPlaces) -> LevelUniforms {
-        let turned = Composition {
-            wide: composition.wide.rows_from_top(),
-            inset: composition.inset.map(|inset| InsetPlace { place: inset.place.rows_from_top(), ..inset }),
-            ..*composition
-        };
-        LevelUniforms::new(&turned, places)
+        LevelUniforms::new(&composition.rows_from_top(), places)
     }
 
     fn with_inset(self, inset: &InsetPlace, places: &LevelPlaces) -> LevelUniforms {

@@ -73,6 +73,14 @@ impl Level {
     }
 }
 
+impl Composition {
+    /// Returns the composition of images whose rows are counted from the top, or the other way round.
+    pub fn rows_from_top(&self) -> Composition {
+        let inset = self.inset.map(|inset| InsetPlace { place: inset.place.rows_from_top(), ..inset });
+        Composition { wide: self.wide.rows_from_top(), inset, ..*self }
+    }
+}
+
 impl LevelPlace {
     /// Returns the place of a level in an image, by the frusta of both.
     fn new(shown: &Frustum, level: &Frustum, size: [u32; 2]) -> LevelPlace {
