@@ -343,9 +343,9 @@ static inline void yoro_kit_compose(const YoroKitEyes *shown, const YoroKitEyes 
     const double per_column = 2.0 / u->source_size[0], across = u->target_size[0] * per_column;
     const double shift = -u->law[0] * per_column - 1;
     /* Columns of a right eye are counted from the right. */
-    block->inset_source[0] = (float)(u->mirrored ? -across : across);
-    block->inset_source[1] = (float)(u->mirrored ? across + shift : shift);
-    block->inset_source[2] = (float)(-u->law[1] * per_column);
+    block->inset_source[0] = (float)across;
+    block->inset_source[1] = (float)(u->mirrored ? -across - shift : shift);
+    block->inset_source[2] = (float)(u->mirrored ? u->law[1] * per_column : -u->law[1] * per_column);
   }
 }
 
