@@ -64,7 +64,7 @@ pub struct Case {
 impl Case {
     fn new(name: &str, levels: Levels, eye: Eye, with_depth: bool, seed: u64) -> Case {
         let mut rng = rand_pcg::Pcg32::seed_from_u64(seed);
-        let margins = if seed % 2 == 0 { [[3, 5], [4, 1]] } else { [[0; 2]; 2] };
+        let margins = if seed.is_multiple_of(2) { [[3, 5], [4, 1]] } else { [[0; 2]; 2] };
         let wide = LevelPicture::new(levels.wide.eyes.size, margins, &mut rng);
         let inset = levels.inset.map(|level| LevelPicture::new(level.eyes.size, margins, &mut rng));
         let depth = inset.as_ref().filter(|_| with_depth).map(|inset| {
