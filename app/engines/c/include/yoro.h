@@ -60,6 +60,9 @@
  * A VIEW IN ANY POSE near the rendered one: warp_kind = YORO_WARP_KIND_POSE at creation, yoro_guarded_view for what to render,
  * yoro_pose_warp for the newest pose, and the calls that end in _pose.
  *
+ * A FOVEATED VIEW: yoro_levels_from_eyes in place of yoro_views_from_eyes gives a wide view of few pixels and an inset of all where the
+ * eyes look. Render and synthesize both, then make each eye of them: composes = 1 at creation, yoro_gl_compose or yoro_vk_compose.
+ *
  * RULES. Structures begin with their size, so that a program keeps working with later versions: set struct_size, or call
  * YORO_INIT(eyes), which C89 and C++ before 20 need. Each function returns 0 or a negative YoroResult, and may also return
  * YORO_ERROR_INTERNAL. yoro_result_text names it, and the callback in messages gets a sentence with the mistake and the remedy.

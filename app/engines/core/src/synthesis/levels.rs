@@ -25,21 +25,6 @@ pub struct LevelPlaces {
     pub depth: bool,
 }
 
-impl LevelPlaces {
-    /// Returns the places of levels that fill their textures.
-    pub fn whole(composition: &Composition) -> LevelPlaces {
-        let inset_image = composition.inset.map_or([1, 1], |inset| inset.place.size);
-        LevelPlaces {
-            target: [0, 0],
-            wide: [0, 0],
-            wide_image: composition.wide.size,
-            inset: [0, 0],
-            inset_image,
-            depth: false,
-        }
-    }
-}
-
 /// The affine map of a place: `scale * place + offset` along X and Y.
 #[derive(Clone, Copy)]
 struct Map {

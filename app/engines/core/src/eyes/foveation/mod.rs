@@ -55,8 +55,8 @@ const RADIANS_PER_DEGREE: f32 = std::f32::consts::PI / 180.0;
 /// No view reaches further from its axis than 80 degrees.
 const LARGEST_ANGLE: f32 = 80.0 * RADIANS_PER_DEGREE;
 
-/// The strength of foveation, as OpenXR's runtimes name it. `Medium` was measured (`docs/engines.md`); `Low` has a larger
-/// inset, `High` a coarser wide view.
+/// The strength of foveation, as OpenXR's runtimes name it: `Low` has a larger inset than `Medium`, `High` a coarser wide
+/// view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
