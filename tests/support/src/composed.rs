@@ -110,6 +110,14 @@ impl Case {
         (inside.abs() > 0.01).then_some(if inside > 0.0 { share } else { 0.0 })
     }
 
+    /// Returns the number of the inset's pixels that are holes at the border of what was rendered.
+    pub fn border_holes(&self) -> usize {
+        let Some((level, picture)) = self.levels.inset.as_ref().zip(self.inset.as_ref()) else { return 0 };
+        let [width, height] = picture.size;
+        let pixels = (0..width * height).map(|i| [f64::from(i % width) + 0.5, f64::from(i / width) + 0.5]);
+        pixels.filter(|&at| self.share(level, picture, at) == Some(0.0)).count()
+    }
+
     /// Returns the eye's colours, `None` where they depend on rounding.
     pub fn reference(&self) -> Vec<Option<[f64; 4]>> {
         let shown = &self.levels.shown;
