@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use glam::Vec3;
 use serde::Serialize;
 use yoro::eyes::GuardBand;
-use yoro::opengl::{AnyView, Gather, GuessedDepth, Options, Outputs};
+use yoro::opengl::{AnyView, Composer, Gather, GlState, GuessedDepth, Options, Outputs};
 use yoro_assets::{Scene, ShadingStyle};
 use yoro_bench::inpaint::{self, PatcherKind, PatcherOptions};
 use yoro_estimate::Recorder;
@@ -66,6 +66,7 @@ fn synthesis(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<()> {
     for depth in [false, true] {
         AnyView::new(gl, &Options::default(), Outputs { depth, ..Outputs::default() })?;
     }
+    Composer::new(gl, GlState::Leave, false)?;
     if variants == Variants::Every {
         let sources = [(true, false, false), (false, true, false), (true, true, false), (false, false, true)];
         for (parts, array_textures, depth_pairs) in sources {

@@ -8,6 +8,7 @@
 pub mod against_opengl;
 pub mod browser;
 pub mod compiled;
+pub mod composed;
 pub mod harness;
 pub mod in_memory;
 pub mod laws;

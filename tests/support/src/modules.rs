@@ -5,11 +5,12 @@ pub type Module = (&'static str, &'static str, &'static [&'static str]);
 
 const MARCH: &str = "synthesis/gather/march.frag";
 const ANY_VIEW: &str = "synthesis/any_view/march.frag";
-pub const MODULES: [Module; 10] = [
+pub const MODULES: [Module; 11] = [
     ("any-view-march", ANY_VIEW, &[]),
     ("any-view-march-depth", ANY_VIEW, &["WRITE_DEPTH"]),
     ("any-view-spans", "synthesis/any_view/spans.frag", &[]),
     ("any-view-tiles", "synthesis/any_view/tiles.frag", &[]),
+    ("compose", "synthesis/compose.frag", &[]),
     ("march", MARCH, &[]),
     ("march-depth", MARCH, &["WRITE_DEPTH"]),
     ("march-vertex", "synthesis/march.vert", &[]),

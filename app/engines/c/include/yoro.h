@@ -62,6 +62,9 @@
  * A VIEW IN ANY POSE near the rendered one: warp_kind = YORO_WARP_KIND_POSE at creation, yoro_guarded_view for what to render,
  * yoro_pose_warp for the newest pose, and the calls that end in _pose.
  *
+ * A FOVEATED VIEW: yoro_levels_from_eyes in place of yoro_views_from_eyes gives a wide view of few pixels and an inset of all where the
+ * eyes look. Render and synthesize both, then make each eye of them: composes = 1 at creation, yoro_gl_compose or yoro_vk_compose.
+ *
  * RULES. Structures begin with their size, so that a program keeps working with later versions: set struct_size, or call
  * YORO_INIT(eyes), which C89 and C++ before 20 need. Each function returns 0 or a negative YoroResult, and may also return
  * YORO_ERROR_INTERNAL. yoro_result_text names it, and the callback in messages gets a sentence with the mistake and the remedy.
@@ -112,6 +115,26 @@
  * A guard band, in metres, that is complete for everything farther away than an arm's length.
  */
 #define YORO_GUARD_BAND 1.0
+
+/**
+ * All pixels everywhere.
+ */
+#define YORO_FOVEATION_OFF 0
+
+/**
+ * An inset of 30 degrees around the gaze, half of the pixels along each axis beyond.
+ */
+#define YORO_FOVEATION_LOW 1
+
+/**
+ * An inset of 20 degrees, half of the pixels along each axis beyond.
+ */
+#define YORO_FOVEATION_MEDIUM 2
+
+/**
+ * An inset of 20 degrees, a third of the pixels along each axis beyond.
+ */
+#define YORO_FOVEATION_HIGH 3
 
 /**
  * Finds out whether two renders or one render with synthesis is cheaper on this device. It alternates between them for
@@ -807,6 +830,108 @@ typedef struct {
 } YoroChoice;
 
 /**
+ * The strength of foveation, as OpenXR's runtimes name it.
+ */
+typedef uint32_t YoroFoveationLevel;
+
+/**
+ * How much of the eyes' images is rendered with all pixels.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroFoveation).
+   */
+  uint32_t struct_size;
+  /**
+   * The strength.
+   */
+  YoroFoveationLevel level;
+  /**
+   * Angle in radians around the gaze that has all pixels. 0: that of the level.
+   */
+  float radius;
+  /**
+   * Pixels of the wide view for each pixel of an eye's image, along each axis, at most 1. 0: that of the level.
+   */
+  float density;
+  /**
+   * The distance in metres from which on the other eye's inset is complete. 0: 0.5.
+   */
+  float nearest;
+  /**
+   * Angle in radians beyond the radius over which the inset fades into the wide view. 0: a hard seam.
+   */
+  float fade;
+  /**
+   * 0: the inset lies around each eye's own axis. 1: around `gaze`, for both.
+   */
+  uint32_t tracked;
+  /**
+   * A direction in the world, of any length.
+   */
+  float gaze[3];
+} YoroFoveation;
+
+/**
+ * How an eye's image is made of its levels. yoro_levels_from_eyes fills it. It can be copied and kept.
+ *
+ * Places in images are from 0 to 1, from the left and from row 0. The place p in the eye's image is the place scale * p
+ * + offset in that of a level.
+ */
+typedef struct {
+  /**
+   * Width of the eye's image in pixels.
+   */
+  uint32_t width;
+  /**
+   * Height of the eye's image in pixels.
+   */
+  uint32_t height;
+  /**
+   * Width of the wide level's image in pixels.
+   */
+  uint32_t wide_width;
+  /**
+   * Height of the wide level's image in pixels.
+   */
+  uint32_t wide_height;
+  /**
+   * Width of the inset's image in pixels; 0 if there is only one level.
+   */
+  uint32_t inset_width;
+  /**
+   * Height of the inset's image in pixels; 0 if there is only one level.
+   */
+  uint32_t inset_height;
+  /**
+   * Columns and rows over which the inset fades in; 0 for a hard seam.
+   */
+  float inset_fade[2];
+  /**
+   * Places in the wide level.
+   */
+  double wide_scale[2];
+  /**
+   * Places in the wide level.
+   */
+  double wide_offset[2];
+  /**
+   * Places in the inset.
+   */
+  double inset_scale[2];
+  /**
+   * Places in the inset.
+   */
+  double inset_offset[2];
+  /**
+   * Of the synthesized eye: with the depth d, what the inset shows at the place x comes from the place
+   * inset_source[0] * x + inset_source[1] + inset_source[2] * d of the rendered image, whose borders are -1 and 1.
+   * Zeros for the rendered eye.
+   */
+  double inset_source[3];
+} YoroComposition;
+
+/**
  * Two views of a scene: a rendered one, and one in any pose near it.
  */
 typedef struct {
@@ -1087,9 +1212,9 @@ typedef struct {
    */
   YoroWarpKind warp_kind;
   /**
-   * Must be 0.
+   * 1: compiles the composer, too, for yoro_gl_compose. 0: it is not used.
    */
-  uint32_t reserved;
+  uint32_t composes;
   /**
    * The loader of entry points.
    */
@@ -1156,6 +1281,75 @@ typedef struct {
    */
   uint32_t layer;
 } YoroGlImages;
+
+/**
+ * The images of an eye's levels, and where its image is drawn. Rows are counted from the bottom.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroGlLevels).
+   */
+  uint32_t struct_size;
+  /**
+   * Colour of the wide level: name of a GL_TEXTURE_2D in any filterable format. Of the rendered eye it is the
+   * rendered image, in which the level begins at crop_x and crop_y; of the other, the synthesized one.
+   */
+  uint32_t wide_texture;
+  /**
+   * First column of the wide level in its texture.
+   */
+  uint32_t wide_x;
+  /**
+   * First row of the wide level in its texture.
+   */
+  uint32_t wide_y;
+  /**
+   * Width of the texture in pixels; 0 if the level fills it.
+   */
+  uint32_t wide_image_width;
+  /**
+   * Height of the texture in pixels; 0 if the level fills it.
+   */
+  uint32_t wide_image_height;
+  /**
+   * Colour of the inset, in the same way; ignored for a composition of one level.
+   */
+  uint32_t inset_texture;
+  /**
+   * Depth of the synthesized eye's inset, in a texture of the same size, or 0. With it, holes at the border of what was
+   * rendered show the wide view.
+   */
+  uint32_t inset_depth_texture;
+  /**
+   * First column of the inset in its texture.
+   */
+  uint32_t inset_x;
+  /**
+   * First row of the inset in its texture.
+   */
+  uint32_t inset_y;
+  /**
+   * Width of the texture in pixels; 0 if the inset fills it.
+   */
+  uint32_t inset_image_width;
+  /**
+   * Height of the texture in pixels; 0 if the inset fills it.
+   */
+  uint32_t inset_image_height;
+  /**
+   * The framebuffer to draw into, or 0 for the window's. Its first colour attachment is written. None of the textures
+   * above may be attached to it.
+   */
+  uint32_t framebuffer;
+  /**
+   * First column of the eye's image in the framebuffer.
+   */
+  uint32_t x;
+  /**
+   * First row of the eye's image in the framebuffer.
+   */
+  uint32_t y;
+} YoroGlLevels;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1301,6 +1495,28 @@ YoroResult yoro_chooser_scene_changed(YoroChooser *chooser);
 void yoro_chooser_destroy(YoroChooser *chooser);
 
 /**
+ * Computes the levels of a foveated view: a wide one of few pixels, and an inset of all of them where the eyes look.
+ * Render and synthesize each as the views of yoro_views_from_eyes, then compose each eye: yoro_gl_compose,
+ * yoro_vk_compose, or your own pass with the shader kit. The guard band of the eyes is that of the wide level.
+ *
+ * Call it from any thread, without a context. It allocates and keeps nothing. Sizes do not depend on a tracked gaze.
+ *
+ * @param eyes         The eyes.
+ * @param foveation    What is rendered with all pixels.
+ * @param wide         Receives the views of the wide level. The caller sets struct_size.
+ * @param inset        Receives the views of the inset, all zeros if there is only one level: without foveation, or if
+ *                     an inset would save no pixels. The caller sets struct_size.
+ * @param compositions Receives how to compose the left and the right eye.
+ * @pre All pointers point to structures, of the sizes that they state, and `compositions` to two.
+ * @return YORO_ERROR_VALUE for an impossible foveation; those of yoro_views_from_eyes.
+ */
+YoroResult yoro_levels_from_eyes(const YoroEyes *eyes,
+                                 const YoroFoveation *foveation,
+                                 YoroViews *wide,
+                                 YoroViews *inset,
+                                 YoroComposition *compositions);
+
+/**
  * Computes the mapping of pixels from a rendered view to one in any pose near it.
  *
  * Call it from any thread, without a context. It allocates and keeps nothing.
@@ -1415,6 +1631,26 @@ YoroResult yoro_gl_synthesize_pose(YoroContext *context,
                                    const YoroPoseWarp *warp,
                                    const YoroGlImages *images);
 
+/**
+ * Composes an eye of its levels into a rectangle of its size, and overwrites all of it: the inset where it covers the eye
+ * and has no hole at the border of what was rendered, else the wide view, bilinearly. The context must have been
+ * created with `composes`; its warp_kind and sources do not matter.
+ *
+ * Call it on the thread on which the GL context is current. YoroGlInfo says how GL state is treated. It allocates and
+ * compiles nothing, and does not wait for the GPU.
+ *
+ * @param context     The context.
+ * @param composition The eye's composition, from yoro_levels_from_eyes with YORO_ROWS_UP.
+ * @param levels      The images to read and where to draw.
+ * @pre As for yoro_gl_synthesize.
+ * @return YORO_ERROR_UNSUPPORTED without `composes`, YORO_ERROR_VALUE, YORO_ERROR_TOO_LARGE; with `check` also
+ *         YORO_ERROR_FORMAT and YORO_ERROR_DRIVER; YORO_ERROR_API, YORO_ERROR_BUSY, YORO_ERROR_NULL,
+ *         YORO_ERROR_STRUCT_SIZE.
+ */
+YoroResult yoro_gl_compose(YoroContext *context,
+                           const YoroComposition *composition,
+                           const YoroGlLevels *levels);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  /* __cplusplus */
@@ -1502,9 +1738,9 @@ typedef struct {
    */
   YoroWarpKind warp_kind;
   /**
-   * Must be 0.
+   * 1: makes a composer, too, for yoro_vk_compose. 0: it is not used.
    */
-  uint32_t reserved;
+  uint32_t composes;
   /**
    * A pipeline cache, or VK_NULL_HANDLE.
    */
@@ -1722,6 +1958,96 @@ typedef struct {
   const YoroVkUses *uses;
 } YoroVkFrame;
 
+/**
+ * The images of an eye's levels.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroVkLevels).
+   */
+  uint32_t struct_size;
+  /**
+   * Width of the wide level's image in pixels; the level may be a part of it.
+   */
+  uint32_t wide_width;
+  /**
+   * Height of the wide level's image in pixels.
+   */
+  uint32_t wide_height;
+  /**
+   * Width of the inset's images in pixels; 0 for one level.
+   */
+  uint32_t inset_width;
+  /**
+   * Height of the inset's images in pixels; 0 for one level.
+   */
+  uint32_t inset_height;
+  /**
+   * 1: `inset_depth` is given. 0: it is ignored.
+   */
+  uint32_t has_depth;
+  /**
+   * Colour of the wide level in any filterable format. Of the rendered eye it is the rendered image, in which the
+   * level begins at crop_x and crop_y; of the other, the synthesized one.
+   */
+  YoroVkImage wide;
+  /**
+   * Colour of the inset, in the same way; ignored for one level.
+   */
+  YoroVkImage inset;
+  /**
+   * Depth of the synthesized eye's inset. With it, holes at the border of what was rendered show the wide view.
+   */
+  YoroVkImage inset_depth;
+} YoroVkLevels;
+
+/**
+ * The id of registered levels, never 0.
+ */
+typedef uint32_t YoroVkLevelsId;
+
+/**
+ * The images of one call of yoro_vk_compose, and the rectangles in them.
+ */
+typedef struct {
+  /**
+   * sizeof(YoroVkComposed).
+   */
+  uint32_t struct_size;
+  /**
+   * The images to read.
+   */
+  YoroVkLevelsId levels;
+  /**
+   * First column of the wide level.
+   */
+  uint32_t wide_x;
+  /**
+   * First row of the wide level. Row 0 is the first in memory.
+   */
+  uint32_t wide_y;
+  /**
+   * First column of the inset.
+   */
+  uint32_t inset_x;
+  /**
+   * First row of the inset.
+   */
+  uint32_t inset_y;
+  /**
+   * The image to write, of yoro_vk_register_composed.
+   */
+  YoroVkTargetId target;
+  /**
+   * First column of the eye's image.
+   */
+  uint32_t target_x;
+  /**
+   * First row of the eye's image.
+   */
+  uint32_t target_y;
+} YoroVkComposed;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -1843,6 +2169,72 @@ YoroResult yoro_vk_record_pose(YoroContext *context,
                                VkCommandBuffer commands,
                                const YoroPoseWarp *warp,
                                const YoroVkFrame *frame);
+
+/**
+ * Creates views and descriptors for the levels of an eye, in a context that was created with `composes`. Otherwise it is
+ * like yoro_vk_register_source.
+ *
+ * @param context The context.
+ * @param levels  The images.
+ * @param id      Receives their id.
+ * @pre The images live until the id is released or the context is destroyed.
+ * @return YORO_ERROR_UNSUPPORTED without `composes`; those of yoro_vk_register_source.
+ */
+YoroResult yoro_vk_register_levels(YoroContext *context,
+                                   const YoroVkLevels *levels,
+                                   YoroVkLevelsId *id);
+
+/**
+ * Creates views for an image to compose eyes in: that of yoro_vk_register_target, but for yoro_vk_compose. Depth is
+ * ignored.
+ *
+ * @param context The context.
+ * @param target  The image.
+ * @param id      Receives its id.
+ * @pre As for yoro_vk_register_target.
+ * @return YORO_ERROR_UNSUPPORTED without `composes`; those of yoro_vk_register_target.
+ */
+YoroResult yoro_vk_register_composed(YoroContext *context,
+                                     const YoroVkTarget *target,
+                                     YoroVkTargetId *id);
+
+/**
+ * Releases the objects of levels. Does nothing if the id is not registered. Thread and results are as for
+ * yoro_vk_release_source.
+ *
+ * @param context The context.
+ * @param id      The id from yoro_vk_register_levels.
+ * @pre No command that was recorded with the id is pending.
+ */
+YoroResult yoro_vk_release_levels(YoroContext *context, YoroVkLevelsId id);
+
+/**
+ * Releases the objects of an image to compose eyes in. Does nothing if the id is not registered. Thread and results are
+ * as for yoro_vk_release_source.
+ *
+ * @param context The context.
+ * @param id      The id from yoro_vk_register_composed.
+ * @pre No command that was recorded with the id is pending.
+ */
+YoroResult yoro_vk_release_composed(YoroContext *context,
+                                    YoroVkTargetId id);
+
+/**
+ * Records the composition of an eye of its levels into a rectangle of its size, and overwrites all of it: the inset where
+ * it covers the eye and has no hole at the border of what was rendered, else the wide view, bilinearly. Records barriers
+ * and one draw. Otherwise it is like yoro_vk_record.
+ *
+ * @param context     The context.
+ * @param commands    A command buffer of the device.
+ * @param composition The eye's composition, from yoro_levels_from_eyes with YORO_ROWS_DOWN.
+ * @param frame       The images to read and where to draw.
+ * @pre As for yoro_vk_record.
+ * @return YORO_ERROR_UNSUPPORTED without `composes`; those of yoro_vk_record.
+ */
+YoroResult yoro_vk_compose(YoroContext *context,
+                           VkCommandBuffer commands,
+                           const YoroComposition *composition,
+                           const YoroVkComposed *frame);
 
 #ifdef __cplusplus
 }

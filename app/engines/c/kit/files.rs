@@ -8,7 +8,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use yoro::synthesis::{PoseUniforms, Uniforms};
+use yoro::synthesis::{LevelUniforms, PoseUniforms, Uniforms};
 
 /// Each file of the kit, and the file of `yoro-shaders` that it is made from.
 const SHADERS: [(&str, &str); 9] = [
@@ -21,6 +21,7 @@ const SHADERS: [(&str, &str); 9] = [
     ("any_view_tiles.frag", "synthesis/any_view/tiles.frag"),
     ("any_view_spans.frag", "synthesis/any_view/spans.frag"),
     ("any_view_march.frag", "synthesis/any_view/march.frag"),
+    ("compose.frag", "synthesis/compose.frag"),
 ];
 /// Names and values of macros.
 type Macros = &'static [(&'static str, &'static str)];
@@ -32,7 +33,7 @@ const APIS: [(&str, &str, Macros); 2] = [
 ];
 
 /// Each file for Godot, which has both stages in one, with its two shaders, and its versions by name and macros, if it needs any.
-const GODOT: [(&str, &str, &str, Versions); 6] = [
+const GODOT: [(&str, &str, &str, Versions); 7] = [
     ("tiles.glsl", "screen.vert", "synthesis/gather/tiles.frag", &[]),
     ("spans.glsl", "screen.vert", "synthesis/gather/spans.frag", &[]),
     (
@@ -44,6 +45,7 @@ const GODOT: [(&str, &str, &str, Versions); 6] = [
     ("any_view_tiles.glsl", "screen.vert", "synthesis/any_view/tiles.frag", &[]),
     ("any_view_spans.glsl", "screen.vert", "synthesis/any_view/spans.frag", &[]),
     ("any_view_march.glsl", "screen.vert", "synthesis/any_view/march.frag", &[("depth", &["WRITE_DEPTH"])]),
+    ("compose.glsl", "screen.vert", "synthesis/compose.frag", &[]),
 ];
 type Versions = &'static [(&'static str, &'static [&'static str])];
 
@@ -73,6 +75,7 @@ pub fn write(folder: &Path) -> io::Result<()> {
         put(&folder.join(name), text)?;
     }
     let text = include_str!("README.md").replace("POSE_UNIFORMS\n", &table(PoseUniforms::LAYOUT));
+    let text = text.replace("LEVEL_UNIFORMS\n", &table(LevelUniforms::LAYOUT));
     put(&folder.join("README.md"), &text.replace("UNIFORMS\n", &table(Uniforms::LAYOUT)))
 }
 

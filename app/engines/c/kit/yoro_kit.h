@@ -232,4 +232,121 @@ static inline int yoro_kit_any_view(const YoroKitView *source, const YoroKitView
   return 1;
 }
 
+/* How much of a foveated view is rendered with all pixels. */
+typedef struct {
+  float radius;  /* angle in radians around the gaze, more than 0, less than 1.39 */
+  float density; /* pixels of the wide view for each pixel of an eye, along each axis: 0.5 */
+  float nearest; /* metres from which on the other eye's inset is complete: 0.5 */
+  float gaze[2]; /* where both eyes look: tangents to the right and up; 0, 0 for fixed foveation along the axis */
+} YoroKitFoveation;
+
+/*
+ * Computes the two levels of a foveated view: eyes for yoro_kit_views, each to be rendered and synthesized apart. Sizes do
+ * not depend on the gaze. Returns 0 if numbers are out of range, or if an inset would save no pixels: render `shown` then.
+ */
+static inline int yoro_kit_levels(const YoroKitEyes *shown, const YoroKitFoveation *foveation, YoroKitEyes *wide,
+                                  YoroKitEyes *inset) {
+  const YoroKitFrustum l = shown->frusta[0], r = shown->frusta[1];
+  const double extent[2] = {(double)l.right - l.left, (double)l.up - l.down};
+  const double lows[2] = {fmin(l.left, r.left), fmin(l.down, r.down)}, highs[2] = {fmax(l.right, r.right), fmax(l.up, r.up)};
+  const int sides[2] = {shown->width, shown->height};
+  int size[2], coarse[2];
+  double corner[2];
+  *wide = *inset = *shown;
+  /* Written so that numbers that are not finite fail, too. */
+  if (!(sides[0] > 0 && sides[0] <= YORO_KIT_MAX_SIDE && sides[1] > 0 && sides[1] <= YORO_KIT_MAX_SIDE && extent[0] > 0 &&
+        extent[1] > 0 && isfinite(extent[0]) && isfinite(extent[1]) && foveation->radius > 0 && foveation->radius < 1.39f &&
+        foveation->density > 0 && foveation->density <= 1 && foveation->nearest > 0))
+    return 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double pixel = extent[axis] / sides[axis], gaze = isfinite(foveation->gaze[axis]) ? foveation->gaze[axis] : 0;
+    const double columns = ceil(2 * tan(foveation->radius) / pixel) + 1;
+    size[axis] = columns < sides[axis] ? (int)columns : sides[axis];
+    coarse[axis] = yoro_kit_ceil(sides[axis] * (double)foveation->density);
+    /* From the left eye's corner, in whole pixels, within what the eyes see together. */
+    const double own = axis ? l.down : l.left;
+    const double place = fmin(fmax(gaze - size[axis] * pixel / 2, lows[axis]), highs[axis] - size[axis] * pixel);
+    corner[axis] = round((place - own) / pixel) * pixel;
+  }
+  if ((int64_t)size[0] * size[1] + (int64_t)coarse[0] * coarse[1] >= (int64_t)sides[0] * sides[1]) return 0;
+  wide->width = coarse[0] > 0 ? coarse[0] : 1, wide->height = coarse[1] > 0 ? coarse[1] : 1;
+  inset->width = size[0], inset->height = size[1], inset->guard_band = foveation->nearest;
+  for (int eye = 0; eye < 2; ++eye) {
+    /* The right eye's pixels are not the left eye's: the same tangents, from the right eye's nearest pixel. */
+    YoroKitFrustum *f = &inset->frusta[eye];
+    const double dx = extent[0] / sides[0], dy = extent[1] / sides[1];
+    const double apart_x = round((l.left - (double)f->left) / dx) * dx, apart_y = round((l.down - (double)f->down) / dy) * dy;
+    const double left = f->left + corner[0] + apart_x, down = f->down + corner[1] + apart_y;
+    f->left = (float)left, f->right = (float)(left + size[0] * dx);
+    f->down = (float)down, f->up = (float)(down + size[1] * dy);
+  }
+  return 1;
+}
+
+/* The block `Levels` of compose.frag, in std140: 128 bytes, which fit push constants. */
+typedef struct {
+  float eye_place[4], wide_place[4], wide_bounds[4], inset_place[4], inset_part[4], inset_bounds[4], inset_source[4];
+  float inset_ramp[2], padding[2];
+} YoroKitLevelUniforms;
+
+/* A level of one eye in its texture. */
+typedef struct {
+  int x, y;                         /* its corner, on the side of row 0 */
+  int texture_width, texture_height; /* of the texture */
+} YoroKitPart;
+
+/* Texture coordinates of a part of a texture, and of the middles of its outermost pixels. */
+static inline void yoro_kit_part(const YoroKitEyes *level, const YoroKitPart *part, double scale[2], double offset[2], float bounds[4]) {
+  const double corner[2] = {(double)part->x, (double)part->y}, size[2] = {(double)level->width, (double)level->height};
+  const double texture[2] = {(double)part->texture_width, (double)part->texture_height};
+  for (int axis = 0; axis < 2; ++axis) {
+    scale[axis] = size[axis] / texture[axis], offset[axis] = corner[axis] / texture[axis];
+    bounds[axis] = (float)((corner[axis] + 0.5) / texture[axis]);
+    bounds[axis + 2] = (float)((corner[axis] + size[axis] - 0.5) / texture[axis]);
+  }
+}
+
+/*
+ * Computes the uniforms that make the image of an eye, 0 left, 1 right, from its levels. Of the rendered eye, the levels
+ * are the crops of the rendered images, of the other eye the synthesized ones. `views` are those of the inset if
+ * inset_depth is bound, the other eye's depth: its holes at the border of what was rendered then show the wide view. NULL:
+ * they show what they were filled with. x and y are the corner of the eye's image in its target.
+ */
+static inline void yoro_kit_compose(const YoroKitEyes *shown, const YoroKitEyes *wide, const YoroKitEyes *inset, int eye,
+                                    const YoroKitPart *wide_part, const YoroKitPart *inset_part,
+                                    const YoroKitViews *views, int x, int y, YoroKitLevelUniforms *block) {
+  const YoroKitFrustum s = shown->frusta[eye != 0], w = wide->frusta[eye != 0], i = inset->frusta[eye != 0];
+  const double corners[2] = {(double)x, (double)y}, sides[2] = {(double)shown->width, (double)shown->height};
+  /* From row 0. */
+  const double down = shown->rows_down;
+  const double lows[3][2] = {{s.left, down ? -s.up : s.down}, {w.left, down ? -w.up : w.down}, {i.left, down ? -i.up : i.down}};
+  const double extents[3][2] = {{(double)s.right - s.left, (double)s.up - s.down},
+                                {(double)w.right - w.left, (double)w.up - w.down},
+                                {(double)i.right - i.left, (double)i.up - i.down}};
+  double scale[2], offset[2], part_scale[2], part_offset[2];
+  memset(block, 0, sizeof *block);
+  yoro_kit_part(wide, wide_part, part_scale, part_offset, block->wide_bounds);
+  for (int axis = 0; axis < 2; ++axis) {
+    block->eye_place[axis] = (float)(1 / sides[axis]), block->eye_place[axis + 2] = (float)(-corners[axis] / sides[axis]);
+    scale[axis] = extents[0][axis] / extents[1][axis], offset[axis] = (lows[0][axis] - lows[1][axis]) / extents[1][axis];
+    block->wide_place[axis] = (float)(part_scale[axis] * scale[axis]);
+    block->wide_place[axis + 2] = (float)(part_scale[axis] * offset[axis] + part_offset[axis]);
+    block->inset_place[axis] = (float)(extents[0][axis] / extents[2][axis]);
+    block->inset_place[axis + 2] = (float)((lows[0][axis] - lows[2][axis]) / extents[2][axis]);
+    block->inset_ramp[axis] = 1e6f;
+  }
+  yoro_kit_part(inset, inset_part, part_scale, part_offset, block->inset_bounds);
+  for (int axis = 0; axis < 2; ++axis)
+    block->inset_part[axis] = (float)part_scale[axis], block->inset_part[axis + 2] = (float)part_offset[axis];
+  if (views && (eye != 0) != (inset->rendered != 0)) {
+    const YoroKitUniforms *u = &views->uniforms;
+    const double per_column = 2.0 / u->source_size[0], across = u->target_size[0] * per_column;
+    const double shift = -u->law[0] * per_column - 1;
+    /* Columns of a right eye are counted from the right. */
+    block->inset_source[0] = (float)across;
+    block->inset_source[1] = (float)(u->mirrored ? -across - shift : shift);
+    block->inset_source[2] = (float)(u->mirrored ? u->law[1] * per_column : -u->law[1] * per_column);
+  }
+}
+
 #endif

@@ -337,7 +337,7 @@ mod tests {
             sources: 0,
             timed: 0,
             warp_kind: 0,
-            reserved: 0,
+            composes: 0,
             loader: Some(load),
             messages: YoroMessages { callback: Some(count), user: (&raw mut sentences).cast() },
         };

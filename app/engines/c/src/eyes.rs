@@ -3,7 +3,9 @@
 use yoro::eyes::{DepthRange, EyePair};
 
 use crate::result::{Failure, YORO_ERROR_EYES_CANTED, YoroMessages, YoroResult};
-use crate::types::{YoroClip, YoroDepth, YoroEye, YoroFov, YoroPose, YoroRows, clip, depth, eye, rows_down};
+use crate::types::{
+    Clip, YoroClip, YoroDepth, YoroEye, YoroFov, YoroPose, YoroRows, clip, depth, eye, rows_down,
+};
 use crate::versioned::{check_reserved, versioned};
 use crate::views::{YoroViews, fill_views, guard_band, images, views};
 
@@ -93,8 +95,30 @@ pub unsafe extern "C" fn yoro_views_from_eyes(eyes: *const YoroEyes, views: *mut
     unsafe { fill_views(eyes, "eyes", views, |eyes| eyes.messages, YoroEyes::views) }
 }
 
+/// Eyes that were checked, and turned and grown as their flags ask for.
+pub(crate) struct CheckedEyes {
+    pub(crate) pair: EyePair,
+    /// The directions of the eyes' axes in the world, before they were turned.
+    pub(crate) axes: [glam::Vec3; 2],
+    pub(crate) clip: Clip,
+    pub(crate) rows_down: bool,
+}
+
+impl CheckedEyes {
+    /// Sets the matrices of views.
+    pub(crate) fn with_matrices(&self, mut views: YoroViews) -> YoroViews {
+        images(&mut views).into_iter().for_each(|image| image.set_matrices(&self.pair.depth, &self.clip));
+        views
+    }
+}
+
 impl YoroEyes {
     fn views(&self) -> Result<YoroViews, Failure> {
+        let eyes = self.checked()?;
+        Ok(eyes.with_matrices(views(eyes.pair, guard_band(self.guard_band), eyes.rows_down)?))
+    }
+
+    pub(crate) fn checked(&self) -> Result<CheckedEyes, Failure> {
         check_reserved("eyes", &[self.reserved])?;
         let right_angle = std::f32::consts::FRAC_PI_2;
         let angles = self.fovs.iter().flat_map(|f| [f.angle_left, f.angle_right, f.angle_up, f.angle_down]);
@@ -122,9 +146,7 @@ impl YoroEyes {
             size: [self.width, self.height],
             dominant: eye(self.rendered)?,
         };
-        let pair = with_flags(pair, self.flags)?;
-        let mut views = views(pair, guard_band(self.guard_band), rows_down(self.rows)?)?;
-        images(&mut views).into_iter().for_each(|image| image.set_matrices(&depth, &clip));
-        Ok(views)
+        let axes = pair.axes();
+        Ok(CheckedEyes { pair: with_flags(pair, self.flags)?, axes, clip, rows_down: rows_down(self.rows)? })
     }
 }

@@ -1,6 +1,7 @@
 //! The functions for OpenGL and OpenGL ES.
 
 mod check;
+mod compose;
 mod entry_points;
 
 use std::ffi::{CStr, c_char, c_void};
@@ -8,8 +9,8 @@ use std::num::NonZeroU32;
 use std::rc::Rc;
 
 use yoro::opengl::{
-    self, AnyView, Context, Destination, Gather, GlApi, GlState, Options, Outputs, Part, PassTime, Profiling,
-    Source,
+    self, AnyView, Composer, Context, Destination, Gather, GlApi, GlState, Options, Outputs, Part, PassTime,
+    Profiling, Source,
 };
 use yoro::synthesis::backend::WarpKind;
 
@@ -23,9 +24,10 @@ use crate::result::{
     YoroResult,
 };
 use crate::types::{YORO_OUTPUT_DEPTH, YORO_OUTPUT_SRGB, YoroOutputFlags, YoroWarpKind, is_pose, other_kind};
-use crate::versioned::{self, check_reserved, versioned};
+use crate::versioned::{self, versioned};
 use crate::views::{YoroWarp, read_warp};
 
+pub use compose::*;
 #[doc(hidden)]
 pub use entry_points::needed_functions;
 
@@ -78,8 +80,8 @@ pub struct YoroGlInfo {
     pub timed: u32,
     /// The kind of warp. 0 is YORO_WARP_KIND_EYES.
     pub warp_kind: YoroWarpKind,
-    /// Must be 0.
-    pub reserved: u32,
+    /// 1: compiles the composer, too, for yoro_gl_compose. 0: it is not used.
+    pub composes: u32,
     /// The loader of entry points.
     pub loader: YoroGlLoader,
     /// Receives error messages, including those of later calls.
@@ -288,6 +290,7 @@ unsafe fn enter_gl(
 pub(crate) struct Gl {
     context: Rc<Context>,
     passes: Passes,
+    composer: Option<Composer>,
     options: Options,
     outputs: Outputs,
     check: bool,
@@ -324,7 +327,6 @@ impl Gl {
     /// # Safety
     /// A GL context is current, and the loader returns its entry points.
     unsafe fn new(info: &YoroGlInfo) -> Result<Gl, Failure> {
-        check_reserved("info", &[info.reserved])?;
         let gl_state = match info.state {
             YORO_GL_STATE_LEAVE => GlState::Leave,
             YORO_GL_STATE_PRESERVE => GlState::Preserve,
@@ -335,7 +337,7 @@ impl Gl {
             }
         };
         let (outputs, pose) = (outputs(info.outputs)?, is_pose(info.warp_kind)?);
-        for (flag, what) in [(info.check, "check"), (info.timed, "timed")] {
+        for (flag, what) in [(info.check, "check"), (info.timed, "timed"), (info.composes, "composes")] {
             if flag > 1 {
                 return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
             }
@@ -361,13 +363,25 @@ impl Gl {
             true => Passes::Pose(Box::new(AnyView::new(&context, &options, outputs)?)),
             false => Passes::Eyes(Box::new(Gather::new(&context, &options, outputs)?)),
         };
+        let composes = info.composes == 1;
+        let composer = composes.then(|| Composer::new(&context, gl_state, outputs.srgb)).transpose()?;
         let timed = info.timed == 1;
         if timed {
             context.set_profiling(Profiling::Queries);
         }
         let get_string = load(c"glGetString");
         let times = Vec::with_capacity(8);
-        Ok(Gl { context, passes, options, outputs, check: info.check == 1, timed, times, get_string })
+        Ok(Gl {
+            context,
+            passes,
+            composer,
+            options,
+            outputs,
+            check: info.check == 1,
+            timed,
+            times,
+            get_string,
+        })
     }
 
     /// Reads a warp with `read`, and checks that the driver can render its sizes.
@@ -432,7 +446,7 @@ impl Gl {
         if self.timed {
             self.end_timed_frame();
         }
-        match self.check.then(|| self.context.take_errors()).flatten() {
+        match self.check_for_errors() {
             Some(errors) => Err(Failure::new(
                 YORO_ERROR_DRIVER,
                 format!("GL says {errors}: see the preconditions of yoro_gl_synthesize"),
@@ -443,6 +457,11 @@ impl Gl {
 }
 
 impl Gl {
+    /// Returns GL's errors if they are to be checked.
+    fn check_for_errors(&self) -> Option<String> {
+        self.check.then(|| self.context.take_errors()).flatten()
+    }
+
     /// Returns the part of the textures that was rendered, or `None` for all of them.
     fn part(&self, size: [u32; 2], images: &YoroGlImages) -> Result<Option<Part>, Failure> {
         let (origin, image_size) =

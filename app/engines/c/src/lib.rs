@@ -23,6 +23,7 @@ mod matrices;
 mod context;
 
 mod choice;
+mod levels;
 mod pose;
 
 mod gl;
@@ -36,6 +37,7 @@ pub use choice::*;
 pub use context::*;
 pub use eyes::*;
 pub use gl::*;
+pub use levels::*;
 pub use matrices::*;
 pub use pose::*;
 pub use result::*;

@@ -1,7 +1,9 @@
 //! The view to render for two eyes, and the mapping of its pixels to the other eye.
 
 use glam::{DMat4, DVec4};
-use yoro::eyes::{DepthRange, DisparityLaw, EyePair, Frustum, GuardBand, Pose, View, Warp};
+use yoro::eyes::{
+    DepthRange, DisparityLaw, EyePair, EyesError, Frustum, GuardBand, Pose, SynthesisViews, View, Warp,
+};
 
 use crate::result::{Failure, YORO_ERROR_NULL, YoroMessages, YoroResult, catch_errors};
 use crate::types::{
@@ -175,11 +177,20 @@ fn mirrored(frustum: Frustum) -> Frustum {
 }
 
 /// Returns the views of a pair, without matrices. `down` is true if row 0 is at the top.
-pub(crate) fn views(mut pair: EyePair, guard: GuardBand, down: bool) -> Result<YoroViews, Failure> {
+pub(crate) fn views(pair: EyePair, guard: GuardBand, down: bool) -> Result<YoroViews, Failure> {
+    views_by(pair, down, |pair| pair.synthesis_views(guard))
+}
+
+/// Returns the views of a pair that `find` finds, without matrices.
+pub(crate) fn views_by(
+    mut pair: EyePair,
+    down: bool,
+    find: impl FnOnce(&EyePair) -> Result<SynthesisViews, EyesError>,
+) -> Result<YoroViews, Failure> {
     if down {
         pair.frusta = pair.frusta.map(mirrored);
     }
-    let views = pair.synthesis_views(guard)?;
+    let views = find(&pair)?;
     Ok(YoroViews {
         struct_size: size_of::<YoroViews>() as u32,
         crop_x: views.dominant_crop[0],

@@ -1,5 +1,6 @@
 //! The functions for Vulkan.
 
+mod compose;
 mod device;
 mod types;
 
@@ -15,6 +16,7 @@ use crate::versioned::{self, Versioned, check_reserved};
 use crate::views::{YoroWarp, read_warp};
 use device::{Passes, Vulkan, of_passes};
 
+pub use compose::*;
 pub use types::*;
 
 /// Creates a context for Vulkan: pipelines, and buffers for the largest sizes. Call it at startup, not in a frame.

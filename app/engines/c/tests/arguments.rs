@@ -334,7 +334,7 @@ fn impossible_contexts_return_their_codes() {
         code
     };
     assert_eq!(create(&YoroGlInfo { struct_size: 5, ..info }), YORO_ERROR_STRUCT_SIZE);
-    assert_eq!(create(&YoroGlInfo { reserved: 1, ..info }), YORO_ERROR_VALUE);
+    assert_eq!(create(&YoroGlInfo { composes: 2, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { outputs: 8, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { state: 2, ..info }), YORO_ERROR_VALUE);
     assert_eq!(create(&YoroGlInfo { check: 2, ..info }), YORO_ERROR_VALUE);

@@ -315,6 +315,59 @@ fn a_context_of_any_pose_records_pose_warps() {
     }
 }
 
+/// Pictures of the composer on Vulkan are compared in the core's tests.
+#[test]
+fn a_context_with_a_composer_records_compositions() {
+    let Some(gpu) = Gpu::open() else { return };
+    let info = YoroVkInfo { composes: 1, ..gpu.info() };
+    let (source, target) = images(&gpu);
+    let mut levels: YoroVkLevels = zeroed(|l: &mut YoroVkLevels| &mut l.struct_size);
+    (levels.wide_width, levels.wide_height, levels.wide) = (256, 128, source.color);
+    (levels.inset_width, levels.inset_height, levels.inset) = (256, 128, source.color);
+    (levels.has_depth, levels.inset_depth) = (1, source.depth);
+    let composition = YoroComposition {
+        width: 160,
+        height: 120,
+        wide_width: 80,
+        wide_height: 60,
+        wide_scale: [1.0; 2],
+        inset_width: 40,
+        inset_height: 30,
+        inset_scale: [4.0; 2],
+        inset_offset: [-1.5; 2],
+        inset_source: [1.6, -0.8, 0.3],
+        ..YoroComposition::default()
+    };
+    let mut frame: YoroVkComposed = zeroed(|f: &mut YoroVkComposed| &mut f.struct_size);
+    // SAFETY: live handles and complete structures, and null pointers, which are refused.
+    unsafe {
+        let context = create(&info).unwrap();
+        let written =
+            gpu.image(vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::COLOR_ATTACHMENT, [256, 128]);
+        let target = YoroVkTarget { color: plane(written, vk::Format::R8G8B8A8_UNORM), ..target };
+        assert_eq!(yoro_vk_register_levels(context, &levels, &mut frame.levels), YORO_OK);
+        assert_eq!(yoro_vk_register_composed(context, &target, &mut frame.target), YORO_OK);
+        let record = |composition: &YoroComposition, frame: &YoroVkComposed| {
+            yoro_vk_compose(context, gpu.commands, composition, frame)
+        };
+        assert_eq!(record(&composition, &frame), YORO_OK);
+        let far = YoroVkComposed { inset_x: 230, ..frame };
+        assert_eq!(record(&composition, &far), YORO_ERROR_TOO_LARGE);
+        assert_eq!(record(&composition, &YoroVkComposed { levels: 99, ..frame }), YORO_ERROR_NOT_REGISTERED);
+        assert_eq!(record(&YoroComposition { width: 0, ..composition }, &frame), YORO_ERROR_VALUE);
+        assert_eq!(yoro_vk_compose(context, gpu.commands, null(), &frame), YORO_ERROR_NULL);
+        let wrong = YoroVkLevels { has_depth: 2, ..levels };
+        assert_eq!(yoro_vk_register_levels(context, &wrong, &mut frame.levels), YORO_ERROR_VALUE);
+        gpu.execute();
+        assert_eq!(yoro_vk_release_levels(context, frame.levels), YORO_OK);
+        assert_eq!(yoro_vk_release_composed(context, frame.target), YORO_OK);
+        assert_eq!(yoro_destroy(context), YORO_OK);
+        let plain = create(&gpu.info()).unwrap();
+        assert_eq!(yoro_vk_register_levels(plain, &levels, &mut frame.levels), YORO_ERROR_UNSUPPORTED);
+        assert_eq!(yoro_destroy(plain), YORO_OK);
+    }
+}
+
 fn create(info: &YoroVkInfo) -> Result<*mut YoroContext, YoroResult> {
     let mut context = null_mut();
     // SAFETY: a complete structure with live handles, or with what is refused.
@@ -358,7 +411,7 @@ fn wrong_vulkan_arguments_return_their_codes() {
         (&|i| i.depth_format = vk::Format::S8_UINT, YORO_ERROR_FORMAT),
         (&|i| i.max_source_width = 0, YORO_ERROR_VALUE),
         (&|i| i.max_target_height = 0, YORO_ERROR_VALUE),
-        (&|i| i.reserved = 7, YORO_ERROR_VALUE),
+        (&|i| i.composes = 7, YORO_ERROR_VALUE),
         (&|i| i.max_target_height = u32::MAX, YORO_ERROR_TOO_LARGE),
     ];
     for (i, (change, expected)) in table.iter().enumerate() {

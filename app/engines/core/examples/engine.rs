@@ -1,16 +1,24 @@
 //! Uses yoro in another engine: the engine draws one eye with its own code into its own textures, and yoro writes the
 //! other eye into the engine's framebuffer. It uses no scene, renderer or render target of yoro's.
 //!
-//! `cargo run -p yoro --example engine` writes `out/engine.png`, with the left and right eye side by side.
+//! `cargo run -p yoro --example engine` writes `out/engine.png`, with the left and right eye side by side. `cargo run -p
+//! yoro --example engine -- medium` renders a foveated view, of the strength `low`, `medium` or `high`.
 
 use std::error::Error;
 use std::path::Path;
+use std::rc::Rc;
 
 use glam::{Quat, Vec3};
 use glow::HasContext;
 use image::{Rgb, RgbImage};
-use yoro::eyes::{DepthConvention, DepthRange, Eye, EyePair, Frustum, GuardBand, MEAN_IPD, Pose, View};
-use yoro::opengl::{Destination, Gather, Options, Outputs, Source};
+use yoro::eyes::{
+    DepthConvention, DepthRange, Eye, EyePair, FoveationLevel, Frustum, Gaze, GuardBand, Level, MEAN_IPD,
+    Pose, View,
+};
+use yoro::opengl::{
+    Composer, Context, Destination, Gather, GlState, InsetImage, LevelImage, LevelImages, Options, Outputs,
+    Part, Source,
+};
 use yoro_context::{Backend, Headless};
 
 const SIZE: [u32; 2] = [768, 768];
@@ -34,6 +42,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frustum = Frustum::symmetric(75f32.to_radians(), 1.0);
     let pair = EyePair::parallel(head, frustum, MEAN_IPD, depth, SIZE, Eye::Right);
 
+    if let Some(name) = std::env::args().nth(1) {
+        let level = FoveationLevel::ALL.into_iter().find(|level| level.name() == name);
+        return foveated(gl, &engine, &pair, level.ok_or("give off, low, medium or high")?);
+    }
+
     // For example, eyes that are not parallel give an error, as one sentence.
     let views = pair.synthesis_views(GuardBand::Distance(0.7))?;
 
@@ -53,13 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // The rendered eye's own image is the part of `source` that starts at `dominant_crop`.
     let right = engine.read(&source, views.dominant_crop);
     let left = engine.read(&other, [0, 0]);
-    let path = Path::new("out/engine.png");
-    std::fs::create_dir_all("out")?;
-    let mut both = RgbImage::new(2 * SIZE[0], SIZE[1]);
-    image::imageops::replace(&mut both, &left, 0, 0);
-    image::imageops::replace(&mut both, &right, i64::from(SIZE[0]), 0);
-    both.save(path)?;
-    println!("{}: left eye synthesized, right eye rendered", path.display());
+    save(&left, &right, Path::new("out/engine.png"))?;
 
     // Do this once in every integration: a wrong sign, a flipped row or a misread depth costs more than 10 dB.
     engine.draw(&views.target, &other);
@@ -70,6 +77,86 @@ fn main() -> Result<(), Box<dyn Error>> {
         psnr(&right, &truth)
     );
     Ok(())
+}
+
+/// Writes both eyes side by side.
+fn save(left: &RgbImage, right: &RgbImage, path: &Path) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all("out")?;
+    let mut both = RgbImage::new(2 * SIZE[0], SIZE[1]);
+    image::imageops::replace(&mut both, left, 0, 0);
+    image::imageops::replace(&mut both, right, i64::from(SIZE[0]), 0);
+    both.save(path)?;
+    println!("{}: left eye synthesized, right eye rendered", path.display());
+    Ok(())
+}
+
+/// A level's view with the images of both eyes: the rendered one, and the synthesized one.
+struct Rendered {
+    level: Level,
+    source: Image,
+    other: Image,
+}
+
+impl Rendered {
+    /// Returns an eye's own image. Of the rendered eye it is a part of what was rendered.
+    fn image(&self, eye: Eye) -> LevelImage {
+        if eye != self.level.eyes.dominant {
+            return LevelImage::new(self.other.color);
+        }
+        let part = Part { origin: self.level.origin(eye), image_size: self.level.views.source.size };
+        LevelImage { color: self.source.color, part: Some(part) }
+    }
+}
+
+/// Renders and synthesizes each level of a foveated view as a view of its own, and composes both eyes of them.
+fn foveated(
+    gl: &Rc<Context>,
+    engine: &Engine,
+    pair: &EyePair,
+    strength: FoveationLevel,
+) -> Result<(), Box<dyn Error>> {
+    let composer = Composer::new(gl, GlState::Leave, false)?;
+    // Each frame, with the direction of an eye tracker, if there is one: sizes stay.
+    let gaze = Gaze::Axes(pair.axes());
+    let levels = pair.levels(strength.foveation().as_ref(), gaze, GuardBand::Distance(1.0))?;
+    let render = |level: Level| -> Result<Rendered, Box<dyn Error>> {
+        let source = engine.create_image(level.views.source.size)?;
+        engine.draw(&level.views.source, &source);
+        let other = engine.create_image(level.eyes.size)?;
+        // In an engine each level keeps its pipeline, whose buffers then keep their size.
+        let outputs = Outputs { depth: true, ..Outputs::default() };
+        let mut gather = Gather::new(gl, &Options::default(), outputs)?;
+        let to = whole(&other, level.eyes.size);
+        gather.synthesize(Source::new(source.color, source.depth), &level.views.warp, &to)?;
+        Ok(Rendered { level, source, other })
+    };
+    let (wide, inset) = (render(levels.wide)?, levels.inset.map(render).transpose()?);
+    // Transparent objects are drawn here, into each level of each eye.
+    let shown = engine.create_image(SIZE)?;
+    let [left, right] = Eye::BOTH.map(|eye| {
+        let of_inset = |inset: &Rendered| InsetImage {
+            image: inset.image(eye),
+            depth: (eye != pair.dominant).then_some(inset.other.depth),
+        };
+        let images = LevelImages { wide: wide.image(eye), inset: inset.as_ref().map(of_inset) };
+        composer.compose(&images, &levels.composition(eye), &whole(&shown, SIZE));
+        engine.read(&shown, [0, 0])
+    });
+    save(&left, &right, &Path::new("out").join(format!("engine-{}.png", strength.name())))?;
+    let pixels = |[width, height]: [u32; 2]| f64::from(width) * f64::from(height);
+    let levels = [Some(&wide), inset.as_ref()].into_iter().flatten();
+    let rendered: f64 = levels.map(|rendered| pixels(rendered.level.views.source.size)).sum();
+    engine.draw(&pair.view(Eye::Left), &shown);
+    println!(
+        "{:.3} of two eyes' pixels rendered; against the left eye rendered with all pixels: {:.2} dB",
+        rendered / (2.0 * pixels(SIZE)),
+        psnr(&left, &engine.read(&shown, [0, 0]))
+    );
+    Ok(())
+}
+
+fn whole(image: &Image, size: [u32; 2]) -> Destination {
+    Destination { framebuffer: Some(image.framebuffer), origin: [0, 0], size }
 }
 
 /// Returns the peak signal-to-noise ratio over red, green and blue, in decibels.

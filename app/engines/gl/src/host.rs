@@ -259,6 +259,12 @@ impl Context {
         }
     }
 
+    /// Filters what is sampled from a unit, 0 to 3, until [`Context::end_synthesis`].
+    pub fn filter_unit(&self, unit: u32) {
+        // SAFETY: the sampler lives as long as the context.
+        unsafe { self.raw().bind_sampler(unit, Some(self.host.linear)) }
+    }
+
     /// Makes texture unit 0 active. New textures are bound to the active unit, so it must be one that synthesis may
     /// change.
     pub fn set_first_unit(&self) {

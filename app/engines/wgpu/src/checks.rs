@@ -81,25 +81,43 @@ impl Checks {
 
     /// Checks a colour that is filtered, and a depth of the same size.
     fn source(&self, source: &Source) -> Result<(), WgpuError> {
+        self.color(source.color, "a source's colour")?;
+        self.depth(source.depth, "a source's depth", source.color)
+    }
+
+    /// Checks a colour that is filtered.
+    pub(crate) fn color(&self, color: &TextureView, role: &'static str) -> Result<(), WgpuError> {
         let filtered =
             |features: TextureFormatFeatures| features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
-        self.format(source.color.texture().format(), "a source's colour", filtered)?;
-        let (format, role) = (source.depth.texture().format(), "a source's depth");
+        self.format(color.texture().format(), role, filtered)?;
+        self.sampled(color, role, color)
+    }
+
+    /// Checks a depth of the size of a colour.
+    pub(crate) fn depth(
+        &self,
+        depth: &TextureView,
+        role: &'static str,
+        color: &TextureView,
+    ) -> Result<(), WgpuError> {
+        let format = depth.texture().format();
         let is_float =
             matches!(format, TextureFormat::R32Float | TextureFormat::R16Unorm | TextureFormat::R16Float);
         if !is_float && !format.has_depth_aspect() {
             return Err(WgpuError::Format { format, role });
         }
-        for (what, view) in [("a source's colour", source.color), (role, source.depth)] {
-            check_texture(what, view, TextureUsages::TEXTURE_BINDING, source.color)?;
-            if self.opengl && view.texture().depth_or_array_layers() > 1 {
-                return Err(WgpuError::LayerOnOpenGl);
-            }
+        self.sampled(depth, role, color)
+    }
+
+    fn sampled(&self, view: &TextureView, role: &'static str, color: &TextureView) -> Result<(), WgpuError> {
+        check_texture(role, view, TextureUsages::TEXTURE_BINDING, color)?;
+        if self.opengl && view.texture().depth_or_array_layers() > 1 {
+            return Err(WgpuError::LayerOnOpenGl);
         }
         Ok(())
     }
 
-    fn target(&self, target: &Target) -> Result<(), WgpuError> {
+    pub(crate) fn target(&self, target: &Target) -> Result<(), WgpuError> {
         let format = |view: &TextureView| view.texture().format();
         // A view may be sRGB although its texture is not. Only wgpu knows the format of a view.
         let (expected, found) = (self.options.color_format, format(target.color));

@@ -3,7 +3,7 @@
 //! [`Gather`] takes colour and depth of one eye as texture views, and draws the other eye. It is the counterpart of
 //! `yoro::vulkan`, and uses the same shaders. [`yoro::eyes`] computes which view to render, and the
 //! [`Warp`](yoro::eyes::Warp). [`AnyView`] is used in the same way, with a [`PoseWarp`](yoro::eyes::PoseWarp), and
-//! draws a view in any pose near that of the source. wgpu is part of the public API, and is re-exported as [`wgpu`].
+//! draws a view in any pose near that of the source. [`Composer`] makes an eye from the levels of a foveated view. wgpu is part of the public API, and is re-exported as [`wgpu`].
 //!
 //! Images have wgpu's own orientation, with row 0 at the top. Pass the warp as
 //! [`EyePair::synthesis_views`](yoro::eyes::EyePair::synthesis_views) returns it: its rows, which are counted from the
@@ -33,6 +33,7 @@
 
 mod buffers;
 mod checks;
+mod composer;
 mod nearest;
 mod passes;
 mod pipeline;
@@ -44,6 +45,7 @@ use wgpu::{TextureFormat, TextureUsages, TextureView};
 pub use yoro;
 use yoro::synthesis::ArgumentError;
 
+pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
 pub use nearest::NearestDepth;
 pub use pipeline::{AnyView, Gather, Pipeline};
 

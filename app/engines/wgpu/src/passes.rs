@@ -10,10 +10,11 @@ use wgpu::{
     SamplerDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StoreOp,
     TextureFormat, TextureSampleType, TextureView, TextureViewDimension, VertexState,
 };
+use yoro::synthesis::LevelUniforms;
 use yoro::synthesis::backend::WarpKind;
 
 use crate::buffers::{Buffers, MAP};
-use crate::shaders::{SCREEN, Shaders};
+use crate::shaders::{COMPOSE, SCREEN, Shaders};
 use crate::uniforms::{self, UniformRing};
 use crate::{Options, Source};
 
@@ -27,10 +28,10 @@ pub(crate) struct Passes {
 }
 
 /// A pipeline, and the bindings that its shaders read.
-struct Pass {
-    label: &'static str,
-    bindings: &'static [u32],
-    layout: BindGroupLayout,
+pub(crate) struct Pass {
+    pub(crate) label: &'static str,
+    pub(crate) bindings: &'static [u32],
+    pub(crate) layout: BindGroupLayout,
     pipeline: RenderPipeline,
 }
 
@@ -52,29 +53,19 @@ pub(crate) struct Groups {
 
 impl Passes {
     pub(crate) fn new<W: WarpKind>(device: &Device, options: &Options) -> Passes {
-        let module = |label, text: &'static str| {
-            let source = ShaderSource::Wgsl(text.into());
-            device.create_shader_module(ShaderModuleDescriptor { label: Some(label), source })
-        };
+        let module = |label, text| module(device, label, text);
         let shaders = Shaders::of::<W>();
         let uniforms = uniforms::size::<W::Uniforms>();
         let screen = module("yoro screen", SCREEN);
         let march_vertex = module("yoro march", shaders.march_vertex);
         let map = |label, text, bindings| {
-            let pass = PassMaker { device, uniforms, label, bindings };
+            let pass = PassMaker { device, uniforms, label, bindings, filtered: &[] };
             pass.make(&screen, &module(label, text), MAP, None)
         };
         let march_bindings: &[u32] = &[DEPTH, COLOR, TILE_MAP, SPAN_MAP, UNIFORMS, NEAREST, LINEAR];
-        let march = PassMaker { device, uniforms, label: "yoro march", bindings: march_bindings };
+        let (label, bindings) = ("yoro march", march_bindings);
+        let march = PassMaker { device, uniforms, label, bindings, filtered: &[COLOR] };
         let text = shaders.march(options.depth_format.is_some());
-        let sampler = |label, filter| {
-            device.create_sampler(&SamplerDescriptor {
-                label: Some(label),
-                mag_filter: filter,
-                min_filter: filter,
-                ..SamplerDescriptor::default()
-            })
-        };
         Passes {
             tiles: map("yoro tiles", shaders.tiles, &[DEPTH, UNIFORMS, NEAREST]),
             spans: map("yoro spans", shaders.spans, &[TILE_MAP, UNIFORMS]),
@@ -84,8 +75,8 @@ impl Passes {
                 options.color_format,
                 options.depth_format,
             ),
-            nearest: sampler("yoro nearest", FilterMode::Nearest),
-            linear: sampler("yoro linear", FilterMode::Linear),
+            nearest: sampler(device, "yoro nearest", FilterMode::Nearest),
+            linear: sampler(device, "yoro linear", FilterMode::Linear),
         }
     }
 
@@ -116,6 +107,29 @@ impl Passes {
         };
         Groups { tiles: group(&self.tiles), spans: group(&self.spans), march: group(&self.march) }
     }
+}
+
+fn module(device: &Device, label: &'static str, text: &'static str) -> ShaderModule {
+    let source = ShaderSource::Wgsl(text.into());
+    device.create_shader_module(ShaderModuleDescriptor { label: Some(label), source })
+}
+
+pub(crate) fn sampler(device: &Device, label: &'static str, filter: FilterMode) -> Sampler {
+    device.create_sampler(&SamplerDescriptor {
+        label: Some(label),
+        mag_filter: filter,
+        min_filter: filter,
+        ..SamplerDescriptor::default()
+    })
+}
+
+/// Creates the composer's pass. Its textures are the inset's depth, the wide level's colour and the inset's; its bindings
+/// are in the order of the textures, uniforms, and the samplers that do not filter and that do.
+pub(crate) fn compose(device: &Device, format: TextureFormat) -> Pass {
+    let label = "yoro compose";
+    let (uniforms, bindings) = (uniforms::size::<LevelUniforms>(), &[0, 1, 2, UNIFORMS, NEAREST, LINEAR]);
+    let maker = PassMaker { device, uniforms, label, bindings, filtered: &[1, 2] };
+    maker.make(&module(device, "yoro screen", SCREEN), &module(device, label, COMPOSE), format, None)
 }
 
 /// The place that the last pass draws to.
@@ -169,6 +183,17 @@ fn depth(view: &TextureView, overwritten: bool) -> RenderPassDepthStencilAttachm
 }
 
 impl Pass {
+    /// Records the pass into a target without depth.
+    pub(crate) fn draw(
+        &self,
+        encoder: &mut CommandEncoder,
+        group: &BindGroup,
+        uniforms: u32,
+        target: &Drawn,
+    ) {
+        self.record(encoder, group, uniforms, color(target.color, target.whole), None, target.area);
+    }
+
     fn record(
         &self,
         encoder: &mut CommandEncoder,
@@ -199,6 +224,8 @@ struct PassMaker<'a> {
     uniforms: BufferSize,
     label: &'static str,
     bindings: &'static [u32],
+    /// The textures that are filtered.
+    filtered: &'static [u32],
 }
 
 impl PassMaker<'_> {
@@ -255,9 +282,9 @@ impl PassMaker<'_> {
             multisampled: false,
         };
         let ty = match binding {
+            _ if self.filtered.contains(&binding) => texture(TextureSampleType::Float { filterable: true }),
             // The sample type that depth formats and float formats have in common.
             DEPTH => texture(TextureSampleType::Float { filterable: false }),
-            COLOR => texture(TextureSampleType::Float { filterable: true }),
             TILE_MAP | SPAN_MAP => texture(TextureSampleType::Uint),
             NEAREST => BindingType::Sampler(SamplerBindingType::NonFiltering),
             LINEAR => BindingType::Sampler(SamplerBindingType::Filtering),

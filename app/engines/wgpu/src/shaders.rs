@@ -3,6 +3,7 @@
 use yoro::synthesis::backend::WarpKind;
 
 pub(crate) const SCREEN: &str = include_str!("wgsl/screen.wgsl");
+pub(crate) const COMPOSE: &str = include_str!("wgsl/compose.wgsl");
 pub(crate) const NEAREST_DEPTH: &str = include_str!("wgsl/nearest-depth.wgsl");
 pub(crate) const NEAREST_DEPTH_REVERSED: &str = include_str!("wgsl/nearest-depth-reversed.wgsl");
 

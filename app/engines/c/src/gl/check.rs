@@ -3,7 +3,8 @@
 use std::num::NonZeroU32;
 
 use glow::HasContext;
-use yoro::opengl::{Context, Destination, Options, Outputs, Source};
+use yoro::eyes::Composition;
+use yoro::opengl::{Context, Destination, LevelImages, Options, Outputs, Source};
 
 use crate::result::{Failure, YORO_ERROR_DRIVER, YORO_ERROR_FORMAT};
 
@@ -17,13 +18,7 @@ pub(super) fn check_images(
     size: [u32; 2],
     target: &Destination,
 ) -> Result<(), Failure> {
-    // Errors that were pending before the call are not caused by it.
-    if let Some(errors) = context.take_errors() {
-        return Err(Failure::new(
-            YORO_ERROR_DRIVER,
-            format!("GL already has errors from before the call ({errors}): look for them in the engine"),
-        ));
-    }
+    check_pending(context)?;
     let size = source.part.map_or(size, |part| part.image_size);
     let kind = if options.array_textures { &ARRAY } else { &SINGLE };
     let is_here = |level: &Level| !options.array_textures || source.layer < level.layers;
@@ -33,7 +28,43 @@ pub(super) fn check_images(
     check_texture(context, source.depth, "depth_texture", kind, size, |level| {
         level.is_depth() && is_here(level)
     })?;
-    check_framebuffer(context, outputs, source, target)
+    let textures = [(source.color, "color_texture"), (source.depth, "depth_texture")];
+    check_framebuffer(context, outputs, &textures, target)
+}
+
+/// Checks that the textures and the framebuffer are as [`YoroGlLevels`](super::YoroGlLevels) says. Restores all
+/// bindings.
+pub(super) fn check_levels(
+    context: &Context,
+    composition: &Composition,
+    images: &LevelImages,
+    target: &Destination,
+) -> Result<(), Failure> {
+    check_pending(context)?;
+    let mut textures = vec![(images.wide.color, "wide_texture", images.wide.part, composition.wide.size)];
+    if let Some((place, inset)) = composition.inset.zip(images.inset) {
+        let (part, size) = (inset.image.part, place.place.size);
+        textures.push((inset.image.color, "inset_texture", part, size));
+        textures.extend(inset.depth.map(|depth| (depth, "inset_depth_texture", part, size)));
+    }
+    for &(texture, what, part, size) in &textures {
+        let size = part.map_or(size, |part| part.image_size);
+        let is_depth = what == "inset_depth_texture";
+        let fits = |level: &Level| if is_depth { level.is_depth() } else { level.is_color() };
+        check_texture(context, texture, what, &SINGLE, size, fits)?;
+    }
+    let textures: Vec<_> = textures.into_iter().map(|(texture, what, ..)| (texture, what)).collect();
+    check_framebuffer(context, Outputs::default(), &textures, target)
+}
+
+/// Checks that no errors are pending: those from before the call are not caused by it.
+fn check_pending(context: &Context) -> Result<(), Failure> {
+    context.take_errors().map_or(Ok(()), |errors| {
+        Err(Failure::new(
+            YORO_ERROR_DRIVER,
+            format!("GL already has errors from before the call ({errors}): look for them in the engine"),
+        ))
+    })
 }
 
 fn wrong(sentence: impl Into<String>) -> Failure {
@@ -43,7 +74,7 @@ fn wrong(sentence: impl Into<String>) -> Failure {
 fn check_framebuffer(
     context: &Context,
     outputs: Outputs,
-    source: Source,
+    textures: &[(glow::Texture, &str)],
     target: &Destination,
 ) -> Result<(), Failure> {
     let Some(framebuffer) = Framebuffer::query(context, target.framebuffer) else {
@@ -58,7 +89,7 @@ fn check_framebuffer(
     if outputs.depth && framebuffer.depth == Attachment::None {
         return Err(wrong("the framebuffer has no depth attachment, which YORO_OUTPUT_DEPTH writes"));
     }
-    for (texture, what) in [(source.color, "color_texture"), (source.depth, "depth_texture")] {
+    for &(texture, what) in textures {
         if [framebuffer.color, framebuffer.depth].contains(&Attachment::Texture(texture)) {
             return Err(wrong(format!(
                 "{what} is attached to the framebuffer, but an image cannot be read and drawn at once: give the \

@@ -4,13 +4,12 @@ use std::ffi::{CStr, c_char};
 use std::time::Duration;
 
 use yoro::vulkan::ash::{Device, Instance, StaticFn, vk};
-use yoro::vulkan::{AnyView, Gather, Host, PassTimes};
+use yoro::vulkan::{AnyView, Composer, Gather, Host, PassTimes};
 
 use super::types::{YoroVkInfo, check_format};
 use crate::context::{Backend, YORO_API_VULKAN, YoroCapabilities, YoroTimes};
 use crate::result::{Failure, YORO_ERROR_NO_CONTEXT, YORO_ERROR_NULL};
 use crate::types::is_pose;
-use crate::versioned::check_reserved;
 
 /// The passes for one kind of warp.
 pub(super) enum Passes {
@@ -32,6 +31,7 @@ pub(super) use of_passes;
 /// The synthesis on a device.
 pub(crate) struct Vulkan {
     pub(super) passes: Passes,
+    pub(super) composer: Option<Composer>,
     pub(super) writes_depth: bool,
     instance: Instance,
     physical_device: vk::PhysicalDevice,
@@ -51,10 +51,10 @@ impl Vulkan {
         if let Some((_, what)) = handles.into_iter().find(|(is_null, _)| *is_null) {
             return Err(null(what));
         }
-        check_reserved("info", &[info.reserved])?;
-        if info.dynamic_rendering > 1 {
-            let flag = info.dynamic_rendering;
-            return Err(Failure::value(format!("dynamic_rendering is {flag}: give 0 or 1")));
+        for (flag, what) in [(info.dynamic_rendering, "dynamic_rendering"), (info.composes, "composes")] {
+            if flag > 1 {
+                return Err(Failure::value(format!("{what} is {flag}: give 0 or 1")));
+            }
         }
         check_format(info.color_format, "color_format")?;
         let writes_depth = info.depth_format != vk::Format::UNDEFINED;
@@ -110,7 +110,11 @@ impl Vulkan {
                 false => Passes::Eyes(Gather::new(&host, &options)?),
             }
         };
-        Ok(Vulkan { passes, writes_depth, instance, physical_device: info.physical_device })
+        // SAFETY: as above.
+        let composer = (info.composes == 1)
+            .then(|| unsafe { Composer::new(&host, info.color_format, info.pipeline_cache) })
+            .transpose()?;
+        Ok(Vulkan { passes, composer, writes_depth, instance, physical_device: info.physical_device })
     }
 }
 

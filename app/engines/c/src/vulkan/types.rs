@@ -57,8 +57,8 @@ pub struct YoroVkInfo {
     pub timed_frames: u32,
     /// The kind of warp. 0 is YORO_WARP_KIND_EYES.
     pub warp_kind: YoroWarpKind,
-    /// Must be 0.
-    pub reserved: u32,
+    /// 1: makes a composer, too, for yoro_vk_compose. 0: it is not used.
+    pub composes: u32,
     /// A pipeline cache, or VK_NULL_HANDLE.
     pub pipeline_cache: vk::PipelineCache,
     /// Receives error messages, including those of later calls.

@@ -78,6 +78,11 @@ pub enum EyesError {
         max = GuardBand::MAX_PIXELS
     )]
     GuardBand(GuardBand),
+    /// A number of the foveation is out of its range.
+    #[error(
+        "this foveation is impossible; give a radius between 0 and 80 degrees, a density of more than 0 and at most 1, and a finite distance of more than 0"
+    )]
+    Foveation,
     /// The union of both frusta and the guard band has more pixels on a side than drivers render.
     #[error(
         "the view to render would have {width:.0}x{height:.0} pixels; give the eyes fewer pixels, or frusta that overlap"

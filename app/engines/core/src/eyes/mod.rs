@@ -5,6 +5,7 @@
 
 mod depth;
 mod error;
+mod foveation;
 mod guard_band;
 mod pair;
 mod pose_warp;
@@ -13,6 +14,7 @@ mod warp;
 
 pub use depth::{DepthConvention, DepthRange};
 pub use error::EyesError;
+pub use foveation::{Composition, Foveation, FoveationLevel, Gaze, InsetPlace, Level, LevelPlace, Levels};
 pub use guard_band::{GuardBand, ParseGuardBandError};
 pub use pair::{EyeOptions, EyePair, SynthesisViews};
 pub use pose_warp::{GuardedView, HeadMotion, PoseWarp};

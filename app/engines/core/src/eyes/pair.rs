@@ -164,6 +164,37 @@ impl EyePair {
     /// [`EyesError`] if a view or the guard band is invalid, the source too large, or if pixels do not move along rows
     /// only or move too far.
     pub fn synthesis_views(&self, guard: GuardBand) -> Result<SynthesisViews, EyesError> {
+        self.views(guard, |f_px, _| guard.pixels(f_px, self.ipd().max(0.0)))
+    }
+
+    /// Returns the same for an inset that moves in the eyes' images, complete for all surfaces at the distance `nearest`
+    /// or farther. Where the two frusta converge, they are apart in the direction of the disparity, and so much less
+    /// guard band is needed: the source has the same size for all frusta of one size that converge at `nearest`, at
+    /// infinity or between. Frusta that diverge make it wider.
+    ///
+    /// # Errors
+    /// Those of [`EyePair::synthesis_views`].
+    pub fn inset_views(&self, nearest: f32) -> Result<SynthesisViews, EyesError> {
+        self.views(GuardBand::Distance(nearest), |f_px, beyond| {
+            let disparity = f_px * self.ipd().max(0.0) / nearest;
+            let [near_side, far_side] = match self.dominant.other() {
+                Eye::Left => beyond,
+                Eye::Right => [beyond[1], beyond[0]],
+            };
+            let needed = whole(near_side + disparity).saturating_add(whole(far_side));
+            // The union may take a column more, as it begins between two columns.
+            let columns = needed.max(whole(disparity).saturating_add(1));
+            columns.saturating_sub(whole(near_side).saturating_add(whole(far_side)))
+        })
+    }
+
+    /// Returns the view to render with a guard band. `columns` returns its width, from the focal length in pixels and
+    /// from how many columns the target's frustum reaches beyond the source's on the left and on the right.
+    fn views(
+        &self,
+        guard: GuardBand,
+        columns: impl FnOnce(f32, [f32; 2]) -> u32,
+    ) -> Result<SynthesisViews, EyesError> {
         Eye::BOTH.iter().try_for_each(|&eye| self.view(eye).check())?;
         if !guard.is_possible() {
             return Err(EyesError::GuardBand(guard));
@@ -173,18 +204,18 @@ impl EyePair {
         let (s, t) = (self.view(self.dominant), self.view(target_eye));
         let density = self.tangents_per_pixel(self.dominant);
         let (ipd, f_px) = (self.ipd(), 1.0 / density[0]);
-        let guard = guard.pixels(f_px, ipd.max(0.0));
+        let beyond = [s.frustum.left - t.frustum.left, t.frustum.right - s.frustum.right]
+            .map(|tangents| tangents / density[0]);
+        let guard = columns(f_px, beyond);
         // Surfaces lie further right in the left eye's image than in the right eye's, so its left border shows what is
         // beyond the right eye's left border.
         let (guard_left, guard_right) = match target_eye {
             Eye::Left => (guard, 0),
             Eye::Right => (0, guard),
         };
-        let pixels = |tangents: f32, axis: usize| (tangents / density[axis] - 1e-3).ceil().max(0.0) as u32;
-        let left = pixels(s.frustum.left - t.frustum.left, 0);
-        let right = pixels(t.frustum.right - s.frustum.right, 0);
-        let bottom = pixels(s.frustum.bottom - t.frustum.bottom, 1);
-        let top = pixels(t.frustum.top - s.frustum.top, 1);
+        let [left, right] = beyond.map(whole);
+        let bottom = whole((s.frustum.bottom - t.frustum.bottom) / density[1]);
+        let top = whole((t.frustum.top - s.frustum.top) / density[1]);
         let sum = |parts: &[u32]| parts.iter().map(|n| f64::from(*n)).sum::<f64>();
         let (width, height) = (sum(&[self.size[0], left, right, guard]), sum(&[self.size[1], bottom, top]));
         if width.max(height) > MAX_SIDE {
@@ -262,10 +293,15 @@ impl EyePair {
     }
 
     /// Returns the tangents that a pixel of an eye covers, along X and Y.
-    fn tangents_per_pixel(&self, eye: Eye) -> [f32; 2] {
+    pub(super) fn tangents_per_pixel(&self, eye: Eye) -> [f32; 2] {
         let frustum = &self.frusta[eye.index()];
         [frustum.width() / self.size[0] as f32, frustum.height() / self.size[1] as f32]
     }
+}
+
+/// Returns the whole pixels that cover this many.
+fn whole(pixels: f32) -> u32 {
+    (pixels - 1e-3).ceil().max(0.0) as u32
 }
 
 /// The result of [`EyePair::synthesis_views`].

@@ -6,10 +6,13 @@
 //! separate engine. [`GuessedDepth`] comes before [`Gather`] where only one sample's depth of an anti-aliased image can
 //! be had.
 //!
+//! A [`Composer`] makes an eye from the levels of a foveated view.
+//!
 //! [`Context::set_profiling`] times the passes, named `gather tiles`, `gather spans` and `gather march`, or
-//! `any view tiles` and so on. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without
+//! `any view tiles` and so on, and `compose`. [`Context::end_timed_frame`], once a frame, returns the times of an earlier one without
 //! waiting; [`Context::take_pass_times`] waits.
 
+mod composer;
 mod guessed_depth;
 mod pipeline;
 
@@ -17,6 +20,7 @@ use crate::synthesis::Uniforms;
 use crate::synthesis::backend::{Places, WarpKind, map_sizes};
 use yoro_gl::Program;
 
+pub use composer::{Composer, InsetImage, LevelImage, LevelImages};
 pub use glow;
 pub use guessed_depth::GuessedDepth;
 pub use pipeline::{AnyView, Gather, Pipeline};

@@ -7,13 +7,17 @@
 //! |---|---|---|
 //! | `Gather` | a parallel eye, by a [`Warp`](crate::eyes::Warp) | the source's row |
 //! | `AnyView` | a view in any pose near it, by a [`PoseWarp`](crate::eyes::PoseWarp) | a segment of any direction |
+//!
+//! A `Composer` makes an eye from the [levels](crate::eyes::Levels) of a foveated view, in one pass.
 
 pub mod backend;
 mod error;
 mod forward;
+mod levels;
 mod source_map;
 mod uniforms;
 
 pub use error::ArgumentError;
+pub use levels::LevelPlaces;
 pub use source_map::{SOURCE_MAP_FIXED, SOURCE_MAP_HOLE, SourceMapEntry};
-pub use uniforms::{PoseUniforms, Uniforms};
+pub use uniforms::{LevelUniforms, PoseUniforms, Uniforms};

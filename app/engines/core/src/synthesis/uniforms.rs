@@ -114,6 +114,32 @@ uniforms! {
     }
 }
 
+uniforms! {
+    /// All uniforms of the composer except textures, with the layout of a std140 block: `include/levels.glsl` of
+    /// `yoro-shaders`. Places are from 0 to 1 from the side of row 0, as in [`Uniforms`].
+    LevelUniforms {
+        /// Place in the eye's image of a fragment of the composer's pass: `eye_place.xy * gl_FragCoord.xy + eye_place.zw`.
+        eye_place: Vec4 = "vec4",
+        /// Texture coordinates of the wide view at a place in the eye's image.
+        wide_place: Vec4 = "vec4",
+        /// Texture coordinates of the middles of the wide view's first and last pixel.
+        wide_bounds: Vec4 = "vec4",
+        /// Place in the inset at a place in the eye's image.
+        inset_place: Vec4 = "vec4",
+        /// Texture coordinates of the inset at one of its places.
+        inset_part: Vec4 = "vec4",
+        /// Texture coordinates of the middles of the inset's first and last pixel.
+        inset_bounds: Vec4 = "vec4",
+        /// The numbers of [`InsetPlace::source`](crate::eyes::InsetPlace::source), which are 0 without the inset's
+        /// depth, and an unused one.
+        inset_source: Vec4 = "vec4",
+        /// The inverse of the place at which the inset is fully seen.
+        inset_ramp: Vec2 = "vec2",
+        /// Unused: blocks have a size of a multiple of 16 bytes.
+        padding: Vec2 = "vec2",
+    }
+}
+
 fn size(size: [u32; 2]) -> IVec2 {
     IVec2::from(size.map(|n| n as i32))
 }
@@ -219,9 +245,10 @@ mod tests {
     /// A uniform block: the file that declares it, its layout and its size.
     type Block = (&'static str, &'static [(&'static str, &'static str, usize)], usize);
 
-    const BLOCKS: [Block; 2] = [
+    const BLOCKS: [Block; 3] = [
         ("include/uniforms.glsl", Uniforms::LAYOUT, size_of::<Uniforms>()),
         ("include/any_view.glsl", PoseUniforms::LAYOUT, size_of::<PoseUniforms>()),
+        ("include/levels.glsl", LevelUniforms::LAYOUT, size_of::<LevelUniforms>()),
     ];
 
     /// Returns the type and name of each member of a block in the shader's text.

@@ -7,7 +7,7 @@ use super::formats::{aspects, is_depth, sampled_state};
 use super::objects::Objects;
 use super::passes::Passes;
 use super::pipelines::TEXTURES;
-use super::targets::{Attachments, PassKind};
+use super::targets::{Attachments, PassKind, Rendering};
 use super::{
     ImageState, LayerImage, Options, SourceId, SourceImages, TargetId, TargetImages, Use, Uses, VulkanError,
 };
@@ -31,14 +31,31 @@ pub(super) struct Target {
 /// Checks that the device can sample a source's images: filter its colour, and fetch its depth.
 pub(super) fn check_source(adapter: &Adapter, images: &SourceImages) -> Result<(), VulkanError> {
     adapter.check_image_size("a source's image", images.size)?;
-    let sampled = vk::FormatFeatureFlags::SAMPLED_IMAGE;
-    let filtered = sampled | vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
-    adapter.check_format(images.color.format, filtered, "a source's colour")?;
-    let (format, role) = (images.depth.format, "a source's depth");
+    check_color(adapter, images.color.format, "a source's colour")?;
+    check_depth(adapter, images.depth.format, "a source's depth")
+}
+
+/// Checks that the device can filter a colour.
+pub(super) fn check_color(
+    adapter: &Adapter,
+    format: vk::Format,
+    role: &'static str,
+) -> Result<(), VulkanError> {
+    let filtered =
+        vk::FormatFeatureFlags::SAMPLED_IMAGE | vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
+    adapter.check_format(format, filtered, role)
+}
+
+/// Checks that the device can fetch a depth.
+pub(super) fn check_depth(
+    adapter: &Adapter,
+    format: vk::Format,
+    role: &'static str,
+) -> Result<(), VulkanError> {
     if !is_depth(format) && !matches!(format, vk::Format::R16_UNORM | vk::Format::R32_SFLOAT) {
         return Err(VulkanError::Format { format, role });
     }
-    adapter.check_format(format, sampled, role)
+    adapter.check_format(format, vk::FormatFeatureFlags::SAMPLED_IMAGE, role)
 }
 
 /// Checks that a target has the formats of the options, and a size that the device supports.
@@ -68,24 +85,10 @@ impl Source {
         layout: vk::DescriptorSetLayout,
         passes: &Passes,
     ) -> Result<Source, VulkanError> {
-        let mut sampled = |image: &LayerImage| {
-            let aspect = if is_depth(image.format) {
-                vk::ImageAspectFlags::DEPTH
-            } else {
-                vk::ImageAspectFlags::COLOR
-            };
-            let view = objects.create_view(image.image, image.format, aspect, image.layer)?;
-            Ok::<_, VulkanError>(texture(view, sampled_state(image).layout))
-        };
-        let [depth, color] = [sampled(&images.depth)?, sampled(&images.color)?];
+        let [depth, color] = [sampled(&mut objects, &images.depth)?, sampled(&mut objects, &images.color)?];
         let [tiles, spans] =
             passes.intermediates().map(|map| texture(map.attachments.color, ImageState::SAMPLED.layout));
-        let sizes = [vk::DescriptorPoolSize {
-            ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-            descriptor_count: TEXTURES as u32,
-        }];
-        let set = objects.allocate_descriptor_set(layout, &sizes)?;
-        write_textures(objects.device(), set, &[depth, color, tiles, spans]);
+        let set = texture_set(&mut objects, layout, &[depth, color, tiles, spans])?;
         Ok(Source { id, images: *images, textures: set, _objects: objects })
     }
 
@@ -102,21 +105,39 @@ fn texture(view: vk::ImageView, layout: vk::ImageLayout) -> vk::DescriptorImageI
     vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
 }
 
-/// Writes all bindings to a set that no command uses yet.
-fn write_textures(
-    device: &ash::Device,
-    set: vk::DescriptorSet,
-    textures: &[vk::DescriptorImageInfo; TEXTURES],
-) {
-    let writes: [_; TEXTURES] = std::array::from_fn(|binding| {
+/// Returns the texture of a registered image.
+pub(super) fn sampled(
+    objects: &mut Objects,
+    image: &LayerImage,
+) -> Result<vk::DescriptorImageInfo, VulkanError> {
+    let aspect =
+        if is_depth(image.format) { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };
+    let view = objects.create_view(image.image, image.format, aspect, image.layer)?;
+    Ok(texture(view, sampled_state(image).layout))
+}
+
+/// Returns a new set with these textures at its first bindings.
+pub(super) fn texture_set(
+    objects: &mut Objects,
+    layout: vk::DescriptorSetLayout,
+    textures: &[vk::DescriptorImageInfo],
+) -> Result<vk::DescriptorSet, VulkanError> {
+    let sizes = [vk::DescriptorPoolSize {
+        ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        descriptor_count: TEXTURES as u32,
+    }];
+    let set = objects.allocate_descriptor_set(layout, &sizes)?;
+    let write = |(binding, texture)| {
         vk::WriteDescriptorSet::default()
             .dst_set(set)
             .dst_binding(binding as u32)
             .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
-            .image_info(std::slice::from_ref(&textures[binding]))
-    });
-    // SAFETY: the set was just allocated from a pool of this device, and the views are live.
-    unsafe { device.update_descriptor_sets(&writes, &[]) };
+            .image_info(std::slice::from_ref(texture))
+    };
+    let writes: Vec<_> = textures.iter().enumerate().map(write).collect();
+    // SAFETY: the set was just allocated from a pool of this device, no command uses it, and the views are live.
+    unsafe { objects.device().update_descriptor_sets(&writes, &[]) };
+    Ok(set)
 }
 
 impl Target {
@@ -125,15 +146,14 @@ impl Target {
         mut objects: Objects,
         id: TargetId,
         images: &TargetImages,
-        passes: &Passes,
+        rendering: &Rendering,
     ) -> Result<Target, VulkanError> {
         let mut view = |image: &LayerImage| {
             objects.create_view(image.image, image.format, aspects(image.format), image.layer)
         };
         let color = view(&images.color)?;
         let depth = images.depth.as_ref().map(view).transpose()?;
-        let attachments =
-            passes.rendering.attachments(&mut objects, PassKind::Target, color, depth, images.size)?;
+        let attachments = rendering.attachments(&mut objects, PassKind::Target, color, depth, images.size)?;
         Ok(Target { id, images: *images, attachments, _objects: objects })
     }
 

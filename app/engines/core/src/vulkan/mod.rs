@@ -2,7 +2,7 @@
 //!
 //! [`Gather`] takes a [`Warp`] between parallel eyes, [`AnyView`] a
 //! [`PoseWarp`] to a view in any pose near the source's. Both are a [`Pipeline`], and draw the
-//! same picture as on OpenGL, from the same shaders. [`Pipeline::new`], [`Pipeline::register_source`] and
+//! same picture as on OpenGL, from the same shaders. A [`Composer`] makes an eye from the levels of a foveated view. [`Pipeline::new`], [`Pipeline::register_source`] and
 //! [`Pipeline::register_target`] allocate and compile everything; [`Pipeline::record`] only records: it allocates
 //! nothing, submits nothing and waits for nothing.
 //!
@@ -44,6 +44,7 @@
 mod adapter;
 mod barriers;
 mod commands;
+mod composer;
 mod formats;
 mod images;
 mod objects;
@@ -61,6 +62,7 @@ use crate::eyes::{PoseWarp, Warp};
 use crate::synthesis::ArgumentError;
 use crate::synthesis::backend::{WarpKind, map_sizes};
 
+pub use composer::{ComposedFrame, Composer, InsetImage, LevelImage, LevelImages};
 pub use pipeline::{AnyView, Gather, Pipeline};
 
 /// Errors of creating a pipeline, of registering images, and of recording.
@@ -330,6 +332,10 @@ impl TargetImages {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SourceId(u32);
 
+/// The id of registered [`LevelImages`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LevelsId(u32);
+
 /// The id of registered [`TargetImages`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TargetId(u32);
@@ -351,7 +357,7 @@ macro_rules! raw_ids {
     )*};
 }
 
-raw_ids!(SourceId, TargetId);
+raw_ids!(SourceId, TargetId, LevelsId);
 
 /// The images and rectangles of one call of [`Pipeline::record`]. The rectangles have the sizes of the warp.
 #[derive(Clone, Copy, Debug, PartialEq)]

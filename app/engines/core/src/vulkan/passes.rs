@@ -102,7 +102,7 @@ impl Recorder<'_> {
     }
 }
 
-fn area([x, y]: [u32; 2], [width, height]: [u32; 2]) -> vk::Rect2D {
+pub(super) fn area([x, y]: [u32; 2], [width, height]: [u32; 2]) -> vk::Rect2D {
     vk::Rect2D { offset: vk::Offset2D { x: x as i32, y: y as i32 }, extent: vk::Extent2D { width, height } }
 }
 

@@ -12,7 +12,7 @@ use super::formats::map_bytes;
 use super::images::{self, Source, Target};
 use super::objects::Objects;
 use super::passes::{Passes, Recorder};
-use super::pipelines::Layouts;
+use super::pipelines::{FILTERED, Layouts};
 use super::targets::Rendering;
 use super::timer::{Stamp, Timer};
 use super::{
@@ -72,7 +72,7 @@ impl<W: WarpKind> Pipeline<W> {
         let mut objects = unsafe { Objects::new(&device) };
         // SAFETY: the caller's handles are valid and belong together.
         let rendering = unsafe { Rendering::new(host, &mut objects, options)? };
-        let layouts = Layouts::new(&mut objects, size_of::<W::Uniforms>())?;
+        let layouts = Layouts::new(&mut objects, size_of::<W::Uniforms>(), FILTERED)?;
         let memory = adapter.memory();
         let passes = Passes::new::<W>(&mut objects, rendering, layouts.pipeline, &memory, options)?;
         let timer = Timer::new(&mut objects, options.timed_frames, &family, &adapter.properties.limits)?;
@@ -130,7 +130,7 @@ impl<W: WarpKind> Pipeline<W> {
         // SAFETY: the caller's images are live, and outlive the objects, which are destroyed when the id is released.
         let objects = unsafe { Objects::new(&self.device) };
         let id = TargetId(self.next_id());
-        let target = Target::new(objects, id, images, &self.passes)?;
+        let target = Target::new(objects, id, images, &self.passes.rendering)?;
         self.last_id = id.0;
         self.targets.push(target);
         Ok(id)

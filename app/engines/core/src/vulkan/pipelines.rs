@@ -10,7 +10,7 @@ use super::{Options, VulkanError, shaders};
 /// Bindings of the descriptor set, in the order of `TEXTURE` in the shaders: depth, colour, tile map, span map.
 pub(super) const TEXTURES: usize = 4;
 /// The binding of the source's colour, which is filtered. All others are fetched unfiltered.
-const COLOR: usize = 1;
+pub(super) const FILTERED: &[usize] = &[1];
 
 /// The layouts that all pipelines share.
 #[derive(Clone, Copy)]
@@ -20,9 +20,14 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Creates the layouts, for passes with this number of bytes of uniforms.
-    pub(super) fn new(objects: &mut Objects, uniforms: usize) -> Result<Layouts, VulkanError> {
-        let textures = texture_layout(objects)?;
+    /// Creates the layouts, for passes with this number of bytes of uniforms, whose textures of these bindings are
+    /// filtered.
+    pub(super) fn new(
+        objects: &mut Objects,
+        uniforms: usize,
+        filtered: &[usize],
+    ) -> Result<Layouts, VulkanError> {
+        let textures = texture_layout(objects, filtered)?;
         let layouts = [textures];
         // Every device supports 128 bytes of push constants.
         let constants =
@@ -33,7 +38,7 @@ impl Layouts {
     }
 }
 
-fn texture_layout(objects: &mut Objects) -> Result<vk::DescriptorSetLayout, VulkanError> {
+fn texture_layout(objects: &mut Objects, filtered: &[usize]) -> Result<vk::DescriptorSetLayout, VulkanError> {
     let nearest = [objects.create_sampler(&sampler(vk::Filter::NEAREST))?];
     let linear = [objects.create_sampler(&sampler(vk::Filter::LINEAR))?];
     let bindings: [_; TEXTURES] = std::array::from_fn(|place| {
@@ -42,7 +47,7 @@ fn texture_layout(objects: &mut Objects) -> Result<vk::DescriptorSetLayout, Vulk
             .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
             .descriptor_count(1)
             .stage_flags(vk::ShaderStageFlags::FRAGMENT)
-            .immutable_samplers(if place == COLOR { &linear } else { &nearest })
+            .immutable_samplers(if filtered.contains(&place) { &linear } else { &nearest })
     });
     let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
     objects.create_descriptor_set_layout(&info)

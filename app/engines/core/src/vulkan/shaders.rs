@@ -3,6 +3,7 @@
 use crate::synthesis::backend::WarpKind;
 
 pub(super) const SCREEN: &[u8] = include_bytes!("spirv/screen.spv");
+pub(super) const COMPOSE: &[u8] = include_bytes!("spirv/compose.spv");
 
 /// The shaders of the passes for a kind of warp.
 pub(super) struct Shaders {

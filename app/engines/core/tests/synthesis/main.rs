@@ -3,6 +3,7 @@
 mod any_view;
 mod guessed_depth;
 mod host;
+mod levels;
 mod parts;
 mod reference;
 mod state;

@@ -2,6 +2,7 @@
 
 mod any_view;
 mod failures;
+mod levels;
 mod resolved;
 
 use std::alloc::{GlobalAlloc, Layout, System};

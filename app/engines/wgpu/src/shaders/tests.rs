@@ -43,7 +43,8 @@ fn line_for_wgsl(line: &str) -> String {
         let declared = declared.trim_start_matches(" uniform ").trim_start_matches("highp ");
         let (kind, name) = declared.trim_end_matches(';').split_once(' ').unwrap();
         let texture = kind.replace("sampler", "texture");
-        let filter = if name == "color_map" { "linear" } else { "nearest" };
+        let is_filtered = ["color_map", "wide_map", "inset_map"].contains(&name);
+        let filter = if is_filtered { "linear" } else { "nearest" };
         return format!(
             "layout(set = 0, binding = {binding}) uniform {texture} {name}_texture;\n\
              #define {name} {kind}({name}_texture, {filter}_sampler)"

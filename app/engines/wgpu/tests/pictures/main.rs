@@ -2,6 +2,7 @@
 
 mod any_view;
 mod harness;
+mod levels;
 mod nearest;
 
 use std::time::Instant;

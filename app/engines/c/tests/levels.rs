@@ -1,0 +1,167 @@
+//! The levels of a foveated view, and their composition on OpenGL.
+
+mod common;
+
+use std::num::NonZeroU32;
+use std::ptr::null_mut;
+
+use common::{framebuffer, gl_info, good_eyes, texture, zeroed};
+use glow::HasContext;
+use yoro::eyes::{DepthRange, Eye, EyePair, FoveationLevel, Frustum, Gaze, GuardBand, Pose};
+use yoro_c::*;
+use yoro_context::{Backend, Headless};
+
+/// Eyes whose insets are much smaller than their images.
+fn wide_eyes() -> YoroEyes {
+    let mut eyes = good_eyes();
+    for fov in &mut eyes.fovs {
+        *fov = YoroFov { angle_left: -0.8, angle_right: 0.85, angle_up: 0.7, angle_down: -0.75 };
+    }
+    eyes
+}
+
+fn medium() -> YoroFoveation {
+    let mut foveation: YoroFoveation = zeroed(|f: &mut YoroFoveation| &mut f.struct_size);
+    foveation.level = YORO_FOVEATION_MEDIUM;
+    foveation
+}
+
+type Found = (YoroViews, YoroViews, [YoroComposition; 2]);
+
+fn levels_of(eyes: &YoroEyes, foveation: &YoroFoveation) -> Result<Found, YoroResult> {
+    let views = || zeroed(|v: &mut YoroViews| &mut v.struct_size);
+    let (mut wide, mut inset, mut compositions) = (views(), views(), [YoroComposition::default(); 2]);
+    // SAFETY: whole structures of the sizes that they state.
+    match unsafe { yoro_levels_from_eyes(eyes, foveation, &mut wide, &mut inset, compositions.as_mut_ptr()) }
+    {
+        YORO_OK => Ok((wide, inset, compositions)),
+        code => Err(code),
+    }
+}
+
+#[test]
+fn levels_are_the_cores_with_rows_from_either_end() {
+    let own = wide_eyes();
+    let pair = EyePair {
+        poses: own.poses.map(|pose| Pose { position: pose.position.into(), ..Pose::IDENTITY }),
+        frusta: own.fovs.map(|f| Frustum::from_fov(f.angle_left, f.angle_right, f.angle_up, f.angle_down)),
+        depth: DepthRange::from_distances(own.near_z, own.far_z),
+        size: [own.width, own.height],
+        dominant: Eye::Right,
+    };
+    let gaze = glam::Vec3::new(0.2, -0.1, -1.0);
+    let foveation = FoveationLevel::Medium.foveation();
+    let tracked = YoroFoveation { tracked: 1, gaze: gaze.to_array(), ..medium() };
+    for (given, gaze) in [(medium(), Gaze::Axes(pair.axes())), (tracked, Gaze::Direction(gaze))] {
+        let core = pair.levels(foveation.as_ref(), gaze, GuardBand::Distance(1.0)).unwrap();
+        for rows in [YORO_ROWS_UP, YORO_ROWS_DOWN] {
+            let (wide, inset, compositions) = levels_of(&YoroEyes { rows, ..own }, &given).unwrap();
+            for (views, level) in [(&wide, core.wide), (&inset, core.inset.unwrap())] {
+                assert_eq!([views.source.width, views.source.height], level.views.source.size);
+                assert_eq!([views.rendered.width, views.rendered.height], level.eyes.size);
+                let crop = match rows {
+                    YORO_ROWS_UP => level.views.dominant_crop,
+                    _ => level.views.dominant_crop_from_top(),
+                };
+                assert_eq!([views.crop_x, views.crop_y], crop);
+                assert!((views.source.fov.angle_left.tan() - level.views.source.frustum.left).abs() < 1e-5);
+                assert!((views.source.fov.angle_up.tan() - level.views.source.frustum.top).abs() < 1e-5);
+                assert!((views.warp.offset - level.views.warp.law.offset).abs() < 1e-3);
+            }
+            for (eye, own) in Eye::BOTH.into_iter().zip(compositions) {
+                let core = core.composition(eye);
+                let core = if rows == YORO_ROWS_DOWN { core.rows_from_top() } else { core };
+                let inset = core.inset.unwrap();
+                assert_eq!(
+                    ([own.width, own.height], [own.wide_width, own.wide_height]),
+                    (core.size, core.wide.size)
+                );
+                assert_eq!([own.inset_width, own.inset_height], inset.place.size);
+                assert_eq!((own.inset_scale, own.inset_offset), (inset.place.scale, inset.place.offset));
+                assert_eq!(own.inset_source, inset.source.unwrap_or_default());
+            }
+        }
+    }
+    let off = YoroFoveation { level: YORO_FOVEATION_OFF, ..medium() };
+    let (wide, inset, compositions) = levels_of(&own, &off).unwrap();
+    assert_eq!((Ok(wide), inset.source.width), (common::views_of(&own), 0));
+    assert_eq!(compositions[0].inset_width, 0);
+    for wrong in [
+        YoroFoveation { level: 4, ..medium() },
+        YoroFoveation { tracked: 2, ..medium() },
+        YoroFoveation { density: 2.0, ..medium() },
+        YoroFoveation { fade: f32::NAN, ..medium() },
+    ] {
+        assert_eq!(levels_of(&own, &wrong).map(drop), Err(YORO_ERROR_VALUE), "{wrong:?}");
+    }
+    assert_eq!(
+        levels_of(&own, &YoroFoveation { struct_size: 4, ..medium() }).map(drop),
+        Err(YORO_ERROR_STRUCT_SIZE)
+    );
+}
+
+/// A texture of one colour.
+unsafe fn filled(gl: &glow::Context, size: [u32; 2], color: [f32; 4]) -> u32 {
+    // SAFETY: the context is current.
+    unsafe {
+        let name = texture(gl, glow::TEXTURE_2D, glow::RGBA8, size);
+        let drawn = framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, name)]);
+        gl.bind_framebuffer(glow::FRAMEBUFFER, NonZeroU32::new(drawn).map(glow::NativeFramebuffer));
+        gl.clear_buffer_f32_slice(glow::COLOR, 0, &color);
+        gl.bind_framebuffer(glow::FRAMEBUFFER, None);
+        name
+    }
+}
+
+#[test]
+fn an_eye_is_composed_of_a_part_and_a_whole_texture() {
+    let headless = Headless::open(Backend::Egl).unwrap();
+    let gl = headless.gl().raw();
+    let eyes = wide_eyes();
+    let (_, inset, compositions) = levels_of(&eyes, &medium()).unwrap();
+    let own = compositions[YORO_EYE_RIGHT as usize];
+    let mut noted = Vec::new();
+    let info = YoroGlInfo { composes: 1, ..gl_info(&mut noted) };
+    let mut context = null_mut();
+    let mut levels: YoroGlLevels = zeroed(|l: &mut YoroGlLevels| &mut l.struct_size);
+    // SAFETY: complete structures, a live, current context, and checks are on.
+    unsafe {
+        assert_eq!(yoro_gl_create(&info, &mut context), YORO_OK, "{noted:?}");
+        levels.wide_texture = filled(gl, [own.wide_width, own.wide_height], [1.0, 0.0, 0.0, 1.0]);
+        let image = [inset.source.width, inset.source.height];
+        levels.inset_texture = filled(gl, image, [0.0, 1.0, 0.0, 1.0]);
+        (levels.inset_x, levels.inset_y) = (inset.crop_x, inset.crop_y);
+        (levels.inset_image_width, levels.inset_image_height) = (image[0], image[1]);
+        let target = texture(gl, glow::TEXTURE_2D, glow::RGBA8, [eyes.width, eyes.height]);
+        levels.framebuffer = framebuffer(gl, &[(glow::COLOR_ATTACHMENT0, target)]);
+        let compose = |own: &YoroComposition, levels: &YoroGlLevels| yoro_gl_compose(context, own, levels);
+        assert_eq!(compose(&own, &levels), YORO_OK, "{noted:?}");
+        let mut pixels = vec![0u8; (eyes.width * eyes.height * 4) as usize];
+        let drawn = NonZeroU32::new(levels.framebuffer).map(glow::NativeFramebuffer);
+        gl.bind_framebuffer(glow::FRAMEBUFFER, drawn);
+        let data = glow::PixelPackData::Slice(Some(&mut pixels));
+        gl.read_pixels(0, 0, eyes.width as i32, eyes.height as i32, glow::RGBA, glow::UNSIGNED_BYTE, data);
+        let count = |color: [u8; 4]| pixels.chunks_exact(4).filter(|pixel| **pixel == color).count() as u32;
+        let covered = own.inset_width * own.inset_height;
+        assert_eq!(count([0, 255, 0, 255]), covered);
+        assert_eq!(count([255, 0, 0, 255]), eyes.width * eyes.height - covered);
+
+        let with = |change: &dyn Fn(&mut YoroComposition, &mut YoroGlLevels)| {
+            let (mut own, mut levels) = (own, levels);
+            change(&mut own, &mut levels);
+            compose(&own, &levels)
+        };
+        assert_eq!(with(&|_, l| l.wide_texture = 0), YORO_ERROR_VALUE);
+        assert_eq!(with(&|_, l| l.inset_x += 1000), YORO_ERROR_TOO_LARGE);
+        assert_eq!(with(&|_, l| l.inset_texture = l.wide_texture), YORO_ERROR_FORMAT);
+        assert_eq!(with(&|_, l| l.inset_depth_texture = l.inset_texture), YORO_ERROR_FORMAT);
+        assert_eq!(with(&|_, l| l.wide_texture = target), YORO_ERROR_FORMAT);
+        assert_eq!(with(&|c, _| c.width = 0), YORO_ERROR_VALUE);
+        assert_eq!(with(&|c, _| c.inset_scale[0] = f64::NAN), YORO_ERROR_VALUE);
+        assert_eq!(yoro_destroy(context), YORO_OK);
+        let mut plain = null_mut();
+        assert_eq!(yoro_gl_create(&YoroGlInfo { composes: 0, ..info }, &mut plain), YORO_OK);
+        assert_eq!(yoro_gl_compose(plain, &own, &levels), YORO_ERROR_UNSUPPORTED);
+        assert_eq!(yoro_destroy(plain), YORO_OK);
+    }
+}
