@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::ensure;
 
-use yoro_media::video::Reader;
+use yoro_media::video::{Planes, Reader, VideoError};
 use yoro_render::PreparedScene;
 use yoro_stream::{Content, EyeView, FrameRenderer, FromServer, Picture, ViewRequest};
 
@@ -44,6 +44,9 @@ pub struct Video {
     size: [u16; 2],
     /// The time at which the next picture is due.
     due: Duration,
+    /// The pictures that have been read since the first, and whether a damaged one was told.
+    read: usize,
+    told: bool,
 }
 
 impl Video {
@@ -66,7 +69,40 @@ impl Video {
         );
         let size = view.size.map(|n| n as u16);
         let welcome = FromServer::Video(rgbd.pair().frusta, rgbd.eye);
-        Ok((Video { reader, content, size, due: Duration::ZERO }, welcome))
+        let mut video = Video { reader, content, size, due: Duration::ZERO, read: 0, told: false };
+        // A video without a whole picture is refused at once.
+        video.next()?;
+        video.rewind()?;
+        Ok((video, welcome))
+    }
+
+    /// Returns the next picture that is whole. After the last one, the first follows.
+    fn next(&mut self) -> anyhow::Result<Planes> {
+        loop {
+            let has_more = match self.reader.read_packed() {
+                Ok(Some(planes)) => {
+                    self.read += 1;
+                    return Ok(planes);
+                }
+                Ok(None) => false,
+                Err(error) => {
+                    if !std::mem::replace(&mut self.told, true) {
+                        log::warn!("{error}; what cannot be read is left out");
+                    }
+                    let has_more = self.reader.skip()?;
+                    ensure!(has_more || self.read > 0, error);
+                    has_more
+                }
+            };
+            if !has_more {
+                self.rewind()?;
+            }
+        }
+    }
+
+    fn rewind(&mut self) -> Result<(), VideoError> {
+        self.read = 0;
+        self.reader.rewind()
     }
 
     fn picture(&mut self, now: Duration) -> anyhow::Result<Option<Picture>> {
@@ -75,10 +111,7 @@ impl Video {
         }
         let mut newest = None;
         while self.due <= now {
-            if self.reader.frames() == 0 {
-                self.reader.rewind()?;
-            }
-            let Some(planes) = self.reader.read_packed()? else { break };
+            let planes = self.next()?;
             self.due += Duration::from_secs_f64(self.reader.duration().max(1e-3));
             newest = Some(planes);
         }
