@@ -243,6 +243,10 @@ impl Reader {
             io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
             _ => FileError::Read { path: path.into(), source },
         };
+        // To open a pipe would wait for somebody who writes.
+        if std::fs::metadata(path).is_ok_and(|data| !data.is_file()) {
+            return Err(VideoError::format(path, "it is a pipe or a device"));
+        }
         let mut file = BufReader::new(File::open(path).map_err(failed)?);
         let length = file.get_ref().metadata().map_err(failed)?.len();
         let index = Index::read(path, &mut file, length)?;
@@ -421,6 +425,23 @@ mod tests {
         assert!((reader.duration() - 0.5).abs() < 1e-4);
         video(&path);
         assert_eq!(Reader::open(&path).unwrap().durations(), None, "all are shown for 1/3 s");
+    }
+
+    /// x264's pictures with B-frames, each lighter than the one before. tests/README.md says how they were made.
+    #[test]
+    fn b_frames_are_read_in_the_order_in_which_they_are_shown() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/b-frames.mp4");
+        let mut reader = Reader::open(&path).unwrap();
+        assert!(!reader.index.pictures.is_sorted_by_key(|picture| picture.shown), "it has B-frames");
+        for round in 0..2 {
+            for frame in 0..8u8 {
+                let luma = reader.read().unwrap().unwrap().planes[0][0];
+                assert!(luma.abs_diff(20 + 25 * frame) < 3, "round {round}, frame {frame}: {luma}");
+                assert!((reader.duration() - 0.1).abs() < 1e-6);
+            }
+            assert!(reader.read().unwrap().is_none());
+            reader.rewind().unwrap();
+        }
     }
 
     #[test]

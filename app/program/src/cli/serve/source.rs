@@ -44,9 +44,10 @@ pub struct Video {
     size: [u16; 2],
     /// The time at which the next picture is due.
     due: Duration,
-    /// The pictures that have been read since the first, and whether a damaged one was told.
+    /// The pictures that have been read since the first.
     read: usize,
-    told: bool,
+    /// The first damage, and whether it was told.
+    damage: Option<(VideoError, bool)>,
 }
 
 impl Video {
@@ -69,7 +70,7 @@ impl Video {
         );
         let size = view.size.map(|n| n as u16);
         let welcome = FromServer::Video(rgbd.pair().frusta, rgbd.eye);
-        let mut video = Video { reader, content, size, due: Duration::ZERO, read: 0, told: false };
+        let mut video = Video { reader, content, size, due: Duration::ZERO, read: 0, damage: None };
         // A video without a whole picture is refused at once.
         video.next()?;
         video.rewind()?;
@@ -82,15 +83,19 @@ impl Video {
             let has_more = match self.reader.read_packed() {
                 Ok(Some(planes)) => {
                     self.read += 1;
+                    if let Some((error, told @ false)) = &mut self.damage {
+                        log::warn!("{error}; what cannot be read is left out");
+                        *told = true;
+                    }
                     return Ok(planes);
                 }
                 Ok(None) => false,
                 Err(error) => {
-                    if !std::mem::replace(&mut self.told, true) {
-                        log::warn!("{error}; what cannot be read is left out");
-                    }
                     let has_more = self.reader.skip()?;
-                    ensure!(has_more || self.read > 0, error);
+                    if !has_more && self.read == 0 {
+                        return Err(error.into());
+                    }
+                    self.damage.get_or_insert((error, false));
                     has_more
                 }
             };

@@ -70,7 +70,7 @@ struct Sent {
 }
 
 /// Decides when a frame is made and how finely it is encoded, from the times at which frames have arrived at the client:
-/// Google Congestion Control says how much may be sent ([`trend`], [`rate`]), and no more is on its way than what arrives
+/// Google Congestion Control says how much may be sent (`trend`, `rate`), and no more is on its way than what arrives
 /// in the fastest round trip and the usual variation of round trips.
 ///
 /// Each frame gets the finest quantizer at which it fits into the rate. If the coarsest one does not, there are fewer

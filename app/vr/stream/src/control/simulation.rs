@@ -112,7 +112,6 @@ impl Outcome {
         }
     }
 
-    #[allow(dead_code)]
     fn intra(&self) -> usize {
         self.made.iter().filter(|made| made.is_intra).count()
     }
@@ -330,4 +329,61 @@ fn a_link_that_narrows_is_followed_within_a_second_and_back_within_five() {
         }
     }
     assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn a_lost_message_stops_no_stream() {
+    for delivery in BOTH {
+        // Nothing that the client says in the first second arrives; then every second message.
+        for passes in [(|message| message > 70) as fn(u32) -> bool, |message| message % 2 == 0] {
+            let outcome = run_with(10.0, delivery, |_| LINK, passes);
+            let figures = outcome.from(5.0, 10.0);
+            row("half of the client's messages", delivery, &figures);
+            assert!(figures.frames_per_second > 50.0);
+        }
+        // A client of which nothing arrives gets a picture now and then.
+        let outcome = run_with(10.0, delivery, |_| LINK, |_| false);
+        assert!((3..20).contains(&outcome.made.len()), "{}", outcome.made.len());
+    }
+}
+
+#[test]
+fn a_lost_frame_costs_an_intra_frame_and_those_that_refer_to_it() {
+    let outcome = run(20.0, Delivery::Independent, |_| Link { lost_frames: 0.01, delay: 0.002, ..LINK });
+    let figures = outcome.from(1.0, 20.0);
+    row("1 % of frames lost", Delivery::Independent, &figures);
+    assert!(figures.frames_per_second > 45.0 && figures.age[1] < 0.06);
+    assert!((2..30).contains(&outcome.intra()), "{} intra frames", outcome.intra());
+    let [seen, known] = outcome.lost;
+    assert!(seen > 0 && seen.abs_diff(known) < 10, "{seen} frames are lost, {known} to the server");
+}
+
+#[test]
+fn frames_that_overtake_others_cost_no_intra_frame() {
+    let outcome = run(20.0, Delivery::Independent, |_| Link { jitter: 0.03, ..LINK });
+    assert_eq!((outcome.intra(), outcome.lost), (1, [0, 0]));
+}
+
+#[test]
+fn after_a_gap_pictures_come_soon_and_few_were_made_for_nothing() {
+    for delivery in BOTH {
+        // For two seconds, nothing arrives.
+        let delay = |now| LINK.delay + if (5.0..7.0).contains(&now) { 7.0 - now } else { 0.0 };
+        let outcome = run(10.0, delivery, |now| Link { delay: delay(now), ..LINK });
+        let made = outcome.made.iter().filter(|made| (5.2..7.0).contains(&made.time)).count();
+        let figures = outcome.from(7.5, 10.0);
+        row("after a gap of 2 s", delivery, &figures);
+        assert!(made < 6, "{made} frames are made while the link stands still");
+        assert!(figures.frames_per_second > 50.0 && figures.age[1] < 0.06);
+    }
+}
+
+#[test]
+fn what_is_given_up_teaches() {
+    // A link that loses its queue when that is full, and becomes slow at once.
+    let link = Link { bytes_per_second: mbit(0.5), queue: 64e3, ..LINK };
+    let outcome = run(30.0, Delivery::Independent, |now| if now < 5.0 { LINK } else { link });
+    let figures = outcome.from(8.0, 30.0);
+    row("from 96 to 0.5 Mbit/s, queue of 64 kB", Delivery::Independent, &figures);
+    assert!(figures.frames_per_second > 10.0 && figures.shown < 0.5);
 }
