@@ -27,7 +27,7 @@ struct Item {
     build: Option<fn() -> anyhow::Result<PathBuf>>,
 }
 
-static ITEMS: [Item; 12] = [
+static ITEMS: [Item; 13] = [
     Item {
         what: "the page",
         variable: "WEB",
