@@ -24,6 +24,7 @@ static SYNTHESIS: &[File] = embed![
     "include/any_view.glsl",
     "include/bits.glsl",
     "include/color.glsl",
+    "include/depth_map.glsl",
     "include/develop.glsl",
     "include/extensions.glsl",
     "include/fill.glsl",
@@ -42,6 +43,7 @@ static SYNTHESIS: &[File] = embed![
     "include/version.glsl",
     "include/warp.glsl",
     "screen.vert",
+    "stereo/near_fraction.frag",
     "synthesis/any_view/march.frag",
     "synthesis/any_view/spans.frag",
     "synthesis/any_view/tiles.frag",
@@ -58,7 +60,6 @@ static SYNTHESIS: &[File] = embed![
 #[cfg(any(test, feature = "app"))]
 static APP: &[File] = embed![
     "include/carried.glsl",
-    "include/depth_map.glsl",
     "include/imbuffer.glsl",
     "include/ink.glsl",
     "include/material.glsl",
@@ -87,7 +88,6 @@ static APP: &[File] = embed![
     "render/sky.frag",
     "render/transparent.frag",
     "stereo/border_profile.frag",
-    "stereo/near_fraction.frag",
     "stereo/paper/patch.frag",
     "stereo/paper/reproject.frag",
     "stereo/paper/scatter.comp",

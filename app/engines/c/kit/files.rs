@@ -11,7 +11,7 @@ use std::path::Path;
 use yoro::synthesis::{LevelUniforms, PoseUniforms, Uniforms};
 
 /// Each file of the kit, and the file of `yoro-shaders` that it is made from.
-const SHADERS: [(&str, &str); 9] = [
+const SHADERS: [(&str, &str); 10] = [
     ("screen.vert", "screen.vert"),
     ("march.vert", "synthesis/march.vert"),
     ("tiles.frag", "synthesis/gather/tiles.frag"),

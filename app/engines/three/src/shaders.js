@@ -34,8 +34,9 @@ uniform ivec2 source_origin;
 uniform vec2 texel;
 const ivec2 TILE=ivec2(16,8);
 uniform sampler2D depth_map;
-float depth_sample(vec2 place){return textureLod(depth_map,(place),0.0).r;}
-vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(texelFetch(depth_map,(ivec2(low.x,high.y)),0).r,texelFetch(depth_map,(high),0).r,texelFetch(depth_map,(ivec2(high.x,low.y)),0).r,texelFetch(depth_map,(low),0).r);}
+float nearest_of(vec4 texel){return texel.r;}
+float depth_sample(vec2 place){return nearest_of(textureLod(depth_map,(place),0.0));}
+vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));return max(textureGather(depth_map,(place),0),textureGather(depth_map,(place),1));}
 float displacement(float depth){return law.x+law.y*depth;}
 vec2 place_of(vec2 at){at=PART?clamp(at,vec2(0.5),vec2(source_size)-0.5):at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
 const float TILE_UNITS=16.0;
@@ -90,9 +91,10 @@ float fill_spread(float away){return 0.5*clamp(abs(away),1.0,12.0);}
 const ivec2 TILE=ivec2(16,8);
 uniform sampler2D depth_map;
 uniform sampler2D color_map;
-float depth_sample(vec2 place){return textureLod(depth_map,(place),0.0).r;}
+float nearest_of(vec4 texel){return texel.r;}
+float depth_sample(vec2 place){return nearest_of(textureLod(depth_map,(place),0.0));}
 vec4 color_sample(vec2 place){return textureLod(color_map,(place),0.0);}
-vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(texelFetch(depth_map,(ivec2(low.x,high.y)),0).r,texelFetch(depth_map,(high),0).r,texelFetch(depth_map,(ivec2(high.x,low.y)),0).r,texelFetch(depth_map,(low),0).r);}
+vec4 depth_gather(vec2 place){ivec2 last=textureSize(depth_map,0).xy-1;ivec2 corner=ivec2(floor(place*vec2(last+1)-0.5));ivec2 low=clamp(corner,ivec2(0),last);ivec2 high=clamp(corner+1,ivec2(0),last);return vec4(nearest_of(texelFetch(depth_map,(ivec2(low.x,high.y)),0)),nearest_of(texelFetch(depth_map,(high),0)),nearest_of(texelFetch(depth_map,(ivec2(high.x,low.y)),0)),nearest_of(texelFetch(depth_map,(low),0)));return max(textureGather(depth_map,(place),0),textureGather(depth_map,(place),1));}
 vec2 place_of(vec2 at){at=PART?clamp(at,vec2(0.5),vec2(source_size)-0.5):at;return vec2(columns.x*at.x+columns.y,(float(source_origin.y)+at.y)*texel.y);}
 float column_at(float x){return place_of(vec2(x+0.5,0.5)).x;}
 float row_at(float away){return PART?place_of(vec2(0.5,gl_FragCoord.y-first_row+away)).y:rows.x*(gl_FragCoord.y+away)+rows.y;}
@@ -123,11 +125,12 @@ vec4 march(Search at,float end,float origin,int row,out Surface surface){float b
 layout(location=0)out vec4 color;
 int source_row(){return int(clamp(gl_FragCoord.y-first_row,0.0,float(source_size.y-1)));}
 const float FIRST_STEPS=2.0;
-vec4 lawful(vec3 affine,out Surface surface){float place=affine.x+affine.y*gl_FragCoord.x+affine.z*gl_FragCoord.y;surface.source=clamp((place-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));vec2 depths=depth_pair(floor(surface.source));surface.depth=mix(depths.x,depths.y,fract(surface.source));surface.hole=false;return color_sample(vec2(place,row_at(0.0)));}
-vec4 searched(uint span,out Surface surface){float origin=origins.x*gl_FragCoord.x+origins.y;Search at=search_at(floor(origin-farthest-uintBitsToFloat(span)),origin);float end=min(max(at.x,0.0)+span_steps(span),float(source_size.x-1));float limit=min(at.x+FIRST_STEPS,end);for(;at.x<limit&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float next=depth_sample(vec2(column_at(at.x+2.0),row_at(0.0)));at.depths=vec2(at.depths.y,next);at.a=at.b;at.b=at.x+2.0-origin+law.y*next;}float stretch=at.b-at.a;float t=-at.a/stretch;surface=Surface(at.x+t,mix(at.depths.x,at.depths.y,t),false);vec4 seen=color_sample(vec2(column_at(surface.source),row_at(0.0)));float middle=0.5*float(source_size.x-1);bool done=at.a<=0.0&&at.b>0.0&&stretch<MAX_STRETCH&&abs(surface.source-middle)<=middle;if((63&SEGMENTS)!=0&&!done){seen=march(at,end,origin,source_row(),surface);}return seen;}
+vec4 lawful(vec3 affine,out Surface surface){float place=affine.x+affine.y*gl_FragCoord.x+affine.z*gl_FragCoord.y;surface.source=clamp((place-columns.y)/columns.x-0.5,0.0,float(source_size.x-1));surface.depth=(origins.x*gl_FragCoord.x+origins.y-surface.source)/law.y;if(law.y==0.0){vec2 depths=depth_pair(floor(surface.source));surface.depth=mix(depths.x,depths.y,fract(surface.source));}surface.hole=false;vec2 at=vec2(place,row_at(0.0));return color;}
+vec4 searched(uint span,out Surface surface){float origin=origins.x*gl_FragCoord.x+origins.y;Search at=search_at(floor(origin-farthest-uintBitsToFloat(span)),origin);float end=min(max(at.x,0.0)+span_steps(span),float(source_size.x-1));float limit=min(at.x+FIRST_STEPS,end);for(;at.x<limit&&at.b<=0.0&&max(at.b,-1.0)>=at.a;at.x+=1.0){float next=depth_sample(vec2(column_at(at.x+2.0),row_at(0.0)));at.depths=vec2(at.depths.y,next);at.a=at.b;at.b=at.x+2.0-origin+law.y*next;}float stretch=at.b-at.a;float t=-at.a/stretch;surface=Surface(at.x+t,mix(at.depths.x,at.depths.y,t),false);vec4 seen=color_sample(vec2(column_at(surface.source),row_at(0.0)));float middle=0.5*float(source_size.x-1);bool done=at.a<=0.0&&at.b>0.0&&stretch<MAX_STRETCH&&abs(surface.source-middle)<=middle;if((63&SEGMENTS)!=0&&!done){seen=march(at,end,origin,source_row(),surface);}return color;}
 void main(){uvec4 span=pixel_span();Surface surface;if((63&LAW)!=0&&span.y!=0u){color=lawful(uintBitsToFloat(span.xyz),surface);}else if((63&SEARCH)!=0){color=searched(span.x,surface);}else{discard;}gl_FragDepth=surface.depth;}`;
 export const nearFraction = /* glsl */`${precisions}
-uniform sampler2D depth_map;
+uniform highp sampler2D depth_map;
+float depth_of(ivec2 p){return texelFetch(depth_map,p,0).x;}
 uniform ivec2 origin;
 uniform ivec2 size;
 uniform float near_depth;
@@ -135,4 +138,4 @@ uniform bool reversed;
 layout(location=0)out vec4 fraction;
 const int GRID=16;
 const int SAMPLES=8;
-void main(){ivec2 cell=ivec2(gl_FragCoord.xy)*SAMPLES;float count=0.0;for(int j=0;j<SAMPLES;++j){for(int i=0;i<SAMPLES;++i){ivec2 pixel=origin+((cell+ivec2(i,j))*2+1)*size/(2*GRID*SAMPLES);float depth=texelFetch(depth_map,pixel,0).r;count+=(reversed?depth>near_depth:depth<near_depth)?1.0:0.0;}}fraction=vec4(count/float(SAMPLES*SAMPLES));}`;
+void main(){ivec2 cell=ivec2(gl_FragCoord.xy)*SAMPLES;float count=0.0;for(int j=0;j<SAMPLES;++j){for(int i=0;i<SAMPLES;++i){ivec2 pixel=origin+((cell+ivec2(i,j))*2+1)*size/(2*GRID*SAMPLES);float depth=depth_of(pixel);count+=(reversed?depth>near_depth:depth<near_depth)?1.0:0.0;}}fraction=vec4(count/float(SAMPLES*SAMPLES));}`;

@@ -20,6 +20,11 @@ var depth_map_texture: texture_2d<f32>;
 var<private> gl_FragCoord_1: vec4<f32>;
 var<private> tile: vec4<u32>;
 
+fn nearest_of(texel: ptr<function, vec4<f32>>) -> f32 {
+    let _e3 = (*texel)[0u];
+    return _e3;
+}
+
 fn in_image(pixel: ptr<function, vec2<i32>>) -> vec2<i32> {
     var local: vec2<i32>;
 
@@ -37,13 +42,16 @@ fn in_image(pixel: ptr<function, vec2<i32>>) -> vec2<i32> {
 
 fn depth_texel(column: ptr<function, i32>, row: ptr<function, i32>) -> f32 {
     var param: vec2<i32>;
+    var param_1: vec4<f32>;
 
-    let _e5 = (*column);
-    let _e6 = (*row);
-    param = vec2<i32>(_e5, _e6);
-    let _e8 = in_image((&param));
-    let _e9 = textureLoad(depth_map_texture, _e8, 0i);
-    return _e9.x;
+    let _e6 = (*column);
+    let _e7 = (*row);
+    param = vec2<i32>(_e6, _e7);
+    let _e9 = in_image((&param));
+    let _e10 = textureLoad(depth_map_texture, _e9, 0i);
+    param_1 = _e10;
+    let _e11 = nearest_of((&param_1));
+    return _e11;
 }
 
 fn main_1() {
@@ -55,8 +63,8 @@ fn main_1() {
     var x: i32;
     var pixel_1: vec2<i32>;
     var depth: f32;
-    var param_1: i32;
     var param_2: i32;
+    var param_3: i32;
 
     let _e23 = gl_FragCoord_1;
     corner = (vec2<i32>(_e23.xy) * vec2<i32>(16i, 8i));
@@ -78,10 +86,10 @@ fn main_1() {
                     let _e40 = last;
                     pixel_1 = clamp((_e35 + vec2<i32>(_e36, _e37)), vec2<i32>(0i, 0i), _e40);
                     let _e43 = pixel_1[0u];
-                    param_1 = _e43;
+                    param_2 = _e43;
                     let _e45 = pixel_1[1u];
-                    param_2 = _e45;
-                    let _e46 = depth_texel((&param_1), (&param_2));
+                    param_3 = _e45;
+                    let _e46 = depth_texel((&param_2), (&param_3));
                     depth = _e46;
                     let _e47 = least;
                     let _e48 = depth;

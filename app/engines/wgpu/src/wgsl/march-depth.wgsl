@@ -68,10 +68,19 @@ fn color_sample(place: ptr<function, vec2<f32>>) -> vec4<f32> {
     return _e5;
 }
 
+fn nearest_of(texel: ptr<function, vec4<f32>>) -> f32 {
+    let _e3 = (*texel)[0u];
+    return _e3;
+}
+
 fn depth_sample(place_1: ptr<function, vec2<f32>>) -> f32 {
-    let _e4 = (*place_1);
-    let _e5 = textureSampleLevel(depth_map_texture, nearest_sampler, _e4, 0f);
-    return _e5.x;
+    var param: vec4<f32>;
+
+    let _e5 = (*place_1);
+    let _e6 = textureSampleLevel(depth_map_texture, nearest_sampler, _e5, 0f);
+    param = _e6;
+    let _e7 = nearest_of((&param));
+    return _e7;
 }
 
 fn place_of(at: ptr<function, vec2<f32>>) -> vec2<f32> {
@@ -98,14 +107,14 @@ fn place_of(at: ptr<function, vec2<f32>>) -> vec2<f32> {
 
 fn row_at(away: ptr<function, f32>) -> f32 {
     var local_1: f32;
-    var param: vec2<f32>;
+    var param_1: vec2<f32>;
 
     if true {
         let _e10 = gl_FragCoord_1[1u];
         let _e12 = synthesis.first_row;
         let _e14 = (*away);
-        param = vec2<f32>(0.5f, ((_e10 - _e12) + _e14));
-        let _e17 = place_of((&param));
+        param_1 = vec2<f32>(0.5f, ((_e10 - _e12) + _e14));
+        let _e17 = place_of((&param_1));
         local_1 = _e17.y;
     } else {
         let _e21 = synthesis.rows[0u];
@@ -119,11 +128,11 @@ fn row_at(away: ptr<function, f32>) -> f32 {
 }
 
 fn column_at(x: ptr<function, f32>) -> f32 {
-    var param_1: vec2<f32>;
+    var param_2: vec2<f32>;
 
     let _e3 = (*x);
-    param_1 = vec2<f32>((_e3 + 0.5f), 0.5f);
-    let _e6 = place_of((&param_1));
+    param_2 = vec2<f32>((_e3 + 0.5f), 0.5f);
+    let _e6 = place_of((&param_2));
     return _e6.x;
 }
 
@@ -134,27 +143,27 @@ fn fill_spread(away_1: ptr<function, f32>) -> f32 {
 
 fn fill_hole(color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_1: ptr<function, f32>, depth: ptr<function, f32>) -> vec4<f32> {
     var spread: f32;
-    var param_2: f32;
+    var param_3: f32;
     var sum: vec4<f32>;
     var weights: f32;
     var i: i32;
     var distance_: f32;
     var below: vec2<f32>;
-    var param_3: f32;
     var param_4: f32;
-    var above: vec2<f32>;
     var param_5: f32;
+    var above: vec2<f32>;
     var param_6: f32;
+    var param_7: f32;
     var depths: vec2<f32>;
-    var param_7: vec2<f32>;
     var param_8: vec2<f32>;
-    var weight: vec2<f32>;
     var param_9: vec2<f32>;
+    var weight: vec2<f32>;
     var param_10: vec2<f32>;
+    var param_11: vec2<f32>;
 
     let _e30 = (*away_2);
-    param_2 = _e30;
-    let _e31 = fill_spread((&param_2));
+    param_3 = _e30;
+    let _e31 = fill_spread((&param_3));
     spread = _e31;
     let _e32 = (*color);
     sum = (_e32 * 2f);
@@ -167,25 +176,25 @@ fn fill_hole(color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_1: p
             let _e38 = spread;
             distance_ = round((f32(_e36) * _e38));
             let _e41 = (*x_1);
-            param_3 = _e41;
-            let _e42 = column_at((&param_3));
+            param_4 = _e41;
+            let _e42 = column_at((&param_4));
             let _e43 = distance_;
-            param_4 = -(_e43);
-            let _e45 = row_at((&param_4));
+            param_5 = -(_e43);
+            let _e45 = row_at((&param_5));
             below = vec2<f32>(_e42, _e45);
             let _e47 = (*x_1);
-            param_5 = _e47;
-            let _e48 = column_at((&param_5));
+            param_6 = _e47;
+            let _e48 = column_at((&param_6));
             let _e49 = distance_;
-            param_6 = _e49;
-            let _e50 = row_at((&param_6));
+            param_7 = _e49;
+            let _e50 = row_at((&param_7));
             above = vec2<f32>(_e48, _e50);
             let _e52 = below;
-            param_7 = _e52;
-            let _e53 = depth_sample((&param_7));
+            param_8 = _e52;
+            let _e53 = depth_sample((&param_8));
             let _e54 = above;
-            param_8 = _e54;
-            let _e55 = depth_sample((&param_8));
+            param_9 = _e54;
+            let _e55 = depth_sample((&param_9));
             depths = vec2<f32>(_e53, _e55);
             let _e59 = synthesis.law[1u];
             let _e60 = depths;
@@ -193,12 +202,12 @@ fn fill_hole(color: ptr<function, vec4<f32>>, away_2: ptr<function, f32>, x_1: p
             weight = select(vec2<f32>(0f, 0f), vec2<f32>(1f, 1f), (((_e60 - vec2(_e61)) * _e59) <= vec2<f32>(1f, 1f)));
             let _e68 = weight[0u];
             let _e69 = below;
-            param_9 = _e69;
-            let _e70 = color_sample((&param_9));
+            param_10 = _e69;
+            let _e70 = color_sample((&param_10));
             let _e73 = weight[1u];
             let _e74 = above;
-            param_10 = _e74;
-            let _e75 = color_sample((&param_10));
+            param_11 = _e74;
+            let _e75 = color_sample((&param_11));
             let _e78 = sum;
             sum = (_e78 + ((_e70 * _e68) + (_e75 * _e73)));
             let _e81 = weight[0u];
@@ -227,41 +236,41 @@ fn depth_gather(place_2: ptr<function, vec2<f32>>) -> vec4<f32> {
 
 fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
     var row: f32;
-    var param_11: f32;
     var param_12: f32;
-    var param_13: vec2<f32>;
-    var param_14: f32;
-    var param_15: vec2<f32>;
+    var param_13: f32;
+    var param_14: vec2<f32>;
+    var param_15: f32;
+    var param_16: vec2<f32>;
     var quad: vec4<f32>;
-    var param_16: f32;
-    var param_17: vec2<f32>;
+    var param_17: f32;
+    var param_18: vec2<f32>;
     var local_2: vec2<f32>;
 
     if true {
-        param_11 = 0f;
-        let _e19 = row_at((&param_11));
+        param_12 = 0f;
+        let _e19 = row_at((&param_12));
         row = _e19;
         let _e20 = (*x_2);
-        param_12 = _e20;
-        let _e21 = column_at((&param_12));
+        param_13 = _e20;
+        let _e21 = column_at((&param_13));
         let _e22 = row;
-        param_13 = vec2<f32>(_e21, _e22);
-        let _e24 = depth_sample((&param_13));
+        param_14 = vec2<f32>(_e21, _e22);
+        let _e24 = depth_sample((&param_14));
         let _e25 = (*x_2);
-        param_14 = (_e25 + 1f);
-        let _e27 = column_at((&param_14));
+        param_15 = (_e25 + 1f);
+        let _e27 = column_at((&param_15));
         let _e28 = row;
-        param_15 = vec2<f32>(_e27, _e28);
-        let _e30 = depth_sample((&param_15));
+        param_16 = vec2<f32>(_e27, _e28);
+        let _e30 = depth_sample((&param_16));
         return vec2<f32>(_e24, _e30);
     }
     let _e34 = synthesis.columns[0u];
     let _e35 = (*x_2);
     let _e40 = synthesis.columns[1u];
-    param_16 = 0.25f;
-    let _e42 = row_at((&param_16));
-    param_17 = vec2<f32>(((_e34 * (_e35 + 1.25f)) + _e40), _e42);
-    let _e44 = depth_gather((&param_17));
+    param_17 = 0.25f;
+    let _e42 = row_at((&param_17));
+    param_18 = vec2<f32>(((_e34 * (_e35 + 1.25f)) + _e40), _e42);
+    let _e44 = depth_gather((&param_18));
     quad = _e44;
     let _e46 = synthesis.mirrored;
     if (_e46 != 0u) {
@@ -277,12 +286,12 @@ fn depth_pair(x_2: ptr<function, f32>) -> vec2<f32> {
 
 fn search_at(x_3: ptr<function, f32>, origin: ptr<function, f32>) -> Search {
     var depths_1: vec2<f32>;
-    var param_18: f32;
+    var param_19: f32;
     var shift: f32;
 
     let _e9 = (*x_3);
-    param_18 = _e9;
-    let _e10 = depth_pair((&param_18));
+    param_19 = _e9;
+    let _e10 = depth_pair((&param_19));
     depths_1 = _e10;
     let _e11 = (*x_3);
     let _e12 = (*origin);
@@ -309,7 +318,7 @@ fn segment_end(x_4: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: p
     var tile: vec4<u32>;
     var marks: u32;
     var local_3: u32;
-    var param_19: u32;
+    var param_20: u32;
 
     let _e19 = (*x_4);
     column = u32(_e19);
@@ -337,8 +346,8 @@ fn segment_end(x_4: ptr<function, f32>, tile_row: ptr<function, i32>, below_1: p
     let _e46 = (*x_4);
     let _e47 = marks;
     let _e48 = within;
-    param_19 = (_e47 | (65536u >> bitcast<u32>(_e48)));
-    let _e52 = lowest_bit((&param_19));
+    param_20 = (_e47 | (65536u >> bitcast<u32>(_e48)));
+    let _e52 = lowest_bit((&param_20));
     return (_e46 + _e52);
 }
 
@@ -352,11 +361,11 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     var farther: bool;
     var local_7: f32;
     var local_8: f32;
-    var phi_577_: bool;
-    var phi_578_: bool;
-    var phi_579_: bool;
-    var phi_626_: bool;
-    var phi_659_: bool;
+    var phi_586_: bool;
+    var phi_587_: bool;
+    var phi_588_: bool;
+    var phi_635_: bool;
+    var phi_668_: bool;
 
     let _e19 = (*at_1).b;
     jump = (_e19 > 0f);
@@ -365,25 +374,25 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     torn = ((_e22 - _e24) >= 2f);
     let _e28 = (*beside).rim;
     let _e29 = (_e28 < 0f);
-    phi_579_ = _e29;
+    phi_588_ = _e29;
     if _e29 {
         let _e30 = jump;
         let _e31 = !(_e30);
-        phi_578_ = _e31;
+        phi_587_ = _e31;
         if !(_e31) {
             let _e33 = torn;
-            phi_577_ = _e33;
+            phi_586_ = _e33;
             if _e33 {
                 let _e35 = (*at_1).b;
-                phi_577_ = (_e35 < 1f);
+                phi_586_ = (_e35 < 1f);
             }
-            let _e38 = phi_577_;
-            phi_578_ = _e38;
+            let _e38 = phi_586_;
+            phi_587_ = _e38;
         }
-        let _e40 = phi_578_;
-        phi_579_ = _e40;
+        let _e40 = phi_587_;
+        phi_588_ = _e40;
     }
-    let _e42 = phi_579_;
+    let _e42 = phi_588_;
     rim = _e42;
     let _e43 = rim;
     if _e43 {
@@ -415,14 +424,14 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e64 = local_5;
     (*beside).rim_depth = _e64;
     let _e66 = jump;
-    phi_626_ = _e66;
+    phi_635_ = _e66;
     if _e66 {
         let _e69 = synthesis.law[1u];
         let _e72 = (*at_1).depths[0u];
         let _e74 = (*beside).edge_depth;
-        phi_626_ = ((_e69 * (_e72 - _e74)) < 0f);
+        phi_635_ = ((_e69 * (_e72 - _e74)) < 0f);
     }
-    let _e79 = phi_626_;
+    let _e79 = phi_635_;
     farther = _e79;
     let _e80 = farther;
     if _e80 {
@@ -445,36 +454,36 @@ fn meet(beside: ptr<function, Beside>, at_1: ptr<function, Search>) -> bool {
     let _e93 = local_8;
     (*beside).edge_depth = _e93;
     let _e95 = jump;
-    phi_659_ = _e95;
+    phi_668_ = _e95;
     if _e95 {
         let _e97 = (*at_1).a;
         let _e99 = torn;
-        phi_659_ = ((_e97 > -0.5f) || !(_e99));
+        phi_668_ = ((_e97 > -0.5f) || !(_e99));
     }
-    let _e103 = phi_659_;
+    let _e103 = phi_668_;
     return _e103;
 }
 
 fn is_event(a: ptr<function, f32>, b: ptr<function, f32>) -> bool {
-    var phi_490_: bool;
-    var phi_491_: bool;
+    var phi_499_: bool;
+    var phi_500_: bool;
 
     let _e4 = (*a);
     let _e5 = (_e4 <= 0f);
-    phi_491_ = _e5;
+    phi_500_ = _e5;
     if _e5 {
         let _e6 = (*b);
         let _e7 = (_e6 > 0f);
-        phi_490_ = _e7;
+        phi_499_ = _e7;
         if !(_e7) {
             let _e9 = (*b);
             let _e11 = (*a);
-            phi_490_ = (max(_e9, -1f) < _e11);
+            phi_499_ = (max(_e9, -1f) < _e11);
         }
-        let _e14 = phi_490_;
-        phi_491_ = _e14;
+        let _e14 = phi_499_;
+        phi_500_ = _e14;
     }
-    let _e16 = phi_491_;
+    let _e16 = phi_500_;
     return _e16;
 }
 
@@ -484,32 +493,32 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     var beside_1: Beside;
     var local_9: f32;
     var found: bool;
-    var param_20: f32;
     var param_21: f32;
-    var param_22: Beside;
-    var param_23: Search;
+    var param_22: f32;
+    var param_23: Beside;
+    var param_24: Search;
     var x_5: f32;
     var a_1: f32;
     var tile_row_1: i32;
     var below_2: bool;
     var shift_2: u32;
     var crosses: bool;
-    var param_24: f32;
-    var param_25: i32;
-    var param_26: bool;
-    var param_27: u32;
-    var param_28: f32;
+    var param_25: f32;
+    var param_26: i32;
+    var param_27: bool;
+    var param_28: u32;
     var param_29: f32;
     var param_30: f32;
     var param_31: f32;
-    var param_32: Beside;
-    var param_33: Search;
+    var param_32: f32;
+    var param_33: Beside;
+    var param_34: Search;
     var local_10: f32;
     var local_11: f32;
     var last: f32;
     var b_1: f32;
-    var param_34: f32;
     var param_35: f32;
+    var param_36: f32;
     var behind: bool;
     var local_12: f32;
     var local_13: f32;
@@ -522,28 +531,28 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     var local_18: f32;
     var away_3: f32;
     var color_1: vec4<f32>;
-    var param_36: f32;
     var param_37: f32;
-    var param_38: vec2<f32>;
-    var param_39: vec4<f32>;
-    var param_40: f32;
+    var param_38: f32;
+    var param_39: vec2<f32>;
+    var param_40: vec4<f32>;
     var param_41: f32;
     var param_42: f32;
-    var coverage: f32;
     var param_43: f32;
+    var coverage: f32;
     var param_44: f32;
-    var param_45: vec2<f32>;
-    var phi_708_: bool;
-    var phi_715_: bool;
-    var phi_725_: bool;
-    var phi_795_: bool;
-    var phi_806_: bool;
-    var phi_816_: bool;
-    var phi_890_: bool;
-    var phi_940_: bool;
-    var phi_963_: bool;
-    var phi_1014_: bool;
-    var phi_1030_: bool;
+    var param_45: f32;
+    var param_46: vec2<f32>;
+    var phi_717_: bool;
+    var phi_724_: bool;
+    var phi_734_: bool;
+    var phi_804_: bool;
+    var phi_815_: bool;
+    var phi_825_: bool;
+    var phi_899_: bool;
+    var phi_949_: bool;
+    var phi_972_: bool;
+    var phi_1023_: bool;
+    var phi_1039_: bool;
 
     let _e77 = (*at_2).a;
     let _e79 = (*at_2).x;
@@ -570,36 +579,36 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     beside_1.rim = -1f;
     beside_1.rim_depth = 0f;
     found = false;
-    phi_708_ = true;
+    phi_717_ = true;
     if true {
         let _e110 = (*at_2).x;
-        phi_708_ = (_e110 >= 0f);
+        phi_717_ = (_e110 >= 0f);
     }
-    let _e113 = phi_708_;
-    phi_715_ = _e113;
+    let _e113 = phi_717_;
+    phi_724_ = _e113;
     if _e113 {
         let _e115 = (*at_2).x;
         let _e116 = (*end);
-        phi_715_ = (_e115 < _e116);
+        phi_724_ = (_e115 < _e116);
     }
-    let _e119 = phi_715_;
-    phi_725_ = _e119;
+    let _e119 = phi_724_;
+    phi_734_ = _e119;
     if _e119 {
         let _e121 = (*at_2).a;
-        param_20 = _e121;
+        param_21 = _e121;
         let _e123 = (*at_2).b;
-        param_21 = _e123;
-        let _e124 = is_event((&param_20), (&param_21));
-        phi_725_ = _e124;
+        param_22 = _e123;
+        let _e124 = is_event((&param_21), (&param_22));
+        phi_734_ = _e124;
     }
-    let _e126 = phi_725_;
+    let _e126 = phi_734_;
     if _e126 {
         let _e127 = beside_1;
-        param_22 = _e127;
+        param_23 = _e127;
         let _e128 = (*at_2);
-        param_23 = _e128;
-        let _e129 = meet((&param_22), (&param_23));
-        let _e130 = param_22;
+        param_24 = _e128;
+        let _e129 = meet((&param_23), (&param_24));
+        let _e130 = param_23;
         beside_1 = _e130;
         found = _e129;
     }
@@ -622,57 +631,57 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
         let _e156 = found;
         if ((_e153 <= _e154) && !(_e156)) {
             let _e159 = x_5;
-            param_24 = _e159;
+            param_25 = _e159;
             let _e160 = tile_row_1;
-            param_25 = _e160;
+            param_26 = _e160;
             let _e161 = below_2;
-            param_26 = _e161;
+            param_27 = _e161;
             let _e162 = shift_2;
-            param_27 = _e162;
-            let _e163 = segment_end((&param_24), (&param_25), (&param_26), (&param_27));
+            param_28 = _e162;
+            let _e163 = segment_end((&param_25), (&param_26), (&param_27), (&param_28));
             let _e164 = (*end);
-            param_28 = min(_e163, _e164);
+            param_29 = min(_e163, _e164);
             let _e166 = (*origin_1);
-            param_29 = _e166;
-            let _e167 = search_at((&param_28), (&param_29));
+            param_30 = _e166;
+            let _e167 = search_at((&param_29), (&param_30));
             (*at_2) = _e167;
             let _e168 = a_1;
             let _e169 = (_e168 <= 0f);
-            phi_795_ = _e169;
+            phi_804_ = _e169;
             if _e169 {
                 let _e171 = (*at_2).a;
-                phi_795_ = (_e171 > 0f);
+                phi_804_ = (_e171 > 0f);
             }
-            let _e174 = phi_795_;
+            let _e174 = phi_804_;
             crosses = _e174;
             let _e175 = crosses;
             found = _e175;
             let _e176 = crosses;
             let _e178 = (true && !(_e176));
-            phi_806_ = _e178;
+            phi_815_ = _e178;
             if _e178 {
                 let _e180 = (*at_2).x;
                 let _e181 = (*end);
-                phi_806_ = (_e180 < _e181);
+                phi_815_ = (_e180 < _e181);
             }
-            let _e184 = phi_806_;
-            phi_816_ = _e184;
+            let _e184 = phi_815_;
+            phi_825_ = _e184;
             if _e184 {
                 let _e186 = (*at_2).a;
-                param_30 = _e186;
+                param_31 = _e186;
                 let _e188 = (*at_2).b;
-                param_31 = _e188;
-                let _e189 = is_event((&param_30), (&param_31));
-                phi_816_ = _e189;
+                param_32 = _e188;
+                let _e189 = is_event((&param_31), (&param_32));
+                phi_825_ = _e189;
             }
-            let _e191 = phi_816_;
+            let _e191 = phi_825_;
             if _e191 {
                 let _e192 = beside_1;
-                param_32 = _e192;
+                param_33 = _e192;
                 let _e193 = (*at_2);
-                param_33 = _e193;
-                let _e194 = meet((&param_32), (&param_33));
-                let _e195 = param_32;
+                param_34 = _e193;
+                let _e194 = meet((&param_33), (&param_34));
+                let _e195 = param_33;
                 beside_1 = _e195;
                 found = _e194;
             }
@@ -718,19 +727,19 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
             let _e224 = b_1;
             let _e229 = x_5;
             let _e230 = last;
-            param_34 = clamp(floor((_e217 + (((_e218 - _e219) * _e221) / (_e223 - _e224)))), _e229, (_e230 - 1f));
+            param_35 = clamp(floor((_e217 + (((_e218 - _e219) * _e221) / (_e223 - _e224)))), _e229, (_e230 - 1f));
             let _e233 = (*origin_1);
-            param_35 = _e233;
-            let _e234 = search_at((&param_34), (&param_35));
+            param_36 = _e233;
+            let _e234 = search_at((&param_35), (&param_36));
             (*at_2) = _e234;
             let _e236 = (*at_2).a;
             let _e237 = (_e236 > 0f);
-            phi_890_ = _e237;
+            phi_899_ = _e237;
             if !(_e237) {
                 let _e240 = (*at_2).b;
-                phi_890_ = (_e240 <= 0f);
+                phi_899_ = (_e240 <= 0f);
             }
-            let _e243 = phi_890_;
+            let _e243 = phi_899_;
             crosses = _e243;
             let _e245 = (*at_2).a;
             behind = (_e245 > 0f);
@@ -780,12 +789,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
         }
     }
     let _e268 = found;
-    phi_940_ = _e268;
+    phi_949_ = _e268;
     if !(_e268) {
         let _e271 = beside_1.edge;
-        phi_940_ = (_e271 < 0f);
+        phi_949_ = (_e271 < 0f);
     }
-    let _e274 = phi_940_;
+    let _e274 = phi_949_;
     own = _e274;
     let _e275 = own;
     if _e275 {
@@ -799,13 +808,13 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     let _e282 = local_16;
     x_5 = _e282;
     let _e283 = found;
-    phi_963_ = _e283;
+    phi_972_ = _e283;
     if _e283 {
         let _e285 = (*at_2).b;
         let _e287 = (*at_2).a;
-        phi_963_ = ((_e285 - _e287) < 2f);
+        phi_972_ = ((_e285 - _e287) < 2f);
     }
-    let _e291 = phi_963_;
+    let _e291 = phi_972_;
     if _e291 {
         let _e293 = (*at_2).a;
         let _e296 = (*at_2).b;
@@ -838,37 +847,37 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
     away_3 = ((_e319 - _e320) + (_e324 * _e326));
     let _e329 = found;
     let _e330 = !(_e329);
-    phi_1014_ = _e330;
+    phi_1023_ = _e330;
     if _e330 {
         let _e331 = away_3;
-        phi_1014_ = (abs(_e331) >= 0.5f);
+        phi_1023_ = (abs(_e331) >= 0.5f);
     }
-    let _e335 = phi_1014_;
+    let _e335 = phi_1023_;
     (*surface).hole = _e335;
     let _e338 = (*surface).source;
-    param_36 = _e338;
-    let _e339 = column_at((&param_36));
-    param_37 = 0f;
-    let _e340 = row_at((&param_37));
-    param_38 = vec2<f32>(_e339, _e340);
-    let _e342 = color_sample((&param_38));
+    param_37 = _e338;
+    let _e339 = column_at((&param_37));
+    param_38 = 0f;
+    let _e340 = row_at((&param_38));
+    param_39 = vec2<f32>(_e339, _e340);
+    let _e342 = color_sample((&param_39));
     color_1 = _e342;
-    phi_1030_ = true;
+    phi_1039_ = true;
     if true {
         let _e344 = (*surface).hole;
-        phi_1030_ = _e344;
+        phi_1039_ = _e344;
     }
-    let _e346 = phi_1030_;
+    let _e346 = phi_1039_;
     if _e346 {
         let _e347 = color_1;
-        param_39 = _e347;
+        param_40 = _e347;
         let _e348 = away_3;
-        param_40 = _e348;
+        param_41 = _e348;
         let _e349 = x_5;
-        param_41 = _e349;
+        param_42 = _e349;
         let _e351 = (*surface).depth;
-        param_42 = _e351;
-        let _e352 = fill_hole((&param_39), (&param_40), (&param_41), (&param_42));
+        param_43 = _e351;
+        let _e352 = fill_hole((&param_40), (&param_41), (&param_42), (&param_43));
         color_1 = _e352;
     }
     let _e354 = beside_1.rim;
@@ -880,12 +889,12 @@ fn march(at_2: ptr<function, Search>, end: ptr<function, f32>, origin_1: ptr<fun
         coverage = (1f - abs(((_e357 - _e358) + (_e362 * _e364))));
         let _e369 = color_1;
         let _e371 = beside_1.rim;
-        param_43 = _e371;
-        let _e372 = column_at((&param_43));
-        param_44 = 0f;
-        let _e373 = row_at((&param_44));
-        param_45 = vec2<f32>(_e372, _e373);
-        let _e375 = color_sample((&param_45));
+        param_44 = _e371;
+        let _e372 = column_at((&param_44));
+        param_45 = 0f;
+        let _e373 = row_at((&param_45));
+        param_46 = vec2<f32>(_e372, _e373);
+        let _e375 = color_sample((&param_46));
         let _e376 = coverage;
         color_1 = mix(_e369, _e375, vec4(_e376));
         let _e379 = coverage;
@@ -926,32 +935,32 @@ fn span_steps(span: ptr<function, u32>) -> f32 {
 fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> vec4<f32> {
     var origin_2: f32;
     var at_3: Search;
-    var param_46: f32;
     var param_47: f32;
+    var param_48: f32;
     var end_1: f32;
-    var param_48: u32;
+    var param_49: u32;
     var limit: f32;
     var next: f32;
-    var param_49: f32;
     var param_50: f32;
-    var param_51: vec2<f32>;
+    var param_51: f32;
+    var param_52: vec2<f32>;
     var stretch: f32;
     var t_1: f32;
     var seen: vec4<f32>;
-    var param_52: f32;
     var param_53: f32;
-    var param_54: vec2<f32>;
+    var param_54: f32;
+    var param_55: vec2<f32>;
     var middle: f32;
     var done: bool;
-    var param_55: Search;
-    var param_56: f32;
+    var param_56: Search;
     var param_57: f32;
-    var param_58: i32;
-    var param_59: Surface;
-    var phi_1209_: bool;
-    var phi_1218_: bool;
-    var phi_1301_: bool;
-    var phi_1314_: bool;
+    var param_58: f32;
+    var param_59: i32;
+    var param_60: Surface;
+    var phi_1240_: bool;
+    var phi_1249_: bool;
+    var phi_1332_: bool;
+    var phi_1345_: bool;
 
     let _e40 = synthesis.origins[0u];
     let _e42 = gl_FragCoord_1[0u];
@@ -960,15 +969,15 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     let _e48 = origin_2;
     let _e50 = synthesis.farthest;
     let _e52 = (*span_1);
-    param_46 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
+    param_47 = floor(((_e48 - _e50) - bitcast<f32>(_e52)));
     let _e56 = origin_2;
-    param_47 = _e56;
-    let _e57 = search_at((&param_46), (&param_47));
+    param_48 = _e56;
+    let _e57 = search_at((&param_47), (&param_48));
     at_3 = _e57;
     let _e59 = at_3.x;
     let _e61 = (*span_1);
-    param_48 = _e61;
-    let _e62 = span_steps((&param_48));
+    param_49 = _e61;
+    let _e62 = span_steps((&param_49));
     let _e66 = synthesis.source_size[0u];
     end_1 = min((max(_e59, 0f) + _e62), f32((_e66 - 1i)));
     let _e71 = at_3.x;
@@ -978,27 +987,27 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
         let _e76 = at_3.x;
         let _e77 = limit;
         let _e78 = (_e76 < _e77);
-        phi_1209_ = _e78;
+        phi_1240_ = _e78;
         if _e78 {
             let _e80 = at_3.b;
-            phi_1209_ = (_e80 <= 0f);
+            phi_1240_ = (_e80 <= 0f);
         }
-        let _e83 = phi_1209_;
-        phi_1218_ = _e83;
+        let _e83 = phi_1240_;
+        phi_1249_ = _e83;
         if _e83 {
             let _e85 = at_3.b;
             let _e88 = at_3.a;
-            phi_1218_ = (max(_e85, -1f) >= _e88);
+            phi_1249_ = (max(_e85, -1f) >= _e88);
         }
-        let _e91 = phi_1218_;
+        let _e91 = phi_1249_;
         if _e91 {
             let _e93 = at_3.x;
-            param_49 = (_e93 + 2f);
-            let _e95 = column_at((&param_49));
-            param_50 = 0f;
-            let _e96 = row_at((&param_50));
-            param_51 = vec2<f32>(_e95, _e96);
-            let _e98 = depth_sample((&param_51));
+            param_50 = (_e93 + 2f);
+            let _e95 = column_at((&param_50));
+            param_51 = 0f;
+            let _e96 = row_at((&param_51));
+            param_52 = vec2<f32>(_e95, _e96);
+            let _e98 = depth_sample((&param_52));
             next = _e98;
             let _e101 = at_3.depths[1u];
             let _e102 = next;
@@ -1032,46 +1041,46 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
     let _e144 = t_1;
     (*surface_1) = Surface((_e135 + _e136), mix(_e140, _e143, _e144), false);
     let _e148 = (*surface_1).source;
-    param_52 = _e148;
-    let _e149 = column_at((&param_52));
-    param_53 = 0f;
-    let _e150 = row_at((&param_53));
-    param_54 = vec2<f32>(_e149, _e150);
-    let _e152 = color_sample((&param_54));
+    param_53 = _e148;
+    let _e149 = column_at((&param_53));
+    param_54 = 0f;
+    let _e150 = row_at((&param_54));
+    param_55 = vec2<f32>(_e149, _e150);
+    let _e152 = color_sample((&param_55));
     seen = _e152;
     let _e155 = synthesis.source_size[0u];
     middle = (0.5f * f32((_e155 - 1i)));
     let _e160 = at_3.a;
     let _e161 = (_e160 <= 0f);
-    phi_1301_ = _e161;
+    phi_1332_ = _e161;
     if _e161 {
         let _e163 = at_3.b;
-        phi_1301_ = (_e163 > 0f);
+        phi_1332_ = (_e163 > 0f);
     }
-    let _e166 = phi_1301_;
+    let _e166 = phi_1332_;
     let _e167 = stretch;
     let _e169 = (_e166 && (_e167 < 2f));
-    phi_1314_ = _e169;
+    phi_1345_ = _e169;
     if _e169 {
         let _e171 = (*surface_1).source;
         let _e172 = middle;
         let _e175 = middle;
-        phi_1314_ = (abs((_e171 - _e172)) <= _e175);
+        phi_1345_ = (abs((_e171 - _e172)) <= _e175);
     }
-    let _e178 = phi_1314_;
+    let _e178 = phi_1345_;
     done = _e178;
     let _e179 = done;
     if (true && !(_e179)) {
         let _e182 = source_row();
         let _e183 = at_3;
-        param_55 = _e183;
+        param_56 = _e183;
         let _e184 = end_1;
-        param_56 = _e184;
+        param_57 = _e184;
         let _e185 = origin_2;
-        param_57 = _e185;
-        param_58 = _e182;
-        let _e186 = march((&param_55), (&param_56), (&param_57), (&param_58), (&param_59));
-        let _e187 = param_59;
+        param_58 = _e185;
+        param_59 = _e182;
+        let _e186 = march((&param_56), (&param_57), (&param_58), (&param_59), (&param_60));
+        let _e187 = param_60;
         (*surface_1) = _e187;
         seen = _e186;
     }
@@ -1082,36 +1091,48 @@ fn searched(span_1: ptr<function, u32>, surface_1: ptr<function, Surface>) -> ve
 fn lawful(affine: ptr<function, vec3<f32>>, surface_2: ptr<function, Surface>) -> vec4<f32> {
     var place_3: f32;
     var depths_2: vec2<f32>;
-    var param_60: f32;
     var param_61: f32;
-    var param_62: vec2<f32>;
+    var at_4: vec2<f32>;
+    var param_62: f32;
+    var param_63: vec2<f32>;
 
-    let _e17 = (*affine)[0u];
-    let _e19 = (*affine)[1u];
-    let _e21 = gl_FragCoord_1[0u];
-    let _e25 = (*affine)[2u];
-    let _e27 = gl_FragCoord_1[1u];
-    place_3 = ((_e17 + (_e19 * _e21)) + (_e25 * _e27));
-    let _e30 = place_3;
-    let _e33 = synthesis.columns[1u];
-    let _e37 = synthesis.columns[0u];
-    let _e42 = synthesis.source_size[0u];
-    (*surface_2).source = clamp((((_e30 - _e33) / _e37) - 0.5f), 0f, f32((_e42 - 1i)));
-    let _e48 = (*surface_2).source;
-    param_60 = floor(_e48);
-    let _e50 = depth_pair((&param_60));
-    depths_2 = _e50;
-    let _e52 = depths_2[0u];
-    let _e54 = depths_2[1u];
-    let _e56 = (*surface_2).source;
-    (*surface_2).depth = mix(_e52, _e54, fract(_e56));
+    let _e18 = (*affine)[0u];
+    let _e20 = (*affine)[1u];
+    let _e22 = gl_FragCoord_1[0u];
+    let _e26 = (*affine)[2u];
+    let _e28 = gl_FragCoord_1[1u];
+    place_3 = ((_e18 + (_e20 * _e22)) + (_e26 * _e28));
+    let _e31 = place_3;
+    let _e34 = synthesis.columns[1u];
+    let _e38 = synthesis.columns[0u];
+    let _e43 = synthesis.source_size[0u];
+    (*surface_2).source = clamp((((_e31 - _e34) / _e38) - 0.5f), 0f, f32((_e43 - 1i)));
+    let _e50 = synthesis.origins[0u];
+    let _e52 = gl_FragCoord_1[0u];
+    let _e56 = synthesis.origins[1u];
+    let _e59 = (*surface_2).source;
+    let _e63 = synthesis.law[1u];
+    (*surface_2).depth = ((((_e50 * _e52) + _e56) - _e59) / _e63);
+    let _e68 = synthesis.law[1u];
+    if (_e68 == 0f) {
+        let _e71 = (*surface_2).source;
+        param_61 = floor(_e71);
+        let _e73 = depth_pair((&param_61));
+        depths_2 = _e73;
+        let _e75 = depths_2[0u];
+        let _e77 = depths_2[1u];
+        let _e79 = (*surface_2).source;
+        (*surface_2).depth = mix(_e75, _e77, fract(_e79));
+    }
     (*surface_2).hole = false;
-    let _e61 = place_3;
-    param_61 = 0f;
-    let _e62 = row_at((&param_61));
-    param_62 = vec2<f32>(_e61, _e62);
-    let _e64 = color_sample((&param_62));
-    return _e64;
+    let _e84 = place_3;
+    param_62 = 0f;
+    let _e85 = row_at((&param_62));
+    at_4 = vec2<f32>(_e84, _e85);
+    let _e87 = at_4;
+    param_63 = _e87;
+    let _e88 = color_sample((&param_63));
+    return _e88;
 }
 
 fn pixel_span() -> vec4<u32> {
@@ -1132,33 +1153,33 @@ fn pixel_span() -> vec4<u32> {
 fn main_1() {
     var span_2: vec4<u32>;
     var surface_3: Surface;
-    var param_63: vec3<f32>;
-    var param_64: Surface;
-    var param_65: u32;
-    var param_66: Surface;
-    var phi_1341_: bool;
+    var param_64: vec3<f32>;
+    var param_65: Surface;
+    var param_66: u32;
+    var param_67: Surface;
+    var phi_1372_: bool;
 
     let _e11 = pixel_span();
     span_2 = _e11;
-    phi_1341_ = true;
+    phi_1372_ = true;
     if true {
         let _e13 = span_2[1u];
-        phi_1341_ = (_e13 != 0u);
+        phi_1372_ = (_e13 != 0u);
     }
-    let _e16 = phi_1341_;
+    let _e16 = phi_1372_;
     if _e16 {
         let _e17 = span_2;
-        param_63 = bitcast<vec3<f32>>(_e17.xyz);
-        let _e20 = lawful((&param_63), (&param_64));
-        let _e21 = param_64;
+        param_64 = bitcast<vec3<f32>>(_e17.xyz);
+        let _e20 = lawful((&param_64), (&param_65));
+        let _e21 = param_65;
         surface_3 = _e21;
         color_2 = _e20;
     } else {
         if true {
             let _e23 = span_2[0u];
-            param_65 = _e23;
-            let _e24 = searched((&param_65), (&param_66));
-            let _e25 = param_66;
+            param_66 = _e23;
+            let _e24 = searched((&param_66), (&param_67));
+            let _e25 = param_67;
             surface_3 = _e25;
             color_2 = _e24;
         } else {

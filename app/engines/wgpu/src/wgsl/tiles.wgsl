@@ -90,8 +90,8 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     var local_3: vec4<f32>;
     var local_4: vec4<f32>;
     var local_5: vec4<f32>;
-    var phi_203_: bool;
-    var phi_235_: bool;
+    var phi_212_: bool;
+    var phi_244_: bool;
 
     let _e20 = synthesis.source_size;
     last = vec2<f32>((_e20 - vec2(2i)));
@@ -130,12 +130,12 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
         let _e65 = (*corner)[0u];
         let _e67 = last[0u];
         let _e68 = (_e65 <= _e67);
-        phi_203_ = _e68;
+        phi_212_ = _e68;
         if !(_e68) {
             let _e72 = synthesis.source_size[0u];
-            phi_203_ = (_e72 == 1i);
+            phi_212_ = (_e72 == 1i);
         }
-        let _e75 = phi_203_;
+        let _e75 = phi_212_;
         if _e75 {
             let _e76 = quad;
             local_3 = _e76;
@@ -156,12 +156,12 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
         let _e87 = (*corner)[1u];
         let _e89 = last[1u];
         let _e90 = (_e87 <= _e89);
-        phi_235_ = _e90;
+        phi_244_ = _e90;
         if !(_e90) {
             let _e94 = synthesis.source_size[1u];
-            phi_235_ = (_e94 == 1i);
+            phi_244_ = (_e94 == 1i);
         }
-        let _e97 = phi_235_;
+        let _e97 = phi_244_;
         if _e97 {
             let _e98 = quad;
             local_5 = _e98;
@@ -176,10 +176,19 @@ fn depth_quad(corner: ptr<function, vec2<f32>>) -> vec4<f32> {
     return _e102;
 }
 
+fn nearest_of(texel: ptr<function, vec4<f32>>) -> f32 {
+    let _e3 = (*texel)[0u];
+    return _e3;
+}
+
 fn depth_sample(place_1: ptr<function, vec2<f32>>) -> f32 {
-    let _e4 = (*place_1);
-    let _e5 = textureSampleLevel(depth_map_texture, nearest_sampler, _e4, 0f);
-    return _e5.x;
+    var param_2: vec4<f32>;
+
+    let _e5 = (*place_1);
+    let _e6 = textureSampleLevel(depth_map_texture, nearest_sampler, _e5, 0f);
+    param_2 = _e6;
+    let _e7 = nearest_of((&param_2));
+    return _e7;
 }
 
 fn place_of(at_1: ptr<function, vec2<f32>>) -> vec2<f32> {
@@ -207,17 +216,17 @@ fn place_of(at_1: ptr<function, vec2<f32>>) -> vec2<f32> {
 fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var middle: vec2<f32>;
     var first: f32;
-    var param_2: vec2<f32>;
     var param_3: vec2<f32>;
-    var right: f32;
     var param_4: vec2<f32>;
+    var right: f32;
     var param_5: vec2<f32>;
-    var above: f32;
     var param_6: vec2<f32>;
+    var above: f32;
     var param_7: vec2<f32>;
-    var opposite: f32;
     var param_8: vec2<f32>;
+    var opposite: f32;
     var param_9: vec2<f32>;
+    var param_10: vec2<f32>;
     var slope: vec2<f32>;
     var low_1: vec4<f32>;
     var high_1: vec4<f32>;
@@ -232,7 +241,7 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var i: i32;
     var column: f32;
     var quad_1: vec4<f32>;
-    var param_10: vec2<f32>;
+    var param_11: vec2<f32>;
     var depths: vec4<f32>;
     var between: vec2<f32>;
     var within: vec2<f32>;
@@ -241,45 +250,45 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     var most: f32;
     var rise: vec2<f32>;
     var a: f32;
-    var param_11: f32;
-    var b: f32;
     var param_12: f32;
-    var plane_law: vec3<f32>;
+    var b: f32;
     var param_13: f32;
+    var plane_law: vec3<f32>;
+    var param_14: f32;
     var planar: bool;
     var rest: vec3<u32>;
     var local_7: vec3<u32>;
-    var param_14: u32;
     var param_15: u32;
-    var param_16: f32;
+    var param_16: u32;
     var param_17: f32;
-    var phi_620_: bool;
+    var param_18: f32;
+    var phi_629_: bool;
 
     let _e79 = (*corner_1);
     middle = (_e79 + vec2(0.5f));
     let _e82 = middle;
-    param_2 = _e82;
-    let _e83 = place_of((&param_2));
-    param_3 = _e83;
-    let _e84 = depth_sample((&param_3));
+    param_3 = _e82;
+    let _e83 = place_of((&param_3));
+    param_4 = _e83;
+    let _e84 = depth_sample((&param_4));
     first = _e84;
     let _e85 = middle;
-    param_4 = (_e85 + vec2<f32>(16f, 0f));
-    let _e87 = place_of((&param_4));
-    param_5 = _e87;
-    let _e88 = depth_sample((&param_5));
+    param_5 = (_e85 + vec2<f32>(16f, 0f));
+    let _e87 = place_of((&param_5));
+    param_6 = _e87;
+    let _e88 = depth_sample((&param_6));
     right = _e88;
     let _e89 = middle;
-    param_6 = (_e89 + vec2<f32>(0f, 7f));
-    let _e91 = place_of((&param_6));
-    param_7 = _e91;
-    let _e92 = depth_sample((&param_7));
+    param_7 = (_e89 + vec2<f32>(0f, 7f));
+    let _e91 = place_of((&param_7));
+    param_8 = _e91;
+    let _e92 = depth_sample((&param_8));
     above = _e92;
     let _e93 = middle;
-    param_8 = (_e93 + vec2<f32>(16f, 7f));
-    let _e95 = place_of((&param_8));
-    param_9 = _e95;
-    let _e96 = depth_sample((&param_9));
+    param_9 = (_e93 + vec2<f32>(16f, 7f));
+    let _e95 = place_of((&param_9));
+    param_10 = _e95;
+    let _e96 = depth_sample((&param_10));
     opposite = _e96;
     let _e97 = right;
     let _e98 = above;
@@ -326,8 +335,8 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
                     let _e158 = (*corner_1)[0u];
                     let _e159 = column;
                     let _e161 = row_1;
-                    param_10 = vec2<f32>((_e158 + _e159), _e161);
-                    let _e163 = depth_quad((&param_10));
+                    param_11 = vec2<f32>((_e158 + _e159), _e161);
+                    let _e163 = depth_quad((&param_11));
                     quad_1 = _e163;
                     let _e164 = quad_1;
                     let _e165 = plane;
@@ -414,19 +423,19 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     let _e278 = least;
     let _e280 = rise[0u];
     let _e284 = rise[1u];
-    param_11 = ((_e278 + min(_e280, 0f)) + min(_e284, 0f));
-    let _e287 = displacement((&param_11));
+    param_12 = ((_e278 + min(_e280, 0f)) + min(_e284, 0f));
+    let _e287 = displacement((&param_12));
     a = _e287;
     let _e288 = most;
     let _e290 = rise[0u];
     let _e294 = rise[1u];
-    param_12 = ((_e288 + max(_e290, 0f)) + max(_e294, 0f));
-    let _e297 = displacement((&param_12));
+    param_13 = ((_e288 + max(_e290, 0f)) + max(_e294, 0f));
+    let _e297 = displacement((&param_13));
     b = _e297;
     let _e298 = least;
     let _e299 = most;
-    param_13 = (0.5f * (_e298 + _e299));
-    let _e302 = displacement((&param_13));
+    param_14 = (0.5f * (_e298 + _e299));
+    let _e302 = displacement((&param_14));
     let _e305 = synthesis.law[1u];
     let _e306 = slope;
     let _e307 = (_e306 * _e305);
@@ -435,12 +444,12 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     let _e315 = most;
     let _e316 = least;
     let _e319 = ((abs(_e313) * (_e315 - _e316)) <= 0.125f);
-    phi_620_ = _e319;
+    phi_629_ = _e319;
     if _e319 {
         let _e321 = plane_law[1u];
-        phi_620_ = (abs((_e321 - 0.25f)) < 0.75f);
+        phi_629_ = (abs((_e321 - 0.25f)) < 0.75f);
     }
-    let _e326 = phi_620_;
+    let _e326 = phi_629_;
     planar = _e326;
     let _e327 = planar;
     if _e327 {
@@ -448,11 +457,11 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
         local_7 = bitcast<vec3<u32>>(_e328);
     } else {
         let _e330 = lower_marks;
-        param_14 = _e330;
-        let _e331 = in_place((&param_14));
+        param_15 = _e330;
+        let _e331 = in_place((&param_15));
         let _e333 = marks_1;
-        param_15 = _e333;
-        let _e334 = in_place((&param_15));
+        param_16 = _e333;
+        let _e334 = in_place((&param_16));
         local_7 = vec3<u32>(_e331, bitcast<u32>(9f), _e334);
     }
     let _e336 = local_7;
@@ -461,19 +470,19 @@ fn plane_tile(corner_1: ptr<function, vec2<f32>>) -> vec4<u32> {
     let _e338 = b;
     let _e340 = a;
     let _e341 = b;
-    param_16 = min(_e337, _e338);
-    param_17 = max(_e340, _e341);
-    let _e343 = pack_interval((&param_16), (&param_17));
+    param_17 = min(_e337, _e338);
+    param_18 = max(_e340, _e341);
+    let _e343 = pack_interval((&param_17), (&param_18));
     let _e344 = rest;
     return vec4<u32>(_e343, _e344.x, _e344.y, _e344.z);
 }
 
 fn main_1() {
-    var param_18: vec2<f32>;
+    var param_19: vec2<f32>;
 
     let _e5 = gl_FragCoord_1;
-    param_18 = ((_e5.xy - vec2(0.5f)) * vec2<f32>(16f, 8f));
-    let _e10 = plane_tile((&param_18));
+    param_19 = ((_e5.xy - vec2(0.5f)) * vec2<f32>(16f, 8f));
+    let _e10 = plane_tile((&param_19));
     tile = _e10;
     return;
 }
