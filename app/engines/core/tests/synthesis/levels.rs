@@ -148,7 +148,7 @@ fn the_fovea_loses_nothing() {
             let part =
                 |channels: usize, all: &[u8]| cut(all, width, in_source, inset.views.source.size, channels);
             let depths = cut(&depth, width, in_source, inset.views.source.size, 1);
-            let mut run =
+            let run =
                 |rgba: &[u8], depth: &[f32], warp| super::subject().in_memory(gl).run(rgba, depth, warp);
             let all = run(&rgba, &depth, &whole.warp).rgba;
             let got = run(&part(4, &rgba), &depths, &inset.views.warp).rgba;
@@ -159,7 +159,7 @@ fn the_fovea_loses_nothing() {
             let off = |(a, b): (&[u8], &[u8])| (0..4).any(|c| a[c].abs_diff(b[c]) > 40);
             let different = got.chunks(4).zip(want.chunks(4)).filter(|&pair| off(pair)).count();
             println!("{dominant:?}: {different} of {} pixels", got.len() / 4);
-            assert!(different * 500 <= got.len() / 4, "{dominant:?}: {different} of {}", got.len() / 4);
+            assert!(different * 2000 <= got.len() / 4, "{dominant:?}: {different} of {}", got.len() / 4);
         }
     });
 }
