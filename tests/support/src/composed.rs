@@ -70,7 +70,7 @@ impl Case {
         let depth = inset.as_ref().filter(|_| with_depth).map(|inset| {
             // Rows of one distance each, from nearer to farther than where the inset is complete.
             let rows = 0..inset.image_size[1];
-            let of_row = rows.map(|row| levels.shown.depth.depth(0.2 + 0.02 * row as f32));
+            let of_row = rows.map(|row| levels.shown.depth.depth(0.12 + 0.01 * row as f32));
             of_row.flat_map(|depth| vec![depth; inset.image_size[0] as usize]).collect()
         });
         Case { name: format!("{name}, {eye:?}"), levels, eye, wide, inset, depth }
