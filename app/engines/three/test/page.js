@@ -101,17 +101,25 @@ function difference(a, b) {
   return image;
 }
 
-/** Three's own two eyes of a frame. */
-async function truthOf(renderer, scene, camera, stereo) {
+/** Draws, and returns both eyes and the number of draw calls. */
+async function drawn(renderer, draw) {
   const { info } = renderer;
-  stereo.mode = 'rendered';
   info.autoReset = false;
   info.reset();
-  stereo.render(scene, camera);
+  draw();
   const { calls } = info.render;
   info.autoReset = true;
-  stereo.mode = 'synthesized';
   return { truth: await halves(renderer), calls };
+}
+
+/** Three's own two eyes of a frame. */
+function truthOf(renderer, scene, camera, stereo) {
+  return drawn(renderer, () => {
+    const { mode } = stereo;
+    stereo.mode = 'rendered';
+    stereo.render(scene, camera);
+    stereo.mode = mode;
+  });
 }
 
 /** The uniforms of eyes, given as matrices and viewports. */
@@ -126,17 +134,14 @@ function views(cases) {
 }
 
 /** Compares a scene on a canvas with three's own `StereoEffect`. */
-async function compare({ scene: name, size = 256, options = {}, renderer: attributes = {}, tweak, picture = false, effect = true, frames = Number(THREE.REVISION) > 170 ? 2 : 8 }) {
+async function compare({ scene: name, size = 256, options = {}, renderer: attributes = {}, tweak, picture = false, effect = true, frames = Number(THREE.REVISION) > 170 ? 1 : 8 }) {
   const renderer = rendererOf(2 * size, size, attributes);
   const { scene, camera } = typeof name === 'string' ? await build(name, renderer) : name;
   tweak?.(scene, camera);
   const stereo = new StereoSynthesis(renderer, { mode: 'synthesized', ...options });
-  const { truth: own, calls: callsOwn } = await truthOf(renderer, scene, camera, stereo);
-  let truth = own;
-  if (effect) {
-    new StereoEffect(renderer).render(scene, camera);
-    truth = await halves(renderer);
-  }
+  const { truth, calls: callsOwn } = await (effect
+    ? drawn(renderer, () => new StereoEffect(renderer).render(scene, camera))
+    : truthOf(renderer, scene, camera, stereo));
   for (let i = 0; i < frames; i++) {
     stereo.render(scene, camera);
     await nextTask();
@@ -307,7 +312,7 @@ async function state() {
     return memory();
   };
   stereo.mode = 'synthesized';
-  const few = await frames(4), many = await frames(8);
+  const few = await frames(3), many = await frames(4);
   renderer.setSize(192, 96, false);
   await frames(1);
   const larger = renderer.info.render.frame > 0 && stereo.way;
