@@ -155,7 +155,7 @@ mod tests {
             token[wrong] ^= 1;
             assert_eq!(hello(VERSION, token), Some(Err(Refusal::Token)));
         }
-        assert_eq!(judge(FromClient::Decoded(0)), None);
+        assert_eq!(judge(FromClient::Missing(0)), None);
         assert_eq!(access().judge(b""), None);
     }
 }
