@@ -284,20 +284,21 @@ impl RateControl {
         if !is_newest || is_given_up {
             return;
         }
-        if self.round_trip.is_none() {
-            self.rate.begin(bytes, round_trip, now);
+        if self.rate.begin(bytes, round_trip) {
+            self.trend.forget();
         }
         self.round_trip = Some(Duration::from_secs_f64(round_trip.max(0.0)));
         if now - self.window_start >= ROUND_TRIP_WINDOW {
             (self.fastest, self.window_start) = ([f64::INFINITY, self.fastest[0]], now);
         }
         self.fastest[0] = self.fastest[0].min(round_trip);
-        // A queue that what is on its way fills up does not grow any more.
+        let is_full = std::mem::take(&mut self.is_full);
         let queue = match self.trend.queue() {
-            Queue::Steady if std::mem::take(&mut self.is_full) && self.trend.stands() => Queue::Grows,
+            // It does not grow any more, but only because what is on its way fills it up.
+            Queue::Steady if is_full && self.trend.stands() => Queue::Grows,
             queue => queue,
         };
-        self.rate.follow(queue, self.trend.is_stalled(), round_trip, now);
+        self.rate.follow(queue, (self.trend.is_stalled(), is_full), round_trip, now);
     }
 
     /// Records that the client misses a frame, without which it cannot decode any before the next intra frame.
