@@ -37,7 +37,6 @@ pub fn make(gl: &Rc<Context>, variants: Variants) -> anyhow::Result<BTreeSet<Pro
     let recorder = Recorder::new(gl);
     synthesis(gl, variants)?;
     rendering(gl, variants)?;
-    stereo(gl)?;
     patchers(gl)?;
     viewer(gl)?;
     Ok(recorder.programs().iter().map(|recipe| recipe.as_ref().clone()).collect())
@@ -106,7 +105,11 @@ fn methods(gl: &Rc<Context>, settings: &RenderSettings, scene: &GpuScene) -> any
     let mut renderer = Renderer::new(gl, settings, scene)?;
     for method in Method::ALL {
         if is_tested(method, settings, gl) {
-            let options = StereoOptions::default();
+            let options = StereoOptions {
+                near_field: Some(1.0),
+                guard_band: GuardBand::AUTO,
+                ..StereoOptions::default()
+            };
             stereo::create(gl, method, settings, &options)?.prepare(&mut renderer, scene)?;
         }
     }
@@ -170,17 +173,6 @@ fn viewer(gl: &Rc<Context>) -> anyhow::Result<()> {
     Program::new(gl, ShaderSource::Screen("openxr/transfer.frag"), &[])?;
     let hidden = ShaderSource::Raster { vertex: "openxr/hidden.vert", fragment: "openxr/hidden.frag" };
     Program::new(gl, hidden, &[])?;
-    Ok(())
-}
-
-fn stereo(gl: &Rc<Context>) -> anyhow::Result<()> {
-    let settings = RenderSettings::default();
-    let options =
-        StereoOptions { near_field: Some(1.0), guard_band: GuardBand::AUTO, ..StereoOptions::default() };
-    let there = |m: &Method| settings.supports(*m, gl.capabilities()).is_ok();
-    for method in Method::ALL.into_iter().filter(there) {
-        stereo::create(gl, method, &settings, &options)?;
-    }
     Ok(())
 }
 

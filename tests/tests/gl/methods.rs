@@ -232,7 +232,9 @@ fn reprojected_shading_is_close_to_two_renders() {
                 let mono = stage.render(Method::Mono, &options, &pair)?;
                 let both = stage.render(Method::ShadingReprojection, &options, &pair)?;
                 let (dominant, second) = (pair.dominant.index(), pair.dominant.other().index());
-                ensure!(both[dominant] == expected[dominant], "{name}: the dominant eye is rendered");
+                let off = mean_difference(&both[dominant], &expected[dominant]);
+                // Glass alone is drawn later, over one depth a pixel and after the bloom.
+                ensure!(off < 0.5, "{name}: the dominant eye is rendered, but differs by {off}");
                 let (ours, doing_nothing) = (
                     mean_difference(&both[second], &expected[second]),
                     mean_difference(&mono[second], &expected[second]),

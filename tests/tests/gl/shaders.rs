@@ -10,9 +10,11 @@ fn every_shader_compiles_in_every_variant() {
         let made = programs::make(gl, Variants::Every)?;
         // Only unit tests of the renderer use this shader, to read depth back.
         Program::new(gl, ShaderSource::Screen("render/depth_copy.frag"), &[])?;
+        // Only drivers without multisample textures need this one.
+        Program::new(gl, ShaderSource::Screen("render/keep_sample.frag"), &[])?;
         let used = programs::files(&made)?;
         // Only wgpu uses this one, which is not in GLSL ES.
-        let others = ["render/depth_copy.frag", "synthesis/nearest_depth.frag"];
+        let others = ["render/depth_copy.frag", "render/keep_sample.frag", "synthesis/nearest_depth.frag"];
         let is_used = |file: &str| used.contains(file) || others.contains(&file);
         let unused: Vec<_> = yoro_shaders::files().filter(|file| !is_used(file)).collect();
         anyhow::ensure!(unused.is_empty(), "no construction of this test uses {}", unused.join(", "));

@@ -84,6 +84,11 @@ impl AutoGuardBand {
         Columns { drawn: without(guard - drawn), always: without(guard - least(guard)) }
     }
 
+    /// Compiles the pass for whole depth textures or for pairs of depths, unless it is compiled already.
+    pub(super) fn prepare(&mut self, is_pair: bool) -> Result<(), GlError> {
+        self.program.prepare(is_pair)
+    }
+
     /// Starts to measure the frame of the last [`AutoGuardBand::columns`].
     pub(super) fn measure(&mut self, depth: &DepthImage, views: &SynthesisViews) -> Result<(), GlError> {
         let Some(frame) = self.frame.take().filter(|frame| frame.border.guard_columns > 0) else {

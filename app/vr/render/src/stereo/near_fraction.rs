@@ -27,6 +27,11 @@ impl NearFraction {
         Ok(NearFraction { gl: gl.clone(), program, readback: Readback::new(gl, [GRID; 2])? })
     }
 
+    /// Compiles the pass for whole depth textures or for pairs of depths, unless it is compiled already.
+    pub(super) fn prepare(&mut self, is_pair: bool) -> Result<(), GlError> {
+        self.program.prepare(is_pair)
+    }
+
     /// Starts to measure the part of a depth image that has its lower left corner at the image's origin and `size`
     /// pixels.
     pub(super) fn measure(

@@ -215,6 +215,12 @@ impl StereoMethod for Synthesized {
                 },
             }),
         };
+        if let Some(auto) = &mut self.auto_guard_band {
+            auto.prepare(pairs)?;
+        }
+        if let Some(switch) = &mut self.switch {
+            switch.fraction.prepare(pairs)?;
+        }
         for depth in [false, true].into_iter().take(1 + usize::from(has_over)) {
             made.synthesizers.get(depth)?;
         }

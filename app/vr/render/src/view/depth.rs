@@ -70,23 +70,30 @@ impl DepthProgram {
         DepthProgram { gl: gl.clone(), file, made: [const { None }; 3] }
     }
 
-    /// Compiles the variant for an image, unless it is compiled already, binds it and its texture to unit 0.
+    /// Compiles the variant for whole textures or for pairs of depths, unless it is compiled already.
+    pub(crate) fn prepare(&mut self, is_pair: bool) -> Result<(), GlError> {
+        self.variant(usize::from(is_pair)).map(drop)
+    }
+
+    /// Binds the variant for an image, which is compiled unless it was prepared, and its texture to unit 0.
     pub(crate) fn bind(&mut self, depth: &DepthImage) -> Result<&Program, GlError> {
         let i = if depth.layer.is_some() { 2 } else { usize::from(depth.is_pair) };
-        let slot = &mut self.made[i];
-        let program = match slot {
-            Some(program) => program,
-            None => {
-                let define = [None, Some("DEPTH_PAIRS"), Some("LAYER")][i];
-                let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
-                slot.insert(Program::new(&self.gl, ShaderSource::Screen(self.file), &defines)?)
-            }
-        };
+        let program = self.variant(i)?;
         program
             .bind()
             .texture_of("depth_map", 0, depth.texture)
             .set("view_layer", depth.layer.unwrap_or(0) as i32);
         Ok(program)
+    }
+
+    fn variant(&mut self, i: usize) -> Result<&Program, GlError> {
+        let slot = &mut self.made[i];
+        if slot.is_none() {
+            let define = [None, Some("DEPTH_PAIRS"), Some("LAYER")][i];
+            let defines: Vec<_> = define.into_iter().map(|name| (name, String::new())).collect();
+            *slot = Some(Program::new(&self.gl, ShaderSource::Screen(self.file), &defines)?);
+        }
+        slot.as_ref().ok_or_else(|| GlError::MissingShader(self.file.into()))
     }
 }
 
