@@ -72,7 +72,7 @@ fn frames() -> Vec<(Method, StereoOptions)> {
     let mut frames: Vec<_> = Contender::methods().into_iter().filter_map(Contender::method).collect();
     let synthesis = StereoOptions { policy: None, ..StereoOptions::default() };
     frames.push((Method::Synthesized, StereoOptions { near_field: Some(3.0), ..synthesis }));
-    frames.push((Method::Synthesized, StereoOptions { guard_band: GuardBand::AUTO, ..synthesis }));
+    frames.push((Method::Synthesized, StereoOptions { guard_band: GuardBand::Auto(0.1), ..synthesis }));
     frames
         .push((Method::Synthesized, StereoOptions { policy: Some(NearFieldPolicy::default()), ..synthesis }));
     frames
