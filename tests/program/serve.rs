@@ -145,7 +145,6 @@ fn only_what_browsers_send_is_served_and_silent_clients_make_room() {
     let own = format!("Host: {host}\r\nOrigin: http://{host}\r\n");
     let evil = "Host: evil.example\r\nOrigin: http://evil.example\r\n";
     let long = format!("Cookie: c={}{own}{evil}", "a".repeat(9000));
-    let endless = format!("Cookie: c={}\r\n{own}", "a".repeat(100_000));
     for (first, headers, answer) in [
         ("GET /stream", own.clone(), "101"),
         ("POST /stream", own.clone(), "400"),
@@ -153,7 +152,6 @@ fn only_what_browsers_send_is_served_and_silent_clients_make_room() {
         ("GET /stream", format!("{own}{evil}"), "403"),
         ("GET /stream", format!("Host: {host}\r\n{own}"), "403"),
         ("GET /stream", long, "403"),
-        ("GET /stream", endless, "431"),
     ] {
         let said = serving.ask(first, &Serving::upgrade(&headers));
         let wanted = format!("HTTP/1.1 {answer}");
@@ -267,7 +265,7 @@ fn a_damaged_picture_is_left_out_and_a_video_without_a_whole_one_is_refused() {
     }
     drop(serving);
     damage(0);
-    run(at, "serve v.mp4 --page . --port 0").refuses(&["v.mp4", "damaged"]);
+    run(at, "serve v.mp4 --page . --port 0").refuses(&["v.mp4 cannot be read as a video"]);
 }
 
 #[test]

@@ -74,7 +74,7 @@ fn a_video_of_record3d_becomes_stereo() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     let scene = "render prototype --frames 2 --size 128x96";
-    succeed(at, &format!("{scene} --video rgbd.mp4 --quantizer 10 --guard-band none"));
+    succeed(at, &format!("{scene} --video rgbd.mp4 --quantizer 12 --guard-band none"));
     let mut reader = Reader::open(&at.join("rgbd.mp4")).unwrap();
     let rgbd = reader.rgbd().unwrap();
     assert_eq!(rgbd.guard_columns, 0);
@@ -90,7 +90,7 @@ fn a_video_of_record3d_becomes_stereo() {
         };
         image::Rgb([channel(5.0), channel(3.0), channel(1.0)])
     };
-    let format = Format { frame_rate: 30, quantizer: 10, durations: None, frames: 2, rgbd: None };
+    let format = Format { frame_rate: 30, quantizer: 12, durations: None, frames: 2, rgbd: None };
     yoro_media::video::write(&at.join("phone.mp4"), &format, || -> Result<Option<Planes>, VideoError> {
         Ok(reader.read_rgbd()?.map(|(color, depth)| {
             let hues = RgbImage::from_fn(128, 96, |x, y| hue(depth.get_pixel(x, y).0[0]));
@@ -110,7 +110,7 @@ fn a_video_of_record3d_becomes_stereo() {
 
     succeed(at, &format!("{scene} --method conventional --outputs left,right --out truth"));
     let stereo = ["phone", "rgbd"].map(|name| {
-        succeed(at, &format!("synthesize {name}.mp4 --out {name}.stereo.mp4 --quantizer 10"));
+        succeed(at, &format!("synthesize {name}.mp4 --out {name}.stereo.mp4 --quantizer 12"));
         Reader::open(&at.join(format!("{name}.stereo.mp4"))).unwrap()
     });
     let [mut phone, mut own] = stereo;

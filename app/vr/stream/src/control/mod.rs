@@ -279,7 +279,9 @@ impl RateControl {
             let usual = self.usual.get_or_insert(bytes);
             let more = bytes - *usual;
             *usual += SIZE_WEIGHT * more;
-            self.trend.add(time * 1e3, time_ms - more / arriving * 1e3);
+            // Of another quantizer's frames, the rate of before says little.
+            let longer = (more / arriving).clamp(-self.interval, self.interval);
+            self.trend.add(time * 1e3, time_ms - longer * 1e3);
         }
         if !is_newest || is_given_up {
             return;
@@ -296,6 +298,8 @@ impl RateControl {
         let queue = match self.trend.queue() {
             // It does not grow any more, but only because what is on its way fills it up.
             Queue::Steady if is_full && self.trend.stands() => Queue::Grows,
+            // One may have begun.
+            Queue::Steady if self.trend.is_late() => Queue::Shrinks,
             queue => queue,
         };
         self.rate.follow(queue, (self.trend.is_stalled(), is_full), round_trip, now);

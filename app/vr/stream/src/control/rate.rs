@@ -19,16 +19,16 @@ const GROWTH: f64 = 4.0;
 const DECREASE: f64 = 0.9;
 /// The most that the rate exceeds what has arrived, as a factor: usually, and if what is on its way limits that.
 const HEADROOM: f64 = 1.5;
-const FULL_HEADROOM: f64 = 2.5;
+const FULL_HEADROOM: f64 = 1.6;
 /// The time in s over which what has arrived is counted.
 const WINDOW: f64 = 0.25;
 /// The weight of a new measurement in the mean capacity, and the least and the most relative variance of that.
 const CAPACITY_WEIGHT: f64 = 0.05;
-const CAPACITY_VARIANCE: [f64; 2] = [0.0004, 0.01];
+const CAPACITY_VARIANCE: [f64; 2] = [0.0004, 0.003];
 /// The share of the capacity by which the rate grows in a second near it. If no queue grows for a time in s, it grows the
 /// faster, the longer that is ago, as in CUBIC (RFC 9438): by this factor times the square of the time after that.
 const NEAR_GROWTH: f64 = 0.08;
-const NEAR_TIME: f64 = 1.5;
+const NEAR_TIME: f64 = 2.0;
 const FASTER: f64 = 6.0;
 
 /// The rate at which bytes may be sent.

@@ -33,8 +33,8 @@ const LONGEST_STEP: f64 = 100.0;
 const NEWEST: f64 = 1000.0;
 const WINDOW: f64 = 5000.0;
 
-const STANDING_NOISE: f64 = 2.0;
-const MOST_STANDING: f64 = 50.0;
+const STANDING_NOISE: f64 = 2.5;
+const MOST_STANDING: f64 = 42.0;
 /// The weight of a new frame in the noise (the interarrival jitter of RFC 3550).
 const NOISE_WEIGHT: f64 = 1.0 / 16.0;
 /// A queue must grow for this long in ms.
@@ -111,13 +111,27 @@ impl Trend {
 
     /// True if there is a queue at all: jitter and packets that are sent again delay some frames, a queue delays all.
     pub fn stands(&self) -> bool {
-        self.standing() >= (self.interval + STANDING_NOISE * self.noise).min(MOST_STANDING)
+        self.standing() >= self.tolerated()
+    }
+
+    /// True if the newest frame was delayed as if there were a queue.
+    pub fn is_late(&self) -> bool {
+        self.newest() >= self.tolerated()
+    }
+
+    /// Returns by how much frames may be delayed without a queue, in ms.
+    fn tolerated(&self) -> f64 {
+        (self.interval + STANDING_NOISE * self.noise).min(MOST_STANDING)
+    }
+
+    /// Returns by how much the newest frame was delayed more than the fastest, in ms.
+    fn newest(&self) -> f64 {
+        self.delays.back().map_or(0.0, |[_, delay]| *delay) - self.least[0].min(self.least[1])
     }
 
     /// True if the newest frame was delayed by far more than the fastest.
     pub fn is_stalled(&self) -> bool {
-        let newest = self.delays.back().map_or(0.0, |[_, delay]| *delay);
-        newest - self.least[0].min(self.least[1]) > 2.0 * MOST_STANDING + 3.0 * self.noise
+        self.newest() > 2.0 * MOST_STANDING + 3.0 * self.noise
     }
 
     /// Returns the mean difference between the delays of two frames in ms.
