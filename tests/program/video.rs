@@ -40,14 +40,41 @@ fn both_eyes_come_out_of_an_rgbd_video() {
     }
 }
 
+/// One eye sees farther outwards, or inwards, than the other.
+#[test]
+fn eyes_with_asymmetric_frusta_come_out_of_an_rgbd_video() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    for (name, eyes) in
+        [("wide", "--half-angles-degrees 52,42"), ("narrow", "--half-angles-degrees 35,47 --dominant left")]
+    {
+        let scene = format!("render prototype --frames 1 --size 96x64 {eyes}");
+        succeed(at, &format!("{scene} --video {name}.mp4 --quantizer 12"));
+        succeed(at, &format!("synthesize {name}.mp4 --out {name}.stereo.mp4 --quantizer 12"));
+        succeed(at, &format!("{scene} --method conventional --outputs left,right --out {name}"));
+        let mut stereo = Reader::open(&at.join(format!("{name}.stereo.mp4"))).unwrap();
+        let both = stereo.read().unwrap().unwrap().rgb((192, 64));
+        let shown = |x: u32| imageops::crop_imm(&both, x, 0, 96, 64).to_image();
+        let [left, right] = ["left", "right"]
+            .map(|eye| yoro_media::load_color(&at.join(format!("{name}/prototype.{eye}.png"))).unwrap());
+        let db = |a: &RgbImage, b: &RgbImage| psnr(a, b, Channels::Luma).unwrap().0;
+        let (of_left, of_right, same) = (db(&shown(0), &left), db(&shown(96), &right), db(&left, &right));
+        println!("{name}: left {of_left:.1} dB, right {of_right:.1} dB, the same image {same:.1} dB");
+        assert!(of_left.min(of_right) > 24.0 && of_left.min(of_right) > same + 5.0, "{name}");
+        assert!(of_left.max(of_right) > 34.0, "{name}");
+    }
+}
+
 /// A file in the format of the iPhone application Record3D: depth as hue on the left, the camera in the metadata. It is
-/// made from a video of this program whose eye is not widened, since no recording of a phone was available.
+/// made from a video of this program whose eye is not widened, since no recording of a phone was available. The camera's
+/// axis is not in the middle: the leftmost columns are left out.
 #[test]
 fn a_video_of_record3d_becomes_stereo() {
+    const CUT: u32 = 20;
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     let scene = "render prototype --frames 2 --size 128x96";
-    succeed(at, &format!("{scene} --video rgbd.mp4 --quantizer 10 --guard-band none"));
+    succeed(at, &format!("{scene} --video rgbd.mp4 --quantizer 12 --guard-band none"));
     let mut reader = Reader::open(&at.join("rgbd.mp4")).unwrap();
     let rgbd = reader.rgbd().unwrap();
     assert_eq!(rgbd.guard_columns, 0);
@@ -63,25 +90,27 @@ fn a_video_of_record3d_becomes_stereo() {
         };
         image::Rgb([channel(5.0), channel(3.0), channel(1.0)])
     };
-    let format = Format { frame_rate: 30, quantizer: 10, frames: 2, rgbd: None };
+    let format = Format { frame_rate: 30, quantizer: 12, durations: None, frames: 2, rgbd: None };
     yoro_media::video::write(&at.join("phone.mp4"), &format, || -> Result<Option<Planes>, VideoError> {
         Ok(reader.read_rgbd()?.map(|(color, depth)| {
             let hues = RgbImage::from_fn(128, 96, |x, y| hue(depth.get_pixel(x, y).0[0]));
-            Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))
+            let cut = |image: &RgbImage| imageops::crop_imm(image, CUT, 0, 128 - CUT, 96).to_image();
+            Planes::of_rgb(&cut(&hues)).beside(&Planes::of_rgb(&cut(&color)))
         }))
     })
     .unwrap();
     let focal = 48.0 / (rgbd.fov_y / 2.0).tan();
     let file = fs::read(at.join("phone.mp4")).unwrap();
     let camera = format!(
-        r#"{{"intrinsicMatrix":[{focal},0,0,0,{focal},0,64,48,1],"rangeOfEncodedDepth":[0,{RANGE}]}}"#
+        r#"{{"intrinsicMatrix":[{focal},0,0,0,{focal},0,{},48,1],"rangeOfEncodedDepth":[0,{RANGE}]}}"#,
+        64 - CUT
     );
     let size = (camera.len() as u32 + 8).to_be_bytes();
     fs::write(at.join("phone.mp4"), [&file[..], &size, b"meta", camera.as_bytes()].concat()).unwrap();
 
     succeed(at, &format!("{scene} --method conventional --outputs left,right --out truth"));
     let stereo = ["phone", "rgbd"].map(|name| {
-        succeed(at, &format!("synthesize {name}.mp4 --out {name}.stereo.mp4 --quantizer 10"));
+        succeed(at, &format!("synthesize {name}.mp4 --out {name}.stereo.mp4 --quantizer 12"));
         Reader::open(&at.join(format!("{name}.stereo.mp4"))).unwrap()
     });
     let [mut phone, mut own] = stereo;
@@ -89,12 +118,13 @@ fn a_video_of_record3d_becomes_stereo() {
         let [left, right] = ["left", "right"].map(|eye| {
             yoro_media::load_color(&at.join(format!("truth/prototype-{frame:04}.{eye}.png"))).unwrap()
         });
-        let synthesized = |reader: &mut Reader| {
-            let both = reader.read().unwrap().unwrap().rgb((256, 96));
-            imageops::crop_imm(&both, 0, 0, 128, 96).to_image()
-        };
-        let [value, own, same] = [&synthesized(&mut phone), &synthesized(&mut own), &right]
-            .map(|image| psnr(image, &left, Channels::Luma).unwrap().0);
+        // What both show of the left eye.
+        let columns = 128 - CUT;
+        let cut = |image: &RgbImage, from: u32| imageops::crop_imm(image, from, 0, columns, 96).to_image();
+        let phone = cut(&phone.read().unwrap().unwrap().rgb((2 * columns, 96)), 0);
+        let own = cut(&own.read().unwrap().unwrap().rgb((256, 96)), CUT);
+        let [value, own, same] = [phone, own, cut(&right, CUT)]
+            .map(|image| psnr(&image, &cut(&left, CUT), Channels::Luma).unwrap().0);
         let what =
             format!("frame {frame}: {value:.1} dB, {own:.1} dB by luma, {same:.1} dB for the same image");
         println!("{what}");
@@ -115,5 +145,9 @@ fn mistakes() {
     run(at, "render prototype --video v.mp4").refuses(&["--frames"]);
     run(at, "render prototype --frames 2 --video v.mp4 --measure").refuses(&["--measure"]);
     run(at, "render prototype --frames 2 --video v.mp4 --quantizer 52").refuses(&["--quantizer"]);
+    run(at, "render prototype --frames 2 --video v.mp4 --quantizer 11").refuses(&["--quantizer"]);
+    run(at, "render prototype --frames 2 --video v.avi").refuses(&["v.avi", ".mp4"]);
+    run(at, "synthesize a.mp4 --out s.png").refuses(&["s.png", ".mp4"]);
+    run(at, "render prototype --frames 2 --video v.mp4 --size 2048x2048").refuses(&["--size 18"]);
     assert_eq!(fs::read(at.join("a.mp4")).unwrap(), b"no video");
 }

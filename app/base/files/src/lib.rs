@@ -65,7 +65,8 @@ pub enum FileError {
     },
 }
 
-fn remedy(error: &io::Error) -> String {
+/// Returns an error of the operating system as a [`FileError`] tells it: with a remedy where there is one.
+pub fn remedy(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::PermissionDenied => "no permission; change its rights or choose another place".into(),
         io::ErrorKind::StorageFull => "the disk is full; free some space or choose another place".into(),

@@ -33,7 +33,8 @@ pub fn one_line(text: &str) -> String {
 /// Returns an error followed by its causes. A cause that the error's own message already contains is not repeated.
 pub fn sentence(error: &anyhow::Error) -> String {
     error.chain().skip(1).fold(error.to_string(), |told, cause| {
-        let cause = cause.to_string();
+        // Errors of files tell these in their own words.
+        let cause = cause.downcast_ref().map_or_else(|| cause.to_string(), yoro_files::remedy);
         if told.contains(&cause) { told } else { format!("{told}: {cause}") }
     })
 }
@@ -85,6 +86,9 @@ mod tests {
         assert_eq!(sentence(&error), told);
         let error = Err::<(), _>(io::Error::other("full")).context("out.png").unwrap_err();
         assert_eq!(of(&error), "out.png: full");
+        let source = io::Error::from(io::ErrorKind::StorageFull);
+        let full = of(&FileError::Write { path: "a.mp4".into(), source }.into());
+        assert_eq!(full, "cannot write a.mp4: the disk is full; free some space or choose another place");
     }
 
     #[test]

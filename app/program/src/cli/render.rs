@@ -146,6 +146,7 @@ impl Subcommand for RenderArgs {
         let mut files = Files::default();
         files.read([&self.scene]);
         if let Some(video) = &self.video {
+            video::check_name(video)?;
             files.write(video, "the video");
             return Ok(files);
         }
@@ -172,6 +173,9 @@ impl Subcommand for RenderArgs {
             (None, None) => vec![eyes::scene_pose(&scene, self.pose)?],
         };
         let options = self.stereo.options();
+        if self.video.is_some() {
+            video::check_size(&self.eyes, options.guard_band)?;
+        }
         log::info!("{options:?}");
         log::info!("{}", self.eyes.distances(options.guard_band));
         let headless = self.gl.open()?;

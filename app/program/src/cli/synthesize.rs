@@ -169,6 +169,7 @@ impl Subcommand for SynthesizeArgs {
         let mut files = Files::default();
         files.read(&self.patcher.model);
         if let Some(video) = &self.video {
+            video::check_name(&self.out)?;
             files.read([video]);
             files.write(&self.out, "the video");
             return Ok(files);

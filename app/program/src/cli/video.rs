@@ -3,15 +3,15 @@
 use std::path::Path;
 use std::rc::Rc;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, bail, ensure};
 use image::imageops;
 
 use crate::cli::eyes::EyeArgs;
 use crate::cli::terminal::progress_bar;
-use yoro::eyes::{Eye, Pose};
+use yoro::eyes::{Eye, GuardBand, Pose, SynthesisViews};
 use yoro_files::interrupt;
 use yoro_gl::Context;
-use yoro_media::video::{Format, Planes, Reader, Rgbd};
+use yoro_media::video::{FINEST_QUANTIZER, Format, Planes, Reader, Rgbd, fits};
 use yoro_media::{depth_image, rgb_image, side_by_side};
 use yoro_render::stereo::{Offline, PipelineOptions, StereoOptions};
 use yoro_render::{PreparedScene, ViewReader};
@@ -19,9 +19,46 @@ use yoro_render::{PreparedScene, ViewReader};
 /// How videos are encoded.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct EncodingArgs {
-    /// Videos: H.264's quantizer, 0 (best) to 51
-    #[arg(long, default_value_t = 20, value_name = "QP", value_parser = clap::value_parser!(u8).range(0..=51))]
+    /// Videos: H.264's quantizer, 12 (best) to 51
+    #[arg(long, default_value_t = 20, value_name = "QP", value_parser = clap::value_parser!(u8).range(i64::from(FINEST_QUANTIZER)..=51))]
     pub quantizer: u8,
+}
+
+/// Refuses a file whose name does not say that it is a video.
+pub fn check_name(path: &Path) -> anyhow::Result<()> {
+    let extension = path.extension().unwrap_or_default();
+    ensure!(
+        extension.eq_ignore_ascii_case("mp4"),
+        "{} is to be a video, which is written as MP4: end its name in .mp4",
+        path.display()
+    );
+    Ok(())
+}
+
+/// Refuses eyes whose RGBD video would have more pixels than can be encoded.
+pub fn check_size(eyes: &EyeArgs, guard_band: GuardBand) -> anyhow::Result<()> {
+    let [width, height] = eyes.size;
+    // A video has two pictures side by side, each with an even number of pixels a side.
+    let coded = |size: [u32; 2]| -> anyhow::Result<[usize; 2]> {
+        let views = EyeArgs { size, ..eyes.clone() }.pair(Pose::IDENTITY).synthesis_views(guard_band)?;
+        let [width, height] = views.source.size.map(|side| (side as usize).next_multiple_of(2));
+        Ok([2 * width, height])
+    };
+    let whole = coded(eyes.size)?;
+    if fits(whole) {
+        return Ok(());
+    }
+    let scaled = |width: u32| [width, (width * height / eyes.size[0]).max(16)];
+    let largest = (16..width).rev().map(scaled).find(|size| coded(*size).is_ok_and(fits));
+    let [w, h] = whole;
+    match largest {
+        Some([x, y]) => bail!(
+            "the video of eyes of {width}x{height} pixels would have {w}x{h} with guard band and depth, more than can be encoded: give --size {x}x{y} or less"
+        ),
+        None => bail!(
+            "the video would have {w}x{h} pixels, more than can be encoded: give a smaller --size or a narrower --guard-band"
+        ),
+    }
 }
 
 /// Renders the dominant eye at each of the poses `heads`, with its guard band, and writes an RGBD video.
@@ -39,13 +76,16 @@ pub fn render(
     // Everything is rendered twice: the 8 bits of depth cover the distances of all frames, which must be known first.
     let bar = progress_bar(2 * heads.len() as u64);
     bar.set_message("distances");
-    let ([mut nearest, mut farthest], mut guard_columns) = ([f32::INFINITY, 0.0], 0);
+    let [mut nearest, mut farthest] = [f32::INFINITY, 0.0];
+    let mut columns = [0, 0];
     for (i, &head) in heads.iter().enumerate() {
         interrupt::check()?;
         renderer.set_time(&mut scene, seconds(i))?;
-        let view = eyes.pair(head).synthesis_views(stereo.guard_band)?.source;
+        let SynthesisViews { source: view, dominant_crop: [left, _], .. } =
+            eyes.pair(head).synthesis_views(stereo.guard_band)?;
+        // The same for every frame.
+        columns = [left, view.size[0] - eyes.size[0] - left];
         reader.color(&mut renderer, &scene, &view)?;
-        guard_columns = guard_columns.max(view.size[0] - eyes.size[0]);
         let distances = reader.depth().into_iter().map(|depth| view.depth.distance(depth));
         for distance in distances.filter(|distance| distance.is_finite()) {
             [nearest, farthest] = [nearest.min(distance), farthest.max(distance)];
@@ -56,17 +96,29 @@ pub fn render(
         bail!("every pixel of the video is equally far: choose another place or scene");
     }
     let options = eyes.options();
+    let [guard_columns, outer_columns] = match options.dominant {
+        Eye::Left => [columns[1], columns[0]],
+        Eye::Right => columns,
+    };
     let rgbd = Rgbd {
         size: options.size,
         eye: options.dominant,
         guard_columns,
+        outer_columns,
         fov_y: options.fov_y,
         outer_inner: options.outer_inner,
+        mirrored: true,
         ipd: options.ipd,
         nearest,
         farthest,
     };
-    let format = Format { frame_rate, quantizer: encoding.quantizer, frames: heads.len(), rgbd: Some(rgbd) };
+    let format = Format {
+        frame_rate,
+        quantizer: encoding.quantizer,
+        durations: None,
+        frames: heads.len(),
+        rgbd: Some(rgbd),
+    };
     bar.set_message("video");
     let mut rest = heads.iter().enumerate();
     let bytes = yoro_media::video::write(file, &format, || -> anyhow::Result<Option<Planes>> {
@@ -85,7 +137,7 @@ pub fn render(
         "{}: {} frames, {:.0} kbit/s, depth from {nearest:.2} to {farthest:.2} m",
         file.display(),
         heads.len(),
-        rate(bytes, heads.len(), frame_rate)
+        bytes as f64 * 8e-3 * f64::from(frame_rate) / heads.len().max(1) as f64
     );
     Ok(())
 }
@@ -102,8 +154,15 @@ pub fn synthesize(
     let rgbd = reader.rgbd()?;
     let views = rgbd.views().with_context(|| format!("cannot synthesize {}", video.display()))?;
     let mut offline = Offline::new(gl, options)?;
-    let (frames, frame_rate) = (reader.frames(), reader.frame_rate());
-    let format = Format { frame_rate, quantizer: encoding.quantizer, frames, rgbd: None };
+    let (frames, frame_rate, durations) = (reader.frames(), reader.frame_rate(), reader.durations());
+    let [width, height] = rgbd.size.map(|side| side as usize);
+    ensure!(
+        fits([2 * width, height]),
+        "{} has eyes of {width}x{height} pixels, and two side by side are more than can be encoded: render a smaller video",
+        video.display()
+    );
+    let seconds = durations.as_ref().map_or(frames as f64 / f64::from(frame_rate), |all| all.iter().sum());
+    let format = Format { frame_rate, quantizer: encoding.quantizer, durations, frames, rgbd: None };
     let bar = progress_bar(frames as u64);
     let bytes = yoro_media::video::write(out, &format, || -> anyhow::Result<Option<Planes>> {
         interrupt::check()?;
@@ -122,11 +181,6 @@ pub fn synthesize(
         Ok(Some(Planes::of_rgb(&both)))
     })?;
     bar.finish_and_clear();
-    println!("{}: {frames} frames, {:.0} kbit/s", out.display(), rate(bytes, frames, frame_rate));
+    println!("{}: {frames} frames, {:.0} kbit/s", out.display(), bytes as f64 * 8e-3 / seconds.max(1e-3));
     Ok(())
-}
-
-/// Returns the bit rate in kbit/s (1000 bits).
-fn rate(bytes: u64, frames: usize, frame_rate: u32) -> f64 {
-    bytes as f64 * 8e-3 * f64::from(frame_rate) / frames.max(1) as f64
 }

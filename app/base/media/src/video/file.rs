@@ -1,5 +1,6 @@
 //! MP4 files: written picture by picture, and read and decoded.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom, Write};
 use std::num::NonZeroU32;
@@ -15,16 +16,18 @@ use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_max
 use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use yoro_files::{self as files, FileError};
 
-use super::index::{length_size, parameters, read_at};
+use super::index::{length_size, parameters, plain, read_at};
 use super::{DEPTH_BOX, Decoder, EncodedPicture, Encoder, Index, Planes, Rgbd, VideoError};
 
 /// How a video is encoded.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Format {
     /// Pictures per second. There is an intra frame, at which players can start, once a second.
     pub frame_rate: u32,
-    /// H.264's quantizer (QP), 0 to 51.
+    /// H.264's quantizer (QP), [`FINEST_QUANTIZER`](super::FINEST_QUANTIZER) to 51.
     pub quantizer: u8,
+    /// For how long each picture is shown, in seconds, if not always for the same time.
+    pub durations: Option<Vec<f64>>,
     /// The expected number of pictures, for whose index room is reserved at the file's beginning, for fast starts.
     pub frames: usize,
     /// The meaning of the depth, for an RGBD video.
@@ -102,8 +105,16 @@ struct Muxer<'a, W> {
     muxer: Mp4FileMuxer,
     offset: u64,
     frames: u32,
+    /// When the next picture is shown: in seconds if the format has durations, and in ticks.
+    time: f64,
+    ticks: u64,
+    /// The ticks since the last intra frame.
+    since_intra: u64,
     bytes: u64,
 }
+
+/// Ticks a second for pictures that are shown for different times.
+const TICKS: u32 = 90_000;
 
 impl<'a, W: Write + Seek> Muxer<'a, W> {
     fn new<E: From<VideoError>>(
@@ -115,19 +126,34 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
         // The box with the depth's meaning takes less than 1 KiB.
         let room = estimate_maximum_moov_box_size(&[format.frames]) + 1024;
         let options = Mp4FileMuxerOptions { reserved_moov_box_size: room, ..Mp4FileMuxerOptions::default() };
-        let muxer = Mp4FileMuxer::with_options(options)
-            .map_err(|error| VideoError::format(path, format!("{error:?}")))?;
+        let muxer =
+            Mp4FileMuxer::with_options(options).map_err(|error| VideoError::format(path, plain(&error)))?;
         out.write_all(muxer.initial_boxes_bytes())?;
         let offset = muxer.initial_boxes_bytes().len() as u64;
-        Ok(Muxer { out, path, format, encoder, muxer, offset, frames: 0, bytes: 0 })
+        Ok(Muxer {
+            out,
+            path,
+            format,
+            encoder,
+            muxer,
+            offset,
+            frames: 0,
+            time: 0.0,
+            ticks: 0,
+            since_intra: 0,
+            bytes: 0,
+        })
     }
 
     fn add<E: From<VideoError>>(&mut self, picture: &Planes) -> Result<(), Stop<E>> {
-        if self.frames.is_multiple_of(self.format.frame_rate) {
+        let (timescale, duration) = self.duration();
+        if self.since_intra >= u64::from(timescale) {
             self.encoder.force_intra_frame();
+            self.since_intra = 0;
         }
+        self.since_intra += u64::from(duration);
         let encoded = self.encoder.encode(picture)?;
-        let failed = |error: &dyn std::fmt::Debug| VideoError::format(self.path, format!("{error:?}"));
+        let failed = |error: &dyn std::fmt::Display| VideoError::format(self.path, plain(error));
         let units = parse_annexb_nal_units(&encoded).map_err(|error| failed(&error))?;
         let keyframe = units.iter().any(|unit| unit.nal_unit_type == H264NalUnitType::IdrSlice);
         let sample_entry = match self.frames {
@@ -140,8 +166,8 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
             track_kind: TrackKind::Video,
             sample_entry,
             keyframe,
-            timescale: NonZeroU32::new(self.format.frame_rate).unwrap_or(NonZeroU32::MIN),
-            duration: 1,
+            timescale: NonZeroU32::new(timescale).unwrap_or(NonZeroU32::MIN),
+            duration,
             composition_time_offset: None,
             data_offset: self.offset,
             data_size: data.len(),
@@ -153,11 +179,22 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
         Ok(())
     }
 
+    /// Returns the ticks in a second, and the ticks for which the next picture is shown.
+    fn duration(&mut self) -> (u32, u32) {
+        let Some(durations) = &self.format.durations else { return (self.format.frame_rate, 1) };
+        self.time += durations.get(self.frames as usize).copied().unwrap_or(0.0);
+        // Rounding does not add up.
+        let end = (self.time * f64::from(TICKS)).round() as u64;
+        let duration = end.saturating_sub(self.ticks).clamp(1, u64::from(u32::MAX));
+        self.ticks += duration;
+        (TICKS, duration as u32)
+    }
+
     /// Returns the sample entry that describes the encoded pictures and the meaning of their depth.
     fn entry(&self, encoded: &[u8]) -> Result<Avc1Box, VideoError> {
         let config = H264SampleEntryConfig { length_size: LENGTH_SIZE };
         let mut entry = build_avc1_box_from_annexb(encoded, &config)
-            .map_err(|error| VideoError::format(self.path, format!("{error:?}")))?;
+            .map_err(|error| VideoError::format(self.path, plain(&error)))?;
         if let Some(rgbd) = &self.format.rgbd {
             let payload = serde_json::to_vec(rgbd).expect("numbers have a text");
             let box_type = BoxType::Uuid(DEPTH_BOX);
@@ -168,8 +205,7 @@ impl<'a, W: Write + Seek> Muxer<'a, W> {
     }
 
     fn finish<E: From<VideoError>>(mut self) -> Result<u64, Stop<E>> {
-        let boxes =
-            self.muxer.finalize().map_err(|error| VideoError::format(self.path, format!("{error:?}")))?;
+        let boxes = self.muxer.finalize().map_err(|error| VideoError::format(self.path, plain(&error)))?;
         for (offset, bytes) in boxes.offset_and_bytes_pairs() {
             self.out.seek(SeekFrom::Start(offset))?;
             self.out.write_all(bytes)?;
@@ -184,8 +220,11 @@ pub struct Reader {
     path: PathBuf,
     file: BufReader<File>,
     index: Index,
-    /// The number of pictures that have been read.
-    read: usize,
+    /// The number of pictures that have been decoded, and of those that have been returned.
+    decoded: usize,
+    returned: usize,
+    /// Decoded pictures that are shown after others, by their number.
+    held: BTreeMap<usize, Planes>,
     /// The parameter sets in the format of Annex B, which precede the first picture.
     parameters: Vec<u8>,
     decoder: Decoder,
@@ -204,21 +243,33 @@ impl Reader {
             io::ErrorKind::NotFound => FileError::Missing { path: path.into() },
             _ => FileError::Read { path: path.into(), source },
         };
+        // To open a pipe would wait for somebody who writes.
+        if std::fs::metadata(path).is_ok_and(|data| !data.is_file()) {
+            return Err(VideoError::format(path, "it is a pipe or a device"));
+        }
         let mut file = BufReader::new(File::open(path).map_err(failed)?);
         let length = file.get_ref().metadata().map_err(failed)?.len();
         let index = Index::read(path, &mut file, length)?;
         let (parameters, decoder) = (parameters(index.avcc()), Decoder::new()?);
-        Ok(Reader { path: path.into(), file, index, read: 0, parameters, decoder })
+        let path = path.into();
+        Ok(Reader { path, file, index, decoded: 0, returned: 0, held: BTreeMap::new(), parameters, decoder })
     }
 
     /// Returns the number of pictures that remain to be read.
     pub fn frames(&self) -> usize {
-        self.index.pictures.len() - self.read
+        self.index.pictures.len() - self.returned
     }
 
-    /// Returns the number of pictures per second, rounded up.
+    /// Returns the number of pictures per second by the first one's duration, rounded up.
     pub fn frame_rate(&self) -> u32 {
         self.index.frame_rate
+    }
+
+    /// Returns for how long each picture is shown, in seconds; `None` if all are shown for the same time.
+    pub fn durations(&self) -> Option<Vec<f64>> {
+        let all = &self.index.durations;
+        let same = |two: &[f64]| (two[0] - two[1]).abs() < 1e-6;
+        (!all.windows(2).all(same)).then(|| all.clone())
     }
 
     /// Returns the meaning of the depth in the pictures.
@@ -248,7 +299,7 @@ impl Reader {
 
     /// Returns for how long the picture that was read last is shown, in seconds; 0 before the first.
     pub fn duration(&self) -> f64 {
-        self.read.checked_sub(1).map_or(0.0, |last| self.index.pictures[last].duration)
+        self.returned.checked_sub(1).map_or(0.0, |last| self.index.durations[last])
     }
 
     /// Goes back to the first picture.
@@ -256,35 +307,65 @@ impl Reader {
     /// # Errors
     /// [`VideoError::Codec`].
     pub fn rewind(&mut self) -> Result<(), VideoError> {
-        (self.read, self.parameters, self.decoder) = (0, parameters(self.index.avcc()), Decoder::new()?);
+        self.go_to(0, 0)
+    }
+
+    /// Goes on at the next intra frame, after a picture that cannot be read. Returns false if there is none.
+    ///
+    /// # Errors
+    /// [`VideoError::Codec`].
+    pub fn skip(&mut self) -> Result<bool, VideoError> {
+        let mut rest = self.index.pictures.iter().enumerate().skip(self.decoded);
+        match rest.find(|(_, picture)| picture.intra).map(|(i, picture)| (i, picture.shown)) {
+            Some((decoded, returned)) => self.go_to(decoded, returned).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
+    /// Starts a decoder at a picture in decoding order, which is shown as number `returned`.
+    fn go_to(&mut self, decoded: usize, returned: usize) -> Result<(), VideoError> {
+        (self.decoded, self.returned, self.held) = (decoded, returned, BTreeMap::new());
+        (self.parameters, self.decoder) = (parameters(self.index.avcc()), Decoder::new()?);
         Ok(())
     }
 
-    /// Returns the next picture, or `None` after the last.
+    /// Returns the next picture in the order in which they are shown, or `None` after the last.
     ///
     /// # Errors
     /// [`VideoError::File`], and [`VideoError::Format`] for a damaged picture, or for one whose size does not match the
     /// depth's description.
     pub fn read(&mut self) -> Result<Option<Planes>, VideoError> {
-        let Some(&EncodedPicture { offset, size, .. }) = self.index.pictures.get(self.read) else {
-            return Ok(None);
-        };
-        self.read += 1;
+        loop {
+            if let Some(picture) = self.held.remove(&self.returned) {
+                self.returned += 1;
+                return Ok(Some(picture));
+            }
+            let Some(&encoded) = self.index.pictures.get(self.decoded) else { return Ok(None) };
+            self.decoded += 1;
+            let picture = self.decode(encoded)?;
+            // After a skipped part, a picture may belong before its intra frame.
+            if encoded.shown >= self.returned {
+                self.held.insert(encoded.shown, picture);
+            }
+        }
+    }
+
+    fn decode(&mut self, EncodedPicture { offset, size, .. }: EncodedPicture) -> Result<Planes, VideoError> {
         let data = read_at(&mut self.file, offset, size)
             .map_err(|source| FileError::Read { path: self.path.clone(), source })?;
         let annex_b = length_prefixed_to_annexb(&data, length_size(self.index.avcc()))
-            .map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
+            .map_err(|error| VideoError::format(&self.path, plain(&error)))?;
         let bytes = [std::mem::take(&mut self.parameters), annex_b].concat();
         let picture = self.decoder.decode(&bytes).map_err(|error| VideoError::format(&self.path, error))?;
         if let Ok(rgbd) = self.rgbd() {
-            let width = (rgbd.size[0] + rgbd.guard_columns).next_multiple_of(2) as usize;
-            let size = [2 * width, rgbd.size[1].next_multiple_of(2) as usize];
-            if picture.size != size {
-                let what = format!("a picture has {:?} pixels in place of {size:?}", picture.size);
+            let ([w, h], [width, height]) = (picture.size, rgbd.coded());
+            if [w, h] != [width, height] {
+                let what =
+                    format!("a picture has {w}x{h} pixels, and its depth is described for {width}x{height}");
                 return Err(VideoError::format(&self.path, what));
             }
         }
-        Ok(Some(picture))
+        Ok(picture)
     }
 }
 
@@ -296,7 +377,8 @@ mod tests {
     use image::Rgb;
     use std::fs;
 
-    const FORMAT: Format = Format { frame_rate: 3, quantizer: 20, frames: 7, rgbd: Some(RGBD) };
+    const FORMAT: Format =
+        Format { frame_rate: 3, quantizer: 20, durations: None, frames: 7, rgbd: Some(RGBD) };
 
     fn picture(frame: u32) -> Planes {
         let color = RgbImage::from_fn(64, 32, |x, y| Rgb([(x * 3) as u8, (y * 5 + frame) as u8, 90]));
@@ -325,6 +407,87 @@ mod tests {
             assert!(read.size == wanted.size && worst.unwrap() < 24, "frame {frame}: {worst:?}");
         }
         assert!(reader.read().unwrap().is_none());
+    }
+
+    #[test]
+    fn pictures_are_shown_as_long_as_they_were() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("v.mp4");
+        let durations = vec![0.1, 0.5, 0.1, 0.3, 0.2, 0.7, 0.1];
+        let mut pictures = (0..7).map(picture);
+        let format = Format { durations: Some(durations.clone()), ..FORMAT };
+        write::<VideoError>(&path, &format, || Ok(pictures.next())).unwrap();
+        let mut reader = Reader::open(&path).unwrap();
+        let read = reader.durations().unwrap();
+        assert!(read.iter().zip(&durations).all(|(a, b)| (a - b).abs() < 1e-4), "{read:?}");
+        reader.read().unwrap();
+        reader.read().unwrap();
+        assert!((reader.duration() - 0.5).abs() < 1e-4);
+        video(&path);
+        assert_eq!(Reader::open(&path).unwrap().durations(), None, "all are shown for 1/3 s");
+    }
+
+    /// x264's pictures with B-frames, each lighter than the one before. tests/README.md says how they were made.
+    #[test]
+    fn b_frames_are_read_in_the_order_in_which_they_are_shown() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/b-frames.mp4");
+        let mut reader = Reader::open(&path).unwrap();
+        assert!(!reader.index.pictures.is_sorted_by_key(|picture| picture.shown), "it has B-frames");
+        for round in 0..2 {
+            for frame in 0..8u8 {
+                let luma = reader.read().unwrap().unwrap().planes[0][0];
+                assert!(luma.abs_diff(20 + 25 * frame) < 3, "round {round}, frame {frame}: {luma}");
+                assert!((reader.duration() - 0.1).abs() < 1e-6);
+            }
+            assert!(reader.read().unwrap().is_none());
+            reader.rewind().unwrap();
+        }
+    }
+
+    #[test]
+    fn after_a_damaged_picture_the_next_intra_frame_is_read() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("v.mp4");
+        video(&path);
+        // At 3 pictures/s, the pictures 0, 3 and 6 are intra frames.
+        let EncodedPicture { offset, size, .. } = Reader::open(&path).unwrap().index.pictures[1];
+        let mut file = fs::read(&path).unwrap();
+        file[offset as usize..][..size].fill(0xa5);
+        fs::write(&path, &file).unwrap();
+        let mut reader = Reader::open(&path).unwrap();
+        let whole = reader.read().unwrap().unwrap();
+        assert!(reader.read().is_err() && reader.skip().unwrap());
+        assert_eq!(reader.frames(), 4);
+        assert_eq!(std::iter::from_fn(|| reader.read().unwrap()).count(), 4);
+        assert!(!reader.skip().unwrap(), "there is no other");
+        reader.rewind().unwrap();
+        assert_eq!(reader.read().unwrap().unwrap(), whole);
+    }
+
+    #[test]
+    fn small_files_cannot_ask_for_much() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("v.mp4");
+        video(&path);
+        let whole = fs::read(&path).unwrap();
+        let at = |name: &[u8; 4]| whole.windows(4).position(|four| four == name).unwrap();
+        let refused = |bytes: &[u8], length: u64, what: &str| {
+            fs::write(&path, bytes).unwrap();
+            fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(length).unwrap();
+            let told = Reader::open(&path).err().unwrap().to_string();
+            assert!(told.contains(what) && !told.contains("src/"), "{told}");
+        };
+        // The index says that it has a GiB, in a file with as much, most of it a hole.
+        let mut large = whole.clone();
+        large[at(b"moov") - 4..][..4].copy_from_slice(&(1u32 << 30).to_be_bytes());
+        refused(&large, 2 << 30, "its index has 1024 MiB");
+        // All pictures are as large as the file.
+        let mut much = whole.clone();
+        let sizes = at(b"stsz") + 16;
+        (0..7).for_each(|i| {
+            much[sizes + 4 * i..][..4].copy_from_slice(&((whole.len() - 1) as u32).to_be_bytes())
+        });
+        refused(&much, whole.len() as u64, "");
     }
 
     #[test]

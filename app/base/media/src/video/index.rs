@@ -1,5 +1,6 @@
 //! The index of an MP4 file: where its pictures are, and what their depth means.
 
+use std::fmt::Display;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -20,8 +21,10 @@ pub struct Index {
     path: PathBuf,
     /// The encoded pictures in decoding order.
     pub pictures: Vec<EncodedPicture>,
-    /// Pictures per second, rounded up.
+    /// Pictures per second by the first one's duration, rounded up.
     pub frame_rate: u32,
+    /// For how long each picture is shown, in seconds, in the order in which they are shown.
+    pub durations: Vec<f64>,
     depth: Option<Depth>,
     entry: Box<Avc1Box>,
 }
@@ -45,9 +48,17 @@ pub struct EncodedPicture {
     pub intra: bool,
     /// Decoding time in seconds.
     pub time: f64,
-    /// How long the picture is shown, in seconds.
+    /// The time in seconds until the next picture is decoded.
     pub duration: f64,
+    /// Its number, from 0, in the order in which pictures are shown. B-frames are shown before pictures that are decoded
+    /// earlier.
+    pub shown: usize,
 }
+
+/// The largest box of a file that is read whole, in bytes. An index has about 20 for a picture.
+const LARGEST_BOX: u64 = 256 << 20;
+/// The most pictures that are decoded before one that is shown earlier: H.264's limit.
+const MOST_HELD: usize = 16;
 
 /// Reads a part of a file.
 pub(crate) fn read_at(file: &mut (impl Read + Seek), position: u64, size: usize) -> io::Result<Vec<u8>> {
@@ -66,19 +77,34 @@ impl Index {
     pub fn read(path: &Path, file: &mut (impl Read + Seek), length: u64) -> Result<Index, VideoError> {
         let failed = |source| VideoError::from(FileError::Read { path: path.into(), source });
         let mut demuxer = Mp4FileDemuxer::new();
+        let (mut is_fragmented, mut is_avc3) = (false, false);
         while let Some(required) = demuxer.required_input() {
             let rest = length.saturating_sub(required.position);
             let size = required.size.map_or(rest, |size| size as u64);
             if size == 0 || size > rest {
                 return Err(VideoError::format(path, "it is no MP4 file, or it is cut off"));
             }
+            if size > LARGEST_BOX {
+                return Err(VideoError::format(path, format!("its index has {} MiB", size >> 20)));
+            }
             let data = read_at(file, required.position, size as usize).map_err(failed)?;
+            let has = |name: &[u8; 4]| data.windows(4).any(|four| four == name);
+            is_fragmented |= has(b"mvex");
+            is_avc3 |= has(b"avc3");
             demuxer.handle_input(Input { position: required.position, data: &data });
         }
-        let damaged = |error: &dyn std::fmt::Debug| VideoError::format(path, format!("{error:?}"));
         let mut pictures = Vec::new();
-        let mut found = None;
-        while let Some(sample) = demuxer.next_sample().map_err(|error| damaged(&error))? {
+        // When each is shown, in ticks.
+        let mut times = Vec::new();
+        let (mut found, mut bytes) = (None, 0u64);
+        while let Some(sample) =
+            demuxer.next_sample().map_err(|error| VideoError::format(path, plain(&error)))?
+        {
+            // A small index can name any number of samples at one place.
+            bytes = bytes.saturating_add(sample.data_size.max(1) as u64);
+            if bytes > length {
+                return Err(VideoError::format(path, "its index names more bytes than it has"));
+            }
             if sample.track.kind != TrackKind::Video {
                 continue;
             }
@@ -98,18 +124,41 @@ impl Index {
                 intra: sample.keyframe,
                 time: sample.timestamp as f64 / f64::from(ticks),
                 duration: f64::from(sample.duration) / f64::from(ticks),
+                shown: 0,
             });
+            let offset = sample.composition_time_offset.unwrap_or(0);
+            times.push((i64::try_from(sample.timestamp).unwrap_or(i64::MAX).saturating_add(offset), ticks));
         }
-        let (entry, frame_rate) = found.ok_or_else(|| VideoError::format(path, "it has no H.264 video"))?;
+        let (entry, frame_rate) = found.ok_or_else(|| {
+            let remedy = "`ffmpeg -i OLD.mp4 -c copy NEW.mp4` makes one that can be read";
+            VideoError::format(
+                path,
+                match (is_fragmented, is_avc3) {
+                    (true, _) => format!("it is fragmented: {remedy}"),
+                    (_, true) => format!("its H.264 is stored as avc3: {remedy}"),
+                    _ => "it has no H.264 video".into(),
+                },
+            )
+        })?;
+        let durations = sort(&mut pictures, &times)
+            .ok_or_else(|| VideoError::format(path, "its pictures are not in an order of H.264"))?;
         let size = [entry.visual.width, entry.visual.height].map(u32::from);
         let depth = match rgbd(path, &entry)? {
-            Some(rgbd) => Some(Depth::Luma(rgbd)),
+            Some(rgbd) => {
+                let ([w, h], [width, height]) = (size, rgbd.coded());
+                if [w as usize, h as usize] != [width, height] {
+                    let what =
+                        format!("it has {w}x{h} pixels, and its depth is described for {width}x{height}");
+                    return Err(VideoError::format(path, what));
+                }
+                Some(Depth::Luma(rgbd))
+            }
             None => {
                 let recording = record3d::find(file, length, size).map_err(failed)?.transpose();
                 recording.map_err(|what| VideoError::format(path, what))?.map(Depth::Hue)
             }
         };
-        Ok(Index { path: path.into(), pictures, frame_rate, depth, entry })
+        Ok(Index { path: path.into(), pictures, frame_rate, durations, depth, entry })
     }
 
     /// Returns the meaning of the depth in the pictures.
@@ -142,7 +191,7 @@ impl Index {
     /// [`VideoError::Format`].
     pub fn codec(&self) -> Result<String, VideoError> {
         codec_string::from_sample_entry(&SampleEntry::Avc1((*self.entry).clone()))
-            .map_err(|error| VideoError::format(&self.path, format!("{error:?}")))
+            .map_err(|error| VideoError::format(&self.path, plain(&error)))
     }
 
     /// Returns the decoder's configuration: the content of the file's `avcC` box.
@@ -151,7 +200,7 @@ impl Index {
     /// [`VideoError::Format`].
     pub fn description(&self) -> Result<Vec<u8>, VideoError> {
         let bytes = self.entry.avcc_box.encode_to_vec();
-        let bytes = bytes.map_err(|error| VideoError::format(&self.path, format!("{error:?}")))?;
+        let bytes = bytes.map_err(|error| VideoError::format(&self.path, plain(&error)))?;
         // Without the length and type before it.
         Ok(bytes[8..].to_vec())
     }
@@ -180,6 +229,35 @@ pub fn length_size(avcc: &AvccBox) -> LengthSize {
     }
 }
 
+/// Returns an error of the MP4 library without the place in its source.
+pub(super) fn plain(error: &dyn Display) -> String {
+    let text = error.to_string();
+    text.split_once(" (at ").map_or(text.as_str(), |(what, _)| what).to_owned()
+}
+
+/// Numbers pictures, which are in decoding order, in the order of their times (in ticks, with the ticks in a second).
+/// Returns for how long each is shown, in that order; `None` if more have to be held back than H.264 allows.
+fn sort(pictures: &mut [EncodedPicture], times: &[(i64, u32)]) -> Option<Vec<f64>> {
+    let mut order: Vec<usize> = (0..pictures.len()).collect();
+    order.sort_by_key(|i| times[*i].0);
+    for (shown, i) in order.iter().enumerate() {
+        pictures[*i].shown = shown;
+    }
+    let (mut is_decoded, mut shown) = (vec![false; pictures.len()], 0);
+    for (i, picture) in pictures.iter().enumerate() {
+        is_decoded[picture.shown] = true;
+        shown += is_decoded[shown..].iter().take_while(|is| **is).count();
+        if i + 1 - shown > MOST_HELD {
+            return None;
+        }
+    }
+    let until_next = order.windows(2).map(|two| {
+        let [(from, ticks), (to, _)] = [two[0], two[1]].map(|i| times[i]);
+        to.saturating_sub(from) as f64 / f64::from(ticks)
+    });
+    Some(until_next.chain(order.last().map(|last| pictures[*last].duration)).collect())
+}
+
 fn rgbd(path: &Path, entry: &Avc1Box) -> Result<Option<Rgbd>, VideoError> {
     let ours = entry.unknown_boxes.iter().find(|found| found.box_type == BoxType::Uuid(DEPTH_BOX));
     let Some(ours) = ours else { return Ok(None) };
@@ -188,5 +266,28 @@ fn rgbd(path: &Path, entry: &Avc1Box) -> Result<Option<Rgbd>, VideoError> {
     match rgbd.is_valid() {
         true => Ok(Some(rgbd)),
         false => Err(VideoError::format(path, "its depth has parameters that are out of range")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_numbered_as_they_are_shown() {
+        let order = |times: &[i64]| {
+            let encoded =
+                EncodedPicture { offset: 0, size: 1, intra: false, time: 0.0, duration: 0.5, shown: 0 };
+            let mut pictures = vec![encoded; times.len()];
+            let times: Vec<_> = times.iter().map(|time| (*time, 10)).collect();
+            let durations = sort(&mut pictures, &times)?;
+            Some((pictures.iter().map(|picture| picture.shown).collect::<Vec<_>>(), durations))
+        };
+        assert_eq!(order(&[]), Some((vec![], vec![])));
+        assert_eq!(order(&[20, 50, 30, 40]), Some((vec![0, 3, 1, 2], vec![1.0, 1.0, 1.0, 0.5])));
+        assert_eq!(order(&[0, 1, 4, 2]), Some((vec![0, 1, 3, 2], vec![0.1, 0.1, 0.2, 0.5])));
+        let last_first: Vec<i64> = (1..=16).chain([0]).collect();
+        assert!(order(&last_first).is_some());
+        assert_eq!(order(&(1..=17).chain([0]).collect::<Vec<_>>()), None, "H.264 holds 16 back");
     }
 }

@@ -66,6 +66,11 @@ impl LiveEncoder {
         }
     }
 
+    /// True if the quantizer may be another one for each picture, without a new encoder.
+    pub fn changes_freely(&self) -> bool {
+        matches!(self, LiveEncoder::OpenH264(_))
+    }
+
     /// Encodes the next picture with `quantizer` (QP, 0 to 51) or up to three steps coarser. It is an intra frame if
     /// `intra` is set, if its size has changed, or if the encoder had to be restarted.
     ///
@@ -82,7 +87,11 @@ impl LiveEncoder {
             LiveEncoder::Ffmpeg(encoder, running) => {
                 let running = match running.take() {
                     Some(ffmpeg) if ffmpeg.suits(picture.size, quantizer) => running.insert(ffmpeg),
-                    _ => running.insert(Ffmpeg::start(*encoder, picture.size, quantizer)?),
+                    // It shall do for somewhat coarser and finer ones, too.
+                    Some(_) => {
+                        running.insert(Ffmpeg::start(*encoder, picture.size, (quantizer + 2).min(51))?)
+                    }
+                    None => running.insert(Ffmpeg::start(*encoder, picture.size, quantizer)?),
                 };
                 running.encode(picture, intra)
             }

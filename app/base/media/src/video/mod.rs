@@ -26,6 +26,6 @@ pub use index::{EncodedPicture, Index};
 #[cfg(feature = "codec")]
 pub use live::{LiveEncoder, LiveEncoderKind, LivePicture};
 #[cfg(feature = "codec")]
-pub use openh264::{Decoder, Encoder};
+pub use openh264::{Decoder, Encoder, FINEST_QUANTIZER, fits};
 pub use planes::Planes;
 pub use rgbd::{DEPTH_BOX, Rgbd, depth_luma};

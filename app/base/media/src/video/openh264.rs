@@ -9,11 +9,21 @@ use openh264_sys2::{ENCODER_OPTION_SVC_ENCODE_PARAM_EXT, SEncParamExt};
 
 use super::{LivePicture, Planes, VideoError};
 
+/// The finest quantizer of [`Encoder`]: below it, openh264 takes another one.
+pub const FINEST_QUANTIZER: u8 = 12;
+/// The longer and the shorter side of the largest picture that openh264 encodes, in pixels.
+const LARGEST: [usize; 2] = [3840, 2160];
+
+/// True if a picture of this size in pixels can be encoded.
+pub fn fits(size: [usize; 2]) -> bool {
+    size.iter().max() <= Some(&LARGEST[0]) && size.iter().min() <= Some(&LARGEST[1])
+}
+
 /// An H.264 encoder with a constant quantizer.
 pub struct Encoder(openh264::encoder::Encoder);
 
 impl Encoder {
-    /// Starts with `quantizer` (QP, 0 to 51), for `frame_rate` pictures/s. The first picture is an intra frame.
+    /// Starts with `quantizer` (QP, [`FINEST_QUANTIZER`] to 51), for `frame_rate` pictures/s. The first picture is an intra frame.
     ///
     /// # Errors
     /// [`VideoError::Codec`].
@@ -111,11 +121,17 @@ fn start(config: EncoderConfig) -> Result<openh264::encoder::Encoder, VideoError
 
 fn encode(encoder: &mut openh264::encoder::Encoder, picture: &Planes) -> Result<Vec<u8>, VideoError> {
     let [w, h] = picture.size;
+    if !fits(picture.size) {
+        let [longer, shorter] = LARGEST;
+        return Err(VideoError::Codec(format!(
+            "{w}x{h} pixels are more than the {longer}x{shorter} that are encoded"
+        )));
+    }
     let planes = (&picture.planes[0][..], &picture.planes[1][..], &picture.planes[2][..]);
     let slices = YUVSlices::new(planes, (w, h), (w, w / 2, w / 2));
     let bits = encoder
         .encode(&slices)
-        .map_err(|error| codec_error(&format!("cannot encode {w}x{h} pixels"), &error))?;
+        .map_err(|error| codec_error(&format!("{w}x{h} pixels cannot be encoded"), &error))?;
     Ok(bits.to_vec())
 }
 
@@ -135,11 +151,10 @@ impl Decoder {
     /// Decodes the next picture, in the format of Annex B.
     ///
     /// # Errors
-    /// [`VideoError::Codec`] for damaged bytes, and for streams whose pictures are not decoded in the order in which
-    /// they are shown.
+    /// [`VideoError::Codec`] for damaged bytes, and for streams that openh264 does not read. B-frames come in decoding
+    /// order.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<Planes, VideoError> {
-        let decoded =
-            self.0.decode(bytes).map_err(|error| codec_error("a picture cannot be decoded", &error))?;
+        let decoded = self.0.decode(bytes).map_err(|_| VideoError::Codec(UNDECODABLE.into()))?;
         let decoded = decoded.ok_or_else(|| VideoError::Codec("the decoder holds a picture back".into()))?;
         let (w, h) = decoded.dimensions();
         if w % 2 != 0 || h % 2 != 0 {
@@ -159,6 +174,10 @@ impl Decoder {
         })
     }
 }
+
+/// The library says no more than numbers.
+const UNDECODABLE: &str =
+    "a picture is damaged, or is not progressive with 8 bits in 4:2:0, as all can be that are read";
 
 fn codec_error(what: &str, error: &openh264::Error) -> VideoError {
     VideoError::Codec(format!("{what} ({error})"))

@@ -84,8 +84,8 @@ fn metadata(file: &mut (impl Read + Seek), length: u64) -> io::Result<Vec<u8>> {
 }
 
 impl Camera {
-    /// Returns the description of pictures of this size in pixels. The other eye is level with the camera, so only the
-    /// horizontal position of the principal point matters.
+    /// Returns the description of pictures of this size in pixels: exactly what the camera sees, and the same directions
+    /// for the other eye. That is level with the camera, so only the horizontal position of the principal point matters.
     fn recording(&self, [width, height]: [u32; 2]) -> Result<Recording, String> {
         let [focal_x, _, _, _, focal_y, _, center_x, ..] = self.intrinsic_matrix;
         let [low, high] = self.range_of_encoded_depth.unwrap_or(DEFAULT_RANGE);
@@ -98,6 +98,8 @@ impl Camera {
             size: [columns, height],
             eye: Eye::Right,
             guard_columns: 0,
+            outer_columns: 0,
+            mirrored: false,
             fov_y: 2.0 * angle(height as f32 / 2.0, focal_y),
             // The outer side of the right eye is on the right.
             outer_inner: Some([angle(columns as f32 - center_x, focal_x), angle(center_x, focal_x)]),
