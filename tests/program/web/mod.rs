@@ -5,7 +5,7 @@ mod headset;
 mod measure;
 mod methods;
 mod stream;
-mod video;
+pub mod video;
 mod visit;
 mod visitor;
 

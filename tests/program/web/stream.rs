@@ -26,7 +26,7 @@ use yoro_media::video::{Decoder, LiveEncoder, LiveEncoderKind, Planes};
 use yoro_metrics::{Channels, psnr};
 use yoro_render::{PreparedScene, RenderSettings, ViewReader};
 use yoro_stream::{
-    Content, EyeView, FrameHeader, FrameRenderer, FromClient, FromServer, Mode, VERSION, ViewRequest,
+    Content, EyeView, FrameHeader, FrameRenderer, FromClient, FromServer, Mode, Report, VERSION, ViewRequest,
 };
 
 use super::{GL, Page, Server, close, headset};
@@ -309,7 +309,7 @@ fn a_video_is_streamed_whole() {
     let dir = tempfile::tempdir().unwrap();
     succeed(
         dir.path(),
-        "render prototype --frames 2 --size 192x128 --video v.mp4 --frame-rate 4 --quantizer 16",
+        "render prototype --frames 2 --size 192x128 --half-angles-degrees 52,42 --video v.mp4 --frame-rate 4 --quantizer 16",
     );
     let path = dir.path().join("v.mp4");
     let (server, link) = serve_source(path.to_str().unwrap(), 30, &[], None);
@@ -318,7 +318,7 @@ fn a_video_is_streamed_whole() {
     let mut reader = yoro_media::video::Reader::open(&path).unwrap();
     let mut best = 0.0f64;
     while let Some((color, _)) = reader.read_rgbd().unwrap() {
-        // The guard band is on the left.
+        // The additional columns are on the left.
         let whole = imageops::crop_imm(&color, color.width() - 192, 0, 192, 128).to_image();
         let inner = |image: &RgbImage| imageops::crop_imm(image, 4, 4, 184, 120).to_image();
         best = best.max(psnr(&inner(&right), &inner(&whole), Channels::Rgb).unwrap().0);
@@ -463,7 +463,7 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     let Some(FromServer::Welcome(home)) = FromServer::read(&welcome) else { panic!("no welcome") };
 
     let mut decoder = Decoder::new().unwrap();
-    let (mut early, mut bytes) = (0, 0);
+    let (mut early, mut bytes, mut report) = (0, 0, Report::default());
     let start = Instant::now();
     for expected in 0..FRAMES {
         // The head moves in a circle with a diameter of 40 cm.
@@ -482,7 +482,9 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
         assert_eq!((number, header.time_ms), (expected, time));
         decoder.decode(data).unwrap();
         bytes += data.len();
-        say(&mut socket, FromClient::Decoded(number));
+        report.arrived(number, start.elapsed().as_secs_f64() * 1e3);
+        report.decoded = Some(number);
+        say(&mut socket, FromClient::Report(report));
         if expected == FRAMES / 10 {
             early = resident(server.child.id());
         }
@@ -498,9 +500,16 @@ fn ten_thousand_frames_arrive_in_order_and_the_server_does_not_grow() {
     assert!(late < early + (4 << 20), "{early} bytes after a tenth, {late} at the end");
 }
 
-/// Answers like `yoro serve`, but omits frame 1, and sends invalid H.264 after frame 3. Forwards the client's messages
-/// to `said`, except for requests.
-fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromClient>) -> Option<()> {
+/// What a client has said, but for requests and what it repeats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Said {
+    Hello,
+    Decoded(u32),
+    Missing(u32),
+}
+
+/// Answers like `yoro serve`, but omits frame 1, and sends invalid H.264 after frame 3. Forwards what the client says.
+fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<Said>) -> Option<()> {
     let folder = Path::new(env!("CARGO_BIN_EXE_yoro")).ancestors().nth(2).unwrap().join("web");
     let mut open = Vec::new();
     for mut stream in listener.incoming().flatten() {
@@ -531,22 +540,32 @@ fn serve_faults(listener: &TcpListener, said: &mpsc::Sender<FromClient>) -> Opti
         };
         let [first, _, second, third] = [0, 1, 2, 3].map(|number| frame(number, number % 3 == 0));
         let damage = FromServer::Frame { number: 4, intra: true, header, data: &[0, 0, 0, 1, 0x65, 1, 2, 3] };
+        let mut decoded = None;
         loop {
-            let message = FromClient::read(&socket.read().ok()?.into_data())?;
-            let answers = match message {
+            let message = match FromClient::read(&socket.read().ok()?.into_data())? {
                 FromClient::Request(_) => continue,
-                FromClient::Hello { .. } => {
-                    vec![FromServer::Welcome(Pose::IDENTITY).to_bytes(), first.clone()]
+                FromClient::Report(report) if report.decoded == decoded => continue,
+                FromClient::Report(report) => {
+                    decoded = report.decoded;
+                    Said::Decoded(decoded?)
                 }
-                FromClient::Decoded(0) => vec![second.clone()],
-                FromClient::Missing(1) => vec![third.clone()],
+                FromClient::Hello { version, token } => {
+                    assert_eq!((version, token), (VERSION, 1u128.to_be_bytes()));
+                    Said::Hello
+                }
+                FromClient::Missing(number) => Said::Missing(number),
+            };
+            let answers = match message {
+                Said::Hello => vec![FromServer::Welcome(Pose::IDENTITY).to_bytes(), first.clone()],
+                Said::Decoded(0) => vec![second.clone()],
+                Said::Missing(1) => vec![third.clone()],
                 _ => vec![damage.to_bytes()],
             };
             said.send(message).ok()?;
             for answer in answers {
                 socket.send(Message::binary(answer)).ok()?;
             }
-            if message == FromClient::Decoded(3) {
+            if message == Said::Decoded(3) {
                 break;
             }
         }
@@ -576,8 +595,7 @@ fn a_missing_frame_is_named_and_a_browser_that_cannot_decode_says_so_and_stops()
     }
     // Enough time for three reconnections.
     std::thread::sleep(Duration::from_secs(3));
-    let hello = FromClient::Hello { version: VERSION, token: 1u128.to_be_bytes() };
-    let expected = [hello, FromClient::Decoded(0), FromClient::Missing(1), FromClient::Decoded(3)];
+    let expected = [Said::Hello, Said::Decoded(0), Said::Missing(1), Said::Decoded(3)];
     assert_eq!(said.try_iter().collect::<Vec<_>>(), expected);
     browser.expect_silence();
 }

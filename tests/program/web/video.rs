@@ -93,8 +93,10 @@ fn ramp(path: &std::path::Path) {
         size: [side; 2],
         eye: Eye::Right,
         guard_columns: 0,
+        outer_columns: 0,
         fov_y: 1.0,
         outer_inner: None,
+        mirrored: true,
         ipd: 0.063,
         nearest: 1.0,
         farthest: 2.0,
@@ -106,7 +108,7 @@ fn ramp(path: &std::path::Path) {
         Rgb([shade, shade.wrapping_mul(37), 255 - shade])
     });
     let mut pictures = [gray.clone(), Planes::of_rgb(&colors)].map(|color| color.beside(&gray)).into_iter();
-    let format = Format { frame_rate: 4, quantizer: 1, frames: 2, rgbd: Some(rgbd) };
+    let format = Format { frame_rate: 4, quantizer: 12, durations: None, frames: 2, rgbd: Some(rgbd) };
     yoro_media::video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
 }
 
@@ -114,7 +116,7 @@ fn ramp(path: &std::path::Path) {
 const PHONE: [u32; 2] = [192, 128];
 
 /// Writes a video in Record3D's format: stripes in front of a grid, with depth as hue.
-fn record3d(path: &std::path::Path) {
+pub fn record3d(path: &std::path::Path) {
     let is_near = |x: u32| (64..128).contains(&x);
     let hues = RgbImage::from_fn(PHONE[0], PHONE[1], |x, _| {
         let sixths = if is_near(x) { 2.0 } else { 4.5f32 };
@@ -129,10 +131,10 @@ fn record3d(path: &std::path::Path) {
         Rgb([shade as u8; 3])
     });
     let mut pictures = [Planes::of_rgb(&hues).beside(&Planes::of_rgb(&color))].into_iter();
-    let format = Format { frame_rate: 2, quantizer: 12, frames: 1, rgbd: None };
+    let format = Format { frame_rate: 2, quantizer: 12, durations: None, frames: 1, rgbd: None };
     yoro_media::video::write::<VideoError>(path, &format, || Ok(pictures.next())).unwrap();
-    // Focal length and centre in pixels. Hues represent up to 3 m.
-    let camera = r#"{"intrinsicMatrix":[150,0,0,0,150,0,96,64,1],"rangeOfEncodedDepth":[0,3]}"#;
+    // Focal length and centre in pixels, which is not the middle. Hues represent up to 3 m.
+    let camera = r#"{"intrinsicMatrix":[150,0,0,0,150,0,80.5,60,1],"rangeOfEncodedDepth":[0,3]}"#;
     let length = (camera.len() as u32 + 8).to_be_bytes();
     let file = fs::read(path).unwrap();
     fs::write(path, [&file[..], &length, b"meta", camera.as_bytes()].concat()).unwrap();

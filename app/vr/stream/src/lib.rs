@@ -1,7 +1,7 @@
 //! Streaming of one eye with its depth to a client, which makes both eyes from it at the head's newest pose.
 //!
 //! [`FromClient`] and [`FromServer`] are the messages, [`RateControl`] decides when a frame is due and how finely it is
-//! encoded, [`ReorderBuffer`] puts frames in order, and [`DepthSpan`] maps the depth's 8 bits to distances. The server
+//! encoded (Google Congestion Control), [`ReorderBuffer`] puts frames in order, and [`DepthSpan`] maps the depth's 8 bits to distances. The server
 //! (`yoro serve`) and the page use the same code. This crate must not open connections or read clocks.
 //!
 //! With the feature `gl`, `FrameRenderer` makes the pictures that a server sends of a scene, and `StreamedEyes` both
@@ -16,11 +16,12 @@ mod pictures;
 mod reorder;
 mod span;
 
-pub use control::RateControl;
+pub use control::{Delivery, RateControl};
 #[cfg(feature = "gl")]
 pub use eyes::{Correction, DecodedPicture, StreamedEyes};
 pub use messages::{
-    Content, EyeSource, EyeView, FrameHeader, FromClient, FromServer, Refusal, Token, VERSION, ViewRequest,
+    Arrival, Content, EyeSource, EyeView, FrameHeader, FromClient, FromServer, Refusal, Report, Token,
+    VERSION, ViewRequest,
 };
 #[cfg(feature = "gl")]
 pub use pictures::{FrameRenderer, Mode, Picture, StreamError};

@@ -6,11 +6,13 @@ use serde::{Deserialize, Serialize};
 use yoro::eyes::{DepthConvention, DepthRange, Eye, EyesError, Frustum, Pose, PoseWarp, View};
 
 /// The version of the messages. Clients with another version are refused.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 
 /// The secret that a client must send to be served: 128 random bits.
 pub type Token = [u8; 16];
 
+/// The largest magnitude of a client's time in ms: centuries.
+const LONGEST_MS: f64 = 1e13;
 /// The largest magnitude of a coordinate of a head's position, in metres; the page has the same limit.
 const FARTHEST: f32 = 1e6;
 /// The largest tangent of a frustum's sides: that of 80 degrees.
@@ -57,6 +59,33 @@ pub struct ViewRequest {
     pub size: [u16; 2],
 }
 
+/// When a frame has arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Arrival {
+    /// The frame's number.
+    pub number: u32,
+    /// The time in ms at which it was whole, by a clock of the client's that only has to run evenly.
+    pub time_ms: f64,
+}
+
+/// What has become of the newest frames. A client sends it at each arrival and with each request. It repeats what it has
+/// said before, so that a lost message does not matter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The frames that have arrived last, the newest first.
+    pub arrivals: [Option<Arrival>; 4],
+    /// The newest frame that was decoded.
+    pub decoded: Option<u32>,
+}
+
+impl Report {
+    /// Notes that a frame has arrived.
+    pub fn arrived(&mut self, number: u32, time_ms: f64) {
+        self.arrivals.rotate_right(1);
+        self.arrivals[0] = Some(Arrival { number, time_ms });
+    }
+}
+
 /// A message to the server.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FromClient {
@@ -69,8 +98,8 @@ pub enum FromClient {
     },
     /// The head has moved, or time has passed: a frame for this view is wanted.
     Request(ViewRequest),
-    /// The frame with this number was decoded.
-    Decoded(u32),
+    /// What has become of the newest frames.
+    Report(Report),
     /// The frame with this number is missing, so those after it cannot be decoded: an intra frame is needed.
     Missing(u32),
 }
@@ -245,6 +274,9 @@ impl FromClient {
                 let sizes = request.size.iter().all(|side| SIDES.contains(side));
                 request.time_ms.is_finite() && sizes && request.eyes.iter().all(EyeView::is_valid)
             }
+            FromClient::Report(report) => {
+                report.arrivals.iter().flatten().all(|arrival| arrival.time_ms.abs() < LONGEST_MS)
+            }
             _ => true,
         };
         valid.then_some(message)
@@ -340,7 +372,9 @@ mod tests {
 
     fn up() -> Vec<FromClient> {
         let hello = FromClient::Hello { version: VERSION, token: [7; 16] };
-        vec![hello, FromClient::Request(REQUEST), FromClient::Decoded(9), FromClient::Missing(10)]
+        let mut report = Report { decoded: Some(9), ..Report::default() };
+        report.arrived(10, 70.5);
+        vec![hello, FromClient::Request(REQUEST), FromClient::Report(report), FromClient::Missing(10)]
     }
 
     fn down() -> Vec<FromServer<'static>> {
@@ -392,6 +426,12 @@ mod tests {
         assert_eq!(request(|request| request.eyes[1].pose.position.x = f32::INFINITY), None);
         assert_eq!(request(|request| request.eyes[0].pose.orientation.w = 0.5), None);
         assert_eq!(request(|request| request.eyes[0].frustum.right = -1.0), None);
+        let report = |time_ms| {
+            let mut report = Report::default();
+            report.arrived(1, time_ms);
+            FromClient::read(&FromClient::Report(report).to_bytes())
+        };
+        assert!(report(1.0).is_some() && report(f64::NAN).is_none() && report(1e300).is_none());
         let frame = |header| {
             let bytes = FromServer::Frame { number: 0, intra: false, header, data: &[] }.to_bytes();
             FromServer::read(&bytes).is_some()

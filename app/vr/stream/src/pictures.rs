@@ -19,10 +19,16 @@ pub enum StreamError {
     /// The eyes cannot be widened by the guard band.
     #[error(transparent)]
     Eyes(#[from] EyesError),
+    /// With the guard band, the eyes would have too many pixels.
+    #[error("the requested eyes of {0}x{1} pixels are so narrow that their guard band would have {2}x{3}")]
+    Narrow(u32, u32, u32, u32),
     /// GL refused.
     #[error(transparent)]
     Gl(#[from] GlError),
 }
+
+/// By how many times a picture may be wider and higher than the requested eyes.
+const WIDEST: u32 = 3;
 
 /// The content of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,8 +92,14 @@ impl FrameRenderer {
         };
         let eye_view = |view: &View| EyeView { pose: view.pose, frustum: view.frustum };
         let size = |view: &View| view.size.map(|n| n as u16);
-        let guarded =
-            |view: &View, motion: HeadMotion| Ok::<_, StreamError>(motion.guarded(view, NEAREST)?.view);
+        let guarded = |view: &View, motion: HeadMotion| {
+            let ([w, h], guarded) = (pair.size, motion.guarded(view, NEAREST)?.view);
+            let [width, height] = guarded.size;
+            match width <= WIDEST * w && height <= WIDEST * h {
+                true => Ok(guarded),
+                false => Err(StreamError::Narrow(w, h, width, height)),
+            }
+        };
         if self.mode == Mode::Eyes {
             let still = HeadMotion { translation: 0.0, ..MOTION };
             let left = guarded(&pair.view(Eye::Left), still)?;

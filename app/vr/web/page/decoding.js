@@ -22,6 +22,8 @@ let newest = null;
 let pageIsFree = true;
 /** Converts a picture's planes for the page. @type {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} */
 let pack = null;
+/** Is told each picture that is decoded. @type {(number: number) => void} */
+let told = () => {};
 let bytes = 0;
 /** The way in use, once it is chosen. @type {string | null} */
 let way = null;
@@ -39,9 +41,11 @@ export function count(more) {
  * @param {VideoDecoderConfig} config
  * @param {() => void} failed called if the decoder fails after having worked
  * @param {((planes: Uint8Array) => Uint8Array<ArrayBuffer>) | null} convert converts the planes of each picture
+ * @param {(number: number) => void} done called for each picture that is decoded
  */
-export function start(config, failed, convert = null) {
+export function start(config, failed, convert = null, done = () => {}) {
   pack = convert;
+  told = done;
   headers.clear();
   pictures = 0;
   latest = -1;
@@ -54,10 +58,12 @@ export function start(config, failed, convert = null) {
   decoder.configure(config);
 }
 
-/** Ends the decoder. */
+/** Ends the decoder, and forgets what the page has not taken. */
 export function end() {
   decoder?.close();
   decoder = null;
+  newest?.frame?.close();
+  newest = null;
 }
 
 /** True if there is a decoder. */
@@ -102,6 +108,7 @@ async function decoded(frame) {
   const head = headers.get(frame.timestamp);
   headers.delete(frame.timestamp);
   pictures += 1;
+  told(frame.timestamp);
   if (!head) {
     frame.close();
     return;

@@ -11,6 +11,8 @@ const CODEC = 'avc1.42c033';
 /** The wait before a lost connection is tried again, in ms. */
 const RETRY_DELAY = 1000;
 
+/** How often a WebTransport that has worked before may fail in a row. */
+const PATIENCE = 5;
 /** The longest wait for a WebTransport, in ms. */
 const CONNECT_TIMEOUT = 3000;
 
@@ -22,6 +24,10 @@ let begin;
 let connection = null;
 /** True if the WebTransport has failed and there is a WebSocket. */
 let useSocket = false;
+/** True if the server has ever answered by WebTransport. */
+let hasTransported = false;
+/** How often in a row the WebTransport has failed. */
+let failures = 0;
 /** True once the server has answered. */
 let answered = false;
 /** Puts this connection's frames into their order. @type {StreamOrder | null} */
@@ -39,6 +45,8 @@ onmessage = async ({ data }) => {
     connection?.close();
   } else if (data.send && answered) {
     connection?.send(data.send);
+    // Said again, so that a lost datagram does not matter.
+    connection?.send(order.report());
     miss();
   }
 };
@@ -63,6 +71,8 @@ function receive(message) {
     return;
   }
   answered = true;
+  failures = 0;
+  hasTransported ||= !useSocket && Boolean(begin?.transport);
   postMessage({ answer: new Uint8Array(message), by: connection.name });
 }
 
@@ -70,11 +80,17 @@ function receive(message) {
 function ended() {
   connection = null;
   decoding.end();
-  if (!answered && begin?.transport && begin.socket) {
-    useSocket = !useSocket;
-    if (useSocket) {
-      connect();
-      return;
+  if (begin?.transport && begin.socket) {
+    if (answered || useSocket) useSocket = useSocket && answered && !hasTransported;
+    else {
+      failures += 1;
+      // It needs less time than the WebSocket once the network is there again.
+      useSocket = failures >= (hasTransported ? PATIENCE : 1);
+      if (useSocket) {
+        failures = 0;
+        connect();
+        return;
+      }
     }
   }
   answered = false;
@@ -130,7 +146,8 @@ function openTransport({ transport: { address, hash }, hello }) {
 /** Takes a frame, and decodes the frames whose turn it is. @param {ArrayBuffer} message */
 function take(message) {
   const view = new DataView(message);
-  order.insert(view.getUint32(4, true), view.getUint8(1) === 1, message);
+  order.insert(view.getUint32(4, true), view.getUint8(1) === 1, message, performance.now());
+  connection?.send(order.report());
   for (let next = order.pop(); next; next = order.pop()) decode(next);
   if (order.lost() > lost) postMessage({ framesLost: order.lost() - lost });
   lost = order.lost();
@@ -146,6 +163,9 @@ function miss() {
 function decode(message) {
   const view = new DataView(message);
   const [intra, length, number] = [view.getUint8(1) === 1, view.getUint16(2, true), view.getUint32(4, true)];
-  if (!decoding.isStarted()) decoding.start({ codec: CODEC, optimizeForLatency: true }, () => connection?.close());
+  if (!decoding.isStarted()) {
+    const own = order;
+    decoding.start({ codec: CODEC, optimizeForLatency: true }, () => connection?.close(), null, (done) => own.decoded(done));
+  }
   decoding.decode(number, intra, new Uint8Array(message.slice(0, PREFIX + length)), new Uint8Array(message, PREFIX + length));
 }

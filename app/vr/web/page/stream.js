@@ -75,6 +75,7 @@ export function follow(stream) {
   const [token, hash, address] = stream.split(',').reverse();
   const hello = app.page.streamHello(token);
   if (!hello) {
+    loading(null);
     say('The link’s token is not whole: open the link that the server prints.');
     return;
   }
@@ -149,14 +150,14 @@ function receive({ answer, by, lost, fault, head, way, planes, frame, ms, isTime
   let took = null;
   try {
     const facts = app.page.streamFrame(head, frame ?? planes, frame?.displayWidth ?? 0, frame?.displayHeight ?? 0);
-    const [decoded, [time, render, code, quantizer, width, height]] = facts;
+    if (!facts.length) return;
+    const [time, render, code, quantizer, width, height] = facts;
     if (isTimed) {
       // Wait for the GPU.
       app.gl.readPixels(0, 0, 1, 1, app.gl.RGBA, app.gl.UNSIGNED_BYTE, new Uint8Array(4));
       took = { way, ms: ms + performance.now() - start };
     }
     const latency = performance.now() - time;
-    worker?.postMessage({ send: decoded });
     sums.frames += 1;
     sums.bytes += bytes;
     sums.skipped += skipped;

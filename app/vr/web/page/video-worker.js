@@ -6,7 +6,7 @@ import * as decoding from './decoding.js';
 /** A picture that is later than this, in ms, delays all pictures after it. */
 const LATE = 100;
 /** How many numbers the module's list has for each picture. */
-const NUMBERS = 5;
+const NUMBERS = 6;
 
 let isPlaying = true;
 /** Ends the pause. @type {(value?: unknown) => void} */
@@ -43,7 +43,8 @@ async function play(file) {
   begin();
   for (let number = 0, start = performance.now(); ; number += 1) {
     const at = (number % count) * NUMBERS;
-    const [offset, length, intra, time, duration] = pictures.subarray(at, at + NUMBERS);
+    const [offset, length, intra, time, duration, shown] = pictures.subarray(at, at + NUMBERS);
+    const id = number - (number % count) + shown;
     const data = part(file, offset, length);
     const wait = start + time * 1000 - performance.now();
     if (wait > 0) await new Promise((resolve) => setTimeout(resolve, wait));
@@ -51,7 +52,7 @@ async function play(file) {
     await decoding.queueShrinks();
     if (!decoding.isStarted()) return;
     decoding.count(length);
-    decoding.decode(number, intra === 1, video.head(number), data);
+    decoding.decode(id, intra === 1, video.head(id), data);
     if (!isPlaying) {
       const paused = performance.now();
       await new Promise((resolve) => { goOn = resolve; });

@@ -113,8 +113,8 @@ impl Video {
         self.index.description().map_err(sentence)
     }
 
-    /// Returns five numbers for each picture: offset and length in bytes, 1 for an intra frame, time and duration in
-    /// seconds.
+    /// Returns six numbers for each picture, in decoding order: offset and length in bytes, 1 for an intra frame, decoding
+    /// time and duration in seconds, and its number in the order in which pictures are shown.
     pub fn pictures(&self) -> Vec<f64> {
         let numbers = self.index.pictures.iter().map(|encoded| {
             [
@@ -123,6 +123,7 @@ impl Video {
                 f64::from(u8::from(encoded.intra)),
                 encoded.time,
                 encoded.duration,
+                encoded.shown as f64,
             ]
         });
         numbers.flatten().collect()

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use js_sys::{Array, ArrayBuffer, Uint8Array};
+use js_sys::{ArrayBuffer, Uint8Array};
 use wasm_bindgen::prelude::*;
 use yoro::eyes::Pose;
-use yoro_stream::{Correction, DecodedPicture, FromClient, FromServer, Refusal, ReorderBuffer};
+use yoro_stream::{Correction, DecodedPicture, FromClient, FromServer, Refusal, ReorderBuffer, Report};
 
 use super::error::sentence;
 use super::stream_show::StreamShow;
@@ -63,9 +63,8 @@ impl Page {
     }
 
     /// Takes a frame, whose H.264 data may be omitted, with its decoded picture: a `Uint8Array` of its planes, or a
-    /// `VideoFrame` of this size in pixels. Returns the message that confirms it, and six numbers: the
-    /// `performance.now()` at which its pose was sent; the ms for rendering and for encoding it; its quantizer; width
-    /// and height of each part.
+    /// `VideoFrame` of this size in pixels. Returns six numbers: the `performance.now()` at which its pose was sent; the
+    /// ms for rendering and for encoding it; its quantizer; width and height of each part. None if no stream is shown.
     ///
     /// # Errors
     /// A sentence, for a frame that cannot be understood.
@@ -76,9 +75,9 @@ impl Page {
         picture: &JsValue,
         width: u32,
         height: u32,
-    ) -> Result<Array, JsError> {
-        let Content::Stream(stream) = &mut self.content else { return Ok(Array::new()) };
-        let Some(FromServer::Frame { number, header, .. }) = FromServer::read(frame) else {
+    ) -> Result<Vec<f64>, JsError> {
+        let Content::Stream(stream) = &mut self.content else { return Ok(Vec::new()) };
+        let Some(FromServer::Frame { header, .. }) = FromServer::read(frame) else {
             return Err(JsError::new("A frame of the stream cannot be understood."));
         };
         let context: &VideoContext = self.context.unchecked_ref();
@@ -93,11 +92,9 @@ impl Page {
         }
         // An emulated headset clears the bound framebuffer before each frame: it must not be the one just drawn.
         self.gl.bind_framebuffer(None, [0, 0], [1, 1]);
-        let decoded = Uint8Array::from(&FromClient::Decoded(number).to_bytes()[..]);
         let [width, height] = header.size.map(f64::from);
         let (render, code) = (f64::from(header.render_ms), f64::from(header.encode_ms));
-        let facts = [header.time_ms, render, code, f64::from(header.quantizer), width, height];
-        Ok(Array::of2(&decoded, &facts.into_iter().map(JsValue::from).collect::<Array>()))
+        Ok(vec![header.time_ms, render, code, f64::from(header.quantizer), width, height])
     }
 
     /// Returns the request for the newest eyes at a time of `performance.now()`; none before any were drawn.
@@ -117,10 +114,14 @@ impl Page {
     }
 }
 
-/// Puts the frames of a connection in order. Frames are messages whose content only the page knows.
+/// Puts the frames of a connection in order, and reports what has become of them. Frames are messages whose content only
+/// the page knows.
 #[wasm_bindgen]
 #[derive(Default)]
-pub struct StreamOrder(ReorderBuffer<ArrayBuffer>);
+pub struct StreamOrder {
+    buffer: ReorderBuffer<ArrayBuffer>,
+    report: Report,
+}
 
 #[wasm_bindgen]
 impl StreamOrder {
@@ -130,24 +131,35 @@ impl StreamOrder {
         StreamOrder::default()
     }
 
-    /// Adds a frame that has arrived.
-    pub fn insert(&mut self, number: u32, intra: bool, frame: ArrayBuffer) {
-        self.0.insert(number, intra, frame);
+    /// Adds a frame that has arrived at `time` in ms.
+    pub fn insert(&mut self, number: u32, intra: bool, frame: ArrayBuffer, time: f64) {
+        self.report.arrived(number, time);
+        self.buffer.insert(number, intra, frame);
+    }
+
+    /// Notes that a frame was decoded.
+    pub fn decoded(&mut self, number: u32) {
+        self.report.decoded = self.report.decoded.max(Some(number));
+    }
+
+    /// Returns the message that reports the newest frames.
+    pub fn report(&self) -> Vec<u8> {
+        FromClient::Report(self.report).to_bytes()
     }
 
     /// Returns the next frame to decode; none if it has not arrived.
     pub fn pop(&mut self) -> Option<ArrayBuffer> {
-        self.0.pop()
+        self.buffer.pop()
     }
 
     /// Returns the message that reports a missing frame, if one is due at `time` in ms.
     pub fn missing(&mut self, time: f64) -> Option<Vec<u8>> {
-        let number = self.0.missing(Duration::from_secs_f64(time * 1e-3))?;
+        let number = self.buffer.missing(Duration::from_secs_f64(time * 1e-3))?;
         Some(FromClient::Missing(number).to_bytes())
     }
 
     /// Returns the number of frames that were not decoded.
     pub fn lost(&self) -> u32 {
-        self.0.lost()
+        self.buffer.lost()
     }
 }
