@@ -17,6 +17,7 @@ mod render;
 mod report;
 mod run;
 mod scenes;
+mod serve;
 mod study;
 mod synthesize;
 mod video;

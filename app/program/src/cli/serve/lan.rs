@@ -1,8 +1,9 @@
 //! Reachability in the local network: an address, a certificate for it, and a code for cameras.
 
 use std::fs::{self, DirBuilder};
+use std::io::Write as _;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
-use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
+use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, PermissionsExt as _};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
@@ -57,6 +58,13 @@ impl Lan {
                 "this machine is in no network: connect it, or name one of its addresses with --lan=ADDRESS",
             )?,
         };
+        if let IpAddr::V6(v6) = address {
+            ensure!(
+                !v6.is_unicast_link_local(),
+                "{address} is valid on one link alone, and browsers do not open such addresses: name another address \
+                 with --lan=ADDRESS"
+            );
+        }
         ensure!(
             is_local(address),
             "{address} is open to the internet, where nothing is served: name an address of a local network \
@@ -96,17 +104,29 @@ fn is_local(address: IpAddr) -> bool {
     }
 }
 
-/// Returns key and certificate for an address: those kept in the folder, or new ones, which are stored there.
+/// Returns key and certificate for an address: those kept in the folder, or new ones, which are stored there. Only this
+/// user may read the key.
 fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Vec<u8>> {
-    // Only this user may read the key.
-    let made = DirBuilder::new().recursive(true).mode(0o700).create(folder);
-    made.and_then(|()| fs::set_permissions(folder, fs::Permissions::from_mode(0o700)))
-        .with_context(|| format!("{} cannot be made", folder.display()))?;
+    let told = || format!("{} cannot be used for the server's key", folder.display());
+    DirBuilder::new().recursive(true).mode(0o700).create(folder).with_context(told)?;
+    // A new file belongs to this user and nobody else can read it.
+    let mut new = tempfile::NamedTempFile::new_in(folder).with_context(told)?;
+    let user = new.as_file().metadata()?.uid();
+    ensure!(
+        fs::metadata(folder)?.uid() == user,
+        "{} belongs to another user, who could read the server's key: remove it, or set XDG_STATE_HOME to a folder of \
+         your own",
+        folder.display()
+    );
+    fs::set_permissions(folder, fs::Permissions::from_mode(0o700)).with_context(told)?;
     let path = folder.join(format!("{address}.{}", kind.suffix));
-    let age = fs::metadata(&path).and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
-    if age.is_some_and(|age| age < kind.used * DAY)
+    // A link, or what another user has written or read, is replaced.
+    let is_own = fs::symlink_metadata(&path)
+        .is_ok_and(|data| data.is_file() && data.uid() == user && data.mode() & 0o077 == 0);
+    if is_own
         && let Ok(pem) = fs::read(&path)
         && configure(&pem, b"").is_ok()
+        && is_fresh(&pem, kind)
     {
         return Ok(pem);
     }
@@ -120,8 +140,18 @@ fn certificate(folder: &Path, address: IpAddr, kind: &Kind) -> anyhow::Result<Ve
     params.not_before = (now - DAY).into();
     params.not_after = (now + (kind.valid - 1) * DAY).into();
     let pem = [key.serialize_pem(), params.self_signed(&key)?.pem()].concat().into_bytes();
-    yoro_files::write(&path, &pem)?;
+    new.write_all(&pem).and_then(|()| new.as_file().sync_all()).with_context(told)?;
+    new.persist(&path).map_err(|error| error.error).with_context(told)?;
     Ok(pem)
+}
+
+/// True if a certificate is valid now, and will be for a while.
+fn is_fresh(pem: &[u8], kind: &Kind) -> bool {
+    let Ok(der) = CertificateDer::from_pem_slice(pem) else { return false };
+    let Ok((_, certificate)) = x509_parser::parse_x509_certificate(&der) else { return false };
+    let left = certificate.validity().time_to_expiration();
+    let needed = (kind.valid - 1 - kind.used) * DAY;
+    left.is_some_and(|left| left.whole_seconds() > needed.as_secs() as i64)
 }
 
 /// Returns the encryption of a protocol's connections with this key and certificate: TLS 1.3, which every browser
@@ -191,6 +221,9 @@ mod tests {
         let first = certificate(&folder, here, &HTTPS).unwrap();
         assert_eq!(fs::metadata(&folder).unwrap().permissions().mode() & 0o077, 0, "others read the key");
         assert_eq!(certificate(&folder, here, &HTTPS).unwrap(), first);
+        let file = folder.join("10.0.0.1.pem");
+        assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "nothing else is left");
         let other = certificate(&folder, there, &HTTPS).unwrap();
         assert_ne!(other, first);
         // A certificate with the key of another one counts as damage, too.
@@ -203,6 +236,30 @@ mod tests {
             let new = certificate(&folder, here, &HTTPS).unwrap();
             assert!(new != first && configure(&new, b"").is_ok());
         }
+        // What others can read, and what lies elsewhere, is replaced; the file elsewhere is not.
+        let before = certificate(&folder, here, &HTTPS).unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o644)).unwrap();
+        let new = certificate(&folder, here, &HTTPS).unwrap();
+        assert!(new != before && fs::metadata(&file).unwrap().mode() & 0o777 == 0o600);
+        let elsewhere = folder.with_file_name("elsewhere.pem");
+        fs::rename(&file, &elsewhere).unwrap();
+        std::os::unix::fs::symlink(&elsewhere, &file).unwrap();
+        assert_ne!(certificate(&folder, here, &HTTPS).unwrap(), new);
+        assert_eq!(fs::read(&elsewhere).unwrap(), new);
+    }
+
+    #[test]
+    fn a_certificate_is_used_as_long_as_it_says() {
+        let dir = tempfile::tempdir().unwrap();
+        let here = IpAddr::from([10, 0, 0, 1]);
+        // Copies have any time of change.
+        let short = Kind { used: 3, ..QUIC };
+        let pem = certificate(dir.path(), here, &short).unwrap();
+        assert!(is_fresh(&pem, &short) && is_fresh(&pem, &QUIC));
+        assert!(!is_fresh(&pem, &Kind { used: 0, ..QUIC }), "less than thirteen days are left");
+        assert!(!is_fresh(b"none", &QUIC));
+        let ended = certificate(dir.path(), here, &Kind { suffix: "old", valid: 1, used: 0 }).unwrap();
+        assert!(!is_fresh(&ended, &QUIC));
     }
 
     #[test]

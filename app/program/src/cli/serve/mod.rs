@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
 
-use anyhow::{Context as _, ensure};
+use anyhow::{Context as _, anyhow, ensure};
 use tokio::runtime;
 
 use self::access::Access;
@@ -68,7 +68,7 @@ pub struct ServeArgs {
     #[expect(clippy::option_option, reason = "clap's form of an option whose value may be left out")]
     lan: Option<Option<IpAddr>>,
     /// Serve a page of this origin (https://HOST), too, to which the program prints a link
-    #[arg(long, value_name = "ORIGIN", requires = "lan", value_parser = origin)]
+    #[arg(long, value_name = "ORIGIN", requires = "lan", value_parser = access::origin)]
     allow_origin: Option<String>,
     /// The port; 0 for a free one
     #[arg(long, default_value_t = 8080)]
@@ -162,15 +162,17 @@ impl Subcommand for ServeArgs {
             },
         };
         let address = lan.as_ref().map_or(Ipv4Addr::LOCALHOST.into(), |lan| lan.address);
-        let listener = TcpListener::bind((address, self.port)).with_context(|| {
-            format!("{} cannot be served: name another port with --port", SocketAddr::new(address, self.port))
-        })?;
+        let place = SocketAddr::new(address, self.port);
+        let listener = TcpListener::bind(place).map_err(|error| refusal(place, &error))?;
         let port = listener.local_addr()?.port();
         let token = random_token()?;
         let (scheme, hosts) = match &lan {
             Some(lan) => ("https", vec![SocketAddr::new(lan.address, port).to_string()]),
-            None => ("http", ["localhost", "127.0.0.1"].map(|name| format!("{name}:{port}")).to_vec()),
+            // The link has the address, since what listens at another address of the name localhost, such as ::1, would
+            // get the token. The name is for cables, which end there.
+            None => ("http", ["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}")).to_vec()),
         };
+        let hosts: Vec<String> = hosts.iter().map(|host| access::host(scheme, host).to_owned()).collect();
         let token_text = format!("{:032x}", u128::from_be_bytes(token));
         let stream = match &lan {
             Some(lan) => format!("{},{},{token_text}", hosts[0], lan.quic_hash),
@@ -182,9 +184,8 @@ impl Subcommand for ServeArgs {
             pages.map(|page| format!("{page}/#stream={stream}&display=side-by-side")).collect();
         let quic = match &lan {
             Some(lan) => {
-                let socket = UdpSocket::bind((lan.address, port)).with_context(|| {
-                    format!("{} cannot be served by UDP: name another port with --port", hosts[0])
-                })?;
+                let place = SocketAddr::new(lan.address, port);
+                let socket = UdpSocket::bind(place).map_err(|error| refusal(place, &error))?;
                 Some((socket, lan.quic.clone()))
             }
             None => None,
@@ -222,23 +223,26 @@ fn connect(
     Ok(())
 }
 
+/// Returns the sentence for an address that cannot be listened on.
+fn refusal(place: SocketAddr, error: &io::Error) -> anyhow::Error {
+    match error.kind() {
+        io::ErrorKind::AddrNotAvailable => {
+            anyhow!("{} is not an address of this machine: name one that is with --lan=ADDRESS", place.ip())
+        }
+        io::ErrorKind::PermissionDenied => {
+            anyhow!("port {} needs more rights: name one above 1023 with --port", place.port())
+        }
+        io::ErrorKind::AddrInUse => anyhow!("{place} is in use: name another port with --port"),
+        _ => anyhow!("{place} cannot be served ({error}): name another port with --port"),
+    }
+}
+
 fn random_token() -> anyhow::Result<Token> {
     let mut token = Token::default();
     std::fs::File::open("/dev/urandom")
         .and_then(|mut random| io::Read::read_exact(&mut random, &mut token))
         .context("/dev/urandom gives no random numbers")?;
     Ok(token)
-}
-
-/// Parses the origin of a page, in the form that browsers send.
-fn origin(text: &str) -> Result<String, String> {
-    let host = text.strip_prefix("https://").or(text.strip_prefix("http://")).unwrap_or_default();
-    let is_host = !host.is_empty() && host.chars().all(|c| c.is_ascii_alphanumeric() || "-.:[]".contains(c));
-    if is_host {
-        Ok(text.to_ascii_lowercase())
-    } else {
-        Err("an origin is https://HOST, without a path".into())
-    }
 }
 
 /// True if the name is that of a video file.

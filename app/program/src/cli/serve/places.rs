@@ -1,9 +1,11 @@
-//! The number of connections that wait for admission, by address, so that one machine cannot keep others from
-//! connecting.
+//! The connections that wait for admission, by address: there are only so many, and the oldest makes room for a new one.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::future;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use tokio::sync::watch;
 
 /// The largest number of connections that wait, from all machines.
 const MOST: usize = 64;
@@ -12,53 +14,98 @@ const MOST_OF_ONE: usize = 16;
 
 /// The places of connections that wait for admission.
 #[derive(Clone, Default)]
-pub struct Places(Arc<Mutex<HashMap<IpAddr, usize>>>);
+pub struct Places(Arc<Mutex<Waiting>>);
+
+#[derive(Default)]
+struct Waiting {
+    next: u64,
+    /// Each connection's address, and where it is told to make room, oldest first.
+    connections: BTreeMap<u64, (IpAddr, watch::Sender<bool>)>,
+}
 
 /// A place, which is freed when it is dropped.
-pub struct Place(Places, IpAddr);
+pub struct Place {
+    places: Places,
+    number: u64,
+    is_lost: watch::Receiver<bool>,
+}
 
 impl Places {
-    /// Returns a place; `None` if there are too many connections.
-    pub fn take(&self, address: IpAddr) -> Option<Place> {
-        let mut counts = self.counts();
-        if counts.values().sum::<usize>() >= MOST || counts.get(&address).is_some_and(|n| *n >= MOST_OF_ONE) {
-            return None;
+    /// Returns a place. If too many connections wait, the oldest of this address loses its own, or else the oldest of the
+    /// address that has most.
+    pub fn take(&self, address: IpAddr) -> Place {
+        let mut waiting = self.waiting();
+        let mut counts: HashMap<IpAddr, usize> = HashMap::new();
+        waiting.connections.values().for_each(|(address, _)| *counts.entry(*address).or_default() += 1);
+        let crowded = if counts.get(&address).is_some_and(|count| *count >= MOST_OF_ONE) {
+            Some(address)
+        } else if waiting.connections.len() >= MOST {
+            counts.into_iter().max_by_key(|(_, count)| *count).map(|(address, _)| address)
+        } else {
+            None
+        };
+        let oldest = waiting.connections.iter().find(|(_, (address, _))| Some(*address) == crowded);
+        if let Some(number) = oldest.map(|(number, _)| *number)
+            && let Some((_, tell)) = waiting.connections.remove(&number)
+        {
+            tell.send_replace(true);
         }
-        *counts.entry(address).or_default() += 1;
-        Some(Place(self.clone(), address))
+        let (tell, is_lost) = watch::channel(false);
+        let number = waiting.next;
+        waiting.next += 1;
+        waiting.connections.insert(number, (address, tell));
+        Place { places: self.clone(), number, is_lost }
     }
 
-    fn counts(&self) -> MutexGuard<'_, HashMap<IpAddr, usize>> {
+    fn waiting(&self) -> MutexGuard<'_, Waiting> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Place {
+    /// Returns a future that ends once a newer connection has taken the place. It does not hold the place.
+    pub fn lost(&self) -> impl Future<Output = ()> + use<> {
+        let mut is_lost = self.is_lost.clone();
+        async move {
+            if is_lost.wait_for(|is_lost| *is_lost).await.is_err() {
+                // It was freed instead.
+                future::pending::<()>().await;
+            }
+        }
     }
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
-        let mut counts = self.0.counts();
-        if let Some(count) = counts.get_mut(&self.1) {
-            *count -= 1;
-            if *count == 0 {
-                counts.remove(&self.1);
-            }
-        }
+        self.places.waiting().connections.remove(&self.number);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use futures_util::FutureExt as _;
 
     #[test]
-    fn one_machine_cannot_take_all_connections() {
+    fn the_oldest_connection_makes_room_for_a_new_one() {
         let places = Places::default();
         let take = |last: u8| places.take(IpAddr::from([10, 0, 0, last]));
-        let mut taken: Vec<_> = std::iter::from_fn(|| take(1)).collect();
-        assert_eq!(taken.len(), MOST_OF_ONE);
-        assert!(take(2).is_some(), "another machine comes in");
-        taken.pop();
-        assert!(take(1).is_some(), "a place is free again");
-        let others: Vec<_> = (2..=200).filter_map(take).collect();
-        assert_eq!(taken.len() + others.len(), MOST);
+        let is_lost = |place: &Place| place.lost().now_or_never().is_some();
+        let first: Vec<_> = (0..MOST_OF_ONE).map(|_| take(1)).collect();
+        let other = take(2);
+        assert!(first.iter().chain([&other]).all(|place| !is_lost(place)));
+        let newest = take(1);
+        let lost: Vec<_> = first.iter().map(is_lost).collect();
+        assert!(lost[0] && !lost[1..].contains(&true) && !is_lost(&other) && !is_lost(&newest));
+        let future = newest.lost();
+        drop(newest);
+        assert!(future.now_or_never().is_none(), "a place that is freed is not lost");
+
+        // Many machines: the one with most makes room.
+        let others: Vec<_> = (3..=200).map(take).collect();
+        assert!(first.iter().filter(|place| is_lost(place)).count() >= MOST_OF_ONE - 1);
+        assert!(others.iter().filter(|place| !is_lost(place)).count() <= MOST);
+        assert_eq!(places.waiting().connections.len(), MOST);
+        assert!(!is_lost(others.last().unwrap()));
     }
 }

@@ -1,6 +1,7 @@
 //! A client's session: the messages that it sends, and the frames that it gets. It has the thread of the GL context.
 
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
@@ -9,7 +10,7 @@ use super::client::Client;
 use super::source::Source;
 use yoro_files::interrupt;
 use yoro_media::video::{LiveEncoder, LivePicture};
-use yoro_stream::{FrameHeader, FromClient, FromServer, RateControl, ViewRequest};
+use yoro_stream::{Delivery, FrameHeader, FromClient, FromServer, RateControl, ViewRequest};
 
 /// Renders, encodes and sends frames.
 pub struct Server {
@@ -31,19 +32,19 @@ pub struct Limits {
 
 impl Server {
     /// Serves one client after the other until Ctrl-C.
+    ///
+    /// # Errors
+    /// If there is nothing to serve any more.
     pub fn serve(&mut self, admitted: &Receiver<Client>) -> anyhow::Result<()> {
+        let printer = Printer::start();
         while !interrupt::requested() {
             match admitted.recv_timeout(Duration::from_millis(100)) {
                 Ok(client) => {
-                    println!("a client has connected by {}", client.transport.name());
-                    let ended = self.session(&client);
+                    printer.say(format!("a client has connected by {}", client.transport.name()));
+                    let ended = self.session(&client, &printer);
                     drop(client);
-                    if !interrupt::requested() {
-                        println!(
-                            "the client has gone{}",
-                            ended.err().map_or(String::new(), |e| format!(": {e}"))
-                        );
-                    }
+                    let reason = ended?.map_or(String::new(), |reason| format!(": {reason}"));
+                    printer.say(format!("the client has gone{reason}"));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => bail!("the port is closed"),
@@ -52,22 +53,28 @@ impl Server {
         Ok(())
     }
 
-    /// Serves a client until it is gone, which is not an error.
-    fn session(&mut self, client: &Client) -> anyhow::Result<()> {
+    /// Serves a client until it is gone, or cannot be served. Returns why, unless it has gone by itself.
+    ///
+    /// # Errors
+    /// If nobody can be served.
+    fn session(&mut self, client: &Client, printer: &Printer) -> anyhow::Result<Option<String>> {
         let Client { heard, transport, .. } = client;
-        let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate);
+        let delivery = if transport.can_give_up() { Delivery::Independent } else { Delivery::InOrder };
+        let mut control = RateControl::new(self.limits.quantizer, self.limits.frame_rate, delivery);
         let mut request: Option<ViewRequest> = None;
         // The time of the last answered request.
         let mut answered: Option<f64> = None;
         let mut number = 0u32;
         let mut statistics = Statistics::new(0);
         loop {
-            interrupt::check()?;
+            if interrupt::requested() {
+                return Ok(None);
+            }
             match heard.recv_timeout(Duration::from_millis(1)) {
                 Ok((message, at)) => {
                     match message {
                         FromClient::Request(newest) => request = Some(newest),
-                        FromClient::Decoded(decoded) => control.decoded(decoded, at - self.start),
+                        FromClient::Report(report) => control.report(&report, at - self.start),
                         FromClient::Missing(missing) => {
                             log::info!("frame {missing} is missing");
                             control.missing(missing);
@@ -77,10 +84,10 @@ impl Server {
                     continue;
                 }
                 Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+                Err(RecvTimeoutError::Disconnected) => return Ok(None),
             }
-            statistics.print(&control);
-            if transport.can_give_up() && control.gives_up(self.start.elapsed()) {
+            statistics.print(&control, printer);
+            if control.gives_up(self.start.elapsed()) {
                 transport.give_up(number);
             }
             let due = request
@@ -92,14 +99,25 @@ impl Server {
                 request.size = request.size.map(|side| ((f32::from(side) * scale) as u16).max(16));
             }
             let begun = Instant::now();
-            let Some(picture) = self.source.picture(&request, self.start.elapsed())? else { continue };
+            let picture = match self.source.picture(&request, self.start.elapsed()) {
+                Ok(Some(picture)) => picture,
+                Ok(None) => continue,
+                // A scene can be rendered from elsewhere.
+                Err(error) if matches!(self.source, Source::Scene { .. }) => {
+                    return Ok(Some(error.to_string()));
+                }
+                Err(error) => return Err(error),
+            };
             answered = Some(request.time_ms);
             let rendered = begun.elapsed();
-            let LivePicture { data, is_intra, quantizer } = self.encoder.encode(
-                &picture.planes,
-                control.quantizer(),
-                control.needs_intra() || picture.new_span,
-            )?;
+            let intra = control.needs_intra() || picture.new_span;
+            // Another quantizer for an intra frame would restart some encoders twice.
+            let quantizer = control.quantizer(intra && self.encoder.changes_freely());
+            let encoded = match self.encoder.encode(&picture.planes, quantizer, intra) {
+                Ok(encoded) => encoded,
+                Err(error) => return Ok(Some(error.to_string())),
+            };
+            let LivePicture { data, is_intra, quantizer } = encoded;
             let ms = |time: Duration| time.as_secs_f32() * 1e3;
             let header = FrameHeader {
                 time_ms: request.time_ms,
@@ -110,15 +128,35 @@ impl Server {
                 quantizer,
             };
             let frame = FromServer::Frame { number, intra: is_intra, header, data: &data };
-            control.sent(number, is_intra, self.start.elapsed());
+            control.sent(number, is_intra, (quantizer, data.len()), self.start.elapsed());
             if is_intra {
                 // Frames before an intra frame are no longer needed.
                 transport.give_up(number);
             }
-            transport.send(number, frame.to_bytes())?;
+            if let Err(error) = transport.send(number, frame.to_bytes()) {
+                return Ok(Some(error.to_string()));
+            }
             statistics.add(data.len(), &header);
             number = number.wrapping_add(1);
         }
+    }
+}
+
+/// Prints lines on a thread of its own, since a terminal may be stopped (Ctrl-S).
+struct Printer(SyncSender<String>);
+
+impl Printer {
+    /// The most lines that wait. What is more is not printed.
+    const MOST: usize = 16;
+
+    fn start() -> Printer {
+        let (send, lines) = mpsc::sync_channel::<String>(Printer::MOST);
+        thread::spawn(move || lines.into_iter().for_each(|line| println!("{line}")));
+        Printer(send)
+    }
+
+    fn say(&self, line: String) {
+        let _ = self.0.try_send(line);
     }
 }
 
@@ -127,6 +165,7 @@ struct Statistics {
     since: Instant,
     frames: u32,
     bytes: usize,
+    quantizer: u8,
     render_ms: f32,
     encode_ms: f32,
     /// The number of lost frames at the last printing.
@@ -135,33 +174,42 @@ struct Statistics {
 
 impl Statistics {
     fn new(lost: u32) -> Statistics {
-        Statistics { since: Instant::now(), frames: 0, bytes: 0, render_ms: 0.0, encode_ms: 0.0, lost }
+        Statistics {
+            since: Instant::now(),
+            frames: 0,
+            bytes: 0,
+            quantizer: 0,
+            render_ms: 0.0,
+            encode_ms: 0.0,
+            lost,
+        }
     }
 
     fn add(&mut self, bytes: usize, header: &FrameHeader) {
         self.frames += 1;
         self.bytes += bytes;
+        self.quantizer = header.quantizer;
         self.render_ms += header.render_ms;
         self.encode_ms += header.encode_ms;
     }
 
-    fn print(&mut self, control: &RateControl) {
+    fn print(&mut self, control: &RateControl, printer: &Printer) {
         let seconds = self.since.elapsed().as_secs_f32();
         if seconds < 1.0 {
             return;
         }
         if self.frames > 0 {
             let frames = self.frames as f32;
-            println!(
-                "{:.0} frames/s, {} lost, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and decoded {}",
+            printer.say(format!(
+                "{:.0} frames/s, {} lost, {:.2} Mbit/s, quantizer {}, render {:.1} ms, encode {:.1} ms, sent and arrived {}",
                 frames / seconds,
                 control.lost() - self.lost,
                 self.bytes as f32 * 8e-6 / seconds,
-                control.quantizer(),
+                self.quantizer,
                 self.render_ms / frames,
                 self.encode_ms / frames,
                 control.round_trip().map_or("never".into(), |time| format!("after {} ms", time.as_millis()))
-            );
+            ));
         }
         *self = Statistics::new(control.lost());
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::ensure;
 
-use yoro_media::video::Reader;
+use yoro_media::video::{Planes, Reader, VideoError};
 use yoro_render::PreparedScene;
 use yoro_stream::{Content, EyeView, FrameRenderer, FromServer, Picture, ViewRequest};
 
@@ -44,6 +44,10 @@ pub struct Video {
     size: [u16; 2],
     /// The time at which the next picture is due.
     due: Duration,
+    /// The pictures that have been read since the first.
+    read: usize,
+    /// The first damage, and whether it was told.
+    damage: Option<(VideoError, bool)>,
 }
 
 impl Video {
@@ -66,7 +70,44 @@ impl Video {
         );
         let size = view.size.map(|n| n as u16);
         let welcome = FromServer::Video(rgbd.pair().frusta, rgbd.eye);
-        Ok((Video { reader, content, size, due: Duration::ZERO }, welcome))
+        let mut video = Video { reader, content, size, due: Duration::ZERO, read: 0, damage: None };
+        // A video without a whole picture is refused at once.
+        video.next()?;
+        video.rewind()?;
+        Ok((video, welcome))
+    }
+
+    /// Returns the next picture that is whole. After the last one, the first follows.
+    fn next(&mut self) -> anyhow::Result<Planes> {
+        loop {
+            let has_more = match self.reader.read_packed() {
+                Ok(Some(planes)) => {
+                    self.read += 1;
+                    if let Some((error, told @ false)) = &mut self.damage {
+                        log::warn!("{error}; what cannot be read is left out");
+                        *told = true;
+                    }
+                    return Ok(planes);
+                }
+                Ok(None) => false,
+                Err(error) => {
+                    let has_more = self.reader.skip()?;
+                    if !has_more && self.read == 0 {
+                        return Err(error.into());
+                    }
+                    self.damage.get_or_insert((error, false));
+                    has_more
+                }
+            };
+            if !has_more {
+                self.rewind()?;
+            }
+        }
+    }
+
+    fn rewind(&mut self) -> Result<(), VideoError> {
+        self.read = 0;
+        self.reader.rewind()
     }
 
     fn picture(&mut self, now: Duration) -> anyhow::Result<Option<Picture>> {
@@ -75,10 +116,7 @@ impl Video {
         }
         let mut newest = None;
         while self.due <= now {
-            if self.reader.frames() == 0 {
-                self.reader.rewind()?;
-            }
-            let Some(planes) = self.reader.read_packed()? else { break };
+            let planes = self.next()?;
             self.due += Duration::from_secs_f64(self.reader.duration().max(1e-3));
             newest = Some(planes);
         }

@@ -59,14 +59,14 @@ impl WebServer {
                     continue;
                 }
             };
-            let Some(place) = self.lobby.places.take(address.ip()) else {
-                log::info!("{address} has too many connections");
-                continue;
-            };
-            let server = self.clone();
+            let place = self.lobby.places.take(address.ip());
+            let (server, lost) = (self.clone(), place.lost());
             tokio::spawn(async move {
-                if let Err(error) = server.connect(socket, place).await {
-                    log::info!("{address} is not served: {error}");
+                tokio::select! {
+                    served = server.connect(socket, place) => if let Err(error) = served {
+                        log::info!("{address} is not served: {error}");
+                    },
+                    () = lost => log::info!("{address} makes room for a newer connection"),
                 }
             });
         }
@@ -169,6 +169,11 @@ async fn file(folder: &Path, request: &Request<Incoming>) -> Response<Body> {
     headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(http::kind(&path)));
     headers.insert(header::CONTENT_LENGTH, length.into());
     headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-cache"));
-    headers.insert(header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(http::POLICY));
+    let policy = format!("{}; frame-ancestors 'none'", http::POLICY);
+    if let Ok(policy) = policy.try_into() {
+        headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    headers.insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
+    headers.insert(header::REFERRER_POLICY, HeaderValue::from_static("no-referrer"));
     response
 }

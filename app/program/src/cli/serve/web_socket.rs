@@ -4,7 +4,7 @@ use std::pin::pin;
 use std::sync::{Arc, mpsc};
 use std::time::Instant;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use futures_util::{SinkExt as _, Stream, StreamExt as _};
 use hyper::body::{Bytes, Incoming};
 use hyper::upgrade::Upgraded;
@@ -37,9 +37,14 @@ pub fn accept<B>(
     let response = create_response_with_body(&request, body)?;
     let upgrade = hyper::upgrade::on(&mut request);
     tokio::spawn(async move {
-        let admitted = timeout_at(deadline, async { admit(upgrade.await?, &lobby).await }).await;
+        let admitted = tokio::select! {
+            admitted = timeout_at(deadline, async { admit(upgrade.await?, &lobby).await }) => {
+                admitted.map_err(anyhow::Error::from).flatten()
+            }
+            () = place.lost() => Err(anyhow!("it makes room for a newer connection")),
+        };
         drop(place);
-        match admitted.map_err(anyhow::Error::from).flatten() {
+        match admitted {
             Ok((socket, seat)) => {
                 let (send, frames) = frames::channel(1);
                 let heard = lobby.admit(Box::new(Frames(send)), seat);

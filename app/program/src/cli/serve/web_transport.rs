@@ -4,7 +4,7 @@ use std::net::UdpSocket;
 use std::sync::{Arc, mpsc};
 use std::time::Instant;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use tokio::io::AsyncReadExt as _;
 use tokio::runtime::Handle;
 use tokio::sync::watch;
@@ -46,16 +46,17 @@ pub async fn accept(endpoint: &Endpoint<Server>, lobby: &Arc<Lobby>) {
             incoming.retry();
             continue;
         }
-        let Some(place) = lobby.places.take(address.ip()) else {
-            log::info!("{address} has too many connections");
-            incoming.refuse();
-            continue;
-        };
+        let place = lobby.places.take(address.ip());
         let lobby = lobby.clone();
         tokio::spawn(async move {
-            let admitted = timeout(HELLO_TIMEOUT, admit(incoming, &lobby)).await;
+            let admitted = tokio::select! {
+                admitted = timeout(HELLO_TIMEOUT, admit(incoming, &lobby)) => {
+                    admitted.map_err(anyhow::Error::from).flatten()
+                }
+                () = place.lost() => Err(anyhow!("it makes room for a newer connection")),
+            };
             drop(place);
-            match admitted.map_err(anyhow::Error::from).flatten() {
+            match admitted {
                 Ok((connection, seat)) => {
                     let heard = lobby.admit(Box::new(Frames::new(connection.clone())), seat);
                     hear(&connection, &heard).await;
