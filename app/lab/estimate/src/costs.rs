@@ -227,7 +227,7 @@ mod tests {
         for gpu in GPUS {
             let costs = Costs::of(gpu).unwrap();
             let slots =
-                |count: usize| costs.fragment(&recipe("render/geometry.frag", &MAPS[..count])).unwrap().slots;
+                |count: usize| costs.fragment(&recipe("render/forward.frag", &MAPS[..count])).unwrap().slots;
             assert!(slots(4) > slots(0) + 10.0, "{gpu}");
             assert!((slots(1) - (slots(0) + 0.25 * (slots(4) - slots(0)))).abs() < 1e-9, "{gpu}");
         }
@@ -236,13 +236,11 @@ mod tests {
     #[test]
     fn the_loop_over_lamps_is_counted_for_each_lamp() {
         let costs = Costs::of("a740").unwrap();
-        let defines = ["SUN", "SHADOWS", "SSAO", "SSAO_SCALE=1", "MAX_POINT_LIGHTS=24"];
-        let whole = TABLE.lines().find(|line| {
-            line.starts_with("a740,render/lighting.frag SUN SHADOWS SSAO SSAO_SCALE=1 MAX_POINT_LIGHTS=24,")
-        });
+        const PROGRAM: &str = "render/forward.frag SUN SHADOWS MAX_POINT_LIGHTS=24 LIGHT_TILES=128 LIGHT_TILE_COLUMNS=16 MULTISAMPLE CARRIED=4";
+        let whole = TABLE.lines().find(|line| line.starts_with(&format!("a740,{PROGRAM},fragment,")));
         let total: f64 = whole.unwrap().split(',').nth(4).unwrap().parse().unwrap();
-        let Fragment { slots, lamp, lanes } =
-            costs.fragment(&recipe("render/lighting.frag", &defines)).unwrap();
+        let words: Vec<&str> = PROGRAM.split(' ').collect();
+        let Fragment { slots, lamp, lanes } = costs.fragment(&recipe(words[0], &words[1..])).unwrap();
         assert!(lamp > 50.0 && (slots + lamp - total).abs() < 1e-9 && lanes == 128, "{slots} {lamp} {lanes}");
     }
 
@@ -264,7 +262,7 @@ mod tests {
     fn each_way_to_draw_both_eyes_has_its_own_vertex_shader() {
         let costs = Costs::of("g57").unwrap();
         let [one, both] =
-            [&[][..], &["STEREO", "MULTIVIEW"]].map(|d| costs.vertex(&recipe("render/geometry.frag", d)));
+            [&[][..], &["STEREO", "MULTIVIEW"]].map(|d| costs.vertex(&recipe("render/forward.frag", d)));
         assert!(both > one && one > 20.0, "{one} {both}");
     }
 }

@@ -167,7 +167,7 @@ mod tests {
         };
         let mesh = Shape::Mesh { indices: 30, vertices: 20, vertex_bytes: 32 };
         let commands = [
-            draw("surfaces", "render/forward.frag", mesh, Some(120)),
+            draw("surfaces", "render/shadow.frag", mesh, Some(120)),
             draw("bloom", "render/bloom_up.frag", Shape::Screen, None),
             draw("gather march", "synthesis/gather/march.frag", Shape::Screen, None),
         ];
@@ -184,8 +184,8 @@ mod tests {
             let value = frame[metric];
             assert!((value - expected).abs() < 1e-9 * expected, "{metric}: {value}, not {expected}");
         };
-        close("slots/a740/surfaces", 1.2 * told("render/forward.frag", "fragment", 4));
-        close("slots/a740/vertices", 0.2 * told("render/forward.frag", "vertex", 3));
+        close("slots/a740/surfaces", 1.2 * told("render/shadow.frag", "fragment", 4));
+        close("slots/a740/vertices", 0.2 * told("render/shadow.frag", "vertex", 3));
         close("slots/a740/bloom", told("render/bloom_up.frag", "fragment", 4));
         close("fragments/surfaces", 1.2);
         close("bytes/surfaces", 8.0);
